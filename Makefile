@@ -1,0 +1,65 @@
+# make run  : sets everything up and serves the panel with a simulated tracker at http://127.0.0.1:8000
+# make test : sets up what tests need and runs them all, browser tests included
+# make check: formatting, lint, types, import contracts, migrations, vendored files
+# make bench: measures and writes docs/benchmarks.md
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+
+.DEFAULT_GOAL := help
+.PHONY: help setup run test check bench format lock browser system-packages clean
+
+help: ## Show what each command does
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-10s %s\n", $$1, $$2}'
+
+$(VENV)/.runtime: requirements.txt pyproject.toml
+	@echo "Setting up $(VENV) with what Heliopanel needs to run ..."
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.txt
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	@touch $@
+
+$(VENV)/.dev: requirements-dev.txt $(VENV)/.runtime
+	@echo "Adding what tests and checks need ..."
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.txt
+	@touch $@
+
+setup: $(VENV)/.runtime ## Make .venv with the command heliopanel
+	@echo "Ready: $(BIN)/heliopanel --help"
+
+run: setup ## Serve the panel with a simulated tracker at http://127.0.0.1:8000
+	@echo "Heliopanel: open http://127.0.0.1:$${HELIOPANEL_PORT:-8000} (Ctrl-C ends it)"
+	@$(BIN)/heliopanel serve
+
+system-packages:
+	@sh tests/system-packages.sh
+
+test: $(VENV)/.dev system-packages ## Set up what tests need and run them all, browser tests included
+	@echo "Running all tests ..."
+	@$(BIN)/python -m pytest
+
+browser: $(VENV)/.dev system-packages ## Run the browser tests alone; screenshots go to build/screens
+	@$(BIN)/python -m pytest tests/browser
+
+check: $(VENV)/.dev ## Formatting, lint, types, import contracts, migrations, vendored files
+	@$(BIN)/ruff format --check .
+	@$(BIN)/ruff check .
+	@$(BIN)/mypy
+	@$(BIN)/lint-imports
+	@$(BIN)/python static/vendor/vendor.py check
+	@$(BIN)/python -m app.store.migrations check
+
+bench: $(VENV)/.dev system-packages ## Measure, as ratios against peers in the same run, and write docs/benchmarks.md
+	@$(BIN)/python -m bench
+
+format: $(VENV)/.dev ## Format the code
+	@$(BIN)/ruff format .
+	@$(BIN)/ruff check --fix .
+
+lock: ## Renew the locked dependencies (needs uv)
+	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build pyproject.toml -o requirements.txt
+	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra dev -c requirements.txt pyproject.toml -o requirements-dev.txt
+
+clean: ## Remove what was built (not the data)
+	rm -rf $(VENV) build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache

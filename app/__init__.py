@@ -1,0 +1,1 @@
+"""Heliopanel commissions a solar tracker in the browser and keeps it on the sun."""

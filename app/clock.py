@@ -1,0 +1,70 @@
+"""The only module that reads the machine's time."""
+
+import asyncio
+import time
+from datetime import UTC, datetime, timedelta
+from typing import Protocol
+
+
+class Clock(Protocol):
+    """A source of aware UTC instants that never go backwards."""
+
+    def now(self) -> datetime:
+        """Return the present instant, aware, in UTC."""
+
+    async def sleep_until(self, at: datetime) -> None:
+        """Return once `now()` is at or after `at`; at once if it is already."""
+
+
+class SystemClock:
+    """The machine's time, anchored once and advanced by the monotonic counter."""
+
+    def __init__(self) -> None:
+        self._anchor = datetime.now(UTC)
+        self._counter = time.monotonic()
+
+    def now(self) -> datetime:
+        """Return the anchored instant plus the monotonic time that has passed since."""
+        return self._anchor + timedelta(seconds=time.monotonic() - self._counter)
+
+    def drift(self) -> timedelta:
+        """Return how far the system's wall clock has moved away from this clock since it was anchored."""
+        return datetime.now(UTC) - self.now()
+
+    async def sleep_until(self, at: datetime) -> None:
+        """Sleep for what is left until `at`."""
+        await asyncio.sleep(max(0.0, (at - self.now()).total_seconds()))
+
+
+class VirtualClock:
+    """A clock that moves only when it is told to; sleepers wake in the order of their instants."""
+
+    def __init__(self, start: datetime) -> None:
+        self._now = start
+        self._sleepers: list[tuple[datetime, asyncio.Event]] = []
+
+    def now(self) -> datetime:
+        """Return the instant that this clock was last moved to."""
+        return self._now
+
+    def move_to(self, at: datetime) -> None:
+        """Move to `at` (never backwards) and wake everyone who slept until then."""
+        if at < self._now:
+            raise ValueError(f"A clock never goes backwards: it shows {self._now}, asked for {at}.")
+        self._now = at
+        for until, woken in self._sleepers:
+            if until <= at:
+                woken.set()
+        self._sleepers = [sleeper for sleeper in self._sleepers if sleeper[0] > at]
+
+    def advance(self, by: timedelta) -> None:
+        """Move forward by a length of time."""
+        self.move_to(self._now + by)
+
+    async def sleep_until(self, at: datetime) -> None:
+        """Wait until somebody moves this clock to `at`."""
+        if at <= self._now:
+            return
+        woken = asyncio.Event()
+        self._sleepers.append((at, woken))
+        await woken.wait()

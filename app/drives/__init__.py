@@ -1,0 +1,1 @@
+"""The outside world: simulated and real drives behind one small protocol."""

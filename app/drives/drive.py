@@ -1,0 +1,41 @@
+"""The small protocol behind which every drive, simulated or real, stands."""
+
+from datetime import datetime
+from typing import Protocol
+
+from app.tracker.motion import DriveCapabilities, DriveCommand, Feedback
+
+
+class DriveError(Exception):
+    """A drive could not be read or written; the text says what happened and what to do."""
+
+
+class DriveSilent(DriveError):
+    """Nothing came back in time, or there is no connection."""
+
+
+class DriveRefused(DriveError):
+    """The drive answered that it will not do this; asking again will not help."""
+
+
+class Drive(Protocol):
+    """Two axes that can be read, commanded and stopped. Every call is bounded in time."""
+
+    @property
+    def capabilities(self) -> DriveCapabilities:
+        """Return what this drive can do."""
+
+    async def read(self) -> Feedback:
+        """Return a fresh reading, or raise `DriveError`; never an old value."""
+
+    async def write(self, command: DriveCommand) -> None:
+        """Make the axes do this from now on and feed the watchdog, or raise `DriveError`."""
+
+    async def stop(self) -> None:
+        """Ramp both axes down at once, ahead of anything queued, or raise `DriveError`."""
+
+    async def set_clock(self, at: datetime) -> None:
+        """Set the drive's own clock where `capabilities.settable_clock`, else do nothing."""
+
+    async def close(self) -> None:
+        """Let go of the connection; the axes are stopped first if that is possible."""

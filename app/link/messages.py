@@ -1,0 +1,203 @@
+"""What crosses the wire between panel and machine: plain data, nothing else."""
+
+from collections.abc import AsyncIterator
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Literal, Protocol
+
+from app.sun.position import Location
+from app.tracker.commands import Command
+from app.tracker.commissioning import Step
+from app.tracker.config import TrackerConfig
+from app.tracker.memory import Sighting, SiteState, StepName, TrackerState
+from app.tracker.motion import DriveCapabilities
+from app.tracker.programs.show import ShowPlan
+from app.tracker.recording import RecordingInfo
+from app.tracker.snapshot import Event, SiteSnapshot
+
+
+class MachineUnreachable(Exception):
+    """The controller service does not answer; nothing was done, and nothing will be done later."""
+
+
+class UnknownTracker(Exception):
+    """No tracker has this id."""
+
+
+class UnknownRecording(Exception):
+    """No recording has this id."""
+
+
+@dataclass(frozen=True, slots=True)
+class SetLocation:
+    """Step 1: where the site is and which civil time it keeps."""
+
+    location: Location
+    time_zone: str
+    kind: Literal["set_location"] = "set_location"
+
+
+@dataclass(frozen=True, slots=True)
+class SetClock:
+    """Step 2: trust the system clock (`at` is None), or make the controller's clock show `at` now."""
+
+    source: Literal["system", "manual"]
+    at: datetime | None = None
+    time_zone: str | None = None
+    kind: Literal["set_clock"] = "set_clock"
+
+
+@dataclass(frozen=True, slots=True)
+class RenameSite:
+    """Give the site another name."""
+
+    name: str
+    kind: Literal["rename_site"] = "rename_site"
+
+
+@dataclass(frozen=True, slots=True)
+class AddTracker:
+    """Add a tracker; its id must be new."""
+
+    config: TrackerConfig
+    kind: Literal["add_tracker"] = "add_tracker"
+
+
+@dataclass(frozen=True, slots=True)
+class ConfigureTracker:
+    """Replace a tracker's configuration; refused while it moves. Renaming is this too."""
+
+    config: TrackerConfig
+    kind: Literal["configure_tracker"] = "configure_tracker"
+
+
+@dataclass(frozen=True, slots=True)
+class RemoveTracker:
+    """Remove a tracker that stands still; its recordings and journal stay."""
+
+    tracker_id: str
+    kind: Literal["remove_tracker"] = "remove_tracker"
+
+
+@dataclass(frozen=True, slots=True)
+class ConfirmStep:
+    """The operator says that a step is still right."""
+
+    tracker_id: str
+    step: StepName
+    kind: Literal["confirm_step"] = "confirm_step"
+
+
+@dataclass(frozen=True, slots=True)
+class TakeSighting:
+    """The panel faces the sun now: store sun and panel as one sighting."""
+
+    tracker_id: str
+    kind: Literal["take_sighting"] = "take_sighting"
+
+
+@dataclass(frozen=True, slots=True)
+class ApplySightings:
+    """Fit the stored sightings and correct with the result; no sightings: forget the correction."""
+
+    tracker_id: str
+    keep: tuple[Sighting, ...]
+    kind: Literal["apply_sightings"] = "apply_sightings"
+
+
+@dataclass(frozen=True, slots=True)
+class SavePlan:
+    """Keep the plan of a show so that it can be found by its id."""
+
+    tracker_id: str
+    plan: ShowPlan
+    kind: Literal["save_plan"] = "save_plan"
+
+
+@dataclass(frozen=True, slots=True)
+class StopAll:
+    """Stop every tracker of the site now."""
+
+    kind: Literal["stop_all"] = "stop_all"
+
+
+@dataclass(frozen=True, slots=True)
+class SaveRecording:
+    """Store a finished simulation: its head and its chunks, base64 of the store's own encoding."""
+
+    info: RecordingInfo
+    chunks: tuple[str, ...]
+    kind: Literal["save_recording"] = "save_recording"
+
+
+@dataclass(frozen=True, slots=True)
+class DeleteRecording:
+    """Delete a recording that is not running."""
+
+    recording_id: str
+    kind: Literal["delete_recording"] = "delete_recording"
+
+
+SiteCommand = (
+    SetLocation | SetClock | RenameSite | AddTracker | ConfigureTracker | RemoveTracker | ConfirmStep
+    | SavePlan | TakeSighting | ApplySightings | StopAll | SaveRecording | DeleteRecording
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """One call into the machine. `tracker_id` addresses a `Command`; a `SiteCommand` leaves it None.
+
+    `key` makes a repeated order a no-op that answers as the first did. `issued_at` (the machine's
+    own clock, as told by snapshots) makes an order that is older than 2 s refused.
+    """
+
+    command: Command | SiteCommand
+    actor: str
+    tracker_id: str | None = None
+    key: str | None = None
+    issued_at: datetime | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Update:
+    """What the machine tells: a full snapshot, and the events since the last update."""
+
+    snapshot: SiteSnapshot
+    events: tuple[Event, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class TrackerDetail:
+    """What changes seldom about a tracker: stored state, the five steps, what its drive can do."""
+
+    state: TrackerState
+    steps: tuple[Step, ...]
+    capabilities: DriveCapabilities | None
+
+
+@dataclass(frozen=True, slots=True)
+class SiteDetail:
+    """What changes seldom about the site, read when a page is rendered."""
+
+    site: SiteState
+    trackers: dict[str, TrackerDetail] = field(default_factory=dict)
+
+
+class Machine(Protocol):
+    """The machine as the panel sees it: over the wire, or directly in tests."""
+
+    async def execute(self, order: Order) -> SiteSnapshot:
+        """Carry out one order and return the snapshot after it.
+
+        Raises `CommandRejected`, `UnknownTracker`, `UnknownRecording` or `MachineUnreachable`.
+        """
+
+    async def detail(self) -> SiteDetail:
+        """Return stored settings, steps and capabilities, or raise `MachineUnreachable`."""
+
+    def latest(self) -> SiteSnapshot | None:
+        """Return the newest snapshot that arrived, None before the first or while the link is down."""
+
+    def updates(self) -> AsyncIterator[Update]:
+        """Yield updates until the link goes down; a slow reader skips snapshots, never events."""

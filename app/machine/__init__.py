@@ -1,0 +1,1 @@
+"""The controller service: the process that owns the drives."""

@@ -1,0 +1,1 @@
+"""A simulated day: the same site on a virtual clock, recorded."""

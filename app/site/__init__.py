@@ -1,0 +1,1 @@
+"""Trackers living on a clock."""

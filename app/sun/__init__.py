@@ -1,0 +1,1 @@
+"""Astronomy: where the sun stands, one module per published algorithm."""

@@ -1,0 +1,157 @@
+"""What a tracker can be asked to do, and the sentences that say why it will not."""
+
+from dataclasses import dataclass
+from datetime import timedelta
+from typing import Literal
+
+from app.tracker.axes import Axis, JogSpeed
+from app.tracker.config import Orientation
+from app.tracker.mode import Mode
+from app.tracker.programs.show import ShowPlan
+from app.tracker.reason import Reason
+
+JOG_LEASE = timedelta(milliseconds=240)
+
+
+class CommandRejected(Exception):
+    """The tracker will not do this now; `reasons` lists every unmet condition."""
+
+    def __init__(self, *reasons: Reason) -> None:
+        super().__init__(" ".join(reason.message for reason in reasons))
+        self.reasons = reasons
+
+
+@dataclass(frozen=True, slots=True)
+class Jog:
+    """Turn one axis while the lease is renewed: the same `press_id` renews, a press that ended stays dead.
+
+    `lease` is at most `JOG_LEASE`; `sequence` grows with every renewal of a press.
+    """
+
+    press_id: str
+    axis: Axis
+    direction: Literal[-1, 1]
+    speed: JogSpeed = JogSpeed.SLOW
+    sequence: int = 0
+    lease: timedelta = JOG_LEASE
+    kind: Literal["jog"] = "jog"
+
+
+@dataclass(frozen=True, slots=True)
+class EndJog:
+    """The key was let go: stop, and never obey this press again."""
+
+    press_id: str
+    kind: Literal["end_jog"] = "end_jog"
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """Move one axis by a bounded increment (0.1, 1 or 5 degrees), signed."""
+
+    axis: Axis
+    degrees: float
+    kind: Literal["step"] = "step"
+
+
+@dataclass(frozen=True, slots=True)
+class SetZero:
+    """Here the axes point to north and the horizon: call this zero."""
+
+    axes: tuple[Axis, ...] = (Axis.AZIMUTH, Axis.ELEVATION)
+    kind: Literal["zero"] = "zero"
+
+
+@dataclass(frozen=True, slots=True)
+class Home:
+    """Search the origin switches, on drives that have them."""
+
+    kind: Literal["home"] = "home"
+
+
+@dataclass(frozen=True, slots=True)
+class SelectMode:
+    """Choose what tracking will do; the orientation counts for the axes that are held."""
+
+    mode: Mode
+    orientation: Orientation | None = None
+    kind: Literal["set_mode"] = "set_mode"
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """Go to an orientation and stay there."""
+
+    orientation: Orientation
+    kind: Literal["move"] = "move"
+
+
+@dataclass(frozen=True, slots=True)
+class Park:
+    """Go to the configured park position and stay there."""
+
+    kind: Literal["park"] = "park"
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """Follow the selected mode from now on, also after a restart."""
+
+    kind: Literal["track"] = "track"
+
+
+@dataclass(frozen=True, slots=True)
+class GoToStart:
+    """Move to where the panel stands at the start of a show."""
+
+    plan: ShowPlan
+    kind: Literal["go_to_start"] = "go_to_start"
+
+
+@dataclass(frozen=True, slots=True)
+class RunShow:
+    """Run the show; the panel must stand at its start position."""
+
+    plan: ShowPlan
+    kind: Literal["run_show"] = "run_show"
+
+
+@dataclass(frozen=True, slots=True)
+class PauseShow:
+    """Hold the show where it is."""
+
+    kind: Literal["pause_show"] = "pause_show"
+
+
+@dataclass(frozen=True, slots=True)
+class ResumeShow:
+    """Go on with a paused show."""
+
+    kind: Literal["resume_show"] = "resume_show"
+
+
+@dataclass(frozen=True, slots=True)
+class StopShow:
+    """End the show before its time; the panel stays where it is."""
+
+    kind: Literal["stop_show"] = "stop_show"
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """Stop both axes now and switch tracking off. Needs nothing, is never refused, resumes nothing."""
+
+    kind: Literal["stop"] = "stop"
+
+
+@dataclass(frozen=True, slots=True)
+class ResetFault:
+    """The cause is removed: clear the drive's fault and hold."""
+
+    kind: Literal["reset_fault"] = "reset_fault"
+
+
+Command = (
+    Jog | EndJog | Step | SetZero | Home | SelectMode | Move | Park | Track
+    | GoToStart | RunShow | PauseShow | ResumeShow | StopShow | Stop | ResetFault
+)  # fmt: skip

@@ -1,0 +1,109 @@
+"""What a tracker and its site must still know after a power cut."""
+
+from dataclasses import dataclass, field
+from datetime import datetime
+from enum import StrEnum
+
+from app.sun.position import Location
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.mode import Mode
+
+
+class StepName(StrEnum):
+    """The five steps, in order."""
+
+    LOCATION = "location"
+    CLOCK = "clock"
+    HOMING = "homing"
+    MODE = "mode"
+    RUN = "run"
+
+
+@dataclass(frozen=True, slots=True)
+class HomeTrust:
+    """Why the zero is believed: who set it, when, how, and in which life of the drive."""
+
+    set_at: datetime
+    by: str
+    how: str
+    boot_count: int
+
+
+@dataclass(frozen=True, slots=True)
+class Confirmation:
+    """A step was saved: when, by whom, and under which revision of the location."""
+
+    at: datetime
+    by: str
+    location_revision: int
+
+
+@dataclass(frozen=True, slots=True)
+class Sighting:
+    """The panel faced the sun here: sun and panel at the same instant, degrees."""
+
+    at: datetime
+    sun_azimuth_deg: float
+    sun_elevation_deg: float
+    panel_azimuth_deg: float
+    panel_elevation_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class Pointing:
+    """Correction from sightings: what is added to a sky direction to get axis angles, degrees.
+
+    `lean_north_deg` and `lean_east_deg` tilt the mast towards north and east.
+    """
+
+    azimuth_offset_deg: float = 0.0
+    elevation_offset_deg: float = 0.0
+    lean_north_deg: float = 0.0
+    lean_east_deg: float = 0.0
+    residual_deg: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TrackerMemory:
+    """The latches of one tracker: on disk before the command that changes them is acknowledged."""
+
+    mode: Mode | None = None
+    orientation: Orientation = Orientation(180.0, 45.0)
+    tracking_on: bool = False
+    home: HomeTrust | None = None
+    showing: str | None = None
+    fault_code: str | None = None
+    fault_text: str = ""
+    confirmations: dict[StepName, Confirmation] = field(default_factory=dict)
+    sightings: tuple[Sighting, ...] = ()
+    pointing: Pointing = Pointing()
+
+
+@dataclass(frozen=True, slots=True)
+class TrackerState:
+    """Everything stored about one tracker."""
+
+    config: TrackerConfig
+    memory: TrackerMemory
+
+
+@dataclass(frozen=True, slots=True)
+class ClockSetting:
+    """The operator's clock: `system` trusts the computer's clock, `manual` adds an offset to it."""
+
+    source: str = "unset"
+    offset_s: float = 0.0
+    set_at: datetime | None = None
+    by: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class SiteState:
+    """Everything stored about the site that its trackers share."""
+
+    name: str = "Solar site"
+    location: Location | None = None
+    location_revision: int = 0
+    time_zone: str = "UTC"
+    clock: ClockSetting = ClockSetting()
+    confirmations: dict[StepName, Confirmation] = field(default_factory=dict)

@@ -1,0 +1,106 @@
+"""What a drive is told and what it answers: plain data, the same for simulated and real drives.
+
+Both axes are in degrees of the axis, zero where the operator set it (north, horizon). Azimuth grows
+clockwise (towards east), elevation grows upwards. An axis angle does not wrap.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+@dataclass(frozen=True, slots=True)
+class Halt:
+    """Ramp down and stay."""
+
+
+@dataclass(frozen=True, slots=True)
+class Velocity:
+    """Turn at a signed speed until told otherwise."""
+
+    velocity_dps: float
+
+
+@dataclass(frozen=True, slots=True)
+class Position:
+    """Go to an axis angle at no more than a speed."""
+
+    position_deg: float
+    speed_dps: float
+
+
+AxisCommand = Halt | Velocity | Position
+HALT = Halt()
+
+
+class RequestKind(StrEnum):
+    """Something a drive does once."""
+
+    SET_ZERO_AZIMUTH = "set_zero_azimuth"
+    SET_ZERO_ELEVATION = "set_zero_elevation"
+    HOME = "home"
+    RESET_FAULT = "reset_fault"
+
+
+@dataclass(frozen=True, slots=True)
+class DriveRequest:
+    """A numbered one-time request; the drive answers with the number in `Feedback.request_done`."""
+
+    number: int
+    kind: RequestKind
+
+
+@dataclass(frozen=True, slots=True)
+class DriveCommand:
+    """What both axes shall do from now on. Written every tick: writing it feeds the drive's watchdog."""
+
+    azimuth: AxisCommand = HALT
+    elevation: AxisCommand = HALT
+    request: DriveRequest | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class AxisFeedback:
+    """What one axis measures and reports."""
+
+    position_deg: float
+    velocity_dps: float
+    moving: bool
+    homed: bool
+    at_lower_limit: bool = False
+    at_upper_limit: bool = False
+    at_origin: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Feedback:
+    """One complete, consistent reading of a drive.
+
+    `boot_count` changes when the drive has restarted; `fault_code` is zero without a fault;
+    `request_done` is the number of the last request that the drive completed, and `request_failed`
+    says that it could not do it.
+    """
+
+    azimuth: AxisFeedback
+    elevation: AxisFeedback
+    boot_count: int
+    fault_code: int = 0
+    homing: bool = False
+    watchdog_tripped: bool = False
+    request_done: int = 0
+    request_failed: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class DriveCapabilities:
+    """What this drive can do; nobody has to find out by trying.
+
+    `watchdog_s` is the time after which the drive itself ramps down without a fresh command, None
+    where it has no such watchdog. `automatic_homing` needs origin switches.
+    """
+
+    automatic_homing: bool
+    watchdog_s: float | None
+    settable_clock: bool
+    limit_switches: bool
+    description: str
+    verified: bool

@@ -1,0 +1,12 @@
+"""Why something is not, or should not be, done: a sentence for the person who reads it."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Reason:
+    """One unmet condition: a stable code, a sentence, and what to do about it."""
+
+    code: str
+    message: str
+    hint: str = ""

@@ -1,0 +1,80 @@
+"""Recordings: frames as columns, one row a tick, the same for shows, days and simulations."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.sun.position import Location
+from app.tracker.mode import Mode
+
+COLUMNS = (
+    "elapsed_s",
+    "sun_time_s",
+    "sun_azimuth_deg",
+    "sun_elevation_deg",
+    "target_azimuth_deg",
+    "target_elevation_deg",
+    "setpoint_azimuth_deg",
+    "setpoint_elevation_deg",
+    "measured_azimuth_deg",
+    "measured_elevation_deg",
+    "activity",
+)
+"""`elapsed_s`: seconds since the recording began, of the machine. `sun_time_s`: seconds of sun time since
+`RecordingInfo.sun_begin_at`. `sun_elevation_deg` is apparent (refracted) if the tracker refracts. Angles are
+of the sky except that azimuth setpoints and measurements are axis angles wrapped to [0, 360). What was not
+known is NaN. `activity` is the index in `list(ActivityName)`."""
+
+
+class RecordingKind(StrEnum):
+    """Why it was recorded."""
+
+    SHOW = "show"
+    DAY = "day"
+    SIMULATION = "simulation"
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingInfo:
+    """The head of a recording. `ended_at` is None while it runs; `outcome` says how it ended."""
+
+    recording_id: str
+    kind: RecordingKind
+    tracker_id: str
+    tracker_name: str
+    title: str
+    began_at: datetime
+    sun_begin_at: datetime
+    sun_end_at: datetime
+    duration_s: float
+    location: Location
+    time_zone: str
+    mode: Mode
+    held_azimuth_deg: float
+    held_elevation_deg: float
+    algorithm: str
+    drive: str
+    ended_at: datetime | None = None
+    outcome: str = ""
+    frame_count: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Frames:
+    """Columns of equal length, named and ordered as `COLUMNS`: float64 array of shape (rows, columns)."""
+
+    values: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        if self.values.ndim != 2 or self.values.shape[1] != len(COLUMNS):
+            raise ValueError(f"Frames have {len(COLUMNS)} columns, not shape {self.values.shape}.")
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def column(self, name: str) -> NDArray[np.float64]:
+        """Return one column by its name."""
+        return self.values[:, COLUMNS.index(name)]

@@ -1,0 +1,189 @@
+"""The one shape that pages, REST, stream, journal and replay all read."""
+
+from dataclasses import dataclass, field
+from datetime import datetime
+from enum import StrEnum
+from typing import Any
+
+from app.sun.position import Location, SunPosition
+from app.tracker.config import Orientation
+from app.tracker.mode import Mode
+from app.tracker.reason import Reason
+
+
+class ActivityName(StrEnum):
+    """What the machine is doing."""
+
+    HOLDING = "holding"
+    JOGGING = "jogging"
+    MOVING = "moving"
+    ZEROING = "zeroing"
+    HOMING = "homing"
+    TRACKING = "tracking"
+    SHOWING = "showing"
+    STOPPING = "stopping"
+    FAULTED = "faulted"
+
+
+class ShowPhase(StrEnum):
+    """Where a show is."""
+
+    GOING_TO_START = "going_to_start"
+    READY = "ready"
+    RUNNING = "running"
+    PAUSED = "paused"
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Azimuth and elevation of the same thing, degrees."""
+
+    azimuth_deg: float
+    elevation_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class AxisState:
+    """Switches and trust of one axis as the panel shows them."""
+
+    moving: bool
+    homed: bool
+    at_lower_limit: bool
+    at_upper_limit: bool
+    at_origin: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ShowProgress:
+    """How far a show is: its own clock and how much of it has run."""
+
+    show_id: str
+    phase: ShowPhase
+    sun_time: datetime
+    elapsed_s: float
+    duration_s: float
+    acceleration: float
+    begin_at: datetime
+    end_at: datetime
+    sun_is_up: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """One tracker at one tick. Whatever is not known is None, never an old value.
+
+    `sun` is the sun that is followed: the accelerated one during a show. `target` is where the panel
+    should point, `setpoint` what the drive was told, `measured` what the drive reports, in sky
+    degrees; `position_age_s` is the age of the last good reading. `off_sun_deg` is the angle between
+    the panel's normal and the sun (None while the sun is down). `waiting` says why a tracker that
+    should move does not. `actions` maps every action to the reasons that forbid it (none: allowed).
+    """
+
+    tracker_id: str
+    name: str
+    at: datetime
+    tick: int
+    activity: ActivityName
+    activity_text: str
+    mode: Mode
+    orientation: Orientation
+    tracking_on: bool
+    sun: SunPosition | None
+    sun_is_up: bool
+    target: Pair | None
+    setpoint: Pair | None
+    measured: Pair | None
+    last_measured: Pair | None
+    position_age_s: float | None
+    following_error_deg: float | None
+    off_sun_deg: float | None
+    in_position: bool
+    home_trusted: bool
+    azimuth: AxisState | None
+    elevation: AxisState | None
+    fault: Reason | None
+    waiting: tuple[Reason, ...] = ()
+    notices: tuple[Reason, ...] = ()
+    show: ShowProgress | None = None
+    actions: dict[str, tuple[Reason, ...]] = field(default_factory=dict)
+
+
+class EventKind(StrEnum):
+    """What can happen; past tense, as it goes into the journal."""
+
+    MACHINE_STARTED = "machine_started"
+    MACHINE_STOPPED = "machine_stopped"
+    LOCATION_SET = "location_set"
+    CLOCK_SET = "clock_set"
+    CLOCK_JUMPED = "clock_jumped"
+    TRACKER_ADDED = "tracker_added"
+    TRACKER_CHANGED = "tracker_changed"
+    TRACKER_REMOVED = "tracker_removed"
+    STEP_CONFIRMED = "step_confirmed"
+    JOG_STARTED = "jog_started"
+    JOG_ENDED = "jog_ended"
+    MOVE_STARTED = "move_started"
+    MOVE_ENDED = "move_ended"
+    ZERO_SET = "zero_set"
+    ZERO_FAILED = "zero_failed"
+    HOMING_STARTED = "homing_started"
+    HOMING_ENDED = "homing_ended"
+    HOME_LOST = "home_lost"
+    MODE_SELECTED = "mode_selected"
+    TRACKING_STARTED = "tracking_started"
+    TRACKING_ENDED = "tracking_ended"
+    TRACKING_RESUMED = "tracking_resumed"
+    TRACKING_WAITING = "tracking_waiting"
+    SHOW_STARTED = "show_started"
+    SHOW_PAUSED = "show_paused"
+    SHOW_RESUMED = "show_resumed"
+    SHOW_ENDED = "show_ended"
+    STOPPED = "stopped"
+    FAULT_RAISED = "fault_raised"
+    FAULT_RESET = "fault_reset"
+    DRIVE_LOST = "drive_lost"
+    DRIVE_FOUND = "drive_found"
+    SIGHTING_TAKEN = "sighting_taken"
+    RECORDING_DELETED = "recording_deleted"
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something that happened: when (site time), to which tracker (None: the site), by whom."""
+
+    at: datetime
+    kind: EventKind
+    tracker_id: str | None
+    message: str
+    actor: str = "machine"
+    data: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class ClockState:
+    """The controller's clock: where it comes from and whether automatic motion may rely on it."""
+
+    source: str
+    offset_s: float
+    trusted: bool
+    ntp_synchronised: bool | None
+    set_at: datetime | None
+    reasons: tuple[Reason, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class SiteSnapshot:
+    """The whole site at one instant, full every time.
+
+    `boot_id` changes when the machine restarts; `sequence` grows by one with every snapshot.
+    """
+
+    boot_id: str
+    sequence: int
+    at: datetime
+    site_name: str
+    location: Location | None
+    time_zone: str
+    clock: ClockState
+    sun: SunPosition | None
+    trackers: tuple[Snapshot, ...]
