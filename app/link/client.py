@@ -1,0 +1,205 @@
+"""The panel's end of the link: connects again by itself, queues nothing, says at once that nobody is there."""
+
+import asyncio
+import itertools
+from collections.abc import AsyncIterator
+from contextlib import suppress
+from datetime import timedelta
+from pathlib import Path
+from types import TracebackType
+from typing import Self, assert_never
+
+from app.clock import Clock, SystemClock
+from app.link.codec import (
+    Answer,
+    Ask,
+    Detailed,
+    Done,
+    Execute,
+    FrameBroken,
+    Measured,
+    Pong,
+    Refused,
+    Request,
+    Telling,
+    Told,
+    decode_telling,
+    encode_request,
+    read_body,
+)
+from app.link.messages import (
+    MachineUnreachable,
+    Order,
+    SaveRecording,
+    SiteCommand,
+    SiteDetail,
+    Update,
+)
+from app.link.metrics import MachineMetrics
+from app.link.outlet import Outlet
+from app.tracker.snapshot import SiteSnapshot
+
+RECONNECT_AFTER = timedelta(milliseconds=300)
+SILENCE_S = 1.5
+ANSWER_S = 1.0
+STORED_ANSWER_S = 5.0
+LONG_ANSWER_S = 30.0
+MOST_WAITING = 256
+
+DOWN = (
+    "The controller service does not answer; nothing was done. "
+    "Wait until the page shows live values again, or check that the service runs."
+)
+TOO_LATE = (
+    "The controller service did not answer in time; it may or may not have carried this out. "
+    "Look at the live values before you try again."
+)
+
+
+class LinkClient:
+    """The machine over the wire; `async with LinkClient(path) as machine` connects and lets go."""
+
+    def __init__(self, path: Path, clock: Clock | None = None) -> None:
+        self._path = path
+        self._clock = clock or SystemClock()
+        self._outlet = Outlet()
+        self._numbers = itertools.count(1)
+        self._waiting: dict[int, asyncio.Future[Answer]] = {}
+        self._writer: asyncio.StreamWriter | None = None
+        self._task: asyncio.Task[None] | None = None
+
+    async def start(self) -> None:
+        """Begin to connect; returns at once, whether the machine is there or not."""
+        if self._task is None:
+            self._task = asyncio.create_task(self._keep_connected())
+
+    async def close(self) -> None:
+        """Let go of the machine; whoever waits is told that it is unreachable."""
+        if self._task is not None:
+            self._task.cancel()
+            with suppress(asyncio.CancelledError):
+                await self._task
+            self._task = None
+
+    async def __aenter__(self) -> Self:
+        await self.start()
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        await self.close()
+
+    async def execute(self, order: Order) -> SiteSnapshot:
+        """Carry out one order and return the snapshot after it."""
+        patience_s = _patience_s(order)
+        request = Execute(
+            next(self._numbers),
+            order.command,
+            order.actor,
+            order.tracker_id,
+            order.key,
+            order.issued_at,
+            asyncio.get_running_loop().time() + patience_s,
+        )
+        answer = await self._ask(request, patience_s)
+        if not isinstance(answer, Done):
+            raise _out_of_place(answer)
+        return answer.snapshot
+
+    async def detail(self) -> SiteDetail:
+        """Return stored settings, steps and capabilities."""
+        answer = await self._ask(Ask(next(self._numbers), "detail"), ANSWER_S)
+        if not isinstance(answer, Detailed):
+            raise _out_of_place(answer)
+        return answer.detail
+
+    async def metrics(self) -> MachineMetrics:
+        """Return what the machine counts about itself."""
+        answer = await self._ask(Ask(next(self._numbers), "metrics"), ANSWER_S)
+        if not isinstance(answer, Measured):
+            raise _out_of_place(answer)
+        return answer.metrics
+
+    async def ping(self) -> timedelta:
+        """Return how long the machine took to answer."""
+        begun = self._clock.now()
+        await self._ask(Ask(next(self._numbers), "ping"), ANSWER_S)
+        return self._clock.now() - begun
+
+    def latest(self) -> SiteSnapshot | None:
+        """Return the newest snapshot, None before the first or while the link is down."""
+        return self._outlet.latest
+
+    def updates(self) -> AsyncIterator[Update]:
+        """Yield updates until the link goes down."""
+        return self._outlet.subscribe()
+
+    async def _ask(self, request: Request, patience_s: float) -> Answer:
+        if self._writer is None or self._outlet.latest is None or len(self._waiting) >= MOST_WAITING:
+            raise MachineUnreachable(DOWN)
+        answered: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
+        self._waiting[request.number] = answered
+        self._writer.write(encode_request(request))
+        try:
+            async with asyncio.timeout(patience_s):
+                answer = await answered
+        except TimeoutError as error:
+            raise MachineUnreachable(TOO_LATE) from error
+        finally:
+            self._waiting.pop(request.number, None)
+        if isinstance(answer, Refused):
+            raise answer.problem.error()
+        return answer
+
+    async def _keep_connected(self) -> None:
+        while True:
+            try:
+                await self._converse()
+            except (OSError, EOFError, FrameBroken):
+                pass
+            finally:
+                self._mark_down()
+            await self._clock.sleep_until(self._clock.now() + RECONNECT_AFTER)
+
+    async def _converse(self) -> None:
+        reader, writer = await asyncio.open_unix_connection(self._path)
+        self._writer = writer
+        try:
+            while True:
+                async with asyncio.timeout(SILENCE_S):
+                    body = await read_body(reader)
+                self._hear(decode_telling(body))
+        finally:
+            writer.close()
+
+    def _hear(self, telling: Telling) -> None:
+        match telling:
+            case Told():
+                self._outlet.publish(telling.update.snapshot, telling.update.events)
+            case Done() | Detailed() | Measured() | Pong() | Refused():
+                answered = self._waiting.get(telling.number)
+                if answered is not None and not answered.done():
+                    answered.set_result(telling)
+            case _:
+                assert_never(telling)
+
+    def _mark_down(self) -> None:
+        self._writer = None
+        self._outlet.end()
+        for answered in self._waiting.values():
+            if not answered.done():
+                answered.set_exception(MachineUnreachable(TOO_LATE))
+
+
+def _patience_s(order: Order) -> float:
+    """Return how long to wait: what is stored may have to wait for a slow disk."""
+    if isinstance(order.command, SaveRecording):
+        return LONG_ANSWER_S
+    return STORED_ANSWER_S if isinstance(order.command, SiteCommand) else ANSWER_S
+
+
+def _out_of_place(answer: Answer) -> MachineUnreachable:
+    return MachineUnreachable(
+        f"The controller service answered with {answer.tell!r} to another question; update both processes."
+    )

@@ -1,0 +1,208 @@
+"""The wire form: requests, answers and updates as length-prefixed JSON frames."""
+
+import asyncio
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+from typing import Annotated, Literal
+
+from pydantic import Discriminator, TypeAdapter
+
+from app.link.messages import (
+    MachineUnreachable,
+    Order,
+    SiteCommand,
+    SiteDetail,
+    UnknownRecording,
+    UnknownTracker,
+    Update,
+)
+from app.link.metrics import MachineMetrics
+from app.tracker.commands import Command, CommandRejected
+from app.tracker.reason import Reason
+from app.tracker.snapshot import SiteSnapshot
+
+LENGTH_BYTES = 4
+LONGEST_FRAME = 32 * 1024 * 1024
+
+
+class FrameBroken(Exception):
+    """What came over the wire is not a frame of this protocol; the connection is of no more use."""
+
+
+@dataclass(frozen=True, slots=True)
+class Execute:
+    """An `Order` on the wire. `good_until_s` is on the monotonic counter that both processes share."""
+
+    number: int
+    command: Annotated[Command | SiteCommand, Discriminator("kind")]
+    actor: str
+    tracker_id: str | None
+    key: str | None
+    issued_at: datetime | None
+    good_until_s: float
+    do: Literal["execute"] = "execute"
+
+    def order(self) -> Order:
+        """Return the order that the panel gave."""
+        return Order(self.command, self.actor, self.tracker_id, self.key, self.issued_at)
+
+
+@dataclass(frozen=True, slots=True)
+class Ask:
+    """A question that changes nothing."""
+
+    number: int
+    do: Literal["detail", "metrics", "ping"]
+
+
+class ProblemKind(StrEnum):
+    """How a request failed."""
+
+    REJECTED = "rejected"
+    UNKNOWN_TRACKER = "unknown_tracker"
+    UNKNOWN_RECORDING = "unknown_recording"
+    INVALID = "invalid"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """A domain error on the wire."""
+
+    kind: ProblemKind
+    message: str
+    reasons: tuple[Reason, ...] = ()
+
+    def error(self) -> Exception:
+        """Return the exception that the machine raised, or one that says it could not answer."""
+        match self.kind:
+            case ProblemKind.REJECTED:
+                return CommandRejected(*self.reasons)
+            case ProblemKind.UNKNOWN_TRACKER:
+                return UnknownTracker(self.message)
+            case ProblemKind.UNKNOWN_RECORDING:
+                return UnknownRecording(self.message)
+            case ProblemKind.INVALID:
+                return ValueError(self.message)
+            case ProblemKind.FAILED:
+                return MachineUnreachable(self.message)
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """An order was carried out; the snapshot after it."""
+
+    number: int
+    snapshot: SiteSnapshot
+    tell: Literal["done"] = "done"
+
+
+@dataclass(frozen=True, slots=True)
+class Detailed:
+    """The answer to `detail`."""
+
+    number: int
+    detail: SiteDetail
+    tell: Literal["detail"] = "detail"
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """The answer to `metrics`."""
+
+    number: int
+    metrics: MachineMetrics
+    tell: Literal["metrics"] = "metrics"
+
+
+@dataclass(frozen=True, slots=True)
+class Pong:
+    """The answer to `ping`."""
+
+    number: int
+    tell: Literal["pong"] = "pong"
+
+
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """A request was not carried out."""
+
+    number: int
+    problem: Problem
+    tell: Literal["refused"] = "refused"
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """An update that nobody asked for."""
+
+    update: Update
+    tell: Literal["update"] = "update"
+
+
+Request = Execute | Ask
+Answer = Done | Detailed | Measured | Pong | Refused
+Telling = Answer | Told
+
+_requests: TypeAdapter[Request] = TypeAdapter(Annotated[Request, Discriminator("do")])
+_tellings: TypeAdapter[Telling] = TypeAdapter(Annotated[Telling, Discriminator("tell")])
+
+
+def problem_of(error: Exception) -> Problem:
+    """Return how an exception of the machine crosses the wire."""
+    match error:
+        case CommandRejected():
+            return Problem(ProblemKind.REJECTED, str(error), tuple(error.reasons))
+        case UnknownTracker():
+            return Problem(ProblemKind.UNKNOWN_TRACKER, str(error))
+        case UnknownRecording():
+            return Problem(ProblemKind.UNKNOWN_RECORDING, str(error))
+        case MachineUnreachable():
+            return Problem(ProblemKind.FAILED, str(error))
+        case ValueError():
+            return Problem(ProblemKind.INVALID, str(error))
+        case _:
+            return Problem(
+                ProblemKind.FAILED,
+                "The controller service met an unexpected error while it carried this out; "
+                "its log says which. Check the state before you ask again.",
+            )
+
+
+def _framed(body: bytes) -> bytes:
+    return len(body).to_bytes(LENGTH_BYTES, "big") + body
+
+
+def encode_request(request: Request) -> bytes:
+    """Return one frame with a request."""
+    return _framed(_requests.dump_json(request))
+
+
+def encode_telling(telling: Telling) -> bytes:
+    """Return one frame with an answer or an update."""
+    return _framed(_tellings.dump_json(telling))
+
+
+def decode_request(body: bytes) -> Request:
+    """Return the request in a frame's body, or raise `FrameBroken`."""
+    try:
+        return _requests.validate_json(body)
+    except ValueError as error:
+        raise FrameBroken(str(error)) from error
+
+
+def decode_telling(body: bytes) -> Telling:
+    """Return the answer or update in a frame's body, or raise `FrameBroken`."""
+    try:
+        return _tellings.validate_json(body)
+    except ValueError as error:
+        raise FrameBroken(str(error)) from error
+
+
+async def read_body(reader: asyncio.StreamReader) -> bytes:
+    """Return the body of the next frame; raise `FrameBroken` if it is too long, `EOFError` at the end."""
+    length = int.from_bytes(await reader.readexactly(LENGTH_BYTES), "big")
+    if length > LONGEST_FRAME:
+        raise FrameBroken(f"A frame of {length} bytes is longer than {LONGEST_FRAME}.")
+    return await reader.readexactly(length)

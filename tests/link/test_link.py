@@ -1,0 +1,279 @@
+"""The link over a real Unix socket: orders in, updates out, and what happens when one side is gone."""
+
+import asyncio
+import stat
+from collections.abc import AsyncIterator
+from dataclasses import dataclass, field
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+
+from app.link.client import LinkClient
+from app.link.messages import (
+    MachineUnreachable,
+    Order,
+    SavePlan,
+    SetLocation,
+    SiteDetail,
+    UnknownRecording,
+    UnknownTracker,
+    Update,
+)
+from app.link.metrics import MachineMetrics
+from app.link.outlet import MOST_EVENTS_WAITING, Outlet
+from app.link.server import LinkServer
+from app.sun.position import Location
+from app.tracker.axes import Axis
+from app.tracker.commands import CommandRejected, Jog, Stop, Track
+from app.tracker.memory import SiteState
+from app.tracker.programs.show import ShowPlan
+from app.tracker.reason import Reason
+from app.tracker.snapshot import ClockState, Event, EventKind, SiteSnapshot
+
+NOON = datetime(2026, 6, 21, 12, tzinfo=UTC)
+
+
+def snapshot(sequence: int) -> SiteSnapshot:
+    clock = ClockState("system", 0.0, True, True, NOON)
+    return SiteSnapshot("boot", sequence, NOON, "Site", Location(41.0, 36.0), "UTC", clock, None, ())
+
+
+def event(number: int) -> Event:
+    return Event(NOON, EventKind.MOVE_STARTED, "T1", f"Move {number} started.", data={"number": number})
+
+
+@dataclass
+class ScriptedMachine:
+    """Answers orders with what the test put there and remembers them."""
+
+    outlet: Outlet = field(default_factory=Outlet)
+    orders: list[Order] = field(default_factory=list)
+    failure: Exception | None = None
+    gate: asyncio.Event | None = None
+
+    async def execute(self, order: Order) -> SiteSnapshot:
+        if self.gate is not None and not isinstance(order.command, Stop):
+            await self.gate.wait()
+        self.orders.append(order)
+        if self.failure is not None:
+            raise self.failure
+        return snapshot(len(self.orders))
+
+    async def detail(self) -> SiteDetail:
+        return SiteDetail(SiteState(name="Samsun"))
+
+    async def metrics(self) -> MachineMetrics:
+        return MachineMetrics("boot", 1.0)
+
+    def latest(self) -> SiteSnapshot | None:
+        return self.outlet.latest
+
+    def updates(self) -> AsyncIterator[Update]:
+        return self.outlet.subscribe()
+
+
+@dataclass
+class Link:
+    machine: ScriptedMachine
+    server: LinkServer
+    client: LinkClient
+    path: Path
+
+    async def until_up(self) -> None:
+        async with asyncio.timeout(3):
+            async for _ in self._updates():
+                return
+
+    async def _updates(self) -> AsyncIterator[Update]:
+        async for update in self.client.updates():
+            yield update
+
+
+@pytest.fixture
+async def link(tmp_path: Path) -> AsyncIterator[Link]:
+    machine = ScriptedMachine()
+    machine.outlet.publish(snapshot(1))
+    path = tmp_path / "machine.sock"
+    server = LinkServer(machine, path)
+    await server.start()
+    async with LinkClient(path) as client:
+        made = Link(machine, server, client, path)
+        await made.until_up()
+        yield made
+    await server.close()
+
+
+async def test_an_order_arrives_as_it_was_given(link: Link) -> None:
+    plan = ShowPlan(
+        "s1", NOON, NOON + timedelta(hours=3), timedelta(minutes=3), Location(41.2867, 36.33, 4.0)
+    )
+    given = Order(SavePlan("T1", plan), "anna", key="k1", issued_at=NOON)
+
+    answer = await link.client.execute(given)
+
+    assert answer == snapshot(1)
+    assert link.machine.orders == [given]
+
+
+async def test_only_the_owner_can_open_the_socket(link: Link) -> None:
+    assert stat.S_IMODE(link.path.stat().st_mode) == 0o600
+
+
+@pytest.mark.parametrize(
+    "failure",
+    [
+        CommandRejected(Reason("not_homed", "T1 has no zero.", "Set it."), Reason("night", "It is night.")),
+        UnknownTracker("No tracker is called T9."),
+        UnknownRecording("No recording is called r9."),
+        ValueError("Latitude must lie between -90 and 90 degrees."),
+        MachineUnreachable("The machine is stopping."),
+    ],
+    ids=lambda failure: type(failure).__name__,
+)
+async def test_an_error_crosses_as_the_same_error(link: Link, failure: Exception) -> None:
+    link.machine.failure = failure
+
+    with pytest.raises(type(failure)) as caught:
+        await link.client.execute(Order(Track(), "anna", "T1"))
+
+    assert str(caught.value) == str(failure)
+    assert getattr(caught.value, "reasons", None) == getattr(failure, "reasons", None)
+
+
+async def test_an_unexpected_error_says_so_without_its_text(link: Link) -> None:
+    link.machine.failure = KeyError("secret")
+
+    with pytest.raises(MachineUnreachable, match="unexpected error") as caught:
+        await link.client.execute(Order(Track(), "anna", "T1"))
+
+    assert "secret" not in str(caught.value)
+
+
+async def test_questions_are_answered(link: Link) -> None:
+    assert (await link.client.detail()).site.name == "Samsun"
+    assert (await link.client.metrics()).link_clients == 1
+    assert await link.client.ping() < timedelta(seconds=1)
+
+
+async def test_a_stop_overtakes_orders_that_wait(link: Link) -> None:
+    link.machine.gate = asyncio.Event()
+    waiting = [asyncio.create_task(link.client.execute(Order(Track(), "a", "T1"))) for _ in range(20)]
+    await asyncio.sleep(0)
+
+    await link.client.execute(Order(Stop(), "anna", "T1"))
+
+    assert [type(order.command) for order in link.machine.orders] == [Stop]
+    link.machine.gate.set()
+    await asyncio.gather(*waiting)
+
+
+async def test_an_order_is_given_up_in_time(link: Link) -> None:
+    link.machine.gate = asyncio.Event()
+
+    with pytest.raises(MachineUnreachable, match="may or may not"):
+        await link.client.execute(Order(Jog("p1", Axis.AZIMUTH, 1), "anna", "T1"))
+
+    link.machine.gate.set()
+
+
+async def test_without_a_machine_an_order_fails_at_once_and_is_not_kept(tmp_path: Path) -> None:
+    path = tmp_path / "machine.sock"
+    async with LinkClient(path) as client:
+        with pytest.raises(MachineUnreachable, match="nothing was done"):
+            await client.execute(Order(Track(), "anna", "T1"))
+        assert client.latest() is None
+        machine = ScriptedMachine()
+        machine.outlet.publish(snapshot(7))
+        server = LinkServer(machine, path)
+        await server.start()
+        await Link(machine, server, client, path).until_up()
+
+        assert client.latest() == snapshot(7)
+        assert machine.orders == []
+        await server.close()
+
+
+async def test_when_the_machine_dies_the_page_knows_at_once_and_finds_it_again(link: Link) -> None:
+    await link.server.close()
+    async with asyncio.timeout(1):
+        async for _ in link.client.updates():
+            pass
+    assert link.client.latest() is None
+    with pytest.raises(MachineUnreachable):
+        await link.client.detail()
+
+    again = LinkServer(link.machine, link.path)
+    await again.start()
+    await link.until_up()
+
+    assert (await link.client.execute(Order(Track(), "anna", "T1"))).boot_id == "boot"
+    await again.close()
+
+
+async def test_events_all_arrive_and_the_last_snapshot_is_the_newest(link: Link) -> None:
+    updates = link.client.updates()
+    await anext(updates)
+    for number in range(2, 1002):
+        link.machine.outlet.publish(snapshot(number), (event(number),))
+    seen: list[int] = []
+    newest = 0
+    async with asyncio.timeout(5):
+        while newest < 1001:
+            update = await anext(updates)
+            seen.extend(e.data["number"] for e in update.events)
+            newest = update.snapshot.sequence
+
+    assert seen == list(range(2, 1002))
+
+
+async def test_a_slow_reader_loses_no_event_and_skips_snapshots() -> None:
+    outlet = Outlet()
+    updates = outlet.subscribe()
+    outlet.publish(snapshot(1), (event(0),))
+    first = await anext(updates)
+    for number in range(2, 102):
+        outlet.publish(snapshot(number), (event(number),))
+
+    second = await anext(updates)
+
+    assert first.snapshot.sequence == 1
+    assert second.snapshot.sequence == 101
+    assert [e.data["number"] for e in second.events] == list(range(2, 102))
+
+
+async def test_a_reader_that_falls_too_far_behind_is_ended() -> None:
+    outlet = Outlet()
+    outlet.publish(snapshot(1))
+    updates = outlet.subscribe()
+    await anext(updates)
+    outlet.publish(snapshot(2), tuple(event(n) for n in range(MOST_EVENTS_WAITING + 1)))
+
+    assert [update async for update in updates] == []
+    assert len(outlet) == 0
+
+
+async def test_rubbish_on_the_socket_ends_only_that_connection(link: Link) -> None:
+    reader, writer = await asyncio.open_unix_connection(link.path)
+    writer.write((5).to_bytes(4, "big") + b"hello")
+    async with asyncio.timeout(2):
+        while await reader.read(65536):
+            pass
+    writer.close()
+
+    assert (await link.client.detail()).site.name == "Samsun"
+
+
+async def test_a_silent_machine_counts_as_lost(tmp_path: Path) -> None:
+    path = tmp_path / "machine.sock"
+
+    async def say_nothing(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        await reader.read()
+        writer.close()
+
+    server = await asyncio.start_unix_server(say_nothing, path)
+    async with LinkClient(path) as client:
+        await asyncio.sleep(0.1)
+        with pytest.raises(MachineUnreachable):
+            await client.execute(Order(SetLocation(Location(0, 0), "UTC"), "anna"))
+    server.close()
