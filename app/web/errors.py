@@ -1,0 +1,147 @@
+"""Every error -> status and problem+json (RFC 9457); the only such place."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from http import HTTPStatus
+from typing import Any
+
+import orjson
+import structlog
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from starlette.datastructures import MutableHeaders
+from starlette.exceptions import HTTPException
+from starlette.responses import Response
+
+from app.link.messages import MachineUnreachable, UnknownRecording, UnknownTracker
+from app.store.store import StoreFailed
+from app.tracker.commands import CommandRejected
+from app.tracker.reason import Reason
+from app.web.security import add_headers
+
+log = structlog.get_logger()
+
+UNREACHABLE_CODES = frozenset({"drive_lost", "drive_unreachable", "drive_silent"})
+OWN_MISTAKE = "The panel made a mistake; its log has the details. The machine goes on as it was."
+RETRY_LATER = {"Retry-After": "1"}
+
+
+class NotAcceptable(Exception):
+    """What was asked is well formed but cannot be; the text says what to change."""
+
+
+class NotFound(Exception):
+    """There is no such thing; the text says what was looked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """What went wrong, for the person who reads it."""
+
+    status: int
+    detail: str
+    reasons: tuple[Reason, ...] = ()
+    errors: tuple[dict[str, Any], ...] = ()
+    headers: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def title(self) -> str:
+        """Return the status in words."""
+        return HTTPStatus(self.status).phrase
+
+
+ErrorPage = Callable[[Request, Problem], Response]
+
+
+def rejected(error: CommandRejected) -> Problem:
+    """Return 409, or 503 where the drive cannot be reached, with every unmet condition."""
+    silent = any(reason.code in UNREACHABLE_CODES for reason in error.reasons)
+    return Problem(503 if silent else 409, str(error), error.reasons, headers=RETRY_LATER if silent else {})
+
+
+def invalid(error: RequestValidationError) -> Problem:
+    """Return 422 with the place and the fault of every wrong value."""
+    found = tuple(
+        {"location": ".".join(str(part) for part in one["loc"]), "message": one["msg"]}
+        for one in error.errors()
+    )
+    return Problem(422, "Some values are missing or wrong; see errors.", errors=found)
+
+
+def refused_by_http(error: HTTPException) -> Problem:
+    """Return what the framework refused, such as 404 and 405."""
+    return Problem(error.status_code, error.detail, headers=dict(error.headers or {}))
+
+
+def _unreachable(error: Exception) -> Problem:
+    text = str(error) or "The controller service does not answer; nothing was done. Try again in a moment."
+    return Problem(503, text, headers=RETRY_LATER)
+
+
+def _no_tracker(error: Exception) -> Problem:
+    return Problem(404, f"There is no tracker {error}. GET /api/v1/trackers lists them.")
+
+
+def _no_recording(error: Exception) -> Problem:
+    return Problem(404, f"There is no recording {error}. GET /api/v1/recordings lists them.")
+
+
+PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
+    CommandRejected: rejected,
+    UnknownTracker: _no_tracker,
+    UnknownRecording: _no_recording,
+    MachineUnreachable: _unreachable,
+    StoreFailed: lambda error: Problem(503, str(error), headers=RETRY_LATER),
+    NotAcceptable: lambda error: Problem(422, str(error)),
+    NotFound: lambda error: Problem(404, str(error)),
+    RequestValidationError: invalid,
+    HTTPException: refused_by_http,
+    Exception: lambda _: Problem(
+        500, "The panel made a mistake; its log has the details. Motion is not affected."
+    ),
+}
+
+
+def problem_of(error: Exception) -> Problem:
+    """Return what to tell about an error."""
+    for kind in type(error).__mro__:
+        if kind in PROBLEMS:
+            return PROBLEMS[kind](error)
+    raise error
+
+
+def problem_response(problem: Problem) -> Response:
+    """Return a problem as application/problem+json."""
+    body: dict[str, Any] = {
+        "type": "about:blank",
+        "title": problem.title,
+        "status": problem.status,
+        "detail": problem.detail,
+    }
+    if problem.reasons:
+        body["reasons"] = problem.reasons
+    if problem.errors:
+        body["errors"] = problem.errors
+    return Response(orjson.dumps(body), problem.status, problem.headers, "application/problem+json")
+
+
+def _respond(request: Request, problem: Problem) -> Response:
+    error_page: ErrorPage | None = getattr(request.app.state, "error_page", None)
+    if error_page is None or request.url.path.startswith("/api/"):
+        return problem_response(problem)
+    return error_page(request, problem)
+
+
+def install(app: FastAPI) -> None:
+    """Answer every error with problem+json, on pages with `app.state.error_page` where that is set."""
+
+    async def answer(request: Request, error: Exception) -> Response:
+        problem = problem_of(error)
+        if problem.status >= 500:
+            log.error("request failed", path=request.url.path, status=problem.status, error=repr(error))
+        response = _respond(request, problem)
+        add_headers(MutableHeaders(scope={"headers": response.raw_headers}))
+        return response
+
+    for kind in PROBLEMS:
+        app.add_exception_handler(kind, answer)

@@ -1,0 +1,102 @@
+"""Who may call at all: the guard against foreign pages, and the headers that every answer carries."""
+
+from urllib.parse import urlsplit
+
+import orjson
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
+OWN_SITES = frozenset({"same-origin", "none"})
+
+CONTENT_SECURITY_POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; font-src 'self'; "
+    "connect-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors 'none'; manifest-src 'self'"
+)
+HEADERS = {
+    "Content-Security-Policy": CONTENT_SECURITY_POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+    "Referrer-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Permissions-Policy": "geolocation=(self), screen-wake-lock=(self), camera=(), microphone=(), usb=()",
+}
+
+
+class SecurityHeaders:
+    """Adds the headers to every answer, and `no-store` where the answer does not say otherwise."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass everything on, with headers added to what comes back."""
+
+        async def send_with_headers(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                add_headers(MutableHeaders(scope=message))
+            await send(message)
+
+        await self._app(scope, receive, send_with_headers if scope["type"] == "http" else send)
+
+
+def add_headers(headers: MutableHeaders) -> None:
+    """Add what every answer carries."""
+    for name, value in HEADERS.items():
+        headers.setdefault(name, value)
+    headers.setdefault("Cache-Control", "no-store")
+
+
+class Guard:
+    """Turns away requests for foreign host names, and changes and WebSockets that foreign pages ask for."""
+
+    def __init__(self, app: ASGIApp, hosts: frozenset[str] = LOOPBACK_NAMES) -> None:
+        self._app = app
+        self._hosts = hosts
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass the request on, or answer 403 with the sentence that says why."""
+        if scope["type"] in ("http", "websocket") and (refusal := self._refusal(scope)):
+            await _refuse(scope, send, refusal)
+            return
+        await self._app(scope, receive, send)
+
+    def _refusal(self, scope: Scope) -> str | None:
+        headers = Headers(scope=scope)
+        host = headers.get("host", "")
+        if _host_name(host) not in self._hosts:
+            return (
+                "This panel answers only to the names 127.0.0.1 and localhost. "
+                "Open it by one of these, through an SSH tunnel if it runs on another computer."
+            )
+        if scope["type"] == "http" and scope["method"] in SAFE_METHODS:
+            return None
+        return _foreign(headers, host)
+
+
+def _host_name(host: str) -> str | None:
+    try:
+        return urlsplit(f"//{host}").hostname
+    except ValueError:
+        return None
+
+
+def _foreign(headers: Headers, host: str) -> str | None:
+    site, origin = headers.get("sec-fetch-site"), headers.get("origin")
+    if site is not None and site not in OWN_SITES:
+        return "Another web site asked for this; it must come from a page of this panel."
+    if origin is not None and (origin == "null" or urlsplit(origin).netloc != host):
+        return f"A page of {origin} asked for this; it must come from a page of this panel."
+    return None
+
+
+async def _refuse(scope: Scope, send: Send, detail: str) -> None:
+    if scope["type"] == "websocket":
+        await send({"type": "websocket.close", "code": 1008, "reason": "foreign origin"})
+        return
+    body = orjson.dumps({"type": "about:blank", "title": "Forbidden", "status": 403, "detail": detail})
+    headers = [(b"content-type", b"application/problem+json"), (b"content-length", str(len(body)).encode())]
+    await send({"type": "http.response.start", "status": 403, "headers": headers})
+    await send({"type": "http.response.body", "body": body})

@@ -1,0 +1,83 @@
+"""A store that lives in memory."""
+
+from app.store.store import JournalEntry, JournalFilter, PlannedShow
+from app.tracker.memory import (
+    SiteState,
+    TrackerState,
+)
+from app.tracker.recording import Frames, RecordingInfo, RecordingKind
+from app.tracker.snapshot import (
+    Event,
+    EventKind,
+)
+from tests.fake_data import commissioned, frames, recording, site_state
+
+
+class FakeReader:
+    """A store in memory: one show, one simulated day, a short journal."""
+
+    def __init__(self) -> None:
+        heads = (
+            recording("show-1", RecordingKind.SHOW, "Summer solstice in 3 minutes", 15.0, 180.0),
+            recording("day-1", RecordingKind.SIMULATION, "A simulated day", 24.0, 86400.0),
+        )
+        self.heads = {head.recording_id: head for head in heads}
+        self.shows: dict[str, PlannedShow] = {}
+        self.entries = [
+            JournalEntry(
+                number, Event(head.began_at, EventKind.SHOW_STARTED, "T1", f"{head.title} began.", "operator")
+            )
+            for number, head in enumerate(heads, start=1)
+        ]
+
+    def site(self) -> SiteState | None:
+        """Return the stored site."""
+        return site_state()
+
+    def trackers(self) -> list[TrackerState]:
+        """Return the stored trackers."""
+        return [
+            commissioned("T1", "North field", tracking=False),
+            commissioned("T2", "South field", tracking=True),
+        ]
+
+    def journal(self, wanted: JournalFilter) -> list[JournalEntry]:
+        """Return entries, newest first."""
+        found = [entry for entry in reversed(self.entries) if _matches(entry, wanted)]
+        return found[: wanted.limit]
+
+    def show(self, show_id: str) -> PlannedShow | None:
+        """Return the plan of a show."""
+        return self.shows.get(show_id)
+
+    def recordings(
+        self, *, kind: RecordingKind | None = None, tracker_id: str | None = None, limit: int = 200
+    ) -> list[RecordingInfo]:
+        """Return recordings that match."""
+        found = [
+            head for head in self.heads.values()
+            if kind in (None, head.kind) and tracker_id in (None, head.tracker_id)
+        ]  # fmt: skip
+        return found[:limit]
+
+    def recording(self, recording_id: str) -> RecordingInfo | None:
+        """Return one head."""
+        return self.heads.get(recording_id)
+
+    def frames(self, recording_id: str, *, begin_s: float = 0.0, end_s: float | None = None) -> Frames:
+        """Return the frames in a range."""
+        values = frames(self.heads[recording_id]).values
+        elapsed = values[:, 0]
+        return Frames(
+            values[(elapsed >= begin_s) & (elapsed <= (end_s if end_s is not None else elapsed.max()))]
+        )
+
+
+def _matches(entry: JournalEntry, wanted: JournalFilter) -> bool:
+    return (
+        (wanted.before is None or entry.number < wanted.before)
+        and wanted.tracker_id in (None, entry.event.tracker_id)
+        and (not wanted.kinds or entry.event.kind in wanted.kinds)
+        and (wanted.since is None or entry.event.at >= wanted.since)
+        and (wanted.until is None or entry.event.at <= wanted.until)
+    )

@@ -1,0 +1,260 @@
+"""A machine and a store that live in memory, and a panel that runs on them.
+
+`python -m tests.fakes` serves the whole panel on http://127.0.0.1:8010 with moving values.
+"""
+
+import asyncio
+import contextlib
+import tempfile
+from collections.abc import AsyncIterator
+from dataclasses import replace
+from datetime import datetime, timedelta
+from pathlib import Path
+
+import httpx
+import uvicorn
+from fastapi import FastAPI
+
+from app.clock import Clock, SystemClock
+from app.link.messages import (
+    AddTracker,
+    ApplySightings,
+    ConfigureTracker,
+    ConfirmStep,
+    DeleteRecording,
+    MachineUnreachable,
+    Order,
+    RemoveTracker,
+    RenameSite,
+    SavePlan,
+    SaveRecording,
+    SetClock,
+    SetLocation,
+    SiteDetail,
+    StopAll,
+    TakeSighting,
+    TrackerDetail,
+    UnknownRecording,
+    UnknownTracker,
+    Update,
+)
+from app.settings import Settings
+from app.tracker.commands import (
+    CommandRejected,
+    Stop,
+)
+from app.tracker.commissioning import Step as WizardStep
+from app.tracker.commissioning import StepStatus
+from app.tracker.memory import (
+    ClockSetting,
+    Confirmation,
+    SiteState,
+    StepName,
+    TrackerMemory,
+    TrackerState,
+)
+from app.tracker.reason import Reason
+from app.tracker.recording import RecordingInfo
+from app.tracker.snapshot import (
+    ClockState,
+    Event,
+    EventKind,
+    Pair,
+    SiteSnapshot,
+)
+from app.web.main import create_app
+from tests.fake_data import commissioned, made_up_sun, site_state
+from tests.fake_store import FakeReader
+from tests.fake_tracker import CAPABILITIES, FakeTracker
+
+PORT = 8010
+KINDS = {
+    "stop": EventKind.STOPPED,
+    "stop_all": EventKind.STOPPED,
+    "set_location": EventKind.LOCATION_SET,
+}
+
+
+class FakeMachine:
+    """A machine with T1 holding and T2 tracking; it keeps every order it got.
+
+    `rejects` maps a command's kind to the reasons with which it is refused; `cut()` cuts the link.
+    """
+
+    def __init__(self, clock: Clock | None = None) -> None:
+        self.clock = clock or SystemClock()
+        self.site: SiteState = site_state()
+        holding, tracking = (
+            commissioned("T1", "North field", tracking=False),
+            commissioned("T2", "South field", tracking=True),
+        )
+        self.trackers = {
+            "T1": FakeTracker(holding, Pair(180.0, 45.0)),
+            "T2": FakeTracker(tracking, Pair(180.0, 60.0)),
+        }
+        self.orders: list[Order] = []
+        self.rejects: dict[str, tuple[Reason, ...]] = {}
+        self.reachable = True
+        self.sequence = 0
+        self.recordings: dict[str, RecordingInfo] = {}
+        self._readers: set[asyncio.Queue[Update | None]] = set()
+
+    async def execute(self, order: Order) -> SiteSnapshot:
+        """Carry out one order and tell every reader."""
+        if not self.reachable:
+            raise MachineUnreachable("The controller service does not answer.")
+        self.orders.append(order)
+        if reasons := self.rejects.get(order.command.kind):
+            raise CommandRejected(*reasons)
+        event = self._carry_out(order)
+        return self.emit(event)
+
+    def _carry_out(self, order: Order) -> Event:
+        now = self.clock.now()
+        if order.tracker_id is not None:
+            self._tracker(order.tracker_id).handle(order.command, now, order.actor)  # type: ignore[arg-type]
+        else:
+            self._site_command(order, now)
+        kinds = {
+            "stop": EventKind.STOPPED,
+            "stop_all": EventKind.STOPPED,
+            "set_location": EventKind.LOCATION_SET,
+        }
+        kind = kinds.get(order.command.kind, EventKind.TRACKER_CHANGED)
+        return Event(now, kind, order.tracker_id, f"Done: {order.command.kind}.", order.actor)
+
+    def _site_command(self, order: Order, now: datetime) -> None:  # noqa: C901 - one flat table of cases
+        match order.command:
+            case SetLocation(location=location, time_zone=zone):
+                revision = self.site.location_revision + 1
+                self.site = replace(self.site, location=location, time_zone=zone, location_revision=revision)
+            case SetClock(source=source, at=at, time_zone=zone):
+                offset_s = (at - now).total_seconds() if at else 0.0
+                setting = ClockSetting(source, offset_s, now, order.actor)
+                self.site = replace(self.site, clock=setting, time_zone=zone or self.site.time_zone)
+            case RenameSite(name=name):
+                self.site = replace(self.site, name=name)
+            case AddTracker(config=config):
+                if config.tracker_id in self.trackers:
+                    raise ValueError(f"There is already a tracker {config.tracker_id}.")
+                fresh = TrackerState(config, TrackerMemory())
+                self.trackers[config.tracker_id] = FakeTracker(fresh, Pair(12.0, 8.0))
+            case ConfigureTracker(config=config):
+                self._tracker(config.tracker_id).config = config
+            case RemoveTracker(tracker_id=tracker_id):
+                self._tracker(tracker_id)
+                del self.trackers[tracker_id]
+            case ConfirmStep(tracker_id=tracker_id, step=step):
+                tracker = self._tracker(tracker_id)
+                confirmed = tracker.memory.confirmations | {
+                    step: Confirmation(now, order.actor, self.site.location_revision)
+                }
+                tracker.memory = replace(tracker.memory, confirmations=confirmed)
+            case StopAll():
+                for tracker in self.trackers.values():
+                    tracker.handle(Stop(), now, order.actor)
+            case SaveRecording(info=info):
+                self.recordings[info.recording_id] = info
+            case DeleteRecording(recording_id=recording_id):
+                if recording_id not in self.recordings and recording_id not in ("show-1", "day-1"):
+                    raise UnknownRecording(recording_id)
+            case TakeSighting() | ApplySightings() | SavePlan():
+                pass
+
+    def _tracker(self, tracker_id: str) -> FakeTracker:
+        if tracker_id not in self.trackers:
+            raise UnknownTracker(tracker_id)
+        return self.trackers[tracker_id]
+
+    def emit(self, *events: Event) -> SiteSnapshot:
+        """Tell every reader how things stand now."""
+        self.sequence += 1
+        snapshot = self._snapshot()
+        for reader in self._readers:
+            reader.put_nowait(Update(snapshot, events))
+        return snapshot
+
+    def cut(self) -> None:
+        """Lose the link: readers end, orders fail."""
+        self.reachable = False
+        for reader in self._readers:
+            reader.put_nowait(None)
+
+    def _snapshot(self) -> SiteSnapshot:
+        now = self.clock.now() + timedelta(seconds=self.site.clock.offset_s)
+        clock = self.site.clock
+        return SiteSnapshot(
+            boot_id="fake-boot",
+            sequence=self.sequence,
+            at=now,
+            site_name=self.site.name,
+            location=self.site.location,
+            time_zone=self.site.time_zone,
+            clock=ClockState(clock.source, clock.offset_s, clock.source != "unset", None, clock.set_at),
+            sun=made_up_sun(now),
+            trackers=tuple(tracker.snapshot(now, self.sequence) for tracker in self.trackers.values()),
+        )
+
+    async def detail(self) -> SiteDetail:
+        """Return stored settings, steps and capabilities."""
+        if not self.reachable:
+            raise MachineUnreachable("The controller service does not answer.")
+        return SiteDetail(self.site, {name: self._detail(one) for name, one in self.trackers.items()})
+
+    def _detail(self, tracker: FakeTracker) -> TrackerDetail:
+        known = self.site.confirmations | tracker.memory.confirmations
+        steps = []
+        for name in StepName:
+            given = known.get(name)
+            status = StepStatus.DONE if given else StepStatus.TO_DO
+            reasons = () if given else (Reason(f"{name}_open", f"Step {name} is not done yet.", "Do it."),)
+            steps.append(WizardStep(name, status, reasons, given and given.at, given.by if given else ""))
+        return TrackerDetail(TrackerState(tracker.config, tracker.memory), tuple(steps), CAPABILITIES)
+
+    def latest(self) -> SiteSnapshot | None:
+        """Return the newest snapshot, None while the link is cut."""
+        return self._snapshot() if self.reachable else None
+
+    async def updates(self) -> AsyncIterator[Update]:
+        """Yield what `emit` tells, until the link is cut."""
+        inbox: asyncio.Queue[Update | None] = asyncio.Queue()
+        self._readers.add(inbox)
+        try:
+            while (update := await inbox.get()) is not None:
+                yield update
+        finally:
+            self._readers.discard(inbox)
+
+
+def fake_app(machine: FakeMachine | None = None, reader: FakeReader | None = None) -> FastAPI:
+    """Return the whole panel on the fakes."""
+    settings = Settings(data_dir=Path(tempfile.gettempdir()) / "heliopanel-fakes", port=PORT)
+    return create_app(settings, machine=machine or FakeMachine(), reader=reader or FakeReader())
+
+
+@contextlib.asynccontextmanager
+async def serving(app: FastAPI) -> AsyncIterator[httpx.AsyncClient]:
+    """Run an application in process, with its start and end, and give a client for it."""
+    async with app.router.lifespan_context(app):
+        transport = httpx.ASGITransport(app)
+        async with httpx.AsyncClient(transport=transport, base_url=f"http://127.0.0.1:{PORT}") as client:
+            yield client
+
+
+async def _animate(machine: FakeMachine) -> None:
+    while True:
+        machine.emit()
+        await machine.clock.sleep_until(machine.clock.now() + timedelta(milliseconds=200))
+
+
+async def _main() -> None:
+    machine = FakeMachine()
+    moving = asyncio.create_task(_animate(machine))
+    app = fake_app(machine)
+    server = uvicorn.Server(uvicorn.Config(app, host="127.0.0.1", port=PORT, timeout_graceful_shutdown=2))
+    await server.serve()
+    moving.cancel()
+
+
+if __name__ == "__main__":
+    asyncio.run(_main())
