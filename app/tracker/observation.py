@@ -1,0 +1,27 @@
+"""What a tracker is shown at one tick: instants, the sun and the drive's reading, all as arguments."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from app.sun.position import Location, SunPosition
+from app.tracker.motion import Feedback
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """Everything from outside that one tick may depend on.
+
+    `now` is the machine's steady time: leases, time-outs and speeds are judged on it. `site_time` is what
+    the site's clock shows: it stamps events. `sun` is None while location or clock are unknown; `dawn`
+    is the direction of the next sunrise (None: no sunrise ahead). `feedback` is None if this read failed.
+    `location_revision` is `SiteState.location_revision`: confirmations carry it.
+    """
+
+    now: datetime
+    site_time: datetime
+    sun: SunPosition | None
+    dawn: SunPosition | None
+    feedback: Feedback | None
+    clock_trusted: bool
+    location: Location | None
+    location_revision: int = 0
