@@ -1,0 +1,116 @@
+"""Copies pinned third-party files from npm packages, and checks offline that nobody changed them."""
+
+import base64
+import hashlib
+import json
+import subprocess
+import sys
+import tarfile
+import tempfile
+import tomllib
+from pathlib import Path
+from typing import TypedDict
+
+HERE = Path(__file__).parent
+MANIFEST = HERE / "manifest.json"
+
+
+class Vendored(TypedDict):
+    """One package in the manifest: its pin, npm's checksum of the archive and ours of each file."""
+
+    package: str
+    version: str
+    licence: str
+    integrity: str
+    files: dict[str, str]
+
+
+def wanted() -> dict[str, dict[str, object]]:
+    """Return the packages that vendor.toml lists."""
+    return tomllib.loads((HERE / "vendor.toml").read_text())
+
+
+def digest(content: bytes) -> str:
+    """Return the SHA-384 of a file as browsers write it in `integrity`."""
+    return "sha384-" + base64.b64encode(hashlib.sha384(content).digest()).decode()
+
+
+def pack(package: str, version: str, folder: Path) -> tuple[Path, str]:
+    """Fetch one archive with npm and return it with its SHA-512, which npm has verified."""
+    command = ["npm", "pack", "--json", "--pack-destination", str(folder), f"{package}@{version}"]
+    answer = subprocess.run(command, check=True, capture_output=True, text=True)  # noqa: S603 - fixed words and our own pins
+    told = json.loads(answer.stdout)[0]
+    return folder / told["filename"], told["integrity"]
+
+
+def copy(archive: Path, files: list[str], target: Path) -> dict[str, str]:
+    """Copy the listed files out of an archive and return their checksums by path below `static/vendor`."""
+    target.mkdir(parents=True, exist_ok=True)
+    checksums = {}
+    with tarfile.open(archive) as packed:
+        for name in files:
+            member = packed.extractfile(f"package/{name}")
+            if member is None:
+                raise SystemExit(f"{archive.name} holds no file {name}; correct vendor.toml.")
+            content = member.read()
+            (target / Path(name).name).write_bytes(content)
+            checksums[str((target / Path(name).name).relative_to(HERE))] = digest(content)
+    return checksums
+
+
+def update() -> None:
+    """Fetch everything that vendor.toml lists and write the manifest."""
+    manifest: dict[str, Vendored] = {}
+    with tempfile.TemporaryDirectory() as scratch:
+        for name, entry in wanted().items():
+            package, version = str(entry["package"]), str(entry["version"])
+            archive, integrity = pack(package, version, Path(scratch))
+            files = copy(archive, list(entry["files"]), HERE / name / version)  # type: ignore[call-overload]
+            manifest[name] = Vendored(
+                package=package,
+                version=version,
+                licence=str(entry["licence"]),
+                integrity=integrity,
+                files=files,
+            )
+    MANIFEST.write_text(json.dumps(manifest, indent=2) + "\n")
+
+
+def problems() -> list[str]:
+    """Return one sentence for every file that is missing, changed or not listed."""
+    manifest: dict[str, Vendored] = json.loads(MANIFEST.read_text())
+    found = []
+    listed = {path: sum_ for entry in manifest.values() for path, sum_ in entry["files"].items()}
+    for path, checksum in listed.items():
+        file = HERE / path
+        if not file.exists():
+            found.append(f"{path} is missing; run vendor.py update.")
+        elif digest(file.read_bytes()) != checksum:
+            found.append(f"{path} differs from what was fetched; run vendor.py update.")
+    for name, entry in wanted().items():
+        if manifest.get(name, {}).get("version") != entry["version"]:
+            found.append(f"{name} {entry['version']} is not in the manifest; run vendor.py update.")
+    folders = [folder for folder in HERE.iterdir() if folder.is_dir() and folder.name != "__pycache__"]
+    actual = {
+        str(file.relative_to(HERE)) for folder in folders for file in folder.rglob("*") if file.is_file()
+    }
+    found += [f"{path} is not listed in vendor.toml; remove it." for path in sorted(actual - listed.keys())]
+    return found
+
+
+def main() -> int:
+    """Run `update` or `check`."""
+    match sys.argv[1:]:
+        case ["update"]:
+            update()
+            return 0
+        case ["check"]:
+            found = problems()
+            sys.stdout.write("\n".join(found) + "\n" if found else "Vendored files are as fetched.\n")
+            return 1 if found else 0
+    sys.stderr.write("Say: vendor.py update | check\n")
+    return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())
