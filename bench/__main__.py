@@ -18,7 +18,7 @@ NOT_BENCHMARKS = {"__main__", "table"}
 HEAD = """# Benchmarks
 
 Made by `make bench` on {date}, {cores} cores ({machine}), Python {python}. A time holds only within its
-own run: the ratio to the peer of the same run is what to compare. Every row names the command that measures it.
+own run: the ratio to the peer of the same run is what to compare. Every row names its command.
 """
 
 
