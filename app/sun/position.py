@@ -1,7 +1,32 @@
 """Where the sun stands: the algorithms by name, for one instant and for many."""
 
 from dataclasses import dataclass
+from datetime import datetime
 from enum import StrEnum
+from typing import assert_never
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.sun import koblick, psa
+from app.sun.refraction import refraction_deg, refraction_path
+from app.sun.trigonometry import ARRAY, SCALAR, Array, T, Trigonometry
+
+RISE_ELEVATION_DEG = -0.8333
+"""True elevation of the sun's centre with its upper limb on the horizon: radius 0.2667, refraction 0.5667."""
+
+FIRST_UNIX_S = -2_177_452_800.0
+"""1901-01-01 UT."""
+
+END_UNIX_S = 4_102_444_800.0
+"""2100-01-01 UT."""
+
+BLOCK = 4096
+"""Positions computed at once: so many that their intermediate columns stay in the processor's cache."""
+
+
+class InstantRefused(ValueError):
+    """An instant for which no sun position can be given."""
 
 
 class Algorithm(StrEnum):
@@ -35,3 +60,61 @@ class SunPosition:
     azimuth_deg: float
     elevation_deg: float
     apparent_elevation_deg: float
+
+    @property
+    def is_up(self) -> bool:
+        """Return whether the sun's upper limb is above the horizon."""
+        return self.elevation_deg >= RISE_ELEVATION_DEG
+
+
+@dataclass(frozen=True, slots=True)
+class SunPath:
+    """Sun positions as columns of equal length, with the units and signs of `SunPosition`."""
+
+    azimuth_deg: Array
+    elevation_deg: Array
+    apparent_elevation_deg: Array
+
+    @property
+    def is_up(self) -> NDArray[np.bool_]:
+        """Return for each position whether the sun's upper limb is above the horizon."""
+        return self.elevation_deg >= RISE_ELEVATION_DEG
+
+
+def sun_position(algorithm: Algorithm, location: Location, at: datetime) -> SunPosition:
+    """Return where the sun stands at an aware instant; raises `InstantRefused` outside 1901 to 2099."""
+    if at.tzinfo is None:
+        raise InstantRefused(f"{at} has no time zone: give the instant with its offset, for example +00:00.")
+    unix_s = at.timestamp()
+    if not FIRST_UNIX_S <= unix_s < END_UNIX_S:
+        raise InstantRefused(f"The sun is known for the years 1901 to 2099 (UTC), not for {at}.")
+    azimuth_deg, elevation_deg = _position(algorithm, location, unix_s, SCALAR)
+    azimuth_deg = azimuth_deg if azimuth_deg < 360.0 else 0.0
+    return SunPosition(azimuth_deg, elevation_deg, elevation_deg + refraction_deg(elevation_deg))
+
+
+def sun_path(algorithm: Algorithm, location: Location, at_unix_s: Array) -> SunPath:
+    """Return where the sun stands at each of many instants, seconds since 1970 UTC, a one-dimensional array.
+
+    Raises `InstantRefused` if any instant lies outside the years 1901 to 2099.
+    """
+    if at_unix_s.size and (at_unix_s.min() < FIRST_UNIX_S or at_unix_s.max() >= END_UNIX_S):
+        raise InstantRefused(
+            "The sun is known for the years 1901 to 2099 (UTC) only; choose instants within."
+        )
+    columns = np.empty((3, at_unix_s.size))
+    for first in range(0, at_unix_s.size, BLOCK):
+        block = slice(first, first + BLOCK)
+        azimuth_deg, elevation_deg = _position(algorithm, location, at_unix_s[block], ARRAY)
+        columns[0, block], columns[1, block] = azimuth_deg % 360.0, elevation_deg
+        columns[2, block] = elevation_deg + refraction_path(elevation_deg)
+    return SunPath(*columns)
+
+
+def _position(algorithm: Algorithm, location: Location, unix_s: T, trig: Trigonometry[T]) -> tuple[T, T]:
+    match algorithm:
+        case Algorithm.PSA:
+            return psa.position(unix_s, location.latitude_deg, location.longitude_deg, trig)
+        case Algorithm.KOBLICK:
+            return koblick.position(unix_s, location.latitude_deg, location.longitude_deg, trig)
+    assert_never(algorithm)
