@@ -1,0 +1,135 @@
+"""Connections: one that writes, any number that only read, on SQLite files and on PostgreSQL."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from sqlalchemy import (
+    URL,
+    Connection,
+    Engine,
+    NullPool,
+    create_engine,
+    event,
+    inspect,
+    make_url,
+    select,
+    table,
+)
+from sqlalchemy import column as sql_column
+from sqlalchemy.exc import ArgumentError, SQLAlchemyError
+
+from app.store.failures import explained
+from app.store.store import StoreFailed
+from app.store.tables import REVISION
+
+BUSY_MS = 5000
+WRITER_PRAGMAS = (
+    f"PRAGMA busy_timeout = {BUSY_MS}",
+    "PRAGMA journal_mode = WAL",
+    "PRAGMA synchronous = FULL",
+    "PRAGMA foreign_keys = ON",
+)
+READER_PRAGMAS = (
+    f"PRAGMA busy_timeout = {BUSY_MS}",
+    "PRAGMA query_only = ON",
+    "PRAGMA wal_autocheckpoint = 0",
+)
+POSTGRES = {"connect_timeout": 5, "options": f"-c lock_timeout={BUSY_MS} -c synchronous_commit=on"}
+VERSION_TABLE = table("alembic_version", sql_column("version_num"))
+
+
+def parse_url(url: str) -> URL:
+    """Return the parsed address of a database, or raise `StoreFailed` if it is of no known kind."""
+    try:
+        parsed = make_url(url)
+    except ArgumentError as error:
+        raise StoreFailed(
+            f"{url!r} is not a database URL, such as sqlite:////var/lib/heliopanel/a.db."
+        ) from error
+    if parsed.drivername == "postgresql+psycopg":
+        return parsed
+    if parsed.get_backend_name() != "sqlite" or parsed.database in (None, "", ":memory:"):
+        raise StoreFailed(
+            f"{parsed.render_as_string()} cannot be used: give sqlite:///FILE or postgresql+psycopg://USER@HOST/NAME."
+        )
+    return parsed
+
+
+def sqlite_path(url: str) -> Path | None:
+    """Return the file of a SQLite database, None for PostgreSQL."""
+    parsed = parse_url(url)
+    return Path(parsed.database or "") if parsed.get_backend_name() == "sqlite" else None
+
+
+def writing_engine(url: str) -> Engine:
+    """Return an engine with exactly one connection, whose transactions take the write lock at once."""
+    if sqlite_path(url) is None:
+        return create_engine(
+            parse_url(url), pool_size=1, max_overflow=0, pool_pre_ping=True, connect_args=POSTGRES
+        )
+    engine = create_engine(
+        parse_url(url), pool_size=1, max_overflow=0, connect_args={"timeout": BUSY_MS / 1000}
+    )
+    _speak_sqlite(engine, WRITER_PRAGMAS, "BEGIN IMMEDIATE")
+    return engine
+
+
+def reading_engine(url: str) -> Engine:
+    """Return an engine that cannot write; on SQLite each use opens the file anew, to see a restored one."""
+    path = sqlite_path(url)
+    if path is None:
+        options = {"postgresql_readonly": True, "isolation_level": "REPEATABLE READ"}
+        return create_engine(
+            parse_url(url), pool_pre_ping=True, connect_args=POSTGRES, execution_options=options
+        )
+    readonly = URL.create("sqlite", database=f"file:{quote(str(path))}", query={"mode": "ro", "uri": "true"})
+    engine = create_engine(readonly, poolclass=NullPool)
+    _speak_sqlite(engine, READER_PRAGMAS, "BEGIN")
+    return engine
+
+
+def _speak_sqlite(engine: Engine, pragmas: tuple[str, ...], begin: str) -> None:
+    """Make every connection begin its transactions itself; the driver's own rules would begin too late."""
+
+    @event.listens_for(engine, "connect")
+    def set_up(connection: Any, _record: object) -> None:
+        connection.isolation_level = None
+        for pragma in pragmas:
+            connection.execute(pragma)
+
+    @event.listens_for(engine, "begin")
+    def start(connection: Connection) -> None:
+        connection.exec_driver_sql(begin)
+
+
+@contextmanager
+def transaction(engine: Engine) -> Iterator[Connection]:
+    """Yield a connection in one transaction; whatever fails undoes all of it and becomes `StoreFailed`."""
+    try:
+        with engine.begin() as connection:
+            yield connection
+    except SQLAlchemyError as error:
+        raise explained(error) from error
+
+
+def revision_of(connection: Connection) -> str | None:
+    """Return which migration the tables are at, None for a database without tables."""
+    if not inspect(connection).has_table(VERSION_TABLE.name):
+        return None
+    return connection.execute(select(VERSION_TABLE.c.version_num)).scalar_one_or_none()
+
+
+def require_revision(connection: Connection) -> None:
+    """Raise `StoreFailed` unless the tables are those that this software was made for."""
+    found = revision_of(connection)
+    if found is None:
+        raise StoreFailed("The database has no tables yet. Start the machine once: it makes them.")
+    if found != REVISION:
+        raise StoreFailed(
+            f"The database is at revision {found}, but this version of Heliopanel needs {REVISION}. "
+            "Start the machine, which brings an older database up to date, or install the version that wrote "
+            "a newer one."
+        )

@@ -1,0 +1,41 @@
+"""What a database says when it cannot, as sentences that say what to do."""
+
+from sqlalchemy.exc import DBAPIError, SQLAlchemyError
+
+from app.store.store import StoreFailed
+
+SENTENCES = (
+    ("SQLITE_FULL", "The disk is full: nothing was stored. Free some space or delete old recordings."),
+    ("SQLITE_BUSY", "The database is locked by another program: nothing was stored. End that program."),
+    ("SQLITE_NOTADB", "The file is not a database. Restore a backup with: heliopanel restore FILE."),
+    ("SQLITE_CORRUPT", "The database file is damaged. Restore a backup with: heliopanel restore FILE."),
+    ("SQLITE_IOERR", "The disk failed to read or write. Check the disk or card, then restart Heliopanel."),
+    ("SQLITE_READONLY", "The database file cannot be written. Give Heliopanel's user the right to write it."),
+    ("SQLITE_CANTOPEN", "The database file cannot be opened. Check that the data folder exists."),
+)  # fmt: skip
+LASTING = ("SQLITE_IOERR", "SQLITE_CORRUPT", "SQLITE_NOTADB")
+
+
+def code_of(error: BaseException) -> str:
+    """Return the database's own name of an error, empty if it has none."""
+    cause = error.orig if isinstance(error, DBAPIError) else error
+    return str(getattr(cause, "sqlite_errorname", None) or getattr(cause, "sqlstate", None) or "")
+
+
+def is_lasting(error: BaseException) -> bool:
+    """Return whether the file must not be trusted until it was opened and checked again."""
+    return code_of(error).startswith(LASTING)
+
+
+def explained(error: SQLAlchemyError) -> StoreFailed:
+    """Return the failure as the person who reads it needs it."""
+    code = code_of(error)
+    for name, sentence in SENTENCES:
+        if code.startswith(name):
+            return StoreFailed(sentence)
+    first_line = str(getattr(error, "orig", None) or error).strip().split("\n", maxsplit=1)[0]
+    if isinstance(error, DBAPIError) and (error.connection_invalidated or code in {"", "57P01", "57P03"}):
+        return StoreFailed(
+            f"The database cannot be reached: nothing was stored. Check that it runs ({first_line})."
+        )
+    return StoreFailed(f"The database refused: nothing was stored ({code or 'no code'}: {first_line}).")

@@ -1,0 +1,155 @@
+"""Reading: aggregates in domain types, the journal, recordings and their frames."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Any
+
+from sqlalchemy import Connection, Engine, Row, Select, select
+
+from app.store import tables
+from app.store.chunks import ChunkDamaged, decode_all
+from app.store.connections import require_revision, transaction
+from app.store.documents import EVENT_DATA, PLAN, RECORDING, SITE, TRACKER
+from app.store.store import JournalEntry, JournalFilter, PlannedShow, StoreFailed
+from app.tracker.memory import SiteState, TrackerState
+from app.tracker.recording import Frames, RecordingInfo, RecordingKind
+from app.tracker.snapshot import Event, EventKind
+
+HEAD = (
+    tables.recordings.c.recording_id,
+    tables.recordings.c.ended_at,
+    tables.recordings.c.outcome,
+    tables.recordings.c.frame_count,
+    tables.recordings.c.document,
+)
+
+
+class DatabaseReader:
+    """Everything the store can tell; safe from any thread of any process."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._reading = engine
+        self._checked = False
+
+    @contextmanager
+    def _read(self) -> Iterator[Connection]:
+        with transaction(self._reading) as connection:
+            if not self._checked:
+                require_revision(connection)
+                self._checked = True
+            yield connection
+
+    def site(self) -> SiteState | None:
+        """Return the stored site, None before the first save."""
+        with self._read() as connection:
+            document = connection.execute(select(tables.site.c.document)).scalar_one_or_none()
+        return None if document is None else SITE.read(document)
+
+    def trackers(self) -> list[TrackerState]:
+        """Return the stored trackers in the order they were added."""
+        columns = tables.trackers.c
+        with self._read() as connection:
+            rows = connection.execute(
+                select(columns.tracker_id, columns.document).order_by(columns.number)
+            ).all()
+        return [TRACKER.read(row.document, row.tracker_id) for row in rows]
+
+    def journal(self, wanted: JournalFilter) -> list[JournalEntry]:
+        """Return entries, newest first."""
+        with self._read() as connection:
+            rows = connection.execute(_journal_query(wanted)).all()
+        return [_entry(row) for row in rows]
+
+    def show(self, show_id: str) -> PlannedShow | None:
+        """Return the plan of a show."""
+        columns = tables.shows.c
+        with self._read() as connection:
+            row = connection.execute(
+                select(columns.tracker_id, columns.document).where(columns.show_id == show_id)
+            ).one_or_none()
+        return None if row is None else PlannedShow(row.tracker_id, PLAN.read(row.document, show_id))
+
+    def recordings(
+        self, *, kind: RecordingKind | None = None, tracker_id: str | None = None, limit: int = 200
+    ) -> list[RecordingInfo]:
+        """Return recordings, newest first."""
+        columns = tables.recordings.c
+        query = select(*HEAD).order_by(columns.began_at.desc(), columns.recording_id.desc()).limit(limit)
+        if kind is not None:
+            query = query.where(columns.kind == kind)
+        if tracker_id is not None:
+            query = query.where(columns.tracker_id == tracker_id)
+        with self._read() as connection:
+            rows = connection.execute(query).all()
+        return [head(row) for row in rows]
+
+    def recording(self, recording_id: str) -> RecordingInfo | None:
+        """Return the head of one recording."""
+        query = select(*HEAD).where(tables.recordings.c.recording_id == recording_id)
+        with self._read() as connection:
+            row = connection.execute(query).one_or_none()
+        return None if row is None else head(row)
+
+    def frames(self, recording_id: str, *, begin_s: float = 0.0, end_s: float | None = None) -> Frames:
+        """Return the frames whose `elapsed_s` lies in the range, ends included; empty if there are none."""
+        columns = tables.chunks.c
+        query = select(columns.frames).where(
+            columns.recording_id == recording_id, columns.last_elapsed_s >= begin_s
+        )
+        if end_s is not None:
+            query = query.where(columns.first_elapsed_s <= end_s)
+        with self._read() as connection:
+            stored = list(connection.execute(query.order_by(columns.position)).scalars())
+        try:
+            return _between(decode_all(stored), begin_s, end_s)
+        except ChunkDamaged as error:
+            raise StoreFailed(
+                f"Frames of the recording {recording_id!r} are damaged and cannot be shown. "
+                "Restore a backup to get them back, or delete the recording."
+            ) from error
+
+    def close(self) -> None:
+        """Let go of the connections."""
+        self._reading.dispose()
+
+
+def head(row: Row[*tuple[Any, ...]]) -> RecordingInfo:
+    """Return the head of a recording from its row."""
+    info = RECORDING.read(row.document, row.recording_id)
+    return replace(info, ended_at=row.ended_at, outcome=row.outcome, frame_count=row.frame_count)
+
+
+def _journal_query(wanted: JournalFilter) -> Select[Any]:
+    columns = tables.events.c
+    query = select(tables.events).order_by(columns.number.desc()).limit(wanted.limit)
+    if wanted.before is not None:
+        query = query.where(columns.number < wanted.before)
+    if wanted.tracker_id is not None:
+        query = query.where(columns.tracker_id == wanted.tracker_id)
+    if wanted.kinds:
+        query = query.where(columns.kind.in_(wanted.kinds))
+    if wanted.since is not None:
+        query = query.where(columns.at >= wanted.since)
+    if wanted.until is not None:
+        query = query.where(columns.at <= wanted.until)
+    return query
+
+
+def _entry(row: Row[*tuple[Any, ...]]) -> JournalEntry:
+    if row.kind not in list(EventKind):
+        raise StoreFailed(
+            f"Entry {row.number} of the journal is of the unknown kind {row.kind!r}. "
+            "Install the version that wrote it."
+        )
+    data = EVENT_DATA.read(row.data, str(row.number))
+    event = Event(row.at, EventKind(row.kind), row.tracker_id, row.message, row.actor, data)
+    return JournalEntry(row.number, event)
+
+
+def _between(frames: Frames, begin_s: float, end_s: float | None) -> Frames:
+    elapsed_s = frames.column("elapsed_s")
+    inside = elapsed_s >= begin_s
+    if end_s is not None:
+        inside &= elapsed_s <= end_s
+    return frames if inside.all() else Frames(frames.values[inside])

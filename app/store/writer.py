@@ -1,0 +1,253 @@
+"""Writing: the machine's side. Every call is one transaction that is on disk when the call returns."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from datetime import datetime, timedelta
+
+from sqlalchemy import Connection, Engine, Table, delete, insert, select, update
+from sqlalchemy.exc import SQLAlchemyError
+
+from app.store import tables
+from app.store.chunks import CHUNK_FRAMES, ChunkDamaged, decode, encode_all, join
+from app.store.connections import require_revision
+from app.store.documents import EVENT_DATA, PLAN, RECORDING, SITE, TRACKER, plain
+from app.store.failures import explained, is_lasting
+from app.store.reader import HEAD, DatabaseReader, head
+from app.store.store import PlannedShow, StoreFailed
+from app.tracker.memory import SiteState, TrackerState
+from app.tracker.recording import Frames, RecordingInfo, RecordingKind
+from app.tracker.snapshot import Event
+
+SITE_NUMBER = 1
+SHOWS_KEPT = 1000
+
+
+class DatabaseWriter(DatabaseReader):
+    """The only writer of a database. After a disk failure it refuses to write until it is opened again."""
+
+    def __init__(self, reading: Engine, writing: Engine) -> None:
+        super().__init__(reading)
+        self._writing = writing
+        self._broken: StoreFailed | None = None
+        with self._write() as connection:
+            require_revision(connection)
+
+    @contextmanager
+    def _write(self) -> Iterator[Connection]:
+        if self._broken is not None:
+            raise StoreFailed(str(self._broken))
+        try:
+            with self._writing.begin() as connection:
+                yield connection
+        except SQLAlchemyError as error:
+            failure = explained(error)
+            if is_lasting(error):
+                self._broken = failure
+            raise failure from error
+
+    def save_site(self, site: SiteState, events: Sequence[Event] = ()) -> None:
+        """Store the site and the events that belong to the change, together."""
+        with self._write() as connection:
+            _put(connection, tables.site, {"number": SITE_NUMBER}, {"document": SITE.write(site)})
+            _append(connection, events)
+
+    def save_tracker(self, tracker: TrackerState, events: Sequence[Event] = ()) -> None:
+        """Store a tracker and the events that belong to the change, together."""
+        key = {"tracker_id": tracker.config.tracker_id}
+        with self._write() as connection:
+            _put(connection, tables.trackers, key, {"document": TRACKER.write(tracker)})
+            _append(connection, events)
+
+    def remove_tracker(self, tracker_id: str, events: Sequence[Event] = ()) -> None:
+        """Forget a tracker; its journal and recordings stay."""
+        with self._write() as connection:
+            connection.execute(delete(tables.trackers).where(tables.trackers.c.tracker_id == tracker_id))
+            _append(connection, events)
+
+    def save_show(self, planned: PlannedShow) -> None:
+        """Keep a plan; the oldest beyond 1,000 are forgotten."""
+        columns = tables.shows.c
+        values = {"tracker_id": planned.tracker_id, "document": PLAN.write(planned.plan)}
+        oldest_kept = select(columns.number).order_by(columns.number.desc()).offset(SHOWS_KEPT - 1).limit(1)
+        with self._write() as connection:
+            _put(connection, tables.shows, {"show_id": planned.plan.show_id}, values)
+            connection.execute(delete(tables.shows).where(columns.number < oldest_kept.scalar_subquery()))
+
+    def append_events(self, events: Sequence[Event]) -> None:
+        """Append to the journal."""
+        with self._write() as connection:
+            _append(connection, events)
+
+    def begin_recording(self, info: RecordingInfo) -> None:
+        """Open a recording."""
+        with self._write() as connection:
+            _insert_head(connection, info)
+
+    def append_frames(self, recording_id: str, frames: Frames) -> None:
+        """Add frames to an open recording: the last chunk is rewritten until it holds 900."""
+        if not len(frames):
+            return
+        columns = tables.recordings.c
+        counted = update(tables.recordings).where(
+            columns.recording_id == recording_id, columns.ended_at.is_(None)
+        )
+        with self._write() as connection:
+            grown = connection.execute(counted.values(frame_count=columns.frame_count + len(frames)))
+            if grown.rowcount != 1:
+                raise StoreFailed(f"The recording {recording_id!r} is not open; no frames were added to it.")
+            _append_frames(connection, recording_id, frames)
+
+    def finish_recording(self, recording_id: str, ended_at: datetime, outcome: str) -> None:
+        """Close a recording."""
+        columns = tables.recordings.c
+        with self._write() as connection:
+            closed = connection.execute(
+                update(tables.recordings)
+                .where(columns.recording_id == recording_id, columns.ended_at.is_(None))
+                .values(ended_at=ended_at, outcome=plain(outcome))
+            )
+            if closed.rowcount != 1:
+                raise StoreFailed(f"The recording {recording_id!r} is not open; it cannot be closed.")
+
+    def save_recording(self, info: RecordingInfo, chunks: Sequence[bytes]) -> None:
+        """Store a whole finished recording, all or nothing; chunks in the store's own encoding."""
+        try:
+            parts = [decode(chunk) for chunk in chunks]
+        except ChunkDamaged as error:
+            raise StoreFailed(f"The recording {info.recording_id!r} was not stored: {error}") from error
+        with self._write() as connection:
+            _insert_head(connection, info, sum(len(part) for part in parts))
+            for position, (chunk, part) in enumerate(zip(chunks, parts, strict=True)):
+                _insert_chunk(connection, info.recording_id, position, chunk, part)
+
+    def delete_recording(self, recording_id: str) -> None:
+        """Delete a recording and its frames."""
+        with self._write() as connection:
+            connection.execute(
+                delete(tables.recordings).where(tables.recordings.c.recording_id == recording_id)
+            )
+
+    def close_open_recordings(self, ended_at: datetime, outcome: str) -> list[RecordingInfo]:
+        """Close what a crash left open (ended at its last frame, at `ended_at` without one) and return it."""
+        columns = tables.recordings.c
+        with self._write() as connection:
+            left = connection.execute(select(*HEAD).where(columns.ended_at.is_(None))).all()
+            for row in left:
+                at = _last_frame_at(connection, head(row)) or ended_at
+                connection.execute(
+                    update(tables.recordings)
+                    .where(columns.recording_id == row.recording_id)
+                    .values(ended_at=at, outcome=plain(outcome))
+                )
+            ids = [row.recording_id for row in left]
+            closed = connection.execute(select(*HEAD).where(columns.recording_id.in_(ids))).all()
+        return [head(row) for row in closed]
+
+    def prune(self, *, days_before: datetime, keep: int) -> int:
+        """Delete day recordings that began before an instant and all but `keep` others; return how many."""
+        columns = tables.recordings.c
+        is_day, is_finished = columns.kind == RecordingKind.DAY, columns.ended_at.is_not(None)
+        others = select(columns.recording_id).where(~is_day, is_finished)
+        surplus = others.order_by(columns.began_at.desc(), columns.recording_id.desc()).offset(keep)
+        old = select(columns.recording_id).where(is_day, is_finished, columns.began_at < days_before)
+        with self._write() as connection:
+            ids = [*connection.execute(old).scalars(), *connection.execute(surplus).scalars()]
+            for recording_id in ids:
+                connection.execute(delete(tables.recordings).where(columns.recording_id == recording_id))
+        return len(ids)
+
+    def close(self) -> None:
+        """Let go of the connections; the last one folds the log into the file."""
+        super().close()
+        self._writing.dispose()
+
+
+def _put(
+    connection: Connection, table: Table, key: Mapping[str, object], values: Mapping[str, object]
+) -> None:
+    """Replace the row with this key, or add it; a row that is replaced keeps its place."""
+    mine = [table.c[name] == value for name, value in key.items()]
+    if connection.execute(update(table).where(*mine).values(values)).rowcount == 0:
+        connection.execute(insert(table).values({**key, **values}))
+
+
+def _append(connection: Connection, events: Sequence[Event]) -> None:
+    rows = [
+        {
+            "at": event.at,
+            "kind": event.kind,
+            "tracker_id": event.tracker_id,
+            "actor": plain(event.actor),
+            "message": plain(event.message),
+            "data": EVENT_DATA.write(event.data),
+        }
+        for event in events
+    ]
+    if rows:
+        connection.execute(insert(tables.events), rows)
+
+
+def _insert_head(connection: Connection, info: RecordingInfo, frame_count: int = 0) -> None:
+    connection.execute(
+        insert(tables.recordings).values(
+            recording_id=info.recording_id,
+            kind=info.kind,
+            tracker_id=info.tracker_id,
+            began_at=info.began_at,
+            ended_at=info.ended_at,
+            outcome=plain(info.outcome),
+            frame_count=frame_count,
+            document=RECORDING.write(info),
+        )
+    )
+
+
+def _insert_chunk(
+    connection: Connection, recording_id: str, position: int, chunk: bytes, frames: Frames
+) -> None:
+    connection.execute(
+        insert(tables.chunks).values(
+            recording_id=recording_id, position=position, **_chunk_values(chunk, frames)
+        )
+    )
+
+
+def _chunk_values(chunk: bytes, frames: Frames) -> dict[str, object]:
+    elapsed_s = frames.column("elapsed_s").round(3)
+    return {
+        "first_elapsed_s": float(elapsed_s.min()),
+        "last_elapsed_s": float(elapsed_s.max()),
+        "frame_count": len(frames),
+        "frames": chunk,
+    }
+
+
+def _append_frames(connection: Connection, recording_id: str, frames: Frames) -> None:
+    columns = tables.chunks.c
+    position, already = 0, join([])
+    last = connection.execute(
+        select(columns.position, columns.frame_count, columns.frames)
+        .where(columns.recording_id == recording_id)
+        .order_by(columns.position.desc())
+        .limit(1)
+    ).one_or_none()
+    if last is not None and last.frame_count < CHUNK_FRAMES:
+        position, already = last.position, decode(last.frames)
+        mine = (columns.recording_id == recording_id, columns.position == position)
+        connection.execute(delete(tables.chunks).where(*mine))
+    elif last is not None:
+        position = last.position + 1
+    for chunk in encode_all(join([already, frames])):
+        _insert_chunk(connection, recording_id, position, chunk, decode(chunk))
+        position += 1
+
+
+def _last_frame_at(connection: Connection, info: RecordingInfo) -> datetime | None:
+    columns = tables.chunks.c
+    last_s = connection.execute(
+        select(columns.last_elapsed_s)
+        .where(columns.recording_id == info.recording_id)
+        .order_by(columns.position.desc())
+        .limit(1)
+    ).scalar_one_or_none()
+    return None if last_s is None else info.began_at + timedelta(seconds=last_s)
