@@ -1,7 +1,36 @@
-"""The pages of the panel."""
+"""The pages of the panel: one router a subject, and the page that tells what went wrong."""
 
 from fastapi import FastAPI
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.web.contexts import Outcome, ProblemPage
+from app.web.errors import Problem
+from app.web.ui import overview, theme
+from app.web.ui.frame import site_frame
+from app.web.ui.render import environment, page, wants_block
+
+ROUTERS = (overview.router, theme.router)
 
 
 def include_pages(app: FastAPI) -> None:
     """Add every page to the application."""
+    app.state.templates = environment()
+    app.state.error_page = error_page
+    for router in ROUTERS:
+        app.include_router(router, include_in_schema=False)
+
+
+def error_page(request: Request, problem: Problem) -> Response:
+    """Say what went wrong: below the key that was pressed, or on a page of its own."""
+    if wants_block(request):
+        context = Outcome(done=None, detail=problem.detail, reasons=problem.reasons)
+        return _with_headers(page(request, context, status=problem.status), problem)
+    frame = site_frame(request, problem.title)
+    whole = ProblemPage(frame=frame, title=problem.title, detail=problem.detail, reasons=problem.reasons)
+    return _with_headers(page(request, whole, status=problem.status), problem)
+
+
+def _with_headers(response: Response, problem: Problem) -> Response:
+    response.headers.update(problem.headers)
+    return response

@@ -1,0 +1,90 @@
+"""How values read on a page; `static/js/format.js` says the same in the browser."""
+
+from collections.abc import Callable
+from datetime import datetime, timedelta
+from typing import Any
+from zoneinfo import ZoneInfo
+
+UNKNOWN = "–"
+POINTS = (
+    "N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW",
+)  # fmt: skip
+
+
+def decimals(value: float, digits: int) -> str:
+    """Return a number without the minus sign that a rounded zero would carry, with a true minus sign."""
+    text = f"{value:.{digits}f}"
+    if float(text) == 0.0:
+        text = text.lstrip("-")
+    return text.replace("-", "−")
+
+
+def angle(value: float, digits: int = 2) -> str:
+    """Return an angle such as `102.40°`."""
+    return decimals(value, digits) + "°"
+
+
+def compass(azimuth_deg: float) -> str:
+    """Return the nearest of the sixteen points of the compass."""
+    return POINTS[round(azimuth_deg / 22.5) % 16]
+
+
+def duration(value: timedelta | float) -> str:
+    """Return a length of time such as `3 min 05 s` or `15 h 12 min`."""
+    total_s = round(value.total_seconds() if isinstance(value, timedelta) else value)
+    hours, rest = divmod(abs(total_s), 3600)
+    minutes, seconds = divmod(rest, 60)
+    if hours:
+        return f"{hours} h {minutes:02d} min"
+    return f"{minutes} min {seconds:02d} s" if minutes else f"{seconds} s"
+
+
+def signed_seconds(value: float) -> str:
+    """Return a difference of clocks such as `−23 s` or `+2 min 10 s`."""
+    if abs(value) < 0.5:
+        return "0 s"
+    return ("+" if value > 0 else "−") + duration(abs(value))
+
+
+def local(at: datetime, zone: str, pattern: str) -> str:
+    """Return an instant in the civil time of a zone."""
+    return at.astimezone(ZoneInfo(zone)).strftime(pattern)
+
+
+def offset(at: datetime, zone: str) -> str:
+    """Return the zone's distance from UTC at an instant, such as `UTC+3` or `UTC−3:30`."""
+    delta = at.astimezone(ZoneInfo(zone)).utcoffset() or timedelta()
+    total = round(delta.total_seconds() / 60)
+    hours, minutes = divmod(abs(total), 60)
+    if not total:
+        return "UTC"
+    return f"UTC{'+' if total > 0 else '−'}{hours}" + (f":{minutes:02d}" if minutes else "")
+
+
+def words(value: object) -> str:
+    """Return a word that travels, such as `going_to_start`, as people write it."""
+    text = str(value).replace("_", " ").replace("-", " ")
+    return text[:1].upper() + text[1:]
+
+
+FORMATS: dict[str, Callable[[Any, str], str]] = {
+    "text": lambda value, _: str(value),
+    "words": lambda value, _: words(value),
+    "angle2": lambda value, _: angle(value, 2),
+    "angle1": lambda value, _: angle(value, 1),
+    "compass": lambda value, _: compass(value),
+    "duration": lambda value, _: duration(value),
+    "signed_seconds": lambda value, _: signed_seconds(value),
+    "age": lambda value, _: f"{decimals(value, 1)} s",
+    "factor": lambda value, _: f"{value:,.0f} ×".replace(",", " "),
+    "clock": lambda value, zone: local(value, zone, "%H:%M:%S"),
+    "minute": lambda value, zone: local(value, zone, "%H:%M"),
+    "date": lambda value, zone: local(value, zone, "%Y-%m-%d"),
+    "moment": lambda value, zone: local(value, zone, "%Y-%m-%d %H:%M:%S"),
+    "offset": offset,
+}
+
+
+def shown(value: Any, form: str, zone: str) -> str:
+    """Return a value in one of the named forms; what is not known is a dash."""
+    return UNKNOWN if value is None else FORMATS[form](value, zone)

@@ -1,0 +1,145 @@
+"""Builds what all pages share from the request and the newest snapshot."""
+
+from collections.abc import Iterable
+
+from starlette.requests import Request
+
+from app.link.messages import TrackerDetail, UnknownTracker
+from app.tracker.commissioning import Step, StepStatus
+from app.tracker.memory import StepName
+from app.tracker.snapshot import SiteSnapshot, Snapshot
+from app.web.contexts import Forward, Frame, Link, StepMark
+from app.web.deps import panel
+
+THEMES = ("day", "sun", "night")
+STEP_LABELS = {
+    StepName.LOCATION: "Location",
+    StepName.CLOCK: "Clock",
+    StepName.HOMING: "Homing",
+    StepName.MODE: "Mode",
+    StepName.RUN: "Run",
+}
+STATUS_TEXT = {
+    StepStatus.DONE: "done",
+    StepStatus.TO_DO: "to do",
+    StepStatus.TO_BE_CONFIRMED: "to be confirmed",
+}
+SITE_TABS = (
+    ("Trackers", "/"),
+    ("Recordings", "/recordings"),
+    ("Simulate a day", "/simulate"),
+    ("Journal", "/journal"),
+)
+TRACKER_TABS = (
+    ("Live", ""),
+    ("Commissioning", "/commissioning"),
+    ("Show", "/show"),
+    ("Sun check", "/sun-check"),
+    ("Record", "/record"),
+    ("Settings", "/settings"),
+)
+
+
+def site_frame(
+    request: Request, title: str, *, back: Link | None = None, forward: Forward | None = None
+) -> Frame:
+    """Return the frame of a page about the whole site."""
+    site = panel(request).machine.latest()
+    here = request.url.path
+    tabs = tuple(Link(label, href, _is_current(here, href)) for label, href in SITE_TABS)
+    return _frame(request, title, site, tabs=tabs, back=back, forward=forward)
+
+
+def tracker_frame(
+    request: Request,
+    tracker_id: str,
+    title: str,
+    *,
+    steps: tuple[StepMark, ...] = (),
+    back: Link | None = None,
+    forward: Forward | None = None,
+) -> Frame:
+    """Return the frame of a page about one tracker; with steps there are no tabs."""
+    site = panel(request).machine.latest()
+    root, here = f"/trackers/{tracker_id}", request.url.path
+    tabs = () if steps else tuple(Link(name, root + end, here == root + end) for name, end in TRACKER_TABS)
+    overview = Link("Trackers", "/")
+    return _frame(
+        request, title, site, tracker_id=tracker_id, tabs=tabs, steps=steps, back=back or overview, forward=forward
+    )  # fmt: skip
+
+
+def snapshot_of(site: SiteSnapshot | None, tracker_id: str | None) -> Snapshot | None:
+    """Return one tracker's part of a snapshot; raise `UnknownTracker` if the machine has no such one."""
+    if site is None or tracker_id is None:
+        return None
+    for one in site.trackers:
+        if one.tracker_id == tracker_id:
+            return one
+    raise UnknownTracker(tracker_id)
+
+
+def _frame(
+    request: Request,
+    title: str,
+    site: SiteSnapshot | None,
+    *,
+    tracker_id: str | None = None,
+    tabs: tuple[Link, ...] = (),
+    steps: tuple[StepMark, ...] = (),
+    back: Link | None = None,
+    forward: Forward | None = None,
+) -> Frame:
+    theme = request.cookies.get("theme", "day")
+    current = next((mark for mark in steps if mark.current), None)
+    return Frame(
+        title=title,
+        where=f"Step {current.number} of {len(steps)} · {current.label}" if current else title,
+        path=request.url.path,
+        theme=theme if theme in THEMES else "day",
+        zone=site.time_zone if site else "UTC",
+        site=site,
+        tracker=snapshot_of(site, tracker_id),
+        tracker_id=tracker_id,
+        tabs=tabs,
+        steps=steps,
+        back=back,
+        forward=forward,
+    )
+
+
+def _is_current(here: str, href: str) -> bool:
+    return here == href if href == "/" else here.startswith(href)
+
+
+def step_marks(tracker: TrackerDetail, current: StepName | None) -> tuple[StepMark, ...]:
+    """Return the step bar: back is always open, forward only as far as everything before is done."""
+    root = f"/trackers/{tracker.state.config.tracker_id}/commissioning"
+    names = [step.name for step in tracker.steps]
+    reached = _first_open(tracker.steps)
+    at = names.index(current) if current else -1
+    return tuple(
+        _mark(step, number, root if number <= max(reached, at) else None, current=step.name is current)
+        for number, step in enumerate(tracker.steps)
+    )
+
+
+def _first_open(steps: Iterable[Step]) -> int:
+    number = -1
+    for number, step in enumerate(steps):
+        if step.status is not StepStatus.DONE:
+            return number
+    return number
+
+
+def _mark(step: Step, number: int, root: str | None, *, current: bool) -> StepMark:
+    return StepMark(
+        number=number + 1,
+        name=step.name,
+        label=STEP_LABELS[step.name],
+        status=step.status.value,
+        status_text=STATUS_TEXT[step.status],
+        href=f"{root}/{step.name}" if root else None,
+        current=current,
+        reasons=step.reasons,
+    )

@@ -1,0 +1,61 @@
+"""From a pressed key to one order of the machine, and back to the page with what came of it."""
+
+from datetime import datetime
+from typing import Annotated
+
+from fastapi import Depends, Form
+from starlette.requests import Request
+from starlette.responses import RedirectResponse, Response
+
+from app.link.messages import Order, SiteCommand
+from app.tracker.commands import Command
+from app.web.contexts import Outcome
+from app.web.deps import OPERATOR, panel
+from app.web.errors import NotAcceptable
+from app.web.ui.render import page, wants_block
+
+
+class Press:
+    """The press of one key: its one-time id, when it was pressed by the machine's clock, and where."""
+
+    def __init__(
+        self,
+        request: Request,
+        key: Annotated[str | None, Form(max_length=64)] = None,
+        issued_at: Annotated[str, Form(max_length=40)] = "",
+        back: Annotated[str, Form(max_length=300)] = "/",
+    ) -> None:
+        self.request = request
+        self.key = key or None
+        self.issued_at = _instant(issued_at)
+        self.back = own_path(back)
+
+    async def send(self, command: Command | SiteCommand, tracker_id: str | None = None) -> None:
+        """Send one order to the machine; every refusal is raised."""
+        order = Order(command, OPERATOR, tracker_id, self.key, self.issued_at)
+        try:
+            await panel(self.request).machine.execute(order)
+        except ValueError as error:
+            raise NotAcceptable(str(error)) from error
+
+    def answer(self, done: str) -> Response:
+        """Say below the key what was done, or return to the page where htmx is not at work."""
+        if wants_block(self.request):
+            return page(self.request, Outcome(done=done, detail="", reasons=()))
+        return RedirectResponse(self.back, 303)
+
+
+PressDep = Annotated[Press, Depends()]
+
+
+def own_path(path: str) -> str:
+    """Return the path if it belongs to this panel, else the overview."""
+    return path if path.startswith("/") and not path.startswith(("//", "/\\")) else "/"
+
+
+def _instant(text: str) -> datetime | None:
+    try:
+        at = datetime.fromisoformat(text)
+    except ValueError:
+        return None
+    return at if at.tzinfo else None

@@ -1,0 +1,94 @@
+"""The site: its trackers at a glance, a new tracker, the site's name, and STOP for all."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Form
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.link.messages import AddTracker, RenameSite, SiteDetail, StopAll
+from app.tracker.commissioning import StepStatus
+from app.tracker.config import TrackerConfig
+from app.web.contexts import Field, OverviewPage
+from app.web.contexts import Form as Fields
+from app.web.deps import MachineDep
+from app.web.ui.frame import STEP_LABELS, site_frame
+from app.web.ui.orders import PressDep
+from app.web.ui.render import go, page
+
+router = APIRouter()
+
+
+@router.get("/")
+async def overview(request: Request, machine: MachineDep) -> Response:
+    """Show every tracker of the site."""
+    return _answer(request, await machine.detail())
+
+
+@router.post("/trackers")
+async def add_tracker(
+    press: PressDep, machine: MachineDep, tracker_id: Annotated[str, Form()], name: Annotated[str, Form()]
+) -> Response:
+    """Add a tracker with a simulated drive; its settings come next."""
+    tracker_id, name = tracker_id.strip(), name.strip()
+    if errors := _faults(tracker_id, name, await machine.detail()):
+        return _answer(press.request, await machine.detail(), (tracker_id, name), errors, 422)
+    await press.send(AddTracker(TrackerConfig(tracker_id, name)))
+    return go(press.request, f"/trackers/{tracker_id}/settings")
+
+
+@router.post("/site/name")
+async def rename_site(press: PressDep, name: Annotated[str, Form(max_length=80)]) -> Response:
+    """Give the site another name."""
+    await press.send(RenameSite(name.strip()))
+    return press.answer("The site's name is saved.")
+
+
+@router.post("/stop")
+async def stop_all(press: PressDep) -> Response:
+    """Stop every tracker now."""
+    await press.send(StopAll())
+    return press.answer("Stopped.")
+
+
+def _faults(tracker_id: str, name: str, detail: SiteDetail) -> dict[str, str]:
+    errors = {}
+    if not tracker_id.replace("-", "").isalnum() or len(tracker_id) > 20:
+        errors["tracker_id"] = "Give an id of letters, digits and dashes, at most 20, such as T2."
+    elif tracker_id in detail.trackers:
+        errors["tracker_id"] = f"There is a tracker {tracker_id} already; choose another id."
+    if not name:
+        errors["name"] = "Give the tracker a name, such as North field 2."
+    return errors
+
+
+def _answer(
+    request: Request,
+    detail: SiteDetail,
+    typed: tuple[str, str] | None = None,
+    errors: dict[str, str] | None = None,
+    status: int = 200,
+) -> Response:
+    frame = site_frame(request, "Trackers")
+    errors = errors or {}
+    texts = dict(zip(("tracker_id", "name"), typed or (_free_id(detail), ""), strict=True))
+    form: Fields = {name: Field(name, text, errors.get(name)) for name, text in texts.items()}
+    context = OverviewPage(
+        frame=frame,
+        trackers=frame.site.trackers if frame.site else (),
+        form=form,
+        progress=_progress(detail),
+    )
+    return page(request, context, block="add", status=status)
+
+
+def _free_id(detail: SiteDetail) -> str:
+    return next(f"T{n}" for n in range(1, len(detail.trackers) + 2) if f"T{n}" not in detail.trackers)
+
+
+def _progress(detail: SiteDetail) -> dict[str, tuple[int, str]]:
+    progress = {}
+    for tracker_id, tracker in detail.trackers.items():
+        left = [step.name for step in tracker.steps if step.status is not StepStatus.DONE]
+        progress[tracker_id] = (len(tracker.steps) - len(left), STEP_LABELS[left[0]] if left else "")
+    return progress

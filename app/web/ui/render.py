@@ -1,0 +1,100 @@
+"""Templates and how a declared context becomes a page, or the one block of it that htmx asked for."""
+
+from dataclasses import fields
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, pass_context
+from jinja2.runtime import Context as TemplateContext
+from jinja2_fragments import render_block
+from markupsafe import Markup
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, RedirectResponse, Response
+
+from app.web.contexts import Context
+from app.web.deps import panel
+from app.web.ui import formats
+
+TEMPLATES = Path(__file__).resolve().parents[3] / "templates"
+VARY = {"Vary": "HX-Request, HX-Request-Type"}
+
+
+def environment() -> Environment:
+    """Return the one environment of all templates: undefined names fail, everything is escaped."""
+    env = Environment(
+        loader=FileSystemLoader(TEMPLATES),
+        undefined=StrictUndefined,
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    env.globals |= {"live": live, "world": world()}
+    env.filters |= {
+        "angle": formats.angle,
+        "compass": formats.compass,
+        "duration": formats.duration,
+        "signed_seconds": formats.signed_seconds,
+        "decimals": formats.decimals,
+        "words": formats.words,
+        "local": formats.local,
+        "zone_offset": formats.offset,
+    }
+    return env
+
+
+@cache
+def world() -> Markup:
+    """Return the outline of the world's land as SVG path data."""
+    drawn = (TEMPLATES.parent / "static" / "img" / "world.svg").read_text()
+    return Markup(drawn.split(' d="', 1)[1].split('"', 1)[0])  # noqa: S704 - our own committed file
+
+
+def reach(root: object, path: str) -> Any:
+    """Return what lies at a dotted path, None where something on the way is not known."""
+    value: Any = root
+    for name in path.split("."):
+        if value is None:
+            return None
+        value = getattr(value, name)
+    return value
+
+
+@pass_context
+def live(
+    context: TemplateContext, path: str, form: str = "text", style: str = "value-live", of: object = None
+) -> Markup:
+    """Return an element that shows one value of the snapshot and that live.js keeps up to date."""
+    frame = context["frame"]
+    if path.startswith("site."):
+        value = reach(frame.site, path.removeprefix("site."))
+    else:
+        value = reach(of or frame.tracker, path)
+    text = formats.shown(value, form, frame.zone)
+    return Markup('<span class="{}" data-live="{}" data-form="{}">{}</span>').format(style, path, form, text)
+
+
+def wants_block(request: Request) -> bool:
+    """Return whether htmx asked for a part of a page, not for the page."""
+    headers = request.headers
+    full = headers.get("HX-Request-Type") == "full" or "HX-History-Restore-Request" in headers
+    return headers.get("HX-Request") == "true" and not full
+
+
+def page(request: Request, context: Context, *, block: str | None = None, status: int = 200) -> Response:
+    """Answer with the whole page, or with only its block when htmx asked for that."""
+    env: Environment = request.app.state.templates
+    given = {field.name: getattr(context, field.name) for field in fields(context)}
+    given["static"] = panel(request).assets.url
+    if block and wants_block(request):
+        text = render_block(env, context.template, block, given)
+    else:
+        text = env.get_template(context.template).render(given)
+    return HTMLResponse(text, status, VARY)
+
+
+def go(request: Request, url: str) -> Response:
+    """Send the browser to another page, whether htmx or a plain form asked."""
+    if request.headers.get("HX-Request") == "true":
+        return Response(status_code=204, headers={"HX-Redirect": url})
+    return RedirectResponse(url, 303)

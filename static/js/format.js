@@ -1,0 +1,72 @@
+// How values read on a page; app/web/ui/formats.py says the same on the server.
+
+const POINTS = ["N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"];
+const UNKNOWN = "–";
+
+export function decimals(value, digits) {
+  const text = value.toFixed(digits);
+  return (Number(text) === 0 ? text.replace("-", "") : text).replace("-", "−");
+}
+
+export const angle = (value, digits = 2) => `${decimals(value, digits)}°`;
+export const compass = (azimuthDeg) => POINTS[Math.round(azimuthDeg / 22.5) % 16];
+
+export function duration(seconds) {
+  const total = Math.round(Math.abs(seconds));
+  const hours = Math.floor(total / 3600);
+  const minutes = Math.floor((total % 3600) / 60);
+  const two = (number) => String(number).padStart(2, "0");
+  if (hours) return `${hours} h ${two(minutes)} min`;
+  return minutes ? `${minutes} min ${two(total % 60)} s` : `${total} s`;
+}
+
+export function signedSeconds(value) {
+  if (Math.abs(value) < 0.5) return "0 s";
+  return (value > 0 ? "+" : "−") + duration(value);
+}
+
+const formatters = new Map();
+
+function inZone(zone, parts) {
+  const name = zone + JSON.stringify(parts);
+  if (!formatters.has(name)) {
+    formatters.set(name, new Intl.DateTimeFormat("sv-SE", { timeZone: zone, hourCycle: "h23", ...parts }));
+  }
+  return formatters.get(name);
+}
+
+const TIME = { hour: "2-digit", minute: "2-digit", second: "2-digit" };
+const DATE = { year: "numeric", month: "2-digit", day: "2-digit" };
+
+export function clockTime(iso, zone, seconds = true) {
+  const { second, ...minutes } = TIME;
+  return inZone(zone, seconds ? { ...minutes, second } : minutes).format(new Date(iso));
+}
+
+export const dateIn = (iso, zone) => inZone(zone, DATE).format(new Date(iso));
+
+export function words(value) {
+  const text = String(value).replace(/[_-]/g, " ");
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+const FORMS = {
+  text: String,
+  words,
+  angle2: (value) => angle(value, 2),
+  angle1: (value) => angle(value, 1),
+  compass,
+  duration,
+  signed_seconds: signedSeconds,
+  age: (value) => `${decimals(value, 1)} s`,
+  factor: (value) => `${Math.round(value).toLocaleString("en").replace(/,/g, " ")} ×`,
+  clock: (value, zone) => clockTime(value, zone),
+  minute: (value, zone) => clockTime(value, zone, false),
+  date: dateIn,
+  moment: (value, zone) => `${dateIn(value, zone)} ${clockTime(value, zone)}`,
+};
+
+export function shown(value, form, zone) {
+  if (value === null || value === undefined) return UNKNOWN;
+  return (FORMS[form] ?? FORMS.text)(value, zone);
+}

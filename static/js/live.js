@@ -1,0 +1,211 @@
+// One WebSocket a page: state in, jog and stop out. Nothing is kept for later: what cannot be sent now is dropped.
+
+import { shown } from "./format.js";
+
+const OLD_MS = 1500;
+const DEAD_MS = 3000;
+const RETRY_MS = 300;
+const root = document.documentElement;
+const listeners = { state: new Set(), jog: new Set(), stopped: new Set(), event: new Set(), link: new Set(), pong: new Set() };
+
+export const live = {
+  trackerId: root.dataset.tracker ?? null,
+  zone: root.dataset.zone ?? "UTC",
+  site: null,
+  tracker: null,
+  link: "starting",
+  roundTripMs: null,
+  on(kind, listener) {
+    listeners[kind].add(listener);
+    if (kind === "state" && live.site) listener(live);
+    return () => listeners[kind].delete(listener);
+  },
+  trackerOf(id) {
+    return live.site?.trackers.find((one) => one.tracker_id === id) ?? null;
+  },
+  // Sends at once or not at all; says which.
+  send(message) {
+    if (socket?.readyState !== WebSocket.OPEN || socket.bufferedAmount > 0) return false;
+    socket.send(JSON.stringify(message));
+    return true;
+  },
+  // The machine's clock now, as its snapshots tell it; null while the link is not live.
+  machineNow() {
+    if (live.link !== "live") return null;
+    return new Date(Date.parse(live.site.at) + (performance.now() - heardAt)).toISOString();
+  },
+};
+
+let socket = null;
+let heardAt = 0;
+let stateAt = 0;
+let openedAt = 0;
+let leaving = false;
+
+const tell = (kind, detail) => listeners[kind].forEach((listener) => listener(detail));
+
+function connect() {
+  if (leaving) return;
+  const wanted = live.trackerId ? `?tracker=${encodeURIComponent(live.trackerId)}` : "";
+  const scheme = location.protocol === "https:" ? "wss" : "ws";
+  const mine = new WebSocket(`${scheme}://${location.host}/live${wanted}`);
+  socket = mine;
+  openedAt = performance.now();
+  mine.onmessage = (message) => mine === socket && hear(JSON.parse(message.data));
+  mine.onclose = () => {
+    if (mine !== socket) return;
+    socket = null;
+    judge("closed");
+    setTimeout(connect, RETRY_MS);
+  };
+}
+
+const HEARD = {
+  state(message) {
+    heardAt = stateAt = performance.now();
+    live.site = message.snapshot;
+    live.tracker = live.trackerOf(live.trackerId);
+    setLink("live");
+    tell("state", live);
+  },
+  machine_lost() {
+    heardAt = performance.now();
+    setLink("lost");
+  },
+  jog: (message) => tell("jog", message),
+  stopped: (message) => tell("stopped", message),
+  event: (message) => tell("event", message),
+  pong(message) {
+    live.roundTripMs = performance.now() - message.tc;
+    tell("pong", live);
+  },
+};
+
+const hear = (message) => HEARD[message.type]?.(message);
+
+function setLink(state) {
+  if (live.link === state) return;
+  live.link = state;
+  root.dataset.link = state;
+  tell("link", live);
+}
+
+// How long ago the page last heard how things stand, in seconds.
+const ageSeconds = () => (stateAt ? (performance.now() - stateAt) / 1000 : null);
+
+function judge(why) {
+  const silent = performance.now() - Math.max(stateAt, openedAt);
+  if (why === "closed" && live.link === "live") setLink("stale");
+  if (live.link !== "lost" && silent > OLD_MS) setLink("stale");
+  if (socket && performance.now() - Math.max(heardAt, openedAt) > DEAD_MS) socket.close();
+  if (live.link !== "live") tell("link", live);
+}
+
+function valueAt(start, path) {
+  return path.split(".").reduce((value, name) => value?.[name], start);
+}
+
+function scopeOf(element) {
+  const holder = element.closest("[data-tracker]");
+  return !holder || holder === root ? live.tracker : live.trackerOf(holder.dataset.tracker);
+}
+
+function paintValues() {
+  for (const element of document.querySelectorAll("[data-live]")) {
+    const path = element.dataset.live;
+    const value = path.startsWith("site.") ? valueAt(live.site, path.slice(5)) : valueAt(scopeOf(element), path);
+    const text = shown(value, element.dataset.form ?? "text", live.zone);
+    if (element.textContent !== text) element.textContent = text;
+  }
+  for (const element of document.querySelectorAll("[data-lamp]")) {
+    element.dataset.on = String(Boolean(valueAt(scopeOf(element), element.dataset.lamp)));
+  }
+  for (const element of document.querySelectorAll("[data-when]")) element.hidden = !holds(element);
+}
+
+// `data-when="show.phase=running,paused"`: shown while the value is one of these; without `=`, while there is one.
+function holds(element) {
+  const [path, wanted] = element.dataset.when.split("=");
+  const value = valueAt(scopeOf(element), path);
+  if (wanted === undefined) return Array.isArray(value) ? value.length > 0 : Boolean(value);
+  return wanted.split(",").includes(String(value ?? "none"));
+}
+
+export function fillReasons(list, reasons) {
+  const wanted = JSON.stringify(reasons);
+  if (list.dataset.filled === wanted) return;
+  list.dataset.filled = wanted;
+  list.replaceChildren(...reasons.map((reason) => {
+    const item = document.createElement("li");
+    const words = document.createElement("span");
+    const hint = document.createElement("small");
+    hint.textContent = reason.hint ?? "";
+    words.append(`${reason.message} `, hint);
+    item.append(words);
+    return item;
+  }));
+}
+
+const reasonsFor = (element, action) => scopeOf(element)?.actions?.[action] ?? [];
+
+function paintActions() {
+  for (const key of document.querySelectorAll("[data-action]")) {
+    key.disabled = live.link !== "live" || reasonsFor(key, key.dataset.action).length > 0;
+  }
+  for (const list of document.querySelectorAll("[data-reasons]")) fillReasons(list, reasonsFor(list, list.dataset.reasons));
+  for (const list of document.querySelectorAll("[data-list]")) fillReasons(list, scopeOf(list)?.[list.dataset.list] ?? []);
+}
+
+function paintBanners() {
+  const fault = document.getElementById("fault-banner");
+  const waiting = document.getElementById("waiting-banner");
+  if (fault) fault.hidden = !live.tracker?.fault;
+  if (waiting) waiting.hidden = !live.tracker?.waiting.length;
+  for (const note of document.querySelectorAll("[data-stale-note]")) {
+    const one = scopeOf(note);
+    const lost = Boolean(one && !one.measured);
+    note.hidden = !lost;
+    if (lost) note.textContent = lastSeen(one);
+  }
+}
+
+function lastSeen(one) {
+  if (!one.last_measured) return "The drive has not told its position yet.";
+  const { azimuth_deg: azimuth, elevation_deg: elevation } = one.last_measured;
+  return `Last reading ${shown(one.position_age_s, "age")} ago: azimuth ${shown(azimuth, "angle2")}, elevation ${shown(elevation, "angle2")}.`;
+}
+
+const LINK_WORDS = { live: "live", stale: "no connection", lost: "no controller", starting: "connecting" };
+
+function paintLink() {
+  const words = document.getElementById("link-words");
+  if (words.textContent !== LINK_WORDS[live.link]) words.textContent = LINK_WORDS[live.link];
+  const off = live.link === "stale" || live.link === "lost";
+  document.getElementById("link-banner").hidden = !off;
+  if (off) {
+    const age = ageSeconds();
+    const since = age === null ? "" : ` Values are ${Math.round(age)} s old.`;
+    document.getElementById("link-banner-words").textContent = live.link === "lost"
+      ? `The controller service does not answer.${since}` : `No connection to the panel.${since}`;
+  }
+  if (live.link !== "live") paintActions();
+}
+
+export function paint() {
+  if (!live.site) return;
+  paintValues();
+  paintActions();
+  paintBanners();
+}
+
+export function start() {
+  root.dataset.link = "starting";
+  live.on("state", paint);
+  live.on("link", paintLink);
+  addEventListener("pagehide", () => { leaving = true; socket?.close(); });
+  addEventListener("pageshow", (shownAgain) => { if (shownAgain.persisted) location.reload(); });
+  document.addEventListener("htmx:after:swap", paint);
+  setInterval(judge, 250);
+  setInterval(() => live.send({ type: "ping", tc: performance.now() }), 1000);
+  connect();
+}

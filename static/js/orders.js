@@ -1,0 +1,32 @@
+// Forms that send orders: a one-time id for each press, the instant of the press, and no sending while the link is down.
+
+import { live } from "./live.js";
+
+export function randomId() {
+  const bytes = crypto.getRandomValues(new Uint8Array(12));
+  return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
+}
+
+function prepare(event) {
+  const { ctx } = event.detail;
+  const form = ctx.sourceElement.closest("form");
+  if (!form || ctx.request.method?.toUpperCase() !== "POST") return;
+  if (form.hasAttribute("data-moves") && live.link !== "live") {
+    event.preventDefault();
+    return;
+  }
+  const body = ctx.request.body;
+  if (body?.has?.("issued_at")) body.set("issued_at", live.machineNow() ?? "");
+  if (body?.has?.("key")) body.set("key", randomId());
+}
+
+// After a swap that reports wrong input, the summary of errors has the focus.
+function focusSummary() {
+  document.querySelector("[data-focus]")?.focus();
+}
+
+export function start() {
+  document.addEventListener("htmx:config:request", prepare);
+  document.addEventListener("htmx:after:swap", focusSummary);
+  focusSummary();
+}

@@ -1,0 +1,14 @@
+// What every page runs.
+
+import { start as startLive } from "./live.js";
+import { start as startOrders } from "./orders.js";
+import { start as startStop } from "./stop.js";
+import { start as startTheme } from "./theme.js";
+
+startStop();
+startTheme();
+startOrders();
+startLive();
+
+const heading = document.getElementById("heading");
+if (document.getElementById("steps") && heading && !document.querySelector("[data-focus]")) heading.focus();
