@@ -65,12 +65,16 @@ class Pointing:
 
 @dataclass(frozen=True, slots=True)
 class TrackerMemory:
-    """The latches of one tracker: on disk before the command that changes them is acknowledged."""
+    """The latches of one tracker: on disk before the command that changes them is acknowledged.
+
+    `home_lost` says why a zero that was set is no longer trusted.
+    """
 
     mode: Mode | None = None
     orientation: Orientation = Orientation(180.0, 45.0)
     tracking_on: bool = False
     home: HomeTrust | None = None
+    home_lost: str = ""
     showing: str | None = None
     fault_code: str | None = None
     fault_text: str = ""

@@ -143,6 +143,7 @@ class EventKind(StrEnum):
     FAULT_RESET = "fault_reset"
     DRIVE_LOST = "drive_lost"
     DRIVE_FOUND = "drive_found"
+    LIMIT_REACHED = "limit_reached"
     SIGHTING_TAKEN = "sighting_taken"
     RECORDING_DELETED = "recording_deleted"
 
