@@ -38,6 +38,7 @@ from app.link.messages import (
     UnknownTracker,
     Update,
 )
+from app.link.outlet import Outlet
 from app.settings import Settings
 from app.tracker.commands import (
     CommandRejected,
@@ -97,7 +98,8 @@ class FakeMachine:
         self.reachable = True
         self.sequence = 0
         self.recordings: dict[str, RecordingInfo] = {}
-        self._readers: set[asyncio.Queue[Update | None]] = set()
+        self._outlet = Outlet()
+        self.emit()
 
     async def execute(self, order: Order) -> SiteSnapshot:
         """Carry out one order and tell every reader."""
@@ -170,15 +172,18 @@ class FakeMachine:
         """Tell every reader how things stand now."""
         self.sequence += 1
         snapshot = self._snapshot()
-        for reader in self._readers:
-            reader.put_nowait(Update(snapshot, events))
+        self._outlet.publish(snapshot, events)
         return snapshot
 
     def cut(self) -> None:
         """Lose the link: readers end, orders fail."""
         self.reachable = False
-        for reader in self._readers:
-            reader.put_nowait(None)
+        self._outlet.end()
+
+    def mend(self) -> None:
+        """Have the link back."""
+        self.reachable = True
+        self.emit()
 
     def _snapshot(self) -> SiteSnapshot:
         now = self.clock.now() + timedelta(seconds=self.site.clock.offset_s)
@@ -213,17 +218,11 @@ class FakeMachine:
 
     def latest(self) -> SiteSnapshot | None:
         """Return the newest snapshot, None while the link is cut."""
-        return self._snapshot() if self.reachable else None
+        return self._outlet.latest
 
-    async def updates(self) -> AsyncIterator[Update]:
+    def updates(self) -> AsyncIterator[Update]:
         """Yield what `emit` tells, until the link is cut."""
-        inbox: asyncio.Queue[Update | None] = asyncio.Queue()
-        self._readers.add(inbox)
-        try:
-            while (update := await inbox.get()) is not None:
-                yield update
-        finally:
-            self._readers.discard(inbox)
+        return self._outlet.subscribe()
 
 
 def fake_app(machine: FakeMachine | None = None, reader: FakeReader | None = None) -> FastAPI:

@@ -14,6 +14,7 @@ from app.tracker.commands import Command
 from app.tracker.snapshot import SiteSnapshot
 from app.web.assets import Assets
 from app.web.errors import NotAcceptable
+from app.web.hub import Hub
 
 OPERATOR = "operator"
 
@@ -27,6 +28,7 @@ class Panel:
     reader: Reader
     clock: Clock
     assets: Assets
+    hub: Hub
 
 
 def panel(connection: HTTPConnection) -> Panel:

@@ -102,6 +102,11 @@ PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
 }
 
 
+def machine_problem(error: Exception) -> Problem:
+    """Return what to tell about an error of the machine; what it calls impossible is a 422."""
+    return problem_of(NotAcceptable(str(error)) if isinstance(error, ValueError) else error)
+
+
 def problem_of(error: Exception) -> Problem:
     """Return what to tell about an error."""
     for kind in type(error).__mro__:

@@ -1,5 +1,8 @@
 """The panel's process: what it consists of, and how it is served."""
 
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from pathlib import Path
 
 from fastapi import FastAPI
@@ -9,22 +12,38 @@ from app.clock import Clock, SystemClock
 from app.link.messages import Machine
 from app.settings import Settings
 from app.store.store import Reader
-from app.web import errors
+from app.web import errors, live
 from app.web.assets import Assets
 from app.web.deps import Panel
+from app.web.hub import Hub
 from app.web.security import Guard, SecurityHeaders
 from app.web.ui.pages import include_pages
 
 STATIC = Path(__file__).resolve().parents[2] / "static"
 
 
+@asynccontextmanager
+async def _living(app: FastAPI) -> AsyncIterator[None]:
+    """Follow the machine for as long as the panel lives."""
+    panel: Panel = app.state.panel
+    following = asyncio.create_task(panel.hub.run())
+    try:
+        yield
+    finally:
+        following.cancel()
+        await asyncio.gather(following, return_exceptions=True)
+
+
 def create_app(
     settings: Settings, *, machine: Machine, reader: Reader, clock: Clock | None = None
 ) -> FastAPI:
     """Build the whole panel."""
-    app = FastAPI(title="Heliopanel", version="1", docs_url=None, redoc_url=None)
-    app.state.panel = Panel(settings, machine, reader, clock or SystemClock(), Assets(STATIC))
-    app.mount("/s", app.state.panel.assets, name="static")
+    clock = clock or SystemClock()
+    panel = Panel(settings, machine, reader, clock, Assets(STATIC), Hub(machine, clock))
+    app = FastAPI(title="Heliopanel", version="1", docs_url=None, redoc_url=None, lifespan=_living)
+    app.state.panel = panel
+    app.mount("/s", panel.assets, name="static")
+    app.include_router(live.router)
     include_pages(app)
     errors.install(app)
     app.add_middleware(GZipMiddleware, minimum_size=600)

@@ -1,0 +1,178 @@
+"""From one machine to many readers: each state is rendered once and handed out in batches."""
+
+import asyncio
+from collections import deque
+from collections.abc import Coroutine, Iterator
+from dataclasses import replace
+from datetime import datetime, timedelta
+from itertools import islice
+from typing import Any
+from uuid import uuid4
+
+import orjson
+import structlog
+
+from app.clock import Clock
+from app.link.messages import Machine, Update
+from app.tracker.snapshot import Event, SiteSnapshot
+from app.web.presses import Dead
+from app.web.viewers import Message, Viewer, Wanted
+
+log = structlog.get_logger()
+
+SOONEST = timedelta(milliseconds=100)
+LATEST = timedelta(milliseconds=500)
+RECONNECT = timedelta(milliseconds=50)
+FAREWELL = timedelta(seconds=1)
+BATCH = 25
+MOST_VIEWERS = 1000
+EVENTS_KEPT = 2000
+LOST = Message("machine_lost", '{"type":"machine_lost"}')
+
+
+class TooManyViewers(Exception):
+    """The panel has as many readers as it serves."""
+
+
+class Hub:
+    """Reads the machine's updates once and gives every viewer the newest state and every event."""
+
+    def __init__(self, machine: Machine, clock: Clock, *, patience: timedelta = timedelta(seconds=5)) -> None:
+        self.patience = patience
+        self.dead = Dead()
+        self._machine = machine
+        self._clock = clock
+        self._run = uuid4().hex[:8]
+        self._number = 0
+        self._events: deque[tuple[int, Event]] = deque(maxlen=EVENTS_KEPT)
+        self._snapshot: SiteSnapshot | None = None
+        self._heard_at = clock.now()
+        self._changed = asyncio.Event()
+        self._viewers: set[Viewer] = set()
+        self._tasks: set[asyncio.Task[Any]] = set()
+
+    def __len__(self) -> int:
+        return len(self._viewers)
+
+    @property
+    def mark(self) -> str:
+        """Return the present place in the stream of events."""
+        return f"{self._run}-{self._number}"
+
+    def spawn(self, work: Coroutine[Any, Any, object]) -> None:
+        """Do something beside everything else; it is finished even if who asked for it has gone."""
+        task = asyncio.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    def join(self, wanted: Wanted) -> Viewer:
+        """Return a new viewer, which is shown the present state at once."""
+        if len(self._viewers) >= MOST_VIEWERS:
+            raise TooManyViewers
+        viewer = Viewer(wanted)
+        viewer.show(self._render(wanted.tracker_id))
+        self._viewers.add(viewer)
+        return viewer
+
+    def leave(self, viewer: Viewer) -> None:
+        """Forget a viewer."""
+        self._viewers.discard(viewer)
+
+    def missed(self, mark: str) -> list[Message] | None:
+        """Return the events since a place in the stream, None where that is not known any more."""
+        run, _, number = mark.rpartition("-")
+        oldest = self._events[0][0] if self._events else self._number + 1
+        if run != self._run or not number.isdigit() or not oldest - 1 <= int(number) <= self._number:
+            return None
+        return [self._message(place, event) for place, event in self._events if place > int(number)]
+
+    async def run(self) -> None:
+        """Follow the machine until cancelled; then let what was asked for last be finished."""
+        following, pacing = asyncio.create_task(self._follow()), asyncio.create_task(self._pace())
+        try:
+            await asyncio.gather(following, pacing)
+        finally:
+            following.cancel()
+            pacing.cancel()
+            if self._tasks:
+                await asyncio.wait(self._tasks, timeout=FAREWELL.total_seconds())
+
+    async def _follow(self) -> None:
+        while True:
+            async for update in self._machine.updates():
+                self._hear(update)
+            self._snapshot = None
+            await self._hand_out()
+            await self._clock.sleep_until(self._clock.now() + RECONNECT)
+
+    def _hear(self, update: Update) -> None:
+        self._snapshot = update.snapshot
+        self._heard_at = self._clock.now()
+        self._changed.set()
+        for event in update.events:
+            self._number += 1
+            self._events.append((self._number, event))
+            message = self._message(self._number, event)
+            for viewer in self._viewers:
+                if viewer.wanted.includes(event.kind, event.tracker_id):
+                    viewer.tell(message)
+
+    async def _pace(self) -> None:
+        while True:
+            await self._changed_or(self._clock.now() + LATEST)
+            self._changed.clear()
+            await self._hand_out()
+            await self._clock.sleep_until(self._clock.now() + SOONEST)
+
+    async def _changed_or(self, until: datetime) -> None:
+        waits = {
+            asyncio.create_task(self._changed.wait()),
+            asyncio.ensure_future(self._clock.sleep_until(until)),
+        }
+        try:
+            await asyncio.wait(waits, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            for wait in waits:
+                wait.cancel()
+
+    async def _hand_out(self) -> None:
+        rendered: dict[str | None, Message] = {}
+        for batch in _batches(tuple(self._viewers)):
+            for viewer in batch:
+                wanted = viewer.wanted.tracker_id
+                if wanted not in rendered:
+                    rendered[wanted] = self._render(wanted)
+                viewer.show(rendered[wanted])
+            await self._clock.sleep_until(self._clock.now())
+
+    def _render(self, tracker_id: str | None) -> Message:
+        snapshot = self._snapshot
+        if snapshot is None:
+            return LOST
+        if tracker_id is not None:
+            chosen = tuple(one for one in snapshot.trackers if one.tracker_id == tracker_id)
+            snapshot = replace(snapshot, trackers=chosen)
+        state = {
+            "type": "state",
+            "rev": snapshot.sequence,
+            "boot": snapshot.boot_id,
+            "at": snapshot.at,
+            "age_ms": round((self._clock.now() - self._heard_at) / timedelta(milliseconds=1)),
+            "snapshot": snapshot,
+        }
+        return Message("snapshot", orjson.dumps(state).decode(), self.mark)
+
+    def _message(self, number: int, event: Event) -> Message:
+        text = orjson.dumps({"type": "event", **_fields(event)}).decode()
+        return Message("event", text, f"{self._run}-{number}")
+
+
+def _fields(event: Event) -> dict[str, Any]:
+    fields: dict[str, Any] = orjson.loads(orjson.dumps(event))
+    return fields
+
+
+def _batches(viewers: tuple[Viewer, ...]) -> Iterator[tuple[Viewer, ...]]:
+    rest = iter(viewers)
+    while batch := tuple(islice(rest, BATCH)):
+        yield batch

@@ -1,0 +1,230 @@
+"""One WebSocket a page: state and events out; hold-to-run, stop and ping in."""
+
+import asyncio
+from contextlib import suppress
+from datetime import timedelta
+from typing import Annotated, Any, Literal, assert_never
+
+import orjson
+import structlog
+from fastapi import APIRouter
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, TypeAdapter, ValidationError
+from starlette.websockets import WebSocket
+
+from app.clock import Clock
+from app.link.messages import Machine, MachineUnreachable, Order, StopAll, UnknownTracker
+from app.tracker.axes import Axis, JogSpeed
+from app.tracker.commands import CommandRejected, EndJog, Jog, Stop
+from app.tracker.reason import Reason
+from app.web.deps import OPERATOR, Panel
+from app.web.errors import machine_problem
+from app.web.hub import Hub, TooManyViewers
+from app.web.presses import Heartbeat, LinkDelay, Presses, Verdict
+from app.web.viewers import Message, TooSlow, Viewer, Wanted, pump
+
+log = structlog.get_logger()
+router = APIRouter()
+
+MOST_IN_FLIGHT = 4
+DEAD_PRESS = Reason("press_dead", "This press has ended.", "Let the key go and press it again.")
+SLOW_LINK = Reason(
+    "link_too_slow",
+    "The connection is too slow for hold-to-run.",
+    "Go nearer to the access point, or use the small steps.",
+)
+STATUS_OF_CODE = {"press_dead": "dead", "busy": "busy"}
+
+
+class _Incoming(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+Name = Annotated[str, Field(min_length=1, max_length=64)]
+Milliseconds = Annotated[float, Field(ge=0, le=1e14)]
+
+
+class JogBeat(_Incoming):
+    """The key is still held."""
+
+    type: Literal["jog"]
+    tracker_id: Name
+    press_id: Name
+    axis: Axis
+    direction: Literal[-1, 1]
+    speed: JogSpeed
+    sequence: int = Field(ge=0, le=2**53)
+    tc: Milliseconds
+    rtt_ms: Milliseconds | None = None
+
+
+class JogEnd(_Incoming):
+    """The key was let go."""
+
+    type: Literal["end_jog"]
+    tracker_id: Name
+    press_id: Name
+
+
+class StopOne(_Incoming):
+    """Stop one tracker now."""
+
+    type: Literal["stop"]
+    tracker_id: Name
+
+
+class StopEverything(_Incoming):
+    """Stop every tracker now."""
+
+    type: Literal["stop_all"]
+
+
+class Ping(_Incoming):
+    """The page measures the connection."""
+
+    type: Literal["ping"]
+    tc: Milliseconds
+
+
+Incoming = Annotated[JogBeat | JogEnd | StopOne | StopEverything | Ping, Discriminator("type")]
+_incoming: TypeAdapter[Incoming] = TypeAdapter(Incoming)
+
+
+class Session:
+    """What one page asks for over its WebSocket."""
+
+    def __init__(self, machine: Machine, clock: Clock, hub: Hub, viewer: Viewer) -> None:
+        self._machine = machine
+        self._clock = clock
+        self._hub = hub
+        self._viewer = viewer
+        self._delay = LinkDelay()
+        self._presses = Presses(self._delay, hub.dead)
+        self._in_flight = 0
+
+    def hear(self, text: str) -> None:
+        """Act on one message; nothing here waits."""
+        try:
+            message = _incoming.validate_json(text)
+        except ValidationError as error:
+            fault = error.errors()[0]["msg"]
+            self._tell("problem", status=422, detail=f"The message was not understood: {fault}.", reasons=())
+            return
+        match message:
+            case JogBeat():
+                self._beat(message)
+            case JogEnd():
+                self._presses.end(message.press_id)
+                self._hub.spawn(self._end(message.tracker_id, message.press_id))
+            case StopOne(tracker_id=tracker_id):
+                self._hub.spawn(self._stop(Order(Stop(), OPERATOR, tracker_id)))
+            case StopEverything():
+                self._hub.spawn(self._stop(Order(StopAll(), OPERATOR)))
+            case Ping(tc=tc):
+                self._delay.beyond_best(tc, self._clock.now())
+                self._tell("pong", tc=tc)
+            case _:
+                assert_never(message)
+
+    def close(self) -> None:
+        """The page is gone: end its presses at once."""
+        for tracker_id, press_id in self._presses.end_all():
+            self._hub.spawn(self._end(tracker_id, press_id))
+
+    def _tell(self, kind: str, **fields: Any) -> None:
+        self._viewer.tell(Message(kind, orjson.dumps({"type": kind, **fields}).decode()))
+
+    def _beat(self, beat: JogBeat) -> None:
+        round_trip = None if beat.rtt_ms is None else timedelta(milliseconds=beat.rtt_ms)
+        arrived = Heartbeat(
+            beat.press_id, beat.tracker_id, beat.sequence, beat.tc, self._clock.now(), round_trip
+        )
+        verdict, lease = self._presses.judge(arrived)
+        match verdict:
+            case Verdict.RENEW if self._in_flight < MOST_IN_FLIGHT:
+                self._in_flight += 1
+                self._hub.spawn(self._renew(beat, lease))
+            case Verdict.RENEW | Verdict.IGNORE:
+                pass
+            case Verdict.DEAD:
+                self._answer(beat.press_id, "dead", DEAD_PRESS)
+            case Verdict.TOO_SLOW:
+                self._presses.end(beat.press_id)
+                self._answer(beat.press_id, "refused", SLOW_LINK)
+            case _:
+                assert_never(verdict)
+
+    def _answer(self, press_id: str, status: str, *reasons: Reason) -> None:
+        self._tell("jog", press_id=press_id, status=status, reasons=reasons)
+
+    async def _renew(self, beat: JogBeat, lease: timedelta) -> None:
+        jog = Jog(beat.press_id, beat.axis, beat.direction, beat.speed, beat.sequence, lease)
+        try:
+            await self._machine.execute(Order(jog, OPERATOR, beat.tracker_id))
+        except CommandRejected as error:
+            self._refuse(beat.press_id, *error.reasons)
+        except (MachineUnreachable, UnknownTracker, ValueError) as error:
+            detail = machine_problem(error).detail
+            self._refuse(beat.press_id, Reason("not_done", detail, "Wait, then press the key again."))
+        else:
+            self._answer(beat.press_id, "ok")
+        finally:
+            self._in_flight -= 1
+
+    def _refuse(self, press_id: str, *reasons: Reason) -> None:
+        self._presses.end(press_id)
+        statuses = [STATUS_OF_CODE[reason.code] for reason in reasons if reason.code in STATUS_OF_CODE]
+        self._answer(press_id, statuses[0] if statuses else "refused", *reasons)
+
+    async def _end(self, tracker_id: str, press_id: str) -> None:
+        with suppress(CommandRejected, MachineUnreachable, UnknownTracker, ValueError):
+            await self._machine.execute(Order(EndJog(press_id), OPERATOR, tracker_id))
+        self._answer(press_id, "ended")
+
+    async def _stop(self, order: Order) -> None:
+        try:
+            await self._machine.execute(order)
+        except (CommandRejected, MachineUnreachable, UnknownTracker, ValueError) as error:
+            log.error("stop failed", tracker_id=order.tracker_id, error=str(error))
+            problem = machine_problem(error)
+            self._tell("problem", status=problem.status, detail=problem.detail, reasons=problem.reasons)
+        else:
+            self._tell("stopped", tracker_id=order.tracker_id)
+
+
+@router.websocket("/live")
+async def live(websocket: WebSocket, tracker: str | None = None) -> None:
+    """Serve one page until it goes, or until it does not take what it is sent."""
+    panel: Panel = websocket.app.state.panel
+    try:
+        viewer = panel.hub.join(Wanted(tracker))
+    except TooManyViewers:
+        await websocket.close(1013, "too many viewers")
+        return
+    session = Session(panel.machine, panel.clock, panel.hub, viewer)
+    try:
+        await websocket.accept()
+        await _serve(websocket, session, viewer, panel.hub.patience)
+    finally:
+        session.close()
+        panel.hub.leave(viewer)
+
+
+async def _serve(websocket: WebSocket, session: Session, viewer: Viewer, patience: timedelta) -> None:
+    async def send(message: Message) -> None:
+        await websocket.send_text(message.text)
+
+    sending = asyncio.create_task(pump(viewer, send, patience))
+    hearing = asyncio.create_task(_listen(websocket, session))
+    try:
+        await asyncio.wait({sending, hearing}, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        sending.cancel()
+        hearing.cancel()
+        ended = await asyncio.gather(sending, hearing, return_exceptions=True)
+    if any(isinstance(end, TooSlow) for end in ended):
+        log.warning("a reader of the live stream was too slow and is dropped")
+
+
+async def _listen(websocket: WebSocket, session: Session) -> None:
+    while (message := await websocket.receive())["type"] == "websocket.receive":
+        session.hear(message.get("text") or "")
