@@ -228,7 +228,8 @@ class FakeMachine:
 def fake_app(machine: FakeMachine | None = None, reader: FakeReader | None = None) -> FastAPI:
     """Return the whole panel on the fakes."""
     settings = Settings(data_dir=Path(tempfile.gettempdir()) / "heliopanel-fakes", port=PORT)
-    return create_app(settings, machine=machine or FakeMachine(), reader=reader or FakeReader())
+    machine = machine or FakeMachine()
+    return create_app(settings, machine=machine, reader=reader or FakeReader(), clock=machine.clock)
 
 
 @contextlib.asynccontextmanager

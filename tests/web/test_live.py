@@ -1,0 +1,314 @@
+"""The live WebSocket: state for all, hold-to-run that ends by itself, a stop that waits for nothing."""
+
+import asyncio
+from collections.abc import AsyncIterator
+from datetime import timedelta
+from typing import Any
+
+import pytest
+from fastapi import FastAPI
+
+from app.clock import VirtualClock
+from app.link.messages import Order
+from app.tracker.commands import EndJog, Jog, Stop
+from app.tracker.reason import Reason
+from app.tracker.snapshot import Event, EventKind
+from tests.fake_data import NOON
+from tests.fakes import FakeMachine, fake_app, serving
+from tests.web.sockets import Socket, connected
+
+
+@pytest.fixture
+def clock() -> VirtualClock:
+    return VirtualClock(NOON)
+
+
+@pytest.fixture
+def machine(clock: VirtualClock) -> FakeMachine:
+    return FakeMachine(clock)
+
+
+@pytest.fixture
+async def app(machine: FakeMachine) -> AsyncIterator[FastAPI]:
+    app = fake_app(machine)
+    async with serving(app):
+        yield app
+
+
+async def beat(socket: Socket, press: str, sequence: int, tc: float, **more: Any) -> None:
+    fields = {
+        "tracker_id": "T1", "press_id": press, "axis": "azimuth", "direction": 1, "speed": "slow",
+        "sequence": sequence, "tc": tc,
+    }  # fmt: skip
+    await socket.send(type="jog", **(fields | more))
+
+
+def jogs(machine: FakeMachine) -> list[Order]:
+    return [order for order in machine.orders if isinstance(order.command, Jog)]
+
+
+async def settle() -> None:
+    for _ in range(20):
+        await asyncio.sleep(0)
+
+
+async def forward(clock: VirtualClock, seconds: float) -> None:
+    for _ in range(round(seconds / 0.05)):
+        clock.advance(timedelta(milliseconds=50))
+        await settle()
+
+
+async def test_first_message_is_the_whole_state(app: FastAPI, machine: FakeMachine) -> None:
+    async with connected(app) as page:
+        state = await page.next("state")
+    assert state["boot"] == "fake-boot"
+    assert state["rev"] == machine.sequence
+    assert [one["tracker_id"] for one in state["snapshot"]["trackers"]] == ["T1", "T2"]
+
+
+async def test_a_page_of_one_tracker_gets_that_tracker(app: FastAPI) -> None:
+    async with connected(app, "tracker=T2") as page:
+        state = await page.next("state")
+    assert [one["tracker_id"] for one in state["snapshot"]["trackers"]] == ["T2"]
+
+
+async def test_state_is_told_again_within_half_a_second_though_nothing_changed(
+    app: FastAPI, clock: VirtualClock
+) -> None:
+    async with connected(app) as page:
+        await forward(clock, 1.0)
+        first = await page.next("state")
+        page.inbox = asyncio.Queue()
+        await forward(clock, 0.6)
+        second = await page.next("state")
+    assert second["rev"] == first["rev"]
+    assert second["age_ms"] >= 1000
+
+
+async def test_a_change_is_told_and_many_changes_are_told_as_the_newest(
+    app: FastAPI, machine: FakeMachine, clock: VirtualClock
+) -> None:
+    async with connected(app) as page:
+        await forward(clock, 1.0)
+        page.inbox = asyncio.Queue()
+        for _ in range(20):
+            for _ in range(10):
+                machine.emit()
+            await forward(clock, 0.05)
+        await forward(clock, 0.2)
+        assert 8 <= page.inbox.qsize() <= 11
+        states = [await page.next("state") for _ in range(page.inbox.qsize())]
+    assert states[-1]["rev"] == machine.sequence
+
+
+async def test_lost_link_is_told_at_once_and_again_and_the_state_comes_back(
+    app: FastAPI, machine: FakeMachine, clock: VirtualClock
+) -> None:
+    async with connected(app) as page:
+        await page.next("state")
+        machine.cut()
+        await page.next("machine_lost")
+        await forward(clock, 0.6)
+        await page.next("machine_lost")
+        machine.mend()
+        await forward(clock, 0.2)
+        assert (await page.next("state"))["rev"] == machine.sequence
+
+
+async def test_events_go_to_the_pages_they_concern(app: FastAPI, machine: FakeMachine) -> None:
+    async with connected(app, "tracker=T2") as page:
+        await page.next("state")
+        machine.emit(Event(NOON, EventKind.JOG_STARTED, "T1", "T1 jogs."))
+        machine.emit(Event(NOON, EventKind.LOCATION_SET, None, "The site moved."))
+        machine.emit(Event(NOON, EventKind.STOPPED, "T2", "T2 stopped.", data={"why": "asked"}))
+        told = [await page.next("event") for _ in range(2)]
+    assert [one["message"] for one in told] == ["The site moved.", "T2 stopped."]
+    assert told[1]["data"] == {"why": "asked"}
+
+
+async def test_held_key_moves_and_letting_go_ends_it(app: FastAPI, machine: FakeMachine) -> None:
+    async with connected(app) as page:
+        for sequence in range(3):
+            await beat(page, "p1", sequence, 1000.0 + 50 * sequence)
+            assert (await page.next("jog"))["status"] == "ok"
+        await page.send(type="end_jog", tracker_id="T1", press_id="p1")
+        assert (await page.next("jog"))["status"] == "ended"
+        await beat(page, "p1", 3, 1200.0)
+        assert (await page.next("jog"))["status"] == "dead"
+    assert [order.command.sequence for order in jogs(machine)] == [0, 1, 2]
+    assert machine.trackers["T1"].press is None
+
+
+async def test_late_heartbeats_do_not_extend_and_small_delays_shorten_the_lease(
+    app: FastAPI, machine: FakeMachine
+) -> None:
+    async with connected(app) as page:
+        await page.send(type="ping", tc=100_000.0)
+        await page.next("pong")
+        await beat(page, "p1", 0, 100_000.0 - 60.0)
+        await page.next("jog")
+        await beat(page, "p1", 1, 100_000.0 - 500.0)
+        await beat(page, "p1", 2, 100_000.0 + 10.0)
+        await page.next("jog")
+    kept = jogs(machine)
+    assert [order.command.sequence for order in kept] == [0, 2]
+    first: Jog = kept[0].command
+    assert timedelta(milliseconds=140) < first.lease <= timedelta(milliseconds=180)
+
+
+async def test_burst_after_a_frozen_link_does_not_start_motion(app: FastAPI, machine: FakeMachine) -> None:
+    async with connected(app) as page:
+        await page.send(type="ping", tc=100_000.0)
+        await page.next("pong")
+        for sequence in range(10):
+            await beat(page, "p1", sequence, 100_000.0 - 900.0 + 50 * sequence)
+        answers = [await page.next("jog") for _ in range(10)]
+    assert [answer["status"] for answer in answers] == ["refused"] + ["dead"] * 9
+    assert answers[0]["reasons"][0]["code"] == "link_too_slow"
+    assert jogs(machine) == []
+
+
+async def test_slow_round_trip_does_not_start_motion(app: FastAPI, machine: FakeMachine) -> None:
+    async with connected(app) as page:
+        await beat(page, "p1", 0, 1000.0, rtt_ms=600.0)
+        assert (await page.next("jog"))["status"] == "refused"
+    assert jogs(machine) == []
+
+
+async def test_old_sequence_does_not_extend(app: FastAPI, machine: FakeMachine) -> None:
+    async with connected(app) as page:
+        for sequence in (5, 5, 4, 6):
+            await beat(page, "p1", sequence, 1000.0)
+        await page.next("jog")
+        await page.next("jog")
+    assert [order.command.sequence for order in jogs(machine)] == [5, 6]
+
+
+async def test_two_people_at_one_key_the_second_is_told_busy(app: FastAPI, machine: FakeMachine) -> None:
+    async with connected(app) as first, connected(app) as second:
+        await beat(first, "p1", 0, 1000.0)
+        assert (await first.next("jog"))["status"] == "ok"
+        await beat(second, "p2", 0, 1000.0)
+        answer = await second.next("jog")
+        assert answer["status"] == "busy"
+        assert answer["reasons"][0]["hint"]
+        await beat(first, "p1", 1, 1050.0)
+        assert (await first.next("jog"))["status"] == "ok"
+
+
+async def test_another_page_cannot_go_on_with_a_dead_press(app: FastAPI, machine: FakeMachine) -> None:
+    async with connected(app) as first:
+        await beat(first, "p1", 0, 1000.0)
+        await first.next("jog")
+    async with connected(app) as second:
+        await beat(second, "p1", 1, 1050.0)
+        assert (await second.next("jog"))["status"] == "dead"
+
+
+async def test_closing_the_page_ends_its_presses_at_once(app: FastAPI, machine: FakeMachine) -> None:
+    async with connected(app) as page:
+        await beat(page, "p1", 0, 1000.0)
+        await page.next("jog")
+    await settle()
+    assert EndJog("p1") in [order.command for order in machine.orders]
+
+
+async def test_refused_press_is_dead_even_when_the_reason_is_gone(app: FastAPI, machine: FakeMachine) -> None:
+    machine.rejects["jog"] = (Reason("fault", "The drive reports a fault.", "Reset it."),)
+    async with connected(app) as page:
+        await beat(page, "p1", 0, 1000.0)
+        answer = await page.next("jog")
+        assert answer["status"] == "refused"
+        assert answer["reasons"] == [
+            {"code": "fault", "message": "The drive reports a fault.", "hint": "Reset it."}
+        ]
+        machine.rejects.clear()
+        await beat(page, "p1", 1, 1050.0)
+        assert (await page.next("jog"))["status"] == "dead"
+
+
+async def test_jog_while_the_machine_is_gone_is_refused_and_not_kept(
+    app: FastAPI, machine: FakeMachine
+) -> None:
+    async with connected(app) as page:
+        machine.cut()
+        await beat(page, "p1", 0, 1000.0)
+        assert (await page.next("jog"))["status"] == "refused"
+        machine.mend()
+        await settle()
+    assert jogs(machine) == []
+
+
+async def test_stop_is_carried_out_and_told(app: FastAPI, machine: FakeMachine) -> None:
+    async with connected(app) as page:
+        await page.send(type="stop", tracker_id="T2")
+        assert (await page.next("stopped"))["tracker_id"] == "T2"
+        await page.send(type="stop_all")
+        assert (await page.next("stopped"))["tracker_id"] is None
+    assert machine.orders[0].command == Stop()
+    assert not machine.trackers["T2"].memory.tracking_on
+
+
+async def test_stop_of_an_unknown_tracker_says_so(app: FastAPI) -> None:
+    async with connected(app) as page:
+        await page.send(type="stop", tracker_id="T9")
+        assert (await page.next("problem"))["status"] == 404
+
+
+async def test_stop_of_a_page_that_reads_nothing_is_carried_out(app: FastAPI, machine: FakeMachine) -> None:
+    async with connected(app) as page:
+        await page.next("state")
+        page.reads.clear()
+        machine.emit()
+        await page.send(type="stop", tracker_id="T2")
+        await settle()
+        page.reads.set()
+    assert machine.orders[0].tracker_id == "T2"
+
+
+async def test_reader_that_takes_nothing_is_dropped_and_the_others_go_on(
+    app: FastAPI, machine: FakeMachine, clock: VirtualClock
+) -> None:
+    hub = app.state.panel.hub
+    hub.patience = timedelta(milliseconds=20)
+    async with connected(app) as stuck, connected(app) as good:
+        await stuck.next("state")
+        await good.next("state")
+        stuck.reads.clear()
+        machine.emit()
+        await forward(clock, 1.0)
+        await asyncio.wait_for(stuck.ended.wait(), 5)
+        assert len(hub) == 1
+        machine.emit()
+        await forward(clock, 0.2)
+        states = [await good.next("state") for _ in range(good.inbox.qsize())]
+    assert states[-1]["rev"] == machine.sequence
+
+
+GARBAGE = (
+    "",
+    "{}",
+    "[1",
+    '{"type":"jog"}',
+    '{"type":"stop","tracker_id":"T1","x":1}',
+    '{"type":"ping","tc":NaN}',
+)
+
+
+@pytest.mark.parametrize("text", GARBAGE)
+async def test_what_is_not_understood_is_answered_and_does_no_harm(
+    app: FastAPI, machine: FakeMachine, text: str
+) -> None:
+    async with connected(app) as page:
+        await page.outbox.put({"type": "websocket.receive", "text": text})
+        assert (await page.next("problem"))["status"] == 422
+        await page.outbox.put({"type": "websocket.receive", "bytes": b"\x00"})
+        assert (await page.next("problem"))["status"] == 422
+    assert machine.orders == []
+
+
+async def test_foreign_page_gets_no_socket(app: FastAPI) -> None:
+    async with connected(app, headers={"origin": "http://elsewhere.example"}) as page:
+        await settle()
+    assert page.closed == 1008
+    assert page.inbox.empty()
