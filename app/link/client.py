@@ -1,4 +1,4 @@
-"""The panel's end of the link: connects again by itself, queues nothing, says at once that nobody is there."""
+"""The panel's end of the link: connects again by itself, queues nothing, says at once when it is down."""
 
 import asyncio
 import itertools

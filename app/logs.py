@@ -1,0 +1,51 @@
+"""One structured log for both processes: JSON lines or readable text, on standard error."""
+
+import logging
+import sys
+from typing import Literal, TextIO
+
+import structlog
+
+SHARED = (
+    structlog.contextvars.merge_contextvars,
+    structlog.processors.add_log_level,
+    structlog.processors.TimeStamper(fmt="iso", utc=True),
+    structlog.processors.StackInfoRenderer(),
+)
+
+
+def set_up_logs(
+    process: str, *, log_format: Literal["json", "text"], log_level: str, stream: TextIO | None = None
+) -> None:
+    """Send this process's log, the libraries' included, to standard error in one form."""
+    target = stream or sys.stderr
+    structlog.contextvars.clear_contextvars()
+    structlog.contextvars.bind_contextvars(process=process)
+    structlog.configure(
+        processors=[*SHARED, structlog.stdlib.ProcessorFormatter.wrap_for_formatter],
+        wrapper_class=structlog.make_filtering_bound_logger(_number(log_level)),
+        logger_factory=structlog.stdlib.LoggerFactory(),
+        cache_logger_on_first_use=False,
+    )
+    handler = logging.StreamHandler(target)
+    handler.setFormatter(_formatter(log_format, target))
+    root = logging.getLogger()
+    for old in tuple(root.handlers):
+        root.removeHandler(old)
+    root.addHandler(handler)
+    root.setLevel(_number(log_level))
+    for chatty in ("pymodbus", "alembic", "asyncio"):
+        logging.getLogger(chatty).setLevel(max(logging.WARNING, _number(log_level)))
+
+
+def _formatter(log_format: Literal["json", "text"], target: TextIO) -> structlog.stdlib.ProcessorFormatter:
+    tail: list[structlog.typing.Processor] = [structlog.stdlib.ProcessorFormatter.remove_processors_meta]
+    if log_format == "json":
+        tail += [structlog.processors.dict_tracebacks, structlog.processors.JSONRenderer()]
+    else:
+        tail += [structlog.dev.ConsoleRenderer(colors=target.isatty())]
+    return structlog.stdlib.ProcessorFormatter(foreign_pre_chain=list(SHARED), processors=tail)
+
+
+def _number(level: str) -> int:
+    return logging.getLevelNamesMapping()[level.upper()]

@@ -1,0 +1,93 @@
+"""What an engineer may set: sentences for everything that is not plausible."""
+
+import re
+from collections.abc import Iterable
+from math import isfinite
+from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
+
+from app.tracker.axes import AxisConfig
+from app.tracker.config import DriveKind, TrackerConfig
+
+TRACKER_ID = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,15}")
+LONGEST_NAME = 60
+RANGES = (
+    ("deadband_deg", "The deadband", 0.02, 10.0),
+    ("in_position_deg", "The tolerance for being in position", 0.01, 5.0),
+    ("following_error_deg", "The following error limit", 0.1, 20.0),
+)
+
+
+def check_name(name: str) -> str:
+    """Return a name without blanks around it, or raise `ValueError`."""
+    plain = name.strip()
+    if not 1 <= len(plain) <= LONGEST_NAME or not plain.isprintable():
+        raise ValueError(f"A name has 1 to {LONGEST_NAME} printable characters.")
+    return plain
+
+
+def check_time_zone(name: str) -> str:
+    """Return the name of a time zone that exists, or raise `ValueError`."""
+    try:
+        ZoneInfo(name)
+    except (ZoneInfoNotFoundError, ValueError, OSError) as error:
+        raise ValueError(
+            f"There is no time zone {name!r}. Use a name of the IANA database, such as Europe/Istanbul."
+        ) from error
+    return name
+
+
+def check_config(config: TrackerConfig) -> None:
+    """Raise `ValueError` with every sentence that says what is wrong with a configuration."""
+    wrong = [*_wrong_names(config), *_wrong_numbers(config), *_wrong_drive(config)]
+    if wrong:
+        raise ValueError(" ".join(wrong))
+
+
+def _wrong_names(config: TrackerConfig) -> Iterable[str]:
+    if TRACKER_ID.fullmatch(config.tracker_id) is None:
+        yield "A tracker's id is a letter followed by up to 15 letters, digits, - or _, such as T1."
+    try:
+        check_name(config.name)
+    except ValueError as error:
+        yield str(error)
+
+
+def _wrong_numbers(config: TrackerConfig) -> Iterable[str]:
+    for name, title, low, high in RANGES:
+        if not low <= getattr(config, name) <= high:
+            yield f"{title} must lie between {low} and {high} degrees."
+    if config.in_position_deg > config.deadband_deg:
+        yield "The tolerance for being in position must not exceed the deadband."
+    for axis in (config.azimuth, config.elevation):
+        if not all(isfinite(value) for value in _numbers(axis)):
+            yield "Soft limits, speeds and acceleration must be numbers."
+    if not _reachable(config.azimuth, config.park.azimuth_deg):
+        yield "The park position's azimuth lies outside the soft limits."
+    if not config.elevation.contains(config.park.elevation_deg):
+        yield "The park position's elevation lies outside the soft limits."
+
+
+def _numbers(axis: AxisConfig) -> tuple[float, ...]:
+    return (
+        axis.minimum_deg,
+        axis.maximum_deg,
+        axis.speed_dps,
+        axis.acceleration_dps2,
+        axis.jog_slow_dps,
+        axis.jog_fast_dps,
+    )
+
+
+def _reachable(axis: AxisConfig, azimuth_deg: float) -> bool:
+    return any(axis.contains(azimuth_deg + turns * 360.0) for turns in (-2, -1, 0, 1, 2))
+
+
+def _wrong_drive(config: TrackerConfig) -> Iterable[str]:
+    if config.drive.kind is not DriveKind.MODBUS_TCP:
+        return
+    if not config.drive.host.strip():
+        yield "Give the drive's host name or address."
+    if not 1 <= config.drive.port <= 65535:
+        yield "The drive's TCP port must lie between 1 and 65535."
+    if not 0 <= config.drive.unit <= 255:
+        yield "The drive's unit id must lie between 0 and 255."

@@ -1,0 +1,257 @@
+"""One tracker living on a clock: read, decide, write, on an absolute schedule, never two ticks at once."""
+
+import asyncio
+from collections.abc import Callable
+from dataclasses import replace
+from datetime import datetime, timedelta
+from typing import Protocol
+
+import structlog
+
+from app.clock import Clock
+from app.drives.drive import Drive, DriveError
+from app.site.lateness import TickCounter
+from app.tracker.config import TrackerConfig
+from app.tracker.controller import Controller
+from app.tracker.memory import TrackerMemory, TrackerState
+from app.tracker.motion import HALT, DriveCommand, Feedback
+from app.tracker.observation import Observation
+from app.tracker.reason import Reason
+from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
+
+READ_SHARE = 0.8
+STOP_WITHIN_S = 0.5
+HALT_BOTH = DriveCommand(HALT, HALT)
+NEVER_FORBIDDEN = ("stop", "reset_fault")
+
+log = structlog.get_logger(__name__)
+
+
+class Surroundings(Protocol):
+    """What a tracker shares with its site."""
+
+    def observe(self, config: TrackerConfig, feedback: Feedback | None) -> Observation:
+        """Return everything one tick may depend on."""
+
+
+class TrackerLoop:
+    """Runs one controller on one drive; what happened in a tick is handed to `on_tick`."""
+
+    def __init__(
+        self,
+        state: TrackerState,
+        drive: Drive,
+        clock: Clock,
+        surroundings: Surroundings,
+        *,
+        period: timedelta,
+        on_tick: Callable[["TrackerLoop", Observation, tuple[Event, ...]], None],
+    ) -> None:
+        self.drive = drive
+        self.controller = Controller(state.config, state.memory, drive.capabilities)
+        self.counter = TickCounter()
+        self.feedback: Feedback | None = None
+        self.broken: Reason | None = None
+        self._clock = clock
+        self._surroundings = surroundings
+        self._period = period
+        self._on_tick = on_tick
+        self._trouble: Reason | None = None
+        self._write_failed = False
+        self._stored_memory = state.memory
+        self._last_snapshot: Snapshot | None = None
+        self._awake = asyncio.Event()
+        self._task: asyncio.Task[None] | None = None
+
+    @property
+    def config(self) -> TrackerConfig:
+        """Return the tracker's configuration."""
+        return self.controller.config
+
+    @property
+    def memory(self) -> TrackerMemory:
+        """Return the tracker's latches."""
+        return self.controller.memory
+
+    @property
+    def state(self) -> TrackerState:
+        """Return what is stored about this tracker."""
+        return TrackerState(self.controller.config, self.controller.memory)
+
+    @property
+    def moving(self) -> bool:
+        """Return whether an axis turns."""
+        seen = self.feedback
+        return seen is not None and (seen.azimuth.moving or seen.elevation.moving)
+
+    @property
+    def alive(self) -> bool:
+        """Return whether this loop still ticks."""
+        return self._task is not None and not self._task.done()
+
+    def take_changed(self) -> bool:
+        """Return whether the latches changed since this was last asked."""
+        changed = self.memory is not self._stored_memory
+        self._stored_memory = self.memory
+        return changed
+
+    def start(self) -> None:
+        """Begin to tick."""
+        self._task = asyncio.create_task(self._run(), name=f"tracker {self.config.tracker_id}")
+
+    async def close(self) -> None:
+        """Stop the drive, end ticking and let go of the drive."""
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.gather(self._task, return_exceptions=True)
+            self._task = None
+        await self.stop_drive()
+        try:
+            await self.drive.close()
+        except DriveError as error:
+            log.warning("drive_not_closed", tracker=self.config.tracker_id, reason=str(error))
+
+    def wake(self) -> None:
+        """Tick now: something was asked."""
+        self._awake.set()
+
+    async def stop_drive(self) -> bool:
+        """Ramp both axes down beside the controller; return whether the drive took it."""
+        try:
+            async with asyncio.timeout(STOP_WITHIN_S):
+                await self.drive.stop()
+        except (DriveError, TimeoutError) as error:
+            log.error("stop_not_taken", tracker=self.config.tracker_id, reason=str(error))
+            return False
+        return True
+
+    async def change_drive(self, drive: Drive) -> None:
+        """Let go of the drive and go on with another one."""
+        old, self.drive = self.drive, drive
+        self.feedback = None
+        try:
+            await old.close()
+        except DriveError as error:
+            log.warning("drive_not_closed", tracker=self.config.tracker_id, reason=str(error))
+
+    def repair(self) -> None:
+        """Begin again with a new mind after an unexpected error; what is stored stays."""
+        self.controller = Controller(self.config, self.memory, self.drive.capabilities)
+        self.broken = None
+        self.wake()
+
+    def snapshot(self, at: datetime) -> Snapshot:
+        """Return the tracker as everyone sees it; a broken one shows its fault."""
+        if self.broken is not None and self._last_snapshot is not None:
+            return _broken_snapshot(self._last_snapshot, at, self.broken)
+        shown = self.controller.snapshot(at)
+        if self._trouble is not None:
+            shown = replace(shown, notices=(*shown.notices, self._trouble))
+        self._last_snapshot = shown
+        return shown
+
+    async def _run(self) -> None:
+        due = self._clock.now()
+        while True:
+            await self._tick_guarded()
+            now = self._clock.now()
+            while due <= now:
+                due += self._period
+            if await self._wait_until(self._next(due)):
+                late = self._clock.now() - due
+                if late >= timedelta(0):
+                    self.counter.late(late)
+
+    def _next(self, due: datetime) -> datetime:
+        deadline = None if self.broken is not None else self.controller.deadline()
+        return due if deadline is None else min(due, deadline)
+
+    async def _wait_until(self, until: datetime) -> bool:
+        """Wait for the instant or for a wake-up, and return whether it was the instant."""
+        alarm = asyncio.create_task(self._clock.sleep_until(until))
+        alarm.add_done_callback(self._ring)
+        try:
+            await self._awake.wait()
+            return alarm.done()
+        finally:
+            self._awake.clear()
+            alarm.remove_done_callback(self._ring)
+            alarm.cancel()
+
+    def _ring(self, _: asyncio.Task[None]) -> None:
+        self._awake.set()
+
+    async def _tick_guarded(self) -> None:
+        if self.broken is not None:
+            await self.stop_drive()
+            return
+        try:
+            await self._tick()
+        except Exception as error:
+            log.exception("tick_failed", tracker=self.config.tracker_id)
+            await self._break_off(error)
+
+    async def _tick(self) -> None:
+        self.counter.ticks += 1
+        self.feedback = await self._read()
+        seen = self._surroundings.observe(self.config, self.feedback)
+        tick = self.controller.tick(seen)
+        await self._write(tick.command)
+        self._on_tick(self, seen, tick.events)
+
+    async def _read(self) -> Feedback | None:
+        try:
+            async with asyncio.timeout(self._period.total_seconds() * READ_SHARE):
+                feedback = await self.drive.read()
+        except (DriveError, TimeoutError) as error:
+            self.counter.read_failures += 1
+            self._trouble = _trouble(error)
+            return None
+        if self._write_failed:
+            return None
+        self._trouble = None
+        return feedback
+
+    async def _write(self, command: DriveCommand) -> None:
+        try:
+            async with asyncio.timeout(self._period.total_seconds() * READ_SHARE):
+                await self.drive.write(command)
+            self._write_failed = False
+        except (DriveError, TimeoutError) as error:
+            self.counter.write_failures += 1
+            self._write_failed = True
+            self._trouble = _trouble(error)
+
+    async def _break_off(self, error: Exception) -> None:
+        """Stop this tracker for good after an error that nobody foresaw; the others go on."""
+        name = self.config.tracker_id
+        self.broken = Reason(
+            "internal_error",
+            f"{name} was stopped: the controller met an unexpected error ({type(error).__name__}).",
+            "Keep the log for the maker, then reset the fault.",
+        )
+        await self.stop_drive()
+        seen = self._surroundings.observe(self.config, None)
+        event = Event(seen.site_time, EventKind.FAULT_RAISED, name, self.broken.message)
+        self._on_tick(self, seen, (event,))
+
+
+def _trouble(error: DriveError | TimeoutError) -> Reason:
+    text = str(error) or "The drive did not answer in time."
+    return Reason("drive_trouble", text, "Check the drive's supply, cable and address.")
+
+
+def _broken_snapshot(last: Snapshot, at: datetime, broken: Reason) -> Snapshot:
+    forbidden: dict[str, tuple[Reason, ...]] = {
+        action: () if action in NEVER_FORBIDDEN else (broken,) for action in last.actions
+    }
+    return replace(
+        last,
+        at=at,
+        activity=ActivityName.FAULTED,
+        activity_text=broken.message,
+        fault=broken,
+        measured=None,
+        show=None,
+        actions=forbidden,
+    )

@@ -1,0 +1,88 @@
+"""What a site consists of: its stored state, its clock and sky, its trackers, and what is kept of them."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+
+from app.clock import Clock
+from app.drives.drive import Drive
+from app.link.messages import UnknownTracker
+from app.site.ledger import Ledger
+from app.site.loop import TrackerLoop
+from app.site.recorder import Recorder
+from app.site.sky import Sky
+from app.site.timekeeping import Timekeeper
+from app.tracker.config import TrackerConfig
+from app.tracker.memory import SiteState, TrackerState
+from app.tracker.motion import Feedback
+from app.tracker.observation import Observation
+from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
+
+AT_REST = {ActivityName.HOLDING, ActivityName.FAULTED}
+
+
+@dataclass(slots=True)
+class SiteModel:
+    """The parts that orders change and ticks read; it belongs to one event loop."""
+
+    clock: Clock
+    timekeeper: Timekeeper
+    ledger: Ledger
+    recorder: Recorder
+    state: SiteState
+    period: timedelta
+    make_drive: Callable[[TrackerConfig], Drive]
+    on_tick: Callable[[TrackerLoop, Observation, tuple[Event, ...]], None]
+    loops: dict[str, TrackerLoop] = field(default_factory=dict)
+    sky: Sky = field(default_factory=Sky)
+
+    def now(self) -> datetime:
+        """Return the site's time."""
+        return self.timekeeper.now()
+
+    def tracker(self, tracker_id: str | None) -> TrackerLoop:
+        """Return a tracker's loop, or raise `UnknownTracker`."""
+        if tracker_id is None or tracker_id not in self.loops:
+            raise UnknownTracker(f"There is no tracker {tracker_id} on this site.")
+        return self.loops[tracker_id]
+
+    def snapshots(self, at: datetime) -> tuple[Snapshot, ...]:
+        """Return every tracker, in the order they were added."""
+        return tuple(loop.snapshot(at) for loop in self.loops.values())
+
+    def rests(self, loop: TrackerLoop) -> bool:
+        """Return whether a tracker neither moves nor means to."""
+        return not loop.moving and loop.snapshot(self.now()).activity in AT_REST
+
+    def observe(self, config: TrackerConfig, feedback: Feedback | None) -> Observation:
+        """Return everything one tick of one tracker may depend on."""
+        site_time, location = self.now(), self.state.location
+        return Observation(
+            now=self.clock.now(),
+            site_time=site_time,
+            sun=self.sky.sun(location, config.algorithm, site_time),
+            dawn=self.sky.dawn(location, config.algorithm, site_time),
+            feedback=feedback,
+            clock_trusted=not self.timekeeper.reasons(),
+            location=location,
+            location_revision=self.state.location_revision,
+        )
+
+    def add(self, state: TrackerState) -> TrackerLoop:
+        """Put a tracker on the site, or in the place of the one with its id; it does not tick yet."""
+        loop = TrackerLoop(
+            state,
+            self.make_drive(state.config),
+            self.clock,
+            self,
+            period=self.period,
+            on_tick=self.on_tick,
+        )
+        self.loops[state.config.tracker_id] = loop
+        return loop
+
+    def event(
+        self, kind: EventKind, message: str, actor: str, tracker_id: str | None = None, **data: object
+    ) -> Event:
+        """Return an event of this instant."""
+        return Event(self.now(), kind, tracker_id, message, actor, data)

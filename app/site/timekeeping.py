@@ -1,0 +1,134 @@
+"""The site's clock: the steady machine time plus what the operator set, and whether it may be relied on."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime, timedelta
+
+from app.build import BUILT_AT
+from app.clock import Clock
+from app.tracker.memory import ClockSetting
+from app.tracker.reason import Reason
+from app.tracker.snapshot import ClockState
+
+LARGEST_STEP = timedelta(seconds=2)
+STABLE_AFTER = timedelta(seconds=60)
+
+UNSET = Reason("clock_unset", "The clock has not been set.", "Save the clock in step 2.")
+
+
+def no_drift() -> timedelta:
+    """Return that the wall clock and the steady clock agree, as they do on a virtual clock."""
+    return timedelta(0)
+
+
+@dataclass(frozen=True, slots=True)
+class Jump:
+    """The system's wall clock moved against the steady clock."""
+
+    by: timedelta
+
+
+class Timekeeper:
+    """Shows the site's time, watches the system clock for jumps and tells whether to trust it."""
+
+    def __init__(
+        self,
+        clock: Clock,
+        setting: ClockSetting,
+        *,
+        drift: Callable[[], timedelta] = no_drift,
+        synchronised: Callable[[], bool | None] = lambda: None,
+        not_before: datetime = BUILT_AT,
+    ) -> None:
+        self._clock = clock
+        self._drift = drift
+        self._synchronised = synchronised
+        self._not_before = not_before
+        self._setting = setting
+        self._followed = drift()
+        self._jumped_at: datetime | None = None
+        self._jumped_by = timedelta(0)
+
+    @property
+    def setting(self) -> ClockSetting:
+        """Return what is stored."""
+        return self._setting
+
+    def now(self) -> datetime:
+        """Return the site's time."""
+        return self._shift(self._setting) + self._clock.now()
+
+    def _shift(self, setting: ClockSetting) -> timedelta:
+        return self._followed + timedelta(seconds=setting.offset_s)
+
+    def choose(self, source: str, at: datetime | None, by: str) -> ClockSetting:
+        """Return the setting that shows `at` now (None: the system's time), or refuse an impossible date."""
+        if source == "manual" and at is None:
+            raise ValueError("Give the date and time that the controller's clock shall show.")
+        shown = self._clock.now() + self._followed
+        wanted = shown if source == "system" or at is None else at.astimezone(UTC)
+        if wanted < BUILT_AT:
+            raise ValueError(
+                f"The clock cannot be {wanted:%Y-%m-%d %H:%M} UTC: this software was made on "
+                f"{BUILT_AT:%Y-%m-%d}. Enter today's date."
+            )
+        return ClockSetting(source, (wanted - shown).total_seconds(), wanted, by)
+
+    def adopt(self, setting: ClockSetting) -> None:
+        """Take over a setting that is stored: the operator vouches for the time, jumps are forgotten."""
+        self._setting = setting
+        self._jumped_at = None
+        self._not_before = BUILT_AT
+
+    def watch(self) -> Jump | None:
+        """Return the jump of the system's clock since the last look, if there was one.
+
+        A clock set by hand keeps showing the operator's time: its offset takes up the jump.
+        """
+        moved = self._drift() - self._followed
+        self._followed += moved
+        if abs(moved) <= LARGEST_STEP:
+            return None
+        if self._setting.source == "manual":
+            kept_s = self._setting.offset_s - moved.total_seconds()
+            self._setting = replace(self._setting, offset_s=kept_s)
+        self._jumped_at = self._clock.now()
+        self._jumped_by = moved
+        return Jump(moved)
+
+    def reasons(self) -> tuple[Reason, ...]:
+        """Return why the clock is not to be trusted; none if it is."""
+        if self._setting.source == "unset":
+            return (UNSET,)
+        found = []
+        shown = self.now()
+        if shown < self._not_before:
+            found.append(
+                Reason(
+                    "clock_implausible",
+                    f"The clock shows {shown:%Y-%m-%d %H:%M} UTC, which is before "
+                    f"{self._not_before:%Y-%m-%d %H:%M} UTC and so cannot be right.",
+                    "Set the clock in step 2.",
+                )
+            )
+        if self._jumped_at is not None and self._clock.now() - self._jumped_at < STABLE_AFTER:
+            found.append(
+                Reason(
+                    "clock_jumped",
+                    f"The system clock jumped by {self._jumped_by.total_seconds():+.0f} s.",
+                    "Confirm the clock in step 2, or wait until it has been stable for 60 s.",
+                )
+            )
+        return tuple(found)
+
+    def state(self) -> ClockState:
+        """Return the clock as the pages show it."""
+        reasons = self.reasons()
+        return ClockState(
+            self._setting.source,
+            self._setting.offset_s,
+            not reasons,
+            self._synchronised(),
+            self._setting.set_at,
+            reasons,
+        )

@@ -1,0 +1,77 @@
+"""Orders to one tracker: commands for its controller, and stop."""
+
+from app.site.loop import TrackerLoop
+from app.site.model import SiteModel
+from app.tracker.commands import Command, CommandRejected, EndJog, Jog, ResetFault, RunShow, Stop
+from app.tracker.snapshot import Event, EventKind
+
+
+async def command(model: SiteModel, loop: TrackerLoop, given: Command, actor: str) -> tuple[Event, ...]:
+    """Have the controller obey, and return once what changed is on disk; a jog does not wait for that."""
+    if isinstance(given, Stop):
+        events = handle_stop(model, loop, actor)
+        await finish_stop(model, loop)
+        return events
+    if loop.broken is not None:
+        return _repair(model, loop, given, actor)
+    events = loop.controller.handle(given, model.clock.now(), actor)
+    if isinstance(given, RunShow):
+        model.recorder.announce(loop.config.tracker_id, given.plan)
+    loop.wake()
+    if isinstance(given, Jog | EndJog):
+        _post(model, loop, events)
+    else:
+        await _store(model, loop, events)
+    return events
+
+
+def handle_stop(model: SiteModel, loop: TrackerLoop, actor: str) -> tuple[Event, ...]:
+    """Make the controller stop and have the latches stored soon; the drive is told by `finish_stop`."""
+    events = loop.controller.handle(Stop(), model.clock.now(), actor)
+    loop.wake()
+    _post(model, loop, events)
+    return events
+
+
+async def finish_stop(model: SiteModel, loop: TrackerLoop) -> None:
+    """Tell the drive to stop beside the controller, then wait for the latches to be on disk, if they can."""
+    await loop.stop_drive()
+    try:
+        await model.ledger.keep(lambda writer: None, 0)
+    except CommandRejected:
+        return
+
+
+def _repair(model: SiteModel, loop: TrackerLoop, given: Command, actor: str) -> tuple[Event, ...]:
+    if not isinstance(given, ResetFault):
+        raise CommandRejected(*filter(None, (loop.broken,)))
+    loop.repair()
+    event = model.event(
+        EventKind.FAULT_RESET,
+        "The controller of this tracker was started again after an unexpected error.",
+        actor,
+        loop.config.tracker_id,
+    )
+    model.ledger.post_events((event,))
+    return (event,)
+
+
+def _post(model: SiteModel, loop: TrackerLoop, events: tuple[Event, ...]) -> None:
+    if loop.take_changed():
+        model.ledger.post_tracker(loop.state, events)
+    else:
+        model.ledger.post_events(events)
+
+
+async def _store(model: SiteModel, loop: TrackerLoop, events: tuple[Event, ...]) -> None:
+    """Store what a command changed; what cannot be stored is not done: the tracker stops."""
+    try:
+        if loop.take_changed():
+            await model.ledger.save_tracker(loop.state, events)
+        else:
+            await model.ledger.append(events)
+    except CommandRejected:
+        loop.controller.handle(Stop(), model.clock.now(), "machine")
+        loop.wake()
+        await loop.stop_drive()
+        raise

@@ -1,0 +1,116 @@
+"""Trackers come, change and go: always while they stand still, always stored first."""
+
+from dataclasses import replace
+
+from app.site.checks import check_config, check_name
+from app.site.loop import TrackerLoop
+from app.site.model import SiteModel
+from app.tracker.commands import CommandRejected
+from app.tracker.config import DriveKind, TrackerConfig
+from app.tracker.memory import TrackerMemory, TrackerState
+from app.tracker.reason import Reason
+from app.tracker.snapshot import Event, EventKind
+
+MOST_TRACKERS = 100
+
+
+async def add(model: SiteModel, config: TrackerConfig, actor: str) -> tuple[Event, ...]:
+    """Add a tracker."""
+    config = replace(config, name=check_name(config.name))
+    check_config(config)
+    if config.tracker_id in model.loops:
+        raise CommandRejected(
+            Reason("tracker_exists", f"There is already a tracker {config.tracker_id}.", "Take another id.")
+        )
+    if len(model.loops) >= MOST_TRACKERS:
+        raise CommandRejected(Reason("site_full", f"A site has at most {MOST_TRACKERS} trackers."))
+    _refuse_shared_drive(model, config)
+    event = model.event(
+        EventKind.TRACKER_ADDED, f"Tracker {config.name} was added.", actor, config.tracker_id
+    )
+    state = TrackerState(config, TrackerMemory())
+    loop = model.add(state)
+    try:
+        await model.ledger.save_tracker(state, (event,))
+    except CommandRejected:
+        del model.loops[config.tracker_id]
+        await loop.close()
+        raise
+    loop.start()
+    return (event,)
+
+
+async def configure(model: SiteModel, config: TrackerConfig, actor: str) -> tuple[Event, ...]:
+    """Replace a tracker's configuration while it stands still."""
+    loop = model.tracker(config.tracker_id)
+    config = replace(config, name=check_name(config.name))
+    check_config(config)
+    refuse_while_busy(model, loop)
+    _refuse_shared_drive(model, config)
+    event = model.event(
+        EventKind.TRACKER_CHANGED,
+        f"The configuration of {config.name} was changed.",
+        actor,
+        config.tracker_id,
+        changed=_changed(loop.config, config),
+    )
+    old = loop.config
+    rebuilt = (old.drive, old.azimuth, old.elevation) != (config.drive, config.azimuth, config.elevation)
+    memory = _memory_for(loop.memory, old, config) if rebuilt else loop.memory
+    await model.ledger.save_tracker(TrackerState(config, memory), (event,))
+    if rebuilt:
+        await loop.close()
+        model.add(TrackerState(config, memory)).start()
+    else:
+        loop.controller.configure(config, loop.drive.capabilities)
+    return (event,)
+
+
+def _memory_for(memory: TrackerMemory, old: TrackerConfig, new: TrackerConfig) -> TrackerMemory:
+    """Return what stays true with other limits or another drive: a new drive has no trusted zero."""
+    home = memory.home if old.drive == new.drive else None
+    return replace(memory, home=home, tracking_on=False)
+
+
+def _changed(old: TrackerConfig, new: TrackerConfig) -> list[str]:
+    return [name for name in TrackerConfig.__slots__ if getattr(old, name) != getattr(new, name)]
+
+
+async def remove(model: SiteModel, tracker_id: str, actor: str) -> tuple[Event, ...]:
+    """Remove a tracker that stands still."""
+    loop = model.tracker(tracker_id)
+    refuse_while_busy(model, loop)
+    event = model.event(
+        EventKind.TRACKER_REMOVED, f"Tracker {loop.config.name} was removed.", actor, tracker_id
+    )
+    await model.ledger.remove_tracker(tracker_id, (event,))
+    del model.loops[tracker_id]
+    model.recorder.finish(tracker_id, model.now(), "tracker removed")
+    await loop.close()
+    return (event,)
+
+
+def refuse_while_busy(model: SiteModel, loop: TrackerLoop) -> None:
+    """Raise `CommandRejected` unless the tracker stands still and means to."""
+    if not model.rests(loop):
+        name = loop.config.tracker_id
+        raise CommandRejected(Reason("tracker_busy", f"{name} is not at rest.", f"Stop {name} first."))
+
+
+def _refuse_shared_drive(model: SiteModel, config: TrackerConfig) -> None:
+    if config.drive.kind is not DriveKind.MODBUS_TCP:
+        return
+    address = (config.drive.host, config.drive.port, config.drive.unit)
+    for other in model.loops.values():
+        drive = other.config.drive
+        if other.config.tracker_id == config.tracker_id or drive.kind is not DriveKind.MODBUS_TCP:
+            continue
+        if (drive.host, drive.port, drive.unit) == address:
+            raise CommandRejected(
+                Reason(
+                    "drive_taken",
+                    f"{other.config.tracker_id} already uses the drive at {drive.host}:{drive.port}, "
+                    f"unit {drive.unit}.",
+                    "Give another address.",
+                )
+            )
