@@ -1,0 +1,204 @@
+"""Whether a tracker can run a show, and if not, why not and what would work."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from datetime import UTC, timedelta
+
+import numpy as np
+
+from app.sun.position import InstantRefused, sun_path, sun_position
+from app.tracker.axes import AxisConfig
+from app.tracker.config import TrackerConfig
+from app.tracker.memory import Pointing
+from app.tracker.mode import Mode
+from app.tracker.programs.course import ShowCourse
+from app.tracker.programs.pace import (
+    REPOSITIONING_SHARE,
+    Pace,
+    Repositioning,
+    feasible,
+    usable_dps,
+)
+from app.tracker.programs.path import Stretch, sun_up
+from app.tracker.programs.plan import ShowCheck, ShowPath, ShowPlan
+from app.tracker.reason import Reason
+
+LONGEST_INTERVAL = timedelta(hours=48)
+SHORTEST_DURATION = timedelta(seconds=10)
+LONGEST_DURATION = timedelta(hours=24)
+PATH_POINTS = 721
+EMPTY = np.empty(0)
+NO_PATH = ShowPath(EMPTY, EMPTY, EMPTY, EMPTY, EMPTY, np.empty(0, dtype=np.bool_))
+
+
+def check_show(plan: ShowPlan, tracker: TrackerConfig, pointing: Pointing = Pointing()) -> ShowCheck:
+    """Return what the plan needs of this tracker, every reason against it, and the shortest duration."""
+    wrong = tuple(_interval_reasons(plan))
+    if wrong:
+        return _unchecked(plan, wrong)
+    duration = min(max(plan.duration, SHORTEST_DURATION), LONGEST_DURATION)
+    course = ShowCourse(replace(plan, duration=duration), tracker, pointing)
+    refused = tuple(_sun_reasons(course))
+    shortest = None if refused else _shortest(course, tracker)
+    reasons = [*_duration_reasons(plan), *refused, *_pace_reasons(course.pace, tracker, shortest)]
+    return ShowCheck(
+        reasons=tuple(reasons),
+        notices=tuple(_notices(course, tracker)),
+        shortest=shortest,
+        sun_up=sun_up(plan),
+        peak_azimuth_dps=course.pace.peak_azimuth_dps,
+        peak_elevation_dps=course.pace.peak_elevation_dps,
+        start=course.start,
+        path=_path(course),
+    )
+
+
+def _interval_reasons(plan: ShowPlan) -> Iterator[Reason]:
+    if plan.end_at <= plan.begin_at:
+        yield Reason(
+            "end_before_start", "The show ends before it starts.", "Choose an end time after the start time."
+        )
+        return
+    if plan.end_at - plan.begin_at > LONGEST_INTERVAL:
+        yield Reason("interval_too_long", "The show covers more than 48 hours.", "Choose an earlier end.")
+    try:
+        for at in (plan.begin_at, plan.end_at):
+            sun_position(plan.algorithm, plan.location, at)
+    except InstantRefused as refused:
+        yield Reason("year_out_of_range", str(refused), "Choose a date in the years 1901 to 2099.")
+
+
+def _duration_reasons(plan: ShowPlan) -> Iterator[Reason]:
+    if plan.duration < SHORTEST_DURATION or plan.duration > LONGEST_DURATION:
+        yield Reason(
+            "duration_out_of_range",
+            f"A show takes between 10 seconds and 24 hours, not {spell(plan.duration)}.",
+            "Choose another simulation time.",
+        )
+
+
+def _sun_reasons(course: ShowCourse) -> Iterator[Reason]:
+    if not course.stretches and course.plan.mode is not Mode.FIXED:
+        yield Reason(
+            "sun_never_up",
+            "The sun is below the horizon for the whole of the show.",
+            "Choose a start and an end between which the sun is up.",
+        )
+
+
+def _pace_reasons(asked: Pace, tracker: TrackerConfig, shortest: timedelta | None) -> Iterator[Reason]:
+    hint = (
+        f"The shortest simulation time that works is {spell(shortest)}."
+        if shortest
+        else "No simulation time up to 24 hours works: choose another interval."
+    )
+    for name, axis, peak_dps in (
+        ("azimuth", tracker.azimuth, asked.peak_azimuth_dps),
+        ("elevation", tracker.elevation, asked.peak_elevation_dps),
+    ):
+        if peak_dps > usable_dps(axis, asked.duration_s):
+            yield Reason(f"{name}_too_fast", _too_fast(name, axis, peak_dps, asked.duration_s), hint)
+    if not asked.repositions_in_time:
+        yield Reason("repositioning_too_long", _too_long(asked), hint)
+    if not all(night.long_enough for night in asked.nights):
+        message = "The night is too short for the axes to reach the place of the next sunrise in time."
+        yield Reason("night_too_short", message, hint)
+
+
+def _too_fast(name: str, axis: AxisConfig, peak_dps: float, duration_s: float) -> str:
+    usable = usable_dps(axis, duration_s)
+    return (
+        f"The show is too fast: the {name} axis would have to turn at {peak_dps:.2f} degrees a second; it "
+        f"can follow at up to {usable:.2f} (rated {axis.speed_dps:.2f}, less a reserve for gathering speed)."
+    )
+
+
+def _too_long(asked: Pace) -> str:
+    return (
+        f"The azimuth axis needs {asked.repositioning_s:.0f} s to turn where it cannot follow the sun (end "
+        f"stop or zenith); it may be off the sun for at most {REPOSITIONING_SHARE:.0%} of the show, "
+        f"{REPOSITIONING_SHARE * asked.duration_s:.0f} s, and must be done before the end."
+    )
+
+
+def _shortest(course: ShowCourse, tracker: TrackerConfig) -> timedelta | None:
+    """Return the least whole number of seconds at which the course is feasible."""
+
+    def works(duration_s: int) -> bool:
+        return feasible(course.pace_in(float(duration_s)), tracker)
+
+    low, high = int(SHORTEST_DURATION.total_seconds()), int(LONGEST_DURATION.total_seconds())
+    if not works(high):
+        return None
+    while low < high:
+        middle = (low + high) // 2
+        low, high = (low, middle) if works(middle) else (middle + 1, high)
+    while low > SHORTEST_DURATION.total_seconds() and works(low - 1):
+        low -= 1
+    return timedelta(seconds=low)
+
+
+def _notices(course: ShowCourse, tracker: TrackerConfig) -> Iterator[Reason]:
+    for span in course.pace.repositionings:
+        yield _repositioning_notice(course, span)
+    yield from _limit_notices(course.stretches, tracker)
+    up = sum((end - begin for begin, end in sun_up(course.plan)), timedelta(0))
+    down = course.plan.end_at - course.plan.begin_at - up
+    if down >= timedelta(seconds=1):
+        yield Reason(
+            "sun_down",
+            f"The sun is below the horizon for {spell(down)} of the interval: there the panel holds, and "
+            "goes to the place of the next sunrise in time.",
+        )
+
+
+def _repositioning_notice(course: ShowCourse, span: Repositioning) -> Reason:
+    at = course.plan.sun_time(timedelta(seconds=span.begin_s)).astimezone(UTC)
+    seconds = span.end_s - span.begin_s
+    lost = spell(timedelta(seconds=seconds * course.plan.acceleration))
+    turn = f"turns from {span.from_deg:.0f} to {span.to_deg:.0f} degrees"
+    if span.unwinding:
+        code, why = "unwinding", f"the azimuth axis meets its end stop and {turn} the other way round"
+    else:
+        code, why = "keyhole", f"the sun passes too near the zenith to follow and the azimuth axis {turn}"
+    return Reason(code, f"At {at:%H:%M} UTC {why}: {seconds:.1f} s of the show, {lost} of sun time.")
+
+
+def _limit_notices(stretches: Sequence[Stretch], tracker: TrackerConfig) -> Iterator[Reason]:
+    missed_deg = max((float(stretch.missed_deg.max()) for stretch in stretches), default=0.0)
+    if missed_deg > tracker.deadband_deg:
+        yield Reason(
+            "limited",
+            f"The soft limits keep the panel up to {missed_deg:.1f} degrees away from where it should face; "
+            "there it stays as near as the limits allow.",
+        )
+
+
+def _path(course: ShowCourse) -> ShowPath:
+    plan = course.plan
+    elapsed_s = np.linspace(0.0, plan.duration.total_seconds(), PATH_POINTS)
+    places = [course.planned(elapsed) for elapsed in elapsed_s.tolist()]
+    sun_time_unix_s = plan.begin_at.timestamp() + elapsed_s * plan.acceleration
+    sun = sun_path(plan.algorithm, plan.location, sun_time_unix_s)
+    return ShowPath(
+        sun_time_unix_s=sun_time_unix_s,
+        sun_azimuth_deg=sun.azimuth_deg,
+        sun_elevation_deg=sun.apparent_elevation_deg if plan.refraction else sun.elevation_deg,
+        panel_azimuth_deg=np.array([place.azimuth_deg for place in places]),
+        panel_elevation_deg=np.array([place.elevation_deg for place in places]),
+        sun_is_up=sun.is_up,
+    )
+
+
+def _unchecked(plan: ShowPlan, reasons: tuple[Reason, ...]) -> ShowCheck:
+    """Return the check of a plan whose interval makes no sense: there is nothing to compute."""
+    return ShowCheck(reasons, (), None, (), 0.0, 0.0, plan.orientation, NO_PATH)
+
+
+def spell(length: timedelta) -> str:
+    """Return a length of time in words: hours and minutes, minutes and seconds, or seconds."""
+    seconds = round(length.total_seconds())
+    minutes, hours = seconds // 60 % 60, seconds // 3600
+    if hours:
+        return f"{hours} h {minutes} min"
+    return f"{minutes} min {seconds % 60} s" if minutes else f"{seconds} s"
