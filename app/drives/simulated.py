@@ -60,6 +60,7 @@ class SimulatedDrive:
         self._command = STOP_ALL
         self._fed_at_s: float | None = None
         self._tripped = False
+        self._trip_was_read = False
         self._fault_code = 0
         self._homing: int | None = None
         self._request_seen = 0
@@ -94,6 +95,27 @@ class SimulatedDrive:
     def link_fault(self) -> FaultKind | None:
         """Return the fault of the connection that is being played, if any."""
         return self._link_fault
+
+    @property
+    def command(self) -> DriveCommand:
+        """Return what the drive was told and has taken."""
+        self._advance()
+        return self._command
+
+    @property
+    def is_resting(self) -> bool:
+        """Return whether both axes stand still."""
+        return self._resting(self._advance())
+
+    @property
+    def uptime(self) -> timedelta:
+        """Return for how long the drive has run."""
+        return self._clock.now() - self._started_at
+
+    @property
+    def watchdog(self) -> timedelta | None:
+        """Return the time-out of the communication watchdog, None without one."""
+        return timedelta(seconds=self._watchdog_s) if self._watchdog_s is not None else None
 
     @property
     def ignores_writes(self) -> bool:
@@ -134,11 +156,15 @@ class SimulatedDrive:
     async def close(self) -> None:
         """Stop the axes and leave a position memory behind if they already stand still."""
         self.halt()
-        self._keep(self._advance())
+        now_s = self._advance()
+        if self._resting(now_s):
+            self._kept_trusted = True
+            self._write_memory(now_s, trusted=True)
 
     def observe(self) -> Feedback:
         """Return the reading of this instant."""
         now_s = self._advance()
+        self._trip_was_read = self._tripped
         if self._steady is not None:
             return self._steady
         resting = self._resting(now_s)
@@ -156,14 +182,17 @@ class SimulatedDrive:
             self._steady = feedback
         return feedback
 
-    def obey(self, command: DriveCommand) -> None:
-        """Do this from now on; it feeds the watchdog, and a request with a new number is carried out."""
+    def obey(self, command: DriveCommand, *, alive: bool = True) -> None:
+        """Do this from now on; a request with a new number is carried out. `alive` feeds the watchdog.
+
+        After the watchdog has tripped nothing is obeyed until somebody has read that it did.
+        """
         now_s = self._advance()
-        self._fed_at_s = now_s
-        if command is self._command or command == self._command or self._ignores_writes:
+        if alive:
+            self._fed_at_s = now_s
             self._clear_trip()
+        if command is self._command or command == self._command or self._ignores_writes or self._tripped:
             return
-        self._clear_trip()
         self._change(now_s)
         self._take_request(command.request, now_s)
         if self._homing is not None and _is_halt(command):
@@ -196,7 +225,7 @@ class SimulatedDrive:
             case FaultKind.DRIVE_FAULT:
                 self._fault_code = int(fault.amount) or 1
                 self._end_homing(failed=True)
-                self._turn(STOP_ALL, now_s)
+                self._turn(self._command, now_s)
             case FaultKind.POWER_LOSS:
                 self._lose_power(now_s)
             case _:
@@ -205,14 +234,13 @@ class SimulatedDrive:
                         one.inject(fault, now_s)
 
     def clear_faults(self) -> None:
-        """Be sound again; both axes come to rest. A drive fault still waits for its reset."""
+        """Be sound again and do what was commanded. A drive fault still waits for its reset."""
         now_s = self._advance()
         self._change(now_s)
         self._link_fault = None
         self._ignores_writes = False
         self._azimuth.clear_faults(now_s)
         self._elevation.clear_faults(now_s)
-        self._command = STOP_ALL
 
     def _advance(self) -> float:
         """Let everything happen that the time since the last call brings, and return the time in seconds."""
@@ -237,8 +265,8 @@ class SimulatedDrive:
             self._turn(STOP_ALL, deadline_s)
 
     def _clear_trip(self) -> None:
-        if self._tripped:
-            self._tripped = False
+        if self._tripped and self._trip_was_read:
+            self._tripped = self._trip_was_read = False
             self._steady = None
 
     def _turn(self, command: DriveCommand, now_s: float) -> None:

@@ -132,10 +132,10 @@ class SimulatedAxis:
         self.obey(self._command, time_s)
 
     def clear_faults(self, time_s: float) -> None:
-        """Be sound again; the axis comes to rest."""
+        """Be sound again and do what was commanded."""
         self._slip(time_s)
         self._faults.clear()
-        self.obey(HALT, time_s)
+        self.obey(self._command, time_s)
 
     def _start(self, time_s: float) -> Phase:
         return Phase(time_s, *self._path.at(time_s))

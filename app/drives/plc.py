@@ -1,0 +1,237 @@
+"""A PLC that offers setpoints, reached over Modbus, as a drive: the profile says where everything is."""
+
+from collections.abc import Mapping
+from contextlib import suppress
+from datetime import UTC, datetime
+
+from app.clock import Clock
+from app.drives.drive import DriveError, DriveRefused
+from app.drives.modbus import Address, ModbusLink, Priority
+from app.drives.plausibility import Plausibility
+from app.drives.plc_map import CLOCK_PARTS, PlcMap
+from app.drives.profile import Profile
+from app.tracker.config import TrackerConfig
+from app.tracker.motion import HALT, DriveCapabilities, DriveCommand, Feedback, Velocity
+
+MOST_UNCHANGED = 3
+
+
+class PlcDrive:
+    """The drive protocol on a profile's registers.
+
+    Every poll is one frame that holds identity, heartbeat, status and what the PLC took of the last command.
+    Only what changed is written, in one frame with the keep-alive value that feeds the PLC's watchdog.
+    """
+
+    def __init__(
+        self, config: TrackerConfig, profile: Profile, clock: Clock, link: ModbusLink | None = None
+    ) -> None:
+        self._profile = profile
+        self._map = PlcMap(profile)
+        self._address = Address(config.drive.host, config.drive.port, config.drive.unit)
+        self._link = link if link is not None else ModbusLink(self._address, clock, profile.timeout)
+        self._plausibility = Plausibility(config, profile, clock)
+        self._block = profile.blocks["status"]
+        self._taken: dict[int, int] = {}
+        self._seen: list[int] = []
+        self._keep_alive = 0
+        self._ticket: int | None = None
+        self._request_number = 0
+        self._boot_count: int | None = None
+        self._unchanged: dict[str, tuple[int, int]] = {}
+        self._watchdog_s = profile.watchdog.timeout_ms / 1000.0 if profile.watchdog is not None else None
+
+    @property
+    def capabilities(self) -> DriveCapabilities:
+        """Return what the profile offers; the watchdog's time-out is the device's own once it was read."""
+        return DriveCapabilities(
+            automatic_homing="home" in self._profile.enums["request"],
+            watchdog_s=self._watchdog_s,
+            settable_clock="clock" in self._profile.blocks,
+            limit_switches="switches" in self._profile.bits,
+            description=f"{self._profile.title} on Modbus TCP, {self._address}",
+            verified=self._profile.verified,
+        )
+
+    async def read(self) -> Feedback:
+        """Return one fresh, checked and complete reading, or raise `DriveError`."""
+        words = await self._poll()
+        feedback = self._map.feedback(words, self._block.address)
+        if self._plausibility.doubt(feedback) is not None:
+            words = await self._poll()
+            feedback = self._plausibility.settle(feedback, self._map.feedback(words, self._block.address))
+        self._plausibility.accept(feedback)
+        self._notice_restart(feedback)
+        self._compare(words, feedback)
+        return self._numbered(feedback)
+
+    async def write(self, command: DriveCommand) -> None:
+        """Send what changed and a new keep-alive value, or raise `DriveError`; nothing is sent twice."""
+        if self._ticket != self._link.ticket:
+            await self.read()
+        ticket = self._ticket
+        self._keep_alive = self._keep_alive % 0xFFFF + 1
+        words = self._map.command_words(command) | self._map.words("keep_alive", self._keep_alive)
+        if command.request is not None:
+            self._request_number = command.request.number
+        taken = self._taken
+        self._taken = {}
+        for address, values in self._frames(words, taken):
+            await self._link.write(
+                address,
+                values,
+                what=f"the command from {self._profile.at(address)} on",
+                ticket=ticket,
+                priority=_priority(command),
+            )
+        if ticket == self._link.ticket:
+            self._taken = taken | words
+
+    async def stop(self) -> None:
+        """Ramp both axes down, ahead of everything that waits, or raise `DriveError`."""
+        self._forget()
+        stop = self._map.words("stop", 1) or self._map.command_words(DriveCommand())
+        for address, values in _runs(stop, stop):
+            await self._link.stop(address, values, what=f"stop, {self._profile.at(address)}")
+
+    async def set_clock(self, at: datetime) -> None:
+        """Set the PLC's clock to an instant, in UTC, if the profile has one."""
+        block = self._profile.blocks.get("clock")
+        if block is None:
+            return
+        utc = at.astimezone(UTC)
+        words = {
+            address: word
+            for part in CLOCK_PARTS
+            for address, word in self._map.words(part, getattr(utc, part)).items()
+        }
+        for address, values in _runs(words, words):
+            await self._link.write(address, values, what="the clock", ticket=None)
+
+    async def close(self) -> None:
+        """Stop the axes if the PLC can be reached, then let go of the connection."""
+        if self._ticket is not None:
+            with suppress(DriveError):
+                await self.stop()
+        await self._link.close()
+
+    async def _poll(self) -> list[int]:
+        block = self._block
+        what = f"block {block.name} of profile {self._profile.name}"
+        words = await self._link.read(block.address, block.count, what=what)
+        self._ticket = self._link.ticket
+        self._identify(words)
+        self._watch_heartbeat(words)
+        readback = self._profile.watchdog.readback if self._profile.watchdog is not None else None
+        if readback is not None:
+            self._watchdog_s = self._integer(readback, words) / 1000.0 or None
+        return words
+
+    def _integer(self, name: str, words: list[int]) -> int:
+        return self._profile.registers[name].integer(words, self._block.address)
+
+    def _identify(self, words: list[int]) -> None:
+        for register in self._profile.registers.values():
+            if register.expect is None:
+                continue
+            found = self._integer(register.name, words)
+            if found != register.expect:
+                raise DriveRefused(
+                    f"The device at {self._address} is no {self._profile.title}: register "
+                    f"{self._profile.at(register.address)} holds {found} instead of {register.expect}. "
+                    "Check address, unit and profile."
+                )
+
+    def _watch_heartbeat(self, words: list[int]) -> None:
+        if "heartbeat" not in self._profile.registers:
+            return
+        value = self._integer("heartbeat", words)
+        last, times = self._unchanged.get("heartbeat", (None, 0))
+        times = times + 1 if value == last else 0
+        self._unchanged["heartbeat"] = (value, times)
+        if times >= MOST_UNCHANGED:
+            raise DriveError(
+                f"The drive at {self._address} answers, but its heartbeat stands still: its readings are "
+                "old. Check that its program runs."
+            )
+
+    def _notice_restart(self, feedback: Feedback) -> None:
+        if self._boot_count is not None and feedback.boot_count != self._boot_count:
+            self._forget()
+        self._boot_count = feedback.boot_count
+
+    def _compare(self, words: list[int], feedback: Feedback) -> None:
+        """Raise `DriveError` if the PLC does not hold what was written; then everything is written anew."""
+        taken, before, self._seen = self._taken, self._seen, words
+        if feedback.watchdog_tripped:
+            self._forget()
+            return
+        first = self._block.address
+        wrong = [
+            address - first
+            for address, word in taken.items()
+            if 0 <= address - first < self._block.count and words[address - first] != word
+        ]
+        if not wrong:
+            return
+        self._forget()
+        where = self._profile.at(first + wrong[0])
+        if before and all(words[place] == before[place] for place in wrong):
+            raise DriveError(
+                f"The drive at {self._address} acknowledged a command and did not take it (register {where}"
+                "). Check that it is in remote operation."
+            )
+        raise DriveError(
+            f"Someone else commands the drive at {self._address}: register {where} holds what this program "
+            "did not write. Disconnect the other Modbus master."
+        )
+
+    def _forget(self) -> None:
+        self._taken = {}
+
+    def _frames(self, words: Mapping[int, int], taken: Mapping[int, int]) -> list[tuple[int, list[int]]]:
+        """Return what has to be written, the frame with the keep-alive value last."""
+        changed = {address: word for address, word in words.items() if taken.get(address) != word}
+        keep_alive = self._profile.registers["keep_alive"].address
+        frames = _runs(changed, words)
+        return sorted(frames, key=lambda frame: frame[0] <= keep_alive < frame[0] + len(frame[1]))
+
+    def _numbered(self, feedback: Feedback) -> Feedback:
+        """Return the reading with the full number of the request that the 16-bit register stands for."""
+        if feedback.request_done != self._request_number & 0xFFFF:
+            return feedback
+        return _with_request(feedback, self._request_number)
+
+
+def _with_request(feedback: Feedback, number: int) -> Feedback:
+    return Feedback(
+        feedback.azimuth,
+        feedback.elevation,
+        feedback.boot_count,
+        feedback.fault_code,
+        feedback.homing,
+        feedback.watchdog_tripped,
+        number,
+        feedback.request_failed,
+    )
+
+
+def _runs(changed: Mapping[int, int], known: Mapping[int, int]) -> list[tuple[int, list[int]]]:
+    """Return runs of neighbouring addresses; a gap whose words are known is filled to save a frame."""
+    runs: list[tuple[int, list[int]]] = []
+    for address in sorted(changed):
+        if runs:
+            start, values = runs[-1]
+            gap = range(start + len(values), address)
+            if all(between in known for between in gap):
+                values.extend(known[between] for between in gap)
+                values.append(changed[address])
+                continue
+        runs.append((address, [changed[address]]))
+    return runs
+
+
+def _priority(command: DriveCommand) -> Priority:
+    jogging = isinstance(command.azimuth, Velocity) or isinstance(command.elevation, Velocity)
+    halting = command.azimuth == HALT and command.elevation == HALT
+    return Priority.JOG if jogging or halting else Priority.COMMAND
