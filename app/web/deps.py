@@ -7,7 +7,7 @@ from fastapi import Depends
 from starlette.requests import HTTPConnection
 
 from app.clock import Clock
-from app.link.messages import Machine, Order, SiteCommand
+from app.link.messages import Machine, MachineUnreachable, Order, SiteCommand
 from app.settings import Settings
 from app.store.store import Reader
 from app.tracker.commands import Command
@@ -50,6 +50,16 @@ def _reader(built: PanelDep) -> Reader:
 
 MachineDep = Annotated[Machine, Depends(_machine)]
 ReaderDep = Annotated[Reader, Depends(_reader)]
+
+
+def _snapshot(built: PanelDep) -> SiteSnapshot:
+    snapshot = built.machine.latest()
+    if snapshot is None:
+        raise MachineUnreachable
+    return snapshot
+
+
+SnapshotDep = Annotated[SiteSnapshot, Depends(_snapshot)]
 
 
 async def order(

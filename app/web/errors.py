@@ -15,6 +15,7 @@ from starlette.responses import Response
 
 from app.link.messages import MachineUnreachable, UnknownRecording, UnknownTracker
 from app.store.store import StoreFailed
+from app.sun.position import InstantRefused
 from app.tracker.commands import CommandRejected
 from app.tracker.reason import Reason
 from app.web.security import add_headers
@@ -62,7 +63,10 @@ def rejected(error: CommandRejected) -> Problem:
 def invalid(error: RequestValidationError) -> Problem:
     """Return 422 with the place and the fault of every wrong value."""
     found = tuple(
-        {"location": ".".join(str(part) for part in one["loc"]), "message": one["msg"]}
+        {
+            "location": ".".join(str(part) for part in one["loc"]),
+            "message": one["msg"].removeprefix("Value error, "),
+        }
         for one in error.errors()
     )
     return Problem(422, "Some values are missing or wrong; see errors.", errors=found)
@@ -79,11 +83,15 @@ def _unreachable(error: Exception) -> Problem:
 
 
 def _no_tracker(error: Exception) -> Problem:
-    return Problem(404, f"There is no tracker {error}. GET /api/v1/trackers lists them.")
+    return Problem(404, _sentence(error, f"There is no tracker {error}."))
 
 
 def _no_recording(error: Exception) -> Problem:
-    return Problem(404, f"There is no recording {error}. GET /api/v1/recordings lists them.")
+    return Problem(404, _sentence(error, f"There is no recording {error}."))
+
+
+def _sentence(error: Exception, otherwise: str) -> str:
+    return str(error) if str(error).endswith(".") else otherwise
 
 
 PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
@@ -92,6 +100,7 @@ PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
     UnknownRecording: _no_recording,
     MachineUnreachable: _unreachable,
     StoreFailed: lambda error: Problem(503, str(error), headers=RETRY_LATER),
+    InstantRefused: lambda error: Problem(422, str(error)),
     NotAcceptable: lambda error: Problem(422, str(error)),
     NotFound: lambda error: Problem(404, str(error)),
     RequestValidationError: invalid,

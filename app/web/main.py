@@ -13,6 +13,7 @@ from app.link.messages import Machine
 from app.settings import Settings
 from app.store.store import Reader
 from app.web import errors, live
+from app.web.api.router import api_router
 from app.web.assets import Assets
 from app.web.deps import Panel
 from app.web.hub import Hub
@@ -44,6 +45,7 @@ def create_app(
     app.state.panel = panel
     app.mount("/s", panel.assets, name="static")
     app.include_router(live.router)
+    app.include_router(api_router())
     include_pages(app)
     errors.install(app)
     app.add_middleware(GZipMiddleware, minimum_size=600)

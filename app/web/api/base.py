@@ -1,0 +1,65 @@
+"""What all API schemas and routes share."""
+
+from typing import Annotated, Any
+
+from fastapi import Path, Query
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
+
+from app.tracker.reason import Reason
+
+Responses = dict[int | str, dict[str, Any]]
+TrackerId = Annotated[
+    str, Path(min_length=1, max_length=64, description="Id of the tracker.", examples=["T1"])
+]
+RecordingId = Annotated[str, Path(min_length=1, max_length=64, description="Id of the recording.")]
+IssuedAt = Annotated[
+    AwareDatetime | None,
+    Query(description="When this was asked, by the site's clock; refused when older than 2 s."),
+]
+Azimuth = Annotated[float, Field(ge=0, lt=360, description="Degrees clockwise from true north.")]
+Elevation = Annotated[float, Field(ge=-90, le=90, description="Degrees above the horizon.")]
+
+
+class Input(BaseModel):
+    """What comes in: nothing unknown, no NaN, no infinity."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Output(BaseModel):
+    """What goes out."""
+
+    model_config = ConfigDict(frozen=True)
+
+
+class Fault(Output):
+    """One wrong value of a request."""
+
+    location: str = Field(description="Where the value stands, for example `body.latitude_deg`.")
+    message: str = Field(description="What is wrong with it.")
+
+
+class ProblemDetails(Output):
+    """An error as RFC 9457 has it."""
+
+    type: str = Field(description="Kind of problem; `about:blank` says that the status tells all.")
+    title: str = Field(description="The status in words.")
+    status: int = Field(description="The HTTP status.")
+    detail: str = Field(description="A sentence that says what happened and what to do.")
+    reasons: tuple[Reason, ...] = Field((), description="Every unmet condition, each with what to do.")
+    errors: tuple[Fault, ...] = Field((), description="Every wrong value, with status 422.")
+
+
+def _problem(description: str) -> dict[str, Any]:
+    schema = {"$ref": "#/components/schemas/ProblemDetails"}
+    return {"description": description, "content": {"application/problem+json": {"schema": schema}}}
+
+
+NOT_FOUND: Responses = {404: _problem("There is no such thing.")}
+REFUSED: Responses = {409: _problem("The state forbids it; `reasons` has every unmet condition.")}
+COMMON: Responses = {
+    403: _problem("The request comes from a foreign page or to a foreign host name."),
+    422: _problem("Values are missing or wrong."),
+    500: _problem("The panel made a mistake."),
+    503: _problem("The machine, its drive or the database cannot be reached; nothing was done."),
+}

@@ -1,0 +1,194 @@
+"""What makes a tracker move, and what stops it."""
+
+from typing import Annotated, Literal
+
+from fastapi import APIRouter
+from pydantic import AwareDatetime, Field
+
+from app.link.messages import StopAll
+from app.tracker.axes import Axis, JogSpeed
+from app.tracker.commands import (
+    Command,
+    EndJog,
+    Home,
+    Jog,
+    Move,
+    Park,
+    ResetFault,
+    SelectMode,
+    SetZero,
+    Step,
+    Stop,
+    Track,
+)
+from app.tracker.config import Orientation
+from app.tracker.mode import Mode
+from app.tracker.snapshot import SiteSnapshot, Snapshot
+from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, TrackerId
+from app.web.api.orders import SenderDep, tracker_of
+from app.web.deps import SnapshotDep
+
+router = APIRouter(tags=["motion"])
+
+PressId = Annotated[
+    str, Field(min_length=1, max_length=64, description="New for every press of the key.", examples=["p-1"])
+]
+
+
+class _Command(Input):
+    issued_at: AwareDatetime | None = Field(
+        None, description="When this was asked, by the site's clock; refused when older than 2 s."
+    )
+
+
+class MoveCommand(_Command):
+    """Go to an orientation and stay there."""
+
+    type: Literal["move"]
+    azimuth_deg: Azimuth
+    elevation_deg: Elevation
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return Move(Orientation(self.azimuth_deg, self.elevation_deg))
+
+
+class StepCommand(_Command):
+    """Move one axis by a small increment, signed."""
+
+    type: Literal["step"]
+    axis: Axis
+    degrees: float = Field(ge=-5, le=5, description="0.1, 1 or 5 degrees; azimuth grows eastwards.")
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return Step(self.axis, self.degrees)
+
+
+class ZeroCommand(_Command):
+    """Here the axes point to north and the horizon: call this zero."""
+
+    type: Literal["zero"]
+    axes: tuple[Axis, ...] = Field((Axis.AZIMUTH, Axis.ELEVATION), min_length=1, max_length=2)
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return SetZero(tuple(dict.fromkeys(self.axes)))
+
+
+class HomeCommand(_Command):
+    """Search the origin switches, on drives that have them."""
+
+    type: Literal["home"]
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return Home()
+
+
+class ModeCommand(_Command):
+    """Choose what tracking does; the angles count for the axes that it holds, left out they stay."""
+
+    type: Literal["set_mode"]
+    mode: Mode
+    azimuth_deg: Azimuth | None = None
+    elevation_deg: Elevation | None = None
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        azimuth_deg = held.azimuth_deg if self.azimuth_deg is None else self.azimuth_deg
+        elevation_deg = held.elevation_deg if self.elevation_deg is None else self.elevation_deg
+        return SelectMode(self.mode, Orientation(azimuth_deg, elevation_deg))
+
+
+class TrackCommand(_Command):
+    """Follow the selected mode from now on, also after a restart."""
+
+    type: Literal["track"]
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return Track()
+
+
+class ParkCommand(_Command):
+    """Go to the park position and stay there."""
+
+    type: Literal["park"]
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return Park()
+
+
+class ResetFaultCommand(_Command):
+    """The cause is removed: clear the fault and hold."""
+
+    type: Literal["reset_fault"]
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return ResetFault()
+
+
+AnyCommand = Annotated[
+    MoveCommand
+    | StepCommand
+    | ZeroCommand
+    | HomeCommand
+    | ModeCommand
+    | TrackCommand
+    | ParkCommand
+    | ResetFaultCommand,
+    Field(discriminator="type"),
+]
+
+
+class JogRequest(_Command):
+    """Turn one axis for at most the lease; the same press with a growing sequence renews it."""
+
+    press_id: PressId
+    axis: Axis
+    direction: Literal[-1, 1] = Field(description="1: east or up, -1: west or down.")
+    speed: JogSpeed = JogSpeed.SLOW
+    sequence: int = Field(0, ge=0, le=2**53, description="Grows with every renewal of a press.")
+
+
+@router.post("/trackers/{tracker_id}/stop", status_code=202, summary="Stop now", responses=NOT_FOUND)
+async def stop(tracker_id: TrackerId, sender: SenderDep) -> Snapshot:
+    """Stop both axes at once and switch tracking off; never refused, needs no body, resumes nothing."""
+    return await sender.command(tracker_id, Stop())
+
+
+@router.post("/stop", status_code=202, summary="Stop every tracker now")
+async def stop_all(sender: SenderDep) -> SiteSnapshot:
+    """Stop every tracker of the site at once."""
+    return await sender.send(StopAll())
+
+
+@router.post(
+    "/trackers/{tracker_id}/jog", status_code=202, summary="Hold to run", responses=NOT_FOUND | REFUSED
+)
+async def jog(tracker_id: TrackerId, request: JogRequest, sender: SenderDep) -> Snapshot:
+    """Move for at most 240 ms unless renewed; a press that has ended is dead for ever."""
+    command = Jog(request.press_id, request.axis, request.direction, request.speed, request.sequence)
+    return await sender.command(tracker_id, command, request.issued_at)
+
+
+@router.delete(
+    "/trackers/{tracker_id}/jog/{press_id}", status_code=202, summary="Let go", responses=NOT_FOUND | REFUSED
+)
+async def end_jog(tracker_id: TrackerId, press_id: str, sender: SenderDep) -> Snapshot:
+    """Stop the axis of this press and never obey the press again."""
+    return await sender.command(tracker_id, EndJog(press_id))
+
+
+@router.post(
+    "/trackers/{tracker_id}/commands", status_code=202, summary="Command", responses=NOT_FOUND | REFUSED
+)
+async def command(
+    tracker_id: TrackerId, request: AnyCommand, sender: SenderDep, site: SnapshotDep
+) -> Snapshot:
+    """Start what is asked; `activity` and `in_position` of the snapshot tell when it is done."""
+    held = tracker_of(site, tracker_id).orientation
+    return await sender.command(tracker_id, request.command(held), request.issued_at)

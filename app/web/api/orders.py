@@ -1,0 +1,63 @@
+"""From a request to one order of the machine."""
+
+from typing import Annotated
+
+from fastapi import Depends, Header
+from pydantic import AwareDatetime
+
+from app.link.messages import Machine, Order, SiteCommand, UnknownTracker
+from app.tracker.commands import Command
+from app.tracker.snapshot import SiteSnapshot, Snapshot
+from app.web.api.base import IssuedAt
+from app.web.deps import OPERATOR, MachineDep
+from app.web.errors import NotAcceptable
+
+Key = Annotated[
+    str | None,
+    Header(
+        alias="Idempotency-Key",
+        min_length=1,
+        max_length=64,
+        description="A repeated request with the same key is answered as the first was, and done once.",
+    ),
+]
+
+
+class Sender:
+    """Gives the machine one order, with what the request says about repeats and age."""
+
+    def __init__(self, machine: MachineDep, key: Key = None, issued_at: IssuedAt = None) -> None:
+        self._machine: Machine = machine
+        self._key = key
+        self._issued_at = issued_at
+
+    async def send(
+        self,
+        command: Command | SiteCommand,
+        tracker_id: str | None = None,
+        issued_at: AwareDatetime | None = None,
+    ) -> SiteSnapshot:
+        """Carry out a command and return the site after it; what cannot be is a 422."""
+        try:
+            return await self._machine.execute(
+                Order(command, OPERATOR, tracker_id, self._key, issued_at or self._issued_at)
+            )
+        except ValueError as error:
+            raise NotAcceptable(str(error)) from error
+
+    async def command(
+        self, tracker_id: str, command: Command, issued_at: AwareDatetime | None = None
+    ) -> Snapshot:
+        """Carry out a tracker's command and return the tracker after it."""
+        return tracker_of(await self.send(command, tracker_id, issued_at), tracker_id)
+
+
+SenderDep = Annotated[Sender, Depends()]
+
+
+def tracker_of(site: SiteSnapshot, tracker_id: str) -> Snapshot:
+    """Return one tracker of the site, or raise `UnknownTracker`."""
+    for snapshot in site.trackers:
+        if snapshot.tracker_id == tracker_id:
+            return snapshot
+    raise UnknownTracker(tracker_id)

@@ -1,0 +1,16 @@
+"""All of REST v1."""
+
+from fastapi import APIRouter
+
+from app.web.api import journal, motion, site, sun, trackers
+from app.web.api.base import COMMON
+
+ROUTERS = (site.router, sun.router, trackers.router, motion.router, journal.router)
+
+
+def api_router() -> APIRouter:
+    """Return the routes below /api/v1."""
+    router = APIRouter(prefix="/api/v1", responses=COMMON)
+    for part in ROUTERS:
+        router.include_router(part)
+    return router

@@ -1,0 +1,109 @@
+"""The site: its name, place and clock."""
+
+from datetime import datetime, timedelta
+from typing import Literal, Self
+
+from fastapi import APIRouter
+from pydantic import AwareDatetime, Field, model_validator
+
+from app.link.messages import RenameSite, SetClock, SetLocation
+from app.sun.position import Location
+from app.tracker.reason import Reason
+from app.tracker.snapshot import SiteSnapshot
+from app.web.api.base import REFUSED, Input, Output
+from app.web.api.orders import SenderDep
+from app.web.deps import SnapshotDep
+
+router = APIRouter(prefix="/site", tags=["site"])
+
+
+class SiteName(Input):
+    """A new name for the site."""
+
+    name: str = Field(min_length=1, max_length=80, examples=["Samsun solar field"])
+
+
+class SitePlace(Input):
+    """Where the site is and which civil time it keeps."""
+
+    latitude_deg: float = Field(ge=-90, le=90, description="North positive.", examples=[41.2867])
+    longitude_deg: float = Field(ge=-180, le=180, description="East positive.", examples=[36.33])
+    altitude_m: float = Field(0.0, ge=-500, le=9000, description="Above mean sea level.", examples=[4.0])
+    time_zone: str = Field(
+        min_length=1, max_length=64, description="IANA name.", examples=["Europe/Istanbul"]
+    )
+
+
+class ClockChange(Input):
+    """Trust the computer's clock, or make the site's clock show `at` now."""
+
+    source: Literal["system", "manual"] = Field(examples=["system"])
+    at: AwareDatetime | None = Field(None, description="What the clock shall show now; with `manual` only.")
+    time_zone: str | None = Field(None, min_length=1, max_length=64, description="IANA name; None keeps it.")
+
+    @model_validator(mode="after")
+    def _instant_with_manual(self) -> Self:
+        if (self.source == "manual") != (self.at is not None):
+            raise ValueError("Give `at` with the source manual, and only then.")
+        return self
+
+
+class Clock(Output):
+    """The site's clock and whether automatic motion may rely on it."""
+
+    at: datetime = Field(description="What the clock shows now.")
+    time_zone: str = Field(description="IANA name of the site's civil time.")
+    source: str = Field(description="`system`, `manual`, or `unset` before step 2.")
+    offset_s: float = Field(description="Added to the computer's clock, seconds.")
+    trusted: bool
+    ntp_synchronised: bool | None = Field(description="None where the computer cannot tell.")
+    set_at: datetime | None
+    age_s: float | None = Field(description="Seconds since the clock was set.")
+    reasons: tuple[Reason, ...] = Field(description="Why it is not trusted.")
+
+
+@router.get("", summary="The whole site now")
+async def read_site(snapshot: SnapshotDep) -> SiteSnapshot:
+    """Return name, location, clock, sun and every tracker at this instant."""
+    return snapshot
+
+
+@router.patch("", summary="Rename the site", responses=REFUSED)
+async def rename_site(change: SiteName, sender: SenderDep) -> SiteSnapshot:
+    """Give the site another name."""
+    return await sender.send(RenameSite(change.name))
+
+
+@router.put("/location", summary="Step 1: set the location", responses=REFUSED)
+async def set_location(place: SitePlace, sender: SenderDep) -> SiteSnapshot:
+    """Store the location; the steps that depend on it are to be confirmed again."""
+    location = Location(place.latitude_deg, place.longitude_deg, place.altitude_m)
+    return await sender.send(SetLocation(location, place.time_zone))
+
+
+@router.get("/clock", summary="The site's clock")
+async def read_clock(snapshot: SnapshotDep) -> Clock:
+    """Return what the clock shows, where it comes from and whether it is trusted."""
+    return _clock(snapshot)
+
+
+@router.put("/clock", summary="Step 2: set the clock", responses=REFUSED)
+async def set_clock(change: ClockChange, sender: SenderDep) -> Clock:
+    """Trust the computer's clock or set the site's clock by hand."""
+    return _clock(await sender.send(SetClock(change.source, change.at, change.time_zone)))
+
+
+def _clock(site: SiteSnapshot) -> Clock:
+    state = site.clock
+    age = None if state.set_at is None else (site.at - state.set_at) / timedelta(seconds=1)
+    return Clock(
+        at=site.at,
+        time_zone=site.time_zone,
+        source=state.source,
+        offset_s=state.offset_s,
+        trusted=state.trusted,
+        ntp_synchronised=state.ntp_synchronised,
+        set_at=state.set_at,
+        age_s=age,
+        reasons=state.reasons,
+    )

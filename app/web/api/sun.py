@@ -1,0 +1,169 @@
+"""Where the sun stands, and its path over a day."""
+
+import csv
+import io
+from collections.abc import Iterable
+from datetime import UTC, date, datetime, time, timedelta
+from enum import StrEnum
+from typing import Annotated
+from zoneinfo import ZoneInfo
+
+import numpy as np
+from fastapi import APIRouter, Query
+from fastapi.responses import Response
+from pydantic import AwareDatetime, Field
+
+from app.sun.events import PolarDay, day_events
+from app.sun.position import Algorithm, Location, sun_path, sun_position
+from app.tracker.commands import CommandRejected
+from app.tracker.reason import Reason
+from app.tracker.snapshot import SiteSnapshot
+from app.web.api.base import REFUSED, Output, Responses
+from app.web.deps import SnapshotDep
+
+router = APIRouter(prefix="/sun", tags=["sun"])
+
+NO_LOCATION = Reason(
+    "location_not_set", "The site's location is not known.", "Set it in step 1: PUT /api/v1/site/location."
+)
+CSV: Responses = {
+    200: {"content": {"text/csv": {"schema": {"type": "string"}}}, "description": "As JSON or as CSV."}
+}
+
+
+class TextFormat(StrEnum):
+    """How a table is written."""
+
+    JSON = "json"
+    CSV = "csv"
+
+
+class SunNow(Output):
+    """The sun at one instant, azimuth clockwise from true north."""
+
+    at: datetime
+    algorithm: Algorithm
+    location: Location
+    azimuth_deg: float
+    elevation_deg: float = Field(description="True elevation, without refraction.")
+    apparent_elevation_deg: float = Field(description="With refraction.")
+    is_up: bool = Field(description="Its upper limb is above the horizon.")
+
+
+class SunPoint(Output):
+    """One point of the path."""
+
+    at: datetime
+    azimuth_deg: float
+    elevation_deg: float
+    apparent_elevation_deg: float
+
+
+class SunDay(Output):
+    """A civil day of the site. `rise` and `set` are None where there is none; `polar` says why."""
+
+    date: date
+    time_zone: str
+    begin: datetime
+    end: datetime
+    algorithm: Algorithm
+    rise: datetime | None
+    transit: datetime | None
+    set: datetime | None
+    transit_elevation_deg: float | None
+    polar: PolarDay | None
+    step_s: int
+    path: list[SunPoint]
+
+
+@router.get("", summary="The sun at an instant", responses=REFUSED)
+async def read_sun(
+    site: SnapshotDep,
+    at: Annotated[AwareDatetime | None, Query(description="With offset; left out: now.")] = None,
+    algorithm: Algorithm = Algorithm.PSA,
+) -> SunNow:
+    """Return the sun's place over the site."""
+    place, instant = location_of(site), at or site.at
+    sun = sun_position(algorithm, place, instant)
+    return SunNow(
+        at=instant,
+        algorithm=algorithm,
+        location=place,
+        azimuth_deg=sun.azimuth_deg,
+        elevation_deg=sun.elevation_deg,
+        apparent_elevation_deg=sun.apparent_elevation_deg,
+        is_up=sun.is_up,
+    )
+
+
+@router.get("/day", summary="The sun's path over a day", response_model=SunDay, responses=REFUSED | CSV)
+def read_day(
+    site: SnapshotDep,
+    date: Annotated[date | None, Query(description="Civil date of the site; left out: today.")] = None,
+    step_s: Annotated[int, Query(ge=10, le=21600, description="Seconds between points.")] = 300,
+    algorithm: Algorithm = Algorithm.PSA,
+    format: TextFormat = TextFormat.JSON,
+) -> SunDay | Response:
+    """Return rise, transit, set and the path, as JSON or as CSV."""
+    zone = ZoneInfo(site.time_zone)
+    day = sun_day(site, date or site.at.astimezone(zone).date(), step_s, algorithm)
+    return day if format is TextFormat.JSON else Response(_csv(day.path), media_type="text/csv")
+
+
+def location_of(site: SiteSnapshot) -> Location:
+    """Return where the site is, or refuse with the sentence that says how to set it."""
+    if site.location is None:
+        raise CommandRejected(NO_LOCATION)
+    return site.location
+
+
+def midnights(day: date, time_zone: str) -> tuple[datetime, datetime]:
+    """Return the instants at which a civil day begins and ends."""
+    zone = ZoneInfo(time_zone)
+    begin, end = (datetime.combine(one, time(), zone) for one in (day, day + timedelta(days=1)))
+    return begin.astimezone(UTC), end.astimezone(UTC)
+
+
+def sun_day(site: SiteSnapshot, day: date, step_s: int, algorithm: Algorithm) -> SunDay:
+    """Return the sun of one civil day of the site."""
+    place = location_of(site)
+    begin, end = midnights(day, site.time_zone)
+    events = day_events(algorithm, place, begin, end)
+    return SunDay(
+        date=day,
+        time_zone=site.time_zone,
+        begin=begin,
+        end=end,
+        algorithm=algorithm,
+        rise=events.rise,
+        transit=events.transit,
+        set=events.set,
+        transit_elevation_deg=events.transit_elevation_deg,
+        polar=events.polar,
+        step_s=step_s,
+        path=_path(algorithm, place, begin, end, step_s),
+    )
+
+
+def _path(
+    algorithm: Algorithm, place: Location, begin: datetime, end: datetime, step_s: int
+) -> list[SunPoint]:
+    unix_s = np.arange(begin.timestamp(), end.timestamp() + 0.5, step_s, dtype=np.float64)
+    path = sun_path(algorithm, place, unix_s)
+    columns = (unix_s, path.azimuth_deg, path.elevation_deg, path.apparent_elevation_deg)
+    return [
+        SunPoint(
+            at=datetime.fromtimestamp(at, UTC), azimuth_deg=az, elevation_deg=el, apparent_elevation_deg=up
+        )
+        for at, az, el, up in zip(*(column.tolist() for column in columns), strict=True)
+    ]
+
+
+def _csv(points: Iterable[SunPoint]) -> str:
+    text = io.StringIO()
+    table = csv.writer(text)
+    table.writerow(("at", "azimuth_deg", "elevation_deg", "apparent_elevation_deg"))
+    for point in points:
+        angles = (point.azimuth_deg, point.elevation_deg, point.apparent_elevation_deg)
+        table.writerow((point.at.isoformat(), *(f"{angle:.6f}" for angle in angles)))
+    return text.getvalue()
