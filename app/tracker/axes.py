@@ -47,6 +47,10 @@ class AxisConfig:
         """Return the nearest angle within the soft limits."""
         return min(self.maximum_deg, max(self.minimum_deg, angle_deg))
 
+    def beyond_deg(self, angle_deg: float) -> float:
+        """Return how far an axis angle lies outside the soft limits, 0 inside."""
+        return abs(angle_deg - self.clamp(angle_deg))
+
 
 AZIMUTH_DEFAULT = AxisConfig(0.0, 360.0, 6.0, 6.0, 0.5, 3.0)
 ELEVATION_DEFAULT = AxisConfig(0.0, 90.0, 4.0, 6.0, 0.5, 2.0)

@@ -1,14 +1,39 @@
 """One tracker's mind: `handle` and `tick` are the two ways in."""
 
-from datetime import datetime
-from typing import NamedTuple
+from datetime import datetime, timedelta
+from typing import NamedTuple, assert_never
 
+from app.tracker import report
+from app.tracker.activities import faulted, jogging, moving, showing, tracking, zeroing
+from app.tracker.activity import (
+    HOLDING,
+    NAMES,
+    AxisPair,
+    Faulted,
+    Holding,
+    Homing,
+    Jogging,
+    Moving,
+    Showing,
+    Stopping,
+    Tracking,
+    Zeroing,
+)
 from app.tracker.commands import Command
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import Confirmation, Pointing, StepName, TrackerMemory
-from app.tracker.motion import DriveCapabilities, DriveCommand
+from app.tracker.mind import HALTED, NOWHERE, STANDING, Mind, Turn
+from app.tracker.motion import AxisCommand, DriveCapabilities, DriveCommand, Feedback, Halt, Position
 from app.tracker.observation import Observation
-from app.tracker.snapshot import Event, Snapshot
+from app.tracker.orders import obey
+from app.tracker.protect import check_following, found, miss, obey_switches, protect
+from app.tracker.reason import Reason
+from app.tracker.runs import at_rest
+from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
+from app.tracker.transitions import leave, lose_home
+
+RESUME_WITHIN = timedelta(seconds=10)
+"""After a restart the drive must answer within this time; later it is a drive that came back."""
 
 
 class Tick(NamedTuple):
@@ -22,48 +47,170 @@ class Controller:
     """Decides for one tracker; pure: reads no clock and no drive, knows only what it is told."""
 
     def __init__(self, config: TrackerConfig, memory: TrackerMemory, capabilities: DriveCapabilities) -> None:
-        self._config = config
-        self._memory = memory
-        self._capabilities = capabilities
+        self._mind = Mind(config, memory, capabilities)
+        if memory.fault_code is not None:
+            self._mind.activity = Faulted(Reason(memory.fault_code, memory.fault_text, _RESET_HINT))
 
     @property
     def config(self) -> TrackerConfig:
         """Return what the engineer set."""
-        return self._config
+        return self._mind.config
 
     @property
     def memory(self) -> TrackerMemory:
         """Return what must survive a power cut; a new object whenever it changed."""
-        return self._memory
+        return self._mind.memory
+
+    @property
+    def activity(self) -> ActivityName:
+        """Return what the tracker is doing."""
+        return NAMES[type(self._mind.activity)]
 
     def handle(self, command: Command, now: datetime, actor: str = "operator") -> tuple[Event, ...]:
-        """Obey a command and return what happened, or raise `CommandRejected` with all unmet conditions."""
-        raise NotImplementedError
+        """Obey a command and return what happened, or raise `CommandRejected` with all unmet conditions.
+
+        `now` is the machine's steady time, as in `Observation.now`. The drive hears of it at the next tick.
+        """
+        mind = self._mind
+        mind.site_time = mind.seen.site_time + (now - mind.seen.now) if mind.seen else now
+        mind.now, mind.actor = now, actor
+        obey(mind, command)
+        return mind.drain()
 
     def tick(self, seen: Observation) -> Tick:
         """Return what the drive shall do from now on and what happened since the last tick."""
-        raise NotImplementedError
+        mind = self._mind
+        mind.now, mind.site_time, mind.seen, mind.actor = seen.now, seen.site_time, seen, "machine"
+        mind.ticks += 1
+        if mind.started_at is None:
+            self._start(seen.now)
+        command = self._blind(seen) if seen.feedback is None else self._see(seen, seen.feedback)
+        mind.command = command
+        return Tick(command, mind.drain())
 
     def snapshot(self, at: datetime) -> Snapshot:
         """Return everything known after the last tick, stamped `at`."""
-        raise NotImplementedError
+        return report.snapshot(self._mind, at)
 
     def frame(self) -> tuple[float, ...]:
         """Return the last tick as one row of `recording.COLUMNS`; the first two columns are NaN."""
-        raise NotImplementedError
+        return report.frame(self._mind)
 
     def deadline(self) -> datetime | None:
         """Return the instant by which `tick` must be called again (a jog's lease ends), else None."""
-        raise NotImplementedError
+        activity = self._mind.activity
+        return activity.until if isinstance(activity, Jogging) else None
 
     def configure(self, config: TrackerConfig, capabilities: DriveCapabilities) -> None:
-        """Take over a new configuration; the caller sees to it that the tracker stands still."""
-        raise NotImplementedError
+        """Take over a new configuration; the caller sees to it that the tracker stands still.
+
+        Another drive is another zero: trust in the old one is lost.
+        """
+        mind = self._mind
+        leave(mind, "the configuration was changed.")
+        if config.drive != mind.config.drive:
+            mind.feedback = mind.feedback_at = None
+            lose_home(mind, Reason("drive_changed", "another drive was configured."))
+        mind.config, mind.capabilities = config, capabilities
+        mind.setpoint, mind.target, mind.watches = NOWHERE, None, {}
 
     def set_pointing(self, pointing: Pointing) -> None:
         """Take over a correction from sightings."""
-        raise NotImplementedError
+        self._mind.remember(pointing=pointing)
 
     def confirm(self, step: StepName, confirmation: Confirmation) -> None:
         """Remember that the operator said a step is right."""
-        raise NotImplementedError
+        confirmations = {**self._mind.memory.confirmations, step: confirmation}
+        self._mind.remember(confirmations=confirmations)
+
+    def remember(self, memory: TrackerMemory) -> None:
+        """Take over changed sightings and confirmations; what the controller itself keeps stays as it is."""
+        self._mind.remember(
+            sightings=memory.sightings, pointing=memory.pointing, confirmations=memory.confirmations
+        )
+
+    def _start(self, now: datetime) -> None:
+        mind = self._mind
+        mind.started_at = now
+        if mind.memory.showing is not None:
+            show_id = mind.memory.showing
+            mind.remember(showing=None)
+            message = "The show was cut off by a restart of the controller service."
+            mind.say(EventKind.SHOW_ENDED, message, outcome="interrupted", show_id=show_id)
+
+    def _blind(self, seen: Observation) -> DriveCommand:
+        """Go on for one failed reading, then stop: absence of information is a reason to stop."""
+        mind = self._mind
+        miss(mind, seen.now)
+        mind.sun = seen.sun
+        if isinstance(mind.activity, Jogging) and seen.now >= mind.activity.until:
+            jogging.end(mind, mind.activity, "it was not renewed in time.", "expired")
+        if mind.lost or isinstance(mind.activity, Holding | Stopping | Faulted):
+            return HALTED
+        return mind.command
+
+    def _see(self, seen: Observation, feedback: Feedback) -> DriveCommand:
+        mind = self._mind
+        before, before_at = mind.feedback, mind.feedback_at
+        if mind.misses:
+            found(mind)
+        mind.feedback, mind.feedback_at = feedback, seen.now
+        elapsed_s = (seen.now - before_at).total_seconds() if before_at else 0.0
+        protect(mind, before, feedback, elapsed_s)
+        if mind.watches or mind.command is not HALTED:
+            check_following(mind, feedback, seen.now)
+        if before is None and mind.started_at is not None and seen.now - mind.started_at <= RESUME_WITHIN:
+            self._first_reading()
+        turn = self._step(feedback, seen)
+        mind.activity, mind.target = turn.activity, turn.target
+        mind.sun = seen.sun if turn.sun is None else turn.sun
+        if turn.command is HALTED:
+            return STANDING if feedback.homing and not isinstance(turn.activity, Homing) else HALTED
+        return self._note(obey_switches(mind, turn.command, feedback))
+
+    def _first_reading(self) -> None:
+        """Decide once whether tracking goes on after a restart."""
+        if isinstance(self._mind.activity, Holding | Faulted):
+            tracking.resume(self._mind)
+
+    def _step(self, feedback: Feedback, seen: Observation) -> Turn:
+        mind = self._mind
+        activity = mind.activity
+        match activity:
+            case Tracking():
+                return tracking.step(mind, activity, feedback, seen)
+            case Holding() | Stopping():
+                return Turn(HOLDING if at_rest(feedback) else activity)
+            case Showing():
+                return showing.step(mind, activity, feedback)
+            case Jogging():
+                return jogging.step(mind, activity, feedback)
+            case Moving():
+                return moving.step(mind, activity, feedback)
+            case Zeroing() | Homing():
+                return zeroing.step(mind, activity, feedback)
+            case Faulted():
+                return faulted.step(mind, activity, feedback)
+        assert_never(activity)
+
+    def _note(self, command: DriveCommand) -> DriveCommand:
+        """Keep in mind where the axes were told to go."""
+        before = self._mind.setpoint
+        self._mind.setpoint = AxisPair(
+            _setpoint_deg(command.azimuth, before.azimuth_deg),
+            _setpoint_deg(command.elevation, before.elevation_deg),
+        )
+        return command
+
+
+def _setpoint_deg(command: AxisCommand, before_deg: float | None) -> float | None:
+    match command:
+        case Position():
+            return command.position_deg
+        case Halt():
+            return before_deg
+        case _:
+            return None
+
+
+_RESET_HINT = "Remove the cause, then press Reset fault."

@@ -1,0 +1,1 @@
+"""How each activity begins and what it does at every tick."""

@@ -1,0 +1,54 @@
+"""A latched fault, and the reset that leaves it once the cause is removed."""
+
+from datetime import timedelta
+
+from app.tracker.activity import HOLDING, Faulted
+from app.tracker.conditions import Action, demand_drive
+from app.tracker.guards import wiring_fault
+from app.tracker.mind import Mind, Turn
+from app.tracker.motion import DriveCommand, DriveRequest, Feedback, RequestKind
+from app.tracker.snapshot import EventKind
+
+RESET_PATIENCE = timedelta(seconds=5)
+
+
+def reset_fault(mind: Mind) -> None:
+    """Clear the fault, in the drive too if it has one, or raise `CommandRejected`."""
+    feedback = demand_drive(mind, Action.RESET_FAULT)
+    reason = mind.activity.reason if isinstance(mind.activity, Faulted) else None
+    if reason is None:
+        return
+    if feedback.fault_code == 0:
+        _clear(mind, feedback)
+        return
+    mind.activity = Faulted(reason, mind.next_request(), mind.now + RESET_PATIENCE)
+
+
+def step(mind: Mind, faulted: Faulted, feedback: Feedback) -> Turn:
+    """Stay halted; while a reset is under way, wait for the drive's answer."""
+    if faulted.number is None or faulted.until is None:
+        return Turn(faulted)
+    if feedback.request_done == faulted.number and feedback.fault_code == 0:
+        _clear(mind, feedback)
+        return Turn(mind.activity)
+    if feedback.request_done == faulted.number or mind.now >= faulted.until:
+        mind.say(
+            EventKind.FAULT_RAISED,
+            f"The fault is still there: {faulted.reason.message}",
+            code=faulted.reason.code,
+        )
+        return Turn(Faulted(faulted.reason))
+    request = DriveRequest(faulted.number, RequestKind.RESET_FAULT)
+    return Turn(faulted, DriveCommand(request=request))
+
+
+def _clear(mind: Mind, feedback: Feedback) -> None:
+    """Hold again, unless the limit switches still contradict each other."""
+    wiring = wiring_fault(mind.config.name, feedback)
+    if wiring is not None:
+        mind.activity = Faulted(wiring)
+        mind.say(EventKind.FAULT_RAISED, f"The fault is still there: {wiring.message}", code=wiring.code)
+        return
+    mind.activity = HOLDING
+    mind.remember(fault_code=None, fault_text="")
+    mind.say(EventKind.FAULT_RESET, "The fault is reset.")

@@ -1,0 +1,156 @@
+"""Following the selected mode: run to zero whenever the panel is about to leave the deadband.
+
+The target is judged against the deadband less a margin, so that the panel stays *within* the deadband: the
+sun moves 0.0042 degrees a second, and a run takes a second or two.
+"""
+
+from math import cos, radians, sin
+
+from app.sun.position import Location, SunPosition
+from app.tracker.activities.moving import not_arrived
+from app.tracker.activity import AxisPair, Run, Tracking, TrackPhase
+from app.tracker.conditions import Action, demand, on_time, unmet
+from app.tracker.config import NightBehaviour, Orientation, TrackerConfig
+from app.tracker.mind import HALTED, Mind, Turn
+from app.tracker.mode import Mode
+from app.tracker.motion import Feedback
+from app.tracker.mount import AxisTarget, aim, mode_direction, needs_move
+from app.tracker.observation import Observation
+from app.tracker.reason import Reason
+from app.tracker.runs import arrived, new_run
+from app.tracker.snapshot import EventKind
+from app.tracker.transitions import fail, interrupt
+
+SUN_DPS = 15.0 / 3600.0
+TWILIGHT_DEG = -1.0
+"""The sun is followed along the horizon from here on, so that the panel faces it when it rises."""
+MARGIN_SHARE = 0.2
+MARGIN_DEG = 0.1
+UNWIND_DEG = 180.0
+
+TRACKING = {phase: Tracking(phase) for phase in TrackPhase}
+
+
+def track(mind: Mind) -> None:
+    """Follow the selected mode from now on, or raise `CommandRejected`."""
+    demand(mind, Action.TRACK)
+    mind.wait = None
+    if isinstance(mind.activity, Tracking):
+        return
+    mind.activity = TRACKING[TrackPhase.FOLLOWING]
+    mind.remember(tracking_on=True)
+    mind.say(EventKind.TRACKING_STARTED, f"Tracking started, mode {mind.memory.mode}.", mode=mind.memory.mode)
+
+
+def resume(mind: Mind) -> None:
+    """After a restart: go on tracking if it was on and all is trusted, else wait and say for what."""
+    if not mind.memory.tracking_on:
+        return
+    reasons = unmet(mind, Action.TRACK)
+    if not reasons:
+        mind.activity = TRACKING[TrackPhase.FOLLOWING]
+        mind.say(EventKind.TRACKING_RESUMED, "Tracking goes on after the restart.", mode=mind.memory.mode)
+        return
+    mind.wait = reasons[0]
+    why = " ".join(reason.message for reason in reasons)
+    mind.say(EventKind.TRACKING_WAITING, f"Tracking waits for the operator: {why}")
+
+
+def step(mind: Mind, tracking: Tracking, feedback: Feedback, seen: Observation) -> Turn:
+    """Return a run to the target where the panel is about to leave the deadband, else hold."""
+    sun, mode = seen.sun, mind.memory.mode
+    if sun is None or mode is None or not seen.clock_trusted:
+        interrupt(mind, on_time(mind) or _SUN_UNKNOWN)
+        return Turn(mind.activity, HALTED, None, sun)
+    if tracking.run is not None and not arrived(tracking.run.target, feedback, mind.config.in_position_deg):
+        return _go_on(mind, tracking, tracking.run, wanted(mind, mode, sun, seen), sun)
+    direction = wanted(mind, mode, sun, seen)
+    if direction is None:
+        return Turn(TRACKING[TrackPhase.NIGHT], HALTED, None, sun)
+    night = is_night(mind.config, mode, sun)
+    near_deg = _night_near_deg(mind.config, seen) if night else feedback.azimuth.position_deg
+    target = aim(mind.config, mind.memory.pointing, direction, near_deg)
+    phase = TrackPhase.NIGHT if night else _phase(mind.config, mode, direction, target)
+    if not off_target(mind.config, feedback, target):
+        return Turn(TRACKING[phase], HALTED, direction, sun)
+    run = new_run(mind.config, feedback, AxisPair(target.azimuth_deg, target.elevation_deg), mind.now)
+    return Turn(Tracking(phase, run), run.command, direction, sun)
+
+
+def wanted(mind: Mind, mode: Mode, sun: SunPosition, seen: Observation) -> Orientation | None:
+    """Return where the panel should face, in the sky; None: wherever it is."""
+    config, held = mind.config, mind.memory.orientation
+    if not is_night(config, mode, sun):
+        return mode_direction(mode, held, sun, refraction=config.refraction)
+    match config.night:
+        case NightBehaviour.HOLD:
+            return None
+        case NightBehaviour.PARK:
+            return config.park
+        case NightBehaviour.SUNRISE:
+            if seen.dawn is None:
+                return None
+            return mode_direction(mode, held, seen.dawn, refraction=config.refraction)
+
+
+def is_night(config: TrackerConfig, mode: Mode, sun: SunPosition) -> bool:
+    """Return whether the sun is too low to be followed; a fixed panel knows no night."""
+    return mode is not Mode.FIXED and sun_height_deg(config, sun) < TWILIGHT_DEG
+
+
+def sun_height_deg(config: TrackerConfig, sun: SunPosition) -> float:
+    """Return the elevation that this tracker goes by: apparent if it refracts."""
+    return sun.apparent_elevation_deg if config.refraction else sun.elevation_deg
+
+
+def trigger_deg(config: TrackerConfig) -> float:
+    """Return the error at which a run begins: the deadband less a margin."""
+    return config.deadband_deg - min(MARGIN_DEG, MARGIN_SHARE * config.deadband_deg)
+
+
+def off_target(config: TrackerConfig, feedback: Feedback, target: AxisTarget) -> bool:
+    """Return whether the panel is about to leave the deadband, or stands a turn of the cable away."""
+    measured = Orientation(feedback.azimuth.position_deg, feedback.elevation.position_deg)
+    if abs(measured.azimuth_deg - target.azimuth_deg) > UNWIND_DEG:
+        return True
+    place = Orientation(target.azimuth_deg, target.elevation_deg)
+    return needs_move(config, measured, place, trigger_deg(config))
+
+
+def _go_on(mind: Mind, tracking: Tracking, run: Run, target: Orientation | None, sun: SunPosition) -> Turn:
+    if mind.now >= run.until:
+        fail(mind, not_arrived(mind))
+        return Turn(mind.activity, HALTED, target, sun)
+    return Turn(tracking, run.command, target, sun)
+
+
+def _phase(config: TrackerConfig, mode: Mode, direction: Orientation, target: AxisTarget) -> TrackPhase:
+    if mode is Mode.FIXED:
+        return TrackPhase.FIXED
+    if target.limited:
+        return TrackPhase.LIMITED
+    if config.azimuth.speed_dps * cos(radians(direction.elevation_deg)) < SUN_DPS:
+        return TrackPhase.KEYHOLE
+    return TrackPhase.FOLLOWING
+
+
+def _night_near_deg(config: TrackerConfig, seen: Observation) -> float:
+    """Return the end of the azimuth range from which the coming day can be followed without unwinding.
+
+    Where the sun passes south of the zenith its azimuth grows, so the day begins low; elsewhere it falls.
+    """
+    if seen.dawn is None or seen.location is None:
+        return config.azimuth.minimum_deg
+    grows = _passes_south(seen.location, seen.dawn)
+    return config.azimuth.minimum_deg if grows else config.azimuth.maximum_deg
+
+
+def _passes_south(location: Location, dawn: SunPosition) -> bool:
+    """Return whether the latitude lies north of the sun's declination, taken from its rising azimuth."""
+    latitude = radians(location.latitude_deg)
+    return sin(latitude) > cos(latitude) * cos(radians(dawn.azimuth_deg))
+
+
+_SUN_UNKNOWN = Reason(
+    "sun_unknown", "The position of the sun is not known.", "Set location and clock in steps 1 and 2."
+)

@@ -1,0 +1,142 @@
+"""Where zero is: set by hand, axis by axis and read back, or searched by the drive itself."""
+
+from datetime import timedelta
+from typing import assert_never
+
+from app.tracker.activity import HOLDING, Homing, Zeroing
+from app.tracker.axes import Axis
+from app.tracker.commands import CommandRejected, SetZero
+from app.tracker.conditions import Action, demand
+from app.tracker.guards import axis_feedback
+from app.tracker.memory import HomeTrust, StepName
+from app.tracker.mind import HALTED, NOWHERE, Mind, Turn
+from app.tracker.motion import DriveCommand, DriveRequest, Feedback, RequestKind
+from app.tracker.reason import Reason
+from app.tracker.runs import at_rest
+from app.tracker.selection import confirm_step
+from app.tracker.snapshot import EventKind
+from app.tracker.transitions import lose_home
+
+ZERO_PATIENCE = timedelta(seconds=5)
+HOMING_GRACE_S = 60.0
+ZERO_TOLERANCE_DEG = 0.05
+_REQUESTS = {
+    Axis.AZIMUTH: RequestKind.SET_ZERO_AZIMUTH,
+    Axis.ELEVATION: RequestKind.SET_ZERO_ELEVATION,
+}
+
+
+def set_zero(mind: Mind, command: SetZero) -> None:
+    """Begin to call the present position zero, or raise `CommandRejected`."""
+    demand(mind, Action.ZERO)
+    axes = tuple(axis for axis in Axis if axis in command.axes)
+    if not axes:
+        raise CommandRejected(
+            Reason("no_axis", "No axis was named to be set as zero.", "Name azimuth, elevation or both.")
+        )
+    mind.setpoint = NOWHERE
+    until = mind.now + ZERO_PATIENCE
+    mind.activity = Zeroing(axes, axes, mind.next_request(), until, mind.actor)
+
+
+def home(mind: Mind) -> None:
+    """Begin the search for the origin switches, or raise `CommandRejected`. The old zero is given up."""
+    demand(mind, Action.HOME)
+    mind.setpoint = NOWHERE
+    mind.zeroed = frozenset()
+    mind.remember(home=None, home_lost="the search for the origin switches was not finished.")
+    mind.activity = Homing(mind.next_request(), mind.now + _homing_time(mind), mind.actor)
+    mind.say(EventKind.HOMING_STARTED, "The drive searches for its origin switches.")
+
+
+def step(mind: Mind, activity: Zeroing | Homing, feedback: Feedback) -> Turn:
+    """Go on with setting zero or with the drive's search."""
+    match activity:
+        case Zeroing():
+            return _zeroing(mind, activity, feedback)
+        case Homing():
+            return _homing(mind, activity, feedback)
+    assert_never(activity)
+
+
+def _zeroing(mind: Mind, zeroing: Zeroing, feedback: Feedback) -> Turn:
+    """Have the drive set one axis after the other to zero, then read both back."""
+    if feedback.request_done != zeroing.number:
+        if mind.now >= zeroing.until:
+            return _zero_failed(mind, "the drive did not answer in time.")
+        request = DriveRequest(zeroing.number, _REQUESTS[zeroing.pending[0]])
+        return Turn(zeroing, DriveCommand(request=request))
+    if feedback.request_failed:
+        return _zero_failed(mind, f"the drive refused it for the {zeroing.pending[0]} axis.")
+    pending = zeroing.pending[1:]
+    if not pending:
+        return _read_back(mind, zeroing, feedback)
+    until = mind.now + ZERO_PATIENCE
+    zeroing = Zeroing(zeroing.axes, pending, mind.next_request(), until, zeroing.actor)
+    request = DriveRequest(zeroing.number, _REQUESTS[pending[0]])
+    return Turn(zeroing, DriveCommand(request=request))
+
+
+def _homing(mind: Mind, homing: Homing, feedback: Feedback) -> Turn:
+    """Wait for the drive's search; one that fails or takes too long leaves the tracker without a zero."""
+    if feedback.request_done != homing.number:
+        if mind.now >= homing.until:
+            return _homing_failed(mind, "it took too long.")
+        return Turn(homing, DriveCommand(request=DriveRequest(homing.number, RequestKind.HOME)))
+    if feedback.request_failed:
+        return _homing_failed(mind, "the drive did not find them.")
+    if not at_rest(feedback):
+        return Turn(homing)
+    if not (feedback.azimuth.homed and feedback.elevation.homed):
+        return _homing_failed(mind, "the drive does not report both axes as homed.")
+    mind.zeroed = frozenset(Axis)
+    mind.activity = HOLDING
+    mind.say(EventKind.HOMING_ENDED, "Both axes have found their origin switches.", outcome="homed")
+    _trust(mind, feedback, homing.actor, "origin switches")
+    return Turn(HOLDING)
+
+
+def _read_back(mind: Mind, zeroing: Zeroing, feedback: Feedback) -> Turn:
+    for axis in zeroing.axes:
+        seen = axis_feedback(feedback, axis)
+        if abs(seen.position_deg) > max(ZERO_TOLERANCE_DEG, mind.config.in_position_deg):
+            why = f"the {axis} axis reads {seen.position_deg:.2f} degrees instead of 0."
+            return _zero_failed(mind, why)
+        if not seen.homed:
+            return _zero_failed(mind, f"the drive does not report the {axis} axis as homed.")
+    mind.zeroed |= frozenset(zeroing.axes)
+    mind.activity = HOLDING
+    named = " and ".join(zeroing.axes)
+    mind.say(EventKind.ZERO_SET, f"Zero set for {named}, and read back.", axes=list(zeroing.axes))
+    if mind.zeroed == frozenset(Axis) and feedback.azimuth.homed and feedback.elevation.homed:
+        _trust(mind, feedback, zeroing.actor, "set by hand")
+    return Turn(HOLDING)
+
+
+def _trust(mind: Mind, feedback: Feedback, actor: str, how: str) -> None:
+    trust = HomeTrust(mind.site_time, actor, how, feedback.boot_count)
+    mind.remember(home=trust, home_lost="")
+    confirm_step(mind, StepName.HOMING, actor)
+
+
+def _zero_failed(mind: Mind, why: str) -> Turn:
+    mind.activity = HOLDING
+    mind.say(EventKind.ZERO_FAILED, f"Zero was not set: {why} Stand still and press Set as zero again.")
+    lose_home(mind, Reason("zero_failed", why))
+    return Turn(HOLDING)
+
+
+def _homing_failed(mind: Mind, why: str) -> Turn:
+    mind.activity = HOLDING
+    mind.remember(home_lost=f"the search for the origin switches failed: {why}")
+    mind.say(EventKind.HOMING_ENDED, f"The origin switches were not found: {why}", outcome="failed")
+    return Turn(HOLDING, HALTED)
+
+
+def _homing_time(mind: Mind) -> timedelta:
+    """Return twice the time for both full ranges at the slow hand speed, and a minute."""
+    seconds = HOMING_GRACE_S
+    for axis in Axis:
+        config = mind.config.axis(axis)
+        seconds += 2.0 * (config.maximum_deg - config.minimum_deg) / config.jog_slow_dps
+    return timedelta(seconds=seconds)

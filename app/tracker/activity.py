@@ -1,0 +1,146 @@
+"""What a tracker is doing: a sum type, each member with its own data and nothing else."""
+
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from enum import StrEnum
+from typing import Literal
+
+from app.tracker.axes import Axis, JogSpeed
+from app.tracker.motion import DriveCommand
+from app.tracker.programs.show import ShowCourse
+from app.tracker.reason import Reason
+from app.tracker.snapshot import ActivityName, ShowPhase
+
+
+class MoveKind(StrEnum):
+    """Who asked for a move."""
+
+    MOVE = "move"
+    PARK = "park"
+    STEP = "step"
+
+
+class TrackPhase(StrEnum):
+    """What tracking is doing at the moment."""
+
+    FOLLOWING = "following"
+    LIMITED = "limited"
+    KEYHOLE = "keyhole"
+    FIXED = "fixed"
+    NIGHT = "night"
+
+
+@dataclass(frozen=True, slots=True)
+class AxisPair:
+    """Azimuth and elevation in degrees of the axes (not wrapped); None: this axis is not meant."""
+
+    azimuth_deg: float | None
+    elevation_deg: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One motion of both axes to a fixed place; it must have arrived by `until`."""
+
+    target: AxisPair
+    command: DriveCommand
+    until: datetime
+
+
+@dataclass(frozen=True, slots=True)
+class Holding:
+    """At rest, or coming to rest; the axes are halted."""
+
+
+@dataclass(frozen=True, slots=True)
+class Jogging:
+    """One axis turns by hand until the lease ends; `sequence` is that of the last renewal."""
+
+    press_id: str
+    axis: Axis
+    direction: Literal[-1, 1]
+    speed: JogSpeed
+    sequence: int
+    until: datetime
+
+
+@dataclass(frozen=True, slots=True)
+class Moving:
+    """Going to a place, to stay there."""
+
+    kind: MoveKind
+    run: Run
+    actor: str
+
+
+@dataclass(frozen=True, slots=True)
+class Zeroing:
+    """The drive is told, axis by axis, that here is zero; `number` is the request under way."""
+
+    axes: tuple[Axis, ...]
+    pending: tuple[Axis, ...]
+    number: int
+    until: datetime
+    actor: str
+
+
+@dataclass(frozen=True, slots=True)
+class Homing:
+    """The drive searches its origin switches by itself."""
+
+    number: int
+    until: datetime
+    actor: str
+
+
+@dataclass(frozen=True, slots=True)
+class Tracking:
+    """Following the selected mode; `run` is a motion under way, None while within the deadband."""
+
+    phase: TrackPhase = TrackPhase.FOLLOWING
+    run: Run | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Showing:
+    """A show; `elapsed` of its own time has run when it was last looked at, at `at`."""
+
+    course: ShowCourse
+    phase: ShowPhase
+    run: Run | None
+    elapsed: timedelta
+    at: datetime
+    actor: str
+
+
+@dataclass(frozen=True, slots=True)
+class Stopping:
+    """Coming to rest after a stop."""
+
+
+@dataclass(frozen=True, slots=True)
+class Faulted:
+    """A latched fault; `number` is a reset request under way, to be answered by `until`."""
+
+    reason: Reason
+    number: int | None = None
+    until: datetime | None = None
+
+
+Unfaulted = Holding | Jogging | Moving | Zeroing | Homing | Tracking | Showing | Stopping
+Activity = Unfaulted | Faulted
+
+NAMES: dict[type[Activity], ActivityName] = {
+    Holding: ActivityName.HOLDING,
+    Jogging: ActivityName.JOGGING,
+    Moving: ActivityName.MOVING,
+    Zeroing: ActivityName.ZEROING,
+    Homing: ActivityName.HOMING,
+    Tracking: ActivityName.TRACKING,
+    Showing: ActivityName.SHOWING,
+    Stopping: ActivityName.STOPPING,
+    Faulted: ActivityName.FAULTED,
+}
+
+HOLDING = Holding()
+STOPPING = Stopping()

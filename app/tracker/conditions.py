@@ -1,0 +1,252 @@
+"""Which conditions every action needs: one table, read by `handle` and by the snapshot's `actions` alike."""
+
+from collections.abc import Callable
+from enum import StrEnum
+
+from app.tracker.activity import NAMES, Faulted, Showing
+from app.tracker.commands import CommandRejected
+from app.tracker.memory import StepName
+from app.tracker.mind import Mind
+from app.tracker.motion import Feedback
+from app.tracker.reason import Reason
+from app.tracker.runs import at_rest
+from app.tracker.snapshot import ActivityName, ShowPhase
+
+Condition = Callable[[Mind], Reason | None]
+
+
+class Action(StrEnum):
+    """What can be asked of a tracker, by the names of `Snapshot.actions`."""
+
+    JOG = "jog"
+    STEP = "step"
+    ZERO = "zero"
+    HOME = "home"
+    SET_MODE = "set_mode"
+    MOVE = "move"
+    PARK = "park"
+    TRACK = "track"
+    GO_TO_START = "go_to_start"
+    RUN_SHOW = "run_show"
+    PAUSE_SHOW = "pause_show"
+    RESUME_SHOW = "resume_show"
+    STOP_SHOW = "stop_show"
+    STOP = "stop"
+    RESET_FAULT = "reset_fault"
+
+
+def unmet(mind: Mind, action: Action) -> tuple[Reason, ...]:
+    """Return every condition that forbids an action now; empty: it is allowed."""
+    return tuple(reason for condition in REQUIRED[action] if (reason := condition(mind)) is not None)
+
+
+def demand(mind: Mind, action: Action, *more: Reason | None) -> None:
+    """Raise `CommandRejected` with every unmet condition of an action and what else speaks against it."""
+    reasons = unmet(mind, action) + tuple(reason for reason in more if reason is not None)
+    if reasons:
+        raise CommandRejected(*reasons)
+
+
+def demand_drive(mind: Mind, action: Action, *more: Reason | None) -> Feedback:
+    """Return the last reading for an action that needs one, or raise `CommandRejected` as `demand` does."""
+    demand(mind, action, *more)
+    if mind.feedback is None:
+        raise CommandRejected(_unreachable(mind))
+    return mind.feedback
+
+
+def reachable(mind: Mind) -> Reason | None:
+    """Return that the drive does not answer."""
+    return None if mind.feedback is not None and not mind.lost else _unreachable(mind)
+
+
+def _unreachable(mind: Mind) -> Reason:
+    return Reason(
+        "drive_unreachable",
+        f"The drive of {mind.config.name} does not answer.",
+        "Check its power and its network cable; it is tried again by itself.",
+    )
+
+
+def sound(mind: Mind) -> Reason | None:
+    """Return the latched fault."""
+    if not isinstance(mind.activity, Faulted):
+        return None
+    return Reason(
+        "fault",
+        f"{mind.config.name} has stopped with a fault: {mind.activity.reason.message}",
+        mind.activity.reason.hint,
+    )
+
+
+def faulted(mind: Mind) -> Reason | None:
+    """Return that there is no fault to reset."""
+    if isinstance(mind.activity, Faulted):
+        return None
+    return Reason("no_fault", f"{mind.config.name} has no fault to reset.", "Nothing has to be done.")
+
+
+def resting(mind: Mind) -> Reason | None:
+    """Return that an axis still moves."""
+    if mind.feedback is None or at_rest(mind.feedback):
+        return None
+    return Reason(
+        "axes_moving", f"The axes of {mind.config.name} still move.", "Wait until both stand still."
+    )
+
+
+def homed(mind: Mind) -> Reason | None:
+    """Return that no zero is trusted, and why if one was lost."""
+    if mind.memory.home is not None:
+        return None
+    lost = f": {mind.memory.home_lost}" if mind.memory.home_lost else "."
+    return Reason(
+        "home_not_trusted",
+        f"{mind.config.name} has no trusted zero{lost}",
+        "Go to step 3, Homing, and set the zero.",
+    )
+
+
+def self_homing(mind: Mind) -> Reason | None:
+    """Return that the drive cannot search for its origin."""
+    if mind.capabilities.automatic_homing:
+        return None
+    return Reason(
+        "no_origin_switches",
+        f"The drive of {mind.config.name} has no origin switches to search for.",
+        "Turn the panel to north and the horizon by hand, then press Set as zero.",
+    )
+
+
+def located(mind: Mind) -> Reason | None:
+    """Return that the site's location is not known."""
+    if mind.seen is not None and mind.seen.location is not None:
+        return None
+    return Reason("location_unknown", "The site has no location yet.", "Go to step 1, Location.")
+
+
+def on_time(mind: Mind) -> Reason | None:
+    """Return that the site's clock is not to be relied on."""
+    if mind.seen is not None and mind.seen.clock_trusted:
+        return None
+    return Reason(
+        "clock_untrusted", "The site's clock is not trusted.", "Go to step 2, Clock, and set or confirm it."
+    )
+
+
+def mode_selected(mind: Mind) -> Reason | None:
+    """Return that no mode has been selected."""
+    if mind.memory.mode is not None:
+        return None
+    return Reason("mode_not_selected", f"No mode is selected for {mind.config.name}.", "Go to step 4, Mode.")
+
+
+def confirmed(step: StepName, number: int) -> Condition:
+    """Return the condition that a step was not saved for a former location."""
+
+    def condition(mind: Mind) -> Reason | None:
+        saved = mind.memory.confirmations.get(step)
+        if saved is None or mind.seen is None or saved.location_revision >= mind.seen.location_revision:
+            return None
+        return Reason(
+            f"{step}_to_be_confirmed",
+            f"The location has changed since step {number}, {step}, was saved for {mind.config.name}.",
+            f"Go to step {number} and confirm it.",
+        )
+
+    return condition
+
+
+def while_(*allowed: ActivityName) -> Condition:
+    """Return the condition that the tracker is doing one of these (a fault is `sound`'s business)."""
+
+    def condition(mind: Mind) -> Reason | None:
+        doing = NAMES[type(mind.activity)]
+        if doing in allowed or doing is ActivityName.FAULTED:
+            return None
+        words, hint = _DOING[doing]
+        return Reason(f"busy_{doing}", f"{mind.config.name} {words}.", hint)
+
+    return condition
+
+
+def showing(*phases: ShowPhase) -> Condition:
+    """Return the condition that a show is in one of these phases."""
+
+    def condition(mind: Mind) -> Reason | None:
+        if isinstance(mind.activity, Showing) and mind.activity.phase in phases:
+            return None
+        phase = mind.activity.phase if isinstance(mind.activity, Showing) else None
+        return Reason("show_phase", f"{mind.config.name} {_SHOW_IS[phase]}.", _SHOW_HINT[phases[0]])
+
+    return condition
+
+
+def not_in_a_show(mind: Mind) -> Reason | None:
+    """Return that a show is under way, which would have to be stopped first."""
+    if isinstance(mind.activity, Showing) and mind.activity.phase in (ShowPhase.RUNNING, ShowPhase.PAUSED):
+        return Reason(
+            "show_running", f"{mind.config.name} {_SHOW_IS[mind.activity.phase]}.", "Stop the show first."
+        )
+    return None
+
+
+_STOP_FIRST = "Press Stop first."
+_DOING = {
+    ActivityName.HOLDING: ("stands still", "Nothing has to be done."),
+    ActivityName.JOGGING: ("is being moved by hand", "Let the key go first."),
+    ActivityName.MOVING: ("is moving to a position", "Wait until it has arrived, or press Stop."),
+    ActivityName.ZEROING: ("is setting its zero", "Wait until it has finished."),
+    ActivityName.HOMING: (
+        "is searching for its origin switches",
+        "Wait until it has finished, or press Stop.",
+    ),
+    ActivityName.TRACKING: ("is tracking", _STOP_FIRST),
+    ActivityName.SHOWING: ("is busy with a show", "Stop the show first."),
+    ActivityName.STOPPING: ("is coming to rest", "Wait until both axes stand still."),
+}
+_SHOW_IS = {
+    None: "has no show under way",
+    ShowPhase.GOING_TO_START: "is still going to the start of the show",
+    ShowPhase.READY: "stands at the start of a show that has not begun",
+    ShowPhase.RUNNING: "is running a show",
+    ShowPhase.PAUSED: "has paused a show",
+}
+_SHOW_HINT = {
+    ShowPhase.GOING_TO_START: "Nothing has to be stopped.",
+    ShowPhase.READY: "Press Go to start position and wait until the panel is there.",
+    ShowPhase.RUNNING: "Only a running show can be paused.",
+    ShowPhase.PAUSED: "Only a paused show can go on.",
+}
+
+_HOLD, _JOG, _MOVE = ActivityName.HOLDING, ActivityName.JOGGING, ActivityName.MOVING
+_TRACK, _SHOW, _STOPPING = ActivityName.TRACKING, ActivityName.SHOWING, ActivityName.STOPPING
+_CAN_MOVE = (reachable, sound, homed)
+
+REQUIRED: dict[Action, tuple[Condition, ...]] = {
+    Action.JOG: (reachable, sound, while_(_HOLD, _JOG)),
+    Action.STEP: (reachable, sound, while_(_HOLD)),
+    Action.ZERO: (reachable, sound, while_(_HOLD), resting),
+    Action.HOME: (reachable, sound, self_homing, while_(_HOLD), resting),
+    Action.SET_MODE: (while_(_HOLD, _JOG, _MOVE, _STOPPING),),
+    Action.MOVE: (*_CAN_MOVE, while_(_HOLD, _MOVE, _TRACK)),
+    Action.PARK: (*_CAN_MOVE, while_(_HOLD, _MOVE, _TRACK)),
+    Action.TRACK: (
+        *_CAN_MOVE,
+        located,
+        on_time,
+        mode_selected,
+        confirmed(StepName.HOMING, 3),
+        confirmed(StepName.MODE, 4),
+        while_(_HOLD, _MOVE, _TRACK),
+    ),
+    Action.GO_TO_START: (*_CAN_MOVE, while_(_HOLD, _MOVE, _TRACK, _SHOW), not_in_a_show),
+    Action.RUN_SHOW: (*_CAN_MOVE, showing(ShowPhase.READY)),
+    Action.PAUSE_SHOW: (showing(ShowPhase.RUNNING),),
+    Action.RESUME_SHOW: (showing(ShowPhase.PAUSED),),
+    Action.STOP_SHOW: (
+        showing(ShowPhase.GOING_TO_START, ShowPhase.READY, ShowPhase.RUNNING, ShowPhase.PAUSED),
+    ),
+    Action.STOP: (),
+    Action.RESET_FAULT: (reachable, faulted),
+}

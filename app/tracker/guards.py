@@ -1,0 +1,126 @@
+"""What one reading of the drive says against going on. Each guard returns a reason, or None."""
+
+from app.tracker.axes import Axis, AxisConfig
+from app.tracker.config import TrackerConfig
+from app.tracker.follow import AxisWatch
+from app.tracker.memory import HomeTrust
+from app.tracker.motion import (
+    AxisCommand,
+    AxisFeedback,
+    Feedback,
+    Halt,
+    Position,
+    Velocity,
+)
+from app.tracker.reason import Reason
+
+JUMP_FACTOR = 1.5
+JUMP_NOISE_DEG = 0.5
+
+
+def axis_feedback(feedback: Feedback, axis: Axis) -> AxisFeedback:
+    """Return what one axis reports."""
+    return feedback.azimuth if axis is Axis.AZIMUTH else feedback.elevation
+
+
+def drive_fault(name: str, feedback: Feedback) -> Reason | None:
+    """Return the drive's own fault."""
+    if feedback.fault_code == 0:
+        return None
+    return Reason(
+        "drive_fault",
+        f"The drive of {name} reports fault code {feedback.fault_code}.",
+        "Look the code up in the drive's manual, remove the cause, then press Reset fault.",
+    )
+
+
+def wiring_fault(name: str, feedback: Feedback) -> Reason | None:
+    """Return the axis whose two limit switches are pressed at once, which no position can do."""
+    for axis in Axis:
+        seen = axis_feedback(feedback, axis)
+        if seen.at_lower_limit and seen.at_upper_limit:
+            return Reason(
+                "limit_switch_wiring",
+                f"Both limit switches of {name}'s {axis} axis are pressed at once, which cannot be.",
+                "Check the wiring of the switches, then press Reset fault.",
+            )
+    return None
+
+
+def restart(name: str, before: Feedback, feedback: Feedback) -> Reason | None:
+    """Return that the drive has restarted between two readings."""
+    if before.boot_count == feedback.boot_count:
+        return None
+    return Reason(
+        "drive_restarted",
+        f"The drive of {name} has restarted, so its zero is no longer believed.",
+        "Go to step 3, Homing, and set the zero again.",
+    )
+
+
+def home_doubt(name: str, home: HomeTrust, feedback: Feedback) -> Reason | None:
+    """Return why a zero that was trusted no longer is, judged from one reading."""
+    if home.boot_count != feedback.boot_count:
+        return Reason(
+            "drive_restarted",
+            f"The drive of {name} has restarted since the zero was set.",
+            "Go to step 3, Homing, and set the zero again.",
+        )
+    for axis in Axis:
+        if not axis_feedback(feedback, axis).homed:
+            return Reason(
+                "not_homed",
+                f"The drive of {name} reports that its {axis} axis has lost its zero.",
+                "Go to step 3, Homing, and set the zero again.",
+            )
+    return None
+
+
+def jump(config: TrackerConfig, before: Feedback, feedback: Feedback, elapsed_s: float) -> Reason | None:
+    """Return an axis whose position changed by more than it can have moved."""
+    for axis in Axis:
+        moved_deg = abs(axis_feedback(feedback, axis).position_deg - axis_feedback(before, axis).position_deg)
+        if moved_deg > config.axis(axis).speed_dps * elapsed_s * JUMP_FACTOR + JUMP_NOISE_DEG:
+            return Reason(
+                "encoder_jump",
+                f"The {axis} position of {config.name} jumped by {moved_deg:.1f} degrees.",
+                "Check the encoder and its cable, then set the zero again in step 3, Homing.",
+            )
+    return None
+
+
+def not_following(name: str, axis: Axis, watch: AxisWatch) -> Reason:
+    """Return that an axis stays behind its command."""
+    return Reason(
+        "following_error",
+        f"The {axis} axis of {name} does not follow its command: it is {abs(watch.error_deg):.1f} "
+        "degrees behind.",
+        "Look for something that blocks the axis, check motor and coupling, then press Reset fault.",
+    )
+
+
+def wrong_way(name: str, axis: Axis) -> Reason:
+    """Return that an axis moves against its command."""
+    return Reason(
+        "wrong_direction",
+        f"The {axis} axis of {name} moves opposite to its command.",
+        "Check the motor's phases and the direction set in the drive, reset the fault, set the zero again.",
+    )
+
+
+def heads_into_switch(command: AxisCommand, seen: AxisFeedback, tolerance_deg: float) -> bool:
+    """Return whether a command would move an axis further towards a limit switch that is pressed."""
+    match command:
+        case Halt():
+            return False
+        case Velocity():
+            heading = command.velocity_dps
+        case Position():
+            away_deg = command.position_deg - seen.position_deg
+            heading = away_deg if abs(away_deg) > tolerance_deg else 0.0
+    return (heading > 0.0 and seen.at_upper_limit) or (heading < 0.0 and seen.at_lower_limit)
+
+
+def room_deg(config: AxisConfig, position_deg: float, direction: int) -> float:
+    """Return how far an axis may still turn in a direction before its soft limit; negative: beyond it."""
+    return config.maximum_deg - position_deg if direction > 0 else position_deg - config.minimum_deg

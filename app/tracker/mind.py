@@ -1,0 +1,122 @@
+"""What one tracker has in mind between two ticks, and the few ways to change it."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from datetime import UTC, datetime
+from typing import Any, NamedTuple
+
+from app.sun.position import SunPosition
+from app.tracker.activity import HOLDING, Activity, AxisPair
+from app.tracker.axes import Axis
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.follow import AxisWatch
+from app.tracker.memory import TrackerMemory
+from app.tracker.motion import DriveCapabilities, DriveCommand, Feedback, Velocity
+from app.tracker.observation import Observation
+from app.tracker.reason import Reason
+from app.tracker.snapshot import Event, EventKind
+
+HALTED = DriveCommand()
+STANDING = DriveCommand(Velocity(0.0), Velocity(0.0))
+"""Stands still like `HALTED`, and also ends a search for the origin switches that the drive still pursues."""
+NOWHERE = AxisPair(None, None)
+LONG_AGO = datetime(1970, 1, 1, tzinfo=UTC)
+PRESSES_REMEMBERED = 1000
+LAST_REQUEST_NUMBER = 30_000
+"""Request numbers stay within 16 bits: drives keep them in a register."""
+
+
+class Turn(NamedTuple):
+    """What an activity wants at one tick. `target` is of the sky, `sun` the sun that is followed."""
+
+    activity: Activity
+    command: DriveCommand = HALTED
+    target: Orientation | None = None
+    sun: SunPosition | None = None
+
+
+class Mind:
+    """State of one tracker. Activities read it and change it by `say`, `remember` and `kill_press`."""
+
+    __slots__ = (
+        "activity",
+        "actor",
+        "capabilities",
+        "command",
+        "config",
+        "dead_presses",
+        "events",
+        "feedback",
+        "feedback_at",
+        "lost",
+        "memory",
+        "misses",
+        "now",
+        "request_number",
+        "seen",
+        "setpoint",
+        "site_time",
+        "started_at",
+        "sun",
+        "target",
+        "ticks",
+        "wait",
+        "watches",
+        "zeroed",
+    )
+
+    def __init__(self, config: TrackerConfig, memory: TrackerMemory, capabilities: DriveCapabilities) -> None:
+        self.config = config
+        self.memory = memory
+        self.capabilities = capabilities
+        self.activity: Activity = HOLDING
+        self.actor = "machine"
+        self.now = LONG_AGO
+        self.site_time = LONG_AGO
+        self.started_at: datetime | None = None
+        self.seen: Observation | None = None
+        self.feedback: Feedback | None = None
+        self.feedback_at: datetime | None = None
+        self.misses = 0
+        self.lost = False
+        self.wait: Reason | None = None
+        self.command = HALTED
+        self.setpoint = NOWHERE
+        self.target: Orientation | None = None
+        self.sun: SunPosition | None = None
+        self.events: list[Event] = []
+        self.dead_presses: dict[str, None] = {}
+        self.request_number = 0
+        self.zeroed: frozenset[Axis] = frozenset(Axis) if memory.home else frozenset()
+        self.watches: Mapping[Axis, AxisWatch] = {}
+        self.ticks = 0
+
+    def say(self, kind: EventKind, message: str, **data: Any) -> None:
+        """Note that something happened; it leaves with the present call's events."""
+        self.events.append(Event(self.site_time, kind, self.config.tracker_id, message, self.actor, data))
+
+    def drain(self) -> tuple[Event, ...]:
+        """Return what happened since the last call, and forget it."""
+        if not self.events:
+            return ()
+        events = tuple(self.events)
+        self.events.clear()
+        return events
+
+    def remember(self, **changes: Any) -> None:
+        """Replace fields of the memory; an unchanged memory stays the same object."""
+        changed = replace(self.memory, **changes)
+        if changed != self.memory:
+            self.memory = changed
+
+    def kill_press(self, press_id: str) -> None:
+        """Make a press dead for ever; only the newest are remembered, older ones fail by their sequence."""
+        self.dead_presses[press_id] = None
+        if len(self.dead_presses) > PRESSES_REMEMBERED:
+            del self.dead_presses[next(iter(self.dead_presses))]
+
+    def next_request(self) -> int:
+        """Return a request number that the drive has not answered yet."""
+        done = self.feedback.request_done if self.feedback else 0
+        self.request_number = max(self.request_number, done) % LAST_REQUEST_NUMBER + 1
+        return self.request_number

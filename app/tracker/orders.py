@@ -1,0 +1,102 @@
+"""Which command is whose: one call each, to the activity that begins with it."""
+
+from typing import assert_never
+
+from app.tracker.activities import faulted, jogging, moving, showing, tracking, zeroing
+from app.tracker.activity import STOPPING, Faulted
+from app.tracker.commands import (
+    Command,
+    EndJog,
+    GoToStart,
+    Home,
+    Jog,
+    Move,
+    Park,
+    PauseShow,
+    ResetFault,
+    ResumeShow,
+    RunShow,
+    SelectMode,
+    SetZero,
+    Step,
+    Stop,
+    StopShow,
+    Track,
+)
+from app.tracker.mind import NOWHERE, Mind
+from app.tracker.selection import select_mode
+from app.tracker.snapshot import EventKind
+from app.tracker.transitions import leave, switch_tracking_off
+
+
+def obey(mind: Mind, command: Command) -> None:
+    """Change the tracker's mind, or raise `CommandRejected` and change nothing but a refused press."""
+    match command:
+        case Stop():
+            stop(mind)
+        case Jog() | EndJog() | Step() | SetZero() | Home() | SelectMode():
+            _obey_by_hand(mind, command)
+        case Move() | Park() | Track() | ResetFault():
+            _obey_automatic(mind, command)
+        case GoToStart() | RunShow() | PauseShow() | ResumeShow() | StopShow():
+            _obey_show(mind, command)
+        case _:
+            assert_never(command)
+
+
+def stop(mind: Mind) -> None:
+    """Stop both axes, end everything, switch tracking off. Never refused; a fault stays a fault."""
+    switch_tracking_off(mind, "the tracker was stopped.")
+    leave(mind, "the tracker was stopped.")
+    mind.setpoint = NOWHERE
+    if not isinstance(mind.activity, Faulted):
+        mind.activity = STOPPING
+    mind.say(EventKind.STOPPED, f"{mind.config.name} was stopped.")
+
+
+def _obey_by_hand(mind: Mind, command: Jog | EndJog | Step | SetZero | Home | SelectMode) -> None:
+    match command:
+        case Jog():
+            jogging.jog(mind, command)
+        case EndJog():
+            jogging.end_jog(mind, command)
+        case Step():
+            moving.step_by(mind, command)
+        case SetZero():
+            zeroing.set_zero(mind, command)
+        case Home():
+            zeroing.home(mind)
+        case SelectMode():
+            select_mode(mind, command)
+        case _:
+            assert_never(command)
+
+
+def _obey_automatic(mind: Mind, command: Move | Park | Track | ResetFault) -> None:
+    match command:
+        case Move():
+            moving.move(mind, command)
+        case Park():
+            moving.park(mind)
+        case Track():
+            tracking.track(mind)
+        case ResetFault():
+            faulted.reset_fault(mind)
+        case _:
+            assert_never(command)
+
+
+def _obey_show(mind: Mind, command: GoToStart | RunShow | PauseShow | ResumeShow | StopShow) -> None:
+    match command:
+        case GoToStart():
+            showing.go_to_start(mind, command)
+        case RunShow():
+            showing.run_show(mind, command)
+        case PauseShow():
+            showing.pause_show(mind)
+        case ResumeShow():
+            showing.resume_show(mind)
+        case StopShow():
+            showing.stop_show(mind)
+        case _:
+            assert_never(command)

@@ -1,0 +1,164 @@
+"""What stands between every reading and every motion: link, drive, zero, encoder, switches, following."""
+
+from datetime import datetime, timedelta
+from typing import assert_never
+
+from app.tracker import guards
+from app.tracker.activity import (
+    Faulted,
+    Holding,
+    Homing,
+    Jogging,
+    Moving,
+    Showing,
+    Stopping,
+    Tracking,
+    Zeroing,
+)
+from app.tracker.axes import Axis
+from app.tracker.follow import watch
+from app.tracker.mind import HALTED, Mind
+from app.tracker.motion import AxisCommand, DriveCommand, Feedback, Halt
+from app.tracker.reason import Reason
+from app.tracker.snapshot import EventKind
+from app.tracker.transitions import fail, interrupt, lose_home
+
+SILENCE = timedelta(seconds=0.6)
+MISSES = 2
+
+
+def miss(mind: Mind, now: datetime) -> None:
+    """Count a reading that failed; after two, or 0.6 s without any, the drive is lost and everything ends."""
+    mind.misses += 1
+    since = mind.feedback_at or mind.started_at or now
+    if mind.lost or (mind.misses < MISSES and now - since <= SILENCE):
+        return
+    mind.lost = True
+    reason = Reason(
+        "drive_lost",
+        f"The drive of {mind.config.name} did not answer.",
+        "Check its power and its network cable; then press Start tracking.",
+    )
+    mind.say(EventKind.DRIVE_LOST, f"The drive of {mind.config.name} does not answer any more.")
+    interrupt(mind, reason)
+
+
+def found(mind: Mind) -> None:
+    """Note a good reading; after a loss say that the drive is back. Nothing resumes by itself."""
+    mind.misses = 0
+    if mind.lost:
+        mind.lost = False
+        mind.say(EventKind.DRIVE_FOUND, f"The drive of {mind.config.name} answers again.")
+
+
+def protect(mind: Mind, before: Feedback | None, feedback: Feedback, elapsed_s: float) -> None:
+    """End what must not go on in the light of a new reading."""
+    if feedback.fault_code or feedback.azimuth.at_upper_limit or feedback.elevation.at_upper_limit:
+        _refuse_fault(mind, feedback)
+    if before is not None and before is not feedback:
+        _compare(mind, before, feedback, elapsed_s)
+    home = mind.memory.home
+    if home is not None and not isinstance(mind.activity, Zeroing):
+        doubt = guards.home_doubt(mind.config.name, home, feedback)
+        if doubt is not None:
+            _doubt_home(mind, doubt)
+
+
+def _refuse_fault(mind: Mind, feedback: Feedback) -> None:
+    """Latch the drive's own fault or contradicting limit switches."""
+    name = mind.config.name
+    reason = guards.drive_fault(name, feedback)
+    if reason is not None:
+        lose_home(mind, reason)
+    else:
+        reason = guards.wiring_fault(name, feedback)
+    if reason is not None and not isinstance(mind.activity, Faulted):
+        fail(mind, reason)
+
+
+def _compare(mind: Mind, before: Feedback, feedback: Feedback, elapsed_s: float) -> None:
+    """Judge what changed between two readings."""
+    restarted = guards.restart(mind.config.name, before, feedback)
+    if restarted is not None:
+        _doubt_home(mind, restarted)
+        return
+    if feedback.watchdog_tripped and not before.watchdog_tripped:
+        _watchdog_tripped(mind)
+    if isinstance(mind.activity, Zeroing | Homing):
+        return
+    jumped = guards.jump(mind.config, before, feedback, elapsed_s)
+    if jumped is not None:
+        _doubt_home(mind, jumped)
+
+
+def _doubt_home(mind: Mind, reason: Reason) -> None:
+    lose_home(mind, reason)
+    interrupt(mind, reason)
+
+
+def _watchdog_tripped(mind: Mind) -> None:
+    """Say that the drive stopped for want of commands; only tracking goes on after that."""
+    reason = Reason(
+        "watchdog_tripped",
+        f"The drive of {mind.config.name} stopped by itself, because no command reached it in time.",
+        "Check the network and the load of the computer.",
+    )
+    match mind.activity:
+        case Holding() | Stopping() | Faulted():
+            return
+        case Tracking():
+            pass
+        case Jogging() | Moving() | Zeroing() | Homing() | Showing():
+            interrupt(mind, reason)
+        case _:
+            assert_never(mind.activity)
+    mind.say(EventKind.STOPPED, reason.message, code=reason.code)
+
+
+def obey_switches(mind: Mind, command: DriveCommand, feedback: Feedback) -> DriveCommand:
+    """Return the command; halted, and the activity ended, if it led on into a pressed limit switch."""
+    tolerance_deg = mind.config.in_position_deg
+    for axis in Axis:
+        told, seen = axis_command(command, axis), guards.axis_feedback(feedback, axis)
+        if guards.heads_into_switch(told, seen, tolerance_deg):
+            reason = Reason(
+                "limit_switch",
+                f"The {axis} axis of {mind.config.name} has reached its limit switch.",
+                "Move it away from the switch by hand and check the zero.",
+            )
+            mind.say(EventKind.LIMIT_REACHED, reason.message, axis=axis)
+            interrupt(mind, reason)
+            return HALTED
+    return command
+
+
+def axis_command(command: DriveCommand, axis: Axis) -> AxisCommand:
+    """Return what one axis is told."""
+    return command.azimuth if axis is Axis.AZIMUTH else command.elevation
+
+
+def check_following(mind: Mind, feedback: Feedback, now: datetime) -> None:
+    """Compare every commanded axis with its reference, and latch a fault where it does not follow."""
+    if isinstance(mind.command.azimuth, Halt) and isinstance(mind.command.elevation, Halt):
+        if mind.watches:
+            mind.watches = {}
+        return
+    watches = {}
+    for axis in Axis:
+        seen, config = guards.axis_feedback(feedback, axis), mind.config.axis(axis)
+        before, allowed_deg = mind.watches.get(axis), mind.config.following_error_deg
+        watched = watch(before, config, axis_command(mind.command, axis), seen, now, allowed_deg)
+        if watched is not None:
+            watches[axis] = watched
+    mind.watches = watches
+    for axis, watched in watches.items():
+        if watched.turns_wrongly(guards.axis_feedback(feedback, axis).position_deg, now):
+            reason = guards.wrong_way(mind.config.name, axis)
+            lose_home(mind, reason)
+        elif not watched.follows(now):
+            reason = guards.not_following(mind.config.name, axis, watched)
+        else:
+            continue
+        mind.watches = {}
+        fail(mind, reason)
+        return

@@ -1,0 +1,189 @@
+"""What the last tick looked like: the snapshot for people, the frame for recordings."""
+
+from datetime import datetime
+from math import nan
+
+from app.angles import separation_deg, wrap360
+from app.sun.position import SunPosition
+from app.tracker.activities.tracking import sun_height_deg
+from app.tracker.activity import NAMES, AxisPair, Faulted, Showing, Tracking, TrackPhase
+from app.tracker.conditions import Action, unmet
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.mind import Mind
+from app.tracker.mode import Mode
+from app.tracker.motion import AxisFeedback, Feedback
+from app.tracker.mount import sky
+from app.tracker.reason import Reason
+from app.tracker.runs import arrived, at_rest
+from app.tracker.snapshot import ActivityName, AxisState, Pair, ShowProgress, Snapshot
+from app.tracker.words import activity_text
+
+_INDEX = {kind: float(list(ActivityName).index(name)) for kind, name in NAMES.items()}
+_NO_ORIENTATION = (nan, nan)
+
+
+def snapshot(mind: Mind, at: datetime) -> Snapshot:
+    """Return everything known after the last tick, stamped `at`."""
+    fresh = mind.seen.feedback if mind.seen else None
+    faced = _faced(mind, fresh)
+    sun_is_up = mind.sun is not None and sun_height_deg(mind.config, mind.sun) > 0.0
+    return Snapshot(
+        tracker_id=mind.config.tracker_id,
+        name=mind.config.name,
+        at=at,
+        tick=mind.ticks,
+        activity=NAMES[type(mind.activity)],
+        activity_text=activity_text(mind),
+        mode=mind.memory.mode or Mode.DUAL,
+        orientation=mind.memory.orientation,
+        tracking_on=mind.memory.tracking_on,
+        sun=mind.sun,
+        sun_is_up=sun_is_up,
+        target=_pair(mind.target),
+        setpoint=_setpoint(mind),
+        measured=_pair(faced),
+        last_measured=_pair(_faced(mind, mind.feedback)),
+        position_age_s=(mind.now - mind.feedback_at).total_seconds() if mind.feedback_at else None,
+        following_error_deg=_following_error_deg(mind),
+        off_sun_deg=_off_deg(mind.config, faced, mind.sun) if sun_is_up else None,
+        in_position=_in_position(mind, fresh),
+        home_trusted=mind.memory.home is not None,
+        azimuth=_axis_state(fresh.azimuth) if fresh else None,
+        elevation=_axis_state(fresh.elevation) if fresh else None,
+        fault=mind.activity.reason if isinstance(mind.activity, Faulted) else None,
+        waiting=_waiting(mind),
+        notices=_notices(mind),
+        show=_show(mind.activity) if isinstance(mind.activity, Showing) else None,
+        actions={action.value: unmet(mind, action) for action in Action},
+    )
+
+
+def frame(mind: Mind) -> tuple[float, ...]:
+    """Return the last tick in the order of `recording.COLUMNS`; elapsed and sun time are NaN."""
+    sun, target, setpoint = mind.sun, mind.target, mind.setpoint
+    feedback = mind.seen.feedback if mind.seen else None
+    return (
+        nan,
+        nan,
+        *(_NO_ORIENTATION if sun is None else (sun.azimuth_deg, sun_height_deg(mind.config, sun))),
+        *(_NO_ORIENTATION if target is None else (target.azimuth_deg, target.elevation_deg)),
+        nan if setpoint.azimuth_deg is None else wrap360(setpoint.azimuth_deg),
+        nan if setpoint.elevation_deg is None else setpoint.elevation_deg,
+        nan if feedback is None else wrap360(feedback.azimuth.position_deg),
+        nan if feedback is None else feedback.elevation.position_deg,
+        _INDEX[type(mind.activity)],
+    )
+
+
+def _faced(mind: Mind, feedback: Feedback | None) -> Orientation | None:
+    if feedback is None:
+        return None
+    return sky(
+        mind.config, mind.memory.pointing, feedback.azimuth.position_deg, feedback.elevation.position_deg
+    )
+
+
+def _pair(orientation: Orientation | None) -> Pair | None:
+    return None if orientation is None else Pair(orientation.azimuth_deg, orientation.elevation_deg)
+
+
+def _setpoint(mind: Mind) -> Pair | None:
+    """Return what the drive was told, in the sky; an axis that was told nothing counts where it is."""
+    azimuth_deg, elevation_deg = mind.setpoint.azimuth_deg, mind.setpoint.elevation_deg
+    feedback = mind.feedback
+    if feedback is None or (azimuth_deg is None and elevation_deg is None):
+        return None
+    azimuth_deg = feedback.azimuth.position_deg if azimuth_deg is None else azimuth_deg
+    elevation_deg = feedback.elevation.position_deg if elevation_deg is None else elevation_deg
+    return _pair(sky(mind.config, mind.memory.pointing, azimuth_deg, elevation_deg))
+
+
+def _off_deg(config: TrackerConfig, faced: Orientation | None, sun: SunPosition | None) -> float | None:
+    if faced is None or sun is None:
+        return None
+    height_deg = sun_height_deg(config, sun)
+    return separation_deg(faced.azimuth_deg, faced.elevation_deg, sun.azimuth_deg, height_deg)
+
+
+def _following_error_deg(mind: Mind) -> float | None:
+    """Return by how much the axis that follows worst differs from its reference; None while none moves."""
+    return max((watched.error_deg for watched in mind.watches.values()), key=abs, default=None)
+
+
+def _in_position(mind: Mind, feedback: Feedback | None) -> bool:
+    if feedback is None or not at_rest(feedback):
+        return False
+    if isinstance(mind.activity, Tracking):
+        return mind.activity.run is None
+    if mind.setpoint == AxisPair(None, None):
+        return False
+    return arrived(mind.setpoint, feedback, mind.config.in_position_deg)
+
+
+def _axis_state(axis: AxisFeedback) -> AxisState:
+    return AxisState(axis.moving, axis.homed, axis.at_lower_limit, axis.at_upper_limit, axis.at_origin)
+
+
+def _waiting(mind: Mind) -> tuple[Reason, ...]:
+    """Return why a tracker that should track does not move."""
+    if isinstance(mind.activity, Tracking):
+        return (_SUN_DOWN,) if mind.activity.phase is TrackPhase.NIGHT else ()
+    if not mind.memory.tracking_on:
+        return ()
+    known = () if mind.wait is None else (mind.wait,)
+    codes = {reason.code for reason in known}
+    others = tuple(reason for reason in unmet(mind, Action.TRACK) if reason.code not in codes)
+    return known + others or (_OPERATOR,)
+
+
+def _notices(mind: Mind) -> tuple[Reason, ...]:
+    """Return what is worth knowing but forbids nothing."""
+    limited = isinstance(mind.activity, Tracking) and mind.activity.phase is TrackPhase.LIMITED
+    found = (
+        (mind.memory.home is None, _NO_SOFT_LIMITS),
+        (limited, _LIMITED),
+        (mind.capabilities.watchdog_s is None, _NO_WATCHDOG),
+        (not mind.capabilities.verified, _UNVERIFIED),
+    )
+    return tuple(reason for present, reason in found if present)
+
+
+def _show(showing: Showing) -> ShowProgress:
+    plan, seen = showing.course.plan, showing.course.at(showing.elapsed)
+    return ShowProgress(
+        show_id=plan.show_id,
+        phase=showing.phase,
+        sun_time=seen.sun_time,
+        elapsed_s=showing.elapsed.total_seconds(),
+        duration_s=plan.duration.total_seconds(),
+        acceleration=plan.acceleration,
+        begin_at=plan.begin_at,
+        end_at=plan.end_at,
+        sun_is_up=seen.sun_is_up,
+    )
+
+
+_SUN_DOWN = Reason("sun_down", "The sun is below the horizon.", "Tracking goes on by itself when it rises.")
+_OPERATOR = Reason(
+    "operator_needed", "Tracking was interrupted and waits for the operator.", "Press Start tracking."
+)
+_NO_SOFT_LIMITS = Reason(
+    "no_soft_limits",
+    "Without a trusted zero the soft limits do not protect: only the limit switches and you do.",
+    "Watch the panel while you move it, and set the zero in step 3, Homing.",
+)
+_LIMITED = Reason(
+    "limited",
+    "The sun is beyond the range of the axes; the panel faces it as nearly as they allow.",
+    "Nothing has to be done; the soft limits are in the tracker's settings.",
+)
+_NO_WATCHDOG = Reason(
+    "no_watchdog",
+    "This drive does not stop by itself when it loses contact, so hand motion comes in short steps.",
+    "Keep the hard-wired emergency stop within reach.",
+)
+_UNVERIFIED = Reason(
+    "profile_unverified",
+    "The profile of this drive has not been verified on a real one.",
+    "Test every motion and the stop with care before you rely on it.",
+)

@@ -1,0 +1,102 @@
+"""Leaving what a tracker is doing: every way out says what ended and why."""
+
+from typing import assert_never
+
+from app.tracker.activity import (
+    HOLDING,
+    Faulted,
+    Holding,
+    Homing,
+    Jogging,
+    MoveKind,
+    Moving,
+    Showing,
+    Stopping,
+    Tracking,
+    Unfaulted,
+    Zeroing,
+)
+from app.tracker.mind import NOWHERE, Mind
+from app.tracker.reason import Reason
+from app.tracker.snapshot import EventKind
+
+
+def leave(mind: Mind, why: str) -> None:
+    """End the present activity before its time; afterwards the tracker holds (a fault stays a fault)."""
+    if not isinstance(mind.activity, Faulted):
+        _say_what_ended(mind, mind.activity, why)
+        mind.activity = HOLDING
+
+
+def _say_what_ended(mind: Mind, activity: Unfaulted, why: str) -> None:
+    match activity:
+        case Holding() | Stopping():
+            pass
+        case Jogging():
+            mind.kill_press(activity.press_id)
+            mind.say(EventKind.JOG_ENDED, f"The jog of {activity.axis} ended: {why}", outcome="interrupted")
+        case Moving():
+            mind.say(
+                EventKind.MOVE_ENDED, f"{_MOVES[activity.kind]} ended early: {why}", outcome="interrupted"
+            )
+        case Zeroing():
+            mind.say(EventKind.ZERO_FAILED, f"Zero was not set: {why}")
+            lose_home(mind, Reason("zero_failed", f"setting it was interrupted: {why}"))
+        case Homing():
+            mind.say(
+                EventKind.HOMING_ENDED, f"The search for the origin switches ended: {why}", outcome="failed"
+            )
+        case Tracking():
+            mind.say(EventKind.TRACKING_WAITING, f"Tracking waits for the operator: {why}")
+        case Showing():
+            end_show(mind, activity, f"The show ended early: {why}", "interrupted")
+        case _:
+            assert_never(activity)
+
+
+def end_show(mind: Mind, showing: Showing, message: str, outcome: str) -> None:
+    """Say that a show has ended; nothing is running any more."""
+    mind.remember(showing=None)
+    mind.say(EventKind.SHOW_ENDED, message, outcome=outcome, show_id=showing.course.plan.show_id)
+
+
+def interrupt(mind: Mind, reason: Reason) -> None:
+    """End what is going on for a reason; tracking that was on waits, visibly, for the operator."""
+    leave(mind, reason.message)
+    mind.setpoint = NOWHERE
+    if mind.memory.tracking_on:
+        mind.wait = reason
+
+
+def fail(mind: Mind, reason: Reason) -> None:
+    """Latch a fault and stop; only a reset leaves it."""
+    interrupt(mind, reason)
+    mind.activity = Faulted(reason)
+    mind.remember(fault_code=reason.code, fault_text=reason.message)
+    mind.say(EventKind.FAULT_RAISED, reason.message, code=reason.code, hint=reason.hint)
+
+
+def lose_home(mind: Mind, reason: Reason) -> None:
+    """Stop believing the zero, and whatever needed it."""
+    mind.zeroed = frozenset()
+    if mind.memory.home is None:
+        return
+    mind.remember(home=None, home_lost=reason.message)
+    mind.say(EventKind.HOME_LOST, f"The zero is no longer trusted: {reason.message}", code=reason.code)
+
+
+def switch_tracking_off(mind: Mind, why: str) -> None:
+    """Switch tracking off and say so, because something else was commanded."""
+    mind.wait = None
+    if isinstance(mind.activity, Tracking):
+        mind.activity = HOLDING
+    if mind.memory.tracking_on:
+        mind.remember(tracking_on=False)
+        mind.say(EventKind.TRACKING_ENDED, f"Tracking is switched off: {why}", outcome="switched_off")
+
+
+_MOVES = {
+    MoveKind.MOVE: "The move",
+    MoveKind.PARK: "The move to the park position",
+    MoveKind.STEP: "The step",
+}

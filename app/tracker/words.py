@@ -1,0 +1,103 @@
+"""What a tracker is doing, as one sentence for the person in front of it."""
+
+from typing import assert_never
+
+from app.angles import separation_deg
+from app.tracker.activities.tracking import SUN_DPS, trigger_deg
+from app.tracker.activity import (
+    Activity,
+    Faulted,
+    Holding,
+    Homing,
+    Jogging,
+    MoveKind,
+    Moving,
+    Showing,
+    Stopping,
+    Tracking,
+    TrackPhase,
+    Zeroing,
+)
+from app.tracker.axes import Axis
+from app.tracker.mind import Mind
+from app.tracker.mount import sky
+from app.tracker.snapshot import ShowPhase
+
+_JOG = {
+    (Axis.AZIMUTH, 1): "azimuth east (clockwise)",
+    (Axis.AZIMUTH, -1): "azimuth west (anticlockwise)",
+    (Axis.ELEVATION, 1): "elevation up",
+    (Axis.ELEVATION, -1): "elevation down",
+}
+_MOVING = {
+    MoveKind.MOVE: "Moving to the orientation that was asked for",
+    MoveKind.PARK: "Moving to the park position",
+    MoveKind.STEP: "Moving by a small step",
+}
+_PLAIN: dict[type[Activity], str] = {
+    Zeroing: "Setting zero",
+    Homing: "Searching for the origin switches",
+    Stopping: "Stopping",
+}
+_SHOWING = {
+    ShowPhase.GOING_TO_START: "Show: going to the start position",
+    ShowPhase.READY: "Show: ready at the start position",
+    ShowPhase.RUNNING: "Show: running",
+    ShowPhase.PAUSED: "Show: paused",
+}
+
+
+def activity_text(mind: Mind) -> str:
+    """Return what the tracker is doing, without times of day (pages know the local time)."""
+    if mind.lost:
+        return "No contact with the drive; the tracker was told to stop"
+    return _doing(mind, mind.activity)
+
+
+def _doing(mind: Mind, activity: Activity) -> str:
+    match activity:
+        case Holding():
+            return "Holding; tracking waits for the operator" if mind.memory.tracking_on else "Holding"
+        case Jogging():
+            return f"Jogging {_JOG[activity.axis, activity.direction]}, {activity.speed}"
+        case Moving():
+            return _MOVING[activity.kind]
+        case Zeroing() | Homing() | Stopping():
+            return _PLAIN[type(activity)]
+        case Tracking():
+            return f"Tracking: {_tracking(mind, activity)}"
+        case Showing():
+            return _SHOWING[activity.phase]
+        case Faulted():
+            return f"Stopped by a fault: {activity.reason.message}"
+    assert_never(activity)
+
+
+def _tracking(mind: Mind, tracking: Tracking) -> str:
+    night = tracking.phase is TrackPhase.NIGHT
+    if tracking.run is not None:
+        return "the sun is down, going to the night position" if night else "moving to the sun"
+    match tracking.phase:
+        case TrackPhase.NIGHT:
+            return "waiting for the sun to rise"
+        case TrackPhase.FIXED:
+            return "holding the fixed orientation"
+        case TrackPhase.LIMITED:
+            return "at the edge of the axes' range, as near to the sun as possible"
+        case TrackPhase.KEYHOLE:
+            return "passing the zenith as fast as the azimuth axis can"
+        case TrackPhase.FOLLOWING:
+            return _next_move(mind)
+    assert_never(tracking.phase)
+
+
+def _next_move(mind: Mind) -> str:
+    """Return when the sun will have moved so far that the panel has to follow."""
+    feedback, target = mind.feedback, mind.target
+    if feedback is None or target is None:
+        return "on the sun"
+    pointing = mind.memory.pointing
+    faced = sky(mind.config, pointing, feedback.azimuth.position_deg, feedback.elevation.position_deg)
+    off_deg = separation_deg(faced.azimuth_deg, faced.elevation_deg, target.azimuth_deg, target.elevation_deg)
+    minutes = (trigger_deg(mind.config) - off_deg) / SUN_DPS / 60.0
+    return f"next move in about {round(minutes)} min" if minutes >= 1.0 else "next move within a minute"
