@@ -1,11 +1,14 @@
 """The five steps: done, to do or to be confirmed, each with its reasons."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
-from app.tracker.memory import StepName
+from app.tracker.memory import Confirmation, SiteState, StepName, TrackerMemory
+from app.tracker.mode import Mode
 from app.tracker.reason import Reason
+from app.tracker.snapshot import ActivityName, ClockState, ShowPhase, Snapshot
 
 
 class StepStatus(StrEnum):
@@ -25,3 +28,151 @@ class Step:
     reasons: tuple[Reason, ...]
     confirmed_at: datetime | None
     confirmed_by: str
+
+
+def steps(
+    site: SiteState, memory: TrackerMemory, snapshot: Snapshot | None, clock: ClockState
+) -> tuple[Step, ...]:
+    """Return the five steps of one tracker, in order, as they stand now.
+
+    `snapshot` is None while the tracker has not been looked at: what needs the drive is then not done.
+    """
+    earlier = (
+        _location(site),
+        _clock(site, clock),
+        _homing(site, memory, snapshot),
+        _mode(site, memory),
+    )
+    return (*earlier, _run(earlier, snapshot))
+
+
+def forward_allowed(known: Sequence[Step], name: StepName) -> bool:
+    """Return whether the wizard may pass from a step to the next: it and every earlier one is done."""
+    order = list(StepName)
+    needed = order[: order.index(name) + 1]
+    return all(step.status is StepStatus.DONE for step in known if step.name in needed)
+
+
+def _location(site: SiteState) -> Step:
+    reason = _LOCATION_UNKNOWN if site.location is None else None
+    return _step(StepName.LOCATION, site.confirmations, to_do=(reason,))
+
+
+def _clock(site: SiteState, clock: ClockState) -> Step:
+    unset = _CLOCK_UNSET if site.clock.source == "unset" else None
+    doubts: tuple[Reason, ...] = ()
+    if unset is None and not clock.trusted:
+        doubts = clock.reasons or (_CLOCK_UNTRUSTED,)
+    moved = None if unset else _moved(site, site.confirmations.get(StepName.CLOCK))
+    return _step(StepName.CLOCK, site.confirmations, to_do=(unset,), to_confirm=(*doubts, moved))
+
+
+def _homing(site: SiteState, memory: TrackerMemory, snapshot: Snapshot | None) -> Step:
+    if memory.home is None:
+        lost = memory.home_lost
+        reason = _home_lost(lost) if lost else _HOME_UNSET
+        return _step(StepName.HOMING, memory.confirmations, to_do=(reason,))
+    unseen = _DRIVE_SILENT if snapshot is None or snapshot.measured is None else None
+    moved = _moved(site, memory.confirmations.get(StepName.HOMING))
+    return _step(StepName.HOMING, memory.confirmations, to_confirm=(unseen, moved))
+
+
+def _mode(site: SiteState, memory: TrackerMemory) -> Step:
+    saved = memory.confirmations.get(StepName.MODE)
+    to_do: Reason | None = None
+    if memory.mode is None:
+        to_do = _MODE_UNSET
+    elif saved is None and memory.mode is not Mode.DUAL:
+        to_do = _NOT_THERE
+    return _step(
+        StepName.MODE,
+        memory.confirmations,
+        to_do=(to_do,),
+        to_confirm=(_moved(site, saved) if saved else None,),
+    )
+
+
+def _run(earlier: Sequence[Step], snapshot: Snapshot | None) -> Step:
+    """Return step 5: done while the tracker tracks or shows and every earlier step holds."""
+    open_steps = tuple(_open(step) for step in earlier if step.status is not StepStatus.DONE)
+    running = None if snapshot is not None and _is_running(snapshot) else _NOT_RUNNING
+    waiting = snapshot.waiting if snapshot is not None and running is not None else ()
+    return _step(StepName.RUN, {}, to_do=(*open_steps, *waiting, running))
+
+
+def _is_running(snapshot: Snapshot) -> bool:
+    if snapshot.activity is ActivityName.TRACKING:
+        return True
+    return snapshot.show is not None and snapshot.show.phase in (ShowPhase.RUNNING, ShowPhase.PAUSED)
+
+
+def _step(
+    name: StepName,
+    confirmations: dict[StepName, Confirmation],
+    *,
+    to_do: tuple[Reason | None, ...] = (),
+    to_confirm: tuple[Reason | None, ...] = (),
+) -> Step:
+    """Return a step with all its reasons; without any it is done."""
+    open_reasons = tuple(reason for reason in to_do if reason is not None)
+    doubts = tuple(reason for reason in to_confirm if reason is not None)
+    status = StepStatus.TO_DO if open_reasons else StepStatus.TO_BE_CONFIRMED if doubts else StepStatus.DONE
+    saved = confirmations.get(name)
+    return Step(name, status, open_reasons + doubts, saved.at if saved else None, saved.by if saved else "")
+
+
+def _moved(site: SiteState, saved: Confirmation | None) -> Reason | None:
+    """Return that the location has changed since a step was saved (or that it was never saved for any)."""
+    if saved is not None and saved.location_revision >= site.location_revision:
+        return None
+    return _LOCATION_MOVED
+
+
+def _open(step: Step) -> Reason:
+    number = list(StepName).index(step.name) + 1
+    words = "is to be done" if step.status is StepStatus.TO_DO else "is to be confirmed"
+    because = " ".join(reason.message for reason in step.reasons)
+    return Reason(
+        f"step_{step.name}", f"Step {number}, {step.name}, {words}: {because}", f"Go to step {number}."
+    )
+
+
+def _home_lost(why: str) -> Reason:
+    return Reason(
+        "home_lost",
+        f"The zero is no longer trusted: {why}",
+        "Turn the panel to north and the horizon, set zero.",
+    )
+
+
+_LOCATION_UNKNOWN = Reason(
+    "location_unknown", "The location has not been entered.", "Enter latitude and longitude and save them."
+)
+_LOCATION_MOVED = Reason(
+    "location_changed",
+    "The location has changed since this step was saved.",
+    "Look whether it is still right, and confirm it.",
+)
+_CLOCK_UNSET = Reason(
+    "clock_unset", "The clock has not been set.", "Set it, or keep the system clock, and save."
+)
+_CLOCK_UNTRUSTED = Reason(
+    "clock_untrusted", "The clock is not trusted.", "Compare it with yours and save it again."
+)
+_HOME_UNSET = Reason(
+    "home_unset",
+    "The zero has not been set.",
+    "Turn the panel to north and the horizon, then press Set as zero.",
+)
+_DRIVE_SILENT = Reason(
+    "drive_unreachable",
+    "The zero cannot be read back, because the drive does not answer.",
+    "Check the drive's power and its network cable.",
+)
+_MODE_UNSET = Reason("mode_not_selected", "No mode has been selected.", "Choose one of the four modes.")
+_NOT_THERE = Reason(
+    "not_at_orientation", "The panel has not been at the orientation of this mode yet.", "Press Go and wait."
+)
+_NOT_RUNNING = Reason(
+    "not_running", "The tracker neither tracks nor shows.", "Press Start tracking, or show tracking movement."
+)
