@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from app.store.store import StoreFailed
 from app.tracker.recording import COLUMNS, Frames
 
 CHUNK_FRAMES = 900
@@ -30,7 +31,7 @@ SCALE = np.array([STEPS_PER_UNIT.get(name, 1000.0) for name in COLUMNS])
 SCALES = np.tile(SCALE, (CHUNK_FRAMES, 1))
 
 
-class ChunkDamaged(ValueError):
+class ChunkDamaged(StoreFailed):
     """These bytes are not a chunk that this software can read."""
 
 

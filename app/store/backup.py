@@ -1,0 +1,144 @@
+"""Backups: one portable SQLite file, made while the machine runs, whichever database is behind the store."""
+
+import os
+import sqlite3
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from urllib.parse import quote
+
+from sqlalchemy import Connection, func, insert, select, text
+
+from app.store import tables
+from app.store.connections import (
+    reading_engine,
+    require_revision,
+    revision_of,
+    sqlite_path,
+    transaction,
+    writing_engine,
+)
+from app.store.documents import SITE
+from app.store.migrations import upgrade
+from app.store.store import StoreFailed
+
+ROWS_AT_ONCE = 200
+
+
+@dataclass(frozen=True, slots=True)
+class BackupInfo:
+    """What is in a backup file."""
+
+    path: Path
+    size_bytes: int
+    revision: str
+    site_name: str
+    trackers: int
+    events: int
+    recordings: int
+
+
+def backup(url: str, target: Path) -> BackupInfo:
+    """Write a checked backup of a database that may be in use; the file appears complete or not at all."""
+    if target.exists():
+        raise StoreFailed(f"{target} exists already. Give the backup another name, or remove that file.")
+    unfinished = target.with_name(f"{target.name}.unfinished")
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        unfinished.unlink(missing_ok=True)
+        _copy_to_file(url, unfinished)
+        found = inspect_backup(unfinished)
+        put_in_place(unfinished, target)
+    except OSError as error:
+        raise StoreFailed(f"The backup {target} could not be written: {error.strerror}.") from error
+    finally:
+        unfinished.unlink(missing_ok=True)
+    return BackupInfo(target, target.stat().st_size, found.revision, *_content(found))
+
+
+def inspect_backup(path: Path) -> BackupInfo:
+    """Return what is in a backup file after checking every page of it, or raise `StoreFailed`."""
+    if not path.is_file():
+        raise StoreFailed(f"There is no file {path}. Give the path of a backup.")
+    engine = reading_engine(f"sqlite:///{path}")
+    try:
+        with transaction(engine) as connection:
+            if connection.execute(text("PRAGMA integrity_check(1)")).scalar_one() != "ok":
+                raise StoreFailed(f"The backup {path} is damaged. Use another one.")
+            revision = revision_of(connection)
+            if revision is None:
+                raise StoreFailed(f"{path} is not a backup of Heliopanel. Give the path of a backup.")
+            return BackupInfo(path, path.stat().st_size, revision, *_count(connection))
+    except StoreFailed as failure:
+        raise StoreFailed(f"The backup {path} cannot be used. {failure}") from failure
+    finally:
+        engine.dispose()
+
+
+def copy_database(source: Connection, target: Connection) -> None:
+    """Copy every row from one database into the empty tables of another."""
+    for table in tables.metadata.sorted_tables:
+        rows = source.execution_options(yield_per=ROWS_AT_ONCE).execute(select(table)).mappings()
+        for some in rows.partitions():
+            target.execute(insert(table), [dict(row) for row in some])
+
+
+def make_portable(path: Path) -> None:
+    """Make a closed SQLite file complete in itself, readable from a folder that cannot be written."""
+    with closing(sqlite3.connect(path)) as connection:
+        connection.execute("PRAGMA journal_mode = DELETE")
+
+
+def put_in_place(unfinished: Path, target: Path) -> None:
+    """Give a finished file its name, so that it is there after a power cut too."""
+    _flush(unfinished)
+    unfinished.replace(target)
+    _flush(target.parent)
+
+
+def _copy_to_file(url: str, target: Path) -> None:
+    source = sqlite_path(url)
+    if source is not None:
+        _vacuum(source, target)
+        return
+    upgrade(f"sqlite:///{target}")
+    reading, writing = reading_engine(url), writing_engine(f"sqlite:///{target}")
+    try:
+        with transaction(reading) as from_connection, transaction(writing) as to_connection:
+            require_revision(from_connection)
+            copy_database(from_connection, to_connection)
+    finally:
+        reading.dispose()
+        writing.dispose()
+    make_portable(target)
+
+
+def _vacuum(source: Path, target: Path) -> None:
+    """Copy a SQLite file in one read transaction: complete, compact, and the writer never waits."""
+    try:
+        with closing(sqlite3.connect(f"file:{quote(str(source))}?mode=ro", uri=True)) as live:
+            live.execute("VACUUM INTO ?", (str(target),))
+    except sqlite3.Error as error:
+        raise StoreFailed(f"The database {source} could not be copied: {error}.") from error
+
+
+def _count(connection: Connection) -> tuple[str, int, int, int]:
+    document = connection.execute(select(tables.site.c.document)).scalar_one_or_none()
+    name = SITE.read(document).name if document else ""
+    counts = [
+        connection.execute(select(func.count()).select_from(table)).scalar_one()
+        for table in (tables.trackers, tables.events, tables.recordings)
+    ]
+    return name, counts[0], counts[1], counts[2]
+
+
+def _content(found: BackupInfo) -> tuple[str, int, int, int]:
+    return found.site_name, found.trackers, found.events, found.recordings
+
+
+def _flush(path: Path) -> None:
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

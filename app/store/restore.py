@@ -1,0 +1,171 @@
+"""Restoring a backup: checked first, the old database kept beside it, never under a running machine."""
+
+import fcntl
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing, contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from sqlalchemy import Connection, text
+
+from app.store.backup import BackupInfo, backup, copy_database, inspect_backup, make_portable, put_in_place
+from app.store.connections import reading_engine, revision_of, sqlite_path, transaction, writing_engine
+from app.store.migrations import copy_sqlite, drop_tables, run_migrations, upgrade
+from app.store.store import StoreFailed
+
+LOCK_NAME = "machine.lock"
+PENDING_NAME = "restore.pending"
+REFUSED_NAME = "restore.refused"
+NUMBERED = ("trackers", "events", "shows")
+
+
+@dataclass(frozen=True, slots=True)
+class Restored:
+    """The database is the backup's now; `kept` is the old one, None if there was none."""
+
+    backup: BackupInfo
+    kept: Path | None
+
+
+@dataclass(frozen=True, slots=True)
+class RestorePending:
+    """The machine runs: the checked backup lies at `path`, and the machine restores it at its next start."""
+
+    backup: BackupInfo
+    path: Path
+
+
+def request_restore(source: Path, url: str, data_dir: Path) -> Restored | RestorePending:
+    """Restore at once if no machine runs, else hand the checked file over for the machine's next start."""
+    found = inspect_backup(source)
+    with _machine_kept_out(data_dir) as stopped:
+        if stopped:
+            return restore(source, url)
+    pending = data_dir / PENDING_NAME
+    staged = _stage(source, data_dir / f"{PENDING_NAME}.unfinished")
+    put_in_place(staged, pending)
+    return RestorePending(found, pending)
+
+
+def apply_pending_restore(data_dir: Path, url: str) -> Restored | None:
+    """Restore what was handed over, None if nothing was; the machine calls this before it opens the store.
+
+    A file that cannot be restored is put aside as `restore.refused` and raises `StoreFailed`; the database is
+    as it was, so that the next start goes on with it.
+    """
+    pending = data_dir / PENDING_NAME
+    if not pending.exists():
+        return None
+    try:
+        restored = restore(pending, url)
+    except StoreFailed:
+        pending.replace(data_dir / REFUSED_NAME)
+        raise
+    pending.unlink()
+    return restored
+
+
+def restore(source: Path, url: str) -> Restored:
+    """Make a database what a backup holds, or raise `StoreFailed`; the machine must not run.
+
+    An older backup is brought up to date on the way. The old database is kept: beside itself for SQLite, as a
+    backup beside `source` for PostgreSQL.
+    """
+    found = inspect_backup(source)
+    path = sqlite_path(url)
+    staged = _stage(source, (path or source).with_name(f"{(path or source).name}.restoring"))
+    try:
+        kept = _swap_file(staged, path) if path else _replace_rows(staged, url, source)
+    finally:
+        staged.unlink(missing_ok=True)
+    return Restored(found, kept)
+
+
+def _stage(source: Path, staged: Path) -> Path:
+    """Return a copy of a backup with today's tables."""
+    staged.parent.mkdir(parents=True, exist_ok=True)
+    copy_sqlite(source, staged)
+    upgrade(f"sqlite:///{staged}")
+    make_portable(staged)
+    return staged
+
+
+def _swap_file(staged: Path, path: Path) -> Path | None:
+    kept = None
+    if path.exists():
+        _fold_log(path)
+        kept = _free_name(path)
+        log = path.with_name(f"{path.name}-wal")
+        if log.exists():
+            log.replace(kept.with_name(f"{kept.name}-wal"))
+        path.replace(kept)
+    for ending in ("-wal", "-shm"):
+        path.with_name(path.name + ending).unlink(missing_ok=True)
+    put_in_place(staged, path)
+    return kept
+
+
+def _fold_log(path: Path) -> None:
+    """Bring what the log holds into the file; a damaged file is kept as it is."""
+    with suppress(sqlite3.Error), closing(sqlite3.connect(path)) as connection:
+        connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+
+
+def _replace_rows(staged: Path, url: str, source: Path) -> Path | None:
+    kept = _keep_rows(url, source)
+    reading, writing = reading_engine(f"sqlite:///{staged}"), writing_engine(url)
+    try:
+        with transaction(reading) as from_connection, transaction(writing) as to_connection:
+            if kept is not None:
+                drop_tables(to_connection)
+            run_migrations(to_connection)
+            copy_database(from_connection, to_connection)
+            _continue_numbers(to_connection)
+    finally:
+        reading.dispose()
+        writing.dispose()
+    return kept
+
+
+def _keep_rows(url: str, source: Path) -> Path | None:
+    engine = reading_engine(url)
+    try:
+        with transaction(engine) as connection:
+            if revision_of(connection) is None:
+                return None
+    finally:
+        engine.dispose()
+    return backup(url, _free_name(source)).path
+
+
+def _continue_numbers(connection: Connection) -> None:
+    """Let PostgreSQL's counters go on after the highest number that was restored."""
+    for table in NUMBERED:
+        connection.execute(
+            text(
+                f"SELECT setval(pg_get_serial_sequence('{table}', 'number'), "  # noqa: S608 - names are ours
+                f"(SELECT coalesce(max(number), 0) + 1 FROM {table}), false)"
+            )
+        )
+
+
+def _free_name(path: Path) -> Path:
+    """Return a name beside a file that no other file has."""
+    number = 1
+    while (candidate := path.with_name(f"{path.name}.before-restore-{number}")).exists():
+        number += 1
+    return candidate
+
+
+@contextmanager
+def _machine_kept_out(data_dir: Path) -> Iterator[bool]:
+    """Hold the machine's lock if nobody does, so that no machine starts now; yield whether it is held."""
+    data_dir.mkdir(parents=True, exist_ok=True)
+    with (data_dir / LOCK_NAME).open("a") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            yield False
+            return
+        yield True

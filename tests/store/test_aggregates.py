@@ -1,0 +1,171 @@
+"""What is saved comes back as it was, on both databases."""
+
+from dataclasses import replace
+from datetime import timedelta
+
+import pytest
+from sqlalchemy import insert, text
+
+from app.store import tables
+from app.store.connections import transaction, writing_engine
+from app.store.reader import DatabaseReader
+from app.store.store import JournalFilter, PlannedShow, StoreFailed
+from app.store.writer import SHOWS_KEPT, DatabaseWriter
+from app.tracker.memory import SiteState, TrackerMemory
+from app.tracker.snapshot import EventKind
+from tests.store.samples import NOON, SITE, event, plan, tracker
+
+ALL = JournalFilter()
+
+
+def test_an_empty_store_has_no_site_and_no_trackers(reader: DatabaseReader) -> None:
+    assert reader.site() is None
+    assert reader.trackers() == []
+    assert reader.journal(ALL) == []
+    assert reader.show("nowhere") is None
+    assert reader.recordings() == []
+
+
+def test_the_site_comes_back_as_it_was(writer: DatabaseWriter, reader: DatabaseReader) -> None:
+    writer.save_site(SiteState())
+    writer.save_site(SITE)
+    assert reader.site() == SITE
+
+
+def test_trackers_come_back_in_the_order_they_were_added(
+    writer: DatabaseWriter, reader: DatabaseReader
+) -> None:
+    for name in ("T2", "T1", "T3"):
+        writer.save_tracker(tracker(name))
+    changed = replace(tracker("T2"), memory=TrackerMemory())
+    writer.save_tracker(changed)
+    assert reader.trackers() == [changed, tracker("T1"), tracker("T3")]
+
+
+def test_a_removed_tracker_leaves_its_journal(writer: DatabaseWriter, reader: DatabaseReader) -> None:
+    writer.save_tracker(tracker(), [event(1, kind=EventKind.TRACKER_ADDED)])
+    writer.remove_tracker("T1", [event(2, kind=EventKind.TRACKER_REMOVED)])
+    assert reader.trackers() == []
+    assert [entry.event.kind for entry in reader.journal(ALL)] == ["tracker_removed", "tracker_added"]
+
+
+def test_a_show_is_found_and_replaced_by_its_id(writer: DatabaseWriter, reader: DatabaseReader) -> None:
+    writer.save_show(PlannedShow("T1", plan()))
+    slower = replace(plan(), duration=timedelta(minutes=10))
+    writer.save_show(PlannedShow("T2", slower))
+    assert reader.show("show-1") == PlannedShow("T2", slower)
+
+
+def test_the_oldest_shows_are_forgotten(url: str, writer: DatabaseWriter, reader: DatabaseReader) -> None:
+    writer.save_show(PlannedShow("T1", plan("show-0")))
+    engine = writing_engine(url)
+    with transaction(engine) as connection:
+        others = [
+            {"show_id": f"show-{number}", "tracker_id": "T1", "document": ""}
+            for number in range(1, SHOWS_KEPT)
+        ]
+        connection.execute(insert(tables.shows), others)
+    engine.dispose()
+    assert reader.show("show-0") is not None
+    writer.save_show(PlannedShow("T1", plan("newest")))
+    assert reader.show("show-0") is None
+    assert reader.show("newest") == PlannedShow("T1", plan("newest"))
+
+
+def test_an_event_and_its_change_are_stored_together_or_not_at_all(
+    writer: DatabaseWriter, reader: DatabaseReader
+) -> None:
+    broken = replace(event(), data={"what": object()})
+    with pytest.raises(StoreFailed, match="event data cannot be stored"):
+        writer.save_site(SITE, [event(), broken])
+    assert reader.site() is None
+    assert reader.journal(ALL) == []
+
+
+def test_the_journal_is_read_newest_first_by_a_cursor(writer: DatabaseWriter, reader: DatabaseReader) -> None:
+    writer.append_events([event(number) for number in range(25)])
+    first = reader.journal(JournalFilter(limit=10))
+    second = reader.journal(JournalFilter(limit=10, before=first[-1].number))
+    third = reader.journal(JournalFilter(limit=10, before=second[-1].number))
+    told = [entry.event for page in (first, second, third) for entry in page]
+    assert told == [event(number) for number in reversed(range(25))]
+
+
+@pytest.mark.parametrize(
+    ("wanted", "numbers"),
+    [
+        (JournalFilter(tracker_id="T2"), [3]),
+        (JournalFilter(kinds=(EventKind.STOPPED, EventKind.JOG_STARTED)), [2, 1]),
+        (JournalFilter(since=NOON + timedelta(seconds=2)), [3, 2]),
+        (JournalFilter(until=NOON + timedelta(seconds=1)), [1, 0]),
+        (JournalFilter(since=NOON + timedelta(seconds=1), kinds=(EventKind.STOPPED,)), [1]),
+    ],
+)
+def test_filters_narrow_the_journal(
+    writer: DatabaseWriter, reader: DatabaseReader, wanted: JournalFilter, numbers: list[int]
+) -> None:
+    writer.append_events(
+        [
+            event(0),
+            event(1, kind=EventKind.STOPPED),
+            event(2, kind=EventKind.JOG_STARTED, tracker_id=None),
+            event(3, tracker_id="T2"),
+        ]
+    )
+    assert [entry.event.data["number"] for entry in reader.journal(wanted)] == numbers
+
+
+@pytest.mark.parametrize("statement", ["UPDATE events SET message = 'x'", "DELETE FROM events"])
+def test_the_journal_cannot_be_changed(url: str, writer: DatabaseWriter, statement: str) -> None:
+    writer.append_events([event()])
+    engine = writing_engine(url)
+    with pytest.raises(StoreFailed, match="only ever appended to"), transaction(engine) as connection:
+        connection.execute(text(statement))
+    engine.dispose()
+    assert [entry.event for entry in writer.journal(ALL)] == [event()]
+
+
+def test_text_that_no_database_holds_is_made_plain(writer: DatabaseWriter, reader: DatabaseReader) -> None:
+    writer.append_events([replace(event(), message="before\x00after \ud800", actor="a\x00")])
+    (entry,) = reader.journal(ALL)
+    assert entry.event.message == "before\N{REPLACEMENT CHARACTER}after ?"
+
+
+@pytest.mark.parametrize(
+    ("statement", "sentence"),
+    [
+        (
+            "UPDATE site SET document = '{\"name\": 5}'",
+            r"stored site cannot be read \(name: .*Restore a backup",
+        ),
+        ("UPDATE site SET document = 'not json'", "stored site cannot be read"),
+        ("UPDATE trackers SET document = '{}'", "stored tracker 'T1' cannot be read"),
+    ],
+)
+def test_a_document_that_does_not_fit_is_named(
+    url: str, writer: DatabaseWriter, statement: str, sentence: str
+) -> None:
+    writer.save_site(SITE)
+    writer.save_tracker(tracker())
+    engine = writing_engine(url)
+    with transaction(engine) as connection:
+        connection.execute(text(statement))
+    engine.dispose()
+    with pytest.raises(StoreFailed, match=sentence):
+        _read_all(writer)
+
+
+def test_an_unknown_kind_of_event_is_named(url: str, writer: DatabaseWriter) -> None:
+    engine = writing_engine(url)
+    with transaction(engine) as connection:
+        connection.execute(
+            text("INSERT INTO events (at, kind, actor, message, data) VALUES (0, 'sang', 'm', 'x', '{}')")
+        )
+    engine.dispose()
+    with pytest.raises(StoreFailed, match="Entry 1 of the journal is of the unknown kind 'sang'"):
+        writer.journal(ALL)
+
+
+def _read_all(reader: DatabaseReader) -> None:
+    reader.site()
+    reader.trackers()

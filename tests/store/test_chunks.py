@@ -1,0 +1,119 @@
+"""Chunks give back what was packed, to 0.001 degrees and 1 ms, and refuse what is damaged."""
+
+import zlib
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from numpy.typing import NDArray
+
+from app.store.chunks import (
+    CHUNK_FRAMES,
+    HEADER,
+    SCALE,
+    ChunkDamaged,
+    decode,
+    decode_all,
+    encode,
+    encode_all,
+    join,
+)
+from app.tracker.recording import COLUMNS, Frames
+from tests.store.tracked_day import tracked_day
+
+WIDEST_ROUNDING = 1e-9
+MOST_BYTES_A_VALUE = 2.0
+
+numbers = st.one_of(
+    st.floats(-1e6, 1e6),
+    st.floats(0.0, 360.0),
+    st.sampled_from([np.nan, np.inf, -np.inf, 0.0, 359.9996, -0.0004]),
+)
+some_frames = st.integers(1, 40).flatmap(
+    lambda rows: arrays(np.float64, (rows, len(COLUMNS)), elements=numbers)
+)
+
+
+@given(some_frames)
+def test_frames_come_back_to_the_stated_resolution(values: NDArray[np.float64]) -> None:
+    back = decode(encode(Frames(values))).values
+    known = np.isfinite(values)
+    assert np.array_equal(np.isfinite(back), known)
+    off = np.abs(back - values) * SCALE
+    assert off[known].max(initial=0.0) <= 0.5 + WIDEST_ROUNDING * 1e3
+
+
+@given(some_frames)
+def test_packing_again_changes_nothing(values: NDArray[np.float64]) -> None:
+    chunk = encode(Frames(values))
+    assert encode(decode(chunk)) == chunk
+
+
+def test_a_day_is_split_into_full_chunks_and_comes_back() -> None:
+    frames = tracked_day(2000)
+    chunks = encode_all(frames)
+    assert [len(decode(chunk)) for chunk in chunks] == [CHUNK_FRAMES, CHUNK_FRAMES, 200]
+    np.testing.assert_allclose(decode_all(chunks).values, frames.values, atol=0.00051, equal_nan=True)
+
+
+def test_a_typical_tracked_day_takes_at_most_two_bytes_a_value() -> None:
+    frames = tracked_day()
+    assert sum(map(len, encode_all(frames))) <= MOST_BYTES_A_VALUE * frames.values.size
+
+
+def test_random_numbers_still_come_back() -> None:
+    values = np.random.default_rng(3).uniform(-4e12, 4e12, (CHUNK_FRAMES, len(COLUMNS)))
+    values[:, -1] = 3.0
+    np.testing.assert_allclose(decode(encode(Frames(values))).values, values, atol=0.00051, rtol=1e-15)
+
+
+@pytest.mark.parametrize("rows", [0, CHUNK_FRAMES + 1])
+def test_a_chunk_has_a_size(rows: int) -> None:
+    with pytest.raises(ValueError, match="holds 1 to 900 frames"):
+        encode(Frames(np.zeros((rows, len(COLUMNS)))))
+
+
+def test_a_number_out_of_all_proportion_is_refused() -> None:
+    values = np.zeros((3, len(COLUMNS)))
+    values[1, 4] = 1e300
+    with pytest.raises(ValueError, match="too large to be stored"):
+        encode(Frames(values))
+
+
+def test_nothing_joined_is_empty() -> None:
+    assert len(join([])) == 0
+    assert len(decode_all([])) == 0
+
+
+def _packed(body: bytes) -> bytes:
+    return b"\x01" + zlib.compress(body)
+
+
+@pytest.mark.parametrize(
+    ("damaged", "sentence"),
+    [
+        (b"", "begins with nothing"),
+        (b"\x02abc", "begins with 02, not with version 1"),
+        (b"\x01abc", "incorrect header check"),
+        (encode(Frames(np.zeros((5, len(COLUMNS)))))[:-3], "cut short"),
+        (_packed(b"\x00" * 10_000_000), "cut short or too long"),
+        (_packed(b"abc"), "damaged"),
+        (_packed(HEADER.pack(5, len(COLUMNS) + 1, 2, 0)), "5 frames of 12 columns"),
+        (_packed(HEADER.pack(5, len(COLUMNS), 3, 0)), "5 frames of 11 columns"),
+        (_packed(HEADER.pack(0, len(COLUMNS), 2, 0)), "0 frames of 11 columns"),
+        (_packed(HEADER.pack(5, len(COLUMNS), 2, 0)), "not 206"),
+    ],
+)
+def test_damage_is_told(damaged: bytes, sentence: str) -> None:
+    with pytest.raises(ChunkDamaged, match=sentence):
+        decode(damaged)
+
+
+@given(st.integers(0, 10_000), st.integers(1, 255))
+def test_a_flipped_byte_never_passes(place: int, change: int) -> None:
+    chunk = bytearray(encode(tracked_day(60, begin_s=40000.0)))
+    chunk[place % len(chunk)] ^= change
+    with pytest.raises(ChunkDamaged):
+        decode(bytes(chunk))
