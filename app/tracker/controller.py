@@ -21,7 +21,7 @@ from app.tracker.activity import (
 )
 from app.tracker.commands import Command
 from app.tracker.config import TrackerConfig
-from app.tracker.memory import Confirmation, Pointing, StepName, TrackerMemory
+from app.tracker.memory import Confirmation, Pointing, Sighting, StepName, TrackerMemory
 from app.tracker.mind import HALTED, NOWHERE, STANDING, Mind, Turn
 from app.tracker.motion import AxisCommand, DriveCapabilities, DriveCommand, Feedback, Halt, Position
 from app.tracker.observation import Observation
@@ -123,11 +123,9 @@ class Controller:
         confirmations = {**self._mind.memory.confirmations, step: confirmation}
         self._mind.remember(confirmations=confirmations)
 
-    def remember(self, memory: TrackerMemory) -> None:
-        """Take over changed sightings and confirmations; what the controller itself keeps stays as it is."""
-        self._mind.remember(
-            sightings=memory.sightings, pointing=memory.pointing, confirmations=memory.confirmations
-        )
+    def set_sightings(self, sightings: tuple[Sighting, ...]) -> None:
+        """Keep these sightings and forget all others."""
+        self._mind.remember(sightings=sightings)
 
     def _start(self, now: datetime) -> None:
         mind = self._mind

@@ -66,14 +66,14 @@ def home_doubt(name: str, home: HomeTrust, feedback: Feedback) -> Reason | None:
             f"The drive of {name} has restarted since the zero was set.",
             "Go to step 3, Homing, and set the zero again.",
         )
-    for axis in Axis:
-        if not axis_feedback(feedback, axis).homed:
-            return Reason(
-                "not_homed",
-                f"The drive of {name} reports that its {axis} axis has lost its zero.",
-                "Go to step 3, Homing, and set the zero again.",
-            )
-    return None
+    if feedback.azimuth.homed and feedback.elevation.homed:
+        return None
+    axis = Axis.ELEVATION if feedback.azimuth.homed else Axis.AZIMUTH
+    return Reason(
+        "not_homed",
+        f"The drive of {name} reports that its {axis} axis has lost its zero.",
+        "Go to step 3, Homing, and set the zero again.",
+    )
 
 
 def jump(config: TrackerConfig, before: Feedback, feedback: Feedback, elapsed_s: float) -> Reason | None:

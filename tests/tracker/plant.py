@@ -1,0 +1,138 @@
+"""A tracker on a virtual clock: the real controller and the simulated drive, told what time it is."""
+
+from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
+
+from app.clock import VirtualClock
+from app.drives.simulated import SimulatedDrive
+from app.sun.events import next_rise
+from app.sun.position import Algorithm, Location, SunPosition, sun_position
+from app.tracker.commands import Command
+from app.tracker.config import TrackerConfig
+from app.tracker.controller import Controller
+from app.tracker.memory import HomeTrust, TrackerMemory
+from app.tracker.mode import Mode
+from app.tracker.motion import DriveCapabilities, DriveCommand, RequestKind, DriveRequest
+from app.tracker.observation import Observation
+from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
+
+SAMSUN = Location(41.2867, 36.33, 4.0)
+MORNING = datetime(2026, 6, 21, 6, 0, tzinfo=UTC)
+CONFIG = TrackerConfig("T1", "Tracker 1")
+TRUST = HomeTrust(MORNING, "Ayse", "set by hand", 1)
+READY = TrackerMemory(mode=Mode.DUAL, home=TRUST)
+
+
+class Plant:
+    """Ask, let time pass, look: `drive` is the tracker that is not there."""
+
+    def __init__(
+        self,
+        memory: TrackerMemory = TrackerMemory(),
+        *,
+        config: TrackerConfig = CONFIG,
+        at: datetime = MORNING,
+        location: Location | None = SAMSUN,
+        watchdog: timedelta | None = timedelta(seconds=0.5),
+    ) -> None:
+        self.clock = VirtualClock(at - timedelta(minutes=5))
+        self.drive = SimulatedDrive(config, self.clock, watchdog=watchdog)
+        self.location = location
+        self.revision = 1
+        self.clock_trusted = True
+        self.cut = False
+        self.period = timedelta(seconds=0.1)
+        self.events: list[Event] = []
+        self.dawn: SunPosition | None = None
+        self._dawn_at: datetime | None = None
+        self.told = DriveCommand()
+        if memory.home is not None:
+            self._be_homed(at)
+        self.clock.move_to(at)
+        self.controller = Controller(config, memory, self.drive.capabilities)
+
+    def ask(self, command: Command, actor: str = "Ayse") -> list[EventKind]:
+        """Give a command and tick at once, as the loop does; return what happened."""
+        happened = list(self.controller.handle(command, self.clock.now(), actor))
+        self.events += happened
+        happened += self.tick()
+        return [event.kind for event in happened]
+
+    def tick(self) -> list[Event]:
+        """Read, decide, write."""
+        now = self.clock.now()
+        feedback = None if self.cut else self.drive.observe()
+        sun = self._sun(now)
+        seen = Observation(
+            now=now,
+            site_time=now,
+            sun=sun,
+            dawn=self.dawn,
+            feedback=feedback,
+            clock_trusted=self.clock_trusted,
+            location=self.location,
+            location_revision=self.revision,
+        )
+        done = self.controller.tick(seen)
+        self.told = done.command
+        if not self.cut:
+            self.drive.obey(done.command)
+        self.events += done.events
+        return list(done.events)
+
+    def forward(self, seconds: float, each: Callable[[], None] | None = None) -> "Plant":
+        """Let time pass, with a tick every period."""
+        end = self.clock.now() + timedelta(seconds=seconds)
+        while self.clock.now() < end:
+            self.clock.move_to(min(end, self.clock.now() + self.period))
+            self.tick()
+            if each is not None:
+                each()
+        return self
+
+    def leap(self, to: datetime) -> None:
+        """Be later at once, with no tick in between."""
+        self.clock.move_to(to)
+
+    @property
+    def snapshot(self) -> Snapshot:
+        return self.controller.snapshot(self.clock.now())
+
+    @property
+    def activity(self) -> ActivityName:
+        return self.controller.activity
+
+    @property
+    def azimuth_deg(self) -> float:
+        return self.drive.observe().azimuth.position_deg
+
+    @property
+    def elevation_deg(self) -> float:
+        return self.drive.observe().elevation.position_deg
+
+    def happened(self, kind: EventKind) -> list[Event]:
+        """Return the events of one kind so far."""
+        return [event for event in self.events if event.kind is kind]
+
+    def reasons(self, action: str) -> set[str]:
+        """Return the codes that forbid an action now."""
+        return {reason.code for reason in self.snapshot.actions[action]}
+
+    def _be_homed(self, at: datetime) -> None:
+        """Have the drive search its origin before the story begins."""
+        search = DriveCommand(request=DriveRequest(901, RequestKind.HOME))
+        self.drive.obey(search)
+        while self.drive.observe().request_done != search.request.number:
+            self.clock.advance(self.period)
+            self.drive.obey(search)
+        self.clock.move_to(at)
+        self.drive.obey(DriveCommand())
+
+    def _sun(self, now: datetime) -> SunPosition | None:
+        if self.location is None:
+            return None
+        if self._dawn_at is None or now >= self._dawn_at:
+            self._dawn_at = next_rise(Algorithm.PSA, self.location, now)
+            self.dawn = self._dawn_at and sun_position(Algorithm.PSA, self.location, self._dawn_at)
+            self._dawn_at = self._dawn_at or now + timedelta(hours=1)
+        return sun_position(Algorithm.PSA, self.location, now)
