@@ -3,7 +3,10 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
-from app.tracker.memory import StepName
+from app.tracker.config import TrackerConfig
+from app.tracker.memory import ClockSetting, HomeTrust, StepName, TrackerMemory
+from app.tracker.mode import Mode
+from app.tracker.motion import DriveCapabilities
 from app.tracker.reason import Reason
 from app.tracker.snapshot import SiteSnapshot, Snapshot
 
@@ -73,6 +76,11 @@ class Frame:
         return self.site.site_name if self.site else "Heliopanel"
 
     @property
+    def step(self) -> StepName | None:
+        """Return the step of the wizard that this page is."""
+        return next((mark.name for mark in self.steps if mark.current), None)
+
+    @property
     def stop_url(self) -> str:
         """Return where STOP goes: this tracker, or all of them."""
         return f"/trackers/{self.tracker_id}/stop" if self.tracker_id else "/stop"
@@ -123,3 +131,156 @@ class OverviewPage:
     trackers: tuple[Snapshot, ...]
     form: Form
     progress: dict[str, tuple[int, str]]
+
+
+@dataclass(frozen=True, slots=True)
+class ProgressPart:
+    """The step bar and the key forward, renewed."""
+
+    template: ClassVar[str] = "_progress.html"
+
+    frame: Frame
+
+
+@dataclass(frozen=True, slots=True)
+class LocationPreview:
+    """What a location means: its point on the map and today's sun, all texts in local time."""
+
+    x: float
+    y: float
+    normal: str
+    half: str
+    zone: str
+    date: str
+    rise: str
+    transit: str
+    set: str
+    noon_elevation: str
+    polar: str
+
+
+@dataclass(frozen=True, slots=True)
+class LocationPage:
+    """Step 1."""
+
+    template: ClassVar[str] = "location.html"
+
+    frame: Frame
+    form: Form
+    preview: LocationPreview | None
+    zones: tuple[str, ...]
+    by_place: str
+    revision: int
+
+
+@dataclass(frozen=True, slots=True)
+class ClockPage:
+    """Step 2."""
+
+    template: ClassVar[str] = "clock.html"
+
+    frame: Frame
+    form: Form
+    zones: tuple[str, ...]
+    setting: ClockSetting
+
+
+@dataclass(frozen=True, slots=True)
+class HomingPage:
+    """Step 3."""
+
+    template: ClassVar[str] = "homing.html"
+
+    frame: Frame
+    capabilities: DriveCapabilities | None
+    home: HomeTrust | None
+    config: TrackerConfig
+
+
+@dataclass(frozen=True, slots=True)
+class ModeChoice:
+    """One of the four modes and what it does."""
+
+    mode: Mode
+    label: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class ModePage:
+    """Step 4."""
+
+    template: ClassVar[str] = "mode.html"
+
+    frame: Frame
+    choices: tuple[ModeChoice, ...]
+    chosen: Mode | None
+
+
+@dataclass(frozen=True, slots=True)
+class OrientationPage:
+    """Step 4, the angles that are held."""
+
+    template: ClassVar[str] = "orientation.html"
+
+    frame: Frame
+    form: Form
+    held: tuple[str, ...]
+    choice: ModeChoice
+    limits: str
+
+
+@dataclass(frozen=True, slots=True)
+class RunPage:
+    """Step 5."""
+
+    template: ClassVar[str] = "run.html"
+
+    frame: Frame
+    choice: ModeChoice | None
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """A curve of the sun-path diagram: SVG path data, and whether it is a solstice or an equinox."""
+
+    label: str
+    path: str
+    strong: bool
+
+
+@dataclass(frozen=True, slots=True)
+class HourLabel:
+    """The number of an hour at its place in the diagram."""
+
+    x: float
+    y: float
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class SunDiagram:
+    """The polar sun path, north up, on a circle of radius 100 about the origin."""
+
+    months: tuple[Curve, ...]
+    hours: tuple[Curve, ...]
+    labels: tuple[HourLabel, ...]
+    today: Curve
+    reachable: str
+    title: str
+
+
+@dataclass(frozen=True, slots=True)
+class TrackerPage:
+    """One tracker live."""
+
+    template: ClassVar[str] = "tracker.html"
+
+    frame: Frame
+    config: TrackerConfig
+    memory: TrackerMemory
+    choice: ModeChoice | None
+    form: Form
+    limits: str
+    drive: str
+    diagram: SunDiagram | None

@@ -2,12 +2,14 @@
 
 import { start as startLive } from "./live.js";
 import { start as startOrders } from "./orders.js";
+import { start as startSteps } from "./steps.js";
 import { start as startStop } from "./stop.js";
 import { start as startTheme } from "./theme.js";
 
 startStop();
 startTheme();
 startOrders();
+startSteps();
 startLive();
 
 const heading = document.getElementById("heading");

@@ -12,6 +12,7 @@ HERE = Path(__file__).parent
 SOURCE = HERE / "world" / "2.0.2" / "land-110m.json"
 TARGET = HERE.parent / "img" / "world.svg"
 SMALLEST_SPAN_DEG = 1.2
+POLAR_CAP_DEG = -84.0
 Point = tuple[float, float]
 
 
@@ -35,7 +36,29 @@ def ring(indices: list[int], known: list[list[Point]]) -> list[Point]:
     for index in indices:
         arc = known[index] if index >= 0 else known[~index][::-1]
         points += arc[1:] if points else arc
-    return points
+    return unwrapped(points)
+
+
+def unwrapped(points: list[Point]) -> list[Point]:
+    """Return the ring without its jumps across the antimeridian; it may then reach beyond 180 degrees."""
+    shift, joined = 0.0, points[:1]
+    for before, after in pairwise(points):
+        step = after[0] - before[0]
+        if abs(step) > 180.0 and after[1] > POLAR_CAP_DEG:
+            shift += -360.0 if step > 0 else 360.0
+        joined.append((after[0] + shift, after[1]))
+    return joined
+
+
+def copies(points: list[Point]) -> list[list[Point]]:
+    """Return the ring, and where it reaches beyond the map its copy on the other side."""
+    longitudes = [longitude for longitude, _ in points]
+    shifts = [0.0]
+    if max(longitudes) > 180.0:
+        shifts.append(-360.0)
+    if min(longitudes) < -180.0:
+        shifts.append(360.0)
+    return [[(longitude + shift, latitude) for longitude, latitude in points] for shift in shifts]
 
 
 def path(points: list[Point]) -> str:
@@ -54,7 +77,8 @@ def main() -> None:
     topology = json.loads(SOURCE.read_text())
     known = arcs(topology)
     polygons = topology["objects"]["land"]["geometries"][0]["arcs"]
-    drawn = "".join(path(ring(indices, known)) for polygon in polygons for indices in polygon)
+    rings = [ring(indices, known) for polygon in polygons for indices in polygon]
+    drawn = "".join(path(copy) for points in rings for copy in copies(points))
     TARGET.parent.mkdir(exist_ok=True)
     head = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 3600 1800">'
     TARGET.write_text(f'{head}<path id="land" d="{drawn}"/></svg>\n')

@@ -65,8 +65,15 @@ def tracker_frame(
     tabs = () if steps else tuple(Link(name, root + end, here == root + end) for name, end in TRACKER_TABS)
     overview = Link("Trackers", "/")
     return _frame(
-        request, title, site, tracker_id=tracker_id, tabs=tabs, steps=steps, back=back or overview, forward=forward
-    )  # fmt: skip
+        request,
+        title,
+        site,
+        tracker_id=tracker_id,
+        tabs=tabs,
+        steps=steps,
+        back=back or overview,
+        forward=forward,
+    )
 
 
 def snapshot_of(site: SiteSnapshot | None, tracker_id: str | None) -> Snapshot | None:

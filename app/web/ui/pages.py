@@ -6,11 +6,22 @@ from starlette.responses import Response
 
 from app.web.contexts import Outcome, ProblemPage
 from app.web.errors import Problem
-from app.web.ui import overview, theme
+from app.web.ui import clock, homing, location, mode, overview, run, theme, tracker, wizard
 from app.web.ui.frame import site_frame
 from app.web.ui.render import environment, page, wants_block
 
-ROUTERS = (overview.router, theme.router)
+ROUTERS = (
+    overview.router,
+    theme.router,
+    tracker.router,
+    location.router,
+    clock.router,
+    homing.pages,
+    homing.router,
+    mode.router,
+    run.router,
+    wizard.router,
+)
 
 
 def include_pages(app: FastAPI) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, pass_context
 from jinja2.runtime import Context as TemplateContext
+from jinja2.runtime import Macro
 from jinja2_fragments import render_block
 from markupsafe import Markup
 from starlette.requests import Request
@@ -17,6 +18,16 @@ from app.web.deps import panel
 from app.web.ui import formats
 
 TEMPLATES = Path(__file__).resolve().parents[3] / "templates"
+FILTERS = {
+    "angle": formats.angle,
+    "compass": formats.compass,
+    "duration": formats.duration,
+    "signed_seconds": formats.signed_seconds,
+    "decimals": formats.decimals,
+    "words": formats.words,
+    "local": formats.local,
+    "zone_offset": formats.offset,
+}
 VARY = {"Vary": "HX-Request, HX-Request-Type"}
 
 
@@ -29,18 +40,17 @@ def environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    env.filters |= FILTERS
     env.globals |= {"live": live, "world": world()}
-    env.filters |= {
-        "angle": formats.angle,
-        "compass": formats.compass,
-        "duration": formats.duration,
-        "signed_seconds": formats.signed_seconds,
-        "decimals": formats.decimals,
-        "words": formats.words,
-        "local": formats.local,
-        "zone_offset": formats.offset,
-    }
+    for shared in ("_icons.html", "_parts.html", "_sunpath.html"):
+        env.globals |= _macros(env, shared)
     return env
+
+
+def _macros(env: Environment, template: str) -> dict[str, object]:
+    """Return the macros of a template, so that blocks can call them when they are rendered alone."""
+    module = env.get_template(template).module
+    return {name: value for name, value in vars(module).items() if isinstance(value, Macro)}
 
 
 @cache

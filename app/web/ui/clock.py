@@ -1,0 +1,96 @@
+"""Step 2: whose clock to trust, and the sun now, to be held against a shadow."""
+
+from datetime import datetime
+from typing import Annotated
+
+from fastapi import APIRouter, Form
+from pydantic import BaseModel
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.link.messages import SetClock, SiteDetail
+from app.tracker.memory import StepName
+from app.web.contexts import ClockPage
+from app.web.deps import MachineDep, PanelDep
+from app.web.errors import NotAcceptable
+from app.web.ui.formats import local
+from app.web.ui.forms import Typed, in_zone
+from app.web.ui.location import zones
+from app.web.ui.orders import PressDep
+from app.web.ui.render import go, page
+from app.web.ui.wizard import tracker_of, wizard_frame
+
+router = APIRouter(prefix="/trackers/{tracker_id}/commissioning/clock")
+NAMES = ("date", "time", "time_zone")
+
+
+class ClockForm(BaseModel):
+    """The form as it was typed; all texts."""
+
+    date: str = ""
+    time: str = ""
+    time_zone: str = ""
+
+
+@router.get("")
+async def show(request: Request, tracker_id: str, built: PanelDep) -> Response:
+    """Show the controller's clock beside this device's."""
+    detail = await built.machine.detail()
+    latest = built.machine.latest()
+    now = latest.at if latest else built.clock.now()
+    zone = detail.site.time_zone
+    typed = Typed(
+        {"date": local(now, zone, "%Y-%m-%d"), "time": local(now, zone, "%H:%M"), "time_zone": zone}
+    )
+    return _answer(request, tracker_id, detail, typed)
+
+
+@router.post("/system")
+async def keep_system(tracker_id: str, press: PressDep) -> Response:
+    """Trust the clock of the controller's computer."""
+    await press.send(SetClock("system"))
+    return go(press.request, _page(tracker_id))
+
+
+@router.post("/device")
+async def copy_device(
+    tracker_id: str, press: PressDep, at: Annotated[str, Form(max_length=40)] = ""
+) -> Response:
+    """Make the controller's clock show what this device's clock shows."""
+    try:
+        instant = datetime.fromisoformat(at)
+    except ValueError:
+        raise NotAcceptable(
+            "This device's browser did not tell its time; enter date and time by hand."
+        ) from None
+    if instant.tzinfo is None:
+        raise NotAcceptable("This device told its time without its zone; enter date and time by hand.")
+    await press.send(SetClock("manual", instant))
+    return go(press.request, _page(tracker_id))
+
+
+@router.post("")
+async def set_by_hand(
+    tracker_id: str, press: PressDep, machine: MachineDep, typed: Annotated[ClockForm, Form()]
+) -> Response:
+    """Set the controller's clock to a typed date and time."""
+    found = Typed(typed.model_dump())
+    day, time = found.day("date", "Date"), found.clock_time("time", "Time")
+    if typed.time_zone not in zones():
+        found.errors["time_zone"] = "Choose a time zone from the list."
+    if found.errors:
+        return _answer(press.request, tracker_id, await machine.detail(), found, status=422)
+    await press.send(SetClock("manual", in_zone(day, time, typed.time_zone), typed.time_zone))
+    return go(press.request, _page(tracker_id))
+
+
+def _page(tracker_id: str) -> str:
+    return f"/trackers/{tracker_id}/commissioning/clock"
+
+
+def _answer(
+    request: Request, tracker_id: str, detail: SiteDetail, typed: Typed, *, status: int = 200
+) -> Response:
+    frame = wizard_frame(request, tracker_of(detail, tracker_id), StepName.CLOCK)
+    context = ClockPage(frame=frame, form=typed.form(NAMES), zones=zones(), setting=detail.site.clock)
+    return page(request, context, block="manual", status=status)

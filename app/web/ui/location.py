@@ -1,0 +1,212 @@
+"""Step 1: where the tracker stands, checked against today's sun and a map before it is saved."""
+
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from functools import cache
+from typing import Annotated
+from zoneinfo import ZoneInfo, available_timezones
+
+from fastapi import APIRouter, Form, Query
+from pydantic import BaseModel
+from starlette.requests import Request
+from starlette.responses import Response
+from tzfpy import get_tz
+
+from app.link.messages import SetLocation, SiteDetail
+from app.sun.events import PolarDay, SunEvents, day_events
+from app.sun.position import Location
+from app.tracker.config import TrackerConfig
+from app.tracker.memory import SiteState, StepName
+from app.web.contexts import Forward, LocationPage, LocationPreview
+from app.web.deps import Panel, PanelDep
+from app.web.ui import forms
+from app.web.ui.formats import decimals, local
+from app.web.ui.forms import Typed
+from app.web.ui.orders import PressDep
+from app.web.ui.render import go, page
+from app.web.ui.wizard import tracker_of, wizard_frame
+
+router = APIRouter(prefix="/trackers/{tracker_id}/commissioning/location")
+NAMES = ("latitude", "longitude", "altitude", "latitude_side", "longitude_side", "time_zone")
+BY_PLACE = ""
+
+
+class LocationForm(BaseModel):
+    """The form as it was typed; all texts."""
+
+    latitude: str = ""
+    longitude: str = ""
+    altitude: str = ""
+    latitude_side: str = "N"
+    longitude_side: str = "E"
+    time_zone: str = BY_PLACE
+
+
+@dataclass(frozen=True, slots=True)
+class Read:
+    """What the form means: a place and its zone, unless there are errors."""
+
+    typed: Typed
+    location: Location | None
+    zone: str
+
+
+@router.get("")
+async def show(request: Request, tracker_id: str, built: PanelDep) -> Response:
+    """Show the saved location, or an empty form."""
+    detail = await built.machine.detail()
+    return _answer(request, tracker_id, detail, read(_saved(detail.site)), built)
+
+
+@router.get("/preview")
+async def preview(
+    request: Request, tracker_id: str, typed: Annotated[LocationForm, Query()], built: PanelDep
+) -> Response:
+    """Show what the typed location would mean, without saving it."""
+    detail = await built.machine.detail()
+    return _answer(request, tracker_id, detail, read(typed), built, block="preview")
+
+
+@router.post("")
+async def save(
+    tracker_id: str, typed: Annotated[LocationForm, Form()], press: PressDep, built: PanelDep
+) -> Response:
+    """Save the location and go on to the clock."""
+    found = read(typed)
+    if found.location is None:
+        detail = await built.machine.detail()
+        return _answer(press.request, tracker_id, detail, found, built, block="form", status=422)
+    await press.send(SetLocation(found.location, found.zone))
+    return go(press.request, f"/trackers/{tracker_id}/commissioning/clock")
+
+
+def read(form: LocationForm) -> Read:
+    """Return what was typed and what it means."""
+    texts = form.model_dump()
+    if pasted := forms.pair(form.latitude):
+        texts |= {"latitude": pasted[0], "longitude": pasted[1], "latitude_side": "N", "longitude_side": "E"}
+    typed = Typed(texts)
+    latitude = typed.read("latitude", lambda text: _angle(text, texts, "latitude", "NS", 90.0), 0.0)
+    longitude = typed.read("longitude", lambda text: _angle(text, texts, "longitude", "EW", 180.0), 0.0)
+    altitude = typed.number("altitude", "Altitude", -500, 9000) if form.altitude.strip() else 0.0
+    if form.time_zone and form.time_zone not in zones():
+        typed.errors["time_zone"] = "Choose a time zone from the list."
+    if typed.errors:
+        return Read(typed, None, "UTC")
+    return Read(
+        typed, Location(latitude, longitude, altitude), form.time_zone or proposed(latitude, longitude)
+    )
+
+
+def _angle(text: str, texts: dict[str, str], name: str, sides: str, limit: float) -> float:
+    side = texts[f"{name}_side"] if texts[f"{name}_side"] in tuple(sides) else sides[0]
+    return forms.angle(text, name.capitalize(), sides, side, limit)
+
+
+def proposed(latitude_deg: float, longitude_deg: float) -> str:
+    """Return the IANA time zone of a place; UTC where none is known, as on the high sea."""
+    name = get_tz(longitude_deg, latitude_deg)
+    return name if name in zones() else "UTC"
+
+
+@cache
+def zones() -> tuple[str, ...]:
+    """Return the time zones to choose from: those of places, and UTC."""
+    areas = ("Africa/", "America/", "Antarctica/", "Arctic/", "Asia/", "Atlantic/", "Australia/", "Europe/",
+             "Indian/", "Pacific/", "Etc/")  # fmt: skip
+    return ("UTC", *sorted(name for name in available_timezones() if name.startswith(areas)))
+
+
+def _saved(site: SiteState) -> LocationForm:
+    place = site.location
+    if place is None:
+        return LocationForm()
+    by_place = site.time_zone == proposed(place.latitude_deg, place.longitude_deg)
+    return LocationForm(
+        latitude=f"{abs(place.latitude_deg):.7g}",
+        longitude=f"{abs(place.longitude_deg):.7g}",
+        altitude=f"{place.altitude_m:g}",
+        latitude_side="S" if place.latitude_deg < 0 else "N",
+        longitude_side="W" if place.longitude_deg < 0 else "E",
+        time_zone=BY_PLACE if by_place else site.time_zone,
+    )
+
+
+def _answer(
+    request: Request,
+    tracker_id: str,
+    detail: SiteDetail,
+    found: Read,
+    built: Panel,
+    *,
+    block: str | None = None,
+    status: int = 200,
+) -> Response:
+    tracker = tracker_of(detail, tracker_id)
+    frame = wizard_frame(request, tracker, StepName.LOCATION, Forward("Save, next", form="step-form"))
+    untouched = not any(found.typed.texts[name] for name in ("latitude", "longitude"))
+    if untouched and status == 200:
+        found.typed.errors.clear()
+    now = frame.site.at if frame.site else built.clock.now()
+    context = LocationPage(
+        frame=frame,
+        form=found.typed.form(NAMES),
+        preview=_preview(found, tracker.state.config, now),
+        zones=zones(),
+        by_place=found.zone if found.location else "",
+        revision=detail.site.location_revision,
+    )
+    return page(request, context, block=block, status=status)
+
+
+def _preview(found: Read, config: TrackerConfig, now: datetime) -> LocationPreview | None:
+    place = found.location
+    if place is None:
+        return None
+    midnight = now.astimezone(ZoneInfo(found.zone)).replace(hour=0, minute=0, second=0, microsecond=0)
+    events = day_events(config.algorithm, place, midnight, midnight + timedelta(days=1))
+    noon_deg = events.transit_elevation_deg
+    return LocationPreview(
+        x=10 * (place.longitude_deg + 180),
+        y=10 * (90 - place.latitude_deg),
+        normal=normal_form(place),
+        half=_half(place),
+        zone=found.zone,
+        date=local(now, found.zone, "%Y-%m-%d"),
+        rise=_time(events.rise, found.zone),
+        transit=_time(events.transit, found.zone),
+        set=_time(events.set, found.zone),
+        noon_elevation="–" if noon_deg is None else f"{decimals(noon_deg, 1)}°",
+        polar=_polar(events),
+    )
+
+
+def normal_form(place: Location) -> str:
+    """Return a place in degrees, minutes and seconds, as on a map."""
+    return f"{_dms(place.latitude_deg, 'NS')}  {_dms(place.longitude_deg, 'EW')}"
+
+
+def _dms(value_deg: float, sides: str) -> str:
+    total = round(abs(value_deg) * 36000)
+    minutes, tenths = divmod(total, 600)
+    return f"{minutes // 60}° {minutes % 60:02d}′ {tenths / 10:04.1f}″ {sides[value_deg < 0]}"
+
+
+def _half(place: Location) -> str:
+    north = "northern" if place.latitude_deg >= 0 else "southern"
+    east = "east" if place.longitude_deg >= 0 else "west"
+    return f"{north} half of the Earth, {east} of Greenwich"
+
+
+def _time(at: datetime | None, zone: str) -> str:
+    return "–" if at is None else local(at, zone, "%H:%M")
+
+
+def _polar(events: SunEvents) -> str:
+    match events.polar:
+        case PolarDay.DAY:
+            return "The sun does not set today: polar day."
+        case PolarDay.NIGHT:
+            return "The sun does not rise today: polar night."
+        case None:
+            return ""

@@ -1,0 +1,23 @@
+"""Step 5: start tracking, or show the movement of any day."""
+
+from fastapi import APIRouter
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.tracker.memory import StepName
+from app.web.contexts import RunPage
+from app.web.deps import MachineDep
+from app.web.ui.mode import choice
+from app.web.ui.render import page
+from app.web.ui.wizard import tracker_of, wizard_frame
+
+router = APIRouter(prefix="/trackers/{tracker_id}/commissioning/run")
+
+
+@router.get("")
+async def show(request: Request, tracker_id: str, machine: MachineDep) -> Response:
+    """Show what is done and what is missing, and the two ways to begin."""
+    tracker = tracker_of(await machine.detail(), tracker_id)
+    mode = tracker.state.memory.mode
+    frame = wizard_frame(request, tracker, StepName.RUN)
+    return page(request, RunPage(frame=frame, choice=choice(mode) if mode else None))

@@ -1,0 +1,135 @@
+"""The polar sun-path diagram: equidistant, north up, east to the right, radius 100 at the horizon."""
+
+from datetime import UTC, date, datetime, timedelta
+from functools import lru_cache
+from math import cos, radians, sin
+from zoneinfo import ZoneInfo
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.sun.position import Algorithm, Location, SunPath, sun_path
+from app.tracker.axes import AxisConfig
+from app.tracker.config import TrackerConfig
+from app.tracker.snapshot import SiteSnapshot
+from app.web.contexts import Curve, HourLabel, SunDiagram
+
+HORIZON = 100.0
+DAY_S = 86_400
+FINE_S = 600
+MONTHS = (
+    (12, 21, True),
+    (1, 21, False),
+    (2, 19, False),
+    (3, 20, True),
+    (4, 21, False),
+    (5, 21, False),
+    (6, 21, True),
+)
+LABEL_GAP = 8.5
+
+
+def diagram(site: SiteSnapshot | None, config: TrackerConfig) -> SunDiagram | None:
+    """Return the diagram of the site for today, None while the location is not known."""
+    if site is None or site.location is None:
+        return None
+    today = site.at.astimezone(ZoneInfo(site.time_zone)).date()
+    return _diagram(site.location, site.time_zone, today, config.algorithm, config.azimuth, config.elevation)
+
+
+@lru_cache(maxsize=64)
+def _diagram(
+    location: Location,
+    zone: str,
+    today: date,
+    algorithm: Algorithm,
+    azimuth: AxisConfig,
+    elevation: AxisConfig,
+) -> SunDiagram:
+    now_path = _day(algorithm, location, today)
+    labels = hour_labels(algorithm, location, today, zone)
+    return SunDiagram(
+        months=tuple(
+            Curve(f"{month}-{day}", _drawn(_day(algorithm, location, date(today.year, month, day))), strong)
+            for month, day, strong in MONTHS
+        ),
+        hours=tuple(
+            Curve(str(hour), _hour(algorithm, location, today, hour), strong=False) for hour in range(24)
+        ),
+        labels=labels,
+        today=Curve(today.isoformat(), _drawn(now_path), strong=True),
+        reachable=sector(azimuth, elevation),
+        title=f"Sun path of {today.isoformat()}, seen from above, north up",
+    )
+
+
+def point(azimuth_deg: float, elevation_deg: float) -> tuple[float, float]:
+    """Return where a direction of the sky lies in the diagram."""
+    radius = HORIZON * (90.0 - elevation_deg) / 90.0
+    return radius * sin(radians(azimuth_deg)), -radius * cos(radians(azimuth_deg))
+
+
+def _day(algorithm: Algorithm, location: Location, on: date) -> SunPath:
+    midnight = datetime(on.year, on.month, on.day, tzinfo=UTC).timestamp() - location.longitude_deg * 240
+    return sun_path(algorithm, location, np.arange(midnight, midnight + DAY_S + 1, FINE_S, dtype=np.float64))
+
+
+def _hour(algorithm: Algorithm, location: Location, today: date, hour: int) -> str:
+    begin = datetime(today.year - 1, 12, 21, hour, tzinfo=UTC).timestamp()
+    return _drawn(sun_path(algorithm, location, begin + np.arange(0, 183, 7, dtype=np.float64) * DAY_S))
+
+
+def _drawn(path: SunPath) -> str:
+    """Return the part of a path above the horizon as SVG path data, broken where the sun is down."""
+    radius = HORIZON * (90.0 - path.elevation_deg) / 90.0
+    turn = np.radians(path.azimuth_deg)
+    x, y = radius * np.sin(turn), -radius * np.cos(turn)
+    up = path.elevation_deg >= -0.9
+    return _broken(x, y, up)
+
+
+def _broken(x: NDArray[np.float64], y: NDArray[np.float64], up: NDArray[np.bool_]) -> str:
+    drawn, pen_down = [], False
+    for at_x, at_y, shown in zip(x.tolist(), y.tolist(), up.tolist(), strict=True):
+        if shown:
+            drawn.append(f"{'L' if pen_down else 'M'}{at_x:.1f} {at_y:.1f}")
+        pen_down = shown
+    return "".join(drawn)
+
+
+def hour_labels(algorithm: Algorithm, location: Location, today: date, zone: str) -> tuple[HourLabel, ...]:
+    """Return the full hours of today's civil time at their places outside today's curve."""
+    midnight = datetime(today.year, today.month, today.day, tzinfo=ZoneInfo(zone)).astimezone(UTC)
+    instants = [midnight + timedelta(hours=hour) for hour in range(25)]
+    path = sun_path(algorithm, location, np.array([at.timestamp() for at in instants]))
+    labels = []
+    for at, azimuth_deg, elevation_deg in zip(
+        instants, path.azimuth_deg.tolist(), path.elevation_deg.tolist(), strict=True
+    ):
+        if elevation_deg > 1.5:
+            x, y = point(azimuth_deg, elevation_deg - LABEL_GAP * 0.9)
+            labels.append(HourLabel(x, y, str(at.astimezone(ZoneInfo(zone)).hour)))
+    return tuple(labels)
+
+
+def sector(azimuth: AxisConfig, elevation: AxisConfig) -> str:
+    """Return the part of the sky within the soft limits as SVG path data."""
+    outer = HORIZON * (90.0 - max(0.0, elevation.minimum_deg)) / 90.0
+    inner = HORIZON * (90.0 - min(90.0, elevation.maximum_deg)) / 90.0
+    if azimuth.maximum_deg - azimuth.minimum_deg >= 360.0:
+        return _ring(outer) + (_ring(inner) if inner > 0 else "")
+    large = int(azimuth.maximum_deg - azimuth.minimum_deg > 180.0)
+    begin, end = azimuth.minimum_deg, azimuth.maximum_deg
+    return (
+        f"M{_at(begin, inner)}L{_at(begin, outer)}A{outer:.1f} {outer:.1f} 0 {large} 1 {_at(end, outer)}"
+        f"L{_at(end, inner)}A{inner:.1f} {inner:.1f} 0 {large} 0 {_at(begin, inner)}Z"
+    )
+
+
+def _ring(radius: float) -> str:
+    half = f"A{radius:.1f} {radius:.1f} 0 1 1"
+    return f"M0 {-radius:.1f}{half} 0 {radius:.1f}{half} 0 {-radius:.1f}Z"
+
+
+def _at(azimuth_deg: float, radius: float) -> str:
+    return f"{radius * sin(radians(azimuth_deg)):.1f} {-radius * cos(radians(azimuth_deg)):.1f}"

@@ -1,0 +1,99 @@
+"""One tracker live, and the keys that move it."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Form
+from pydantic import BaseModel
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.link.messages import TrackerDetail
+from app.tracker.commands import Move, Park, ResetFault, Stop, Track
+from app.tracker.config import Orientation
+from app.web.contexts import TrackerPage
+from app.web.deps import MachineDep
+from app.web.ui.forms import Typed
+from app.web.ui.frame import tracker_frame
+from app.web.ui.mode import choice, limits_text
+from app.web.ui.orders import PressDep
+from app.web.ui.render import page
+from app.web.ui.sunpath import diagram
+from app.web.ui.wizard import tracker_of
+
+router = APIRouter(prefix="/trackers/{tracker_id}")
+
+
+class GoForm(BaseModel):
+    """A direction as it was typed."""
+
+    azimuth: str = ""
+    elevation: str = ""
+
+
+@router.get("")
+async def show(request: Request, tracker_id: str, machine: MachineDep) -> Response:
+    """Show the tracker as it is now."""
+    detail = await machine.detail()
+    tracker = tracker_of(detail, tracker_id)
+    held = tracker.state.memory.orientation
+    typed = Typed({"azimuth": f"{held.azimuth_deg:g}", "elevation": f"{held.elevation_deg:g}"})
+    return _answer(request, tracker, typed)
+
+
+@router.post("/stop")
+async def stop(tracker_id: str, press: PressDep) -> Response:
+    """Stop both axes now."""
+    await press.send(Stop(), tracker_id)
+    return press.answer("Stopped.")
+
+
+@router.post("/track")
+async def track(tracker_id: str, press: PressDep) -> Response:
+    """Follow the selected mode from now on."""
+    await press.send(Track(), tracker_id)
+    return press.answer("Tracking is on.")
+
+
+@router.post("/park")
+async def park(tracker_id: str, press: PressDep) -> Response:
+    """Go to the park position."""
+    await press.send(Park(), tracker_id)
+    return press.answer("The panel goes to its park position.")
+
+
+@router.post("/reset-fault")
+async def reset_fault(tracker_id: str, press: PressDep) -> Response:
+    """Clear the fault after its cause is removed."""
+    await press.send(ResetFault(), tracker_id)
+    return press.answer("The drive was told to clear its fault.")
+
+
+@router.post("/move")
+async def move(
+    tracker_id: str, press: PressDep, machine: MachineDep, typed: Annotated[GoForm, Form()]
+) -> Response:
+    """Go to a typed direction and stay there."""
+    found = Typed(typed.model_dump())
+    azimuth_deg = found.number("azimuth", "Azimuth", 0, 360)
+    elevation_deg = found.number("elevation", "Elevation", 0, 90)
+    if found.errors:
+        tracker = tracker_of(await machine.detail(), tracker_id)
+        return _answer(press.request, tracker, found, status=422)
+    await press.send(Move(Orientation(azimuth_deg, elevation_deg)), tracker_id)
+    return press.answer("The panel goes there.")
+
+
+def _answer(request: Request, tracker: TrackerDetail, typed: Typed, *, status: int = 200) -> Response:
+    config, memory = tracker.state.config, tracker.state.memory
+    frame = tracker_frame(request, config.tracker_id, "Live")
+    context = TrackerPage(
+        frame=frame,
+        config=config,
+        memory=memory,
+        choice=choice(memory.mode) if memory.mode else None,
+        form=typed.form(("azimuth", "elevation")),
+        limits=limits_text(config),
+        drive=tracker.capabilities.description if tracker.capabilities else config.drive.kind.value,
+        diagram=diagram(frame.site, config),
+    )
+    return page(request, context, block="go", status=status)

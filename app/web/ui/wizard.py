@@ -1,0 +1,99 @@
+"""What the five steps have in common: where they stand, the step bar, confirming, and the way forward."""
+
+from collections.abc import Mapping
+
+from fastapi import APIRouter
+from starlette.requests import Request
+from starlette.responses import RedirectResponse, Response
+
+from app.link.messages import ConfirmStep, SiteDetail, TrackerDetail, UnknownTracker
+from app.tracker.commissioning import Step, StepStatus
+from app.tracker.memory import StepName
+from app.tracker.mode import Mode
+from app.web.contexts import Forward, Frame, Link, ProgressPart
+from app.web.deps import MachineDep
+from app.web.ui.frame import STEP_LABELS, step_marks, tracker_frame
+from app.web.ui.orders import PressDep
+from app.web.ui.render import page
+
+router = APIRouter(prefix="/trackers/{tracker_id}/commissioning")
+ORDER = tuple(StepName)
+
+
+def tracker_of(detail: SiteDetail, tracker_id: str) -> TrackerDetail:
+    """Return one tracker's stored state, or raise `UnknownTracker`."""
+    if tracker_id not in detail.trackers:
+        raise UnknownTracker(tracker_id)
+    return detail.trackers[tracker_id]
+
+
+def step_of(tracker: TrackerDetail, name: StepName) -> Step:
+    """Return one of a tracker's five steps."""
+    return next(step for step in tracker.steps if step.name is name)
+
+
+def wizard_frame(
+    request: Request, tracker: TrackerDetail, step: StepName, forward: Forward | None = None
+) -> Frame:
+    """Return the frame of one step."""
+    tracker_id = tracker.state.config.tracker_id
+    return tracker_frame(
+        request,
+        tracker_id,
+        STEP_LABELS[step],
+        steps=step_marks(tracker, step),
+        back=_back(tracker_id, step, request.url.path),
+        forward=forward or onwards(tracker, step, request.url.path),
+    )
+
+
+def _back(tracker_id: str, step: StepName, here: str) -> Link:
+    root = f"/trackers/{tracker_id}"
+    if here.endswith("/orientation"):
+        return Link("Back", f"{root}/commissioning/mode")
+    at = ORDER.index(step)
+    return Link("Back", f"{root}/commissioning/{ORDER[at - 1]}" if at else root)
+
+
+def onwards(tracker: TrackerDetail, step: StepName, here: str) -> Forward:
+    """Return the key forward: open only when the step is done."""
+    root = f"/trackers/{tracker.state.config.tracker_id}"
+    found = step_of(tracker, step)
+    if step is StepName.RUN:
+        return Forward("Live view", root)
+    needs_orientation = tracker.state.memory.mode not in (None, Mode.DUAL)
+    if step is StepName.MODE and needs_orientation and not here.endswith("/orientation"):
+        return Forward("Next", f"{root}/commissioning/mode/orientation")
+    if found.status is StepStatus.DONE:
+        return Forward("Next", f"{root}/commissioning/{ORDER[ORDER.index(step) + 1]}")
+    return Forward("Next", reasons=found.reasons)
+
+
+@router.get("")
+async def commissioning(tracker_id: str, machine: MachineDep) -> Response:
+    """Go to the first step that is not done."""
+    tracker = tracker_of(await machine.detail(), tracker_id)
+    left = [step.name for step in tracker.steps if step.status is not StepStatus.DONE]
+    return RedirectResponse(f"/trackers/{tracker_id}/commissioning/{left[0] if left else StepName.RUN}", 303)
+
+
+@router.get("/progress/{step}")
+async def progress(
+    request: Request, tracker_id: str, step: StepName, machine: MachineDep, here: str = ""
+) -> Response:
+    """Return the step bar and the key forward as they stand now."""
+    tracker = tracker_of(await machine.detail(), tracker_id)
+    frame = wizard_frame(request, tracker, step, onwards(tracker, step, here))
+    return page(request, ProgressPart(frame=frame))
+
+
+@router.post("/{step}/confirm")
+async def confirm(tracker_id: str, step: StepName, press: PressDep) -> Response:
+    """Take the operator's word that a step is still right."""
+    await press.send(ConfirmStep(tracker_id, step))
+    return press.answer("Confirmed.")
+
+
+def texts_of(values: Mapping[str, object]) -> dict[str, str]:
+    """Return stored values as the texts of a form."""
+    return {name: str(value) for name, value in values.items()}

@@ -1,0 +1,42 @@
+// Charts in the colours of the theme, drawn by uPlot; its styles go through the DOM, so that no inline style is needed.
+
+/* global uPlot */
+import { colour } from "./colours.js";
+import { clockTime } from "./format.js";
+
+const tzDate = (zone) => (seconds) => uPlot.tzDate(new Date(seconds * 1000), zone);
+
+// `wanted`: series [{label, colour, width, dash}], zone for a time axis or `xText` for another one, unit, cursor.
+export function chart(holder, wanted) {
+  const size = () => ({ width: Math.max(200, holder.clientWidth), height: holder.clientHeight || 260 });
+  const digits = wanted.digits ?? 2;
+  const unit = wanted.unit ?? "°";
+  const text = (value) => (value === null || value === undefined ? "–" : `${value.toFixed(digits)}${unit}`);
+  const font = `14px ${getComputedStyle(document.body).fontFamily}`;
+  const axis = { stroke: colour("text"), grid: { stroke: colour("hair"), width: 1 }, ticks: { show: false }, font };
+  const plot = new uPlot({
+    ...size(),
+    tzDate: wanted.zone ? tzDate(wanted.zone) : undefined,
+    cursor: { points: { size: 9 }, drag: { x: false, y: false }, ...wanted.cursor },
+    legend: { live: true },
+    scales: { x: { time: Boolean(wanted.zone) }, y: { range: wanted.range ?? padded } },
+    axes: [
+      { ...axis, values: wanted.zone ? (_, ticks) => ticks.map((at) => clockTime(at * 1000, wanted.zone, wanted.seconds ?? false)) : wanted.xTicks },
+      { ...axis, size: 58, values: (_, ticks) => ticks.map((value) => `${value}${unit}`) },
+    ],
+    series: [
+      { label: wanted.xLabel ?? "Time", value: (_, at) => (at === null ? "–" : wanted.zone ? clockTime(at * 1000, wanted.zone) : wanted.xText?.(at) ?? at) },
+      ...wanted.series.map((one) => ({ label: one.label, stroke: colour(one.colour), width: one.width ?? 2, dash: one.dash, points: { show: false }, value: (_, value) => text(value), spanGaps: false })),
+    ],
+    hooks: wanted.hooks,
+  }, wanted.data ?? [[], ...wanted.series.map(() => [])], holder);
+  const watcher = new ResizeObserver(() => plot.setSize(size()));
+  watcher.observe(holder);
+  return plot;
+}
+
+function padded(_, least, most) {
+  if (least === null || most === null) return [0, 90];
+  const room = Math.max(1, (most - least) * 0.08);
+  return [least - room, most + room];
+}

@@ -1,0 +1,48 @@
+// Step 2: this device's clock beside the controller's, and where a shadow points now.
+
+import { clockTime, compass, decimals, signedSeconds } from "./format.js";
+import { live } from "./live.js";
+
+const zone = Intl.DateTimeFormat().resolvedOptions().timeZone;
+const CLOSE_S = 5;
+
+function tick() {
+  const device = new Date();
+  document.getElementById("device-clock").textContent = clockTime(device, live.zone);
+  document.getElementById("device-zone").textContent = `set to ${zone}, shown in ${live.zone}`;
+  const now = live.machineNow();
+  const seconds = now === null ? null : (Date.parse(now) - device.getTime()) / 1000;
+  document.getElementById("clock-difference").textContent = seconds === null ? "–" : signedSeconds(seconds);
+  document.getElementById("clock-verdict").textContent = seconds === null ? "" : verdict(seconds);
+}
+
+function verdict(seconds) {
+  if (Math.abs(seconds) < CLOSE_S) return "the clocks agree";
+  return seconds > 0 ? "the controller is ahead" : "the controller is behind";
+}
+
+function shadow() {
+  const sun = live.site?.sun;
+  const arrow = document.getElementById("shadow-arrow");
+  if (!sun || !arrow) return;
+  const up = sun.apparent_elevation_deg > 0;
+  const away = (sun.azimuth_deg + 180) % 360;
+  arrow.setAttribute("visibility", up ? "visible" : "hidden");
+  arrow.setAttribute("transform", `rotate(${away.toFixed(1)})`);
+  document.getElementById("shadow-words").textContent = up
+    ? `The shadow of an upright pole must point to ${away.toFixed(0)}° (${compass(away)}), ${length(sun.apparent_elevation_deg)} its height. Look: does it?`
+    : `The sun is ${decimals(-sun.apparent_elevation_deg, 1)}° below the horizon now: it must be night outside.`;
+}
+
+function length(elevationDeg) {
+  const times = 1 / Math.tan((elevationDeg * Math.PI) / 180);
+  return times > 20 ? "more than 20 times as long as" : `${decimals(times, 1)} times`;
+}
+
+document.addEventListener("htmx:config:request", (event) => {
+  const { ctx } = event.detail;
+  if (ctx.request.body?.has?.("at")) ctx.request.body.set("at", new Date().toISOString());
+});
+live.on("state", shadow);
+setInterval(tick, 250);
+tick();

@@ -1,0 +1,116 @@
+// Hold-to-run: an axis moves only while this page says so, twenty times a second; every way of letting go ends it.
+
+import { live } from "./live.js";
+import { randomId } from "./orders.js";
+
+const BEAT_MS = 50;
+const SLIDE_PX = 24;
+const SLOW_LINK_MS = 120;
+const KEYS = new Set([" ", "Enter"]);
+const said = document.getElementById("jog-words");
+
+let press = null;
+
+const speed = () => document.querySelector('input[name="speed"]:checked')?.value ?? "slow";
+
+function beat() {
+  if (!press) return;
+  if (live.link !== "live") {
+    end("The connection was lost.");
+    return;
+  }
+  const message = { type: "jog", tracker_id: live.trackerId, press_id: press.id, axis: press.axis, direction: press.direction,
+    speed: press.speed, sequence: press.sequence, tc: performance.now() };
+  if (live.roundTripMs !== null) message.rtt_ms = live.roundTripMs;
+  // A heartbeat that cannot leave now is not sent at all: silence stops the axis, a backlog would move it late.
+  if (live.send(message)) press.sequence += 1;
+}
+
+function begin(key, pointer) {
+  if (press || key.disabled || live.link !== "live") return;
+  press = { id: randomId(), key, pointer, axis: key.dataset.jog, direction: Number(key.dataset.direction), speed: speed(), sequence: 0 };
+  press.box = key.getBoundingClientRect();
+  key.dataset.held = "";
+  said.textContent = "";
+  navigator.vibrate?.(15);
+  beat();
+  press.timer = setInterval(beat, BEAT_MS);
+}
+
+function end(why = "") {
+  if (!press) return;
+  const { id, key, timer, pointer } = press;
+  press = null;
+  clearInterval(timer);
+  delete key.dataset.held;
+  said.textContent = why;
+  live.send({ type: "end_jog", tracker_id: live.trackerId, press_id: id });
+  beacon(id);
+  if (pointer !== undefined && key.hasPointerCapture?.(pointer)) key.releasePointerCapture(pointer);
+}
+
+// The same by HTTP, for a socket that has just died; it reaches the machine even while the page is being closed.
+function beacon(id) {
+  const url = `/trackers/${encodeURIComponent(live.trackerId)}/end-jog`;
+  navigator.sendBeacon?.(url, new URLSearchParams({ press_id: id }));
+}
+
+function slidOff(event) {
+  const { left, right, top, bottom } = press.box;
+  return event.clientX < left - SLIDE_PX || event.clientX > right + SLIDE_PX
+    || event.clientY < top - SLIDE_PX || event.clientY > bottom + SLIDE_PX;
+}
+
+function watch(key) {
+  key.addEventListener("pointerdown", (event) => {
+    event.preventDefault();
+    key.focus({ preventScroll: true });
+    if (press) return end("Two keys were touched.");
+    if (event.button !== 0 || !event.isPrimary) return undefined;
+    key.setPointerCapture(event.pointerId);
+    return begin(key, event.pointerId);
+  });
+  key.addEventListener("pointermove", (event) => {
+    if (press?.key === key && event.pointerId === press.pointer && slidOff(event)) end("The finger slid off the key.");
+  });
+  for (const name of ["pointerup", "pointercancel", "lostpointercapture"]) {
+    key.addEventListener(name, (event) => { if (press?.key === key && event.pointerId === press.pointer) end(); });
+  }
+  key.addEventListener("contextmenu", (event) => { event.preventDefault(); });
+  key.addEventListener("keydown", (event) => {
+    if (!KEYS.has(event.key)) return;
+    event.preventDefault();
+    if (!event.repeat) begin(key);
+  });
+  key.addEventListener("keyup", (event) => { if (KEYS.has(event.key)) { event.preventDefault(); end(); } });
+  key.addEventListener("blur", () => { if (press?.key === key) end(); });
+  key.addEventListener("click", (event) => event.preventDefault());
+}
+
+function judged(message) {
+  if (message.press_id !== press?.id) {
+    if (message.status === "refused") said.textContent = message.reasons?.map((reason) => reason.message).join(" ") ?? "";
+    return;
+  }
+  if (message.status !== "ok") end(message.reasons?.map((reason) => `${reason.message} ${reason.hint ?? ""}`).join(" ") || "The machine ended the movement.");
+}
+
+function paintLink() {
+  const trip = live.roundTripMs;
+  const slow = trip !== null && trip > SLOW_LINK_MS;
+  document.getElementById("round-trip").textContent = trip === null ? "–" : `${Math.max(1, Math.round(trip))} ms`;
+  document.getElementById("link-verdict").textContent = slow ? "Link too slow for hold-to-run: use the small steps." : "";
+}
+
+document.querySelectorAll("[data-jog]").forEach(watch);
+document.addEventListener("pointerdown", (event) => { if (press && event.pointerId !== press.pointer) end("A second finger touched the screen."); }, true);
+document.addEventListener("visibilitychange", () => { if (document.hidden) end(); });
+addEventListener("blur", () => end());
+addEventListener("pagehide", () => end());
+addEventListener("orientationchange", () => end());
+document.addEventListener("htmx:before:swap", (event) => { if (press && event.detail?.ctx?.target?.contains?.(press.key)) end(); });
+live.on("jog", judged);
+live.on("pong", paintLink);
+live.on("stopped", () => end("Stopped."));
+live.on("link", () => { if (live.link !== "live") end("The connection was lost."); });
+live.on("state", () => { if (press?.key.disabled) end(); });

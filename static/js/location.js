@@ -1,0 +1,54 @@
+// Step 1: the cross on the map, and the device's own position where the browser gives it.
+
+const cross = document.getElementById("map-cross");
+const preview = document.getElementById("preview");
+
+function moveCross() {
+  const found = preview.querySelector("[data-x]");
+  cross.setAttribute("visibility", found ? "visible" : "hidden");
+  if (!found) return;
+  cross.setAttribute("transform", `translate(${found.dataset.x} ${found.dataset.y})`);
+  const byPlace = document.querySelector('#f-time_zone option[value=""]');
+  if (byPlace && document.getElementById("f-time_zone").value === "") byPlace.textContent = found.dataset.zone;
+}
+
+function put(name, value, sides) {
+  document.getElementById(`f-${name}`).value = Math.abs(value).toFixed(5);
+  const side = value < 0 ? sides[1] : sides[0];
+  document.querySelector(`input[name="${name}_side"][value="${side}"]`).checked = true;
+}
+
+function take(position, words) {
+  const { latitude, longitude, altitude, accuracy } = position.coords;
+  put("latitude", latitude, "NS");
+  put("longitude", longitude, "EW");
+  if (altitude !== null) document.getElementById("f-altitude").value = Math.round(altitude);
+  words.textContent = `Taken, accurate to ${Math.round(accuracy)} m. Check it, then save.`;
+  document.body.dispatchEvent(new CustomEvent("location-typed"));
+}
+
+const REFUSED = {
+  1: "The browser was not allowed to tell its position. Allow it in the browser, or type the numbers.",
+  2: "This device does not know its position now. Type the numbers.",
+  3: "This device found no position in 20 s. Try again under the open sky, or type the numbers.",
+};
+
+function offerDevicePlace() {
+  const holder = document.getElementById("device-place");
+  if (!holder) return;
+  const [key, words] = [holder.querySelector("button"), holder.querySelector("p")];
+  if (!window.isSecureContext || !navigator.geolocation) {
+    words.textContent = "This browser gives its position only to pages over HTTPS or on the same computer. Type the numbers, or paste them as “41.2867, 36.3300”.";
+    return;
+  }
+  words.textContent = "";
+  key.disabled = false;
+  key.addEventListener("click", () => {
+    words.textContent = "Looking for the position …";
+    navigator.geolocation.getCurrentPosition((found) => take(found, words), (error) => { words.textContent = REFUSED[error.code] ?? error.message; },
+      { enableHighAccuracy: true, timeout: 20000, maximumAge: 0 });
+  });
+}
+
+document.addEventListener("htmx:after:swap", () => { moveCross(); offerDevicePlace(); });
+offerDevicePlace();
