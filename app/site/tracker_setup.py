@@ -68,8 +68,9 @@ async def configure(model: SiteModel, config: TrackerConfig, actor: str) -> tupl
 
 def _memory_for(memory: TrackerMemory, old: TrackerConfig, new: TrackerConfig) -> TrackerMemory:
     """Return what stays true with other limits or another drive: a new drive has no trusted zero."""
-    home = memory.home if old.drive == new.drive else None
-    return replace(memory, home=home, tracking_on=False)
+    if old.drive == new.drive:
+        return replace(memory, tracking_on=False)
+    return replace(memory, home=None, home_lost="another drive was configured.", tracking_on=False)
 
 
 def _changed(old: TrackerConfig, new: TrackerConfig) -> list[str]:

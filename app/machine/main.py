@@ -1,0 +1,166 @@
+"""The controller service: put together from settings to link server, and taken down again in order."""
+
+import asyncio
+import gc
+import os
+import signal
+import sqlite3
+from datetime import datetime, timedelta
+from uuid import uuid4
+
+import structlog
+
+from app.build import BUILT_AT, VERSION
+from app.clock import SystemClock
+from app.drives.drive import Drive
+from app.drives.factory import make_drive
+from app.link.server import LinkServer
+from app.logs import set_up_logs
+from app.machine.lock import only_instance
+from app.machine.marker import mark_running, mark_stopped
+from app.machine.systemd import notify
+from app.machine.watchdog import LoopWatchdog
+from app.settings import Settings
+from app.site.beginning import Beginning, begin
+from app.site.ntp import ntp_synchronised
+from app.site.site import Site, SiteOptions
+from app.site.timekeeping import Timekeeper
+from app.store.engine import open_writer
+from app.store.migrations import upgrade
+from app.store.offloaded import WriterThread
+from app.store.restore import apply_pending_restore
+from app.store.store import JournalFilter, StoreFailed, Writer
+from app.tracker.config import TrackerConfig
+from app.tracker.snapshot import Event, EventKind
+
+FIFO_PRIORITY = 10
+
+log = structlog.get_logger(__name__)
+
+
+def run(settings: Settings) -> None:
+    """Run the controller service until it is told to stop.
+
+    Raises `AlreadyRunning` if another one holds the data folder, `StoreFailed` if the store cannot be opened.
+    """
+    set_up_logs("machine", log_format=settings.log_format, log_level=settings.log_level)
+    settings.data_dir.mkdir(mode=0o700, parents=True, exist_ok=True)
+    clock = SystemClock()
+    with only_instance(settings.data_dir, clock.now()):
+        _restore_if_asked(settings)
+        upgrade(settings.url)
+        writer = open_writer(settings.url)
+        try:
+            asyncio.run(_serve(settings, clock, writer))
+        finally:
+            writer.close()
+
+
+def _restore_if_asked(settings: Settings) -> None:
+    """Bring back a backup that was handed over; one that cannot be used is put aside and logged."""
+    try:
+        restored = apply_pending_restore(settings.data_dir, settings.url)
+    except StoreFailed as error:
+        log.error("restore_refused", reason=str(error))
+        return
+    if restored is not None:
+        log.info("restored", site=restored.backup.site_name)
+
+
+async def _serve(settings: Settings, clock: SystemClock, writer: Writer) -> None:
+    _raise_priority()
+    background = WriterThread(writer, _on_store_failure)
+    beginning = begin(writer, clock.now(), unclean_since=mark_running(settings.data_dir, clock.now()))
+    site = _site(settings, clock, background, writer, beginning)
+    server = LinkServer(site, settings.link_path)
+    stopped = _on_signals()
+    await site.start(*beginning.events)
+    await server.start()
+    watching = asyncio.create_task(
+        LoopWatchdog(clock, alive=lambda: site.alive, stop_drives=site.stop_drives).run()
+    )
+    gc.collect()
+    gc.freeze()
+    log.info("machine_ready", version=VERSION, link=str(settings.link_path), sqlite=sqlite3.sqlite_version)
+    notify("READY=1")
+    await stopped.wait()
+    notify("STOPPING=1")
+    await _take_down(settings, site, server, watching, background)
+
+
+async def _take_down(
+    settings: Settings,
+    site: Site,
+    server: LinkServer,
+    watching: asyncio.Task[None],
+    background: WriterThread,
+) -> None:
+    """Stop the drives first, then tell and keep what is left."""
+    await site.stop_drives()
+    watching.cancel()
+    await asyncio.gather(watching, return_exceptions=True)
+    event = Event(site.model.now(), EventKind.MACHINE_STOPPED, None, "The controller service was stopped.")
+    await site.close(event)
+    await server.close()
+    if background.close():
+        mark_stopped(settings.data_dir)
+    log.info("machine_stopped")
+
+
+def _site(
+    settings: Settings,
+    clock: SystemClock,
+    background: WriterThread,
+    writer: Writer,
+    beginning: Beginning,
+) -> Site:
+    def drive_for(config: TrackerConfig) -> Drive:
+        return make_drive(config, clock, settings.data_dir)
+
+    timekeeper = Timekeeper(
+        clock,
+        beginning.site.clock,
+        drift=clock.drift,
+        synchronised=ntp_synchronised,
+        not_before=_newest_event(writer),
+    )
+    return Site(
+        clock,
+        drive_for,
+        beginning.site,
+        beginning.trackers,
+        timekeeper=timekeeper,
+        writer=background,
+        options=SiteOptions(
+            boot_id=uuid4().hex,
+            period=timedelta(milliseconds=settings.tick_ms),
+            retention=timedelta(days=settings.telemetry_retention_days),
+            recordings_keep=settings.recordings_keep,
+        ),
+    )
+
+
+def _newest_event(writer: Writer) -> datetime:
+    """Return the last instant that was journalled: a clock that shows an earlier one is wrong."""
+    newest = writer.journal(JournalFilter(limit=1))
+    return max(BUILT_AT, newest[0].event.at) if newest else BUILT_AT
+
+
+def _on_signals() -> asyncio.Event:
+    stopped = asyncio.Event()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        asyncio.get_running_loop().add_signal_handler(number, stopped.set)
+    return stopped
+
+
+def _on_store_failure(error: Exception) -> None:
+    log.error("not_stored", reason=str(error))
+
+
+def _raise_priority() -> None:
+    """Ask for real-time scheduling, for this thread only; without it the machine still runs."""
+    policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
+    try:
+        os.sched_setscheduler(0, policy, os.sched_param(FIFO_PRIORITY))
+    except OSError as error:
+        log.info("no_real_time_scheduling", reason=error.strerror)

@@ -1,0 +1,119 @@
+"""Runs machine and panel as two processes and starts either again when it dies."""
+
+import asyncio
+import ctypes
+import os
+import signal
+import sys
+from dataclasses import dataclass
+from datetime import timedelta
+
+import structlog
+
+from app.clock import Clock, SystemClock
+from app.logs import set_up_logs
+from app.settings import Settings
+
+FIRST_PAUSE = timedelta(milliseconds=200)
+LONGEST_PAUSE = timedelta(seconds=5)
+LIVED_LONG = timedelta(seconds=10)
+GIVE_UP_AFTER_S = 8.0
+WRONG_SETTINGS = 2
+PR_SET_PDEATHSIG = 1
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(slots=True)
+class Child:
+    """One of the two processes: its name in the log and the module that it runs."""
+
+    name: str
+    module: tuple[str, ...]
+    process: asyncio.subprocess.Process | None = None
+    pause: timedelta = FIRST_PAUSE
+
+    async def start(self) -> asyncio.subprocess.Process:
+        """Start it in a session of its own: the terminal's signals reach it only through the supervisor."""
+        arguments = ("-m", *self.module, "--supervised")
+        self.process = await asyncio.create_subprocess_exec(
+            sys.executable, *arguments, start_new_session=True
+        )
+        log.info("child_started", child=self.name, process_id=self.process.pid)
+        return self.process
+
+    def signal(self, number: signal.Signals) -> None:
+        """Send it a signal if it runs."""
+        if self.process is not None and self.process.returncode is None:
+            self.process.send_signal(number)
+
+
+class Supervisor:
+    """Keeps children alive until it is told to stop or one of them says that its settings are wrong."""
+
+    def __init__(self, clock: Clock, *children: Child) -> None:
+        self._clock = clock
+        self._children = children
+        self._stopping = asyncio.Event()
+
+    def stop(self) -> None:
+        """End every child, then return from `run`."""
+        self._stopping.set()
+
+    async def run(self) -> int:
+        """Return the exit code: 0 after `stop`, a child's own if its settings are wrong."""
+        keeping = [asyncio.create_task(self._keep(child)) for child in self._children]
+        stopping = asyncio.create_task(self._stopping.wait())
+        done, _ = await asyncio.wait({*keeping, stopping}, return_when=asyncio.FIRST_COMPLETED)
+        for task in (*keeping, stopping):
+            task.cancel()
+        await asyncio.gather(*keeping, stopping, return_exceptions=True)
+        await asyncio.gather(*(self._end(child) for child in self._children))
+        return next((int(task.result()) for task in done if task is not stopping), 0)
+
+    async def _keep(self, child: Child) -> int:
+        while True:
+            began = self._clock.now()
+            code = await (await child.start()).wait()
+            if code == WRONG_SETTINGS:
+                return code
+            if self._clock.now() - began >= LIVED_LONG:
+                child.pause = FIRST_PAUSE
+            log.error("child_died", child=child.name, code=code, again_in_s=child.pause.total_seconds())
+            await self._clock.sleep_until(self._clock.now() + child.pause)
+            child.pause = min(child.pause * 2, LONGEST_PAUSE)
+
+    async def _end(self, child: Child) -> None:
+        if child.process is None:
+            return
+        child.signal(signal.SIGTERM)
+        try:
+            async with asyncio.timeout(GIVE_UP_AFTER_S):
+                await child.process.wait()
+        except TimeoutError:
+            log.error("child_killed", child=child.name)
+            child.signal(signal.SIGKILL)
+            await child.process.wait()
+
+
+def supervise(settings: Settings) -> int:
+    """Run both processes until SIGTERM or SIGINT and return the exit code."""
+    set_up_logs("supervisor", log_format=settings.log_format, log_level=settings.log_level)
+    return asyncio.run(_supervise())
+
+
+async def _supervise() -> int:
+    supervisor = Supervisor(
+        SystemClock(), Child("machine", ("app.machine",)), Child("web", ("app.cli", "web"))
+    )
+    for number in (signal.SIGTERM, signal.SIGINT):
+        asyncio.get_running_loop().add_signal_handler(number, supervisor.stop)
+    return await supervisor.run()
+
+
+def end_with_parent() -> None:
+    """Have the kernel send SIGTERM to this process when its supervisor dies."""
+    parent = os.getppid()
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+    if os.getppid() != parent:
+        os.kill(os.getpid(), signal.SIGTERM)

@@ -1,0 +1,83 @@
+"""The real controller on a simulated drive and a virtual clock, driven tick by tick."""
+
+from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
+
+from app.clock import VirtualClock
+from app.drives.simulated import SimulatedDrive
+from app.site.sky import Sky
+from app.sun.position import Location, SunPosition
+from app.tracker.commands import Command, Home
+from app.tracker.config import TrackerConfig
+from app.tracker.controller import Controller
+from app.tracker.memory import Pointing, TrackerMemory
+from app.tracker.observation import Observation
+from app.tracker.snapshot import ActivityName, Event, Snapshot
+
+SHORT_STEP = timedelta(milliseconds=100)
+STEADY_TICKS = 10
+LONGEST_PREPARATION = timedelta(hours=1)
+
+
+class RehearsalFailed(ValueError):
+    """The simulated tracker did not get where it had to be; the text says what was waited for."""
+
+
+class Rehearsal:
+    """One simulated tracker whose sun stands still until it is homed and in place.
+
+    The machine's time starts at `begin` and always goes on; `site_time` moves only when told to.
+    """
+
+    def __init__(
+        self, config: TrackerConfig, pointing: Pointing, location: Location, begin: datetime
+    ) -> None:
+        self.config = config
+        self.location = location
+        self.site_time = begin.astimezone(UTC)
+        self.clock = VirtualClock(self.site_time)
+        self.drive = SimulatedDrive(config, self.clock, watchdog=None)
+        self.controller = Controller(config, TrackerMemory(pointing=pointing), self.drive.capabilities)
+        self._sky = Sky()
+
+    def home(self) -> None:
+        """Search the origin switches until the zero is trusted."""
+        self.tick()
+        self.ask(Home())
+        self.prepare_until(lambda seen: seen.home_trusted and self._rests(seen), "its zero was found")
+
+    def ask(self, command: Command) -> tuple[Event, ...]:
+        """Give the controller a command."""
+        return self.controller.handle(command, self.clock.now(), "simulation")
+
+    def prepare_until(self, ready: Callable[[Snapshot], bool], what: str) -> None:
+        """Tick with the sun standing still until the tracker has been ready for a second."""
+        give_up = self.clock.now() + LONGEST_PREPARATION
+        steady = 0
+        while self.clock.now() < give_up:
+            self.clock.advance(SHORT_STEP)
+            self.tick()
+            steady = steady + 1 if ready(self.controller.snapshot(self.site_time)) else 0
+            if steady >= STEADY_TICKS:
+                return
+        raise RehearsalFailed(f"The simulated tracker waited an hour until {what}; check its settings.")
+
+    def tick(self, sun: SunPosition | None = None) -> tuple[Event, ...]:
+        """Read, decide and write once at the present instant; the sun may come worked out in advance."""
+        config, location, at = self.config, self.location, self.site_time
+        observation = Observation(
+            self.clock.now(),
+            at,
+            sun or self._sky.sun(location, config.algorithm, at),
+            self._sky.dawn(location, config.algorithm, at),
+            self.drive.observe(),
+            True,
+            location,
+            1,
+        )
+        command, events = self.controller.tick(observation)
+        self.drive.obey(command)
+        return events
+
+    def _rests(self, seen: Snapshot) -> bool:
+        return seen.activity is ActivityName.HOLDING

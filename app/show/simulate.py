@@ -1,0 +1,206 @@
+"""A day, or a show, simulated at controller fidelity on a virtual clock, as a recording."""
+
+from base64 import b64encode
+from dataclasses import replace
+from datetime import UTC, date, datetime, time, timedelta
+from uuid import uuid4
+from zoneinfo import ZoneInfo
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.show.rehearsal import SHORT_STEP, Rehearsal, RehearsalFailed
+from app.store.chunks import encode_all
+from app.sun.position import Location, SunPosition, sun_path
+from app.tracker.commands import GoToStart, Move, RunShow, SelectMode, Track
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.memory import Pointing
+from app.tracker.mode import Mode
+from app.tracker.programs.show import ShowPlan
+from app.tracker.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
+from app.tracker.snapshot import ActivityName, EventKind, ShowPhase, Snapshot
+
+SECOND = timedelta(seconds=1)
+LONGEST = timedelta(days=3)
+MOST_FRAMES = 1_000_000
+DRIVE = "Simulated tracker on a virtual clock; nothing real moved."
+
+
+def simulate(
+    config: TrackerConfig,
+    pointing: Pointing,
+    location: Location,
+    time_zone: str,
+    mode: Mode,
+    orientation: Orientation,
+    begin: datetime,
+    end: datetime,
+    *,
+    step: timedelta = SECOND,
+    title: str = "",
+) -> tuple[RecordingInfo, Frames]:
+    """Return what the tracker would do from `begin` to `end`; it is homed and in place at the beginning."""
+    _check_span(begin, end, step)
+    begin, end = begin.astimezone(UTC), end.astimezone(UTC)
+    rehearsal = Rehearsal(config, pointing, location, begin)
+    rehearsal.home()
+    rehearsal.ask(SelectMode(mode, orientation))
+    rehearsal.ask(Move(orientation) if mode is Mode.FIXED else Track())
+    rehearsal.prepare_until(_settled, "it was in place")
+    count = int((end - begin) / step) + 1
+    elapsed_s = np.asarray(np.arange(count) * step.total_seconds(), dtype=np.float64)
+    rows = _run(rehearsal, begin, step, elapsed_s)
+    info = _info(config, location, time_zone, mode, orientation, begin, end)
+    frames = _frames(rows, elapsed_s)
+    return _finished(info, title or _day_title(config, time_zone, begin), frames), frames
+
+
+def simulate_show(
+    config: TrackerConfig,
+    pointing: Pointing,
+    time_zone: str,
+    plan: ShowPlan,
+    *,
+    step: timedelta = SHORT_STEP,
+    title: str = "",
+) -> tuple[RecordingInfo, Frames]:
+    """Return what the tracker would do in a show, from its start position on."""
+    rehearsal = Rehearsal(config, pointing, plan.location, plan.begin_at)
+    rehearsal.home()
+    rehearsal.ask(GoToStart(plan))
+    rehearsal.prepare_until(_ready_for_show, "it stood at the start of the show")
+    rehearsal.ask(RunShow(plan))
+    rows = _run_show(rehearsal, plan, step)
+    info = _info(config, plan.location, time_zone, plan.mode, plan.orientation, plan.begin_at, plan.end_at)
+    frames = Frames(np.array(rows, dtype=np.float64).reshape(-1, len(COLUMNS)))
+    return _finished(info, title or _show_title(plan, time_zone), frames), frames
+
+
+def simulate_date(
+    config: TrackerConfig,
+    location: Location,
+    time_zone: str,
+    day: date,
+    *,
+    mode: Mode = Mode.DUAL,
+    step: timedelta = SECOND,
+) -> tuple[RecordingInfo, Frames]:
+    """Return a simulation of a local day, midnight to midnight."""
+    zone = ZoneInfo(time_zone)
+    begin, end = (datetime.combine(at, time.min, zone) for at in (day, day + timedelta(days=1)))
+    held = Orientation(180.0, 45.0)
+    return simulate(config, Pointing(), location, time_zone, mode, held, begin, end, step=step)
+
+
+def encoded(frames: Frames) -> tuple[str, ...]:
+    """Return frames as `SaveRecording` carries them: base64 of the store's own encoding."""
+    return tuple(b64encode(chunk).decode() for chunk in encode_all(frames))
+
+
+def _check_span(begin: datetime, end: datetime, step: timedelta) -> None:
+    if begin.tzinfo is None or end.tzinfo is None:
+        raise ValueError("Give the begin and the end of a simulation with their time zone.")
+    if not timedelta(0) < end - begin <= LONGEST:
+        raise ValueError("A simulation ends after it begins, and lasts at most three days.")
+    if not SHORT_STEP <= step <= timedelta(minutes=1):
+        raise ValueError("The step of a simulation lies between 0.1 and 60 seconds.")
+    if (end - begin) / step > MOST_FRAMES:
+        raise ValueError(f"A simulation has at most {MOST_FRAMES} frames; take a longer step.")
+
+
+def _settled(seen: Snapshot) -> bool:
+    turning = [axis is not None and axis.moving for axis in (seen.azimuth, seen.elevation)]
+    return not any(turning) and seen.activity in (ActivityName.TRACKING, ActivityName.HOLDING)
+
+
+def _ready_for_show(seen: Snapshot) -> bool:
+    return seen.show is not None and seen.show.phase is ShowPhase.READY
+
+
+def _run(
+    rehearsal: Rehearsal, begin: datetime, step: timedelta, elapsed_s: NDArray[np.float64]
+) -> list[tuple[float, ...]]:
+    """Tick through the span and return a row for each tick."""
+    path = sun_path(rehearsal.config.algorithm, rehearsal.location, begin.timestamp() + elapsed_s)
+    columns = (path.azimuth_deg, path.elevation_deg, path.apparent_elevation_deg)
+    tick, frame, advance = rehearsal.tick, rehearsal.controller.frame, rehearsal.clock.advance
+    rows = []
+    for sun in zip(*(column.tolist() for column in columns), strict=True):
+        advance(step)
+        tick(SunPosition(*sun))
+        rows.append(frame())
+        rehearsal.site_time += step
+    return rows
+
+
+def _run_show(rehearsal: Rehearsal, plan: ShowPlan, step: timedelta) -> list[tuple[float, ...]]:
+    begun = rehearsal.clock.now()
+    rows: list[tuple[float, ...]] = []
+    while rehearsal.clock.now() - begun <= plan.duration + timedelta(minutes=5):
+        events = rehearsal.tick()
+        show = rehearsal.controller.snapshot(rehearsal.site_time).show
+        if any(event.kind is EventKind.SHOW_ENDED for event in events) or show is None:
+            return rows
+        sun_s = (show.sun_time - plan.begin_at).total_seconds()
+        elapsed_s = (rehearsal.clock.now() - begun).total_seconds()
+        rows.append((elapsed_s, sun_s, *rehearsal.controller.frame()[2:]))
+        rehearsal.clock.advance(step)
+    raise RehearsalFailed("The simulated show did not end in its time.")
+
+
+def _frames(rows: list[tuple[float, ...]], elapsed_s: NDArray[np.float64]) -> Frames:
+    values = np.array(rows, dtype=np.float64).reshape(-1, len(COLUMNS))
+    values[:, 0] = elapsed_s
+    values[:, 1] = elapsed_s
+    return Frames(values)
+
+
+def _day_title(config: TrackerConfig, time_zone: str, begin: datetime) -> str:
+    return f"Simulated {begin.astimezone(ZoneInfo(time_zone)):%Y-%m-%d}, {config.name}"
+
+
+def _show_title(plan: ShowPlan, time_zone: str) -> str:
+    begin, end = (at.astimezone(ZoneInfo(time_zone)) for at in (plan.begin_at, plan.end_at))
+    return f"Simulated show of {begin:%Y-%m-%d %H:%M} to {end:%H:%M}"
+
+
+def _finished(info: RecordingInfo, title: str, frames: Frames) -> RecordingInfo:
+    """Return the head with what is known at the end."""
+    lasted_s = float(frames.values[-1, 0]) if len(frames) else 0.0
+    return replace(
+        info,
+        title=title,
+        ended_at=info.began_at + timedelta(seconds=lasted_s),
+        duration_s=lasted_s,
+        outcome="complete",
+        frame_count=len(frames),
+    )
+
+
+def _info(
+    config: TrackerConfig,
+    location: Location,
+    time_zone: str,
+    mode: Mode,
+    orientation: Orientation,
+    begin: datetime,
+    end: datetime,
+) -> RecordingInfo:
+    return RecordingInfo(
+        recording_id=f"simulation-{uuid4().hex}",
+        kind=RecordingKind.SIMULATION,
+        tracker_id=config.tracker_id,
+        tracker_name=config.name,
+        title="",
+        began_at=begin,
+        sun_begin_at=begin,
+        sun_end_at=end,
+        duration_s=(end - begin).total_seconds(),
+        location=location,
+        time_zone=time_zone,
+        mode=mode,
+        held_azimuth_deg=orientation.azimuth_deg,
+        held_elevation_deg=orientation.elevation_deg,
+        algorithm=config.algorithm.value,
+        drive=DRIVE,
+    )

@@ -1,0 +1,74 @@
+"""Sightings of the sun: stored one by one, fitted to a pointing correction."""
+
+from dataclasses import replace
+
+from app.link.messages import ApplySightings
+from app.site.loop import TrackerLoop
+from app.site.model import SiteModel
+from app.site.tracker_setup import refuse_while_busy
+from app.tracker.alignment import fit
+from app.tracker.commands import CommandRejected
+from app.tracker.memory import Pointing, Sighting
+from app.tracker.reason import Reason
+from app.tracker.snapshot import Event, EventKind
+
+MOST_SIGHTINGS = 50
+
+
+async def take(model: SiteModel, tracker_id: str, actor: str) -> tuple[Event, ...]:
+    """Store where sun and panel stand now, as one sighting."""
+    loop = model.tracker(tracker_id)
+    sighting = _sighting(model, loop)
+    taken = (*loop.memory.sightings, sighting)[-MOST_SIGHTINGS:]
+    event = model.event(
+        EventKind.SIGHTING_TAKEN,
+        f"A sighting was taken: sun at azimuth {sighting.sun_azimuth_deg:.2f}, elevation "
+        f"{sighting.sun_elevation_deg:.2f}; axes at {sighting.panel_azimuth_deg:.2f}, "
+        f"{sighting.panel_elevation_deg:.2f} degrees.",
+        actor,
+        tracker_id,
+    )
+    loop.controller.remember(replace(loop.memory, sightings=taken))
+    await model.ledger.save_tracker(loop.state, (event,))
+    return (event,)
+
+
+def _sighting(model: SiteModel, loop: TrackerLoop) -> Sighting:
+    seen = model.observe(loop.config, loop.feedback)
+    sun, feedback = seen.sun, seen.feedback
+    reasons = []
+    if sun is None or sun.apparent_elevation_deg <= 0.0:
+        reasons.append(Reason("sun_down", "The sun is not up.", "Take the sighting while the sun is out."))
+    if feedback is None:
+        reasons.append(Reason("drive_lost", "The drive does not answer.", "Check supply and connection."))
+    elif feedback.azimuth.moving or feedback.elevation.moving:
+        reasons.append(Reason("moving", "The panel is moving.", "Wait until it stands still."))
+    if loop.memory.home is None:
+        reasons.append(Reason("not_homed", "The zero is not known.", "Do step 3 first."))
+    reasons.extend(model.timekeeper.reasons())
+    if reasons or sun is None or feedback is None:
+        raise CommandRejected(*reasons)
+    elevation_deg = sun.apparent_elevation_deg if loop.config.refraction else sun.elevation_deg
+    return Sighting(
+        seen.site_time,
+        sun.azimuth_deg,
+        elevation_deg,
+        feedback.azimuth.position_deg,
+        feedback.elevation.position_deg,
+    )
+
+
+async def apply(model: SiteModel, given: ApplySightings, actor: str) -> tuple[Event, ...]:
+    """Correct with what the kept sightings fit to; none: forget the correction."""
+    loop = model.tracker(given.tracker_id)
+    refuse_while_busy(model, loop)
+    pointing = fit(given.keep) if given.keep else Pointing()
+    loop.controller.remember(replace(loop.memory, sightings=given.keep, pointing=pointing))
+    message = (
+        f"The pointing correction was fitted to {len(given.keep)} sightings."
+        if given.keep
+        else "The pointing correction was removed."
+    )
+    event = model.event(EventKind.TRACKER_CHANGED, message, actor, given.tracker_id)
+    await model.ledger.save_tracker(loop.state, (event,))
+    return (event,)

@@ -1,0 +1,254 @@
+"""A site: trackers living on one clock. It carries out orders and tells everyone what is."""
+
+import asyncio
+import itertools
+import resource
+from collections.abc import AsyncIterator, Callable
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+
+import structlog
+
+from app.clock import Clock
+from app.drives.drive import Drive
+from app.link.messages import Order, SiteCommand, SiteDetail, StopAll, TrackerDetail, Update
+from app.link.metrics import MachineMetrics
+from app.link.outlet import Outlet
+from app.site import site_orders, tracker_orders
+from app.site.ledger import BackgroundWriter, Ledger
+from app.site.loop import TrackerLoop
+from app.site.model import SiteModel
+from app.site.recorder import Recorder
+from app.site.repeats import Repeats, refuse_old
+from app.site.timekeeping import Timekeeper
+from app.sun.position import Algorithm
+from app.tracker.commissioning import steps
+from app.tracker.config import TrackerConfig
+from app.tracker.memory import SiteState, TrackerState
+from app.tracker.observation import Observation
+from app.tracker.snapshot import Event, EventKind, SiteSnapshot
+
+PULSE = timedelta(milliseconds=500)
+WHILE_MOVING = timedelta(milliseconds=95)
+AT_REST = timedelta(milliseconds=495)
+FLUSH_EVERY = timedelta(seconds=2)
+PRUNE_EVERY = timedelta(days=1)
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class SiteOptions:
+    """How a site lives: its tick, what it keeps, and the id of this life of the machine."""
+
+    boot_id: str = "boot"
+    period: timedelta = timedelta(milliseconds=100)
+    retention: timedelta = timedelta(days=400)
+    recordings_keep: int = 500
+
+
+class Site:
+    """The machine itself: implements `Machine`, directly in tests and behind the link server in service."""
+
+    def __init__(
+        self,
+        clock: Clock,
+        make_drive: Callable[[TrackerConfig], Drive],
+        state: SiteState,
+        trackers: tuple[TrackerState, ...],
+        *,
+        timekeeper: Timekeeper | None = None,
+        writer: BackgroundWriter | None = None,
+        options: SiteOptions | None = None,
+    ) -> None:
+        self._options = options or SiteOptions()
+        self._clock = clock
+        ledger = Ledger(writer)
+        self.model = SiteModel(
+            clock,
+            timekeeper or Timekeeper(clock, state.clock),
+            ledger,
+            Recorder(ledger, self._options.period),
+            state,
+            self._options.period,
+            make_drive,
+            self._on_tick,
+        )
+        for tracker in trackers:
+            self.model.add(tracker)
+        self._outlet = Outlet()
+        self._repeats = Repeats()
+        self._changing = asyncio.Lock()
+        self._sequence = itertools.count(1)
+        self._started_at = self._published_at = self._flushed_at = self._pruned_at = clock.now()
+        self._orders = self._refused = 0
+        self._pulse: asyncio.Task[None] | None = None
+
+    async def start(self, *events: Event) -> None:
+        """Begin to tick, and journal how this life began."""
+        self.model.ledger.post_events(events)
+        self._prune()
+        for loop in self.model.loops.values():
+            loop.start()
+        self._pulse = asyncio.create_task(self._beat(), name="site pulse")
+        self._publish(events)
+
+    async def close(self, *events: Event) -> None:
+        """Stop every drive, end every recording and tell nobody any more."""
+        if self._pulse is not None:
+            self._pulse.cancel()
+            await asyncio.gather(self._pulse, return_exceptions=True)
+        await asyncio.gather(*(loop.close() for loop in self.model.loops.values()))
+        now = self.model.now()
+        for tracker_id in self.model.loops:
+            self.model.recorder.finish(tracker_id, now, "machine stopped")
+        self.model.ledger.post_events(events)
+        self._publish(events)
+        self._outlet.end()
+
+    async def stop_drives(self) -> None:
+        """Stop every drive now, as far as each can be reached."""
+        await asyncio.gather(*(loop.stop_drive() for loop in self.model.loops.values()))
+
+    async def execute(self, order: Order) -> SiteSnapshot:
+        """Carry out one order and return the snapshot after it."""
+        self._orders += 1
+        try:
+            return await self._repeats.once(order, self._carry_out)
+        except Exception:
+            self._refused += 1
+            raise
+
+    async def detail(self) -> SiteDetail:
+        """Return stored settings, steps and capabilities."""
+        at, clock = self.model.now(), self.model.timekeeper.state()
+        trackers = {
+            tracker_id: TrackerDetail(
+                loop.state,
+                steps(self.model.state, loop.memory, loop.snapshot(at), clock),
+                loop.drive.capabilities,
+            )
+            for tracker_id, loop in self.model.loops.items()
+        }
+        return SiteDetail(self.model.state, trackers)
+
+    def latest(self) -> SiteSnapshot | None:
+        """Return the newest snapshot that was told."""
+        return self._outlet.latest
+
+    def updates(self) -> AsyncIterator[Update]:
+        """Yield updates until the site ends; a slow reader skips snapshots, never events."""
+        return self._outlet.subscribe()
+
+    async def metrics(self) -> MachineMetrics:
+        """Return what this machine counts about itself."""
+        model, writer = self.model, self.model.ledger.writer
+        return MachineMetrics(
+            boot_id=self._options.boot_id,
+            uptime_s=(self._clock.now() - self._started_at).total_seconds(),
+            trackers={name: loop.counter.metrics() for name, loop in model.loops.items()},
+            orders=self._orders,
+            orders_refused=self._refused,
+            events=model.ledger.event_count,
+            events_waiting=self._outlet.waiting,
+            frames_waiting=model.recorder.frames_waiting,
+            store_queue=getattr(writer, "pending", 0),
+            store_failures=getattr(writer, "failed", 0) + getattr(writer, "dropped", 0),
+            resident_bytes=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024,
+        )
+
+    @property
+    def alive(self) -> bool:
+        """Return whether every loop still runs."""
+        pulse_runs = self._pulse is not None and not self._pulse.done()
+        return pulse_runs and all(loop.alive for loop in self.model.loops.values())
+
+    async def _carry_out(self, order: Order) -> SiteSnapshot:
+        refuse_old(order, self.model.now())
+        command = order.command
+        if isinstance(command, SiteCommand):
+            events = await self._carry_out_for_site(command, order.actor)
+        else:
+            loop = self.model.tracker(order.tracker_id)
+            events = await tracker_orders.command(self.model, loop, command, order.actor)
+        return self._publish(events)
+
+    async def _carry_out_for_site(self, command: SiteCommand, actor: str) -> tuple[Event, ...]:
+        if isinstance(command, StopAll):
+            return await site_orders.carry_out(self.model, command, actor)
+        async with self._changing:
+            return await site_orders.carry_out(self.model, command, actor)
+
+    def _on_tick(self, loop: TrackerLoop, seen: Observation, events: tuple[Event, ...]) -> None:
+        """Keep what a tick changed, record it and tell it."""
+        if loop.take_changed():
+            self.model.ledger.post_tracker(loop.state, events)
+        else:
+            self.model.ledger.post_events(events)
+        self.model.recorder.observe(loop, self.model.state, seen, events)
+        if events or self._due(WHILE_MOVING if loop.moving else AT_REST):
+            self._publish(events)
+
+    def _due(self, after: timedelta) -> bool:
+        return self._clock.now() - self._published_at >= after
+
+    def _publish(self, events: tuple[Event, ...] = ()) -> SiteSnapshot:
+        self._published_at = self._clock.now()
+        snapshot = self._snapshot(self.model.now())
+        self._outlet.publish(snapshot, events)
+        return snapshot
+
+    def _snapshot(self, at: datetime) -> SiteSnapshot:
+        state, trackers = self.model.state, self.model.snapshots(at)
+        first = next(iter(self.model.loops.values()), None)
+        algorithm = Algorithm.PSA if first is None else first.config.algorithm
+        return SiteSnapshot(
+            boot_id=self._options.boot_id,
+            sequence=next(self._sequence),
+            at=at,
+            site_name=state.name,
+            location=state.location,
+            time_zone=state.time_zone,
+            clock=self.model.timekeeper.state(),
+            sun=self.model.sky.sun(state.location, algorithm, at),
+            trackers=trackers,
+        )
+
+    async def _beat(self) -> None:
+        """Every half second: watch the clock, hand frames to the store, remove what is too old."""
+        due = self._clock.now()
+        while True:
+            self._watch_clock()
+            now = self._clock.now()
+            if now - self._flushed_at >= FLUSH_EVERY:
+                self._flushed_at = now
+                self.model.recorder.flush()
+            if now - self._pruned_at >= PRUNE_EVERY:
+                self._prune()
+            if self._due(AT_REST):
+                self._publish()
+            due = max(due + PULSE, now)
+            await self._clock.sleep_until(due)
+
+    def _watch_clock(self) -> None:
+        jump = self.model.timekeeper.watch()
+        if jump is None:
+            return
+        moved_s = jump.by.total_seconds()
+        event = self.model.event(
+            EventKind.CLOCK_JUMPED,
+            f"The system clock jumped by {moved_s:+.1f} s; automatic motion waits until the clock is "
+            "confirmed or has been stable for 60 s.",
+            "machine",
+            seconds=moved_s,
+        )
+        self.model.state = replace(self.model.state, clock=self.model.timekeeper.setting)
+        self.model.ledger.post_site(self.model.state, (event,))
+        self._publish((event,))
+
+    def _prune(self) -> None:
+        self._pruned_at = self._clock.now()
+        writer, before = self.model.ledger.writer, self.model.now() - self._options.retention
+        keep = self._options.recordings_keep
+        if writer is not None:
+            writer.post(lambda store: store.prune(days_before=before, keep=keep))

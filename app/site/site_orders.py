@@ -1,0 +1,272 @@
+"""Orders to the site: location, clock, name, trackers, confirmations, plans and recordings."""
+
+from base64 import b64decode
+from dataclasses import replace
+from typing import assert_never
+
+import structlog
+
+from app.drives.drive import DriveError
+from app.link.messages import (
+    AddTracker,
+    ApplySightings,
+    ConfigureTracker,
+    ConfirmStep,
+    DeleteRecording,
+    RemoveTracker,
+    RenameSite,
+    SavePlan,
+    SaveRecording,
+    SetClock,
+    SetLocation,
+    SiteCommand,
+    StopAll,
+    TakeSighting,
+    UnknownRecording,
+)
+from app.site import sightings, tracker_orders, tracker_setup
+from app.site.checks import check_name, check_time_zone
+from app.site.model import SiteModel
+from app.store.store import PlannedShow, Writer
+from app.tracker.commands import CommandRejected
+from app.tracker.memory import Confirmation, SiteState, StepName
+from app.tracker.reason import Reason
+from app.tracker.recording import RecordingInfo
+from app.tracker.snapshot import ActivityName, Event, EventKind
+
+FOLLOWS_THE_SUN = {ActivityName.TRACKING, ActivityName.SHOWING}
+KEEPS_NOTHING = Reason("no_store", "This machine runs without a store and keeps no recordings.")
+
+log = structlog.get_logger(__name__)
+
+
+async def carry_out(model: SiteModel, command: SiteCommand, actor: str) -> tuple[Event, ...]:
+    """Carry out one order to the site, stored before this returns, and return what happened."""
+    match command:
+        case SetLocation() | SetClock() | RenameSite() | ConfirmStep():
+            return await _change_site(model, command, actor)
+        case AddTracker() | ConfigureTracker() | RemoveTracker():
+            return await _change_trackers(model, command, actor)
+        case TakeSighting() | ApplySightings() | SavePlan():
+            return await _note(model, command, actor)
+        case SaveRecording() | DeleteRecording():
+            return await _change_recordings(model, command, actor)
+        case StopAll():
+            return await _stop_all(model, actor)
+        case _:
+            assert_never(command)
+
+
+async def _change_site(
+    model: SiteModel, command: SetLocation | SetClock | RenameSite | ConfirmStep, actor: str
+) -> tuple[Event, ...]:
+    match command:
+        case SetLocation():
+            return await _set_location(model, command, actor)
+        case SetClock():
+            return await _set_clock(model, command, actor)
+        case RenameSite():
+            return await _rename(model, command, actor)
+        case ConfirmStep():
+            return await _confirm(model, command, actor)
+        case _:
+            assert_never(command)
+
+
+async def _change_trackers(
+    model: SiteModel, command: AddTracker | ConfigureTracker | RemoveTracker, actor: str
+) -> tuple[Event, ...]:
+    match command:
+        case AddTracker():
+            return await tracker_setup.add(model, command.config, actor)
+        case ConfigureTracker():
+            return await tracker_setup.configure(model, command.config, actor)
+        case RemoveTracker():
+            return await tracker_setup.remove(model, command.tracker_id, actor)
+        case _:
+            assert_never(command)
+
+
+async def _note(
+    model: SiteModel, command: TakeSighting | ApplySightings | SavePlan, actor: str
+) -> tuple[Event, ...]:
+    match command:
+        case TakeSighting():
+            return await sightings.take(model, command.tracker_id, actor)
+        case ApplySightings():
+            return await sightings.apply(model, command, actor)
+        case SavePlan():
+            model.tracker(command.tracker_id)
+            await model.ledger.save_show(PlannedShow(command.tracker_id, command.plan))
+            return ()
+        case _:
+            assert_never(command)
+
+
+async def _change_recordings(
+    model: SiteModel, command: SaveRecording | DeleteRecording, actor: str
+) -> tuple[Event, ...]:
+    _refuse_without_store(model)
+    match command:
+        case SaveRecording():
+            return await _save_recording(model, command)
+        case DeleteRecording():
+            return await _delete_recording(model, command.recording_id, actor)
+        case _:
+            assert_never(command)
+
+
+async def _keep(model: SiteModel, state: SiteState, *events: Event) -> tuple[Event, ...]:
+    await model.ledger.save_site(state, events)
+    model.state = state
+    return events
+
+
+def _confirmed(state: SiteState, step: StepName, given: Confirmation) -> SiteState:
+    return replace(state, confirmations=state.confirmations | {step: given})
+
+
+async def _set_location(model: SiteModel, command: SetLocation, actor: str) -> tuple[Event, ...]:
+    state = replace(model.state, time_zone=check_time_zone(command.time_zone))
+    if command.location != state.location:
+        _refuse_while_following(model)
+        state = replace(state, location=command.location, location_revision=state.location_revision + 1)
+    given = Confirmation(model.now(), actor, state.location_revision)
+    place = command.location
+    message = (
+        f"The location was set to {place.latitude_deg:.5f}, {place.longitude_deg:.5f} degrees, "
+        f"{place.altitude_m:.0f} m, time zone {state.time_zone}."
+    )
+    event = model.event(EventKind.LOCATION_SET, message, actor)
+    return await _keep(model, _confirmed(state, StepName.LOCATION, given), event)
+
+
+def _refuse_while_following(model: SiteModel) -> None:
+    reasons = tuple(
+        Reason(
+            "follows_the_sun",
+            f"{tracker.tracker_id} follows the sun of the present location.",
+            f"Stop {tracker.tracker_id} first.",
+        )
+        for tracker in model.snapshots(model.now())
+        if tracker.activity in FOLLOWS_THE_SUN
+    )
+    if reasons:
+        raise CommandRejected(*reasons)
+
+
+async def _set_clock(model: SiteModel, command: SetClock, actor: str) -> tuple[Event, ...]:
+    setting = model.timekeeper.choose(command.source, command.at, actor)
+    zone = model.state.time_zone if command.time_zone is None else check_time_zone(command.time_zone)
+    state = replace(model.state, clock=setting, time_zone=zone)
+    given = Confirmation(setting.set_at or model.now(), actor, state.location_revision)
+    message = f"The clock was set: source {setting.source}, offset {setting.offset_s:+.1f} s."
+    event = model.event(EventKind.CLOCK_SET, message, actor)
+    events = await _keep(model, _confirmed(state, StepName.CLOCK, given), event)
+    model.timekeeper.adopt(setting)
+    await _set_drive_clocks(model)
+    return events
+
+
+async def _set_drive_clocks(model: SiteModel) -> None:
+    for tracker_id, loop in model.loops.items():
+        if not loop.drive.capabilities.settable_clock:
+            continue
+        try:
+            await loop.drive.set_clock(model.now())
+        except DriveError as error:
+            log.warning("drive_clock_not_set", tracker=tracker_id, reason=str(error))
+
+
+async def _rename(model: SiteModel, command: RenameSite, actor: str) -> tuple[Event, ...]:
+    name = check_name(command.name)
+    event = model.event(EventKind.TRACKER_CHANGED, f"The site is now called {name}.", actor)
+    return await _keep(model, replace(model.state, name=name), event)
+
+
+async def _confirm(model: SiteModel, command: ConfirmStep, actor: str) -> tuple[Event, ...]:
+    loop = model.tracker(command.tracker_id)
+    missing = _not_confirmable(model, command)
+    if missing is not None:
+        raise CommandRejected(missing)
+    given = Confirmation(model.now(), actor, model.state.location_revision)
+    event = model.event(
+        EventKind.STEP_CONFIRMED,
+        f"The step {command.step.value} was confirmed.",
+        actor,
+        command.tracker_id,
+        step=command.step.value,
+    )
+    if command.step in (StepName.LOCATION, StepName.CLOCK):
+        events = await _keep(model, _confirmed(model.state, command.step, given), event)
+        if command.step is StepName.CLOCK:
+            model.timekeeper.adopt(model.timekeeper.setting)
+        return events
+    loop.controller.confirm(command.step, given)
+    await model.ledger.save_tracker(loop.state, (event,))
+    return (event,)
+
+
+def _not_confirmable(model: SiteModel, command: ConfirmStep) -> Reason | None:
+    """Return why there is nothing yet that could be confirmed."""
+    loop = model.tracker(command.tracker_id)
+    memory = loop.memory
+    there = {
+        StepName.LOCATION: model.state.location is not None,
+        StepName.CLOCK: model.state.clock.source != "unset",
+        StepName.HOMING: memory.home is not None,
+        StepName.MODE: memory.mode is not None,
+        StepName.RUN: memory.tracking_on,
+    }
+    if there[command.step]:
+        return None
+    return Reason(
+        "step_to_do", f"The step {command.step.value} is not done yet.", "Do it before you confirm it."
+    )
+
+
+async def _stop_all(model: SiteModel, actor: str) -> tuple[Event, ...]:
+    happened: list[Event] = []
+    for loop in tuple(model.loops.values()):
+        happened.extend(tracker_orders.handle_stop(model, loop, actor))
+    for loop in tuple(model.loops.values()):
+        await tracker_orders.finish_stop(model, loop)
+    if not model.loops:
+        happened.append(model.event(EventKind.STOPPED, "Stop was asked; there is no tracker.", actor))
+        model.ledger.post_events(happened)
+    return tuple(happened)
+
+
+async def _save_recording(model: SiteModel, command: SaveRecording) -> tuple[Event, ...]:
+    chunks = [b64decode(chunk, validate=True) for chunk in command.chunks]
+    await model.ledger.keep(lambda writer: writer.save_recording(command.info, chunks), 0)
+    return ()
+
+
+async def _delete_recording(model: SiteModel, recording_id: str, actor: str) -> tuple[Event, ...]:
+    if model.recorder.is_open(recording_id):
+        raise CommandRejected(
+            Reason("recording_runs", "This recording is still running.", "Wait until it has ended.")
+        )
+    found: list[RecordingInfo | None] = []
+    await model.ledger.keep(lambda writer: found.append(_take_out(writer, recording_id)), 0)
+    if found[0] is None:
+        raise UnknownRecording(f"There is no recording {recording_id}.")
+    info = found[0]
+    event = model.event(
+        EventKind.RECORDING_DELETED, f"The recording {info.title!r} was deleted.", actor, info.tracker_id
+    )
+    await model.ledger.append((event,))
+    return (event,)
+
+
+def _take_out(writer: Writer, recording_id: str) -> RecordingInfo | None:
+    info = writer.recording(recording_id)
+    if info is not None:
+        writer.delete_recording(recording_id)
+    return info
+
+
+def _refuse_without_store(model: SiteModel) -> None:
+    if model.ledger.writer is None:
+        raise CommandRejected(KEEPS_NOTHING)

@@ -1,0 +1,24 @@
+"""Plants for the stories of this folder, and proof that none leaves a task behind."""
+
+import asyncio
+from collections.abc import AsyncIterator
+
+import pytest
+
+from tests.site.plant import Plant, make_plant
+
+
+@pytest.fixture
+async def plant() -> AsyncIterator[Plant]:
+    built = make_plant()
+    await built.start()
+    yield built
+    await built.close()
+
+
+@pytest.fixture(autouse=True)
+async def no_task_is_left() -> AsyncIterator[None]:
+    before = asyncio.all_tasks()
+    yield
+    left = asyncio.all_tasks() - before - {asyncio.current_task()}
+    assert not [task for task in left if not task.done()]

@@ -1,0 +1,112 @@
+"""A whole site on a virtual clock with simulated drives: ask it for something and let time pass."""
+
+import asyncio
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import UTC, datetime, timedelta
+
+from app.clock import VirtualClock
+from app.drives.drive import Drive
+from app.drives.simulated import SimulatedDrive
+from app.link.messages import Order, SetClock, SetLocation, SiteCommand
+from app.site.ledger import BackgroundWriter
+from app.site.site import Site
+from app.sun.position import Location
+from app.tracker.commands import Command, Home
+from app.tracker.config import TrackerConfig
+from app.tracker.memory import SiteState, TrackerMemory, TrackerState
+from app.tracker.snapshot import ActivityName, Event, EventKind, SiteSnapshot, Snapshot
+
+SUMMER_NOON = datetime(2027, 6, 21, 9, 40, tzinfo=UTC)
+SAMSUN = Location(41.2867, 36.33, 4.0)
+STEP = timedelta(milliseconds=50)
+IDLE_ROUNDS = 12
+FIRST = TrackerState(TrackerConfig("T1", "Tracker 1"), TrackerMemory())
+
+
+@dataclass
+class Plant:
+    """The site, its clock and its drives."""
+
+    clock: VirtualClock
+    site: Site
+    drives: dict[str, Drive]
+    events: list[Event] = field(default_factory=list)
+    listening: asyncio.Task[None] | None = None
+
+    async def start(self) -> None:
+        self.listening = asyncio.create_task(self._listen())
+        await settle()
+        await self.site.start()
+        await settle()
+
+    async def close(self) -> None:
+        await self.site.close()
+        if self.listening is not None:
+            await self.listening
+
+    async def ask(
+        self, command: Command | SiteCommand, tracker_id: str | None = "T1", **more: object
+    ) -> SiteSnapshot:
+        addressed = None if isinstance(command, SiteCommand) else tracker_id
+        asking = asyncio.create_task(self.site.execute(Order(command, "anna", addressed, **more)))  # type: ignore[arg-type]
+        while not asking.done():
+            await settle()
+        return await asking
+
+    async def forward(self, *, seconds: float) -> None:
+        end = self.clock.now() + timedelta(seconds=seconds)
+        while self.clock.now() < end:
+            self.clock.move_to(min(end, self.clock.now() + STEP))
+            await settle()
+
+    async def until(self, reached: Callable[[Snapshot], bool], *, within_s: float = 300.0) -> None:
+        end = self.clock.now() + timedelta(seconds=within_s)
+        while not reached(self.tracker()):
+            assert self.clock.now() < end, f"not reached: {self.tracker()}"
+            await self.forward(seconds=0.1)
+
+    def tracker(self, tracker_id: str = "T1") -> Snapshot:
+        return self.site.model.tracker(tracker_id).snapshot(self.site.model.now())
+
+    def happened(self, kind: EventKind) -> list[Event]:
+        return [event for event in self.events if event.kind is kind]
+
+    async def commission(self, tracker_id: str = "T1") -> None:
+        await self.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
+        await self.ask(SetClock("system"))
+        await self.ask(Home(), tracker_id)
+        await self.until(
+            lambda _: (
+                self.tracker(tracker_id).home_trusted
+                and self.tracker(tracker_id).activity is ActivityName.HOLDING
+            )
+        )
+
+    async def _listen(self) -> None:
+        async for update in self.site.updates():
+            self.events.extend(update.events)
+
+
+async def settle() -> None:
+    """Let every task run until it waits for the clock."""
+    for _ in range(IDLE_ROUNDS):
+        await asyncio.sleep(0)
+
+
+def make_plant(
+    *,
+    start: datetime = SUMMER_NOON,
+    writer: BackgroundWriter | None = None,
+    state: SiteState | None = None,
+    trackers: tuple[TrackerState, ...] = (FIRST,),
+    wrap: Callable[[Drive], Drive] = lambda drive: drive,
+) -> Plant:
+    clock = VirtualClock(start)
+    drives: dict[str, Drive] = {}
+
+    def make_drive(config: TrackerConfig) -> Drive:
+        drives[config.tracker_id] = wrap(SimulatedDrive(config, clock))
+        return drives[config.tracker_id]
+
+    return Plant(clock, Site(clock, make_drive, state or SiteState(), trackers, writer=writer), drives)
