@@ -149,6 +149,8 @@ def _zero_mistakes(sighting: Sighting, declination_deg: float | None) -> Iterato
         f"The elevation zero is off: the axis reads {elevation_deg:+.1f} degrees too much. Repeat step 3."
     )
     yield 1, Cause(Mistake.ELEVATION_ZERO, message, without_elevation_deg)
+    if min(abs(azimuth_deg), abs(elevation_deg)) < ALIGNED_DEG:
+        return
     message = (
         f"Both zeros are off, azimuth by {azimuth_deg:+.1f} and elevation by {elevation_deg:+.1f} degrees."
     )

@@ -9,8 +9,8 @@ from app.tracker.axes import AxisConfig
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mount import AxisTarget, aim, mode_direction, sky
-from app.tracker.programs.pace import Night, Pace, Repositioning, pace
-from app.tracker.programs.path import EDGE_DEG, Stretch, stretches
+from app.tracker.programs.pace import Night, Pace, Repositioning, pace, travel_s
+from app.tracker.programs.path import EDGE_DEG, Stretch, sampled, stretches
 from app.tracker.programs.plan import ShowPlan
 
 PERIOD_S = 0.1
@@ -54,17 +54,19 @@ class ShowCourse:
         self.plan = plan
         self._tracker = tracker
         self._pointing = pointing
-        self.stretches = stretches(plan, tracker, pointing)
-        self._begins_s = [stretch.begin_s for stretch in self.stretches]
+        self._sampled = sampled(plan, pointing)
+        self._begins_s = [samples.begin_s for samples in self._sampled]
         self._zero_s = plan.begin_at.timestamp()
-        self.pace = self.pace_in(plan.duration.total_seconds())
+        self.stretches, self.pace = self.run_in(plan.duration.total_seconds())
         self._held = self._resting_place()
         self.start = Orientation(self._held.azimuth_deg, self._held.elevation_deg)
 
-    def pace_in(self, duration_s: float) -> Pace:
-        """Return what the same course asks of the axes when it is run in another duration."""
+    def run_in(self, duration_s: float) -> tuple[tuple[Stretch, ...], Pace]:
+        """Return what the same interval of sun asks of the axes when it is run in a duration."""
         acceleration = (self.plan.end_at - self.plan.begin_at).total_seconds() / duration_s
-        return pace(self.stretches, self._tracker, self._zero_s, acceleration, duration_s)
+        unwinding_s = travel_s(self._tracker.azimuth, 360.0) * acceleration
+        path = stretches(self._sampled, self._tracker, unwinding_s)
+        return path, pace(path, self._tracker, self._zero_s, acceleration, duration_s)
 
     def planned(self, elapsed_s: float) -> AxisTarget:
         """Return the axis angles planned for an instant of the show, seconds of the drive's time."""
@@ -105,7 +107,7 @@ class ShowCourse:
         """Return the stretch of sun at an instant of the show, None while the sun is down."""
         unix_s = self._unix_s(elapsed_s)
         index = bisect_right(self._begins_s, unix_s) - 1
-        if index < 0 or unix_s > self.stretches[index].end_s:
+        if index < 0 or unix_s > self._sampled[index].end_s:
             return None
         return self.stretches[index]
 
@@ -119,7 +121,7 @@ class ShowCourse:
         if index < 0:
             return _Place(self._held)
         stretch = self.stretches[index]
-        if unix_s <= stretch.end_s:
+        if unix_s <= stretch.samples.end_s:
             return _interpolate(stretch, self._tracker, unix_s, self.plan.acceleration)
         if index < len(self.pace.nights) and elapsed_s >= self.pace.nights[index].departs_s:
             return _Place(_sample(self.stretches[index + 1], 0))
@@ -153,18 +155,19 @@ def lead_s(axis: AxisConfig, velocity_dps: float) -> float:
 
 
 def _sample(stretch: Stretch, index: int) -> AxisTarget:
-    azimuth_deg, elevation_deg = stretch.axis_azimuth_deg.item(index), stretch.axis_elevation_deg.item(index)
+    azimuth_deg, elevation_deg = stretch.azimuth_deg.item(index), stretch.elevation_deg.item(index)
     return AxisTarget(azimuth_deg, elevation_deg, stretch.missed_deg.item(index) > EDGE_DEG)
 
 
 def _interpolate(stretch: Stretch, tracker: TrackerConfig, unix_s: float, acceleration: float) -> _Place:
-    step_s = stretch.step_s
-    steps = (unix_s - stretch.begin_s) / step_s
+    samples = stretch.samples
+    step_s = samples.step_s
+    steps = (unix_s - samples.begin_s) / step_s
     i = min(int(steps), len(stretch.turns) - 2)
     part = steps - i
-    azimuth_deg, elevation_deg = stretch.azimuth_deg.item(i), stretch.elevation_deg.item(i)
-    azimuth_step_deg = stretch.azimuth_deg.item(i + 1) - azimuth_deg
-    elevation_step_deg = stretch.elevation_deg.item(i + 1) - elevation_deg
+    azimuth_deg, elevation_deg = samples.azimuth_deg.item(i), samples.elevation_deg.item(i)
+    azimuth_step_deg = samples.azimuth_deg.item(i + 1) - azimuth_deg
+    elevation_step_deg = samples.elevation_deg.item(i + 1) - elevation_deg
     azimuth_deg += part * azimuth_step_deg + 360.0 * stretch.turns.item(i)
     elevation_deg += part * elevation_step_deg
     azimuth_reached_deg = tracker.azimuth.clamp(azimuth_deg)

@@ -93,7 +93,9 @@ def pace(
     peaks = [(0.0, 0.0)]
     ends_s: list[tuple[float, float]] = []
     for stretch in path:
-        elapsed_s = (np.linspace(stretch.begin_s, stretch.end_s, len(stretch.turns)) - begin_s) / acceleration
+        samples = stretch.samples
+        sun_s = np.linspace(samples.begin_s, samples.end_s, len(stretch.turns))
+        elapsed_s = (sun_s - begin_s) / acceleration
         found = list(_repositionings(stretch, tracker.azimuth, elapsed_s, duration_s))
         peaks.append(_peaks(stretch, elapsed_s, found))
         ends_s.append((float(elapsed_s[0]), max([float(elapsed_s[-1]), *(span.end_s for span in found)])))
@@ -128,12 +130,10 @@ def _repositionings(
     stretch: Stretch, axis: AxisConfig, elapsed_s: Array, duration_s: float
 ) -> Iterator[Repositioning]:
     """Yield the spans from where the axis loses the sun to where, at rated speed, it is on it again."""
-    azimuth_deg = stretch.axis_azimuth_deg
+    azimuth_deg, sun_deg = stretch.azimuth_deg, stretch.samples.sun_elevation_deg
     unwinds = np.diff(stretch.turns) != 0
     too_fast = _speeds(azimuth_deg, elapsed_s) > usable_dps(axis, duration_s)
-    keyhole = (
-        np.maximum(stretch.sun_elevation_deg[1:], stretch.sun_elevation_deg[:-1]) >= KEYHOLE_ELEVATION_DEG
-    )
+    keyhole = np.maximum(sun_deg[1:], sun_deg[:-1]) >= KEYHOLE_ELEVATION_DEG
     free_s = 0.0
     for i in np.flatnonzero(unwinds | (too_fast & keyhole)).tolist():
         begin_s = float(elapsed_s[i + 1] if unwinds[i] else elapsed_s[i])
@@ -152,8 +152,8 @@ def _peaks(stretch: Stretch, elapsed_s: Array, spans: Sequence[Repositioning]) -
     follows = np.diff(stretch.turns) == 0
     for span in spans:
         follows &= (elapsed_s[:-1] < span.begin_s) | (elapsed_s[:-1] >= span.end_s)
-    azimuth_dps = _speeds(stretch.axis_azimuth_deg, elapsed_s)[follows]
-    elevation_dps = _speeds(stretch.axis_elevation_deg, elapsed_s)
+    azimuth_dps = _speeds(stretch.azimuth_deg, elapsed_s)[follows]
+    elevation_dps = _speeds(stretch.elevation_deg, elapsed_s)
     return float(azimuth_dps.max(initial=0.0)), float(elevation_dps.max(initial=0.0))
 
 
@@ -162,7 +162,7 @@ def _speeds(angle_deg: Array, elapsed_s: Array) -> Array:
 
 
 def _night_travel_s(left: Stretch, right: Stretch, tracker: TrackerConfig) -> float:
-    azimuth_deg = abs(float(right.axis_azimuth_deg[0] - left.axis_azimuth_deg[-1]))
-    elevation_deg = abs(float(right.axis_elevation_deg[0] - left.axis_elevation_deg[-1]))
+    azimuth_deg = abs(float(right.azimuth_deg[0] - left.azimuth_deg[-1]))
+    elevation_deg = abs(float(right.elevation_deg[0] - left.elevation_deg[-1]))
     needed_s = max(travel_s(tracker.azimuth, azimuth_deg), travel_s(tracker.elevation, elevation_deg))
     return needed_s + NIGHT_MARGIN_S if needed_s > 0.0 else 0.0

@@ -1,9 +1,11 @@
 """Where both axes must be while the sun is up, sampled over sun time: what no speed changes about a show.
 
 The azimuth axis has end stops, so the same direction can be reached at several axis angles, 360 degrees apart
-(branches). Each stretch of sun takes the branch that lasts longest, which makes the fewest unwindings.
+(branches). Each stretch of sun takes the branch that lasts longest, which makes the fewest unwindings. Where
+the sun is beyond an end stop for less time than unwinding takes, the axis waits at the stop instead.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from itertools import pairwise
@@ -25,15 +27,14 @@ from app.tracker.programs.plan import ShowPlan
 SAMPLE_S = 10.0
 FEWEST_SAMPLES = 50
 EDGE_DEG = 1e-6
+FARTHEST_BEYOND_DEG = 15.0
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class Samples:
     """One stretch of sun: columns over equal steps of sun time, from `begin_s` to `end_s` (unix seconds).
 
-    `azimuth_deg` (continuous) and `elevation_deg` are axis angles without limits; adding `turns` whole turns
-    gives the branch of the azimuth axis. What the axes are asked for is `axis_azimuth_deg` and
-    `axis_elevation_deg`, inside the soft limits.
+    `azimuth_deg` (continuous) and `elevation_deg` are axis angles without limits.
     """
 
     begin_s: float
@@ -41,30 +42,51 @@ class Stretch:
     sun_elevation_deg: Array
     azimuth_deg: Array
     elevation_deg: Array
-    turns: NDArray[np.int64]
-    axis_azimuth_deg: Array
-    axis_elevation_deg: Array
 
     @property
     def step_s(self) -> float:
         """Return the sun time between two samples."""
-        return (self.end_s - self.begin_s) / (len(self.turns) - 1)
+        return (self.end_s - self.begin_s) / (len(self.azimuth_deg) - 1)
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """What the axes are asked for over one stretch of sun, inside the soft limits, a column each.
+
+    `turns` whole turns added to the continuous azimuth give the branch of the azimuth axis.
+    """
+
+    samples: Samples
+    turns: NDArray[np.int64]
+    azimuth_deg: Array
+    elevation_deg: Array
 
     @property
     def missed_deg(self) -> Array:
         """Return by how much the soft limits keep the axes from the direction, the larger of the two."""
-        azimuth_deg = np.abs(self.azimuth_deg + 360.0 * self.turns - self.axis_azimuth_deg)
-        return np.maximum(azimuth_deg, np.abs(self.elevation_deg - self.axis_elevation_deg))
+        azimuth_deg = np.abs(self.samples.azimuth_deg + 360.0 * self.turns - self.azimuth_deg)
+        return np.maximum(azimuth_deg, np.abs(self.samples.elevation_deg - self.elevation_deg))
 
 
-def stretches(plan: ShowPlan, tracker: TrackerConfig, pointing: Pointing) -> tuple[Stretch, ...]:
-    """Return the plan's stretches of sun in order; each begins near where the axis was left by the last."""
-    near_deg = (tracker.azimuth.minimum_deg + tracker.azimuth.maximum_deg) / 2.0
+def sampled(plan: ShowPlan, pointing: Pointing) -> tuple[Samples, ...]:
+    """Return the plan's stretches of sun in order."""
+    return tuple(_samples(plan, pointing, begin.timestamp(), end.timestamp()) for begin, end in sun_up(plan))
+
+
+def stretches(path: Sequence[Samples], tracker: TrackerConfig, unwinding_s: float) -> tuple[Stretch, ...]:
+    """Return what the axes are asked for; each stretch begins near where the azimuth axis was left.
+
+    `unwinding_s` is how much sun time one turn of the azimuth axis takes.
+    """
+    axis = tracker.azimuth
+    near_deg = (axis.minimum_deg + axis.maximum_deg) / 2.0
     found: list[Stretch] = []
-    for begin, end in sun_up(plan):
-        stretch = _stretch(plan, tracker, pointing, (begin.timestamp(), end.timestamp()), near_deg)
-        near_deg = float(stretch.axis_azimuth_deg[-1])
-        found.append(stretch)
+    for samples in path:
+        turns = branches(axis, samples.azimuth_deg, near_deg, int(unwinding_s / samples.step_s))
+        azimuth_deg = _clip(axis, samples.azimuth_deg + 360.0 * turns)
+        elevation_deg = _clip(tracker.elevation, samples.elevation_deg)
+        found.append(Stretch(samples, turns, azimuth_deg, elevation_deg))
+        near_deg = float(azimuth_deg[-1])
     return tuple(found)
 
 
@@ -81,23 +103,12 @@ def sun_up(plan: ShowPlan) -> tuple[tuple[datetime, datetime], ...]:
     return tuple(spans)
 
 
-def _stretch(
-    plan: ShowPlan, tracker: TrackerConfig, pointing: Pointing, span_s: tuple[float, float], near_deg: float
-) -> Stretch:
-    count = max(FEWEST_SAMPLES, ceil((span_s[1] - span_s[0]) / SAMPLE_S)) + 1
-    sun = sun_path(plan.algorithm, plan.location, np.linspace(*span_s, count))
+def _samples(plan: ShowPlan, pointing: Pointing, begin_s: float, end_s: float) -> Samples:
+    count = max(FEWEST_SAMPLES, ceil((end_s - begin_s) / SAMPLE_S)) + 1
+    sun = sun_path(plan.algorithm, plan.location, np.linspace(begin_s, end_s, count))
     azimuth_deg, elevation_deg = to_axes(pointing, *_directions(plan, sun), ARRAY)
     azimuth_deg = np.unwrap(azimuth_deg, period=360.0)
-    turns = branches(tracker.azimuth, azimuth_deg, near_deg)
-    return Stretch(
-        *span_s,
-        sun.elevation_deg,
-        azimuth_deg,
-        elevation_deg,
-        turns,
-        _clip(tracker.azimuth, azimuth_deg + 360.0 * turns),
-        _clip(tracker.elevation, elevation_deg),
-    )
+    return Samples(begin_s, end_s, sun.elevation_deg, azimuth_deg, elevation_deg)
 
 
 def _directions(plan: ShowPlan, sun: SunPath) -> tuple[Array, Array]:
@@ -111,34 +122,56 @@ def _directions(plan: ShowPlan, sun: SunPath) -> tuple[Array, Array]:
     return azimuth_deg, elevation_deg
 
 
-def branches(axis: AxisConfig, azimuth_deg: Array, near_deg: float) -> NDArray[np.int64]:
+def branches(axis: AxisConfig, azimuth_deg: Array, near_deg: float, patience: int = 0) -> NDArray[np.int64]:
     """Return for each sample of a continuous azimuth the whole turns to add, with the fewest changes.
 
-    At the start and whenever a branch ends, the branch that lasts longest is taken; of equals the one
-    nearest to where the axis is. A direction that no branch reaches ends none.
+    At the start and whenever a branch ends, the branch that lasts longest is taken; of equals the one that is
+    less often beyond its end stop, then the one nearest to where the axis is. A branch does not end where no
+    other reaches the direction either, nor by being beyond its end stop for at most `patience` samples and 15
+    degrees.
     """
     lowest = floor((axis.minimum_deg - float(azimuth_deg.max())) / 360.0)
     highest = ceil((axis.maximum_deg - float(azimuth_deg.min())) / 360.0)
     offers = np.arange(lowest, highest + 1)
     angles_deg = azimuth_deg + 360.0 * offers[:, np.newaxis]
-    inside = (angles_deg >= axis.minimum_deg - EDGE_DEG) & (angles_deg <= axis.maximum_deg + EDGE_DEG)
-    lasts = inside | ~inside.any(axis=0)
+    beyond_deg = np.maximum(axis.minimum_deg - angles_deg, angles_deg - axis.maximum_deg)
+    outside = beyond_deg > EDGE_DEG
+    ends = outside & ~outside.all(axis=0)
+    for row, row_deg in zip(ends, beyond_deg, strict=True):
+        _bear(row, row_deg, patience)
     turns = np.empty(len(azimuth_deg), dtype=np.int64)
     first = 0
     while first < len(turns):
-        ends = [_end(row, first) for row in lasts]
-        distances = np.abs(np.clip(angles_deg[:, first], axis.minimum_deg, axis.maximum_deg) - near_deg)
-        best = min(range(len(offers)), key=lambda i: (-ends[i], distances[i]))
-        turns[first : ends[best]] = offers[best]
-        first = ends[best]
-        near_deg = axis.clamp(float(angles_deg[best, first - 1]))
+        best = _longest(ends, outside, np.abs(angles_deg[:, first] - near_deg), first)
+        last = _end(ends[best], first)
+        turns[first:last] = offers[best]
+        near_deg = axis.clamp(float(angles_deg[best, last - 1]))
+        first = last
     return turns
 
 
-def _end(lasts: NDArray[np.bool_], first: int) -> int:
-    """Return the index behind the run of true values that begins at `first`."""
-    gaps = np.flatnonzero(~lasts[first:])
-    return first + int(gaps[0]) if gaps.size else len(lasts)
+def _bear(ends: NDArray[np.bool_], beyond_deg: Array, patience: int) -> None:
+    """Clear the runs that are short enough to wait at the end stop."""
+    edges = np.flatnonzero(np.diff(ends, prepend=False, append=False))
+    for begin, end in edges.reshape(-1, 2).tolist():
+        if end - begin <= patience and beyond_deg[begin:end].max() <= FARTHEST_BEYOND_DEG:
+            ends[begin:end] = False
+
+
+def _longest(ends: NDArray[np.bool_], outside: NDArray[np.bool_], distance_deg: Array, first: int) -> int:
+    """Return which branch to take at a sample."""
+
+    def merit(branch: int) -> tuple[int, int, float]:
+        last = _end(ends[branch], first)
+        return -last, int(outside[branch, first:last].sum()), float(distance_deg[branch])
+
+    return min(range(len(ends)), key=merit)
+
+
+def _end(ends: NDArray[np.bool_], first: int) -> int:
+    """Return the index, from `first` on, at which a branch ends."""
+    found = np.flatnonzero(ends[first:])
+    return first + int(found[0]) if found.size else len(ends)
 
 
 def _clip(axis: AxisConfig, angle_deg: Array) -> Array:

@@ -125,7 +125,7 @@ def _shortest(course: ShowCourse, tracker: TrackerConfig) -> timedelta | None:
     """Return the least whole number of seconds at which the course is feasible."""
 
     def works(duration_s: int) -> bool:
-        return feasible(course.pace_in(float(duration_s)), tracker)
+        return feasible(course.run_in(float(duration_s))[1], tracker)
 
     low, high = int(SHORTEST_DURATION.total_seconds()), int(LONGEST_DURATION.total_seconds())
     if not works(high):
