@@ -299,6 +299,7 @@ class ModbusLink:
     def _drop(self) -> None:
         client, self._client = self._client, None
         if client is not None:
+            self.ticket += 1
             client.close()
 
 

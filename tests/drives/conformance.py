@@ -1,0 +1,384 @@
+"""What every drive has to do, as stories: the same for the simulated one and those on a bus."""
+
+from collections.abc import Awaitable, Callable
+from datetime import UTC, datetime
+from itertools import pairwise
+
+import pytest
+
+from app.drives.drive import DriveError, DriveSilent
+from app.drives.faults import Fault, FaultKind
+from app.tracker.axes import Axis
+from app.tracker.motion import (
+    HALT,
+    DriveCommand,
+    DriveRequest,
+    Feedback,
+    Position,
+    RequestKind,
+    Velocity,
+)
+from tests.drives.rigs import Rig
+
+Story = Callable[[Rig], Awaitable[None]]
+STORIES: list[Story] = []
+BEGIN_AZIMUTH_DEG, BEGIN_ELEVATION_DEG = 102.4, 36.6
+LAST_COUNT_DEG = 0.0101
+
+
+def story(tell: Story) -> Story:
+    STORIES.append(tell)
+    return tell
+
+
+def at(azimuth_deg: float, elevation_deg: float) -> DriveCommand:
+    return DriveCommand(Position(azimuth_deg, 6.0), Position(elevation_deg, 4.0))
+
+
+def asking(number: int, kind: RequestKind) -> DriveCommand:
+    return DriveCommand(request=DriveRequest(number, kind))
+
+
+def positions(feedback: Feedback) -> tuple[float, float]:
+    return feedback.azimuth.position_deg, feedback.elevation.position_deg
+
+
+def is_moving(feedback: Feedback) -> bool:
+    return feedback.azimuth.moving or feedback.elevation.moving
+
+
+def is_homed(feedback: Feedback) -> bool:
+    return feedback.azimuth.homed or feedback.elevation.homed
+
+
+@story
+async def a_new_drive_stands_still_and_has_no_zero(rig: Rig) -> None:
+    feedback = await rig.drive.read()
+    assert positions(feedback) == pytest.approx((BEGIN_AZIMUTH_DEG, BEGIN_ELEVATION_DEG), abs=1e-9)
+    assert not is_homed(feedback)
+    assert not is_moving(feedback)
+    assert not feedback.homing
+    assert (feedback.boot_count, feedback.fault_code, feedback.watchdog_tripped) == (1, 0, False)
+
+
+@story
+async def a_jog_turns_at_its_speed_and_a_halt_ends_it(rig: Rig) -> None:
+    jogging = await rig.forward(2.0, DriveCommand(azimuth=Velocity(-3.0)))
+    assert jogging.azimuth.velocity_dps == pytest.approx(-3.0)
+    assert jogging.azimuth.position_deg == pytest.approx(BEGIN_AZIMUTH_DEG - 5.25, abs=LAST_COUNT_DEG)
+    assert jogging.elevation.position_deg == pytest.approx(BEGIN_ELEVATION_DEG)
+    halted = await rig.forward(0.6)
+    assert halted.azimuth.velocity_dps == 0.0
+    assert not halted.azimuth.moving
+    assert halted.azimuth.position_deg == pytest.approx(BEGIN_AZIMUTH_DEG - 6.0, abs=LAST_COUNT_DEG)
+
+
+@story
+async def north_can_be_reached_by_jogging_for_a_few_seconds(rig: Rig) -> None:
+    await rig.forward(4.0 - 0.35, DriveCommand(azimuth=Velocity(-3.0), elevation=Velocity(-2.0)))
+    await rig.until_rest()
+    truth = rig.machine.true_orientation
+    assert abs(truth.azimuth_deg) < 1.5
+    assert abs(truth.elevation_deg) < 1.5
+
+
+@story
+async def a_move_ends_at_its_target(rig: Rig) -> None:
+    feedback = await rig.until_rest(at(140.0, 50.0))
+    assert positions(feedback) == pytest.approx((140.0, 50.0), abs=LAST_COUNT_DEG)
+    assert feedback.azimuth.velocity_dps == 0.0
+
+
+@story
+async def a_move_keeps_to_its_own_speed(rig: Rig) -> None:
+    feedback = await rig.forward(3.0, DriveCommand(azimuth=Position(150.0, 1.5)))
+    assert feedback.azimuth.velocity_dps == pytest.approx(1.5)
+
+
+@story
+async def a_new_target_in_mid_move_makes_no_jump(rig: Rig) -> None:
+    speeds = []
+    for command in (at(130.0, 36.6), at(90.0, 36.6), at(108.0, 36.6)):
+        for _ in range(30):
+            feedback = await rig.forward(0.05, command)
+            speeds.append(feedback.azimuth.velocity_dps)
+    steps = [abs(b - a) for a, b in pairwise(speeds)]
+    assert max(abs(speed) for speed in speeds) <= 6.0 + 1e-6
+    assert max(steps) <= 6.0 * 0.05 + 2e-3
+    feedback = await rig.until_rest(at(108.0, 36.6))
+    assert feedback.azimuth.position_deg == pytest.approx(108.0, abs=LAST_COUNT_DEG)
+
+
+@story
+async def the_limit_switch_ends_a_jog_and_the_way_back_is_free(rig: Rig) -> None:
+    down = DriveCommand(elevation=Velocity(-2.0))
+    await rig.forward(1.0, down)
+    feedback = await rig.until_rest(down)
+    assert feedback.elevation.at_lower_limit
+    assert not feedback.elevation.at_upper_limit
+    stood = feedback.elevation.position_deg
+    back = await rig.forward(2.0, DriveCommand(elevation=Velocity(2.0)))
+    assert back.elevation.position_deg > stood + 2.0
+    assert not back.elevation.at_lower_limit
+
+
+@story
+async def a_target_beyond_the_end_of_travel_ends_at_the_switch(rig: Rig) -> None:
+    feedback = await rig.until_rest(at(102.4, 500.0))
+    assert feedback.elevation.at_upper_limit
+    assert feedback.elevation.position_deg < 130.0
+
+
+@story
+async def each_axis_can_be_zeroed_and_reads_zero_then(rig: Rig) -> None:
+    feedback = await rig.forward(0.1, asking(1, RequestKind.SET_ZERO_AZIMUTH))
+    assert (feedback.request_done, feedback.request_failed) == (1, False)
+    assert feedback.azimuth.position_deg == 0.0
+    assert feedback.azimuth.homed
+    assert not feedback.elevation.homed
+    feedback = await rig.forward(0.1, asking(2, RequestKind.SET_ZERO_ELEVATION))
+    assert feedback.request_done == 2
+    assert positions(feedback) == (0.0, 0.0)
+    assert feedback.elevation.homed
+
+
+@story
+async def a_request_is_carried_out_once(rig: Rig) -> None:
+    await rig.forward(0.1, asking(1, RequestKind.SET_ZERO_AZIMUTH))
+    moved = await rig.until_rest(at(10.0, 36.6))
+    again = await rig.forward(0.3, asking(1, RequestKind.SET_ZERO_AZIMUTH))
+    assert again.azimuth.position_deg == pytest.approx(moved.azimuth.position_deg)
+
+
+@story
+async def a_moving_axis_cannot_be_zeroed(rig: Rig) -> None:
+    request = DriveRequest(4, RequestKind.SET_ZERO_AZIMUTH)
+    await rig.forward(1.0, DriveCommand(azimuth=Velocity(3.0)))
+    feedback = await rig.forward(0.1, DriveCommand(azimuth=Velocity(3.0), request=request))
+    assert (feedback.request_done, feedback.request_failed) == (4, True)
+    assert not feedback.azimuth.homed
+
+
+@story
+async def homing_finds_north_and_the_horizon(rig: Rig) -> None:
+    searching = await rig.forward(1.0, asking(5, RequestKind.HOME))
+    assert searching.homing
+    feedback = await rig.until_rest(asking(5, RequestKind.HOME))
+    assert (feedback.request_done, feedback.request_failed) == (5, False)
+    assert positions(feedback) == (0.0, 0.0)
+    assert feedback.azimuth.homed
+    assert feedback.elevation.homed
+    assert feedback.azimuth.at_origin
+    assert feedback.elevation.at_origin
+    truth = rig.machine.true_orientation
+    assert (truth.azimuth_deg, truth.elevation_deg) == pytest.approx((0.0, 0.0), abs=0.02)
+
+
+@story
+async def homing_goes_on_while_halt_is_written(rig: Rig) -> None:
+    await rig.forward(0.2, asking(5, RequestKind.HOME))
+    assert (await rig.forward(0.5)).homing
+    assert (await rig.until_rest()).request_done == 5
+
+
+@story
+async def a_stop_ends_homing_without_a_zero(rig: Rig) -> None:
+    await rig.forward(1.0, asking(5, RequestKind.HOME))
+    await rig.drive.stop()
+    feedback = await rig.until_rest()
+    assert (feedback.request_done, feedback.request_failed, feedback.homing) == (5, True, False)
+    assert not is_homed(feedback)
+
+
+@story
+async def a_stalled_axis_makes_homing_fail(rig: Rig) -> None:
+    await rig.forward(0.5, asking(5, RequestKind.HOME))
+    rig.machine.inject(Fault(FaultKind.STALL, Axis.AZIMUTH))
+    feedback = await rig.until_rest(asking(5, RequestKind.HOME))
+    assert (feedback.request_done, feedback.request_failed) == (5, True)
+    assert not feedback.azimuth.homed
+
+
+@story
+async def a_fault_stops_both_axes_until_it_is_reset(rig: Rig) -> None:
+    await rig.forward(1.0, at(140.0, 60.0))
+    rig.machine.inject(Fault(FaultKind.DRIVE_FAULT, amount=7))
+    feedback = await rig.forward(2.0, at(140.0, 60.0))
+    assert feedback.fault_code == 7
+    assert (feedback.azimuth.velocity_dps, feedback.elevation.velocity_dps) == (0.0, 0.0)
+    feedback = await rig.forward(0.2, asking(9, RequestKind.RESET_FAULT))
+    assert (feedback.request_done, feedback.fault_code) == (9, 0)
+    moved = await rig.forward(1.0, at(140.0, 60.0))
+    assert moved.azimuth.position_deg > feedback.azimuth.position_deg
+
+
+@story
+async def a_drive_that_lost_power_has_a_new_life_and_no_zero(rig: Rig) -> None:
+    await rig.forward(0.1, asking(1, RequestKind.SET_ZERO_AZIMUTH))
+    await rig.forward(0.1, asking(2, RequestKind.SET_ZERO_ELEVATION))
+    await rig.forward(1.0, at(20.0, 10.0))
+    rig.machine.inject(Fault(FaultKind.POWER_LOSS))
+    feedback = await rig.drive.read()
+    assert feedback.boot_count == 2
+    assert not is_homed(feedback)
+    assert not is_moving(feedback)
+    assert feedback.request_done == 0
+    rig.idle(1.0)
+    assert positions(await rig.drive.read()) == pytest.approx(positions(feedback))
+    assert (await rig.forward(1.0, DriveCommand(azimuth=Velocity(1.0)))).azimuth.moving
+
+
+@story
+async def without_commands_the_watchdog_ramps_both_axes_down(rig: Rig) -> None:
+    command = DriveCommand(Velocity(3.0), Velocity(2.0))
+    before = await rig.forward(1.0, command)
+    rig.idle(5.0)
+    feedback = await rig.drive.read()
+    assert feedback.watchdog_tripped
+    assert not is_moving(feedback)
+    way_deg = feedback.azimuth.position_deg - before.azimuth.position_deg
+    assert way_deg == pytest.approx(3.0 * 0.5 + 3.0**2 / (2 * 6.0), abs=0.02)
+    await rig.drive.write(DriveCommand())
+    assert not (await rig.drive.read()).watchdog_tripped
+
+
+@story
+async def after_the_watchdog_the_drive_obeys_again(rig: Rig) -> None:
+    command = DriveCommand(azimuth=Velocity(3.0))
+    await rig.forward(1.0, command)
+    rig.idle(2.0)
+    stood = await rig.drive.read()
+    assert (await rig.forward(1.0, command)).azimuth.position_deg > stood.azimuth.position_deg + 1.0
+
+
+@story
+async def a_drive_that_is_fed_in_time_goes_on(rig: Rig) -> None:
+    command = DriveCommand(azimuth=Velocity(3.0))
+    for _ in range(5):
+        await rig.drive.read()
+        await rig.drive.write(command)
+        rig.idle(0.45)
+    feedback = await rig.drive.read()
+    assert not feedback.watchdog_tripped
+    assert feedback.azimuth.velocity_dps == pytest.approx(3.0)
+
+
+@story
+async def reading_alone_does_not_feed_the_watchdog(rig: Rig) -> None:
+    await rig.forward(1.0, DriveCommand(azimuth=Velocity(3.0)))
+    for _ in range(20):
+        rig.idle(0.1)
+        feedback = await rig.drive.read()
+    assert feedback.watchdog_tripped
+    assert not feedback.azimuth.moving
+
+
+@story
+async def stop_ramps_both_axes_down(rig: Rig) -> None:
+    before = await rig.forward(1.0, DriveCommand(Velocity(3.0), Velocity(2.0)))
+    await rig.drive.stop()
+    rig.idle(0.6)
+    feedback = await rig.drive.read()
+    assert not is_moving(feedback)
+    way_deg = feedback.azimuth.position_deg - before.azimuth.position_deg
+    assert way_deg == pytest.approx(3.0**2 / (2 * 6.0), abs=0.02)
+
+
+@story
+async def a_silent_drive_is_said_to_be_silent_and_found_again(rig: Rig) -> None:
+    before = await rig.forward(0.2)
+    rig.machine.inject(Fault(FaultKind.SILENCE))
+    with pytest.raises(DriveSilent):
+        await rig.drive.read()
+    with pytest.raises(DriveSilent):
+        await rig.drive.write(DriveCommand(azimuth=Velocity(1.0)))
+    rig.machine.clear_faults()
+    rig.idle(2.0)
+    feedback = await rig.drive.read()
+    assert positions(feedback) == pytest.approx(positions(before))
+
+
+@story
+async def a_command_that_is_not_taken_is_an_error(rig: Rig) -> None:
+    await rig.forward(0.2)
+    rig.machine.inject(Fault(FaultKind.IGNORED_WRITES))
+    with pytest.raises(DriveError, match="did not take"):
+        await rig.forward(0.2, at(140.0, 60.0))
+    rig.machine.clear_faults()
+    assert (await rig.forward(1.0, at(140.0, 60.0))).azimuth.moving
+
+
+@story
+async def an_encoder_jump_is_shown_as_it_is(rig: Rig) -> None:
+    before = await rig.forward(0.2)
+    rig.machine.inject(Fault(FaultKind.ENCODER_JUMP, Axis.AZIMUTH, 12.4))
+    feedback = await rig.drive.read()
+    assert feedback.azimuth.position_deg == pytest.approx(before.azimuth.position_deg + 12.4)
+
+
+@story
+async def a_stalled_axis_moves_by_its_own_account_and_stays(rig: Rig) -> None:
+    rig.machine.inject(Fault(FaultKind.STALL, Axis.ELEVATION))
+    feedback = await rig.forward(2.0, at(120.0, 50.0))
+    assert feedback.elevation.moving
+    assert feedback.elevation.position_deg == pytest.approx(BEGIN_ELEVATION_DEG)
+    assert feedback.azimuth.position_deg > 108.0
+
+
+@story
+async def a_wrongly_wired_axis_turns_the_other_way(rig: Rig) -> None:
+    rig.machine.inject(Fault(FaultKind.WRONG_DIRECTION, Axis.AZIMUTH))
+    feedback = await rig.forward(1.0, DriveCommand(azimuth=Velocity(2.0)))
+    assert feedback.azimuth.position_deg < BEGIN_AZIMUTH_DEG - 1.0
+
+
+@story
+async def a_stuck_limit_switch_bars_one_way_only(rig: Rig) -> None:
+    rig.machine.inject(Fault(FaultKind.UPPER_LIMIT_STUCK, Axis.AZIMUTH))
+    barred = await rig.forward(1.0, DriveCommand(azimuth=Velocity(2.0)))
+    assert barred.azimuth.at_upper_limit
+    assert barred.azimuth.position_deg == pytest.approx(BEGIN_AZIMUTH_DEG)
+    free = await rig.forward(1.0, DriveCommand(azimuth=Velocity(-2.0)))
+    assert free.azimuth.position_deg < BEGIN_AZIMUTH_DEG - 1.0
+
+
+@story
+async def a_frozen_encoder_shows_no_motion(rig: Rig) -> None:
+    rig.machine.inject(Fault(FaultKind.FROZEN_POSITION, Axis.AZIMUTH))
+    feedback = await rig.forward(1.0, DriveCommand(azimuth=Velocity(2.0)))
+    assert feedback.azimuth.position_deg == pytest.approx(BEGIN_AZIMUTH_DEG)
+    assert rig.machine.true_orientation.azimuth_deg > 13.0
+
+
+@story
+async def a_slipping_axis_creeps_without_a_command(rig: Rig) -> None:
+    rig.machine.inject(Fault(FaultKind.SLIP, Axis.ELEVATION, -0.2))
+    feedback = await rig.forward(5.0)
+    assert feedback.elevation.position_deg == pytest.approx(BEGIN_ELEVATION_DEG - 1.0, abs=0.02)
+
+
+@story
+async def the_clock_of_the_drive_can_be_set(rig: Rig) -> None:
+    await rig.drive.set_clock(datetime(2031, 12, 24, 18, 30, 5, tzinfo=UTC))
+    rig.idle(2.0)
+    assert rig.machine.wall_clock == datetime(2031, 12, 24, 18, 30, 7, tzinfo=UTC)
+
+
+@story
+async def closing_stops_the_axes(rig: Rig) -> None:
+    await rig.forward(1.0, DriveCommand(azimuth=Velocity(3.0)))
+    await rig.drive.close()
+    assert rig.machine.command == DriveCommand(HALT, HALT)
+    rig.idle(0.5)
+    assert not rig.machine.observe().azimuth.moving
+
+
+@story
+async def capabilities_tell_what_the_drive_can_do(rig: Rig) -> None:
+    await rig.drive.read()
+    can = rig.drive.capabilities
+    assert can.automatic_homing
+    assert can.settable_clock
+    assert can.limit_switches
+    assert can.watchdog_s == pytest.approx(0.5)
+    assert can.description
