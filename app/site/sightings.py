@@ -1,7 +1,5 @@
 """Sightings of the sun: stored one by one, fitted to a pointing correction."""
 
-from dataclasses import replace
-
 from app.link.messages import ApplySightings
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
@@ -28,7 +26,7 @@ async def take(model: SiteModel, tracker_id: str, actor: str) -> tuple[Event, ..
         actor,
         tracker_id,
     )
-    loop.controller.remember(replace(loop.memory, sightings=taken))
+    loop.controller.set_sightings(taken)
     await model.ledger.save_tracker(loop.state, (event,))
     return (event,)
 
@@ -63,7 +61,8 @@ async def apply(model: SiteModel, given: ApplySightings, actor: str) -> tuple[Ev
     loop = model.tracker(given.tracker_id)
     refuse_while_busy(model, loop)
     pointing = fit(given.keep) if given.keep else Pointing()
-    loop.controller.remember(replace(loop.memory, sightings=given.keep, pointing=pointing))
+    loop.controller.set_sightings(given.keep)
+    loop.controller.set_pointing(pointing)
     message = (
         f"The pointing correction was fitted to {len(given.keep)} sightings."
         if given.keep
