@@ -29,8 +29,12 @@ class DatabaseWriter(DatabaseReader):
         super().__init__(reading)
         self._writing = writing
         self._broken: StoreFailed | None = None
-        with self._write() as connection:
-            require_revision(connection)
+        try:
+            with self._write() as connection:
+                require_revision(connection)
+        except StoreFailed:
+            self.close()
+            raise
 
     @contextmanager
     def _write(self) -> Iterator[Connection]:

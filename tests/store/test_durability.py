@@ -1,0 +1,177 @@
+"""What was acknowledged is there afterwards, whatever happens to the process, the disk or the file."""
+
+import multiprocessing
+import random
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing, contextmanager, suppress
+from dataclasses import replace
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+import pytest
+
+from app.store.connections import sqlite_path
+from app.store.engine import open_reader, open_writer
+from app.store.integrity import FIRST_SAFE_SQLITE, sqlite_notice
+from app.store.migrations import upgrade
+from app.store.store import JournalFilter, StoreFailed
+from app.store.writer import DatabaseWriter
+from tests.store.samples import SITE, event
+from tests.store.tracked_day import day_info, tracked_day
+
+FORK = multiprocessing.get_context("fork")
+KILLS = {"sqlite": 30, "postgresql": 5}
+FRAMES_A_COMMIT = 7
+EVERYTHING = JournalFilter(limit=100_000)
+
+
+def commit_for_ever(url: str, acknowledge: Connection, first: int) -> None:
+    writer = open_writer(url)
+    for number in range(first, 1_000_000):
+        writer.save_site(replace(SITE, location_revision=number), [event(number)])
+        writer.append_frames("day-1", tracked_day(FRAMES_A_COMMIT, begin_s=number * FRAMES_A_COMMIT))
+        acknowledge.send(number)
+
+
+def killed_after(url: str, first: int, acknowledgements: int) -> list[int]:
+    """Return the numbers that a process acknowledged before it was killed."""
+    receive, send = FORK.Pipe(duplex=False)
+    child = FORK.Process(target=commit_for_ever, args=(url, send, first))
+    child.start()
+    send.close()
+    acknowledged = []
+    with closing(receive), suppress(EOFError):
+        while receive.poll(20):
+            acknowledged.append(int(receive.recv()))
+            if len(acknowledged) == acknowledgements:
+                child.kill()
+    child.join(20)
+    return acknowledged
+
+
+def test_no_acknowledged_commit_is_lost_when_the_process_is_killed(url: str) -> None:
+    chance = random.Random(7)
+    writer = open_writer(url)
+    writer.begin_recording(day_info())
+    writer.close()
+    acknowledged: set[int] = set()
+    stored = 0
+    for _ in range(KILLS[url.partition("+")[0].partition(":")[0]]):
+        acknowledged.update(killed_after(url, stored + 1, chance.randint(1, 6)))
+        reader = open_writer(url)
+        events = [entry.event.data["number"] for entry in reader.journal(EVERYTHING)]
+        site, frames, head = reader.site(), reader.frames("day-1"), reader.recording("day-1")
+        reader.close()
+        assert site is not None
+        assert head is not None
+        stored = site.location_revision
+        assert stored >= max(acknowledged)
+        assert events == list(range(stored, 0, -1)), "an event and its change belong together"
+        assert len(frames) == head.frame_count
+        in_frames = set((frames.column("elapsed_s") // FRAMES_A_COMMIT).astype(int).tolist())
+        assert acknowledged <= in_frames
+
+
+@contextmanager
+def limited(writer: DatabaseWriter, pragma: str) -> Iterator[None]:
+    with writer._writing.connect() as connection:
+        connection.exec_driver_sql(f"PRAGMA {pragma}")
+    yield
+
+
+@pytest.fixture
+def on_sqlite(sqlite_url: str) -> Iterator[DatabaseWriter]:
+    upgrade(sqlite_url)
+    writer = open_writer(sqlite_url)
+    yield writer
+    writer.close()
+
+
+def test_a_full_disk_is_told_and_nothing_is_half_written(on_sqlite: DatabaseWriter) -> None:
+    on_sqlite.save_site(SITE, [event(1)])
+    on_sqlite.begin_recording(day_info())
+    with limited(on_sqlite, "max_page_count = 1"):
+        large = replace(SITE, name="x" * 100_000)
+        with pytest.raises(StoreFailed, match=r"The disk is full: nothing was stored\. Free some space"):
+            on_sqlite.save_site(large, [event(2)])
+        with pytest.raises(StoreFailed, match="The disk is full"):
+            on_sqlite.append_frames("day-1", tracked_day(80_000))
+    assert on_sqlite.site() == SITE
+    assert [entry.event for entry in on_sqlite.journal(EVERYTHING)] == [event(1)]
+    assert len(on_sqlite.frames("day-1")) == 0
+    with limited(on_sqlite, "max_page_count = 1000000"):
+        on_sqlite.save_site(large, [event(2)])
+    assert on_sqlite.site() == large
+
+
+def test_a_locked_database_is_told_and_works_again(sqlite_url: str, on_sqlite: DatabaseWriter) -> None:
+    with (
+        limited(on_sqlite, "busy_timeout = 20"),
+        closing(sqlite3.connect(str(sqlite_path(sqlite_url)), isolation_level=None)) as other,
+    ):
+        other.execute("BEGIN IMMEDIATE")
+        with pytest.raises(StoreFailed, match="locked by another program: nothing was stored"):
+            on_sqlite.save_site(SITE)
+        assert on_sqlite.site() is None, "reading goes on meanwhile"
+        other.execute("ROLLBACK")
+        on_sqlite.save_site(SITE)
+    assert on_sqlite.site() == SITE
+
+
+def overwrite(path: Path) -> None:
+    """Put rubbish over every page but the first."""
+    size = path.stat().st_size
+    with path.open("r+b") as file:
+        file.seek(4096)
+        file.write(b"\xa5" * (size - 4096))
+
+
+def test_a_damaged_file_is_told_at_the_start(sqlite_url: str, on_sqlite: DatabaseWriter) -> None:
+    on_sqlite.save_site(SITE)
+    on_sqlite.close()
+    overwrite(Path(str(sqlite_path(sqlite_url))))
+    for opening in (open_writer, upgrade):
+        with pytest.raises(StoreFailed, match=r"damaged.*Restore a backup with: heliopanel restore FILE"):
+            opening(sqlite_url)
+
+
+def test_a_file_that_is_no_database_is_told_at_the_start(sqlite_url: str) -> None:
+    Path(str(sqlite_path(sqlite_url))).write_bytes(b"This is not a database at all. " * 400)
+    for opening in (open_writer, upgrade):
+        with pytest.raises(StoreFailed, match=r"The file is not a database\. Restore a backup"):
+            opening(sqlite_url)
+
+
+def test_after_damage_nothing_more_is_written(sqlite_url: str, on_sqlite: DatabaseWriter) -> None:
+    on_sqlite.save_site(SITE)
+    on_sqlite.close()
+    on_sqlite = DatabaseWriter(on_sqlite._reading, on_sqlite._writing)
+    on_sqlite.close()
+    overwrite(Path(str(sqlite_path(sqlite_url))))
+    with pytest.raises(StoreFailed, match="damaged"):
+        on_sqlite.save_site(SITE)
+    with pytest.raises(StoreFailed, match="damaged"):
+        on_sqlite.append_events([])
+
+
+@pytest.mark.parametrize(
+    ("pragma", "value"),
+    [("journal_mode", "wal"), ("synchronous", 2), ("foreign_keys", 1), ("busy_timeout", 5000)],
+)
+def test_the_writer_is_set_up_for_power_cuts(on_sqlite: DatabaseWriter, pragma: str, value: object) -> None:
+    with on_sqlite._writing.connect() as connection:
+        assert connection.exec_driver_sql(f"PRAGMA {pragma}").scalar_one() == value
+
+
+def test_a_reader_cannot_write(sqlite_url: str, on_sqlite: DatabaseWriter) -> None:
+    reader = open_reader(sqlite_url)
+    with reader._reading.connect() as connection, pytest.raises(Exception, match="readonly database"):
+        connection.exec_driver_sql("INSERT INTO site VALUES (9, '{}')")
+    reader.close()
+
+
+def test_an_old_sqlite_is_worth_a_line_in_the_log() -> None:
+    notice = sqlite_notice()
+    assert (notice is None) == (sqlite3.sqlite_version_info >= FIRST_SAFE_SQLITE)
+    assert notice is None or "writes through one connection only" in notice

@@ -1,0 +1,150 @@
+"""Tables come from migrations alone; a newer database is refused, an older one copied before it changes."""
+
+from pathlib import Path
+
+import pytest
+from alembic.script import ScriptDirectory
+from sqlalchemy import text
+
+from app.store.connections import revision_of, sqlite_path, transaction, writing_engine
+from app.store.engine import open_reader, open_writer
+from app.store.migrations import (
+    SCRIPTS,
+    check,
+    copy_sqlite,
+    differences,
+    drop_tables,
+    main,
+    run_migrations,
+    upgrade,
+)
+from app.store.store import StoreFailed
+from app.store.tables import REVISION
+from tests.store.samples import SITE
+
+
+def execute(url: str, statement: str) -> None:
+    engine = writing_engine(url)
+    with transaction(engine) as connection:
+        connection.execute(text(statement))
+    engine.dispose()
+
+
+def test_the_newest_migration_is_the_one_that_the_software_names() -> None:
+    assert ScriptDirectory(str(SCRIPTS)).get_current_head() == REVISION
+
+
+def test_tables_and_migrations_agree(url: str) -> None:
+    engine = writing_engine(url)
+    with transaction(engine) as connection:
+        assert differences(connection) == []
+    engine.dispose()
+
+
+def test_a_difference_is_seen(url: str) -> None:
+    execute(url, "ALTER TABLE shows ADD COLUMN colour TEXT")
+    engine = writing_engine(url)
+    with transaction(engine) as connection:
+        assert "colour" in str(differences(connection))
+    engine.dispose()
+
+
+def test_make_check_passes_here(capsys: pytest.CaptureFixture[str]) -> None:
+    assert check() == []
+    assert main(["check"]) == 0
+    assert main(["sing"]) == 2
+    assert "check | upgrade URL" in capsys.readouterr().err
+
+
+def test_upgrading_makes_the_tables_once(empty_url: str) -> None:
+    assert upgrade(empty_url) is None
+    writer = open_writer(empty_url)
+    writer.save_site(SITE)
+    writer.close()
+    assert upgrade(empty_url) == REVISION
+    reader = open_reader(empty_url)
+    assert reader.site() == SITE
+    reader.close()
+
+
+def test_tables_go_as_they_came(url: str) -> None:
+    engine = writing_engine(url)
+    with transaction(engine) as connection:
+        drop_tables(connection)
+    with transaction(engine) as connection:
+        assert revision_of(connection) is None
+        run_migrations(connection)
+    with transaction(engine) as connection:
+        assert revision_of(connection) == REVISION
+    engine.dispose()
+
+
+def test_a_migration_that_fails_leaves_nothing_behind(empty_url: str) -> None:
+    execute(empty_url, "CREATE TABLE recordings (already INTEGER)")
+    with pytest.raises(StoreFailed, match="refused"):
+        upgrade(empty_url)
+    engine = writing_engine(empty_url)
+    with transaction(engine) as connection:
+        assert revision_of(connection) is None
+        assert not connection.dialect.has_table(connection, "site")
+    engine.dispose()
+
+
+def test_a_newer_database_is_refused(url: str) -> None:
+    execute(url, "UPDATE alembic_version SET version_num = '9999'")
+    with pytest.raises(
+        StoreFailed, match=r"newer version of Heliopanel .revision 9999.*Install that version"
+    ):
+        upgrade(url)
+    with pytest.raises(StoreFailed, match="at revision 9999, but this version of Heliopanel needs"):
+        open_writer(url)
+    reader = open_reader(url)
+    with pytest.raises(StoreFailed, match="at revision 9999"):
+        reader.site()
+    reader.close()
+
+
+def test_a_reader_waits_for_the_database(sqlite_url: str) -> None:
+    reader = open_reader(sqlite_url)
+    with pytest.raises(StoreFailed, match="cannot be opened"):
+        reader.site()
+    upgrade(sqlite_url)
+    assert reader.site() is None
+    reader.close()
+
+
+def test_a_database_without_tables_is_not_written(empty_url: str) -> None:
+    with pytest.raises(StoreFailed, match=r"has no tables yet\. Start the machine once"):
+        open_writer(empty_url)
+
+
+@pytest.mark.parametrize(
+    "bad", ["mysql://a/b", "sqlite://", "sqlite:///:memory:", "nonsense", "postgresql://a/b"]
+)
+def test_only_known_databases_are_opened(bad: str) -> None:
+    with pytest.raises(StoreFailed, match="sqlite:///"):
+        open_reader(bad)
+
+
+def test_a_password_is_not_shown() -> None:
+    with pytest.raises(StoreFailed) as failure:
+        open_reader("mysql://me:secret@a/b")
+    assert "secret" not in str(failure.value)
+
+
+def test_a_copy_is_complete_or_absent(sqlite_url: str, tmp_path: Path) -> None:
+    upgrade(sqlite_url)
+    path = Path(str(sqlite_path(sqlite_url)))
+    copy_sqlite(path, tmp_path / "copy.db")
+    assert (tmp_path / "copy.db").exists()
+    path.write_bytes(b"rubbish" * 1000)
+    with pytest.raises(StoreFailed, match="could not be copied"):
+        copy_sqlite(path, tmp_path / "second.db")
+    assert [file.name for file in tmp_path.glob("*second*")] == []
+
+
+def test_a_server_that_is_not_there_is_told(tmp_path: Path) -> None:
+    reader = open_reader(f"postgresql+psycopg://me@/nowhere?host={tmp_path}")
+    with pytest.raises(StoreFailed, match=r"cannot be reached: nothing was stored\. Check that it runs"):
+        reader.site()
+    reader.close()
