@@ -21,17 +21,19 @@ from app.tracker.mind import HALTED, Mind
 from app.tracker.motion import AxisCommand, DriveCommand, Feedback, Halt
 from app.tracker.reason import Reason
 from app.tracker.snapshot import EventKind
-from app.tracker.transitions import fail, interrupt, lose_home
+from app.tracker.transitions import fail, interrupt, leave, lose_home
 
 SILENCE = timedelta(seconds=0.6)
-MISSES = 2
+JOG_MISSES = 2
 
 
 def miss(mind: Mind, now: datetime) -> None:
-    """Count a reading that failed; after two, or 0.6 s without any, the drive is lost and everything ends."""
+    """Count a reading that failed: two end a jog, and after 0.6 s the drive is lost and everything ends."""
     mind.misses += 1
+    if mind.misses >= JOG_MISSES and isinstance(mind.activity, Jogging):
+        leave(mind, "the drive did not answer.")
     since = mind.feedback_at or mind.started_at or now
-    if mind.lost or (mind.misses < MISSES and now - since <= SILENCE):
+    if mind.lost or now - since <= SILENCE:
         return
     mind.lost = True
     reason = Reason(

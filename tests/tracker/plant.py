@@ -12,7 +12,7 @@ from app.tracker.config import TrackerConfig
 from app.tracker.controller import Controller
 from app.tracker.memory import HomeTrust, TrackerMemory
 from app.tracker.mode import Mode
-from app.tracker.motion import DriveCapabilities, DriveCommand, RequestKind, DriveRequest
+from app.tracker.motion import DriveCommand, DriveRequest, RequestKind
 from app.tracker.observation import Observation
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
 
@@ -20,6 +20,7 @@ SAMSUN = Location(41.2867, 36.33, 4.0)
 MORNING = datetime(2026, 6, 21, 6, 0, tzinfo=UTC)
 CONFIG = TrackerConfig("T1", "Tracker 1")
 TRUST = HomeTrust(MORNING, "Ayse", "set by hand", 1)
+BLANK = TrackerMemory()
 READY = TrackerMemory(mode=Mode.DUAL, home=TRUST)
 
 
@@ -28,7 +29,7 @@ class Plant:
 
     def __init__(
         self,
-        memory: TrackerMemory = TrackerMemory(),
+        memory: TrackerMemory = BLANK,
         *,
         config: TrackerConfig = CONFIG,
         at: datetime = MORNING,

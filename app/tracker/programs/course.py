@@ -13,7 +13,8 @@ from app.tracker.programs.pace import Night, Pace, Repositioning, pace, travel_s
 from app.tracker.programs.path import EDGE_DEG, Stretch, sampled, stretches
 from app.tracker.programs.plan import ShowPlan
 
-PERIOD_S = 0.1
+DELAY_S = 0.07
+"""Half a period of 0.1 s, for which a set-point waits on average to be renewed, and the way to the drive."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,10 +149,10 @@ class ShowCourse:
 def lead_s(axis: AxisConfig, velocity_dps: float) -> float:
     """Return how far ahead of the target the set-point lies, seconds.
 
-    A drive that brakes so that it can stop at its set-point runs v/(2a) behind it, and its set-point is
-    renewed once a period.
+    A drive that brakes so that it can stop at its set-point runs v/(2a) behind it, and it learns of a new
+    set-point a little later.
     """
-    return min(abs(velocity_dps), axis.speed_dps) / (2.0 * axis.acceleration_dps2) + PERIOD_S
+    return min(abs(velocity_dps), axis.speed_dps) / (2.0 * axis.acceleration_dps2) + DELAY_S
 
 
 def _sample(stretch: Stretch, index: int) -> AxisTarget:

@@ -21,6 +21,8 @@ RAMP_SHARE = 0.05
 REPOSITIONING_SHARE = 0.20
 KEYHOLE_ELEVATION_DEG = 80.0
 NIGHT_MARGIN_S = 0.5
+SETTLE_S = 0.25
+"""What a repositioning takes longer than from rest to rest: it ends on a target that moves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +141,7 @@ def _repositionings(
         begin_s = float(elapsed_s[i + 1] if unwinds[i] else elapsed_s[i])
         if begin_s < free_s:
             continue
-        needed_s = _travel_s(axis, np.abs(azimuth_deg[i + 1 :] - azimuth_deg[i]))
+        needed_s = _travel_s(axis, np.abs(azimuth_deg[i + 1 :] - azimuth_deg[i])) + SETTLE_S
         caught_up = np.flatnonzero(begin_s + needed_s <= elapsed_s[i + 1 :])
         j = int(caught_up[0]) if caught_up.size else -1
         free_s = begin_s + float(needed_s[j])
