@@ -40,6 +40,7 @@ from app.link.messages import (
 )
 from app.link.outlet import Outlet
 from app.settings import Settings
+from app.store.store import PlannedShow
 from app.tracker.commands import (
     CommandRejected,
     Stop,
@@ -55,7 +56,6 @@ from app.tracker.memory import (
     TrackerState,
 )
 from app.tracker.reason import Reason
-from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import (
     ClockState,
     Event,
@@ -83,6 +83,7 @@ class FakeMachine:
     """
 
     def __init__(self, clock: Clock | None = None) -> None:
+        self.store = FakeReader()
         self.clock = clock or SystemClock()
         self.site: SiteState = site_state()
         holding, tracking = (
@@ -97,7 +98,6 @@ class FakeMachine:
         self.rejects: dict[str, tuple[Reason, ...]] = {}
         self.reachable = True
         self.sequence = 0
-        self.recordings: dict[str, RecordingInfo] = {}
         self._outlet = Outlet()
         self.emit()
 
@@ -156,12 +156,17 @@ class FakeMachine:
                 for tracker in self.trackers.values():
                     tracker.handle(Stop(), now, order.actor)
             case SaveRecording(info=info):
-                self.recordings[info.recording_id] = info
+                self.store.heads[info.recording_id] = info
             case DeleteRecording(recording_id=recording_id):
-                if recording_id not in self.recordings and recording_id not in ("show-1", "day-1"):
+                if self.store.heads.pop(recording_id, None) is None:
                     raise UnknownRecording(recording_id)
-            case TakeSighting() | ApplySightings() | SavePlan():
-                pass
+            case SavePlan(tracker_id=tracker_id, plan=plan):
+                self.store.shows[plan.show_id] = PlannedShow(tracker_id, plan)
+            case TakeSighting(tracker_id=tracker_id):
+                self._tracker(tracker_id)
+            case ApplySightings(tracker_id=tracker_id, keep=keep):
+                tracker = self._tracker(tracker_id)
+                tracker.memory = replace(tracker.memory, sightings=keep)
 
     def _tracker(self, tracker_id: str) -> FakeTracker:
         if tracker_id not in self.trackers:
@@ -229,7 +234,7 @@ def fake_app(machine: FakeMachine | None = None, reader: FakeReader | None = Non
     """Return the whole panel on the fakes."""
     settings = Settings(data_dir=Path(tempfile.gettempdir()) / "heliopanel-fakes", port=PORT)
     machine = machine or FakeMachine()
-    return create_app(settings, machine=machine, reader=reader or FakeReader(), clock=machine.clock)
+    return create_app(settings, machine=machine, reader=reader or machine.store, clock=machine.clock)
 
 
 @contextlib.asynccontextmanager

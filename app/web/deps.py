@@ -15,6 +15,7 @@ from app.tracker.snapshot import SiteSnapshot
 from app.web.assets import Assets
 from app.web.errors import NotAcceptable
 from app.web.hub import Hub
+from app.web.simulations import Simulations
 
 OPERATOR = "operator"
 
@@ -29,6 +30,7 @@ class Panel:
     clock: Clock
     assets: Assets
     hub: Hub
+    simulations: Simulations
 
 
 def panel(connection: HTTPConnection) -> Panel:

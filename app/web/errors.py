@@ -35,6 +35,10 @@ class NotFound(Exception):
     """There is no such thing; the text says what was looked for."""
 
 
+class Busy(Exception):
+    """The panel does as much as it can; the text says when to come back."""
+
+
 @dataclass(frozen=True, slots=True)
 class Problem:
     """What went wrong, for the person who reads it."""
@@ -102,6 +106,7 @@ PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
     StoreFailed: lambda error: Problem(503, str(error), headers=RETRY_LATER),
     InstantRefused: lambda error: Problem(422, str(error)),
     NotAcceptable: lambda error: Problem(422, str(error)),
+    Busy: lambda error: Problem(429, str(error), headers={"Retry-After": "5"}),
     NotFound: lambda error: Problem(404, str(error)),
     RequestValidationError: invalid,
     HTTPException: refused_by_http,

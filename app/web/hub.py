@@ -40,6 +40,7 @@ class Hub:
     def __init__(self, machine: Machine, clock: Clock, *, patience: timedelta = timedelta(seconds=5)) -> None:
         self.patience = patience
         self.dead = Dead()
+        self.closing = asyncio.Event()
         self._machine = machine
         self._clock = clock
         self._run = uuid4().hex[:8]
@@ -78,13 +79,17 @@ class Hub:
         """Forget a viewer."""
         self._viewers.discard(viewer)
 
-    def missed(self, mark: str) -> list[Message] | None:
-        """Return the events since a place in the stream, None where that is not known any more."""
+    def missed(self, mark: str, wanted: Wanted) -> list[Message] | None:
+        """Return the wanted events since a place in the stream, None where that is not known any more."""
         run, _, number = mark.rpartition("-")
         oldest = self._events[0][0] if self._events else self._number + 1
         if run != self._run or not number.isdigit() or not oldest - 1 <= int(number) <= self._number:
             return None
-        return [self._message(place, event) for place, event in self._events if place > int(number)]
+        return [
+            self._message(place, event)
+            for place, event in self._events
+            if place > int(number) and wanted.includes(event.kind, event.tracker_id)
+        ]
 
     async def run(self) -> None:
         """Follow the machine until cancelled; then let what was asked for last be finished."""

@@ -18,6 +18,7 @@ from app.web.assets import Assets
 from app.web.deps import Panel
 from app.web.hub import Hub
 from app.web.security import Guard, SecurityHeaders
+from app.web.simulations import Simulations
 from app.web.ui.pages import include_pages
 
 STATIC = Path(__file__).resolve().parents[2] / "static"
@@ -31,6 +32,8 @@ async def _living(app: FastAPI) -> AsyncIterator[None]:
     try:
         yield
     finally:
+        panel.hub.closing.set()
+        panel.simulations.close()
         following.cancel()
         await asyncio.gather(following, return_exceptions=True)
 
@@ -40,7 +43,7 @@ def create_app(
 ) -> FastAPI:
     """Build the whole panel."""
     clock = clock or SystemClock()
-    panel = Panel(settings, machine, reader, clock, Assets(STATIC), Hub(machine, clock))
+    panel = Panel(settings, machine, reader, clock, Assets(STATIC), Hub(machine, clock), Simulations())
     app = FastAPI(title="Heliopanel", version="1", docs_url=None, redoc_url=None, lifespan=_living)
     app.state.panel = panel
     app.mount("/s", panel.assets, name="static")

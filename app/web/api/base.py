@@ -57,6 +57,7 @@ def _problem(description: str) -> dict[str, Any]:
 
 NOT_FOUND: Responses = {404: _problem("There is no such thing.")}
 REFUSED: Responses = {409: _problem("The state forbids it; `reasons` has every unmet condition.")}
+TOO_MANY: Responses = {429: _problem("Too much of this is under way; try again later.")}
 COMMON: Responses = {
     403: _problem("The request comes from a foreign page or to a foreign host name."),
     422: _problem("Values are missing or wrong."),

@@ -2,10 +2,36 @@
 
 from fastapi import APIRouter
 
-from app.web.api import journal, motion, site, sun, trackers
+from app.web.api import (
+    commissioning,
+    journal,
+    motion,
+    operations,
+    recordings,
+    shows,
+    simulations,
+    site,
+    stream,
+    sun,
+    telemetry,
+    trackers,
+)
 from app.web.api.base import COMMON
 
-ROUTERS = (site.router, sun.router, trackers.router, motion.router, journal.router)
+ROUTERS = (
+    site.router,
+    sun.router,
+    trackers.router,
+    commissioning.router,
+    motion.router,
+    shows.router,
+    recordings.router,
+    simulations.router,
+    journal.router,
+    telemetry.router,
+    stream.router,
+    operations.router,
+)
 
 
 def api_router() -> APIRouter:

@@ -1,0 +1,95 @@
+"""A whole day at the controller's fidelity on a virtual clock; nothing moves."""
+
+from datetime import date, datetime, timedelta
+from typing import Self
+
+from fastapi import APIRouter
+from fastapi.responses import Response
+from pydantic import AwareDatetime, Field, model_validator
+
+from app.link.messages import SaveRecording
+from app.tracker.config import Orientation
+from app.tracker.mode import Mode
+from app.tracker.recording import RecordingInfo
+from app.tracker.snapshot import SiteSnapshot
+from app.web.api.base import NOT_FOUND, REFUSED, TOO_MANY, Azimuth, Elevation, Input
+from app.web.api.orders import SenderDep
+from app.web.api.sun import location_of, midnights
+from app.web.api.trackers import detail_of
+from app.web.deps import MachineDep, PanelDep, SnapshotDep
+from app.web.errors import NotAcceptable
+from app.web.simulations import SimulationRequest
+
+router = APIRouter(tags=["recordings"])
+
+CivilDate = date
+
+
+class NewSimulation(Input):
+    """Which tracker and which span: a civil `date` from midnight to midnight, or `begin_at` and `end_at`."""
+
+    tracker_id: str = Field(min_length=1, max_length=64, examples=["T1"])
+    date: CivilDate | None = Field(None, description="Civil date of the site.", examples=["2026-06-21"])
+    begin_at: AwareDatetime | None = None
+    end_at: AwareDatetime | None = None
+    mode: Mode | None = Field(None, description="Left out: the tracker's selected mode, else dual.")
+    azimuth_deg: Azimuth | None = Field(None, description="For modes that hold the azimuth.")
+    elevation_deg: Elevation | None = Field(None, description="For modes that hold the elevation.")
+    step_s: float = Field(1.0, ge=0.1, le=60, description="Seconds between frames.")
+    title: str = Field("", max_length=120)
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> Self:
+        both = self.begin_at is not None and self.end_at is not None
+        neither = self.begin_at is None and self.end_at is None
+        if not ((both and self.date is None) or (neither and self.date is not None)):
+            raise ValueError("Give date alone, or begin_at and end_at.")
+        return self
+
+    def span(self, site: SiteSnapshot) -> tuple[datetime, datetime]:
+        """Return begin and end."""
+        if self.begin_at is not None and self.end_at is not None:
+            return self.begin_at, self.end_at
+        return midnights(self.date or site.at.date(), site.time_zone)
+
+
+@router.post(
+    "/simulations",
+    status_code=201,
+    summary="Simulate a day",
+    responses=NOT_FOUND | REFUSED | TOO_MANY,
+)
+async def simulate_span(
+    new: NewSimulation,
+    panel: PanelDep,
+    site: SnapshotDep,
+    machine: MachineDep,
+    sender: SenderDep,
+    response: Response,
+) -> RecordingInfo:
+    """Simulate a tracker as it is set now, homed and in place at the beginning, and keep the recording."""
+    state = (await detail_of(machine, new.tracker_id)).state
+    held = state.memory.orientation
+    begin, end = new.span(site)
+    request = SimulationRequest(
+        config=state.config,
+        pointing=state.memory.pointing,
+        location=location_of(site),
+        time_zone=site.time_zone,
+        mode=new.mode or state.memory.mode or Mode.DUAL,
+        held=Orientation(
+            held.azimuth_deg if new.azimuth_deg is None else new.azimuth_deg,
+            held.elevation_deg if new.elevation_deg is None else new.elevation_deg,
+        ),
+        begin=begin,
+        end=end,
+        step=timedelta(seconds=new.step_s),
+        title=new.title,
+    )
+    try:
+        info, chunks = await panel.simulations.run(request)
+    except ValueError as error:
+        raise NotAcceptable(str(error)) from error
+    await sender.send(SaveRecording(info, chunks))
+    response.headers["Location"] = f"/api/v1/recordings/{info.recording_id}"
+    return info

@@ -1,0 +1,92 @@
+"""What the machine and the panel count, as Prometheus reads it."""
+
+from collections.abc import Iterable, Iterator
+from itertools import accumulate
+from typing import Protocol, runtime_checkable
+
+from prometheus_client import CollectorRegistry
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, HistogramMetricFamily, Metric
+from prometheus_client.exposition import generate_latest
+
+from app.link.metrics import LATENESS_BOUNDS_MS, MachineMetrics, TrackerMetrics
+
+GAUGES = {
+    "uptime_s": "Seconds since the machine started.",
+    "link_clients": "Panels that are connected to the machine.",
+    "events_waiting": "Events that wait for a slow reader of the link.",
+    "frames_waiting": "Recorded frames that wait to be stored.",
+    "store_queue": "Writes that wait for the database.",
+    "resident_bytes": "Memory of the machine's process.",
+}
+COUNTERS = {
+    "orders": "Orders that the machine got.",
+    "orders_refused": "Orders that were refused.",
+    "events": "Events that happened.",
+    "store_failures": "Writes that the database refused.",
+}
+TRACKER_COUNTERS = {
+    "ticks": "Control ticks.",
+    "read_failures": "Drive readings that failed.",
+    "write_failures": "Drive commands that failed.",
+}
+
+
+@runtime_checkable
+class Counting(Protocol):
+    """A machine that counts what it does."""
+
+    async def metrics(self) -> MachineMetrics:
+        """Return what was counted."""
+
+
+class _Given:
+    """Metrics that are already there."""
+
+    def __init__(self, metrics: Iterable[Metric]) -> None:
+        self._metrics = tuple(metrics)
+
+    def collect(self) -> Iterator[Metric]:
+        """Yield them."""
+        yield from self._metrics
+
+
+def exposition(machine: MachineMetrics | None, viewers: int) -> bytes:
+    """Return everything in the text format; without a machine, `heliopanel_machine_up` is 0."""
+    registry = CollectorRegistry(auto_describe=False)
+    registry.register(_Given([*_panel(machine, viewers), *(_machine(machine) if machine else ())]))
+    return generate_latest(registry)
+
+
+def _panel(machine: MachineMetrics | None, viewers: int) -> Iterator[Metric]:
+    yield _gauge("machine_up", "Whether the machine answers the panel.", 0.0 if machine is None else 1.0)
+    yield _gauge("viewers", "Readers of the live stream.", float(viewers))
+
+
+def _machine(machine: MachineMetrics) -> Iterator[Metric]:
+    for name, text in GAUGES.items():
+        yield _gauge(name, text, float(getattr(machine, name)))
+    for name, text in COUNTERS.items():
+        yield CounterMetricFamily(f"heliopanel_{name}", text, value=float(getattr(machine, name)))
+    for name, text in TRACKER_COUNTERS.items():
+        family = CounterMetricFamily(f"heliopanel_tracker_{name}", text, labels=["tracker"])
+        for tracker_id, tracker in machine.trackers.items():
+            family.add_metric([tracker_id], float(getattr(tracker, name)))
+        yield family
+    yield _lateness(machine.trackers)
+
+
+def _lateness(trackers: dict[str, TrackerMetrics]) -> Metric:
+    family = HistogramMetricFamily(
+        "heliopanel_tick_lateness_seconds", "How late control ticks were.", labels=["tracker"]
+    )
+    bounds = [*(f"{bound / 1000:g}" for bound in LATENESS_BOUNDS_MS), "+Inf"]
+    for tracker_id, tracker in trackers.items():
+        counts = (float(count) for count in accumulate(tracker.lateness_counts))
+        family.add_metric(
+            [tracker_id], list(zip(bounds, counts, strict=False)), sum_value=tracker.lateness_sum_ms / 1000
+        )
+    return family
+
+
+def _gauge(name: str, text: str, value: float) -> Metric:
+    return GaugeMetricFamily(f"heliopanel_{name}", text, value=value)

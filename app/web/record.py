@@ -1,0 +1,98 @@
+"""The commissioning record: who, when, as-left settings, and what was verified."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from importlib.metadata import version
+
+from starlette.concurrency import run_in_threadpool
+
+from app.link.messages import Machine, MachineUnreachable, SiteDetail, TrackerDetail, UnknownTracker
+from app.store.store import JournalEntry, JournalFilter, Reader
+from app.sun.position import Location
+from app.tracker.commissioning import Step
+from app.tracker.config import TrackerConfig
+from app.tracker.memory import HomeTrust, Pointing, Sighting, SiteState
+from app.tracker.mode import Mode
+from app.tracker.motion import DriveCapabilities
+from app.tracker.snapshot import ClockState, EventKind, SiteSnapshot, Snapshot
+
+VERIFYING = (
+    EventKind.LOCATION_SET,
+    EventKind.CLOCK_SET,
+    EventKind.ZERO_SET,
+    EventKind.ZERO_FAILED,
+    EventKind.HOMING_ENDED,
+    EventKind.HOME_LOST,
+    EventKind.MODE_SELECTED,
+    EventKind.MOVE_ENDED,
+    EventKind.SIGHTING_TAKEN,
+    EventKind.STEP_CONFIRMED,
+    EventKind.SHOW_ENDED,
+    EventKind.TRACKING_STARTED,
+    EventKind.FAULT_RAISED,
+)
+MOST_EVENTS = 200
+
+
+@dataclass(frozen=True, slots=True)
+class CommissioningRecord:
+    """Everything that proves how a tracker was left, as of `written_at` (site time)."""
+
+    written_at: datetime
+    software: str
+    site_name: str
+    location: Location | None
+    time_zone: str
+    clock: ClockState
+    tracker: TrackerConfig
+    drive: DriveCapabilities | None
+    steps: tuple[Step, ...]
+    home: HomeTrust | None
+    mode: Mode | None
+    pointing: Pointing
+    sightings: tuple[Sighting, ...]
+    off_sun_deg: float | None
+    following_error_deg: float | None
+    events: tuple[JournalEntry, ...]
+
+
+async def read_record(machine: Machine, reader: Reader, tracker_id: str) -> CommissioningRecord:
+    """Return the record of a tracker, or raise `UnknownTracker` or `MachineUnreachable`."""
+    detail, snapshot = await machine.detail(), machine.latest()
+    if tracker_id not in detail.trackers:
+        raise UnknownTracker(tracker_id)
+    if snapshot is None:
+        raise MachineUnreachable
+    wanted = JournalFilter(limit=MOST_EVENTS, tracker_id=tracker_id, kinds=VERIFYING)
+    entries = await run_in_threadpool(reader.journal, wanted)
+    return _record(detail, snapshot, detail.trackers[tracker_id], tuple(reversed(entries)))
+
+
+def _record(
+    detail: SiteDetail, site: SiteSnapshot, tracker: TrackerDetail, events: tuple[JournalEntry, ...]
+) -> CommissioningRecord:
+    state: SiteState = detail.site
+    memory = tracker.state.memory
+    now = _now(site, tracker.state.config.tracker_id)
+    return CommissioningRecord(
+        written_at=site.at,
+        software=f"Heliopanel {version('heliopanel')}",
+        site_name=state.name,
+        location=state.location,
+        time_zone=state.time_zone,
+        clock=site.clock,
+        tracker=tracker.state.config,
+        drive=tracker.capabilities,
+        steps=tracker.steps,
+        home=memory.home,
+        mode=memory.mode,
+        pointing=memory.pointing,
+        sightings=memory.sightings,
+        off_sun_deg=now.off_sun_deg if now else None,
+        following_error_deg=now.following_error_deg if now else None,
+        events=events,
+    )
+
+
+def _now(site: SiteSnapshot, tracker_id: str) -> Snapshot | None:
+    return next((one for one in site.trackers if one.tracker_id == tracker_id), None)

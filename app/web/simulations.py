@@ -1,0 +1,94 @@
+"""Simulations run in a process of their own, so that they delay neither pages nor the machine."""
+
+import asyncio
+import multiprocessing
+import os
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+
+from app.show.simulate import encoded, simulate
+from app.sun.position import Location
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.memory import Pointing
+from app.tracker.mode import Mode
+from app.tracker.recording import RecordingInfo
+from app.web.errors import Busy
+
+MOST_AT_ONCE = 4
+LONGEST = timedelta(seconds=120)
+KINDLY = 10
+BUSY = "Other simulations are under way; try again when one of them has ended."
+TOO_LONG = "The simulation took too long and was given up; take a shorter span or a longer step."
+Simulated = tuple[RecordingInfo, tuple[str, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationRequest:
+    """What to simulate."""
+
+    config: TrackerConfig
+    pointing: Pointing
+    location: Location
+    time_zone: str
+    mode: Mode
+    held: Orientation
+    begin: datetime
+    end: datetime
+    step: timedelta
+    title: str
+
+
+class Simulations:
+    """One worker process, started when it is first needed, and a short queue before it."""
+
+    def __init__(self) -> None:
+        self._pool: ProcessPoolExecutor | None = None
+        self._waiting = 0
+
+    async def run(self, request: SimulationRequest) -> Simulated:
+        """Return the recording and its encoded frames; raise `Busy`, or `ValueError` for what cannot be."""
+        if self._waiting >= MOST_AT_ONCE:
+            raise Busy(BUSY)
+        self._waiting += 1
+        try:
+            async with asyncio.timeout(LONGEST.total_seconds()):
+                return await self._work(request)
+        except (TimeoutError, BrokenProcessPool) as error:
+            self.close()
+            raise Busy(TOO_LONG) from error
+        finally:
+            self._waiting -= 1
+
+    async def _work(self, request: SimulationRequest) -> Simulated:
+        if self._pool is None:
+            context = multiprocessing.get_context("spawn")
+            self._pool = ProcessPoolExecutor(1, mp_context=context, initializer=os.nice, initargs=(KINDLY,))
+        return await asyncio.get_running_loop().run_in_executor(self._pool, simulated, request)
+
+    def close(self) -> None:
+        """Give up what is under way and end the worker."""
+        if self._pool is None:
+            return
+        self._pool.shutdown(wait=False, cancel_futures=True)
+        for child in multiprocessing.active_children():
+            child.terminate()
+        self._pool = None
+
+
+def simulated(request: SimulationRequest) -> Simulated:
+    """Return the simulation of a span of time, in the worker."""
+    info, frames = simulate(
+        request.config,
+        request.pointing,
+        request.location,
+        request.time_zone,
+        request.mode,
+        request.held,
+        request.begin,
+        request.end,
+        step=request.step,
+        title=request.title,
+    )
+    return info, encoded(frames)
