@@ -73,6 +73,7 @@ UNREACHABLE = (10, 11)
 class ModbusLink:
     """One device on Modbus TCP. Replies are checked byte by byte, writes are never sent twice.
 
+    Transaction numbers go on across connections, so that a gateway's late reply never fits a new request.
     `ticket` changes with every new connection and every stop: a write that was issued under an older one
     is not sent, so that nothing moves before the state has been read again.
     """
@@ -88,6 +89,7 @@ class ModbusLink:
         self._wake = asyncio.Event()
         self._owner: asyncio.Task[None] | None = None
         self._number = 0
+        self._transaction = 0
         self._delay = FIRST_DELAY
         self._next_attempt_at: datetime | None = None
         self._closed = False
@@ -259,6 +261,7 @@ class ModbusLink:
             self._next_attempt_at = now + self._delay
             self._delay = min(LONGEST_DELAY, self._delay * 2)
             raise DriveSilent(self._no_connection())
+        client.ctx.next_tid = self._transaction
         self._next_attempt_at, self._delay = None, FIRST_DELAY
         self.ticket += 1
         return client
@@ -300,6 +303,7 @@ class ModbusLink:
         client, self._client = self._client, None
         if client is not None:
             self.ticket += 1
+            self._transaction = client.ctx.next_tid
             client.close()
 
 
