@@ -19,7 +19,7 @@ from app.store.connections import (
     writing_engine,
 )
 from app.store.documents import SITE
-from app.store.migrations import upgrade
+from app.store.migrations import make_folder, upgrade
 from app.store.store import StoreFailed
 
 ROWS_AT_ONCE = 200
@@ -43,8 +43,8 @@ def backup(url: str, target: Path) -> BackupInfo:
     if target.exists():
         raise StoreFailed(f"{target} exists already. Give the backup another name, or remove that file.")
     unfinished = target.with_name(f"{target.name}.unfinished")
+    make_folder(target.parent)
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
         unfinished.unlink(missing_ok=True)
         _copy_to_file(url, unfinished)
         found = inspect_backup(unfinished)

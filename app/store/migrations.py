@@ -30,7 +30,7 @@ def upgrade(url: str) -> str | None:
     """
     path = sqlite_path(url)
     if path is not None:
-        _make_folder(path)
+        make_folder(path.parent)
         check_file(url)
     engine = writing_engine(url)
     try:
@@ -76,6 +76,16 @@ def copy_sqlite(source: Path, target: Path) -> None:
     unfinished.replace(target)
 
 
+def make_folder(folder: Path) -> None:
+    """Make a folder if there is none, or raise `StoreFailed`."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StoreFailed(
+            f"The folder {folder} cannot be made ({error.strerror}). Choose another one."
+        ) from error
+
+
 def _migrate(engine: Engine) -> None:
     with transaction(engine) as connection:
         run_migrations(connection)
@@ -88,15 +98,6 @@ def _refuse_newer(found: str | None) -> None:
             f"The database was written by a newer version of Heliopanel (revision {found}; this one knows "
             f"up to {REVISION}). Install that version, or restore a backup that this version wrote."
         )
-
-
-def _make_folder(path: Path) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise StoreFailed(
-            f"The folder {path.parent} cannot be made ({error.strerror}). Choose another one."
-        ) from error
 
 
 def _config(connection: Connection) -> Config:

@@ -11,12 +11,13 @@ from sqlalchemy import Connection, text
 
 from app.store.backup import BackupInfo, backup, copy_database, inspect_backup, make_portable, put_in_place
 from app.store.connections import reading_engine, revision_of, sqlite_path, transaction, writing_engine
-from app.store.migrations import copy_sqlite, drop_tables, run_migrations, upgrade
+from app.store.migrations import copy_sqlite, drop_tables, make_folder, run_migrations, upgrade
 from app.store.store import StoreFailed
 
 LOCK_NAME = "machine.lock"
 PENDING_NAME = "restore.pending"
 REFUSED_NAME = "restore.refused"
+KEPT_NAME = "heliopanel.db"
 NUMBERED = ("trackers", "events", "shows")
 
 
@@ -46,6 +47,11 @@ def request_restore(source: Path, url: str, data_dir: Path) -> Restored | Restor
     staged = _stage(source, data_dir / f"{PENDING_NAME}.unfinished")
     put_in_place(staged, pending)
     return RestorePending(found, pending)
+
+
+def restore_is_pending(data_dir: Path) -> bool:
+    """Return whether a backup was handed over: a running machine should stop motion and start again."""
+    return (data_dir / PENDING_NAME).exists()
 
 
 def apply_pending_restore(data_dir: Path, url: str) -> Restored | None:
@@ -84,10 +90,14 @@ def restore(source: Path, url: str) -> Restored:
 
 def _stage(source: Path, staged: Path) -> Path:
     """Return a copy of a backup with today's tables."""
-    staged.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(staged.parent)
     copy_sqlite(source, staged)
-    upgrade(f"sqlite:///{staged}")
-    make_portable(staged)
+    try:
+        upgrade(f"sqlite:///{staged}")
+        make_portable(staged)
+    except StoreFailed:
+        staged.unlink()
+        raise
     return staged
 
 
@@ -136,7 +146,7 @@ def _keep_rows(url: str, source: Path) -> Path | None:
                 return None
     finally:
         engine.dispose()
-    return backup(url, _free_name(source)).path
+    return backup(url, _free_name(source.with_name(KEPT_NAME))).path
 
 
 def _continue_numbers(connection: Connection) -> None:
@@ -161,7 +171,7 @@ def _free_name(path: Path) -> Path:
 @contextmanager
 def _machine_kept_out(data_dir: Path) -> Iterator[bool]:
     """Hold the machine's lock if nobody does, so that no machine starts now; yield whether it is held."""
-    data_dir.mkdir(parents=True, exist_ok=True)
+    make_folder(data_dir)
     with (data_dir / LOCK_NAME).open("a") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
