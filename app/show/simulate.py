@@ -3,6 +3,7 @@
 from base64 import b64encode
 from dataclasses import replace
 from datetime import UTC, date, datetime, time, timedelta
+from math import ceil
 from uuid import uuid4
 from zoneinfo import ZoneInfo
 
@@ -47,9 +48,7 @@ def simulate(
     rehearsal.ask(SelectMode(mode, orientation))
     rehearsal.ask(Move(orientation) if mode is Mode.FIXED else Track())
     rehearsal.prepare_until(_settled, "it was in place")
-    count = int((end - begin) / step) + 1
-    elapsed_s = np.asarray(np.arange(count) * step.total_seconds(), dtype=np.float64)
-    rows = _run(rehearsal, begin, step, elapsed_s)
+    elapsed_s, rows = _run(rehearsal, begin, end, step)
     info = _info(config, location, time_zone, mode, orientation, begin, end)
     frames = _frames(rows, elapsed_s)
     return _finished(info, title or _day_title(config, time_zone, begin), frames), frames
@@ -118,19 +117,24 @@ def _ready_for_show(seen: Snapshot) -> bool:
 
 
 def _run(
-    rehearsal: Rehearsal, begin: datetime, step: timedelta, elapsed_s: NDArray[np.float64]
-) -> list[tuple[float, ...]]:
-    """Tick through the span and return a row for each tick."""
+    rehearsal: Rehearsal, begin: datetime, end: datetime, step: timedelta
+) -> tuple[NDArray[np.float64], list[tuple[float, ...]]]:
+    """Tick through the span, at least once a second, and return when and what the frames are."""
+    ticks_a_frame = ceil(step / SECOND)
+    tick_step = step / ticks_a_frame
+    count = int((end - begin) / step) * ticks_a_frame + 1
+    elapsed_s = np.asarray(np.arange(count) * tick_step.total_seconds(), dtype=np.float64)
     path = sun_path(rehearsal.config.algorithm, rehearsal.location, begin.timestamp() + elapsed_s)
     columns = (path.azimuth_deg, path.elevation_deg, path.apparent_elevation_deg)
     tick, frame, advance = rehearsal.tick, rehearsal.controller.frame, rehearsal.clock.advance
     rows = []
-    for sun in zip(*(column.tolist() for column in columns), strict=True):
-        advance(step)
+    for number, sun in enumerate(zip(*(column.tolist() for column in columns), strict=True)):
+        advance(tick_step)
         tick(SunPosition(*sun))
-        rows.append(frame())
-        rehearsal.site_time += step
-    return rows
+        if number % ticks_a_frame == 0:
+            rows.append(frame())
+        rehearsal.site_time += tick_step
+    return elapsed_s[::ticks_a_frame], rows
 
 
 def _run_show(rehearsal: Rehearsal, plan: ShowPlan, step: timedelta) -> list[tuple[float, ...]]:
