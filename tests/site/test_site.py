@@ -1,0 +1,433 @@
+"""What belongs to the whole site: orders, trackers, faults that stay where they arise, the clock."""
+
+import asyncio
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from app.clock import VirtualClock
+from app.drives.drive import Drive, DriveSilent
+from app.link.messages import (
+    AddTracker,
+    ApplySightings,
+    ConfigureTracker,
+    ConfirmStep,
+    DeleteRecording,
+    Order,
+    RemoveTracker,
+    RenameSite,
+    SetClock,
+    SetLocation,
+    StopAll,
+    TakeSighting,
+    UnknownTracker,
+)
+from app.site.sky import Sky
+from app.site.timekeeping import Timekeeper
+from app.sun.position import Algorithm, Location
+from app.tracker.axes import Axis, JogSpeed
+from app.tracker.commands import CommandRejected, Jog, Move, ResetFault, SelectMode, Stop, Track
+from app.tracker.commissioning import StepStatus
+from app.tracker.config import DriveConfig, DriveKind, Orientation, TrackerConfig
+from app.tracker.memory import ClockSetting, StepName, TrackerMemory, TrackerState
+from app.tracker.mode import Mode
+from app.tracker.motion import DriveCapabilities, DriveCommand, Feedback
+from app.tracker.snapshot import ActivityName, EventKind
+from tests.site.plant import FIRST, SAMSUN, SUMMER_NOON, Plant, make_plant
+
+SECOND = TrackerState(TrackerConfig("T2", "Tracker 2"), TrackerMemory())
+
+
+@dataclass
+class WrappedDrive:
+    """A drive that can be made to hang, to fail or to answer nonsense."""
+
+    inner: Drive
+    hangs: bool = False
+    nonsense: bool = False
+    refuses: bool = False
+    stops: int = 0
+
+    @property
+    def capabilities(self) -> DriveCapabilities:
+        return self.inner.capabilities
+
+    async def read(self) -> Feedback:
+        if self.hangs:
+            await asyncio.Event().wait()
+        if self.nonsense:
+            raise RuntimeError("a programming error")
+        return await self.inner.read()
+
+    async def write(self, command: DriveCommand) -> None:
+        if self.refuses:
+            raise DriveSilent("The drive did not take the command.")
+        await self.inner.write(command)
+
+    async def stop(self) -> None:
+        self.stops += 1
+        await self.inner.stop()
+
+    async def set_clock(self, at: datetime) -> None:
+        await self.inner.set_clock(at)
+
+    async def close(self) -> None:
+        await self.inner.close()
+
+
+async def running(plant: Plant) -> Plant:
+    await plant.start()
+    return plant
+
+
+def wrapped(plant: Plant, tracker_id: str) -> WrappedDrive:
+    drive = plant.drives[tracker_id]
+    assert isinstance(drive, WrappedDrive)
+    return drive
+
+
+async def test_a_repeated_order_is_carried_out_once_and_answers_as_the_first(plant: Plant) -> None:
+    first = await plant.ask(RenameSite("Samsun"), key="k1")
+    again = await plant.ask(RenameSite("Samsun"), key="k1")
+
+    assert again == first
+    assert len(plant.happened(EventKind.TRACKER_CHANGED)) == 1
+
+
+async def test_a_repeated_order_that_was_refused_is_refused_again(plant: Plant) -> None:
+    for _ in range(2):
+        with pytest.raises(CommandRejected):
+            await plant.ask(Track(), key="k2")
+    assert (await plant.site.metrics()).orders_refused == 2
+
+
+async def test_a_key_belongs_to_one_order(plant: Plant) -> None:
+    await plant.ask(RenameSite("Samsun"), key="k3")
+
+    with pytest.raises(ValueError, match="another command"):
+        await plant.ask(RenameSite("Bafra"), key="k3")
+
+
+async def test_an_order_that_is_too_old_is_refused_but_not_stop(plant: Plant) -> None:
+    old = plant.clock.now() - timedelta(seconds=3)
+
+    with pytest.raises(CommandRejected) as refused:
+        await plant.ask(Jog("p", Axis.AZIMUTH, 1), issued_at=old)
+    await plant.ask(Stop(), issued_at=old)
+
+    assert refused.value.reasons[0].code == "too_old"
+    assert plant.happened(EventKind.STOPPED)
+
+
+async def test_an_unknown_tracker_is_unknown(plant: Plant) -> None:
+    with pytest.raises(UnknownTracker, match="T9"):
+        await plant.ask(Track(), "T9")
+
+
+async def test_trackers_come_and_go(plant: Plant) -> None:
+    added = await plant.ask(AddTracker(TrackerConfig("T2", " Second ")))
+    with pytest.raises(CommandRejected, match="already a tracker T2"):
+        await plant.ask(AddTracker(TrackerConfig("T2", "Again")))
+    await plant.forward(seconds=1)
+    assert plant.tracker("T2").tick >= 9
+
+    left = await plant.ask(RemoveTracker("T2"))
+
+    assert [tracker.name for tracker in added.trackers] == ["Tracker 1", "Second"]
+    assert [tracker.tracker_id for tracker in left.trackers] == ["T1"]
+
+
+@pytest.mark.parametrize(
+    ("config", "message"),
+    [
+        (TrackerConfig("1 T", "x"), "id is a letter"),
+        (TrackerConfig("T2", "  "), "A name has"),
+        (TrackerConfig("T2", "x", deadband_deg=0.0), "deadband"),
+        (TrackerConfig("T2", "x", in_position_deg=0.6), "must not exceed the deadband"),
+        (TrackerConfig("T2", "x", following_error_deg=float("nan")), "following error"),
+        (TrackerConfig("T2", "x", park=Orientation(0.0, 120.0)), "park position's elevation"),
+        (TrackerConfig("T2", "x", drive=DriveConfig(DriveKind.MODBUS_TCP, port=0)), "port"),
+        (TrackerConfig("T2", "x", drive=DriveConfig(DriveKind.MODBUS_TCP, host=" ")), "host"),
+    ],
+)
+async def test_an_implausible_tracker_is_refused(plant: Plant, config: TrackerConfig, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        await plant.ask(AddTracker(config))
+
+
+async def test_two_trackers_cannot_share_one_drive() -> None:
+    drive = DriveConfig(DriveKind.MODBUS_TCP, port=5999)
+    taken = TrackerState(TrackerConfig("T2", "Second", drive=drive), TrackerMemory())
+    plant = await running(make_plant(trackers=(FIRST, taken)))
+
+    with pytest.raises(CommandRejected, match="T2 already uses the drive"):
+        await plant.ask(AddTracker(TrackerConfig("T3", "Third", drive=drive)))
+
+    await plant.close()
+
+
+async def test_a_moving_tracker_is_neither_changed_nor_removed(plant: Plant) -> None:
+    await plant.ask(Jog("p", Axis.AZIMUTH, 1, JogSpeed.FAST))
+    await plant.forward(seconds=0.1)
+
+    for command in (RemoveTracker("T1"), ConfigureTracker(TrackerConfig("T1", "Other"))):
+        with pytest.raises(CommandRejected, match="not at rest"):
+            await plant.ask(command)
+
+
+async def test_a_new_name_keeps_the_zero_and_another_drive_loses_it(plant: Plant) -> None:
+    await plant.commission()
+    config = plant.site.model.tracker("T1").config
+
+    await plant.ask(ConfigureTracker(replace(config, name="North", deadband_deg=0.4)))
+    assert plant.tracker().home_trusted
+
+    other = DriveConfig(DriveKind.SIMULATED, profile="another")
+    await plant.ask(ConfigureTracker(replace(config, drive=other)))
+    await plant.forward(seconds=1)
+
+    assert not plant.tracker().home_trusted
+    assert "another drive" in plant.site.model.tracker("T1").memory.home_lost
+
+
+async def test_a_fault_in_one_tracker_s_tick_stops_that_one_and_the_other_goes_on() -> None:
+    plant = await running(make_plant(trackers=(FIRST, SECOND), wrap=WrappedDrive))
+    await plant.ask(Jog("p", Axis.AZIMUTH, 1, JogSpeed.FAST))
+    await plant.forward(seconds=0.1)
+    wrapped(plant, "T1").nonsense = True
+    await plant.forward(seconds=1)
+
+    broken, other = plant.tracker("T1"), plant.tracker("T2")
+    assert broken.activity is ActivityName.FAULTED
+    assert broken.fault is not None
+    assert "RuntimeError" in broken.fault.message
+    assert wrapped(plant, "T1").stops > 5
+    assert other.activity is ActivityName.HOLDING
+    assert other.tick >= 10
+    assert len(plant.happened(EventKind.FAULT_RAISED)) == 1
+    with pytest.raises(CommandRejected):
+        await plant.ask(Jog("q", Axis.AZIMUTH, 1))
+
+    wrapped(plant, "T1").nonsense = False
+    await plant.ask(ResetFault())
+    await plant.forward(seconds=1)
+
+    assert plant.tracker("T1").activity is ActivityName.HOLDING
+    await plant.close()
+
+
+async def test_a_drive_that_hangs_holds_up_nobody_else() -> None:
+    plant = await running(make_plant(trackers=(FIRST, SECOND), wrap=WrappedDrive))
+    await plant.forward(seconds=0.2)
+    wrapped(plant, "T1").hangs = True
+    before = plant.tracker("T2").tick
+    await plant.forward(seconds=2)
+
+    assert plant.tracker("T2").tick >= before + 19
+    await plant.close()
+
+
+async def test_a_command_that_is_not_taken_counts_as_no_contact() -> None:
+    plant = await running(make_plant(wrap=WrappedDrive))
+    await plant.forward(seconds=0.2)
+    wrapped(plant, "T1").refuses = True
+    await plant.forward(seconds=2)
+
+    assert plant.happened(EventKind.DRIVE_LOST)
+    assert any("did not take" in notice.message for notice in plant.tracker().notices)
+    assert (await plant.site.metrics()).trackers["T1"].write_failures > 0
+    await plant.close()
+
+
+async def test_stop_all_stops_every_tracker() -> None:
+    plant = await running(make_plant(trackers=(FIRST, SECOND), wrap=WrappedDrive))
+    for tracker_id in ("T1", "T2"):
+        await plant.ask(Jog(f"p{tracker_id}", Axis.ELEVATION, 1, JogSpeed.FAST), tracker_id)
+    await plant.forward(seconds=0.1)
+
+    await plant.ask(StopAll())
+    await plant.forward(seconds=1)
+
+    assert [wrapped(plant, name).stops for name in ("T1", "T2")] == [1, 1]
+    assert all(plant.tracker(name).activity is ActivityName.HOLDING for name in ("T1", "T2"))
+    await plant.close()
+
+
+async def test_a_new_location_makes_later_steps_to_be_confirmed(plant: Plant) -> None:
+    await plant.commission()
+    await plant.ask(SetLocation(Location(40.0, 30.0), "Europe/Istanbul"))
+    found = {step.name: step.status for step in (await plant.site.detail()).trackers["T1"].steps}
+    assert found[StepName.LOCATION] is StepStatus.DONE
+    assert found[StepName.HOMING] is StepStatus.TO_BE_CONFIRMED
+
+    await plant.ask(ConfirmStep("T1", StepName.CLOCK))
+    await plant.ask(ConfirmStep("T1", StepName.HOMING))
+
+    again = {step.name: step.status for step in (await plant.site.detail()).trackers["T1"].steps}
+    assert again[StepName.CLOCK] is StepStatus.DONE
+    assert again[StepName.HOMING] is StepStatus.DONE
+
+
+async def test_saving_the_same_place_again_changes_no_revision(plant: Plant) -> None:
+    await plant.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
+    revision = plant.site.model.state.location_revision
+    await plant.ask(SetLocation(SAMSUN, "UTC"))
+
+    assert plant.site.model.state.location_revision == revision == 1
+    assert plant.site.model.state.time_zone == "UTC"
+
+
+async def test_what_was_never_done_cannot_be_confirmed(plant: Plant) -> None:
+    for step in StepName:
+        with pytest.raises(CommandRejected, match="not done yet"):
+            await plant.ask(ConfirmStep("T1", step))
+
+
+@pytest.mark.parametrize("zone", ["Mars/Olympus", "", "../../etc/passwd"])
+async def test_a_time_zone_must_exist(plant: Plant, zone: str) -> None:
+    with pytest.raises(ValueError, match="no time zone"):
+        await plant.ask(SetLocation(SAMSUN, zone))
+
+
+async def test_a_clock_set_by_hand_shows_that_time_and_goes_on(plant: Plant) -> None:
+    wanted = plant.clock.now() + timedelta(days=40)
+    await plant.ask(SetClock("manual", wanted))
+    await plant.forward(seconds=10)
+
+    seen = await plant.ask(RenameSite("Later"))
+
+    assert seen.at == wanted + timedelta(seconds=10)
+    assert seen.clock.trusted
+    assert seen.clock.offset_s == pytest.approx(40 * 86400)
+
+
+async def test_a_date_before_the_software_was_made_is_refused(plant: Plant) -> None:
+    with pytest.raises(ValueError, match="this software was made"):
+        await plant.ask(SetClock("manual", datetime(2020, 1, 1, tzinfo=UTC)))
+
+
+async def test_a_jump_of_the_system_clock_pauses_trust_for_a_minute() -> None:
+    drift = [timedelta(0)]
+    clock = VirtualClock(SUMMER_NOON)
+    keeper = Timekeeper(clock, ClockSetting("system"), drift=lambda: drift[0])
+    assert keeper.state().trusted
+
+    drift[0] = timedelta(hours=1)
+    jump = keeper.watch()
+    assert jump is not None
+    assert jump.by == timedelta(hours=1)
+    assert not keeper.state().trusted
+    assert keeper.now() == SUMMER_NOON + timedelta(hours=1)
+    clock.advance(timedelta(seconds=61))
+    assert keeper.watch() is None
+
+    assert keeper.state().trusted
+
+
+async def test_a_clock_set_by_hand_does_not_follow_a_jump_of_the_system() -> None:
+    drift = [timedelta(0)]
+    clock = VirtualClock(SUMMER_NOON)
+    keeper = Timekeeper(clock, ClockSetting("manual", 60.0), drift=lambda: drift[0])
+    drift[0] = timedelta(hours=-2)
+
+    assert keeper.watch() is not None
+    assert keeper.now() == SUMMER_NOON + timedelta(seconds=60)
+    assert keeper.setting.offset_s == 60.0 + 7200.0
+
+
+async def test_a_clock_that_shows_less_than_the_journal_is_not_trusted() -> None:
+    clock = VirtualClock(SUMMER_NOON)
+    keeper = Timekeeper(clock, ClockSetting("system"), not_before=SUMMER_NOON + timedelta(days=1))
+    assert [reason.code for reason in keeper.reasons()] == ["clock_implausible"]
+
+    keeper.adopt(keeper.choose("system", None, "anna"))
+
+    assert keeper.reasons() == ()
+
+
+async def test_the_site_tells_of_a_clock_jump() -> None:
+    plant = make_plant()
+    drift = [timedelta(0)]
+    plant.site.model.timekeeper = Timekeeper(plant.clock, ClockSetting("system"), drift=lambda: drift[0])
+    await plant.start()
+    drift[0] = timedelta(seconds=-3600)
+    await plant.forward(seconds=1)
+
+    assert plant.happened(EventKind.CLOCK_JUMPED)[0].data == {"seconds": -3600.0}
+    await plant.close()
+
+
+async def test_three_sightings_correct_the_pointing(plant: Plant) -> None:
+    await plant.commission()
+    await plant.ask(SelectMode(Mode.DUAL))
+    for _ in range(3):
+        seen = await plant.ask(RenameSite("At noon"))
+        assert seen.sun is not None
+        sun = Orientation(seen.sun.azimuth_deg + 1.0, seen.sun.apparent_elevation_deg - 0.5)
+        await plant.ask(Move(sun))
+        await plant.until(lambda shown: shown.in_position and shown.activity is ActivityName.HOLDING)
+        await plant.ask(TakeSighting("T1"))
+        plant.clock.advance(timedelta(hours=2, minutes=20))
+        await plant.forward(seconds=1)
+    taken = plant.site.model.tracker("T1").memory.sightings
+    assert len(taken) == 3
+
+    await plant.ask(ApplySightings("T1", taken))
+    pointing = plant.site.model.tracker("T1").memory.pointing
+    assert pointing.azimuth_offset_deg == pytest.approx(1.0, abs=0.3)
+    assert pointing.residual_deg is not None
+
+    await plant.ask(ApplySightings("T1", ()))
+    assert plant.site.model.tracker("T1").memory.pointing.azimuth_offset_deg == 0.0
+
+
+async def test_a_sighting_needs_sun_and_zero(plant: Plant) -> None:
+    with pytest.raises(CommandRejected) as refused:
+        await plant.ask(TakeSighting("T1"))
+
+    assert {reason.code for reason in refused.value.reasons} >= {"sun_down", "not_homed", "clock_unset"}
+
+
+async def test_without_a_store_there_are_no_recordings(plant: Plant) -> None:
+    with pytest.raises(CommandRejected, match="without a store"):
+        await plant.ask(DeleteRecording("r1"))
+
+
+async def test_snapshots_come_fast_while_something_moves_and_slowly_at_rest(plant: Plant) -> None:
+    async def told(seconds: float) -> int:
+        before = plant.site.latest()
+        await plant.forward(seconds=seconds)
+        after = plant.site.latest()
+        assert before is not None
+        assert after is not None
+        return after.sequence - before.sequence
+
+    assert 8 <= await told(5) <= 12
+    await plant.commission()
+    await plant.ask(SelectMode(Mode.DUAL))
+    await plant.ask(Track())
+    await plant.forward(seconds=0.2)
+    assert 27 <= await told(3) <= 32
+
+
+async def test_the_next_dawn_is_worked_out_once_and_again_after_it() -> None:
+    sky = Sky()
+    evening = datetime(2026, 6, 21, 20, tzinfo=UTC)
+    first = sky.dawn(SAMSUN, Algorithm.PSA, evening)
+
+    assert first is not None
+    assert first.azimuth_deg == pytest.approx(57.2, abs=1.0)
+    assert sky.dawn(SAMSUN, Algorithm.PSA, evening + timedelta(hours=1)) is first
+    assert sky.dawn(SAMSUN, Algorithm.PSA, evening + timedelta(hours=12)) is not first
+    assert sky.dawn(None, Algorithm.PSA, evening) is None
+    assert sky.sun(SAMSUN, Algorithm.PSA, datetime(1800, 1, 1, tzinfo=UTC)) is None
+
+
+async def test_orders_at_the_same_time_do_not_mix(plant: Plant) -> None:
+    orders = [Order(SetLocation(Location(40.0 + n, 30.0), "UTC"), "anna") for n in range(5)]
+    asking = [asyncio.create_task(plant.site.execute(order)) for order in orders]
+    await plant.forward(seconds=0.2)
+    await asyncio.gather(*asking)
+
+    assert plant.site.model.state.location_revision == 5
