@@ -1,0 +1,183 @@
+"""What only the simulated drive has: its memory, its mechanics, and a life without waiting."""
+
+from dataclasses import replace
+from datetime import timedelta
+from pathlib import Path
+
+import pytest
+
+from app.clock import VirtualClock
+from app.drives.faults import Fault, FaultKind
+from app.drives.simulated import SimulatedDrive
+from app.drives.simulated_axis import Mechanics
+from app.tracker.axes import Axis, AxisConfig
+from app.tracker.motion import DriveCommand, DriveRequest, Feedback, Position, RequestKind, Velocity
+from tests.drives.rigs import CONFIG, START, Rig
+
+MOVE = DriveCommand(Position(120.0, 6.0), Position(50.0, 4.0))
+
+
+def drive_at(clock: VirtualClock, memory: Path | None) -> SimulatedDrive:
+    return SimulatedDrive(CONFIG, clock, memory=memory, watchdog=None)
+
+
+async def homed(clock: VirtualClock, memory: Path) -> SimulatedDrive:
+    drive = drive_at(clock, memory)
+    await Rig(drive, drive, clock).until_rest(DriveCommand(request=DriveRequest(1, RequestKind.HOME)))
+    return drive
+
+
+async def test_no_call_ever_suspends() -> None:
+    drive = drive_at(VirtualClock(START), None)
+    for call in (drive.read(), drive.write(MOVE), drive.stop(), drive.set_clock(START), drive.close()):
+        with pytest.raises(StopIteration):
+            call.send(None)
+
+
+async def test_a_drive_that_stood_still_knows_its_zero_after_a_restart(tmp_path: Path) -> None:
+    clock, memory = VirtualClock(START), tmp_path / "drives" / "T1.json"
+    drive = await homed(clock, memory)
+    await Rig(drive, drive, clock).until_rest(MOVE)
+    clock.advance(timedelta(seconds=2))
+    left = await drive.read()
+    found = await drive_at(clock, memory).read()
+    assert found.boot_count == left.boot_count == 1
+    assert found.azimuth == left.azimuth
+    assert found.elevation == left.elevation
+
+
+async def test_a_drive_that_was_moving_has_lost_its_zero_after_a_restart(tmp_path: Path) -> None:
+    clock, memory = VirtualClock(START), tmp_path / "T1.json"
+    drive = await homed(clock, memory)
+    clock.advance(timedelta(seconds=2))
+    await drive.read()
+    await drive.write(DriveCommand(azimuth=Velocity(1.0)))
+    found = await drive_at(clock, memory).read()
+    assert found.boot_count == 2
+    assert not found.azimuth.homed
+    assert not found.elevation.homed
+    again = await drive_at(clock, memory).read()
+    assert again.boot_count == 3, "a drive that was never seen at rest stays untrusted"
+
+
+async def test_a_zero_counts_only_once_it_is_in_the_memory(tmp_path: Path) -> None:
+    clock, memory = VirtualClock(START), tmp_path / "T1.json"
+    drive = await homed(clock, memory)
+    await drive.write(DriveCommand())
+    assert not (await drive_at(clock, memory).read()).azimuth.homed
+
+
+async def test_closing_a_resting_drive_saves_its_zero_at_once(tmp_path: Path) -> None:
+    clock, memory = VirtualClock(START), tmp_path / "T1.json"
+    await (await homed(clock, memory)).close()
+    assert (await drive_at(clock, memory).read()).azimuth.homed
+
+
+@pytest.mark.parametrize("damage", [b"", b"{", b'{"azimuth": 1}', b"\xff\xfe", b"[]"])
+async def test_a_damaged_memory_is_no_memory(tmp_path: Path, damage: bytes) -> None:
+    memory = tmp_path / "T1.json"
+    memory.write_bytes(damage)
+    feedback = await drive_at(VirtualClock(START), memory).read()
+    assert (feedback.boot_count, feedback.azimuth.homed) == (1, False)
+
+
+async def test_power_loss_is_remembered(tmp_path: Path) -> None:
+    clock, memory = VirtualClock(START), tmp_path / "T1.json"
+    drive = await homed(clock, memory)
+    drive.inject(Fault(FaultKind.POWER_LOSS))
+    await drive.close()
+    found = await drive_at(clock, memory).read()
+    assert (found.boot_count, found.azimuth.homed) == (2, False)
+
+
+async def test_the_same_commands_give_the_same_day() -> None:
+    async def day() -> list[Feedback]:
+        clock = VirtualClock(START)
+        drive = drive_at(clock, None)
+        readings = []
+        for second in range(600):
+            clock.advance(timedelta(seconds=1))
+            readings.append(await drive.read())
+            target = 102.4 + second // 60
+            await drive.write(DriveCommand(Position(target, 6.0), Position(40.0, 4.0)))
+        return readings
+
+    assert await day() == await day()
+
+
+async def test_how_often_it_is_read_changes_nothing() -> None:
+    ends = []
+    for reads in (1, 7, 500):
+        clock = VirtualClock(START)
+        drive = drive_at(clock, None)
+        await drive.write(MOVE)
+        for _ in range(reads):
+            clock.advance(timedelta(seconds=3.5) / reads)
+            feedback = await drive.read()
+        ends.append(feedback.azimuth.position_deg)
+    assert ends == pytest.approx([ends[0]] * 3, abs=0.0101)
+
+
+async def test_the_encoder_counts_in_steps_of_its_gear() -> None:
+    clock = VirtualClock(START)
+    coarse = SimulatedDrive(CONFIG, clock, mechanics=Mechanics(gear=1.0), watchdog=None)
+    await coarse.write(DriveCommand(azimuth=Velocity(0.37)))
+    clock.advance(timedelta(seconds=5))
+    counts = (await coarse.read()).azimuth.position_deg / 0.1
+    assert counts == pytest.approx(round(counts), abs=1e-6)
+
+
+async def test_after_a_turn_the_panel_follows_only_behind_the_backlash() -> None:
+    clock = VirtualClock(START)
+    loose = SimulatedDrive(CONFIG, clock, mechanics=Mechanics(backlash_deg=0.4), watchdog=None)
+    rig = Rig(loose, loose, clock)
+    up = await rig.until_rest(DriveCommand(Position(110.0, 6.0)))
+    truth = loose.true_orientation.azimuth_deg
+    assert up.azimuth.position_deg - 90.0 - truth == pytest.approx(0.2, abs=0.011)
+    await rig.until_rest(DriveCommand(Position(109.7, 6.0)))
+    assert loose.true_orientation.azimuth_deg == pytest.approx(truth), "the play is not yet used up"
+    await rig.until_rest(DriveCommand(Position(109.0, 6.0)))
+    assert loose.true_orientation.azimuth_deg == pytest.approx(19.2, abs=0.011)
+
+
+async def test_a_first_stand_outside_the_soft_limits_is_moved_inside() -> None:
+    narrow = replace(CONFIG, azimuth=AxisConfig(90.0, 270.0, 6.0, 6.0, 0.5, 3.0))
+    drive = SimulatedDrive(narrow, VirtualClock(START))
+    assert drive.true_orientation.azimuth_deg == 90.0
+    assert not (await drive.read()).azimuth.at_lower_limit
+
+
+@pytest.mark.parametrize("axis", list(Axis))
+async def test_a_stuck_lower_switch_stops_an_axis_that_runs_towards_it(axis: Axis) -> None:
+    clock = VirtualClock(START)
+    drive = drive_at(clock, None)
+    rig = Rig(drive, drive, clock)
+    down = DriveCommand(Velocity(-2.0), Velocity(-2.0))
+    await rig.forward(1.0, down)
+    drive.inject(Fault(FaultKind.LOWER_LIMIT_STUCK, axis))
+    feedback = await rig.forward(0.6, down)
+    stuck, free = feedback.azimuth, feedback.elevation
+    if axis is Axis.ELEVATION:
+        stuck, free = free, stuck
+    assert (stuck.velocity_dps, stuck.at_lower_limit) == (0.0, True)
+    assert free.velocity_dps == pytest.approx(-2.0)
+
+
+async def test_a_stall_that_ends_lets_the_axis_go_on() -> None:
+    clock = VirtualClock(START)
+    drive = drive_at(clock, None)
+    rig = Rig(drive, drive, clock)
+    await rig.forward(1.0, MOVE)
+    drive.inject(Fault(FaultKind.STALL))
+    stood = await rig.forward(1.0, MOVE)
+    drive.clear_faults()
+    assert (await rig.until_rest(MOVE)).azimuth.position_deg == pytest.approx(120.0, abs=0.011)
+    assert stood.azimuth.position_deg < 119.0
+
+
+async def test_a_wrongly_wired_axis_runs_away_from_a_target_to_the_end_of_travel() -> None:
+    clock = VirtualClock(START)
+    drive = drive_at(clock, None)
+    drive.inject(Fault(FaultKind.WRONG_DIRECTION, Axis.AZIMUTH))
+    feedback = await Rig(drive, drive, clock).until_rest(DriveCommand(azimuth=Position(150.0, 6.0)))
+    assert feedback.azimuth.at_lower_limit
