@@ -26,9 +26,9 @@ def day_number(unix_s: T) -> T:
     return (unix_s - DAY_ZERO_UNIX_S) / 86400.0
 
 
-def hour_of_day(unix_s: T) -> T:
+def hour_of_day(unix_s: T, trig: Trigonometry[T]) -> T:
     """Return the decimal hour UT (eq 23), in [0, 24)."""
-    return unix_s % 86400.0 / 3600.0
+    return trig.wrap(unix_s, 86400.0) / 3600.0
 
 
 def perihelion(day: T) -> T:
@@ -41,9 +41,9 @@ def eccentricity(day: T) -> T:
     return 0.016709 - 1.151e-9 * day
 
 
-def mean_anomaly(day: T) -> T:
+def mean_anomaly(day: T, trig: Trigonometry[T]) -> T:
     """Return the mean anomaly M in [0, 360) (eq 5), degrees."""
-    return (356.0470 + 0.9856002585 * day) % 360.0
+    return trig.wrap(356.0470 + 0.9856002585 * day, 360.0)
 
 
 def mean_longitude(perihelion_deg: T, anomaly_deg: T) -> T:
@@ -83,9 +83,9 @@ def equatorial(longitude_deg: T, obliquity_deg: T, trig: Trigonometry[T]) -> tup
     return trig.atan2(y, x) * PER_RADIAN, trig.atan2(z, trig.hypot(x, y)) * PER_RADIAN
 
 
-def greenwich_sidereal_time(mean_longitude_deg: T) -> T:
+def greenwich_sidereal_time(mean_longitude_deg: T, trig: Trigonometry[T]) -> T:
     """Return Greenwich sidereal time at 0 h UT in [0, 24) (eq 24), hours."""
-    return (mean_longitude_deg + 180.0) % 360.0 / 15.0
+    return trig.wrap(mean_longitude_deg + 180.0, 360.0) / 15.0
 
 
 def local_sidereal_time(greenwich_h: T, hour: T, longitude_deg: float) -> T:
@@ -110,19 +110,19 @@ def horizontal(angle_deg: T, declination_deg: T, latitude_deg: float, trig: Trig
     x, y = trig.cos(angle) * cos_dec, trig.sin(angle) * cos_dec
     x_horizon = x * sin_lat - z * cos_lat
     z_horizon = x * cos_lat + z * sin_lat
-    azimuth = (trig.atan2(y, x_horizon) * PER_RADIAN + 180.0) % 360.0
+    azimuth = trig.atan2(y, x_horizon) * PER_RADIAN + 180.0
     return azimuth, trig.atan2(z_horizon, trig.hypot(x_horizon, y)) * PER_RADIAN
 
 
 def position(unix_s: T, latitude_deg: float, longitude_deg: float, trig: Trigonometry[T]) -> tuple[T, T]:
-    """Return azimuth from north clockwise in [0, 360] and elevation without refraction, degrees.
+    """Return azimuth from north clockwise in [0, 360] and true elevation, degrees.
 
     Within 0.0124 degrees of NREL SPA, 2000 to 2049. Latitude north, longitude east positive.
     """
     day = day_number(unix_s)
-    e, w, m = eccentricity(day), perihelion(day), mean_anomaly(day)
+    e, w, m = eccentricity(day), perihelion(day), mean_anomaly(day, trig)
     _, true_anomaly = orbit(eccentric_anomaly(m, e, trig), e, trig)
     right_ascension, declination = equatorial(true_longitude(true_anomaly, w), obliquity(day), trig)
-    greenwich = greenwich_sidereal_time(mean_longitude(w, m))
-    sidereal = local_sidereal_time(greenwich, hour_of_day(unix_s), longitude_deg)
+    greenwich = greenwich_sidereal_time(mean_longitude(w, m), trig)
+    sidereal = local_sidereal_time(greenwich, hour_of_day(unix_s, trig), longitude_deg)
     return horizontal(hour_angle(sidereal, right_ascension), declination, latitude_deg, trig)

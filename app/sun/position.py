@@ -3,14 +3,15 @@
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
-from typing import assert_never
+from typing import Final, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.sun import koblick, psa
+from app.angles import wrap360
+from app.sun import fast, koblick, psa
 from app.sun.refraction import refraction_deg, refraction_path
-from app.sun.trigonometry import ARRAY, SCALAR, Array, T, Trigonometry
+from app.sun.trigonometry import ARRAY, Array
 
 RISE_ELEVATION_DEG = -0.8333
 """True elevation of the sun's centre with its upper limb on the horizon: radius 0.2667, refraction 0.5667."""
@@ -21,7 +22,7 @@ FIRST_UNIX_S = -2_177_452_800.0
 END_UNIX_S = 4_102_444_800.0
 """2100-01-01 UT."""
 
-BLOCK = 4096
+BLOCK = 8192
 """Positions computed at once: so many that their intermediate columns stay in the processor's cache."""
 
 
@@ -34,6 +35,10 @@ class Algorithm(StrEnum):
 
     PSA = "psa"
     KOBLICK = "koblick"
+
+
+PSA: Final = Algorithm.PSA
+KOBLICK: Final = Algorithm.KOBLICK
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,9 +93,8 @@ def sun_position(algorithm: Algorithm, location: Location, at: datetime) -> SunP
     unix_s = at.timestamp()
     if not FIRST_UNIX_S <= unix_s < END_UNIX_S:
         raise InstantRefused(f"The sun is known for the years 1901 to 2099 (UTC), not for {at}.")
-    azimuth_deg, elevation_deg = _position(algorithm, location, unix_s, SCALAR)
-    azimuth_deg = azimuth_deg if azimuth_deg < 360.0 else 0.0
-    return SunPosition(azimuth_deg, elevation_deg, elevation_deg + refraction_deg(elevation_deg))
+    azimuth_deg, elevation_deg = _one(algorithm, location, unix_s)
+    return SunPosition(wrap360(azimuth_deg), elevation_deg, elevation_deg + refraction_deg(elevation_deg))
 
 
 def sun_path(algorithm: Algorithm, location: Location, at_unix_s: Array) -> SunPath:
@@ -105,16 +109,29 @@ def sun_path(algorithm: Algorithm, location: Location, at_unix_s: Array) -> SunP
     columns = np.empty((3, at_unix_s.size))
     for first in range(0, at_unix_s.size, BLOCK):
         block = slice(first, first + BLOCK)
-        azimuth_deg, elevation_deg = _position(algorithm, location, at_unix_s[block], ARRAY)
-        columns[0, block], columns[1, block] = azimuth_deg % 360.0, elevation_deg
+        azimuth_deg, elevation_deg = _many(algorithm, location, at_unix_s[block])
+        columns[0, block], columns[1, block] = wrap360_path(azimuth_deg), elevation_deg
         columns[2, block] = elevation_deg + refraction_path(elevation_deg)
     return SunPath(*columns)
 
 
-def _position(algorithm: Algorithm, location: Location, unix_s: T, trig: Trigonometry[T]) -> tuple[T, T]:
-    match algorithm:
-        case Algorithm.PSA:
-            return psa.position(unix_s, location.latitude_deg, location.longitude_deg, trig)
-        case Algorithm.KOBLICK:
-            return koblick.position(unix_s, location.latitude_deg, location.longitude_deg, trig)
+def wrap360_path(azimuth_deg: Array) -> Array:
+    """Return azimuths from (-360, 360] in [0, 360), as `angles.wrap360` does."""
+    wrapped = np.where(azimuth_deg < 0.0, azimuth_deg + 360.0, azimuth_deg)
+    return np.where(wrapped >= 360.0, 0.0, wrapped)
+
+
+def _one(algorithm: Algorithm, location: Location, unix_s: float) -> tuple[float, float]:
+    if algorithm is PSA:
+        return fast.psa(unix_s, location.latitude_deg, location.longitude_deg)
+    if algorithm is KOBLICK:
+        return fast.koblick(unix_s, location.latitude_deg, location.longitude_deg)
+    assert_never(algorithm)
+
+
+def _many(algorithm: Algorithm, location: Location, unix_s: Array) -> tuple[Array, Array]:
+    if algorithm is PSA:
+        return psa.position(unix_s, location.latitude_deg, location.longitude_deg, ARRAY)
+    if algorithm is KOBLICK:
+        return koblick.position(unix_s, location.latitude_deg, location.longitude_deg, ARRAY)
     assert_never(algorithm)

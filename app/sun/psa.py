@@ -14,6 +14,7 @@ from app.sun.trigonometry import PER_DEGREE, PER_RADIAN, T, Trigonometry
 J2000_UNIX_S = 946_728_000.0
 EARTH_MEAN_RADIUS_KM = 6371.01
 ASTRONOMICAL_UNIT_KM = 149_597_890.0
+PARALLAX = EARTH_MEAN_RADIUS_KM / ASTRONOMICAL_UNIT_KM
 
 
 def julian_day(year: int, month: int, day: int, hour: float) -> float:
@@ -30,9 +31,9 @@ def days_since_2000(unix_s: T) -> T:
     return (unix_s - J2000_UNIX_S) / 86400.0
 
 
-def hour_of_day(unix_s: T) -> T:
+def hour_of_day(unix_s: T, trig: Trigonometry[T]) -> T:
     """Return the decimal hour UT, in [0, 24)."""
-    return unix_s % 86400.0 / 3600.0
+    return trig.wrap(unix_s, 86400.0) / 3600.0
 
 
 def node_longitude(n: T) -> T:
@@ -102,15 +103,15 @@ def horizontal(declination: T, angle: T, latitude_deg: float, trig: Trigonometry
 
 def parallax(zenith: T, trig: Trigonometry[T]) -> T:
     """Return what the observer's place on the Earth's surface adds to a zenith distance (eq 15), radians."""
-    return EARTH_MEAN_RADIUS_KM / ASTRONOMICAL_UNIT_KM * trig.sin(zenith)
+    return PARALLAX * trig.sin(zenith)
 
 
 def position(unix_s: T, latitude_deg: float, longitude_deg: float, trig: Trigonometry[T]) -> tuple[T, T]:
-    """Return azimuth from north clockwise in [0, 360] and elevation without refraction (eq 16), degrees.
+    """Return azimuth from north clockwise in (-180, 180] and true elevation (eq 16), degrees.
 
     Within 0.0099 degrees of NREL SPA, 2000 to 2049. Latitude north, longitude east positive.
     """
-    n, hour = days_since_2000(unix_s), hour_of_day(unix_s)
+    n, hour = days_since_2000(unix_s), hour_of_day(unix_s, trig)
     node = node_longitude(n)
     longitude = ecliptic_longitude(mean_longitude(n), mean_anomaly(n), node, trig)
     right_ascension, declination = equatorial(longitude, obliquity(n, node, trig), trig)
@@ -118,4 +119,4 @@ def position(unix_s: T, latitude_deg: float, longitude_deg: float, trig: Trigono
     angle = hour_angle(sidereal, right_ascension)
     zenith, azimuth = horizontal(declination, angle, latitude_deg, trig)
     zenith = zenith + parallax(zenith, trig)
-    return azimuth * PER_RADIAN % 360.0, 90.0 - zenith * PER_RADIAN
+    return azimuth * PER_RADIAN, 90.0 - zenith * PER_RADIAN

