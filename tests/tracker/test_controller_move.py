@@ -1,0 +1,201 @@
+"""Modes, orientations, moves and the park position."""
+
+from dataclasses import replace
+from datetime import timedelta
+
+import pytest
+
+from app.drives.faults import Fault, FaultKind
+from app.tracker.axes import Axis
+from app.tracker.commands import CommandRejected, Home, Move, Park, SelectMode, Stop, Track
+from app.tracker.config import Orientation
+from app.tracker.memory import Pointing, StepName
+from app.tracker.mode import Mode
+from app.tracker.motion import Position
+from app.tracker.snapshot import ActivityName, EventKind, Pair
+from tests.tracker.plant import CONFIG, READY, Plant
+from tests.tracker.scripted import Scripted
+
+SOUTH = Orientation(180.0, 45.0)
+
+
+def test_a_move_ends_in_position_and_says_so() -> None:
+    plant = Plant(READY)
+    plant.tick()
+    assert plant.ask(Move(Orientation(30.0, 20.0))) == [EventKind.MOVE_STARTED]
+    plant.forward(1.0)
+    shown = plant.snapshot
+    assert shown.activity_text == "Moving to the orientation that was asked for"
+    assert shown.target == Pair(30.0, 20.0)
+    assert shown.setpoint == Pair(30.0, 20.0)
+    assert not shown.in_position
+    assert shown.following_error_deg is not None
+    plant.forward(15.0)
+    shown = plant.snapshot
+    assert shown.in_position
+    assert shown.activity is ActivityName.HOLDING
+    assert shown.measured is not None
+    assert shown.measured.azimuth_deg == pytest.approx(30.0, abs=0.05)
+    assert shown.measured.elevation_deg == pytest.approx(20.0, abs=0.05)
+    assert plant.happened(EventKind.MOVE_ENDED)[0].data["outcome"] == "in_position"
+
+
+def test_a_move_can_be_given_another_target_on_its_way() -> None:
+    plant = Plant(READY)
+    plant.tick()
+    plant.ask(Move(Orientation(90.0, 20.0)))
+    plant.forward(2.0)
+    plant.ask(Move(Orientation(5.0, 5.0)))
+    plant.forward(20.0)
+    assert plant.azimuth_deg == pytest.approx(5.0, abs=0.05)
+    assert not plant.happened(EventKind.FAULT_RAISED)
+
+
+def test_parking_goes_to_the_park_position_and_switches_tracking_off() -> None:
+    plant = Plant(READY)
+    plant.tick()
+    plant.ask(Track())
+    plant.forward(1.0)
+    assert EventKind.TRACKING_ENDED in plant.ask(Park())
+    assert plant.snapshot.activity_text == "Moving to the park position"
+    plant.forward(60.0)
+    assert plant.elevation_deg == pytest.approx(90.0, abs=0.05)
+    assert not plant.controller.memory.tracking_on
+
+
+def test_a_move_needs_a_trusted_zero_and_a_reachable_orientation_and_says_both() -> None:
+    plant = Plant()
+    plant.tick()
+    with pytest.raises(CommandRejected) as refused:
+        plant.ask(Move(Orientation(10.0, -20.0)))
+    assert [reason.code for reason in refused.value.reasons] == ["home_not_trusted", "beyond_limits"]
+    with pytest.raises(CommandRejected, match="cannot face"):
+        plant.ask(Move(Orientation(float("nan"), 10.0)))
+
+
+def test_a_correction_that_leads_a_hair_beyond_a_limit_does_not_forbid_an_orientation() -> None:
+    plant = Plant(replace(READY, pointing=Pointing(elevation_offset_deg=0.3)))
+    plant.tick()
+    plant.ask(Move(Orientation(10.0, 90.0)))
+    assert plant.told.elevation == Position(90.0, CONFIG.elevation.speed_dps)
+
+
+def test_a_move_that_does_not_arrive_in_time_is_a_fault() -> None:
+    script = Scripted(READY)
+    script.tick()
+    script.ask(Move(Orientation(0.2, 0.0)))
+    script.forward(6.0)
+    assert script.controller.activity is ActivityName.FAULTED
+    assert script.controller.memory.fault_code == "move_overdue"
+
+
+def test_stop_ends_a_move_at_once_and_is_never_refused() -> None:
+    plant = Plant(READY)
+    assert plant.ask(Stop()) == [EventKind.STOPPED]
+    plant.tick()
+    plant.ask(Move(SOUTH))
+    plant.forward(2.0)
+    assert plant.ask(Stop(), actor="Deniz") == [EventKind.MOVE_ENDED, EventKind.STOPPED]
+    assert plant.happened(EventKind.STOPPED)[-1].actor == "Deniz"
+    assert plant.activity is ActivityName.STOPPING
+    assert plant.snapshot.activity_text == "Stopping"
+    assert plant.ask(Stop()) == [EventKind.STOPPED]
+    plant.forward(2.0)
+    assert plant.activity is ActivityName.HOLDING
+    assert not plant.snapshot.in_position
+
+
+@pytest.mark.parametrize(
+    ("mode", "held", "there"),
+    [
+        (Mode.FIXED, Orientation(20.0, 10.0), Orientation(20.0, 10.0)),
+        (Mode.AZIMUTH, Orientation(300.0, 10.0), Orientation(20.0, 10.0)),
+        (Mode.ELEVATION, Orientation(20.0, 70.0), Orientation(20.0, 10.0)),
+    ],
+)
+def test_a_mode_is_confirmed_once_the_panel_holds_what_it_holds(
+    mode: Mode, held: Orientation, there: Orientation
+) -> None:
+    plant = Plant(READY)
+    plant.tick()
+    assert plant.ask(SelectMode(mode, held)) == [EventKind.MODE_SELECTED]
+    memory = plant.controller.memory
+    assert (memory.mode, memory.orientation) == (mode, held)
+    assert StepName.MODE not in memory.confirmations
+    plant.ask(Move(there))
+    plant.forward(20.0)
+    assert plant.controller.memory.confirmations[StepName.MODE].by == "Ayse"
+    plant.ask(SelectMode(mode, held))
+    assert StepName.MODE in plant.controller.memory.confirmations
+
+
+def test_dual_axis_holds_nothing_and_needs_no_move() -> None:
+    plant = Plant(READY)
+    plant.tick()
+    plant.ask(SelectMode(Mode.DUAL))
+    assert StepName.MODE in plant.controller.memory.confirmations
+
+
+def test_a_mode_selected_without_a_zero_is_kept_but_not_confirmed() -> None:
+    plant = Plant()
+    plant.ask(SelectMode(Mode.FIXED, SOUTH))
+    plant.tick()
+    plant.ask(SelectMode(Mode.FIXED, SOUTH))
+    assert plant.controller.memory.mode is Mode.FIXED
+    assert StepName.MODE not in plant.controller.memory.confirmations
+
+
+@pytest.mark.parametrize(
+    ("mode", "held"),
+    [
+        (Mode.FIXED, Orientation(10.0, 95.0)),
+        (Mode.AZIMUTH, Orientation(10.0, -5.0)),
+        (Mode.ELEVATION, Orientation(200.0, 10.0)),
+    ],
+)
+def test_an_orientation_beyond_the_limits_is_refused(mode: Mode, held: Orientation) -> None:
+    narrow = replace(CONFIG, azimuth=replace(CONFIG.azimuth, maximum_deg=90.0))
+    plant = Plant(READY, config=narrow)
+    plant.tick()
+    with pytest.raises(CommandRejected, match="cannot face"):
+        plant.ask(SelectMode(mode, held))
+    plant.ask(SelectMode(Mode.DUAL, held))
+
+
+def test_the_mode_cannot_change_under_a_tracker_that_tracks() -> None:
+    plant = Plant(READY)
+    plant.tick()
+    plant.ask(Track())
+    with pytest.raises(CommandRejected, match="is tracking"):
+        plant.ask(SelectMode(Mode.FIXED, SOUTH))
+
+
+def test_the_arrival_of_a_move_without_a_mode_confirms_nothing() -> None:
+    plant = Plant(replace(READY, mode=None))
+    plant.tick()
+    plant.ask(Move(Orientation(5.0, 5.0)))
+    plant.forward(10.0)
+    assert plant.controller.memory.confirmations == {}
+
+
+def test_no_move_during_a_search_for_the_origin() -> None:
+    script = Scripted(READY)
+    script.tick()
+    script.ask(Home())
+    with pytest.raises(CommandRejected) as refused:
+        script.ask(Move(SOUTH))
+    assert {reason.code for reason in refused.value.reasons} == {"home_not_trusted", "busy_homing"}
+
+
+def test_a_blocked_axis_is_a_fault_that_is_latched_and_reset() -> None:
+    plant = Plant(READY)
+    plant.tick()
+    plant.ask(Move(SOUTH))
+    plant.forward(2.0)
+    plant.drive.inject(Fault(FaultKind.STALL, Axis.AZIMUTH))
+    plant.forward(5.0)
+    assert plant.controller.memory.fault_code == "following_error"
+    assert plant.snapshot.fault is not None
+    assert "does not follow" in plant.snapshot.fault.message
+    assert plant.clock.now() - plant.happened(EventKind.FAULT_RAISED)[0].at < timedelta(seconds=5)
+    assert plant.snapshot.home_trusted
