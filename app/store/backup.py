@@ -1,6 +1,5 @@
 """Backups: one portable SQLite file, made while the machine runs, whichever database is behind the store."""
 
-import os
 import sqlite3
 from contextlib import closing
 from dataclasses import dataclass
@@ -19,7 +18,8 @@ from app.store.connections import (
     writing_engine,
 )
 from app.store.documents import SITE
-from app.store.migrations import make_folder, upgrade
+from app.store.files import make_folder, make_portable, put_in_place
+from app.store.migrations import upgrade
 from app.store.store import StoreFailed
 
 ROWS_AT_ONCE = 200
@@ -83,19 +83,6 @@ def copy_database(source: Connection, target: Connection) -> None:
             target.execute(insert(table), [dict(row) for row in some])
 
 
-def make_portable(path: Path) -> None:
-    """Make a closed SQLite file complete in itself, readable from a folder that cannot be written."""
-    with closing(sqlite3.connect(path)) as connection:
-        connection.execute("PRAGMA journal_mode = DELETE")
-
-
-def put_in_place(unfinished: Path, target: Path) -> None:
-    """Give a finished file its name, so that it is there after a power cut too."""
-    _flush(unfinished)
-    unfinished.replace(target)
-    _flush(target.parent)
-
-
 def _copy_to_file(url: str, target: Path) -> None:
     source = sqlite_path(url)
     if source is not None:
@@ -134,11 +121,3 @@ def _count(connection: Connection) -> tuple[str, int, int, int]:
 
 def _content(found: BackupInfo) -> tuple[str, int, int, int]:
     return found.site_name, found.trackers, found.events, found.recordings
-
-
-def _flush(path: Path) -> None:
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

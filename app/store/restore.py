@@ -9,9 +9,10 @@ from pathlib import Path
 
 from sqlalchemy import Connection, text
 
-from app.store.backup import BackupInfo, backup, copy_database, inspect_backup, make_portable, put_in_place
+from app.store.backup import BackupInfo, backup, copy_database, inspect_backup
 from app.store.connections import reading_engine, revision_of, sqlite_path, transaction, writing_engine
-from app.store.migrations import copy_sqlite, drop_tables, make_folder, run_migrations, upgrade
+from app.store.files import copy_sqlite, make_folder, make_portable, put_in_place
+from app.store.migrations import drop_tables, run_migrations, upgrade
 from app.store.store import StoreFailed
 
 LOCK_NAME = "machine.lock"

@@ -1,5 +1,8 @@
 """Tables come from migrations alone; a newer database is refused, an older one copied before it changes."""
 
+import multiprocessing
+import shutil
+import signal
 from pathlib import Path
 
 import pytest
@@ -8,10 +11,10 @@ from sqlalchemy import text
 
 from app.store.connections import revision_of, sqlite_path, transaction, writing_engine
 from app.store.engine import open_reader, open_writer
+from app.store.files import copy_sqlite
 from app.store.migrations import (
     SCRIPTS,
     check,
-    copy_sqlite,
     differences,
     drop_tables,
     main,
@@ -148,3 +151,72 @@ def test_a_server_that_is_not_there_is_told(tmp_path: Path) -> None:
     with pytest.raises(StoreFailed, match=r"cannot be reached: nothing was stored\. Check that it runs"):
         reader.site()
     reader.close()
+
+
+SECOND = """
+import os, signal
+import sqlalchemy as sa
+from alembic import op
+
+revision = "0002"
+down_revision = "0001"
+
+
+def upgrade() -> None:
+    op.add_column("shows", sa.Column("colour", sa.Text()))
+    op.execute("DELETE FROM site")
+    {then}
+"""
+
+
+def later_software(folder: Path, then: str) -> Path:
+    """Return the migrations of a later version, whose second one empties the site and then does something."""
+    scripts = folder / "later"
+    shutil.copytree(SCRIPTS, scripts, ignore=shutil.ignore_patterns("__pycache__"))
+    (scripts / "versions" / "0002_later.py").write_text(SECOND.format(then=then))
+    return scripts
+
+
+def with_a_site(url: str) -> str:
+    writer = open_writer(url)
+    writer.save_site(SITE)
+    writer.close()
+    return url
+
+
+def still_usable(url: str) -> bool:
+    reader = open_reader(url)
+    try:
+        return reader.site() == SITE
+    finally:
+        reader.close()
+
+
+def test_a_database_is_copied_before_a_migration_changes_it(sqlite_url: str, tmp_path: Path) -> None:
+    upgrade(sqlite_url)
+    with_a_site(sqlite_url)
+    assert upgrade(sqlite_url, scripts=later_software(tmp_path, "pass")) == "0001"
+    with pytest.raises(StoreFailed, match="newer version"):
+        upgrade(sqlite_url)
+    assert still_usable(f"{sqlite_url}.before-0002")
+
+
+def test_a_migration_that_fails_midway_leaves_the_old_database(url: str, tmp_path: Path) -> None:
+    with_a_site(url)
+    with pytest.raises(StoreFailed, match="refused"):
+        upgrade(url, scripts=later_software(tmp_path, "op.execute('nonsense')"))
+    assert upgrade(url) == "0001"
+    assert still_usable(url)
+
+
+def test_a_migration_that_is_killed_midway_leaves_the_old_database(url: str, tmp_path: Path) -> None:
+    with_a_site(url)
+    scripts = later_software(tmp_path, "os.kill(os.getpid(), signal.SIGKILL)")
+    child = multiprocessing.get_context("fork").Process(
+        target=upgrade, args=(url,), kwargs={"scripts": scripts}
+    )
+    child.start()
+    child.join(20)
+    assert child.exitcode == -signal.SIGKILL
+    assert upgrade(url) == "0001"
+    assert still_usable(url)
