@@ -3,12 +3,20 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
+from app.store.store import JournalEntry
 from app.tracker.config import TrackerConfig
-from app.tracker.memory import ClockSetting, HomeTrust, StepName, TrackerMemory
+from app.tracker.memory import ClockSetting, HomeTrust, Pointing, Sighting, StepName, TrackerMemory
 from app.tracker.mode import Mode
 from app.tracker.motion import DriveCapabilities
+from app.tracker.programs.show import ShowPlan
 from app.tracker.reason import Reason
+from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import SiteSnapshot, Snapshot
+from app.web.record import CommissioningRecord
+from app.web.ui.drawings import DayChart, SunDiagram
+
+Arc = tuple[tuple[float, float], ...]
+"""Azimuth and elevation of the sun through a day, degrees."""
 
 
 class Context(Protocol):
@@ -228,6 +236,7 @@ class OrientationPage:
     held: tuple[str, ...]
     choice: ModeChoice
     limits: str
+    arc: Arc
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,36 +247,7 @@ class RunPage:
 
     frame: Frame
     choice: ModeChoice | None
-
-
-@dataclass(frozen=True, slots=True)
-class Curve:
-    """A curve of the sun-path diagram: SVG path data, and whether it is a solstice or an equinox."""
-
-    label: str
-    path: str
-    strong: bool
-
-
-@dataclass(frozen=True, slots=True)
-class HourLabel:
-    """The number of an hour at its place in the diagram."""
-
-    x: float
-    y: float
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
-class SunDiagram:
-    """The polar sun path, north up, on a circle of radius 100 about the origin."""
-
-    months: tuple[Curve, ...]
-    hours: tuple[Curve, ...]
-    labels: tuple[HourLabel, ...]
-    today: Curve
-    reachable: str
-    title: str
+    arc: Arc
 
 
 @dataclass(frozen=True, slots=True)
@@ -284,3 +264,130 @@ class TrackerPage:
     limits: str
     drive: str
     diagram: SunDiagram | None
+    arc: Arc
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What the check of a show's plan says, in the words of the page."""
+
+    feasible: bool
+    headline: str
+    facts: tuple[tuple[str, str], ...]
+    reasons: tuple[Reason, ...]
+    notices: tuple[Reason, ...]
+    shortest: Link | None
+    chart: DayChart | None
+
+
+@dataclass(frozen=True, slots=True)
+class ShowPlanPage:
+    """A show is planned."""
+
+    template: ClassVar[str] = "show.html"
+
+    frame: Frame
+    form: Form
+    presets: tuple[Link, ...]
+    verdict: Verdict | None
+
+
+@dataclass(frozen=True, slots=True)
+class ShowRunPage:
+    """A show on the machine."""
+
+    template: ClassVar[str] = "show_run.html"
+
+    frame: Frame
+    plan: ShowPlan
+    minutes: str
+    again: str
+    diagram: SunDiagram
+    arc: Arc
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingsPage:
+    """What was recorded."""
+
+    template: ClassVar[str] = "recordings.html"
+
+    frame: Frame
+    recordings: tuple[RecordingInfo, ...]
+    chosen: str
+
+
+@dataclass(frozen=True, slots=True)
+class PlayerPage:
+    """One recording, or two laid over each other, to be played."""
+
+    template: ClassVar[str] = "player.html"
+
+    frame: Frame
+    info: RecordingInfo
+    other: RecordingInfo | None
+    others: tuple[RecordingInfo, ...]
+    diagram: SunDiagram
+    arc: Arc
+    speeds: tuple[int, ...]
+    speed: int
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatePage:
+    """A whole day without a machine."""
+
+    template: ClassVar[str] = "simulate.html"
+
+    frame: Frame
+    form: Form
+    trackers: tuple[tuple[str, str], ...]
+    modes: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class JournalPage:
+    """What happened, newest first."""
+
+    template: ClassVar[str] = "journal.html"
+
+    frame: Frame
+    entries: tuple[JournalEntry, ...]
+    trackers: tuple[str, ...]
+    tracker: str
+    older: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class SettingsPage:
+    """What an engineer sets for one tracker."""
+
+    template: ClassVar[str] = "settings.html"
+
+    frame: Frame
+    form: Form
+
+
+@dataclass(frozen=True, slots=True)
+class SunCheckPage:
+    """Sightings of the sun and what they tell."""
+
+    template: ClassVar[str] = "sun_check.html"
+
+    frame: Frame
+    sightings: tuple[Sighting, ...]
+    errors: tuple[tuple[float, float], ...]
+    causes: tuple[str, ...]
+    pointing: Pointing
+
+
+@dataclass(frozen=True, slots=True)
+class RecordPage:
+    """The commissioning record, to be printed."""
+
+    template: ClassVar[str] = "record.html"
+
+    frame: Frame
+    record: CommissioningRecord
+    labels: dict[str, str]
+    choice: ModeChoice | None

@@ -24,6 +24,7 @@ log = structlog.get_logger()
 
 UNREACHABLE_CODES = frozenset({"drive_lost", "drive_unreachable", "drive_silent"})
 OWN_MISTAKE = "The panel made a mistake; its log has the details. The machine goes on as it was."
+FOR_PROGRAMS = ("/api/", "/health", "/ready", "/metrics", "/stream", "/diagnostics.zip", "/backup")
 RETRY_LATER = {"Retry-After": "1"}
 
 
@@ -146,7 +147,7 @@ def problem_response(problem: Problem) -> Response:
 
 def _respond(request: Request, problem: Problem) -> Response:
     error_page: ErrorPage | None = getattr(request.app.state, "error_page", None)
-    if error_page is None or request.url.path.startswith("/api/"):
+    if error_page is None or request.url.path.startswith(FOR_PROGRAMS):
         return problem_response(problem)
     return error_page(request, problem)
 

@@ -2,56 +2,134 @@
 
 import asyncio
 from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from contextlib import AsyncExitStack, asynccontextmanager
+from importlib.metadata import version
 from pathlib import Path
 
+import uvicorn
 from fastapi import FastAPI
 from starlette.middleware.gzip import GZipMiddleware
 
 from app.clock import Clock, SystemClock
+from app.link.client import LinkClient
 from app.link.messages import Machine
+from app.logs import set_up_logs
 from app.settings import Settings
+from app.store.engine import open_reader
+from app.store.reader import DatabaseReader
 from app.store.store import Reader
 from app.web import errors, live
+from app.web.api.operations import router as operations
 from app.web.api.router import api_router
 from app.web.assets import Assets
 from app.web.deps import Panel
+from app.web.documented import DocumentedApp
 from app.web.hub import Hub
 from app.web.security import Guard, SecurityHeaders
+from app.web.server import (
+    FAREWELL_S,
+    KEEP_ALIVE_S,
+    LARGEST_MESSAGE,
+    PING_S,
+    Connections,
+    PanelServer,
+    cautious,
+    reserve_descriptors,
+)
 from app.web.simulations import Simulations
 from app.web.ui.pages import include_pages
 
 STATIC = Path(__file__).resolve().parents[2] / "static"
+LARGEST_BODY = 1024 * 1024
+SMALLEST_COMPRESSED = 600
+
+
+def create_app(
+    settings: Settings,
+    *,
+    machine: Machine | None = None,
+    reader: Reader | None = None,
+    clock: Clock | None = None,
+) -> FastAPI:
+    """Build the whole panel; without a machine it connects to the one that the settings name."""
+    clock = clock or SystemClock()
+    machine = machine or LinkClient(settings.link_path, clock)
+    reader = reader or open_reader(settings.url)
+    app = DocumentedApp(
+        title="Heliopanel",
+        version=version("heliopanel"),
+        description=DESCRIPTION,
+        docs_url=None,
+        redoc_url=None,
+        openapi_url="/api/v1/openapi.json",
+        lifespan=_living,
+        max_body_size=LARGEST_BODY,
+    )
+    panel = Panel(settings, machine, reader, clock, Assets(STATIC), Hub(machine, clock), Simulations())
+    app.state.panel = panel
+    _add_doors(app, panel)
+    errors.install(app)
+    app.add_middleware(GZipMiddleware, minimum_size=SMALLEST_COMPRESSED)
+    app.add_middleware(Guard)
+    app.add_middleware(SecurityHeaders)
+    return app
+
+
+DESCRIPTION = """Everything that the browser can do, through the same calls.
+
+Field names carry units. Azimuth is clockwise from true north, elevation above the horizon, longitude positive
+east. Instants are ISO 8601 with offset. Errors are `application/problem+json` (RFC 9457); a 409 has `reasons`
+with every unmet condition. Motion answers 202 with the snapshot; `activity` and `in_position` tell when it is
+done. A repeated request with the same `Idempotency-Key` is done once; one whose `issued_at` is older than 2 s
+is refused. The live socket of the pages is `/live`; for programs there is `/api/v1/stream`."""
+
+
+def _add_doors(app: FastAPI, panel: Panel) -> None:
+    app.mount("/s", panel.assets, name="static")
+    app.include_router(live.router)
+    app.include_router(api_router())
+    app.include_router(operations, include_in_schema=False)
+    include_pages(app)
 
 
 @asynccontextmanager
 async def _living(app: FastAPI) -> AsyncIterator[None]:
     """Follow the machine for as long as the panel lives."""
     panel: Panel = app.state.panel
-    following = asyncio.create_task(panel.hub.run())
-    try:
-        yield
-    finally:
-        panel.hub.closing.set()
-        panel.simulations.close()
-        following.cancel()
-        await asyncio.gather(following, return_exceptions=True)
+    async with AsyncExitStack() as stack:
+        if isinstance(panel.machine, LinkClient):
+            await stack.enter_async_context(panel.machine)
+        if isinstance(panel.reader, DatabaseReader):
+            stack.callback(panel.reader.close)
+        following = asyncio.create_task(panel.hub.run())
+        try:
+            yield
+        finally:
+            panel.hub.closing.set()
+            panel.simulations.close()
+            following.cancel()
+            await asyncio.gather(following, return_exceptions=True)
 
 
-def create_app(
-    settings: Settings, *, machine: Machine, reader: Reader, clock: Clock | None = None
-) -> FastAPI:
-    """Build the whole panel."""
-    clock = clock or SystemClock()
-    panel = Panel(settings, machine, reader, clock, Assets(STATIC), Hub(machine, clock), Simulations())
-    app = FastAPI(title="Heliopanel", version="1", docs_url=None, redoc_url=None, lifespan=_living)
-    app.state.panel = panel
-    app.mount("/s", panel.assets, name="static")
-    app.include_router(live.router)
-    app.include_router(api_router())
-    include_pages(app)
-    errors.install(app)
-    app.add_middleware(GZipMiddleware, minimum_size=600)
-    app.add_middleware(Guard)
-    app.add_middleware(SecurityHeaders)
-    return app
+def run(settings: Settings) -> None:
+    """Serve the panel until it is told to end."""
+    set_up_logs("web", log_format=settings.log_format, log_level=settings.log_level)
+    app = create_app(settings)
+    config = uvicorn.Config(
+        app,
+        host=settings.host,
+        port=settings.port,
+        http=cautious(Connections(reserve_descriptors())),
+        ws="websockets-sansio",
+        ws_max_size=LARGEST_MESSAGE,
+        ws_ping_interval=PING_S,
+        ws_ping_timeout=PING_S,
+        ws_per_message_deflate=False,
+        log_config=None,
+        access_log=False,
+        proxy_headers=False,
+        server_header=False,
+        timeout_keep_alive=KEEP_ALIVE_S,
+        timeout_graceful_shutdown=FAREWELL_S,
+    )
+    PanelServer(config, app.state.panel.hub.closing.set).run()

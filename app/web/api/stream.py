@@ -78,7 +78,7 @@ def framed(message: Message) -> bytes:
     return f"event: {message.name}\n{place}data: {message.text}\n\n".encode()
 
 
-@router.get("/stream", summary="Live snapshots and events", response_class=EventStream, responses=STREAM)
+@router.get("/stream", summary="Live snapshots and events", response_class=Response, responses=STREAM)
 async def stream(
     panel: PanelDep,
     tracker_id: Annotated[str | None, Query(max_length=64, description="Only this tracker.")] = None,

@@ -1,0 +1,30 @@
+"""The OpenAPI document, with its errors."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from fastapi import FastAPI
+
+from app.web.api.base import ProblemDetails
+
+DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "openapi.json"
+
+
+class DocumentedApp(FastAPI):
+    """An application whose document describes its errors too."""
+
+    def openapi(self) -> dict[str, Any]:
+        """Return the document with the schema of problems."""
+        document = super().openapi()
+        problem = ProblemDetails.model_json_schema(ref_template="#/components/schemas/{model}")
+        schemas: dict[str, Any] = document["components"]["schemas"]
+        for name, schema in problem.pop("$defs", {}).items():
+            schemas.setdefault(name, schema)
+        schemas["ProblemDetails"] = problem
+        return document
+
+
+def written(app: FastAPI) -> str:
+    """Return the document as it is committed."""
+    return json.dumps(app.openapi(), indent=2, sort_keys=True, ensure_ascii=False) + "\n"

@@ -1,0 +1,167 @@
+"""uvicorn with patience that ends: a deadline for requests, limits for connections, a quick farewell."""
+
+import asyncio
+import resource
+import socket
+from collections import Counter
+from collections.abc import Callable
+from typing import Any
+
+import structlog
+import uvicorn
+from uvicorn.config import Config
+from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
+from uvicorn.server import ServerState
+
+log = structlog.get_logger()
+
+REQUEST_DEADLINE_S = 8.0
+KEEP_ALIVE_S = 15
+FAREWELL_S = 2
+PING_S = 5.0
+UNACKNOWLEDGED_MS = 10_000
+MOST_A_CLIENT = 256
+DESCRIPTORS_RESERVED = 128
+DESCRIPTORS_WANTED = 8192
+LARGEST_MESSAGE = 16 * 1024
+
+
+class Connections:
+    """How many plain connections each client holds, and how many there may be."""
+
+    def __init__(self, most: int, most_a_client: int = MOST_A_CLIENT) -> None:
+        self._most = most
+        self._most_a_client = most_a_client
+        self._held: Counter[str] = Counter()
+
+    def admit(self, client: str) -> bool:
+        """Count one more connection of a client, unless that would be too many."""
+        if self._held[client] >= self._most_a_client or self._held.total() >= self._most:
+            return False
+        self._held[client] += 1
+        return True
+
+    def release(self, client: str) -> None:
+        """Count one less."""
+        self._held[client] -= 1
+        if self._held[client] <= 0:
+            del self._held[client]
+
+
+class CautiousHttp(HttpToolsProtocol):
+    """HTTP that gives a request 8 s to arrive, and a client no more connections than its share."""
+
+    def __init__(
+        self,
+        config: Config,
+        server_state: ServerState,
+        app_state: dict[str, Any],
+        _loop: asyncio.AbstractEventLoop | None = None,
+        *,
+        connections: Connections,
+        deadline_s: float = REQUEST_DEADLINE_S,
+    ) -> None:
+        super().__init__(config, server_state, app_state, _loop)
+        self._counted = connections
+        self._deadline_s = deadline_s
+        self._deadline: asyncio.TimerHandle | None = None
+        self._admitted: str | None = None
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override] # as its parent
+        """Begin to wait for a request, or hang up on a client that has too many connections."""
+        super().connection_made(transport)
+        name = self.client[0] if self.client else ""
+        if not self._counted.admit(name):
+            log.warning("a client has too many connections", client=name)
+            transport.abort()
+            return
+        self._admitted = name
+        _watch(transport)
+        self._expect()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Forget the connection."""
+        self._settle()
+        self._release()
+        super().connection_lost(exc)
+
+    def on_message_begin(self) -> None:
+        """Begin to wait for the rest of a request."""
+        self._expect()
+        super().on_message_begin()
+
+    def on_message_complete(self) -> None:
+        """The request is there."""
+        self._settle()
+        super().on_message_complete()
+
+    def handle_websocket_upgrade(self) -> None:
+        """The connection becomes a WebSocket, which is counted elsewhere."""
+        self._settle()
+        self._release()
+        super().handle_websocket_upgrade()
+
+    def _expect(self) -> None:
+        self._settle()
+        self._deadline = self.loop.call_later(self._deadline_s, self.transport.abort)
+
+    def _settle(self) -> None:
+        if self._deadline is not None:
+            self._deadline.cancel()
+            self._deadline = None
+
+    def _release(self) -> None:
+        if self._admitted is not None:
+            self._counted.release(self._admitted)
+            self._admitted = None
+
+
+class PanelServer(uvicorn.Server):
+    """A server that tells its streams to end before it waits for them."""
+
+    def __init__(self, config: Config, say_farewell: Callable[[], None]) -> None:
+        super().__init__(config)
+        self._say_farewell = say_farewell
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """End the streams, then wait for what is under way."""
+        self._say_farewell()
+        await super().shutdown(sockets)
+
+
+def cautious(connections: Connections, deadline_s: float = REQUEST_DEADLINE_S) -> type[HttpToolsProtocol]:
+    """Return the protocol with its limits, as uvicorn wants it: a class."""
+
+    class Limited(CautiousHttp):
+        def __init__(
+            self,
+            config: Config,
+            server_state: ServerState,
+            app_state: dict[str, Any],
+            _loop: asyncio.AbstractEventLoop | None = None,
+        ) -> None:
+            super().__init__(
+                config, server_state, app_state, _loop, connections=connections, deadline_s=deadline_s
+            )
+
+    return Limited
+
+
+def reserve_descriptors() -> int:
+    """Ask for enough file descriptors and return how many may be connections."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    wanted = (
+        max(soft, min(hard, DESCRIPTORS_WANTED)) if hard != resource.RLIM_INFINITY else DESCRIPTORS_WANTED
+    )
+    if wanted > soft:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
+    return max(16, wanted - DESCRIPTORS_RESERVED)
+
+
+def _watch(transport: asyncio.Transport) -> None:
+    """Let the system end a connection whose other end has silently gone."""
+    raw = transport.get_extra_info("socket")
+    if raw is None or raw.family not in (socket.AF_INET, socket.AF_INET6):
+        return
+    raw.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    raw.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, UNACKNOWLEDGED_MS)
