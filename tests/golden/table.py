@@ -1,0 +1,30 @@
+"""Reads the golden tables that lie beside it."""
+
+import csv
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+
+@dataclass(frozen=True, slots=True)
+class GoldenRow:
+    case: str
+    at: datetime
+    latitude_deg: float
+    longitude_deg: float
+    values: dict[str, float]
+
+    @property
+    def hour(self) -> float:
+        return self.at.hour + self.at.minute / 60.0 + self.at.second / 3600.0
+
+
+def golden(name: str) -> list[GoldenRow]:
+    with (Path(__file__).parent / name).open(newline="") as file:
+        return [_row(row) for row in csv.DictReader(file)]
+
+
+def _row(row: dict[str, str]) -> GoldenRow:
+    values = {key: float(text) for key, text in row.items() if key not in ("case", "utc")}
+    at = datetime.fromisoformat(row["utc"] + "+00:00")
+    return GoldenRow(row["case"], at, values["lat"], values["lon"], values)

@@ -1,0 +1,107 @@
+"""Every step of the corrected Koblick algorithm against golden/koblick.csv."""
+
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from app.angles import wrap180, wrap360
+from app.sun import koblick
+from app.sun.trigonometry import SCALAR
+from tests.golden.table import GoldenRow, golden
+
+ROWS = golden("koblick.csv")
+cases = pytest.mark.parametrize("row", ROWS, ids=[row.case for row in ROWS])
+NEAR = 1e-6
+
+
+def day(row: GoldenRow) -> float:
+    return koblick.day_number(row.at.timestamp())
+
+
+def mean_longitude(row: GoldenRow) -> float:
+    return koblick.mean_longitude(koblick.perihelion(day(row)), koblick.mean_anomaly(day(row), SCALAR))
+
+
+def orbit(row: GoldenRow) -> tuple[float, float]:
+    e = koblick.eccentricity(day(row))
+    return koblick.orbit(
+        koblick.eccentric_anomaly(koblick.mean_anomaly(day(row), SCALAR), e, SCALAR), e, SCALAR
+    )
+
+
+def equatorial(row: GoldenRow) -> tuple[float, float]:
+    longitude = koblick.true_longitude(orbit(row)[1], koblick.perihelion(day(row)))
+    return koblick.equatorial(longitude, koblick.obliquity(day(row)), SCALAR)
+
+
+def angle(row: GoldenRow) -> float:
+    greenwich = koblick.greenwich_sidereal_time(mean_longitude(row), SCALAR)
+    hour = koblick.hour_of_day(row.at.timestamp(), SCALAR)
+    sidereal = koblick.local_sidereal_time(greenwich, hour, row.longitude_deg)
+    return koblick.hour_angle(sidereal, equatorial(row)[0])
+
+
+@cases
+def test_eq_1_julian_day(row: GoldenRow) -> None:
+    found = koblick.julian_day(row.at.year, row.at.month, row.at.day, row.hour)
+    assert found == pytest.approx(row.values["JD"], abs=NEAR)
+
+
+@cases
+def test_eq_2_day_number(row: GoldenRow) -> None:
+    assert day(row) == pytest.approx(row.values["d"], abs=NEAR)
+
+
+@cases
+def test_eqs_3_5_and_6_mean_longitude(row: GoldenRow) -> None:
+    assert wrap360(mean_longitude(row)) == pytest.approx(row.values["L_mod360"], abs=NEAR)
+
+
+@cases
+def test_eq_7_obliquity(row: GoldenRow) -> None:
+    assert koblick.obliquity(day(row)) == pytest.approx(row.values["obliquity"], abs=NEAR)
+
+
+@cases
+def test_eqs_4_and_8_to_12_distance(row: GoldenRow) -> None:
+    assert orbit(row)[0] == pytest.approx(row.values["r"], abs=NEAR)
+
+
+@cases
+def test_eqs_13_to_22_right_ascension_and_declination(row: GoldenRow) -> None:
+    right_ascension, declination = equatorial(row)
+    assert wrap360(right_ascension) == pytest.approx(row.values["RA"], abs=NEAR)
+    assert declination == pytest.approx(row.values["dec"], abs=NEAR)
+
+
+@cases
+def test_eq_24_greenwich_sidereal_time(row: GoldenRow) -> None:
+    found = koblick.greenwich_sidereal_time(mean_longitude(row), SCALAR)
+    assert found == pytest.approx(row.values["GMST0_h"], abs=NEAR)
+
+
+@cases
+def test_eqs_23_25_and_26_hour_angle(row: GoldenRow) -> None:
+    assert wrap180(angle(row)) == pytest.approx(row.values["HA_wrap180"], abs=NEAR)
+
+
+@cases
+def test_eqs_27_to_34_azimuth_and_elevation(row: GoldenRow) -> None:
+    azimuth, elevation = koblick.horizontal(angle(row), equatorial(row)[1], row.latitude_deg, SCALAR)
+    assert wrap360(azimuth) == pytest.approx(row.values["Az"], abs=NEAR)
+    assert elevation == pytest.approx(row.values["El"], abs=NEAR)
+
+
+@cases
+def test_the_whole_chain(row: GoldenRow) -> None:
+    azimuth, elevation = koblick.position(row.at.timestamp(), row.latitude_deg, row.longitude_deg, SCALAR)
+    assert wrap360(azimuth) == pytest.approx(row.values["Az"], abs=NEAR)
+    assert elevation == pytest.approx(row.values["El"], abs=NEAR)
+
+
+def test_the_julian_day_agrees_with_the_calendar_on_every_day_of_1901_to_2099() -> None:
+    at, end = datetime(1901, 1, 1, tzinfo=UTC), datetime(2100, 1, 1, tzinfo=UTC)
+    while at < end:
+        expected = koblick.day_number(at.timestamp()) + 2_451_543.5
+        assert koblick.julian_day(at.year, at.month, at.day, 0.0) == expected
+        at += timedelta(days=1)
