@@ -52,14 +52,14 @@ class SimulatedPlc:
             return [False]
         if address + count > DISCRETE_INPUTS:
             raise Refusal(ILLEGAL_ADDRESS)
-        words = self._status()
+        words = self._status(told=True)
         packed = self._word("status", words) | self._word("switches", words) << 16
         return [bool(packed >> bit & 1) for bit in range(address, address + count)]
 
     def read_registers(self, function: int, address: int, count: int) -> Sequence[int]:
         """Return holding registers; input registers are the same."""
         self._answers_at_once = self._training.holds(address)
-        words = self._training.words() if self._answers_at_once else self._all()
+        words = self._training.words() if self._answers_at_once else self._all(told=True)
         try:
             return [words[one] for one in range(address, address + count)]
         except KeyError as error:
@@ -106,7 +106,7 @@ class SimulatedPlc:
         self._drive.inject(fault)
 
     def _act(self, written: dict[int, int]) -> None:
-        everything = self._all() | written
+        everything = self._all(told=False) | written
         words = [everything.get(address, RESERVED) for address in range(max(everything) + 1)]
         stop = self._profile.registers.get("stop")
         self._set_clock(written)
@@ -132,9 +132,9 @@ class SimulatedPlc:
             words |= self._map.words(part, getattr(shown, part))
         return words
 
-    def _all(self) -> dict[int, int]:
-        """Return every word that is mapped."""
-        words = self._status()
+    def _all(self, *, told: bool) -> dict[int, int]:
+        """Return every word that is mapped; `told` says that the master gets to know it."""
+        words = self._status(told=told)
         words |= self._map.words("echo", self._keep_alive) | self._map.words("keep_alive", self._keep_alive)
         self._heartbeat = (self._heartbeat + 1) & 0xFFFF
         words |= self._map.words("heartbeat", self._heartbeat)
@@ -142,9 +142,9 @@ class SimulatedPlc:
         words |= self._clock_words()
         return words
 
-    def _status(self) -> dict[int, int]:
+    def _status(self, *, told: bool) -> dict[int, int]:
         """Return what does not change while nothing happens; made anew only if something did."""
-        feedback = self._drive.observe()
+        feedback = self._drive.observe(told=told)
         command = self._drive.command
         self._notice_restart(feedback.boot_count)
         if self._known is None or self._known[0] is not feedback or self._known[1] is not command:

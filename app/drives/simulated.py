@@ -161,10 +161,11 @@ class SimulatedDrive:
             self._kept_trusted = True
             self._write_memory(now_s, trusted=True)
 
-    def observe(self) -> Feedback:
-        """Return the reading of this instant."""
+    def observe(self, *, told: bool = True) -> Feedback:
+        """Return the reading of this instant; `told` says that the master gets to know it."""
         now_s = self._advance()
-        self._trip_was_read = self._tripped
+        if told:
+            self._trip_was_read = self._tripped
         if self._steady is not None:
             return self._steady
         resting = self._resting(now_s)
