@@ -1,0 +1,205 @@
+"""The command line: serve and its two processes, the sun, simulations, a drive to practise on, backup."""
+
+import json
+import os
+import signal
+import sys
+from dataclasses import asdict
+from datetime import datetime, timedelta
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.build import VERSION
+from app.clock import SystemClock
+from app.drives.drive import DriveError
+from app.drives.sim_server import run_drive_sim
+from app.machine.lock import AlreadyRunning, holder
+from app.machine.main import run as run_machine
+from app.machine.supervisor import end_with_parent, supervise
+from app.settings import SettingsWrong, read_settings
+from app.show.simulate import simulate_date
+from app.store.backup import backup as back_up
+from app.store.exports import to_csv, to_parquet
+from app.store.restore import Restored, RestorePending, request_restore
+from app.store.store import StoreFailed
+from app.sun.position import Algorithm, Location, sun_position
+from app.tracker.config import TrackerConfig
+from app.tracker.mode import Mode
+from app.tracker.recording import Frames, RecordingInfo
+from app.web.main import run as run_web
+
+FAILED = 2
+FORESEEN = (SettingsWrong, AlreadyRunning, StoreFailed, DriveError, ValueError, OSError)
+
+cli = typer.Typer(
+    name="heliopanel",
+    help="Commissions a solar tracker in the browser and keeps it on the sun.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+Supervised = Annotated[bool, typer.Option("--supervised", hidden=True)]
+Latitude = Annotated[float, typer.Option("--lat", help="Latitude, degrees, north positive.")]
+Longitude = Annotated[float, typer.Option("--lon", help="Longitude, degrees, east positive.")]
+
+
+@cli.command()
+def serve() -> None:
+    """Run the controller service and the panel, and start either again when it dies."""
+    settings = read_settings()
+    typer.echo(
+        f"Heliopanel {VERSION}: open http://{_bracketed(settings.host)}:{settings.port} (Ctrl-C ends it)"
+    )
+    raise typer.Exit(supervise(settings))
+
+
+@cli.command()
+def machine(*, supervised: Supervised = False) -> None:
+    """Run the controller service alone, for a system service of its own."""
+    if supervised:
+        end_with_parent()
+    run_machine(read_settings())
+
+
+@cli.command()
+def web(*, supervised: Supervised = False) -> None:
+    """Run the panel alone, for a system service of its own."""
+    if supervised:
+        end_with_parent()
+    run_web(read_settings())
+
+
+@cli.command()
+def sun(
+    lat: Latitude,
+    lon: Longitude,
+    at: Annotated[str, typer.Option(help="Instant, ISO 8601 with offset; default is now.")] = "",
+    algorithm: Annotated[Algorithm, typer.Option(help="Published algorithm.")] = Algorithm.PSA,
+    *,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON at full precision.")] = False,
+) -> None:
+    """Print where the sun stands."""
+    instant = _instant(at)
+    found = sun_position(algorithm, Location(lat, lon), instant)
+    if as_json:
+        told = {
+            "at": instant.isoformat(),
+            "algorithm": algorithm.value,
+            "latitude_deg": lat,
+            "longitude_deg": lon,
+        }
+        typer.echo(json.dumps(told | asdict(found)))
+        return
+    typer.echo(
+        f"{instant:%Y-%m-%d %H:%M:%S %Z}  azimuth {found.azimuth_deg:.4f} deg  "
+        f"elevation {found.elevation_deg:.4f} deg  apparent {found.apparent_elevation_deg:.4f} deg"
+    )
+
+
+@cli.command()
+def simulate(
+    lat: Latitude,
+    lon: Longitude,
+    date: Annotated[str, typer.Option(help="Local day, as 2026-06-21.")],
+    out: Annotated[Path, typer.Option(help="File to write; .csv or .parquet.")],
+    time_zone: Annotated[str, typer.Option(help="IANA time zone of the day.")] = "UTC",
+    mode: Annotated[Mode, typer.Option(help="Tracking mode.")] = Mode.DUAL,
+    algorithm: Annotated[Algorithm, typer.Option(help="Published algorithm.")] = Algorithm.PSA,
+    step_s: Annotated[float, typer.Option(min=0.1, max=60.0, help="Seconds between ticks.")] = 1.0,
+) -> None:
+    """Simulate a whole day with the real controller on a virtual clock and write its recording."""
+    info, frames = simulate_date(
+        TrackerConfig("T1", "Tracker 1", algorithm=algorithm),
+        Location(lat, lon),
+        time_zone,
+        datetime.fromisoformat(date).date(),
+        mode=mode,
+        step=timedelta(seconds=step_s),
+    )
+    _write(out, info, frames)
+    typer.echo(f"{len(frames)} frames of {info.title} are in {out}.")
+
+
+@cli.command()
+def drive_sim(
+    tcp: Annotated[str, typer.Option(help="HOST:PORT to serve Modbus TCP on.")] = "127.0.0.1:5020",
+    profile: Annotated[str, typer.Option(help="Register map, by name or file.")] = "simulated-plc",
+    unit: Annotated[int, typer.Option(min=0, max=255, help="Modbus unit id.")] = 1,
+    memory: Annotated[
+        Path | None, typer.Option(help="File in which the drive remembers its position.")
+    ] = None,
+    watchdog_ms: Annotated[int, typer.Option(min=50, help="Time-out of the drive's own watchdog.")] = 500,
+) -> None:
+    """Serve a simulated tracker over Modbus TCP, to practise on and to test with."""
+    run_drive_sim(tcp, profile, unit=unit, memory=memory, watchdog_ms=watchdog_ms)
+
+
+@cli.command()
+def backup(file: Annotated[Path, typer.Argument(help="File to write.")]) -> None:
+    """Write everything that is stored into one file; the machine may run."""
+    info = back_up(read_settings().url, file)
+    typer.echo(f"The backup is in {file} ({info.size_bytes} bytes).")
+
+
+@cli.command()
+def restore(file: Annotated[Path, typer.Argument(help="File that `backup` wrote.")]) -> None:
+    """Bring back what a backup holds; a running machine stops its drives and starts again on it."""
+    settings = read_settings()
+    match request_restore(file, settings.url, settings.data_dir):
+        case Restored(backup=found):
+            typer.echo(f"The backup of {found.site_name} is restored.")
+        case RestorePending(backup=found):
+            running = holder(settings.data_dir)
+            if running is not None:
+                os.kill(running, signal.SIGTERM)
+            typer.echo(
+                f"The backup of {found.site_name} is handed over: the controller service stops its drives "
+                "now and restores it when it starts again."
+            )
+
+
+@cli.command()
+def version() -> None:
+    """Print the version."""
+    typer.echo(VERSION)
+
+
+def main() -> None:
+    """Run the command line; what was foreseen to fail is one sentence and exit code 2."""
+    try:
+        cli()
+    except FORESEEN as error:
+        typer.echo(str(error) or type(error).__name__, err=True)
+        sys.exit(FAILED)
+
+
+def _write(out: Path, info: RecordingInfo, frames: Frames) -> None:
+    """Write a recording in the format that the file's name asks for."""
+    match out.suffix.lower():
+        case ".csv":
+            with out.open("wb") as file:
+                file.writelines(to_csv(info, frames))
+        case ".parquet":
+            out.write_bytes(to_parquet(info, frames))
+        case other:
+            raise ValueError(f"{other or 'A file without a suffix'} is not known: name it .csv or .parquet.")
+
+
+def _instant(text: str) -> datetime:
+    if not text:
+        return SystemClock().now()
+    found = datetime.fromisoformat(text)
+    if found.tzinfo is None:
+        raise ValueError(f"{text} has no time zone: add an offset, such as {text}+03:00 or {text}Z.")
+    return found
+
+
+def _bracketed(host: str) -> str:
+    return f"[{host}]" if ":" in host else host
+
+
+if __name__ == "__main__":
+    main()
