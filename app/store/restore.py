@@ -7,8 +7,9 @@ from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from sqlalchemy import Connection, text
+from sqlalchemy import Connection, func, select
 
+from app.store import tables
 from app.store.backup import BackupInfo, backup, copy_database, inspect_backup
 from app.store.connections import reading_engine, revision_of, sqlite_path, transaction, writing_engine
 from app.store.files import copy_sqlite, make_folder, make_portable, put_in_place
@@ -19,7 +20,7 @@ LOCK_NAME = "machine.lock"
 PENDING_NAME = "restore.pending"
 REFUSED_NAME = "restore.refused"
 KEPT_NAME = "heliopanel.db"
-NUMBERED = ("trackers", "events", "shows")
+NUMBERED = (tables.trackers, tables.events, tables.shows)
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,12 +154,9 @@ def _keep_rows(url: str, source: Path) -> Path | None:
 def _continue_numbers(connection: Connection) -> None:
     """Let PostgreSQL's counters go on after the highest number that was restored."""
     for table in NUMBERED:
-        connection.execute(
-            text(
-                f"SELECT setval(pg_get_serial_sequence('{table}', 'number'), "  # noqa: S608 - names are ours
-                f"(SELECT coalesce(max(number), 0) + 1 FROM {table}), false)"
-            )
-        )
+        counter = func.pg_get_serial_sequence(table.name, "number")
+        highest = select(func.coalesce(func.max(table.c.number), 0)).scalar_subquery()
+        connection.execute(select(func.setval(counter, highest + 1, False)))
 
 
 def _free_name(path: Path) -> Path:
