@@ -8,6 +8,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any, TypeVar
 
+from app.drives.drive import DriveError
 from app.drives.register import Access, Register, WordOrder, WordType
 
 PROFILES = Path(__file__).parent / "profiles"
@@ -18,7 +19,7 @@ T = TypeVar("T")
 Word = TypeVar("Word", bound=StrEnum)
 
 
-class ProfileError(Exception):
+class ProfileError(DriveError):
     """A profile is missing or wrong; the text names file, line, key and rule."""
 
 
