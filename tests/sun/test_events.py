@@ -1,0 +1,151 @@
+"""Rise, transit and set against NREL SPA, at every latitude."""
+
+from datetime import UTC, datetime, timedelta
+from itertools import pairwise
+from zoneinfo import ZoneInfo
+
+import pandas as pd
+import pvlib
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.sun.events import PolarDay, crossings, day_events, hour_angle_deg, next_rise
+from app.sun.position import RISE_ELEVATION_DEG, Algorithm, InstantRefused, Location, sun_position
+
+DAY = timedelta(days=1)
+SAMSUN = Location(41.2867, 36.33)
+LONGYEARBYEN = Location(78.22, 15.65)
+
+places = st.builds(Location, st.floats(-90.0, 90.0), st.floats(-180.0, 180.0))
+midnights = st.integers(-7305, 29219).map(lambda day: datetime(1970, 1, 1, tzinfo=UTC) + day * DAY)
+
+
+def local_day(location: Location, year: int, month: int, day: int) -> tuple[datetime, datetime]:
+    begin = datetime(year, month, day, tzinfo=UTC) - timedelta(hours=location.longitude_deg / 15.0)
+    return begin, begin + DAY
+
+
+@pytest.mark.parametrize("latitude_deg", [-60.0, -34.0, -12.0, 0.0, 23.0, 41.2867, 55.0])
+@pytest.mark.parametrize(("month", "day"), [(3, 20), (6, 21), (9, 23), (12, 21), (2, 5)])
+@pytest.mark.parametrize("algorithm", list(Algorithm))
+def test_events_agree_with_spa_within_seconds(
+    algorithm: Algorithm, latitude_deg: float, month: int, day: int
+) -> None:
+    location = Location(latitude_deg, 36.33)
+    found = day_events(algorithm, location, *local_day(location, 2026, month, day))
+    midnight = pd.DatetimeIndex([datetime(2026, month, day, tzinfo=UTC)])
+    spa = pvlib.solarposition.sun_rise_set_transit_spa(midnight, latitude_deg, 36.33).iloc[0]
+    assert found.polar is None
+    assert found.rise is not None
+    assert found.rise.timestamp() == pytest.approx(spa["sunrise"].timestamp(), abs=5.0)
+    assert found.transit is not None
+    assert found.transit.timestamp() == pytest.approx(spa["transit"].timestamp(), abs=2.0)
+    assert found.set is not None
+    assert found.set.timestamp() == pytest.approx(spa["sunset"].timestamp(), abs=5.0)
+
+
+@settings(max_examples=300, deadline=None)
+@given(location=places, begin=midnights, algorithm=st.sampled_from(Algorithm))
+def test_every_crossing_is_at_the_horizon_and_they_alternate(
+    location: Location, begin: datetime, algorithm: Algorithm
+) -> None:
+    found = crossings(algorithm, location, begin, begin + DAY)
+    for crossing in found:
+        assert begin <= crossing.at < begin + DAY
+        elevation_deg = sun_position(algorithm, location, crossing.at).elevation_deg
+        assert elevation_deg == pytest.approx(RISE_ELEVATION_DEG, abs=1e-4)
+    assert all(left.rising != right.rising for left, right in pairwise(found))
+    assert all(left.at < right.at for left, right in pairwise(found))
+
+
+@settings(max_examples=300, deadline=None)
+@given(location=places, midnight=midnights, algorithm=st.sampled_from(Algorithm))
+def test_a_local_day_has_rise_transit_set_in_this_order_or_is_polar(
+    location: Location, midnight: datetime, algorithm: Algorithm
+) -> None:
+    begin = midnight - timedelta(hours=location.longitude_deg / 15.0)
+    found = day_events(algorithm, location, begin, begin + DAY)
+    assert found.transit is None or begin <= found.transit < begin + DAY
+    if found.polar:
+        assert found.rise is None
+        assert found.set is None
+    elif abs(location.latitude_deg) < 60.0:
+        assert found.rise is not None
+        assert found.transit is not None
+        assert found.set is not None
+        assert found.rise < found.transit < found.set
+
+
+@settings(max_examples=200, deadline=None)
+@given(location=places, begin=midnights)
+def test_the_transit_is_on_the_meridian(location: Location, begin: datetime) -> None:
+    found = day_events(Algorithm.PSA, location, begin, begin + DAY)
+    if found.transit is not None:
+        sun = sun_position(Algorithm.PSA, location, found.transit)
+        assert abs(hour_angle_deg(location, sun)) < 1e-3
+        assert found.transit_elevation_deg == pytest.approx(sun.elevation_deg, abs=1e-9)
+
+
+def test_at_the_solstice_samsun_has_the_almanacs_times() -> None:
+    begin = datetime(2026, 6, 21, tzinfo=ZoneInfo("Europe/Istanbul"))
+    found = day_events(Algorithm.PSA, SAMSUN, begin, begin + DAY)
+    assert found.rise is not None
+    assert f"{found.rise:%H:%M}" == "02:01"
+    assert found.set is not None
+    assert f"{found.set:%H:%M}" == "17:11"
+    assert found.transit_elevation_deg == pytest.approx(72.15, abs=0.02)
+
+
+@pytest.mark.parametrize(("month", "polar"), [(6, PolarDay.DAY), (12, PolarDay.NIGHT), (3, None), (9, None)])
+def test_polar_day_and_night_on_svalbard(month: int, polar: PolarDay | None) -> None:
+    begin, end = local_day(LONGYEARBYEN, 2026, month, 21)
+    assert day_events(Algorithm.PSA, LONGYEARBYEN, begin, end).polar is polar
+
+
+@pytest.mark.parametrize(("latitude_deg", "june"), [(90.0, PolarDay.DAY), (-90.0, PolarDay.NIGHT)])
+def test_the_poles_have_one_long_day_and_one_long_night(latitude_deg: float, june: PolarDay) -> None:
+    pole = Location(latitude_deg, 0.0)
+    assert day_events(Algorithm.PSA, pole, *local_day(pole, 2026, 6, 21)).polar is june
+    assert day_events(Algorithm.PSA, pole, *local_day(pole, 2026, 12, 21)).polar is not june
+
+
+def test_a_sun_that_only_peeps_over_the_horizon_is_found() -> None:
+    noons = [local_day(LONGYEARBYEN, 2026, 2, day) for day in range(10, 22)]
+    lengths = [
+        found.set - found.rise
+        for begin, end in noons
+        if (found := day_events(Algorithm.PSA, LONGYEARBYEN, begin, end)).rise and found.set
+    ]
+    assert len(lengths) >= 3
+    assert lengths == sorted(lengths)
+    assert lengths[0] < timedelta(hours=2)
+
+
+@pytest.mark.parametrize(("month", "day", "hours"), [(3, 29, 23), (10, 25, 25)])
+def test_days_of_daylight_saving_have_23_or_25_hours(month: int, day: int, hours: int) -> None:
+    berlin = ZoneInfo("Europe/Berlin")
+    begin = datetime(2026, month, day, tzinfo=berlin).astimezone(UTC)
+    end = datetime(2026, month, day + 1 if month == 3 else 26, tzinfo=berlin).astimezone(UTC)
+    assert end - begin == timedelta(hours=hours)
+    found = day_events(Algorithm.PSA, Location(52.5, 13.4), begin, end)
+    assert found.rise is not None
+    assert found.set is not None
+    assert begin < found.rise < found.set < end
+
+
+def test_the_next_rise_may_be_tomorrow() -> None:
+    after = datetime(2026, 6, 21, 12, tzinfo=UTC)
+    rise = next_rise(Algorithm.PSA, SAMSUN, after)
+    assert rise is not None
+    assert after + timedelta(hours=14) < rise < after + timedelta(hours=15)
+
+
+def test_in_the_polar_night_there_is_no_next_rise() -> None:
+    assert next_rise(Algorithm.PSA, LONGYEARBYEN, datetime(2026, 12, 1, tzinfo=UTC)) is None
+
+
+def test_a_day_that_ends_before_it_begins_is_refused() -> None:
+    begin = datetime(2026, 6, 21, tzinfo=UTC)
+    with pytest.raises(InstantRefused, match="the first before the second"):
+        day_events(Algorithm.PSA, SAMSUN, begin, begin)
