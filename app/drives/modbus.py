@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from enum import IntEnum
-from heapq import heappop, heappush
+from heapq import heapify, heappop, heappush
 
 from pymodbus.client import AsyncModbusTcpClient
 from pymodbus.exceptions import ModbusException
@@ -114,8 +114,13 @@ class ModbusLink:
         await self._submit(priority, address, len(words), tuple(words), ticket, what)
 
     async def stop(self, address: int, words: Sequence[int], *, what: str) -> None:
-        """Write ahead of everything that waits, and drop the writes that wait."""
+        """Write ahead of everything that waits, and drop the writes that wait.
+
+        A stop is sent even if its caller gives up waiting; a newer one takes its place.
+        """
         self.ticket += 1
+        self._waiting = [job for job in self._waiting if not job.answer.done()]
+        heapify(self._waiting)
         for job in self._waiting:
             if job.words and job.ticket is not None:
                 _fail(job, DriveError(f"A stop overtook this: {job.what} was not written."))
@@ -161,7 +166,7 @@ class ModbusLink:
                 self._wake.clear()
                 await self._wake.wait()
             job = heappop(self._waiting)
-            if job.answer.done():
+            if job.answer.done() and job.priority is not Priority.STOP:
                 continue
             try:
                 found = await self._carry_out(job)

@@ -216,6 +216,19 @@ async def test_a_stop_overtakes_fifty_polls() -> None:
         await asyncio.gather(*polls)
 
 
+async def test_a_stop_is_sent_even_if_its_caller_gives_up() -> None:
+    async with linked(silent, good) as (link, server, _):
+        poll = asyncio.create_task(read(link))
+        await asyncio.sleep(0.02)
+        for _ in range(3):
+            with pytest.raises(TimeoutError):
+                await asyncio.wait_for(link.stop(33, [1], what="stop"), 0.02)
+        with pytest.raises(DriveSilent):
+            await poll
+        assert await read(link) == RIGHT
+        assert [request[9] for request in server.requests if request[7] == 6] == [33], "one stands for all"
+
+
 async def test_the_urgent_go_first() -> None:
     async with linked(good) as (link, server, _):
         await read(link)
