@@ -1,0 +1,212 @@
+"""A show on the machine: to its start, through its phases, and its ends."""
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from app.angles import separation_deg
+from app.drives.faults import Fault, FaultKind
+from app.tracker.axes import Axis
+from app.tracker.commands import (
+    CommandRejected,
+    GoToStart,
+    Move,
+    PauseShow,
+    ResumeShow,
+    RunShow,
+    SetZero,
+    Stop,
+    StopShow,
+    Track,
+)
+from app.tracker.config import Orientation
+from app.tracker.motion import HALT
+from app.tracker.programs.show import ShowCourse, ShowPlan
+from app.tracker.snapshot import ActivityName, EventKind, ShowPhase
+from tests.tracker.plant import CONFIG, READY, SAMSUN, Plant
+from tests.tracker.scripted import Scripted
+
+PLAN = ShowPlan(
+    "s1",
+    datetime(2026, 6, 21, 3, 0, tzinfo=UTC),
+    datetime(2026, 6, 21, 16, 30, tzinfo=UTC),
+    timedelta(minutes=3),
+    SAMSUN,
+)
+
+
+@pytest.fixture
+def plant() -> Plant:
+    plant = Plant(READY)
+    plant.tick()
+    return plant
+
+
+def at_start(plant: Plant) -> Plant:
+    plant.ask(GoToStart(PLAN))
+    return plant.forward(30.0)
+
+
+def outcome(plant: Plant) -> str:
+    return str(plant.happened(EventKind.SHOW_ENDED)[-1].data["outcome"])
+
+
+def test_a_show_from_its_start_to_its_end(plant: Plant) -> None:
+    assert plant.ask(GoToStart(PLAN)) == [EventKind.MOVE_STARTED]
+    show = plant.snapshot.show
+    assert show is not None
+    assert show.phase is ShowPhase.GOING_TO_START
+    assert plant.reasons("run_show") == {"show_phase"}
+    plant.forward(30.0)
+    assert plant.snapshot.activity_text == "Show: ready at the start position"
+    assert plant.controller.memory.showing is None
+    assert plant.ask(RunShow(PLAN)) == [EventKind.SHOW_STARTED]
+    assert plant.controller.memory.showing == "s1"
+    off_deg: list[float] = []
+
+    def look() -> None:
+        shown = plant.snapshot
+        if shown.show is not None and shown.target is not None and shown.measured is not None:
+            off_deg.append(
+                separation_deg(
+                    shown.measured.azimuth_deg,
+                    shown.measured.elevation_deg,
+                    shown.target.azimuth_deg,
+                    shown.target.elevation_deg,
+                )
+            )
+
+    plant.forward(179.0, look)
+    show = plant.snapshot.show
+    assert show is not None
+    assert show.elapsed_s == pytest.approx(179.0, abs=0.11)
+    assert show.sun_time == PLAN.begin_at + timedelta(seconds=show.elapsed_s) * PLAN.acceleration
+    assert show.sun_is_up
+    assert max(off_deg) < 1.0
+    plant.forward(1.5)
+    assert plant.activity is ActivityName.HOLDING
+    assert outcome(plant) == "completed"
+    assert plant.controller.memory.showing is None
+    assert plant.snapshot.show is None
+
+
+def test_a_paused_show_stands_still_and_goes_on_where_it_was(plant: Plant) -> None:
+    at_start(plant).ask(RunShow(PLAN))
+    plant.forward(60.0)
+    assert plant.ask(PauseShow()) == [EventKind.SHOW_PAUSED]
+    assert plant.told.azimuth == HALT
+    plant.forward(30.0)
+    show = plant.snapshot.show
+    assert show is not None
+    assert (show.phase, show.elapsed_s) == (ShowPhase.PAUSED, pytest.approx(60.0, abs=0.11))
+    assert plant.reasons("pause_show") == {"show_phase"}
+    assert plant.ask(ResumeShow()) == [EventKind.SHOW_RESUMED]
+    plant.forward(121.0)
+    assert outcome(plant) == "completed"
+
+
+def test_a_gap_between_two_ticks_does_not_make_the_show_leap(plant: Plant) -> None:
+    at_start(plant).ask(RunShow(PLAN))
+    plant.forward(10.0)
+    plant.clock.advance(timedelta(seconds=60))
+    plant.tick()
+    show = plant.snapshot.show
+    assert show is None or show.elapsed_s == pytest.approx(12.0, abs=0.2)
+
+
+def test_a_show_runs_only_from_its_start(plant: Plant) -> None:
+    with pytest.raises(CommandRejected) as refused:
+        plant.ask(RunShow(PLAN))
+    assert [reason.code for reason in refused.value.reasons] == ["show_phase"]
+    at_start(plant)
+    with pytest.raises(CommandRejected, match="does not stand at the start of this show"):
+        plant.ask(RunShow(replace(PLAN, show_id="another")))
+
+
+def test_a_show_may_be_run_by_a_panel_that_already_stands_at_its_start(plant: Plant) -> None:
+    at_start(plant)
+    plant.ask(StopShow())
+    assert outcome(plant) == "stopped"
+    assert plant.activity is ActivityName.HOLDING
+    assert plant.ask(RunShow(PLAN)) == [EventKind.SHOW_STARTED]
+
+
+def test_a_plan_that_is_too_fast_is_refused_with_its_reasons(plant: Plant) -> None:
+    hasty = replace(PLAN, duration=timedelta(seconds=12))
+    with pytest.raises(CommandRejected) as refused:
+        plant.ask(GoToStart(hasty))
+    assert all(reason.message for reason in refused.value.reasons)
+
+
+def test_a_show_takes_over_from_tracking_and_says_so(plant: Plant) -> None:
+    plant.ask(Track())
+    plant.forward(1.0)
+    assert plant.ask(GoToStart(PLAN)) == [EventKind.TRACKING_ENDED, EventKind.MOVE_STARTED]
+    assert not plant.controller.memory.tracking_on
+    plant.forward(60.0)
+    plant.ask(RunShow(PLAN))
+    for command in (Track(), Move(Orientation(10.0, 10.0)), GoToStart(PLAN), SetZero()):
+        with pytest.raises(CommandRejected, match="show"):
+            plant.ask(command)
+
+
+def test_another_start_may_be_chosen_before_the_show_runs(plant: Plant) -> None:
+    at_start(plant)
+    later = replace(PLAN, show_id="s2", begin_at=PLAN.begin_at + timedelta(hours=2))
+    assert plant.ask(GoToStart(later)) == [EventKind.MOVE_STARTED]
+
+
+@pytest.mark.parametrize("fault", [FaultKind.DRIVE_FAULT, FaultKind.POWER_LOSS, FaultKind.SILENCE])
+def test_a_fault_or_a_lost_drive_ends_a_show_at_once(plant: Plant, fault: FaultKind) -> None:
+    at_start(plant).ask(RunShow(PLAN))
+    plant.forward(20.0)
+    if fault is FaultKind.SILENCE:
+        plant.cut = True
+    else:
+        plant.drive.inject(Fault(fault, amount=7.0))
+    plant.forward(0.8)
+    assert outcome(plant) == "interrupted"
+    assert plant.controller.memory.showing is None
+    assert plant.told.azimuth == HALT
+
+
+def test_a_limit_switch_in_the_way_ends_a_show(plant: Plant) -> None:
+    at_start(plant).ask(RunShow(PLAN))
+    plant.forward(20.0)
+    plant.drive.inject(Fault(FaultKind.UPPER_LIMIT_STUCK, Axis.AZIMUTH))
+    plant.forward(1.0)
+    assert plant.happened(EventKind.LIMIT_REACHED)
+    assert outcome(plant) == "interrupted"
+
+
+def test_stop_ends_a_show(plant: Plant) -> None:
+    at_start(plant).ask(RunShow(PLAN))
+    assert plant.ask(Stop()) == [EventKind.SHOW_ENDED, EventKind.STOPPED]
+
+
+def test_a_start_that_is_not_reached_is_a_fault() -> None:
+    script = Scripted(READY)
+    axis = ShowCourse(PLAN, CONFIG, READY.pointing).start
+    assert script.reading is not None
+    near = replace(script.reading.azimuth, position_deg=axis.azimuth_deg - 0.2)
+    high = replace(script.reading.elevation, position_deg=axis.elevation_deg)
+    script.reading = replace(script.reading, azimuth=near, elevation=high)
+    script.tick()
+    script.ask(GoToStart(PLAN))
+    script.forward(8.0)
+    assert script.controller.memory.fault_code == "move_overdue"
+
+
+def test_a_show_that_a_restart_cut_off_is_told_once() -> None:
+    plant = Plant(replace(READY, showing="s7"))
+    plant.forward(0.3)
+    ended = plant.happened(EventKind.SHOW_ENDED)
+    assert [event.data for event in ended] == [{"outcome": "interrupted", "show_id": "s7"}]
+    assert plant.controller.memory.showing is None
+
+
+def test_show_commands_without_a_show_are_refused(plant: Plant) -> None:
+    for command in (PauseShow(), ResumeShow(), StopShow()):
+        with pytest.raises(CommandRejected, match="has no show under way"):
+            plant.ask(command)
