@@ -5,14 +5,15 @@ from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 
 from app.clock import Clock
-from app.drives.drive import Drive
+from app.drives.drive import Drive, DriveError
 from app.link.messages import UnknownTracker
 from app.site.ledger import Ledger
 from app.site.loop import TrackerLoop
 from app.site.recorder import Recorder
 from app.site.sky import Sky
 from app.site.timekeeping import Timekeeper
-from app.tracker.config import TrackerConfig
+from app.site.unusable import UnusableDrive
+from app.tracker.config import DriveKind, TrackerConfig
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.motion import Feedback
 from app.tracker.observation import Observation
@@ -68,11 +69,20 @@ class SiteModel:
             location_revision=self.state.location_revision,
         )
 
+    def check_drive(self, config: TrackerConfig) -> None:
+        """Raise `ValueError` if no drive can be made of a configuration."""
+        if config.drive.kind is DriveKind.SIMULATED:
+            return
+        try:
+            self.make_drive(config)
+        except DriveError as error:
+            raise ValueError(str(error)) from error
+
     def add(self, state: TrackerState) -> TrackerLoop:
         """Put a tracker on the site, or in the place of the one with its id; it does not tick yet."""
         loop = TrackerLoop(
             state,
-            self.make_drive(state.config),
+            self._drive_of(state.config),
             self.clock,
             self,
             period=self.period,
@@ -80,6 +90,12 @@ class SiteModel:
         )
         self.loops[state.config.tracker_id] = loop
         return loop
+
+    def _drive_of(self, config: TrackerConfig) -> Drive:
+        try:
+            return self.make_drive(config)
+        except (DriveError, ValueError) as error:
+            return UnusableDrive(str(error))
 
     def event(
         self, kind: EventKind, message: str, actor: str, tracker_id: str | None = None, **data: object

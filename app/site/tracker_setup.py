@@ -25,6 +25,7 @@ async def add(model: SiteModel, config: TrackerConfig, actor: str) -> tuple[Even
     if len(model.loops) >= MOST_TRACKERS:
         raise CommandRejected(Reason("site_full", f"A site has at most {MOST_TRACKERS} trackers."))
     _refuse_shared_drive(model, config)
+    model.check_drive(config)
     event = model.event(
         EventKind.TRACKER_ADDED, f"Tracker {config.name} was added.", actor, config.tracker_id
     )
@@ -47,6 +48,7 @@ async def configure(model: SiteModel, config: TrackerConfig, actor: str) -> tupl
     check_config(config)
     refuse_while_busy(model, loop)
     _refuse_shared_drive(model, config)
+    model.check_drive(config)
     event = model.event(
         EventKind.TRACKER_CHANGED,
         f"The configuration of {config.name} was changed.",

@@ -3,11 +3,13 @@
 import asyncio
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
+from pathlib import Path
 
 import pytest
 
 from app.clock import VirtualClock
 from app.drives.drive import Drive, DriveSilent
+from app.drives.factory import make_drive
 from app.link.messages import (
     AddTracker,
     ApplySightings,
@@ -23,6 +25,7 @@ from app.link.messages import (
     TakeSighting,
     UnknownTracker,
 )
+from app.site.site import Site
 from app.site.sky import Sky
 from app.site.timekeeping import Timekeeper
 from app.sun.position import Algorithm, Location
@@ -30,7 +33,7 @@ from app.tracker.axes import Axis, JogSpeed
 from app.tracker.commands import CommandRejected, Jog, Move, ResetFault, SelectMode, Stop, Track
 from app.tracker.commissioning import StepStatus
 from app.tracker.config import DriveConfig, DriveKind, Orientation, TrackerConfig
-from app.tracker.memory import ClockSetting, StepName, TrackerMemory, TrackerState
+from app.tracker.memory import ClockSetting, SiteState, StepName, TrackerMemory, TrackerState
 from app.tracker.mode import Mode
 from app.tracker.motion import DriveCapabilities, DriveCommand, Feedback
 from app.tracker.snapshot import ActivityName, EventKind
@@ -431,3 +434,24 @@ async def test_orders_at_the_same_time_do_not_mix(plant: Plant) -> None:
     await asyncio.gather(*asking)
 
     assert plant.site.model.state.location_revision == 5
+
+
+async def test_a_drive_whose_profile_is_gone_leaves_the_site_alive() -> None:
+    def no_drive(_: Drive) -> Drive:
+        raise ValueError("There is no profile acme.")
+
+    plant = await running(make_plant(wrap=no_drive))
+    await plant.forward(seconds=2)
+
+    assert any("no profile acme" in notice.message for notice in plant.tracker().notices)
+    assert plant.site.alive
+    await plant.close()
+
+
+async def test_a_profile_that_does_not_exist_is_refused(tmp_path: Path) -> None:
+    clock = VirtualClock(SUMMER_NOON)
+    site = Site(clock, lambda config: make_drive(config, clock, tmp_path), SiteState(), (FIRST,))
+    drive = DriveConfig(DriveKind.MODBUS_TCP, profile="acme")
+
+    with pytest.raises(ValueError, match="acme"):
+        await site.execute(Order(AddTracker(TrackerConfig("T2", "Two", drive=drive)), "anna"))
