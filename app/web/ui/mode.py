@@ -18,6 +18,7 @@ from app.web.errors import NotAcceptable
 from app.web.ui.forms import Typed
 from app.web.ui.orders import Press, PressDep
 from app.web.ui.render import go, page
+from app.web.ui.sunpath import todays_arc
 from app.web.ui.wizard import tracker_of, wizard_frame
 
 router = APIRouter(prefix="/trackers/{tracker_id}/commissioning/mode")
@@ -104,12 +105,14 @@ def _read(found: Typed, tracker: TrackerDetail, mode: Mode) -> Orientation:
 
 def _orientation(request: Request, tracker: TrackerDetail, typed: Typed, *, status: int = 200) -> Response:
     mode = tracker.state.memory.mode or Mode.DUAL
+    frame = wizard_frame(request, tracker, StepName.MODE)
     context = OrientationPage(
-        frame=wizard_frame(request, tracker, StepName.MODE),
+        frame=frame,
         form=typed.form(("azimuth", "elevation")),
         held=HELD[mode],
         choice=choice(mode),
         limits=limits_text(tracker.state.config),
+        arc=todays_arc(frame.site, tracker.state.config),
     )
     return page(request, context, block="form", status=status)
 

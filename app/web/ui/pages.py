@@ -6,7 +6,24 @@ from starlette.responses import Response
 
 from app.web.contexts import Outcome, ProblemPage
 from app.web.errors import Problem
-from app.web.ui import clock, homing, location, mode, overview, run, theme, tracker, wizard
+from app.web.ui import (
+    clock,
+    homing,
+    journal,
+    location,
+    mode,
+    overview,
+    record,
+    recordings,
+    run,
+    settings,
+    show,
+    simulate,
+    sun_check,
+    theme,
+    tracker,
+    wizard,
+)
 from app.web.ui.frame import site_frame
 from app.web.ui.render import environment, page, wants_block
 
@@ -20,6 +37,13 @@ ROUTERS = (
     homing.router,
     mode.router,
     run.router,
+    show.router,
+    sun_check.router,
+    record.router,
+    settings.router,
+    recordings.router,
+    simulate.router,
+    journal.router,
     wizard.router,
 )
 

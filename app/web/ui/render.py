@@ -42,7 +42,7 @@ def environment() -> Environment:
     )
     env.filters |= FILTERS
     env.globals |= {"live": live, "world": world()}
-    for shared in ("_icons.html", "_parts.html", "_sunpath.html"):
+    for shared in ("_icons.html", "_parts.html", "_sunpath.html", "_daychart.html"):
         env.globals |= _macros(env, shared)
     return env
 

@@ -9,6 +9,7 @@ from app.web.contexts import RunPage
 from app.web.deps import MachineDep
 from app.web.ui.mode import choice
 from app.web.ui.render import page
+from app.web.ui.sunpath import todays_arc
 from app.web.ui.wizard import tracker_of, wizard_frame
 
 router = APIRouter(prefix="/trackers/{tracker_id}/commissioning/run")
@@ -20,4 +21,9 @@ async def show(request: Request, tracker_id: str, machine: MachineDep) -> Respon
     tracker = tracker_of(await machine.detail(), tracker_id)
     mode = tracker.state.memory.mode
     frame = wizard_frame(request, tracker, StepName.RUN)
-    return page(request, RunPage(frame=frame, choice=choice(mode) if mode else None))
+    context = RunPage(
+        frame=frame,
+        choice=choice(mode) if mode else None,
+        arc=todays_arc(frame.site, tracker.state.config),
+    )
+    return page(request, context)

@@ -12,7 +12,8 @@ from app.sun.position import Algorithm, Location, SunPath, sun_path
 from app.tracker.axes import AxisConfig
 from app.tracker.config import TrackerConfig
 from app.tracker.snapshot import SiteSnapshot
-from app.web.contexts import Curve, HourLabel, SunDiagram
+from app.web.contexts import Arc
+from app.web.ui.drawings import Curve, HourLabel, SunDiagram
 
 HORIZON = 100.0
 DAY_S = 86_400
@@ -34,11 +35,27 @@ def diagram(site: SiteSnapshot | None, config: TrackerConfig) -> SunDiagram | No
     if site is None or site.location is None:
         return None
     today = site.at.astimezone(ZoneInfo(site.time_zone)).date()
-    return _diagram(site.location, site.time_zone, today, config.algorithm, config.azimuth, config.elevation)
+    return diagram_of(
+        site.location, site.time_zone, today, config.algorithm, config.azimuth, config.elevation
+    )
+
+
+def todays_arc(site: SiteSnapshot | None, config: TrackerConfig) -> Arc:
+    """Return today's arc of the sun at the site; empty while the location is not known."""
+    if site is None or site.location is None:
+        return ()
+    return arc(config.algorithm, site.location, site.at.astimezone(ZoneInfo(site.time_zone)).date())
+
+
+def arc(algorithm: Algorithm, location: Location, on: date) -> Arc:
+    """Return azimuth and elevation of a day's sun above the horizon, every ten minutes."""
+    path = _day(algorithm, location, on)
+    pairs = zip(path.azimuth_deg.tolist(), path.elevation_deg.tolist(), strict=True)
+    return tuple((round(azimuth, 1), round(elevation, 1)) for azimuth, elevation in pairs if elevation > -4.0)
 
 
 @lru_cache(maxsize=64)
-def _diagram(
+def diagram_of(
     location: Location,
     zone: str,
     today: date,
@@ -46,6 +63,7 @@ def _diagram(
     azimuth: AxisConfig,
     elevation: AxisConfig,
 ) -> SunDiagram:
+    """Return the diagram of a place for a day; the soft limits make the reachable part of the sky."""
     now_path = _day(algorithm, location, today)
     labels = hour_labels(algorithm, location, today, zone)
     return SunDiagram(

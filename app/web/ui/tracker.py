@@ -17,7 +17,7 @@ from app.web.ui.frame import tracker_frame
 from app.web.ui.mode import choice, limits_text
 from app.web.ui.orders import PressDep
 from app.web.ui.render import page
-from app.web.ui.sunpath import diagram
+from app.web.ui.sunpath import diagram, todays_arc
 from app.web.ui.wizard import tracker_of
 
 router = APIRouter(prefix="/trackers/{tracker_id}")
@@ -95,5 +95,6 @@ def _answer(request: Request, tracker: TrackerDetail, typed: Typed, *, status: i
         limits=limits_text(config),
         drive=tracker.capabilities.description if tracker.capabilities else config.drive.kind.value,
         diagram=diagram(frame.site, config),
+        arc=todays_arc(frame.site, config),
     )
     return page(request, context, block="go", status=status)

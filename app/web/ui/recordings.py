@@ -1,0 +1,103 @@
+"""Recorded shows, days and simulations: the list, the player, and running one again on the machine."""
+
+from typing import Annotated
+from urllib.parse import urlencode
+from zoneinfo import ZoneInfo
+
+from fastapi import APIRouter, Query
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.link.messages import DeleteRecording, UnknownRecording
+from app.store.store import Reader
+from app.sun.position import Algorithm
+from app.tracker.axes import AZIMUTH_DEFAULT, ELEVATION_DEFAULT
+from app.tracker.recording import RecordingInfo, RecordingKind
+from app.web.contexts import Forward, Frame, Link, PlayerPage, RecordingsPage
+from app.web.deps import ReaderDep
+from app.web.ui.formats import local
+from app.web.ui.frame import site_frame
+from app.web.ui.orders import PressDep
+from app.web.ui.render import go, page
+from app.web.ui.sunpath import arc, diagram_of
+
+router = APIRouter(prefix="/recordings")
+SHOWN = 200
+SHOW_SPEEDS = (1, 2, 5, 10)
+DAY_SPEEDS = (60, 300, 900, 3600)
+LONG_S = 3 * 3600
+DEFAULT_RERUN_MINUTES = "3"
+
+
+@router.get("")
+def recordings(request: Request, reader: ReaderDep, kind: str = "") -> Response:
+    """Show what was recorded, newest first."""
+    chosen = RecordingKind(kind) if kind in list(RecordingKind) else None
+    context = RecordingsPage(
+        frame=site_frame(request, "Recordings"),
+        recordings=tuple(reader.recordings(kind=chosen, limit=SHOWN)),
+        chosen=chosen or "",
+    )
+    return page(request, context)
+
+
+@router.get("/{recording_id}")
+def player(
+    request: Request,
+    recording_id: str,
+    reader: ReaderDep,
+    with_: Annotated[str | None, Query(alias="with")] = None,
+) -> Response:
+    """Play one recording, and another one laid over it."""
+    info = _stored(reader, recording_id)
+    speeds = DAY_SPEEDS if info.duration_s > LONG_S else SHOW_SPEEDS
+    on = info.sun_begin_at.astimezone(ZoneInfo(info.time_zone)).date()
+    algorithm = Algorithm(info.algorithm)
+    context = PlayerPage(
+        frame=_frame(request, info),
+        info=info,
+        other=_stored(reader, with_) if with_ else None,
+        others=_others(reader, info),
+        diagram=diagram_of(info.location, info.time_zone, on, algorithm, AZIMUTH_DEFAULT, ELEVATION_DEFAULT),
+        arc=arc(algorithm, info.location, on),
+        speeds=speeds,
+        speed=speeds[0],
+    )
+    return page(request, context)
+
+
+@router.post("/{recording_id}/delete")
+async def delete(recording_id: str, press: PressDep) -> Response:
+    """Delete a recording that is not running."""
+    await press.send(DeleteRecording(recording_id))
+    return go(press.request, "/recordings")
+
+
+def _frame(request: Request, info: RecordingInfo) -> Frame:
+    again = None
+    if info.kind is not RecordingKind.DAY:
+        again = Forward("Run again", f"/trackers/{info.tracker_id}/show?{urlencode(_plan(info))}")
+    return site_frame(request, info.title, back=Link("Recordings", "/recordings"), forward=again)
+
+
+def _plan(info: RecordingInfo) -> dict[str, str]:
+    """Return the form of a show over the same stretch of sun time."""
+    zone = info.time_zone
+    is_show = info.kind is RecordingKind.SHOW
+    return {
+        "date": local(info.sun_begin_at, zone, "%Y-%m-%d"),
+        "start": local(info.sun_begin_at, zone, "%H:%M:%S"),
+        "end": local(info.sun_end_at, zone, "%H:%M:%S"),
+        "minutes": f"{info.duration_s / 60:.4g}" if is_show else DEFAULT_RERUN_MINUTES,
+    }
+
+
+def _others(reader: Reader, info: RecordingInfo) -> tuple[RecordingInfo, ...]:
+    return tuple(one for one in reader.recordings(limit=SHOWN) if one.recording_id != info.recording_id)
+
+
+def _stored(reader: Reader, recording_id: str) -> RecordingInfo:
+    info = reader.recording(recording_id)
+    if info is None:
+        raise UnknownRecording(recording_id)
+    return info

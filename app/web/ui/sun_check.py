@@ -1,0 +1,78 @@
+"""The sun check: what sightings of the sun tell about the zero, the mast and likely mistakes."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Form
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.angles import wrap180
+from app.link.messages import ApplySightings, SiteDetail, TakeSighting, TrackerDetail
+from app.tracker.alignment import diagnose
+from app.tracker.memory import Sighting
+from app.web.contexts import SunCheckPage
+from app.web.deps import MachineDep
+from app.web.errors import NotAcceptable
+from app.web.ui.frame import tracker_frame
+from app.web.ui.orders import PressDep
+from app.web.ui.render import go, page
+from app.web.ui.wizard import tracker_of
+
+router = APIRouter(prefix="/trackers/{tracker_id}/sun-check")
+
+
+@router.get("")
+async def sun_check(request: Request, tracker_id: str, machine: MachineDep) -> Response:
+    """Show the sightings, what they tell, and the correction in use."""
+    detail = await machine.detail()
+    tracker = tracker_of(detail, tracker_id)
+    sightings = tracker.state.memory.sightings
+    context = SunCheckPage(
+        frame=tracker_frame(request, tracker_id, "Sun check"),
+        sightings=sightings,
+        errors=tuple(map(_error, sightings)),
+        causes=_causes(detail, tracker, sightings),
+        pointing=tracker.state.memory.pointing,
+    )
+    return page(request, context)
+
+
+@router.post("/take")
+async def take(tracker_id: str, press: PressDep) -> Response:
+    """Store sun and panel as they are now."""
+    await press.send(TakeSighting(tracker_id))
+    return go(press.request, f"/trackers/{tracker_id}/sun-check")
+
+
+@router.post("/apply")
+async def apply(
+    tracker_id: str, press: PressDep, machine: MachineDep, keep: Annotated[list[int], Form()]
+) -> Response:
+    """Correct the pointing with the chosen sightings; the others are forgotten."""
+    stored = tracker_of(await machine.detail(), tracker_id).state.memory.sightings
+    if any(not 0 <= place < len(stored) for place in keep):
+        raise NotAcceptable("The list of sightings has changed; load the page again.")
+    chosen = tuple(stored[place] for place in sorted(set(keep)))
+    await press.send(ApplySightings(tracker_id, chosen))
+    return go(press.request, f"/trackers/{tracker_id}/sun-check")
+
+
+@router.post("/forget")
+async def forget(tracker_id: str, press: PressDep) -> Response:
+    """Forget all sightings and the correction."""
+    await press.send(ApplySightings(tracker_id, ()))
+    return go(press.request, f"/trackers/{tracker_id}/sun-check")
+
+
+def _error(sighting: Sighting) -> tuple[float, float]:
+    """Return by how much the panel's reading differs from the sun, azimuth and elevation."""
+    azimuth_deg = wrap180(sighting.panel_azimuth_deg - sighting.sun_azimuth_deg)
+    return azimuth_deg, sighting.panel_elevation_deg - sighting.sun_elevation_deg
+
+
+def _causes(detail: SiteDetail, tracker: TrackerDetail, sightings: tuple[Sighting, ...]) -> tuple[str, ...]:
+    location, config = detail.site.location, tracker.state.config
+    if not sightings or location is None:
+        return ()
+    found = diagnose(sightings[-1], location, config.algorithm, refraction=config.refraction)
+    return tuple(cause.message for cause in found)

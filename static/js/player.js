@@ -1,0 +1,158 @@
+// Plays a recording: picture, sun path, curves and values at one instant, which the scrubber or the clock moves.
+
+import { chart } from "./chart.js";
+import { angle, clockTime, dateIn, words } from "./format.js";
+import { PanelScene, turnKeys } from "./panel3d.js";
+import { separation, unbroken } from "./sphere.js";
+import { place } from "./sunpath.js";
+
+const POINTS = 6000;
+const ANGLES = ["sun", "target", "setpoint", "measured"];
+const head = document.getElementById("player").dataset;
+const scene = new PanelScene(document.getElementById("player-scene"));
+const diagram = document.querySelector(".sunpath");
+const key = document.getElementById("player-play");
+const scrubber = document.getElementById("player-scrubber");
+const said = document.getElementById("player-state");
+turnKeys(scene);
+
+let tape = null;
+let other = null;
+let plots = [];
+let at = 0;
+let playing = false;
+let tickAt = 0;
+
+async function read(id, begin, zone) {
+  const answer = await fetch(`/api/v1/recordings/${encodeURIComponent(id)}/frames?points=${POINTS}`);
+  if (!answer.ok) throw new Error((await answer.json()).detail);
+  const { columns, activities } = await answer.json();
+  const beginS = Date.parse(begin) / 1000;
+  const error = columns.measured_azimuth_deg.map((azimuth, row) => (azimuth === null || columns.target_azimuth_deg[row] === null ? null
+    : separation(azimuth, columns.measured_elevation_deg[row], columns.target_azimuth_deg[row], columns.target_elevation_deg[row])));
+  return { columns, activities, error, time: columns.sun_time_s.map((seconds) => beginS + seconds), zone };
+}
+
+// Puts another day's hours over this day's.
+function shifted(tape2) {
+  const shift = localMidnight(tape) - localMidnight(tape2);
+  return tape2.time.map((seconds) => seconds + shift);
+}
+
+function localMidnight({ time, zone }) {
+  const [hours, minutes, seconds] = clockTime(time[0] * 1000, zone).split(":").map(Number);
+  return Math.round(time[0] - (hours * 3600 + minutes * 60 + seconds));
+}
+
+function curves(mine) {
+  const { columns } = mine;
+  return [columns.target_azimuth_deg, columns.setpoint_azimuth_deg, columns.measured_azimuth_deg].map(unbroken)
+    .concat([columns.target_elevation_deg, columns.setpoint_elevation_deg, columns.measured_elevation_deg]);
+}
+
+const SERIES = [
+  { label: "Azimuth planned", colour: "second", dash: [7, 5], width: 1.5 },
+  { label: "commanded", colour: "line", dash: [2, 4], width: 1.5 },
+  { label: "measured", colour: "text", width: 2.5 },
+  { label: "Elevation planned", colour: "blue", dash: [7, 5], width: 1.5 },
+  { label: "commanded", colour: "line", dash: [2, 4], width: 1.5 },
+  { label: "measured", colour: "blue", width: 2.5 },
+];
+
+function draw() {
+  plots.forEach((plot) => plot.destroy());
+  const cursor = { lock: false, sync: { key: "player" } };
+  const withOther = other ? [{ label: "Other azimuth", colour: "p1", width: 1.5, gaps: true }, { label: "Other elevation", colour: "p1", width: 1.5, dash: [4, 3], gaps: true }] : [];
+  const base = [tape.time, ...curves(tape)];
+  const angles = other ? window.uPlot.join([base, [shifted(other), unbroken(other.columns.measured_azimuth_deg), other.columns.measured_elevation_deg]]) : base;
+  const errors = other ? window.uPlot.join([[tape.time, tape.error], [shifted(other), other.error]]) : [tape.time, tape.error];
+  plots = [
+    chart(document.getElementById("angles"), { zone: head.playerZone, data: angles, range: [0, 360], cursor, join: Boolean(other), series: [...SERIES, ...withOther] }),
+    chart(document.getElementById("errors"), { zone: head.playerZone, data: errors, cursor, join: Boolean(other), digits: 3,
+      range: (_, least, most) => [0, Math.max(0.1, (most ?? 0) * 1.1)], series: [{ label: "Tracking error", colour: "text" }, ...(other ? [{ label: "Other", colour: "p1", width: 1.5 }] : [])] }),
+  ];
+  for (const plot of plots) {
+    plot.over.addEventListener("click", () => { if (plot.cursor.left >= 0) seek(elapsedAt(plot.posToVal(plot.cursor.left, "x"))); });
+  }
+  show();
+}
+
+function elapsedAt(unixSeconds) {
+  return tape.columns.elapsed_s[rowOf(tape.time, unixSeconds)];
+}
+
+function rowOf(column, value) {
+  let [low, high] = [0, column.length - 1];
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (column[middle] <= value) low = middle; else high = middle - 1;
+  }
+  return low;
+}
+
+function direction(name, row) {
+  const azimuth = tape.columns[`${name}_azimuth_deg`][row];
+  return azimuth === null ? null : { azimuth, elevation: tape.columns[`${name}_elevation_deg`][row] };
+}
+
+function show() {
+  const row = rowOf(tape.columns.elapsed_s, at);
+  const [sun, panel] = [direction("sun", row), direction("measured", row)];
+  scene.show({ sun, panel, target: direction("target", row) });
+  place(diagram, "sun", sun);
+  place(diagram, "panel", panel);
+  document.getElementById("player-clock").textContent = `${dateIn(tape.time[row] * 1000, head.playerZone)} ${clockTime(tape.time[row] * 1000, head.playerZone)}`;
+  for (const name of ANGLES) {
+    for (const axis of ["azimuth", "elevation"]) {
+      const value = tape.columns[`${name}_${axis}_deg`][row];
+      document.querySelector(`[data-value="${name}_${axis}_deg"]`).textContent = value === null ? "–" : angle(value);
+    }
+  }
+  document.getElementById("player-error").textContent = tape.error[row] === null ? "–" : angle(tape.error[row], 3);
+  document.getElementById("player-activity").textContent = words(tape.activities[tape.columns.activity[row]] ?? "–");
+  scrubber.value = String(at);
+  scrubber.setAttribute("aria-valuetext", document.getElementById("player-clock").textContent);
+  for (const plot of plots) plot.setCursor({ left: plot.valToPos(tape.time[row], "x"), top: plot.cursor.top ?? 0 }, false);
+}
+
+function seek(elapsed) {
+  at = Math.min(tape.columns.elapsed_s[tape.columns.elapsed_s.length - 1], Math.max(0, elapsed));
+  show();
+}
+
+const speed = () => Number(document.querySelector('input[name="player-speed"]:checked').value);
+
+function step(now) {
+  if (!playing) return;
+  const end = tape.columns.elapsed_s[tape.columns.elapsed_s.length - 1];
+  seek(at + ((now - tickAt) / 1000) * speed());
+  tickAt = now;
+  if (at >= end) play(false); else requestAnimationFrame(step);
+}
+
+function play(wanted) {
+  playing = wanted;
+  key.querySelector("span").textContent = playing ? "Pause" : "Play";
+  key.querySelector("path").setAttribute("d", playing ? "M7 4h4v16H7zM14 4h4v16h-4z" : "M7 4.5v15l12-7.5z");
+  if (!playing) return;
+  if (at >= tape.columns.elapsed_s[tape.columns.elapsed_s.length - 1]) at = 0;
+  tickAt = performance.now();
+  requestAnimationFrame(step);
+}
+
+async function open() {
+  tape = await read(head.recording, head.begin, head.playerZone);
+  if (!tape.time.length) {
+    said.textContent = "This recording has no frames.";
+    return;
+  }
+  if (head.other) other = await read(head.other, head.otherBegin, head.otherZone);
+  scrubber.max = String(tape.columns.elapsed_s[tape.columns.elapsed_s.length - 1]);
+  said.textContent = other ? `Laid over it, in red: ${head.otherTitle}.` : "";
+  draw();
+  key.addEventListener("click", () => play(!playing));
+  scrubber.addEventListener("input", () => { play(false); seek(Number(scrubber.value)); });
+  addEventListener("theme", draw);
+}
+
+open().catch((error) => { said.textContent = `The frames could not be read: ${error.message}`; });
