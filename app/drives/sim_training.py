@@ -5,18 +5,29 @@ from datetime import timedelta
 
 from app.drives.faults import Fault, FaultKind
 from app.drives.modbus_server import ILLEGAL_ADDRESS, ILLEGAL_VALUE, Refusal
-from app.drives.register import Register, WordType
+from app.drives.register import Access, Register, WordType
 from app.drives.simulated import SimulatedDrive
 from app.tracker.axes import Axis
 
 LATE = timedelta(milliseconds=400)
 FIRST = 900
 FAULT = Register(
-    "fault", FIRST, WordType.UINT16, text="0 clears all, else the number of a fault; acts at once"
+    "fault",
+    FIRST,
+    WordType.UINT16,
+    access=Access.READ_WRITE,
+    text="0 clears all, else the number of a fault; acts at once",
 )
-AXIS = Register("axis", FIRST + 1, WordType.UINT16, text="0 both, 1 azimuth, 2 elevation")
+AXIS = Register(
+    "axis", FIRST + 1, WordType.UINT16, access=Access.READ_WRITE, text="0 both, 1 azimuth, 2 elevation"
+)
 AMOUNT = Register(
-    "amount", FIRST + 2, WordType.INT32, scale=0.001, text="Degrees of a jump, deg/s of a slip, or a code"
+    "amount",
+    FIRST + 2,
+    WordType.INT32,
+    scale=0.001,
+    access=Access.READ_WRITE,
+    text="Degrees of a jump, degrees a second of a slip, or a fault code",
 )
 TRUE_AZIMUTH = Register(
     "true_azimuth", FIRST + 4, WordType.INT32, scale=0.001, unit="deg", text="Where the panel really points"

@@ -6,6 +6,7 @@ import pytest
 
 from app.drives.plc_map import PlcMap
 from app.drives.profile import PROFILES, ProfileError, known_profiles, load_profile, parse_profile
+from app.drives.profile_page import DOCS, page
 from app.drives.register import Register, WordOrder, WordType
 
 TEXT = (PROFILES / "simulated-plc.toml").read_text(encoding="utf-8")
@@ -17,6 +18,12 @@ def test_every_profile_that_ships_can_be_loaded(name: str) -> None:
     assert profile.name == name
     assert all(register.source for register in profile.registers.values())
     assert PlcMap(profile)
+
+
+@pytest.mark.parametrize("name", known_profiles())
+def test_the_page_of_every_profile_is_up_to_date(name: str) -> None:
+    written = (DOCS / f"{name}.md").read_text(encoding="utf-8")
+    assert written == page(load_profile(name)), "run python -m app.drives.profile_page"
 
 
 def test_a_profile_can_be_a_file_of_ones_own(tmp_path: Path) -> None:
