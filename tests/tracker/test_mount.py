@@ -1,0 +1,150 @@
+"""From a direction of the sky to axis angles and back."""
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from app.angles import separation_deg
+from app.sun.position import SunPosition
+from app.tracker.axes import AxisConfig
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.memory import Pointing
+from app.tracker.mode import Mode
+from app.tracker.mount import aim, mode_direction, needs_move, sky
+
+LEVEL = Pointing()
+PLAIN = TrackerConfig("t01", "T01")
+
+leans = st.floats(-5.0, 5.0)
+pointings = st.builds(Pointing, st.floats(-180.0, 180.0), st.floats(-3.0, 3.0), leans, leans)
+
+
+def with_range(minimum_deg: float, maximum_deg: float) -> TrackerConfig:
+    return replace(PLAIN, azimuth=AxisConfig(minimum_deg, maximum_deg, 6.0, 6.0, 0.5, 3.0))
+
+
+@pytest.mark.parametrize(
+    ("minimum_deg", "maximum_deg", "azimuth_deg", "near_deg", "expected_deg"),
+    [
+        (0.0, 360.0, 350.0, 10.0, 350.0),
+        (0.0, 360.0, 10.0, 350.0, 10.0),
+        (-180.0, 180.0, 350.0, 10.0, -10.0),
+        (-180.0, 180.0, 190.0, 170.0, -170.0),
+        (0.0, 540.0, 10.0, 350.0, 370.0),
+        (0.0, 540.0, 10.0, 100.0, 10.0),
+        (0.0, 540.0, 300.0, 500.0, 300.0),
+        (-360.0, 360.0, 90.0, -300.0, -270.0),
+    ],
+)
+def test_the_equivalent_azimuth_nearest_to_the_axis_is_taken(
+    minimum_deg: float, maximum_deg: float, azimuth_deg: float, near_deg: float, expected_deg: float
+) -> None:
+    target = aim(with_range(minimum_deg, maximum_deg), LEVEL, Orientation(azimuth_deg, 30.0), near_deg)
+    assert target.azimuth_deg == expected_deg
+    assert target.elevation_deg == 30.0
+    assert not target.limited
+
+
+@pytest.mark.parametrize(
+    ("azimuth_deg", "stop_deg"), [(60.0, 90.0), (300.0, 270.0), (10.0, 90.0), (350.0, 270.0)]
+)
+def test_a_direction_out_of_reach_gives_the_nearer_end_stop_and_says_so(
+    azimuth_deg: float, stop_deg: float
+) -> None:
+    target = aim(with_range(90.0, 270.0), LEVEL, Orientation(azimuth_deg, 30.0), 180.0)
+    assert target.azimuth_deg == stop_deg
+    assert target.limited
+
+
+def test_a_direction_midway_between_two_stops_goes_to_the_one_nearer_to_the_axis() -> None:
+    assert aim(with_range(90.0, 270.0), LEVEL, Orientation(0.0, 30.0), 250.0).azimuth_deg == 270.0
+    assert aim(with_range(90.0, 270.0), LEVEL, Orientation(0.0, 30.0), 100.0).azimuth_deg == 90.0
+
+
+def test_an_elevation_below_the_lower_limit_is_limited() -> None:
+    target = aim(PLAIN, LEVEL, Orientation(100.0, -0.5), 100.0)
+    assert target.elevation_deg == 0.0
+    assert target.limited
+
+
+def test_offsets_are_added_to_the_sky_direction() -> None:
+    target = aim(
+        PLAIN, Pointing(azimuth_offset_deg=3.0, elevation_offset_deg=-1.0), Orientation(100.0, 40.0), 0.0
+    )
+    assert (target.azimuth_deg, target.elevation_deg) == (103.0, 39.0)
+
+
+def test_a_mast_that_leans_north_sees_the_north_higher_and_the_south_lower() -> None:
+    lean = Pointing(lean_north_deg=2.0)
+    assert aim(PLAIN, lean, Orientation(0.0, 40.0), 0.0).elevation_deg == pytest.approx(42.0)
+    assert aim(PLAIN, lean, Orientation(180.0, 40.0), 180.0).elevation_deg == pytest.approx(38.0)
+
+
+def test_a_mast_that_leans_east_sees_the_east_higher() -> None:
+    lean = Pointing(lean_east_deg=2.0)
+    assert aim(PLAIN, lean, Orientation(90.0, 40.0), 90.0).elevation_deg == pytest.approx(42.0)
+    assert aim(PLAIN, lean, Orientation(270.0, 40.0), 270.0).elevation_deg == pytest.approx(38.0)
+
+
+@given(
+    pointing=pointings,
+    azimuth_deg=st.floats(0.0, 359.999),
+    elevation_deg=st.floats(0.0, 89.0),
+    near_deg=st.floats(-360.0, 720.0),
+    lower_deg=st.floats(-400.0, 0.0),
+    width_deg=st.floats(360.0, 700.0),
+)
+def test_sky_is_the_inverse_of_aim(
+    pointing: Pointing,
+    azimuth_deg: float,
+    elevation_deg: float,
+    near_deg: float,
+    lower_deg: float,
+    width_deg: float,
+) -> None:
+    config = with_range(lower_deg, lower_deg + width_deg)
+    target = aim(config, pointing, Orientation(azimuth_deg, elevation_deg), near_deg)
+    assert config.azimuth.contains(target.azimuth_deg)
+    assert config.elevation.contains(target.elevation_deg)
+    assume(not target.limited)
+    faced = sky(config, pointing, target.azimuth_deg, target.elevation_deg)
+    assert 0.0 <= faced.azimuth_deg < 360.0
+    assert separation_deg(faced.azimuth_deg, faced.elevation_deg, azimuth_deg, elevation_deg) < 1e-6
+
+
+@given(azimuth_deg=st.floats(-720.0, 720.0), near_deg=st.floats(0.0, 540.0))
+def test_no_equivalent_inside_the_limits_is_nearer_than_the_one_taken(
+    azimuth_deg: float, near_deg: float
+) -> None:
+    config = with_range(0.0, 540.0)
+    taken_deg = aim(config, LEVEL, Orientation(azimuth_deg, 30.0), near_deg).azimuth_deg
+    others = [azimuth_deg + 360.0 * turns for turns in range(-4, 5)]
+    distances = [abs(other - near_deg) for other in others if 0.0 <= other <= 540.0]
+    assert abs(taken_deg - near_deg) <= min(distances) + 1e-9
+
+
+def test_an_axis_past_the_zenith_faces_the_other_way() -> None:
+    assert sky(PLAIN, LEVEL, 100.0, 95.0) == Orientation(280.0, 85.0)
+
+
+def test_each_mode_follows_the_sun_on_its_axes_and_holds_the_others() -> None:
+    held, sun = Orientation(10.0, 20.0), SunPosition(150.0, 40.0, 40.1)
+    assert mode_direction(Mode.FIXED, held, sun, refraction=True) == held
+    assert mode_direction(Mode.AZIMUTH, held, sun, refraction=True) == Orientation(150.0, 20.0)
+    assert mode_direction(Mode.ELEVATION, held, sun, refraction=True) == Orientation(10.0, 40.1)
+    assert mode_direction(Mode.DUAL, held, sun, refraction=True) == Orientation(150.0, 40.1)
+    assert mode_direction(Mode.DUAL, held, sun, refraction=False) == Orientation(150.0, 40.0)
+
+
+def test_an_azimuth_error_counts_less_the_higher_the_panel_looks() -> None:
+    assert needs_move(PLAIN, Orientation(100.0, 10.0), Orientation(101.0, 10.0), 0.5)
+    assert not needs_move(PLAIN, Orientation(100.0, 70.0), Orientation(101.0, 70.0), 0.5)
+    assert not needs_move(PLAIN, Orientation(90.0, 89.9), Orientation(270.0, 89.9), 0.5)
+
+
+def test_without_a_deadband_given_the_trackers_own_counts() -> None:
+    measured, target = Orientation(100.0, 0.0), Orientation(100.4, 0.0)
+    assert not needs_move(PLAIN, measured, target)
+    assert needs_move(replace(PLAIN, deadband_deg=0.3), measured, target)
