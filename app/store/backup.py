@@ -18,7 +18,7 @@ from app.store.connections import (
     writing_engine,
 )
 from app.store.documents import SITE
-from app.store.files import make_folder, make_portable, put_in_place
+from app.store.files import make_folder, make_portable, put_in_place, remove_sqlite
 from app.store.migrations import upgrade
 from app.store.store import StoreFailed
 
@@ -45,14 +45,14 @@ def backup(url: str, target: Path) -> BackupInfo:
     unfinished = target.with_name(f"{target.name}.unfinished")
     make_folder(target.parent)
     try:
-        unfinished.unlink(missing_ok=True)
+        remove_sqlite(unfinished)
         _copy_to_file(url, unfinished)
         found = inspect_backup(unfinished)
         put_in_place(unfinished, target)
     except OSError as error:
         raise StoreFailed(f"The backup {target} could not be written: {error.strerror}.") from error
     finally:
-        unfinished.unlink(missing_ok=True)
+        remove_sqlite(unfinished)
     return BackupInfo(target, target.stat().st_size, found.revision, *_content(found))
 
 

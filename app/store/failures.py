@@ -1,6 +1,6 @@
 """What a database says when it cannot, as sentences that say what to do."""
 
-from sqlalchemy.exc import DBAPIError, SQLAlchemyError
+from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError, SQLAlchemyError
 
 from app.store.store import StoreFailed
 
@@ -13,6 +13,9 @@ SENTENCES = (
     ("SQLITE_READONLY", "The database file cannot be written. Give Heliopanel's user the right to write it."),
     ("SQLITE_CANTOPEN", "The database file cannot be opened. Check that the data folder exists."),
 )  # fmt: skip
+UNREACHABLE = ("", "57P01", "57P02", "57P03", "08006")
+"""PostgreSQL: no answer at all, shut down, crashed, not yet started, connection lost."""
+
 LASTING = ("SQLITE_IOERR", "SQLITE_CORRUPT", "SQLITE_NOTADB")
 
 
@@ -34,7 +37,7 @@ def explained(error: SQLAlchemyError) -> StoreFailed:
         if code.startswith(name):
             return StoreFailed(sentence)
     first_line = str(getattr(error, "orig", None) or error).strip().split("\n", maxsplit=1)[0]
-    if isinstance(error, DBAPIError) and (error.connection_invalidated or code in {"", "57P01", "57P03"}):
+    if isinstance(error, InterfaceError | OperationalError) and code in UNREACHABLE:
         return StoreFailed(
             f"The database cannot be reached: nothing was stored. Check that it runs ({first_line})."
         )

@@ -12,7 +12,14 @@ from sqlalchemy import Connection, func, select
 from app.store import tables
 from app.store.backup import BackupInfo, backup, copy_database, inspect_backup
 from app.store.connections import reading_engine, revision_of, sqlite_path, transaction, writing_engine
-from app.store.files import copy_sqlite, make_folder, make_portable, put_in_place
+from app.store.files import (
+    copy_sqlite,
+    make_folder,
+    make_portable,
+    put_in_place,
+    remove_companions,
+    remove_sqlite,
+)
 from app.store.migrations import drop_tables, run_migrations, upgrade
 from app.store.store import StoreFailed
 
@@ -40,20 +47,17 @@ class RestorePending:
 
 
 def request_restore(source: Path, url: str, data_dir: Path) -> Restored | RestorePending:
-    """Restore at once if no machine runs, else hand the checked file over for the machine's next start."""
+    """Hand a checked backup over and restore it if no machine runs; else the machine does at its next start.
+
+    Handing over comes first, so that the next start finishes a restore that a power cut interrupted.
+    """
     found = inspect_backup(source)
-    with _machine_kept_out(data_dir) as stopped:
-        if stopped:
-            return restore(source, url)
     pending = data_dir / PENDING_NAME
-    staged = _stage(source, data_dir / f"{PENDING_NAME}.unfinished")
-    put_in_place(staged, pending)
+    put_in_place(_stage(source, data_dir / f"{PENDING_NAME}.staged"), pending)
+    with _machine_kept_out(data_dir) as stopped:
+        if stopped and (restored := apply_pending_restore(data_dir, url)) is not None:
+            return Restored(found, restored.kept)
     return RestorePending(found, pending)
-
-
-def restore_is_pending(data_dir: Path) -> bool:
-    """Return whether a backup was handed over: a running machine should stop motion and start again."""
-    return (data_dir / PENDING_NAME).exists()
 
 
 def apply_pending_restore(data_dir: Path, url: str) -> Restored | None:
@@ -86,7 +90,7 @@ def restore(source: Path, url: str) -> Restored:
     try:
         kept = _swap_file(staged, path) if path else _replace_rows(staged, url, source)
     finally:
-        staged.unlink(missing_ok=True)
+        remove_sqlite(staged)
     return Restored(found, kept)
 
 
@@ -98,7 +102,7 @@ def _stage(source: Path, staged: Path) -> Path:
         upgrade(f"sqlite:///{staged}")
         make_portable(staged)
     except StoreFailed:
-        staged.unlink()
+        remove_sqlite(staged)
         raise
     return staged
 
@@ -112,8 +116,7 @@ def _swap_file(staged: Path, path: Path) -> Path | None:
         if log.exists():
             log.replace(kept.with_name(f"{kept.name}-wal"))
         path.replace(kept)
-    for ending in ("-wal", "-shm"):
-        path.with_name(path.name + ending).unlink(missing_ok=True)
+    remove_companions(path)
     put_in_place(staged, path)
     return kept
 

@@ -22,7 +22,6 @@ from app.store.restore import (
     apply_pending_restore,
     request_restore,
     restore,
-    restore_is_pending,
 )
 from app.store.store import JournalEntry, JournalFilter, PlannedShow, StoreFailed
 from app.store.tables import REVISION
@@ -252,11 +251,23 @@ def test_a_running_machine_restores_at_its_next_start(url: str, tmp_path: Path) 
         assert isinstance(handed_over, RestorePending)
         assert handed_over.backup.site_name == SITE.name
         assert content(url) != before
-        assert restore_is_pending(tmp_path)
+        assert (tmp_path / PENDING_NAME).exists()
         restored = apply_pending_restore(tmp_path, url)
     assert restored is not None
     assert content(url) == before
     assert not list(tmp_path.glob(f"{PENDING_NAME}*"))
+
+
+def test_a_restore_that_a_power_cut_interrupted_is_finished(sqlite_url: str, tmp_path: Path) -> None:
+    upgrade(sqlite_url)
+    before = fill(sqlite_url)
+    backup(sqlite_url, tmp_path / PENDING_NAME)
+    (tmp_path / "heliopanel.db").replace(tmp_path / "heliopanel.db.before-restore-1")
+    (tmp_path / "heliopanel.db.restoring").write_bytes(b"half a file")
+    (tmp_path / "heliopanel.db.restoring-wal").write_bytes(b"half a log")
+    assert apply_pending_restore(tmp_path, sqlite_url) is not None
+    assert content(sqlite_url) == before
+    assert not list(tmp_path.glob("*restoring*"))
 
 
 def test_a_pending_file_that_went_bad_is_put_aside(url: str, tmp_path: Path) -> None:

@@ -136,6 +136,19 @@ def test_a_damaged_file_is_told_at_the_start(sqlite_url: str, on_sqlite: Databas
             opening(sqlite_url)
 
 
+def test_a_damaged_table_is_named_at_the_start(sqlite_url: str, on_sqlite: DatabaseWriter) -> None:
+    on_sqlite.save_site(SITE)
+    on_sqlite.close()
+    path = Path(str(sqlite_path(sqlite_url)))
+    with closing(sqlite3.connect(path)) as connection:
+        (page,) = connection.execute("SELECT rootpage FROM sqlite_master WHERE name = 'site'").fetchone()
+    with path.open("r+b") as file:
+        file.seek((page - 1) * 4096 + 8)
+        file.write(b"\xff\xff")
+    with pytest.raises(StoreFailed, match=r"is damaged \(table site\)\. Restore a backup"):
+        open_writer(sqlite_url)
+
+
 def test_a_file_that_is_no_database_is_told_at_the_start(sqlite_url: str) -> None:
     Path(str(sqlite_path(sqlite_url))).write_bytes(b"This is not a database at all. " * 400)
     for opening in (open_writer, upgrade):
