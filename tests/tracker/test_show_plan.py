@@ -1,0 +1,265 @@
+"""Which shows a tracker can run, and what is said about those it cannot."""
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.sun.position import Location
+from app.tracker.axes import AxisConfig
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.mode import Mode
+from app.tracker.programs.show import ShowCourse, ShowPlan, check_show
+from app.tracker.reason import Reason
+from tests.tracker.shows import (
+    ACROSS_MIDNIGHT,
+    PLAIN,
+    SAMSUN,
+    SOLSTICE,
+    SOUTH,
+    SVALBARD,
+    ZENITH_DAY,
+    show,
+    utc,
+    with_range,
+)
+
+
+def codes(reasons: tuple[Reason, ...]) -> list[str]:
+    return [reason.code for reason in reasons]
+
+
+def test_the_solstice_at_samsun_in_three_minutes_works() -> None:
+    check = check_show(SOLSTICE, PLAIN)
+    assert check.feasible
+    assert check.notices == ()
+    assert 3.0 < check.peak_azimuth_dps < 4.5
+    assert 0.5 < check.peak_elevation_dps < 1.5
+    assert check.start.azimuth_deg == pytest.approx(57.2, abs=0.1)
+    assert check.start.elevation_deg == 0.0
+    assert check.sun_up == ((SOLSTICE.begin_at, SOLSTICE.end_at),)
+
+
+def test_the_same_in_twenty_seconds_is_refused_with_what_would_work() -> None:
+    check = check_show(replace(SOLSTICE, duration=timedelta(seconds=20)), PLAIN)
+    assert codes(check.reasons) == ["azimuth_too_fast", "elevation_too_fast"]
+    assert "34.03 degrees a second" in check.reasons[0].message
+    assert "rated 6.00" in check.reasons[0].message
+    assert check.shortest == timedelta(minutes=2)
+    assert check.reasons[0].hint == "The shortest simulation time that works is 2 min 0 s."
+
+
+@pytest.mark.parametrize(
+    ("plan", "tracker"),
+    [
+        (SOLSTICE, PLAIN),
+        (ACROSS_MIDNIGHT, PLAIN),
+        (ZENITH_DAY, PLAIN),
+        (SOUTH, PLAIN),
+        (SOUTH, with_range(-180.0, 180.0)),
+        (show(SVALBARD, utc(2026, 6, 20, 22), utc(2026, 6, 21, 22), 180.0), PLAIN),
+    ],
+    ids=["solstice", "across midnight", "zenith", "south", "south without unwinding", "polar day"],
+)
+def test_the_shortest_duration_works_and_a_second_less_does_not(
+    plan: ShowPlan, tracker: TrackerConfig
+) -> None:
+    shortest = check_show(plan, tracker).shortest
+    assert shortest is not None
+    assert shortest.total_seconds() == int(shortest.total_seconds())
+    assert check_show(replace(plan, duration=shortest), tracker).feasible
+    assert not check_show(replace(plan, duration=shortest - timedelta(seconds=1)), tracker).feasible
+
+
+def test_a_night_too_short_for_the_axes_is_a_reason() -> None:
+    slow = replace(PLAIN, azimuth=AxisConfig(0.0, 360.0, 2.5, 1.0, 0.5, 2.0))
+    plan = show(SAMSUN, utc(2026, 6, 21, 16, 50), utc(2026, 6, 22, 2, 30), 60.0)
+    check = check_show(plan, slow)
+    assert codes(check.reasons) == ["night_too_short"]
+    assert check.shortest is not None
+    assert check_show(replace(plan, duration=check.shortest), slow).feasible
+
+
+def test_a_show_that_begins_by_night_waits_where_the_sun_will_rise() -> None:
+    plan = show(SAMSUN, utc(2026, 6, 21), utc(2026, 6, 21, 9), 180.0)
+    check = check_show(plan, PLAIN)
+    assert check.feasible
+    assert check.start.azimuth_deg == pytest.approx(57.2, abs=0.1)
+    assert "2 h 1 min" in check.notices[0].message
+    assert not check.path.sun_is_up[0]
+    assert check.path.sun_is_up[-1]
+    first = ShowCourse(plan, PLAIN).at(timedelta(0))
+    assert not first.sun_is_up
+    assert first.sun.elevation_deg < -1.0
+    assert not first.repositioning
+
+
+def test_a_polar_day_of_24_hours_needs_no_unwinding_where_the_axis_turns_further() -> None:
+    check = check_show(show(SVALBARD, utc(2026, 6, 21), utc(2026, 6, 22), 180.0), with_range(0.0, 540.0))
+    assert check.feasible
+    assert check.notices == ()
+    assert check.path.panel_azimuth_deg[-1] > 360.0
+    assert check.path.sun_is_up.all()
+
+
+def test_a_polar_day_that_ends_just_past_north_waits_at_the_end_stop() -> None:
+    check = check_show(show(SVALBARD, utc(2026, 6, 21), utc(2026, 6, 22), 180.0), PLAIN)
+    assert check.feasible
+    assert codes(check.notices) == ["limited"]
+    assert check.path.panel_azimuth_deg[-1] == 360.0
+
+
+def test_a_polar_day_from_noon_to_noon_unwinds_at_midnight() -> None:
+    plan = show(SVALBARD, utc(2026, 6, 21, 11), utc(2026, 6, 22, 11), 400.0)
+    check = check_show(plan, PLAIN)
+    assert check.feasible
+    assert codes(check.notices) == ["unwinding"]
+    assert "turns from 360 to" in check.notices[0].message
+
+
+def test_through_the_north_an_axis_of_0_to_360_unwinds_at_noon() -> None:
+    check = check_show(SOUTH, PLAIN)
+    assert check.feasible
+    assert codes(check.notices) == ["unwinding"]
+    assert "turns from 0 to 330 degrees" in check.notices[0].message
+    assert "of sun time" in check.notices[0].message
+
+
+@pytest.mark.parametrize(
+    ("tracker", "start_deg"), [(with_range(-180.0, 180.0), 63.6), (with_range(0.0, 540.0), 423.6)]
+)
+def test_through_the_north_other_axes_need_no_unwinding(tracker: TrackerConfig, start_deg: float) -> None:
+    check = check_show(replace(SOUTH, duration=timedelta(seconds=180)), tracker)
+    assert check.feasible
+    assert check.notices == ()
+    assert check.start.azimuth_deg == pytest.approx(start_deg, abs=0.2)
+
+
+def test_unwinding_that_takes_more_than_a_fifth_of_the_show_is_refused() -> None:
+    check = check_show(replace(SOUTH, duration=timedelta(seconds=100)), PLAIN)
+    assert codes(check.reasons) == ["repositioning_too_long"]
+    assert "at most 20%" in check.reasons[0].message
+    assert check.shortest is not None
+    assert timedelta(minutes=4) < check.shortest < timedelta(minutes=6)
+
+
+def test_a_sun_through_the_zenith_is_announced_with_what_it_costs() -> None:
+    check = check_show(ZENITH_DAY, PLAIN)
+    assert check.feasible
+    assert codes(check.notices) == ["keyhole"]
+    assert "passes too near the zenith" in check.notices[0].message
+    assert "s of the show, 2 h" in check.notices[0].message
+    assert check.peak_azimuth_dps <= 6.0
+
+
+def test_the_fixed_mode_does_not_move_and_needs_no_sun() -> None:
+    held = Orientation(120.0, 35.0)
+    plan = show(SAMSUN, utc(2026, 12, 21, 18), utc(2026, 12, 22, 3), 60.0, mode=Mode.FIXED, orientation=held)
+    check = check_show(plan, PLAIN)
+    assert check.feasible
+    assert check.start == held
+    assert check.peak_azimuth_dps == 0.0
+    assert set(check.path.panel_azimuth_deg.tolist()) == {120.0}
+
+
+def test_the_elevation_mode_holds_its_azimuth() -> None:
+    plan = replace(SOLSTICE, mode=Mode.ELEVATION, orientation=Orientation(170.0, 0.0))
+    check = check_show(plan, PLAIN)
+    assert check.feasible
+    assert set(check.path.panel_azimuth_deg.tolist()) == {170.0}
+    assert check.path.panel_elevation_deg.max() == pytest.approx(72.15, abs=0.05)
+
+
+def test_the_azimuth_mode_holds_its_elevation() -> None:
+    plan = replace(SOLSTICE, mode=Mode.AZIMUTH, orientation=Orientation(0.0, 30.0))
+    check = check_show(plan, PLAIN)
+    assert set(check.path.panel_elevation_deg.tolist()) == {30.0}
+    assert check.path.panel_azimuth_deg.max() > 300.0
+
+
+def test_directions_beyond_the_limits_are_a_notice() -> None:
+    check = check_show(SOLSTICE, with_range(90.0, 270.0))
+    assert check.feasible
+    assert codes(check.notices) == ["limited"]
+    assert "up to 32.8 degrees away" in check.notices[0].message
+    assert ShowCourse(SOLSTICE, with_range(90.0, 270.0)).at(timedelta(0)).axis_target.limited
+
+
+@pytest.mark.parametrize(
+    ("change", "code", "words"),
+    [
+        ({"end_at": utc(2026, 6, 21, 1)}, "end_before_start", "ends before it starts"),
+        ({"end_at": utc(2026, 6, 23, 3)}, "interval_too_long", "more than 48 hours"),
+        ({"duration": timedelta(seconds=9)}, "duration_out_of_range", "between 10 seconds and 24 hours"),
+        ({"duration": timedelta(0)}, "duration_out_of_range", "between 10 seconds and 24 hours"),
+        ({"duration": timedelta(hours=25)}, "duration_out_of_range", "not 25 h 0 min"),
+    ],
+)
+def test_a_plan_that_makes_no_sense_is_refused_in_a_sentence(
+    change: dict[str, Any], code: str, words: str
+) -> None:
+    check = check_show(replace(SOLSTICE, **change), PLAIN)
+    assert not check.feasible
+    assert code in codes(check.reasons)
+    assert any(words in reason.message for reason in check.reasons)
+    assert all(reason.hint for reason in check.reasons)
+
+
+@pytest.mark.parametrize("year", [1850, 2120])
+def test_years_without_a_known_sun_are_refused(year: int) -> None:
+    check = check_show(show(SAMSUN, utc(year, 6, 21, 4), utc(year, 6, 21, 9), 60.0), PLAIN)
+    assert codes(check.reasons) == ["year_out_of_range"]
+    assert check.path.sun_time_unix_s.size == 0
+
+
+def test_a_show_without_any_sun_is_refused() -> None:
+    check = check_show(show(SAMSUN, utc(2026, 6, 21, 20), utc(2026, 6, 21, 23), 60.0), PLAIN)
+    assert codes(check.reasons) == ["sun_never_up"]
+    assert check.shortest is None
+
+
+def test_no_axis_is_told_to_leave_its_limits() -> None:
+    for plan in (SOLSTICE, ACROSS_MIDNIGHT, ZENITH_DAY, SOUTH):
+        path = check_show(plan, PLAIN).path
+        assert path.panel_azimuth_deg.min() >= 0.0
+        assert path.panel_azimuth_deg.max() <= 360.0
+        assert path.panel_elevation_deg.min() >= 0.0
+        assert path.panel_elevation_deg.max() <= 90.0
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    latitude_deg=st.floats(-90.0, 90.0),
+    longitude_deg=st.floats(-180.0, 180.0),
+    begin_s=st.integers(-631_152_000, 2_524_608_000),
+    hours=st.floats(0.01, 48.0),
+    seconds=st.floats(10.0, 3600.0),
+    lower_deg=st.sampled_from([0.0, -180.0, -90.0]),
+    width_deg=st.sampled_from([180.0, 340.0, 360.0, 540.0]),
+    mode=st.sampled_from(Mode),
+)
+def test_any_show_anywhere_is_either_inside_the_limits_or_refused_with_a_reason(
+    latitude_deg: float,
+    longitude_deg: float,
+    begin_s: int,
+    hours: float,
+    seconds: float,
+    lower_deg: float,
+    width_deg: float,
+    mode: Mode,
+) -> None:
+    begin, tracker = datetime.fromtimestamp(begin_s, UTC), with_range(lower_deg, lower_deg + width_deg)
+    location = Location(latitude_deg, longitude_deg)
+    plan = show(location, begin, begin + timedelta(hours=hours), seconds, mode=mode)
+    check = check_show(plan, tracker)
+    assert check.feasible == (not check.reasons)
+    assert all(tracker.azimuth.contains(angle) for angle in check.path.panel_azimuth_deg.tolist())
+    assert all(tracker.elevation.contains(angle) for angle in check.path.panel_elevation_deg.tolist())
+    if check.shortest is not None:
+        assert check_show(replace(plan, duration=check.shortest), tracker).feasible
+    if check.feasible:
+        assert check.shortest is not None
+        assert check.peak_azimuth_dps <= tracker.azimuth.speed_dps
