@@ -14,6 +14,8 @@ from app.tracker.config import TrackerConfig
 from app.tracker.motion import HALT, DriveCapabilities, DriveCommand, Feedback, Velocity
 
 MOST_UNCHANGED = 3
+STAND = DriveCommand(Velocity(0.0), Velocity(0.0))
+"""What stops a PLC that has no stop register; unlike `Halt` it also ends a search for the origin."""
 
 
 class PlcDrive:
@@ -90,7 +92,7 @@ class PlcDrive:
     async def stop(self) -> None:
         """Ramp both axes down, ahead of everything that waits, or raise `DriveError`."""
         self._forget()
-        stop = self._map.words("stop", 1) or self._map.command_words(DriveCommand())
+        stop = self._map.words("stop", 1) or self._map.command_words(STAND)
         for address, values in _runs(stop, stop):
             await self._link.stop(address, values, what=f"stop, {self._profile.at(address)}")
 
@@ -190,11 +192,16 @@ class PlcDrive:
         self._taken = {}
 
     def _frames(self, words: Mapping[int, int], taken: Mapping[int, int]) -> list[tuple[int, list[int]]]:
-        """Return what has to be written, the frame with the keep-alive value last."""
+        """Return what has to be written: the frame with the keep-alive value last, so that it stands for all.
+
+        When everything is written anew it goes first, as it is what ends a stop by the watchdog.
+        """
         changed = {address: word for address, word in words.items() if taken.get(address) != word}
         keep_alive = self._profile.registers["keep_alive"].address
         frames = _runs(changed, words)
-        return sorted(frames, key=lambda frame: frame[0] <= keep_alive < frame[0] + len(frame[1]))
+        return sorted(
+            frames, key=lambda frame: frame[0] <= keep_alive < frame[0] + len(frame[1]), reverse=not taken
+        )
 
     def _numbered(self, feedback: Feedback) -> Feedback:
         """Return the reading with the full number of the request that the 16-bit register stands for."""

@@ -10,7 +10,6 @@ from app.drives.drive import DriveError, DriveSilent
 from app.drives.faults import Fault, FaultKind
 from app.tracker.axes import Axis
 from app.tracker.motion import (
-    HALT,
     DriveCommand,
     DriveRequest,
     Feedback,
@@ -213,6 +212,13 @@ async def a_fault_stops_both_axes_until_it_is_reset(rig: Rig) -> None:
 
 
 @story
+async def a_faulty_drive_does_not_search_its_origin(rig: Rig) -> None:
+    rig.machine.inject(Fault(FaultKind.DRIVE_FAULT, amount=7))
+    feedback = await rig.forward(0.2, asking(5, RequestKind.HOME))
+    assert (feedback.request_done, feedback.request_failed, feedback.homing) == (5, True, False)
+
+
+@story
 async def a_drive_that_lost_power_has_a_new_life_and_no_zero(rig: Rig) -> None:
     await rig.forward(0.1, asking(1, RequestKind.SET_ZERO_AZIMUTH))
     await rig.forward(0.1, asking(2, RequestKind.SET_ZERO_ELEVATION))
@@ -368,7 +374,6 @@ async def the_clock_of_the_drive_can_be_set(rig: Rig) -> None:
 async def closing_stops_the_axes(rig: Rig) -> None:
     await rig.forward(1.0, DriveCommand(azimuth=Velocity(3.0)))
     await rig.drive.close()
-    assert rig.machine.command == DriveCommand(HALT, HALT)
     rig.idle(0.5)
     assert not rig.machine.observe().azimuth.moving
 

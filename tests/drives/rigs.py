@@ -5,6 +5,8 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
+from functools import partial
+from pathlib import Path
 
 from app.clock import VirtualClock
 from app.drives.drive import Drive
@@ -68,11 +70,11 @@ async def simulated_rig() -> AsyncIterator[Rig]:
 
 
 @asynccontextmanager
-async def modbus_rig() -> AsyncIterator[Rig]:
+async def modbus_rig(name: str = "simulated-plc") -> AsyncIterator[Rig]:
     """The drive behind a real socket: master, TCP, server, registers."""
     clock = VirtualClock(START)
     machine = SimulatedDrive(CONFIG, clock)
-    profile = load_profile("simulated-plc")
+    profile = load_profile(name)
     server, port = await serve("127.0.0.1", 0, profile, machine, clock)
     config = replace(CONFIG, drive=DriveConfig(DriveKind.MODBUS_TCP, port=port))
     drive = PlcDrive(config, profile, clock)
@@ -84,4 +86,8 @@ async def modbus_rig() -> AsyncIterator[Rig]:
         assert not pending_tasks(), "a closed drive leaves no task behind"
 
 
-RIGS = {"simulated": simulated_rig, "modbus-tcp": modbus_rig}
+RIGS = {
+    "simulated": simulated_rig,
+    "modbus-tcp": modbus_rig,
+    "modbus-tcp, another map": partial(modbus_rig, str(Path(__file__).with_name("other-map.toml"))),
+}
