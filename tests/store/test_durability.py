@@ -137,15 +137,17 @@ def test_a_damaged_file_is_told_at_the_start(sqlite_url: str, on_sqlite: Databas
 
 
 def test_a_damaged_table_is_named_at_the_start(sqlite_url: str, on_sqlite: DatabaseWriter) -> None:
-    on_sqlite.save_site(SITE)
+    on_sqlite.append_events([event(1), event(2)])
     on_sqlite.close()
     path = Path(str(sqlite_path(sqlite_url)))
     with closing(sqlite3.connect(path)) as connection:
-        (page,) = connection.execute("SELECT rootpage FROM sqlite_master WHERE name = 'site'").fetchone()
+        (page,) = connection.execute("SELECT rootpage FROM sqlite_master WHERE name = 'events'").fetchone()
     with path.open("r+b") as file:
         file.seek((page - 1) * 4096 + 8)
-        file.write(b"\xff\xff")
-    with pytest.raises(StoreFailed, match=r"is damaged \(table site\)\. Restore a backup"):
+        places = file.read(4)
+        file.seek(-4, 1)
+        file.write(places[2:] + places[:2])
+    with pytest.raises(StoreFailed, match=r"is damaged \(table events\)\. Restore a backup"):
         open_writer(sqlite_url)
 
 
