@@ -76,7 +76,7 @@ class Register:
 
     def value(self, words: Sequence[int], first_address: int) -> float:
         """Return the value in its unit."""
-        return round(self.integer(words, first_address) * self.scale * self.sign, 9)
+        return round(self.integer(words, first_address) * self.scale * self.sign, 9) + 0.0
 
     def words(self, value: float) -> tuple[int, ...]:
         """Return the words for a value in its unit, or raise `ValueError` if it does not fit."""

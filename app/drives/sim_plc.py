@@ -12,7 +12,7 @@ from app.drives.plc_map import CLOCK_PARTS, PlcMap
 from app.drives.profile import Profile
 from app.drives.register import Access
 from app.drives.sim_training import LATE, Training
-from app.drives.simulated import SimulatedDrive
+from app.drives.simulated_machine import SimulatedMachine
 from app.tracker.motion import DriveCommand, Feedback
 
 DISCRETE_INPUTS = 32
@@ -23,7 +23,7 @@ RESERVED = 0
 class SimulatedPlc:
     """Serves status and takes commands as the profile says. Reserved addresses of a block read as zero."""
 
-    def __init__(self, profile: Profile, drive: SimulatedDrive, clock: Clock) -> None:
+    def __init__(self, profile: Profile, drive: SimulatedMachine, clock: Clock) -> None:
         self._profile = profile
         self._map = PlcMap(profile)
         self._drive = drive

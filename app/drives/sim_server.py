@@ -13,15 +13,15 @@ from app.drives.modbus_server import ModbusServer
 from app.drives.profile import Profile, load_profile
 from app.drives.sim_plc import SimulatedPlc
 from app.drives.simulated import SimulatedDrive
+from app.drives.simulated_machine import SimulatedMachine
 from app.tracker.axes import Axis
 from app.tracker.config import TrackerConfig
 
 CYCLE = timedelta(milliseconds=100)
-LONGEST_RAMP = timedelta(seconds=3)
 
 
 async def serve(
-    host: str, port: int, profile: Profile, drive: SimulatedDrive, clock: Clock, *, unit: int = 1
+    host: str, port: int, profile: Profile, drive: SimulatedMachine, clock: Clock, *, unit: int = 1
 ) -> tuple[ModbusServer, int]:
     """Serve a simulated drive through a profile's registers; return the running server and its port."""
     server = ModbusServer(SimulatedPlc(profile, drive, clock), unit)
@@ -91,19 +91,11 @@ async def _run(
     watching.cancel()
     await asyncio.gather(watching, return_exceptions=True)
     await server.close()
-    await _come_to_rest(drive, clock)
+    await drive.close()
 
 
-async def _watch(drive: SimulatedDrive, clock: Clock) -> None:
+async def _watch(drive: SimulatedMachine, clock: Clock) -> None:
     """Let the drive notice its watchdog and keep its position memory although nobody asks it anything."""
     while True:
         await clock.sleep_until(clock.now() + CYCLE)
         _ = drive.is_resting
-
-
-async def _come_to_rest(drive: SimulatedDrive, clock: Clock) -> None:
-    drive.halt()
-    deadline = clock.now() + LONGEST_RAMP
-    while not drive.is_resting and clock.now() < deadline:
-        await clock.sleep_until(clock.now() + CYCLE)
-    await drive.close()

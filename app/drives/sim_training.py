@@ -6,7 +6,7 @@ from datetime import timedelta
 from app.drives.faults import Fault, FaultKind
 from app.drives.modbus_server import ILLEGAL_ADDRESS, ILLEGAL_VALUE, Refusal
 from app.drives.register import Access, Register, WordType
-from app.drives.simulated import SimulatedDrive
+from app.drives.simulated_machine import SimulatedMachine
 from app.tracker.axes import Axis
 
 LATE = timedelta(milliseconds=400)
@@ -45,7 +45,7 @@ KINDS = tuple(FaultKind)
 class Training:
     """Registers that no real drive has. They answer even while a fault of the connection is played."""
 
-    def __init__(self, drive: SimulatedDrive) -> None:
+    def __init__(self, drive: SimulatedMachine) -> None:
         self._drive = drive
         self._last: tuple[int, ...] = (0, 0, 0, 0)
 

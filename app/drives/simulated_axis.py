@@ -55,6 +55,11 @@ class SimulatedAxis:
         """Return whether the zero was set and nothing has happened to it since."""
         return self._homed
 
+    @property
+    def end_s(self) -> float:
+        """Return when the axis comes to rest, if nothing else is commanded."""
+        return self._path.end_s
+
     def resting(self, time_s: float) -> bool:
         """Return whether the axis stands still and will stay where it is."""
         return time_s >= self._path.end_s and FaultKind.SLIP not in self._faults

@@ -67,6 +67,18 @@ async def test_a_zero_counts_only_once_it_is_in_the_memory(tmp_path: Path) -> No
     assert not (await drive_at(clock, memory).read()).azimuth.homed
 
 
+async def test_closing_in_mid_move_remembers_where_the_axes_come_to_rest(tmp_path: Path) -> None:
+    clock, memory = VirtualClock(START), tmp_path / "T1.json"
+    drive = await homed(clock, memory)
+    rig = Rig(drive, drive, clock)
+    await rig.forward(2.0, DriveCommand(azimuth=Velocity(3.0)))
+    await drive.close()
+    found = await drive_at(clock, memory).read()
+    assert (found.boot_count, found.azimuth.homed) == (1, True)
+    clock.advance(timedelta(seconds=2))
+    assert found.azimuth.position_deg == pytest.approx((await drive.read()).azimuth.position_deg)
+
+
 async def test_closing_a_resting_drive_saves_its_zero_at_once(tmp_path: Path) -> None:
     clock, memory = VirtualClock(START), tmp_path / "T1.json"
     await (await homed(clock, memory)).close()

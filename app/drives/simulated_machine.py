@@ -1,0 +1,335 @@
+"""The machine of a simulated tracker: both axes, watchdog, requests, faults and position memory."""
+
+from datetime import datetime, timedelta
+from pathlib import Path
+
+from app.clock import Clock
+from app.drives.faults import LINK_FAULTS, Fault, FaultKind
+from app.drives.position_memory import AxisMemory, PositionMemory, recall, remember
+from app.drives.simulated_axis import STANDARD, Mechanics, SimulatedAxis
+from app.tracker.axes import Axis
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.motion import (
+    HALT,
+    AxisCommand,
+    DriveCommand,
+    DriveRequest,
+    Feedback,
+    Halt,
+    RequestKind,
+)
+
+WATCHDOG = timedelta(milliseconds=500)
+SETTLED = timedelta(seconds=1)
+FIRST_STAND = Orientation(12.40, 6.60)
+UNKNOWN_OFFSET = Orientation(90.0, 30.0)
+STOP_ALL = DriveCommand()
+
+
+class SimulatedMachine:
+    """Everything happens by calling it: a call brings the machine forward to the clock's present first."""
+
+    def __init__(
+        self,
+        config: TrackerConfig,
+        clock: Clock,
+        *,
+        memory: Path | None = None,
+        watchdog: timedelta | None = WATCHDOG,
+        mechanics: Mechanics = STANDARD,
+    ) -> None:
+        self._clock = clock
+        self._started_at = clock.now()
+        self._memory = memory
+        self._watchdog_s = watchdog.total_seconds() if watchdog is not None else None
+        known = _power_up(recall(memory) if memory is not None else None, config)
+        self._boot_count = known.boot_count
+        self._azimuth = SimulatedAxis(config.azimuth, mechanics, known.azimuth)
+        self._elevation = SimulatedAxis(config.elevation, mechanics, known.elevation)
+        self._kept_trusted = known.trusted
+        self._rested_at_s = 0.0
+        self._command = STOP_ALL
+        self._fed_at_s: float | None = None
+        self._tripped = False
+        self._trip_was_read = False
+        self._fault_code = 0
+        self._homing: int | None = None
+        self._request_seen = 0
+        self._request_done = 0
+        self._request_failed = False
+        self._link_fault: FaultKind | None = None
+        self._ignores_writes = False
+        self._clock_offset = timedelta(0)
+        self._steady: Feedback | None = None
+        if not known.trusted:
+            self._write_memory(0.0, trusted=False)
+
+    @property
+    def true_orientation(self) -> Orientation:
+        """Return where the panel really points, whatever the encoders say."""
+        now_s = self._advance()
+        return Orientation(self._azimuth.true_deg(now_s), self._elevation.true_deg(now_s))
+
+    @property
+    def link_fault(self) -> FaultKind | None:
+        """Return the fault of the connection that is being played, if any."""
+        return self._link_fault
+
+    @property
+    def command(self) -> DriveCommand:
+        """Return what the drive was told and has taken."""
+        self._advance()
+        return self._command
+
+    @property
+    def is_resting(self) -> bool:
+        """Return whether both axes stand still."""
+        return self._resting(self._advance())
+
+    @property
+    def uptime(self) -> timedelta:
+        """Return for how long the drive has run."""
+        return self._clock.now() - self._started_at
+
+    @property
+    def watchdog(self) -> timedelta | None:
+        """Return the time-out of the communication watchdog, None without one."""
+        return timedelta(seconds=self._watchdog_s) if self._watchdog_s is not None else None
+
+    @property
+    def ignores_writes(self) -> bool:
+        """Return whether commands are acknowledged and not taken."""
+        return self._ignores_writes
+
+    @property
+    def boot_count(self) -> int:
+        """Return how often the drive has started."""
+        return self._boot_count
+
+    @property
+    def wall_clock(self) -> datetime:
+        """Return what the drive's own clock shows."""
+        return self._clock.now() + self._clock_offset
+
+    def observe(self, *, told: bool = True) -> Feedback:
+        """Return the reading of this instant; `told` says that the master gets to know it."""
+        now_s = self._advance()
+        if told:
+            self._trip_was_read = self._tripped
+        if self._steady is not None:
+            return self._steady
+        resting = self._resting(now_s)
+        feedback = Feedback(
+            azimuth=self._azimuth.feedback(now_s),
+            elevation=self._elevation.feedback(now_s),
+            boot_count=self._boot_count,
+            fault_code=self._fault_code,
+            homing=self._homing is not None,
+            watchdog_tripped=self._tripped,
+            request_done=self._request_done,
+            request_failed=self._request_failed,
+        )
+        if resting and self._kept_trusted:
+            self._steady = feedback
+        return feedback
+
+    def obey(self, command: DriveCommand, *, alive: bool = True) -> None:
+        """Do this from now on; a request with a new number is carried out. `alive` feeds the watchdog.
+
+        After the watchdog has tripped nothing is obeyed until somebody has read that it did.
+        """
+        now_s = self._advance()
+        if alive:
+            self._fed_at_s = now_s
+            self._clear_trip()
+        if command is self._command or command == self._command or self._ignores_writes or self._tripped:
+            return
+        self._change(now_s)
+        self._take_request(command.request, now_s)
+        if self._homing is not None and _is_halt(command):
+            self._command = command
+            return
+        self._end_homing(failed=True)
+        self._turn(command, now_s)
+
+    def halt(self) -> None:
+        """Ramp both axes down now and end homing."""
+        now_s = self._advance()
+        self._fed_at_s = now_s
+        self._change(now_s)
+        self._end_homing(failed=True)
+        self._turn(STOP_ALL, now_s)
+
+    def remember_rest(self) -> None:
+        """Ramp down and write the position memory at once: where both axes come to rest is known already."""
+        self.halt()
+        end_s = max(self._advance(), self._azimuth.end_s, self._elevation.end_s)
+        self._kept_trusted = True
+        self._write_memory(end_s, trusted=True)
+
+    def set_wall_clock(self, at: datetime) -> None:
+        """Make the drive's own clock show `at` now."""
+        self._clock_offset = at - self._clock.now()
+
+    def inject(self, fault: Fault) -> None:
+        """Suffer a fault from now on, until `clear_faults`; a drive fault also ends by a reset."""
+        now_s = self._advance()
+        self._change(now_s)
+        match fault.kind:
+            case kind if kind in LINK_FAULTS:
+                self._link_fault = kind
+            case FaultKind.IGNORED_WRITES:
+                self._ignores_writes = True
+            case FaultKind.DRIVE_FAULT:
+                self._fault_code = int(fault.amount) or 1
+                self._end_homing(failed=True)
+                self._turn(self._command, now_s)
+            case FaultKind.POWER_LOSS:
+                self._lose_power(now_s)
+            case _:
+                for axis, one in ((Axis.AZIMUTH, self._azimuth), (Axis.ELEVATION, self._elevation)):
+                    if fault.hits(axis):
+                        one.inject(fault, now_s)
+
+    def clear_faults(self) -> None:
+        """Be sound again and do what was commanded. A drive fault still waits for its reset."""
+        now_s = self._advance()
+        self._change(now_s)
+        self._link_fault = None
+        self._ignores_writes = False
+        self._azimuth.clear_faults(now_s)
+        self._elevation.clear_faults(now_s)
+
+    def _advance(self) -> float:
+        """Let everything happen that the time since the last call brings, and return the time in seconds."""
+        now_s = (self._clock.now() - self._started_at).total_seconds()
+        self._watch(now_s)
+        if self._homing is not None and self._resting(now_s):
+            self._finish_homing(now_s)
+        if not self._kept_trusted:
+            self._keep(now_s)
+        return now_s
+
+    def _watch(self, now_s: float) -> None:
+        if self._watchdog_s is None or self._fed_at_s is None or self._tripped:
+            return
+        deadline_s = self._fed_at_s + self._watchdog_s
+        if now_s <= deadline_s:
+            return
+        self._tripped = True
+        self._steady = None
+        if not self._resting(deadline_s):
+            self._end_homing(failed=True)
+            self._turn(STOP_ALL, deadline_s)
+
+    def _clear_trip(self) -> None:
+        if self._tripped and self._trip_was_read:
+            self._tripped = self._trip_was_read = False
+            self._steady = None
+
+    def _turn(self, command: DriveCommand, now_s: float) -> None:
+        self._command = command
+        barred = self._fault_code != 0
+        self._azimuth.obey(HALT if barred else command.azimuth, now_s)
+        self._elevation.obey(HALT if barred else command.elevation, now_s)
+
+    def _change(self, now_s: float) -> None:
+        """Note that the next reading differs and the position memory is no longer true."""
+        self._steady = None
+        if self._kept_trusted:
+            self._kept_trusted = False
+            self._write_memory(now_s, trusted=False)
+
+    def _resting(self, now_s: float) -> bool:
+        return self._azimuth.resting(now_s) and self._elevation.resting(now_s)
+
+    def _keep(self, now_s: float) -> None:
+        """Leave a trusted position memory once the axes have stood still for a while."""
+        if not self._resting(now_s):
+            self._rested_at_s = now_s
+            return
+        if now_s - self._rested_at_s >= SETTLED.total_seconds():
+            self._kept_trusted = True
+            self._write_memory(now_s, trusted=True)
+
+    def _write_memory(self, now_s: float, *, trusted: bool) -> None:
+        if self._memory is None:
+            return
+        azimuth, elevation = self._azimuth.memory(now_s), self._elevation.memory(now_s)
+        remember(self._memory, PositionMemory(azimuth, elevation, self._boot_count, trusted))
+
+    def _take_request(self, request: DriveRequest | None, now_s: float) -> None:
+        if request is None or request.number == self._request_seen:
+            return
+        self._request_seen = request.number
+        match request.kind:
+            case RequestKind.SET_ZERO_AZIMUTH:
+                self._answer(done=self._set_zero(self._azimuth, now_s))
+            case RequestKind.SET_ZERO_ELEVATION:
+                self._answer(done=self._set_zero(self._elevation, now_s))
+            case RequestKind.RESET_FAULT:
+                self._fault_code = 0
+                self._answer(done=True)
+            case RequestKind.HOME:
+                self._begin_homing(request.number, now_s)
+
+    def _answer(self, *, done: bool) -> None:
+        self._request_done = self._request_seen
+        self._request_failed = not done
+
+    def _set_zero(self, axis: SimulatedAxis, now_s: float) -> bool:
+        if not axis.resting(now_s):
+            return False
+        axis.set_zero(now_s)
+        return True
+
+    def _begin_homing(self, number: int, now_s: float) -> None:
+        if self._fault_code:
+            self._answer(done=False)
+            return
+        self._homing = number
+        self._azimuth.seek_origin(now_s)
+        self._elevation.seek_origin(now_s)
+
+    def _finish_homing(self, now_s: float) -> None:
+        found = self._azimuth.feedback(now_s).at_origin and self._elevation.feedback(now_s).at_origin
+        if found:
+            self._azimuth.set_zero(now_s)
+            self._elevation.set_zero(now_s)
+        self._end_homing(failed=not found)
+
+    def _end_homing(self, *, failed: bool) -> None:
+        if self._homing is not None:
+            self._homing = None
+            self._steady = None
+            self._answer(done=not failed)
+
+    def _lose_power(self, now_s: float) -> None:
+        self._boot_count += 1
+        self._homing = None
+        self._fault_code = 0
+        self._request_seen = self._request_done = 0
+        self._request_failed = False
+        self._command = STOP_ALL
+        self._fed_at_s = None
+        self._azimuth.lose_power(now_s, UNKNOWN_OFFSET.azimuth_deg)
+        self._elevation.lose_power(now_s, UNKNOWN_OFFSET.elevation_deg)
+
+
+def _power_up(found: PositionMemory | None, config: TrackerConfig) -> PositionMemory:
+    """Return what the drive knows at start: all of it if the memory is trusted, else no zero."""
+    if found is not None and found.trusted:
+        return found
+    azimuth_deg = found.azimuth.true_deg if found else config.azimuth.clamp(FIRST_STAND.azimuth_deg)
+    elevation_deg = found.elevation.true_deg if found else config.elevation.clamp(FIRST_STAND.elevation_deg)
+    return PositionMemory(
+        azimuth=AxisMemory(azimuth_deg, UNKNOWN_OFFSET.azimuth_deg, homed=False),
+        elevation=AxisMemory(elevation_deg, UNKNOWN_OFFSET.elevation_deg, homed=False),
+        boot_count=found.boot_count + 1 if found else 1,
+        trusted=False,
+    )
+
+
+def _is_halt(command: DriveCommand) -> bool:
+    axes: tuple[AxisCommand, AxisCommand] = (command.azimuth, command.elevation)
+    return all(isinstance(axis, Halt) for axis in axes)
