@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import socket
 import sys
 from dataclasses import asdict
 from datetime import datetime, timedelta
@@ -18,7 +19,7 @@ from app.drives.sim_server import run_drive_sim
 from app.machine.lock import AlreadyRunning, holder
 from app.machine.main import run as run_machine
 from app.machine.supervisor import end_with_parent, supervise
-from app.settings import SettingsWrong, read_settings
+from app.settings import Settings, SettingsWrong, read_settings
 from app.show.simulate import simulate_date
 from app.store.backup import backup as back_up
 from app.store.exports import to_csv, to_parquet
@@ -69,7 +70,9 @@ def web(*, supervised: Supervised = False) -> None:
     """Run the panel alone, for a system service of its own."""
     if supervised:
         end_with_parent()
-    run_web(read_settings())
+    settings = read_settings()
+    _check_port(settings)
+    run_web(settings)
 
 
 @cli.command()
@@ -195,6 +198,20 @@ def _instant(text: str) -> datetime:
     if found.tzinfo is None:
         raise ValueError(f"{text} has no time zone: add an offset, such as {text}+03:00 or {text}Z.")
     return found
+
+
+def _check_port(settings: Settings) -> None:
+    """Raise `SettingsWrong` if another program listens where the panel shall listen."""
+    family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
+    with socket.socket(family) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((settings.host, settings.port))
+        except OSError as error:
+            raise SettingsWrong(
+                f"The panel cannot listen on {settings.host} port {settings.port}: {error.strerror}. "
+                "Stop the program that uses it, or choose another port with HELIOPANEL_PORT."
+            ) from error
 
 
 def _bracketed(host: str) -> str:

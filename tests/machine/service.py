@@ -1,0 +1,185 @@
+"""The whole service as real processes on free ports: started, killed, frozen and asked over its own link."""
+
+import asyncio
+import json
+import os
+import random
+import signal
+import socket
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from app.clock import SystemClock
+from app.drives.drive import Drive
+from app.drives.factory import make_drive
+from app.link.client import LinkClient
+from app.link.messages import ConfigureTracker, MachineUnreachable, Order, SetClock, SetLocation, SiteCommand
+from app.sun.position import Location
+from app.tracker.commands import Command, Home
+from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
+from app.tracker.motion import Feedback
+from app.tracker.snapshot import ActivityName, SiteSnapshot, Snapshot
+
+SAMSUN = Location(41.2867, 36.33, 4.0)
+LONGEST_WAIT_S = 40.0
+LOOK_EVERY_S = 0.02
+
+
+def free_port() -> int:
+    """Return a port that nobody uses now, below the range of outgoing connections."""
+    while True:
+        port = random.randrange(20_000, 32_000)
+        with socket.socket() as probe, suppress(OSError):
+            probe.bind(("127.0.0.1", port))
+            return port
+
+
+async def eventually(found: Callable[[], bool], *, within_s: float = LONGEST_WAIT_S) -> None:
+    """Return once something is so, or fail."""
+    for _ in range(int(within_s / LOOK_EVERY_S)):
+        if found():
+            return
+        await asyncio.sleep(LOOK_EVERY_S)
+    raise TimeoutError(f"It did not become so within {within_s} s.")
+
+
+@dataclass
+class DriveSimulator:
+    """`heliopanel drive-sim` as a process of its own, and a second pair of eyes on it."""
+
+    port: int
+    process: asyncio.subprocess.Process
+    eyes: Drive
+
+    @classmethod
+    async def start(cls) -> "DriveSimulator":
+        port = free_port()
+        process = await asyncio.create_subprocess_exec(
+            sys.executable, "-m", "app.cli", "drive-sim", "--tcp", f"127.0.0.1:{port}",
+            stdout=asyncio.subprocess.PIPE,
+        )  # fmt: skip
+        assert process.stdout is not None
+        async with asyncio.timeout(LONGEST_WAIT_S):
+            await process.stdout.readline()
+        return cls(port, process, make_drive(config_for(port), SystemClock(), None))
+
+    async def look(self) -> Feedback:
+        return await self.eyes.read()
+
+    async def rests(self, *, within_s: float) -> float:
+        """Return after how many seconds both axes stood still, or fail."""
+        loop = asyncio.get_running_loop()
+        begun = loop.time()
+        while True:
+            seen = await self.look()
+            if not (seen.azimuth.moving or seen.elevation.moving):
+                return loop.time() - begun
+            assert loop.time() - begun <= within_s, "the axes still turn"
+            await asyncio.sleep(LOOK_EVERY_S)
+
+    async def stop(self) -> None:
+        # Not `close`, which would send a stop through a second master.
+        await end(self.process)
+
+
+def config_for(port: int) -> TrackerConfig:
+    return TrackerConfig("T1", "Tracker 1", drive=DriveConfig(DriveKind.MODBUS_TCP, port=port))
+
+
+async def end(process: asyncio.subprocess.Process) -> int:
+    if process.returncode is None:
+        process.terminate()
+    async with asyncio.timeout(LONGEST_WAIT_S):
+        return await process.wait()
+
+
+@dataclass
+class Service:
+    """`heliopanel serve` in a data folder of its own."""
+
+    data_dir: Path
+    port: int
+    process: asyncio.subprocess.Process
+    link: LinkClient
+    lines: list[dict[str, object]] = field(default_factory=list)
+    reading: asyncio.Task[None] | None = None
+
+    @classmethod
+    async def start(cls, data_dir: Path) -> "Service":
+        port = free_port()
+        environment = os.environ | {
+            "HELIOPANEL_DATA_DIR": str(data_dir),
+            "HELIOPANEL_PORT": str(port),
+            "HELIOPANEL_LOG_FORMAT": "json",
+        }
+        process = await asyncio.create_subprocess_exec(
+            sys.executable, "-m", "app.cli", "serve",
+            env=environment, stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE,
+        )  # fmt: skip
+        service = cls(data_dir, port, process, LinkClient(data_dir / "machine.sock"))
+        service.reading = asyncio.create_task(service._read())
+        await service.link.start()
+        await eventually(lambda: service.link.latest() is not None)
+        return service
+
+    async def _read(self) -> None:
+        assert self.process.stderr is not None
+        async for line in self.process.stderr:
+            with suppress(ValueError):
+                self.lines.append(json.loads(line))
+
+    def starts(self, child: str) -> list[int]:
+        """Return the process ids that a child has had."""
+        return [
+            int(str(line["process_id"]))
+            for line in self.lines
+            if line.get("event") == "child_started" and line.get("child") == child
+        ]
+
+    def signal(self, child: str, number: signal.Signals) -> None:
+        os.kill(self.starts(child)[-1], number)
+
+    async def ask(self, command: Command | SiteCommand, tracker_id: str = "T1") -> SiteSnapshot:
+        """Give an order once."""
+        addressed = None if isinstance(command, SiteCommand) else tracker_id
+        return await self.link.execute(Order(command, "anna", addressed))
+
+    async def ask_until_taken(self, command: Command | SiteCommand) -> SiteSnapshot:
+        async with asyncio.timeout(LONGEST_WAIT_S):
+            while True:
+                try:
+                    return await self.ask(command)
+                except MachineUnreachable:
+                    await asyncio.sleep(LOOK_EVERY_S)
+
+    def tracker(self) -> Snapshot | None:
+        latest = self.link.latest()
+        return None if latest is None else latest.trackers[0]
+
+    async def until(self, reached: Callable[[Snapshot], bool], *, within_s: float = LONGEST_WAIT_S) -> None:
+        def is_so() -> bool:
+            seen = self.tracker()
+            return seen is not None and reached(seen)
+
+        await eventually(is_so, within_s=within_s)
+
+    async def commission(self, drive: DriveSimulator) -> None:
+        """Point T1 at a drive, give it a place, a clock and a zero."""
+        await self.ask(ConfigureTracker(config_for(drive.port)))
+        await self.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
+        await self.ask(SetClock("system"))
+        await self.until(lambda seen: not seen.actions["home"])
+        await self.ask(Home())
+        await self.until(
+            lambda seen: seen.home_trusted and seen.activity is ActivityName.HOLDING, within_s=100.0
+        )
+
+    async def stop(self) -> int:
+        await self.link.close()
+        code = await end(self.process)
+        if self.reading is not None:
+            await self.reading
+        return code

@@ -1,0 +1,240 @@
+"""The service as processes: either may die or freeze at any instant; nothing that was promised is lost."""
+
+import asyncio
+import os
+import random
+import signal
+import sys
+from collections.abc import AsyncIterator
+from contextlib import suppress
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import httpx
+import pytest
+
+from app.link.messages import MachineUnreachable, RenameSite
+from app.machine.marker import MARKER_NAME
+from app.store.engine import open_reader
+from app.store.store import JournalFilter
+from app.tracker.axes import Axis, JogSpeed
+from app.tracker.commands import GoToStart, Jog, RunShow, SelectMode, Track
+from app.tracker.mode import Mode
+from app.tracker.programs.show import ShowPlan
+from app.tracker.recording import RecordingKind
+from app.tracker.snapshot import ActivityName, EventKind, ShowPhase
+from tests.machine.service import SAMSUN, DriveSimulator, Service, eventually
+
+KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "10"))
+PANEL_KILLS = 3
+WATCHDOG_AND_RAMP_S = 0.5 + 1.2
+PLAN = ShowPlan(
+    "solstice",
+    datetime(2026, 6, 21, 2, 10, tzinfo=UTC),
+    datetime(2026, 6, 21, 17, 20, tzinfo=UTC),
+    timedelta(minutes=3),
+    SAMSUN,
+)
+
+
+@pytest.fixture
+async def drive() -> AsyncIterator[DriveSimulator]:
+    simulator = await DriveSimulator.start()
+    yield simulator
+    await simulator.stop()
+
+
+@pytest.fixture
+async def service(tmp_path: Path) -> AsyncIterator[Service]:
+    started = await Service.start(tmp_path / "data")
+    yield started
+    await started.stop()
+
+
+async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service, drive: DriveSimulator) -> None:
+    await service.commission(drive)
+    await service.ask(SelectMode(Mode.DUAL))
+    await service.ask(Track())
+    before = await service.link.metrics()
+    for _ in range(PANEL_KILLS):
+        await _kill_panel(service)
+    after = await service.link.metrics()
+
+    ticks = after.trackers["T1"].ticks - before.trackers["T1"].ticks
+    assert after.boot_id == before.boot_id
+    assert ticks >= int((after.uptime_s - before.uptime_s) * 10) - 1
+    seen = service.tracker()
+    assert seen is not None
+    assert seen.tracking_on
+
+
+async def _kill_panel(service: Service) -> None:
+    panels = len(service.starts("web"))
+    service.signal("web", signal.SIGKILL)
+    await eventually(lambda: len(service.starts("web")) > panels)
+    await _until_served(service.port)
+
+
+async def _until_served(port: int) -> None:
+    async with httpx.AsyncClient() as client, asyncio.timeout(20):
+        while True:
+            with suppress(httpx.TransportError):
+                if (await client.get(f"http://127.0.0.1:{port}/health")).status_code == 200:
+                    return
+            await asyncio.sleep(0.05)
+
+
+@pytest.mark.timeout(60 + 15 * KILLS)
+async def test_killed_at_any_instant_of_a_show_nothing_is_lost_and_the_axes_stop(
+    service: Service, drive: DriveSimulator
+) -> None:
+    await service.commission(drive)
+    for number in range(KILLS):
+        boot_id = await _show_running(service)
+        await asyncio.sleep(random.uniform(0.0, 0.5))
+        name = f"Run {number}"
+        await service.ask(RenameSite(name))
+        service.signal("machine", signal.SIGKILL)
+
+        stopped_after_s = await drive.rests(within_s=WATCHDOG_AND_RAMP_S + 2.0)
+        assert stopped_after_s <= WATCHDOG_AND_RAMP_S + 1.0
+        await _until_restarted(service, boot_id)
+        _check_nothing_lost(service.data_dir, name, number)
+        assert service.tracker() is not None
+        assert service.tracker().activity is not ActivityName.SHOWING  # type: ignore[union-attr]
+
+
+async def _show_running(service: Service) -> str:
+    await service.until(lambda seen: not seen.actions["go_to_start"])
+    await service.ask_until_taken(GoToStart(PLAN))
+    await service.until(lambda seen: seen.show is not None and seen.show.phase is ShowPhase.READY)
+    seen = await service.ask(RunShow(PLAN))
+    return seen.boot_id
+
+
+async def _until_restarted(service: Service, boot_id: str) -> None:
+    def is_new() -> bool:
+        latest = service.link.latest()
+        return latest is not None and latest.boot_id != boot_id
+
+    await eventually(is_new)
+
+
+def _check_nothing_lost(data_dir: Path, name: str, number: int) -> None:
+    reader = open_reader(f"sqlite:///{data_dir / 'heliopanel.db'}")
+    site = reader.site()
+    journal = [entry.event for entry in reader.journal(JournalFilter(limit=1000))]
+    shows = reader.recordings(kind=RecordingKind.SHOW)
+    reader.close()
+    assert site is not None
+    assert site.name == name
+    assert [event for event in journal if event.message == f"The site is now called {name}."]
+    starts = [event for event in journal if event.kind is EventKind.MACHINE_STARTED]
+    assert len(starts) == number + 2
+    assert starts[0].data["clean"] is False
+    assert "without warning" in starts[0].message
+    assert len(shows) == number + 1
+    assert all(show.ended_at is not None for show in shows)
+
+
+async def test_a_frozen_machine_moves_nothing_and_does_not_catch_up(
+    service: Service, drive: DriveSimulator
+) -> None:
+    await service.commission(drive)
+    jogging = asyncio.create_task(_hold(service))
+    await service.until(lambda seen: seen.activity is ActivityName.JOGGING)
+    service.signal("machine", signal.SIGSTOP)
+
+    await drive.rests(within_s=WATCHDOG_AND_RAMP_S + 1.0)
+    stood_at = (await drive.look()).azimuth.position_deg
+    await asyncio.sleep(1.5)
+    assert service.link.latest() is None
+    jogging.cancel()
+    service.signal("machine", signal.SIGCONT)
+    await service.until(lambda seen: seen.activity is not ActivityName.JOGGING)
+    await asyncio.sleep(1.0)
+
+    assert (await drive.look()).azimuth.position_deg == pytest.approx(stood_at, abs=0.1)
+    assert len(service.starts("machine")) == 1
+
+
+async def _hold(service: Service) -> None:
+    sequence = 0
+    while True:
+        with suppress(MachineUnreachable):
+            await service.ask(Jog("held", Axis.AZIMUTH, 1, JogSpeed.FAST, sequence))
+        sequence += 1
+        await asyncio.sleep(0.05)
+
+
+async def test_a_second_machine_refuses_to_start_and_says_who_runs(service: Service) -> None:
+    environment = os.environ | {"HELIOPANEL_DATA_DIR": str(service.data_dir)}
+    second = await asyncio.create_subprocess_exec(
+        sys.executable, "-m", "app.cli", "machine", env=environment, stderr=asyncio.subprocess.PIPE
+    )
+    _, told = await second.communicate()
+
+    assert second.returncode == 2
+    sentence = told.decode().strip()
+    assert sentence.startswith(f"The data folder {service.data_dir} is in use by process")
+    assert str(service.starts("machine")[0]) in sentence
+    assert "\n" not in sentence
+
+
+async def test_serve_ends_both_processes_and_leaves_no_mark(tmp_path: Path) -> None:
+    service = await Service.start(tmp_path / "data")
+    processes = [service.starts(child)[0] for child in ("machine", "web")]
+    assert (service.data_dir / MARKER_NAME).exists()
+
+    assert await service.stop() == 0
+
+    assert not (service.data_dir / MARKER_NAME).exists()
+    assert not still_there(processes)
+    journal = open_reader(f"sqlite:///{service.data_dir / 'heliopanel.db'}")
+    assert journal.journal(JournalFilter(limit=1))[0].event.kind is EventKind.MACHINE_STOPPED
+    journal.close()
+
+
+def still_there(processes: list[int]) -> list[int]:
+    """Return which processes still run; one that has ended and that nobody waited for does not."""
+    found = []
+    for process in processes:
+        with suppress(FileNotFoundError, ProcessLookupError):
+            if Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z":
+                found.append(process)
+    return found
+
+
+async def test_when_the_supervisor_is_killed_its_children_end_properly(tmp_path: Path) -> None:
+    service = await Service.start(tmp_path / "data")
+    service.process.kill()
+    processes = [service.starts(child)[0] for child in ("machine", "web")]
+
+    await eventually(lambda: not still_there(processes))
+
+    await service.stop()
+    assert not (service.data_dir / MARKER_NAME).exists()
+
+
+@pytest.mark.parametrize(
+    ("variable", "value", "sentence"),
+    [
+        ("HELIOPANEL_HOST", "0.0.0.0", "does not listen on 0.0.0.0"),
+        ("HELIOPANEL_PORT", "many", "HELIOPANEL_PORT is wrong"),
+        ("HELIOPANEL_CONFIG", "/nowhere/settings.toml", "cannot be read"),
+    ],
+)
+async def test_wrong_settings_are_one_sentence(variable: str, value: str, sentence: str) -> None:
+    process = await asyncio.create_subprocess_exec(
+        sys.executable,
+        "-m",
+        "app.cli",
+        "serve",
+        env=os.environ | {variable: value},
+        stderr=asyncio.subprocess.PIPE,
+    )
+    _, told = await process.communicate()
+
+    assert process.returncode == 2
+    assert sentence in told.decode()
+    assert "Traceback" not in told.decode()
