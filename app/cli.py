@@ -42,7 +42,7 @@ cli = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-Supervised = Annotated[bool, typer.Option("--supervised", hidden=True)]
+Supervised = Annotated[int | None, typer.Option(hidden=True, help="Process id of the supervisor.")]
 Latitude = Annotated[float, typer.Option("--lat", help="Latitude, degrees, north positive.")]
 Longitude = Annotated[float, typer.Option("--lon", help="Longitude, degrees, east positive.")]
 
@@ -58,18 +58,18 @@ def serve() -> None:
 
 
 @cli.command()
-def machine(*, supervised: Supervised = False) -> None:
+def machine(supervised: Supervised = None) -> None:
     """Run the controller service alone, for a system service of its own."""
-    if supervised:
-        end_with_parent()
+    if supervised is not None:
+        end_with_parent(supervised)
     run_machine(read_settings())
 
 
 @cli.command()
-def web(*, supervised: Supervised = False) -> None:
+def web(supervised: Supervised = None) -> None:
     """Run the panel alone, for a system service of its own."""
-    if supervised:
-        end_with_parent()
+    if supervised is not None:
+        end_with_parent(supervised)
     settings = read_settings()
     _check_port(settings)
     run_web(settings)

@@ -8,11 +8,14 @@ from app.machine.supervisor import WRONG_SETTINGS, end_with_parent
 from app.settings import SettingsWrong, read_settings
 from app.store.store import StoreFailed
 
+SUPERVISED = "--supervised="
+
 
 def main() -> int:
     """Run until told to stop and return the exit code."""
-    if "--supervised" in sys.argv[1:]:
-        end_with_parent()
+    for argument in sys.argv[1:]:
+        if argument.startswith(SUPERVISED):
+            end_with_parent(int(argument.removeprefix(SUPERVISED)))
     try:
         run(read_settings())
     except (SettingsWrong, AlreadyRunning, StoreFailed) as error:

@@ -35,7 +35,7 @@ class Child:
 
     async def start(self) -> asyncio.subprocess.Process:
         """Start it in a session of its own: the terminal's signals reach it only through the supervisor."""
-        arguments = ("-m", *self.module, "--supervised")
+        arguments = ("-m", *self.module, f"--supervised={os.getpid()}")
         self.process = await asyncio.create_subprocess_exec(
             sys.executable, *arguments, start_new_session=True
         )
@@ -111,9 +111,8 @@ async def _supervise() -> int:
     return await supervisor.run()
 
 
-def end_with_parent() -> None:
-    """Have the kernel send SIGTERM to this process when its supervisor dies."""
-    parent = os.getppid()
+def end_with_parent(parent: int) -> None:
+    """Have the kernel send SIGTERM here when the supervisor dies; end now if it is dead already."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
     if os.getppid() != parent:
-        os.kill(os.getpid(), signal.SIGTERM)
+        raise SystemExit(0)
