@@ -42,25 +42,27 @@ def unmet(mind: Mind, action: Action) -> tuple[Reason, ...]:
 
 def demand(mind: Mind, action: Action, *more: Reason | None) -> None:
     """Raise `CommandRejected` with every unmet condition of an action and what else speaks against it."""
-    reasons = unmet(mind, action) + tuple(reason for reason in more if reason is not None)
+    reasons = _against(mind, action, more)
     if reasons:
         raise CommandRejected(*reasons)
 
 
 def demand_drive(mind: Mind, action: Action, *more: Reason | None) -> Feedback:
     """Return the last reading for an action that needs one, or raise `CommandRejected` as `demand` does."""
-    demand(mind, action, *more)
-    if mind.feedback is None:
-        raise CommandRejected(_unreachable(mind))
+    reasons = _against(mind, action, more)
+    if reasons or mind.feedback is None:
+        raise CommandRejected(*reasons)
     return mind.feedback
+
+
+def _against(mind: Mind, action: Action, more: tuple[Reason | None, ...]) -> tuple[Reason, ...]:
+    return unmet(mind, action) + tuple(reason for reason in more if reason is not None)
 
 
 def reachable(mind: Mind) -> Reason | None:
     """Return that the drive does not answer."""
-    return None if mind.feedback is not None and not mind.lost else _unreachable(mind)
-
-
-def _unreachable(mind: Mind) -> Reason:
+    if mind.feedback is not None and not mind.lost:
+        return None
     return Reason(
         "drive_unreachable",
         f"The drive of {mind.config.name} does not answer.",

@@ -8,6 +8,7 @@ the configured following error, by what it travels in the link's delay, and by a
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from math import copysign, sqrt
+from typing import assert_never
 
 from app.tracker.axes import AxisConfig
 from app.tracker.motion import AxisCommand, AxisFeedback, Halt, Position, Velocity
@@ -81,7 +82,7 @@ def watch(
 
 
 def _advance(
-    before: AxisWatch, config: AxisConfig, command: AxisCommand, elapsed_s: float
+    before: AxisWatch, config: AxisConfig, command: Velocity | Position, elapsed_s: float
 ) -> tuple[float, float]:
     """Return position and speed of the reference after a time, in steps of at most 0.1 s."""
     position_deg, speed_dps = before.position_deg, before.speed_dps
@@ -95,7 +96,9 @@ def _advance(
     return position_deg, speed_dps
 
 
-def _wanted_dps(config: AxisConfig, command: AxisCommand, position_deg: float, step_s: float) -> float:
+def _wanted_dps(
+    config: AxisConfig, command: Velocity | Position, position_deg: float, step_s: float
+) -> float:
     match command:
         case Position():
             away_deg = command.position_deg - position_deg
@@ -104,15 +107,13 @@ def _wanted_dps(config: AxisConfig, command: AxisCommand, position_deg: float, s
             return copysign(fastest_dps, away_deg)
         case Velocity():
             return command.velocity_dps
-        case Halt():
-            return 0.0
+    assert_never(command)
 
 
-def _direction(command: AxisCommand, measured_deg: float) -> float:
+def _direction(command: Velocity | Position, measured_deg: float) -> float:
     match command:
         case Position():
             return copysign(1.0, command.position_deg - measured_deg)
         case Velocity():
             return copysign(1.0, command.velocity_dps)
-        case Halt():
-            return 0.0
+    assert_never(command)

@@ -124,6 +124,12 @@ def test_a_show_runs_only_from_its_start(plant: Plant) -> None:
         plant.ask(RunShow(replace(PLAN, show_id="another")))
 
 
+def test_a_tracker_that_tracks_does_not_begin_a_show_without_going_to_its_start(plant: Plant) -> None:
+    plant.ask(Track())
+    with pytest.raises(CommandRejected, match="no show under way"):
+        plant.ask(RunShow(PLAN))
+
+
 def test_a_show_may_be_run_by_a_panel_that_already_stands_at_its_start(plant: Plant) -> None:
     at_start(plant)
     plant.ask(StopShow())

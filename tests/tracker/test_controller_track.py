@@ -130,6 +130,20 @@ def test_in_the_polar_night_there_is_no_sunrise_to_turn_to() -> None:
     assert plant.snapshot.activity_text == "Tracking: waiting for the sun to rise"
 
 
+def test_in_the_polar_night_the_panel_parks_all_the_same() -> None:
+    park = replace(CONFIG, night=NightBehaviour.PARK)
+    at = datetime(2026, 12, 21, 12, 0, tzinfo=UTC)
+    plant = tracking(config=park, at=at, location=Location(85.0, 20.0))
+    assert plant.elevation_deg == pytest.approx(90.0, abs=0.05)
+
+
+def test_before_the_first_tick_of_tracking_there_is_no_next_move_yet() -> None:
+    plant = Plant(READY)
+    plant.tick()
+    plant.controller.handle(Track(), plant.clock.now())
+    assert plant.snapshot.activity_text == "Tracking: on the sun"
+
+
 def test_a_sunrise_in_an_unknown_place_is_approached_from_the_low_end() -> None:
     script = Scripted(READY)
     script.sun = SunPosition(10.0, -20.0, -20.0)

@@ -15,13 +15,10 @@ RESET_PATIENCE = timedelta(seconds=5)
 def reset_fault(mind: Mind) -> None:
     """Clear the fault, in the drive too if it has one, or raise `CommandRejected`."""
     feedback = demand_drive(mind, Action.RESET_FAULT)
-    reason = mind.activity.reason if isinstance(mind.activity, Faulted) else None
-    if reason is None:
-        return
     if feedback.fault_code == 0:
         _clear(mind, feedback)
-        return
-    mind.activity = Faulted(reason, mind.next_request(), mind.now + RESET_PATIENCE)
+    elif isinstance(mind.activity, Faulted):
+        mind.activity = Faulted(mind.activity.reason, mind.next_request(), mind.now + RESET_PATIENCE)
 
 
 def step(mind: Mind, faulted: Faulted, feedback: Feedback) -> Turn:

@@ -62,40 +62,39 @@ def step(mind: Mind, tracking: Tracking, feedback: Feedback, seen: Observation) 
     if sun is None or mode is None or not seen.clock_trusted:
         interrupt(mind, on_time(mind) or _SUN_UNKNOWN)
         return Turn(mind.activity, HALTED, None, sun)
-    if tracking.run is not None and not arrived(tracking.run.target, feedback, mind.config.in_position_deg):
-        return _go_on(mind, tracking, tracking.run, wanted(mind, mode, sun, seen), sun)
-    direction = wanted(mind, mode, sun, seen)
+    config, pointing, held = mind.config, mind.memory.pointing, mind.memory.orientation
+    night = mode is not Mode.FIXED and sun_height_deg(config, sun) < TWILIGHT_DEG
+    if night:
+        direction = _night_direction(config, mode, held, seen.dawn)
+    else:
+        direction = mode_direction(mode, held, sun, refraction=config.refraction)
+    run = tracking.run
+    if run is not None and not arrived(run.target, feedback, config.in_position_deg):
+        return _go_on(mind, tracking, run, direction, sun)
     if direction is None:
         return Turn(TRACKING[TrackPhase.NIGHT], HALTED, None, sun)
-    night = is_night(mind.config, mode, sun)
-    near_deg = _night_near_deg(mind.config, seen) if night else feedback.azimuth.position_deg
-    target = aim(mind.config, mind.memory.pointing, direction, near_deg)
-    phase = TrackPhase.NIGHT if night else _phase(mind.config, mode, direction, target)
-    if not off_target(mind.config, feedback, target):
+    near_deg = _night_near_deg(config, seen) if night else feedback.azimuth.position_deg
+    target = aim(config, pointing, direction, near_deg)
+    phase = TrackPhase.NIGHT if night else _phase(config, mode, direction, target)
+    if not off_target(config, feedback, target):
         return Turn(TRACKING[phase], HALTED, direction, sun)
-    run = new_run(mind.config, feedback, AxisPair(target.azimuth_deg, target.elevation_deg), mind.now)
+    run = new_run(config, feedback, AxisPair(target.azimuth_deg, target.elevation_deg), mind.now)
     return Turn(Tracking(phase, run), run.command, direction, sun)
 
 
-def wanted(mind: Mind, mode: Mode, sun: SunPosition, seen: Observation) -> Orientation | None:
-    """Return where the panel should face, in the sky; None: wherever it is."""
-    config, held = mind.config, mind.memory.orientation
-    if not is_night(config, mode, sun):
-        return mode_direction(mode, held, sun, refraction=config.refraction)
+def _night_direction(
+    config: TrackerConfig, mode: Mode, held: Orientation, dawn: SunPosition | None
+) -> Orientation | None:
+    """Return where the panel waits for the sun, in the sky; None: wherever it is."""
     match config.night:
         case NightBehaviour.HOLD:
             return None
         case NightBehaviour.PARK:
             return config.park
         case NightBehaviour.SUNRISE:
-            if seen.dawn is None:
+            if dawn is None:
                 return None
-            return mode_direction(mode, held, seen.dawn, refraction=config.refraction)
-
-
-def is_night(config: TrackerConfig, mode: Mode, sun: SunPosition) -> bool:
-    """Return whether the sun is too low to be followed; a fixed panel knows no night."""
-    return mode is not Mode.FIXED and sun_height_deg(config, sun) < TWILIGHT_DEG
+            return mode_direction(mode, held, dawn, refraction=config.refraction)
 
 
 def sun_height_deg(config: TrackerConfig, sun: SunPosition) -> float:
