@@ -8,7 +8,7 @@ const tzDate = (zone) => (seconds) => uPlot.tzDate(new Date(seconds * 1000), zon
 
 // `wanted`: series [{label, colour, width, dash}], zone for a time axis or `xText` for another one, unit, cursor.
 export function chart(holder, wanted) {
-  const size = () => ({ width: Math.max(200, holder.clientWidth), height: holder.clientHeight || 260 });
+  const size = () => ({ width: Math.max(200, holder.clientWidth), height: wanted.height ?? 260 });
   const digits = wanted.digits ?? 2;
   const unit = wanted.unit ?? "°";
   const text = (value) => (value === null || value === undefined ? "–" : `${value.toFixed(digits)}${unit}`);

@@ -108,7 +108,10 @@ document.addEventListener("visibilitychange", () => { if (document.hidden) end()
 addEventListener("blur", () => end());
 addEventListener("pagehide", () => end());
 addEventListener("orientationchange", () => end());
-document.addEventListener("htmx:before:swap", (event) => { if (press && event.detail?.ctx?.target?.contains?.(press.key)) end(); });
+document.addEventListener("htmx:before:swap", (event) => {
+  const { target, swap } = event.detail?.ctx ?? {};
+  if (press && !String(swap).startsWith("none") && target?.contains?.(press.key)) end();
+});
 live.on("jog", judged);
 live.on("pong", paintLink);
 live.on("stopped", () => end("Stopped."));

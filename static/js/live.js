@@ -6,7 +6,7 @@ const OLD_MS = 1500;
 const DEAD_MS = 3000;
 const RETRY_MS = 300;
 const root = document.documentElement;
-const listeners = { state: new Set(), jog: new Set(), stopped: new Set(), event: new Set(), link: new Set(), pong: new Set() };
+const listeners = { state: new Set(), jog: new Set(), stopped: new Set(), event: new Set(), link: new Set(), pong: new Set(), problem: new Set() };
 
 export const live = {
   trackerId: root.dataset.tracker ?? null,
@@ -73,6 +73,7 @@ const HEARD = {
     setLink("lost");
   },
   jog: (message) => tell("jog", message),
+  problem: (message) => tell("problem", message),
   stopped: (message) => tell("stopped", message),
   event: (message) => tell("event", message),
   pong(message) {

@@ -68,7 +68,7 @@ function draw() {
   const errors = other ? window.uPlot.join([[tape.time, tape.error], [shifted(other), other.error]]) : [tape.time, tape.error];
   plots = [
     chart(document.getElementById("angles"), { zone: head.playerZone, data: angles, range: [0, 360], cursor, join: Boolean(other), series: [...SERIES, ...withOther] }),
-    chart(document.getElementById("errors"), { zone: head.playerZone, data: errors, cursor, join: Boolean(other), digits: 3,
+    chart(document.getElementById("errors"), { height: 180, zone: head.playerZone, data: errors, cursor, join: Boolean(other), digits: 3,
       range: (_, least, most) => [0, Math.max(0.1, (most ?? 0) * 1.1)], series: [{ label: "Tracking error", colour: "text" }, ...(other ? [{ label: "Other", colour: "p1", width: 1.5 }] : [])] }),
   ];
   for (const plot of plots) {

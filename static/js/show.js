@@ -40,7 +40,7 @@ function draw() {
     chart(document.getElementById("angles"), { zone: live.zone, range: [0, 360], data: anglesData(), series: [
       { label: "Azimuth planned", colour: "second", dash: [6, 5], width: 1.5 }, { label: "Azimuth measured", colour: "text", width: 3 },
       { label: "Elevation planned", colour: "blue", dash: [6, 5], width: 1.5 }, { label: "Elevation measured", colour: "blue", width: 3 }] }),
-    chart(document.getElementById("errors"), { zone: live.zone, data: errorData(), range: (_, least, most) => [0, Math.max(0.5, (most ?? 0) * 1.1)],
+    chart(document.getElementById("errors"), { height: 180, zone: live.zone, data: errorData(), range: (_, least, most) => [0, Math.max(0.5, (most ?? 0) * 1.1)],
       series: [{ label: "Off the sun", colour: "text", width: 2 }] }),
   ];
 }

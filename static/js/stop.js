@@ -29,4 +29,5 @@ export function start() {
   form.addEventListener("submit", press);
   addEventListener("keydown", (event) => { if (event.key === "Escape" && !event.repeat) press(event); });
   live.on("stopped", () => words("Stopped."));
+  live.on("problem", (problem) => words(problem.detail));
 }

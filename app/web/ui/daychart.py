@@ -55,7 +55,7 @@ def _band(label: str, top: float, x: Array, panel: Array, sun: Array, up: NDArra
         panel=_line(x, y(panel), np.ones(len(x), dtype=np.bool_)),
         sun=_line(x, y(sun), up & _steady(sun)),
         ticks=tuple(
-            Tick(at, f"{mark:g}°") for at, mark in zip(y(marks).tolist(), marks.tolist(), strict=True)
+            Tick(at, f"{mark + 0.0:g}°") for at, mark in zip(y(marks).tolist(), marks.tolist(), strict=True)
         ),
     )
 

@@ -72,8 +72,12 @@ def tracker_frame(
         tabs=tabs,
         steps=steps,
         back=back or overview,
-        forward=forward,
+        forward=forward or _elsewhere(root, here),
     )
+
+
+def _elsewhere(root: str, here: str) -> Forward:
+    return Forward("Show", f"{root}/show") if here == root else Forward("Live", root)
 
 
 def snapshot_of(site: SiteSnapshot | None, tracker_id: str | None) -> Snapshot | None:

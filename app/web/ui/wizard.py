@@ -60,7 +60,7 @@ def onwards(tracker: TrackerDetail, step: StepName, here: str) -> Forward:
     root = f"/trackers/{tracker.state.config.tracker_id}"
     found = step_of(tracker, step)
     if step is StepName.RUN:
-        return Forward("Live view", root)
+        return Forward("Live", root)
     needs_orientation = tracker.state.memory.mode not in (None, Mode.DUAL)
     if step is StepName.MODE and needs_orientation and not here.endswith("/orientation"):
         return Forward("Next", f"{root}/commissioning/mode/orientation")

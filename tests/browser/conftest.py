@@ -1,0 +1,147 @@
+"""The panel on a machine in memory, served on a free port, and Debian's Chromium in front of it."""
+
+import asyncio
+import contextlib
+import os
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from datetime import timedelta
+from pathlib import Path
+from typing import Any
+
+import pytest
+import uvicorn
+from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, sync_playwright
+
+from tests.fakes import FakeMachine, FakeReader, fake_app
+
+CHROMIUM = os.environ.get("HELIOPANEL_TEST_BROWSER", "/usr/bin/chromium")
+FLAGS = [
+    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+    "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage",
+]  # fmt: skip
+SCREENS = Path(__file__).resolve().parents[2] / "build" / "screens"
+SIZES = {"desk": (1280, 800), "tablet": (1024, 768), "phone": (390, 844)}
+BEAT = timedelta(milliseconds=100)
+
+
+@dataclass
+class Plant:
+    """A served panel and the machine behind it."""
+
+    url: str
+    machine: FakeMachine
+    server: uvicorn.Server
+    loop: asyncio.AbstractEventLoop
+
+    def orders(self, kind: str) -> list[Any]:
+        return [order.command for order in list(self.machine.orders) if order.command.kind == kind]
+
+    def do(self, work: Callable[[], object]) -> None:
+        """Do something in the server's own thread."""
+        self.loop.call_soon_threadsafe(work)
+
+
+@dataclass
+class Served:
+    machine: FakeMachine
+    ready: threading.Event = field(default_factory=threading.Event)
+    server: uvicorn.Server | None = None
+    loop: asyncio.AbstractEventLoop | None = None
+
+    async def run(self) -> None:
+        self.loop = asyncio.get_running_loop()
+        app = fake_app(self.machine, FakeReader())
+        config = uvicorn.Config(app, host="127.0.0.1", port=0, log_level="error", timeout_graceful_shutdown=1)
+        self.server = uvicorn.Server(config)
+        moving = asyncio.create_task(self._move())
+        try:
+            await self.server.serve()
+        finally:
+            moving.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await moving
+
+    async def _move(self) -> None:
+        while True:
+            if self.server is not None and self.server.started:
+                self.ready.set()
+            if self.machine.reachable:
+                self.machine.emit()
+            await self.machine.clock.sleep_until(self.machine.clock.now() + BEAT)
+
+
+@pytest.fixture
+def plant() -> Iterator[Plant]:
+    served = Served(FakeMachine())
+    thread = threading.Thread(target=lambda: asyncio.run(served.run()), daemon=True)
+    thread.start()
+    assert served.ready.wait(20), "the panel did not start"
+    assert served.server is not None
+    assert served.loop is not None
+    port = served.server.servers[0].sockets[0].getsockname()[1]
+    yield Plant(f"http://127.0.0.1:{port}", served.machine, served.server, served.loop)
+    served.server.should_exit = True
+    thread.join(20)
+    assert not thread.is_alive(), "the panel did not stop"
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    if not Path(CHROMIUM).exists():
+        pytest.fail("These tests need Chromium: apt-get install -y chromium")
+    with sync_playwright() as playwright:
+        started = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield started
+        started.close()
+
+
+Opened = Callable[..., Page]
+
+
+@pytest.fixture
+def opened(browser: Browser, plant: Plant) -> Iterator[Opened]:
+    """Open a page; at the end of the test any console error, any uncaught error fails it."""
+    contexts: list[BrowserContext] = []
+    complaints: list[str] = []
+    allowed: list[str] = []
+
+    def complain(message: ConsoleMessage) -> None:
+        if message.type in ("error", "warning"):
+            complaints.append(f"{message.type}: {message.text}")
+
+    def open_page(
+        path: str, size: str = "desk", *, touch: bool = False, theme: str = "day", allow: tuple[str, ...] = ()
+    ) -> Page:
+        width, height = SIZES[size]
+        context = browser.new_context(
+            viewport={"width": width, "height": height},
+            has_touch=touch,
+            locale="en-GB",
+            timezone_id="Europe/Istanbul",
+        )
+        contexts.append(context)
+        allowed.extend(allow)
+        context.add_cookies([{"name": "theme", "value": theme, "url": plant.url}])
+        context.set_default_timeout(8000)
+        page = context.new_page()
+        page.on("console", complain)
+        page.on("pageerror", lambda error: complaints.append(f"uncaught: {error}"))
+        page.goto(plant.url + path)
+        page.wait_for_selector('html[data-link="live"]')
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert [one for one in complaints if not any(words in one for words in allowed)] == []
+
+
+@pytest.fixture
+def picture() -> Callable[[Page, str], None]:
+    def take(page: Page, name: str) -> None:
+        SCREENS.mkdir(parents=True, exist_ok=True)
+        page.screenshot(path=SCREENS / f"{name}.png")
+
+    return take

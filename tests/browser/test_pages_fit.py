@@ -1,0 +1,85 @@
+"""Every page at every size and in every theme: nothing beside the screen, nothing too small, light enough."""
+
+from collections.abc import Callable
+
+import httpx
+import pytest
+from playwright.sync_api import Page
+
+from tests.browser.conftest import Opened, Plant
+
+T1 = "/trackers/T1"
+SHOW = f"{T1}/show?date=2026-06-21&start=05:07&end=20:19&minutes=3"
+PAGES = {
+    "overview": "/",
+    "live": T1,
+    "location": f"{T1}/commissioning/location",
+    "clock": f"{T1}/commissioning/clock",
+    "homing": f"{T1}/commissioning/homing",
+    "mode": f"{T1}/commissioning/mode",
+    "orientation": f"{T1}/commissioning/mode/orientation",
+    "run": f"{T1}/commissioning/run",
+    "sun-check": f"{T1}/sun-check",
+    "record": f"{T1}/record",
+    "settings": f"{T1}/settings",
+    "show": SHOW,
+    "recordings": "/recordings",
+    "player": "/recordings/show-1",
+    "compare": "/recordings/show-1?with=day-1",
+    "simulate": "/simulate",
+    "journal": "/journal",
+}
+LEAST_TARGET_PX = 60
+MOST_BYTES = 150_000
+TOO_SMALL = """least => [...document.querySelectorAll('a, button, input:not([type=hidden]), select, summary')]
+  .filter(e => !e.closest('p, h2, h3, .reasons, .skip') && !e.classList.contains('skip'))
+  .map(e => [e, (e.closest('label') ?? e).getBoundingClientRect()])
+  .filter(([e, box]) => box.width > 0 && (box.width < least || box.height < least))
+  .map(([e, box]) => `${e.tagName} ${e.className} ${e.textContent.trim()} ${box.width}x${box.height}`)"""
+
+
+@pytest.mark.parametrize("size", ["desk", "tablet", "phone"])
+@pytest.mark.parametrize("name", PAGES)
+def test_page_fits(name: str, size: str, opened: Opened, picture: Callable[[Page, str], None]) -> None:
+    page = opened(PAGES[name], size)
+    picture(page, f"{name}-{size}")
+    assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
+    assert page.evaluate(TOO_SMALL, LEAST_TARGET_PX) == []
+    stop = page.locator("#stop-key").bounding_box()
+    width = page.viewport_size["width"] if page.viewport_size else 0
+    assert stop is not None
+    assert abs(stop["x"] + stop["width"] / 2 - width / 2) < 3
+    assert page.locator("h1").count() == 1
+
+
+@pytest.mark.parametrize("theme", ["sun", "night"])
+@pytest.mark.parametrize("name", ["overview", "live", "homing", "show", "player"])
+def test_page_in_other_themes(
+    name: str, theme: str, opened: Opened, picture: Callable[[Page, str], None]
+) -> None:
+    page = opened(PAGES[name], "tablet", theme=theme)
+    picture(page, f"{name}-{theme}")
+    assert page.evaluate("document.documentElement.dataset.theme") == theme
+
+
+def test_theme_changes_at_one_tap_and_stays(opened: Opened) -> None:
+    page = opened("/")
+    page.locator(".theme-key").click()
+    assert page.evaluate("document.documentElement.dataset.theme") == "sun"
+    page.reload()
+    assert page.evaluate("document.documentElement.dataset.theme") == "sun"
+
+
+def test_no_page_is_heavier_than_150_kilobytes(plant: Plant, opened: Opened) -> None:
+    for path in PAGES.values():
+        page = opened("/")
+        asked: list[str] = []
+        page.on("request", lambda request, seen=asked: seen.append(request.url))
+        page.goto(plant.url + path)
+        page.wait_for_load_state("load")
+        with httpx.Client(headers={"accept-encoding": "gzip"}) as client:
+            answers = [client.get(url) for url in asked if url.startswith(plant.url) and "/api/" not in url]
+        weight = sum(answer.num_bytes_downloaded for answer in answers)
+        assert weight < MOST_BYTES, (path, weight)
+        assert all(url.startswith((plant.url, "ws://127.0.0.1")) for url in asked), asked
+        page.context.close()
