@@ -1,5 +1,7 @@
 """What one reading of the drive says against going on. Each guard returns a reason, or None."""
 
+from typing import assert_never
+
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import TrackerConfig
 from app.tracker.follow import AxisWatch
@@ -118,6 +120,8 @@ def heads_into_switch(command: AxisCommand, seen: AxisFeedback, tolerance_deg: f
         case Position():
             away_deg = command.position_deg - seen.position_deg
             heading = away_deg if abs(away_deg) > tolerance_deg else 0.0
+        case _:
+            assert_never(command)
     return (heading > 0.0 and seen.at_upper_limit) or (heading < 0.0 and seen.at_lower_limit)
 
 

@@ -5,6 +5,7 @@ sun moves 0.0042 degrees a second, and a run takes a second or two.
 """
 
 from math import cos, radians, sin
+from typing import assert_never
 
 from app.sun.position import Location, SunPosition
 from app.tracker.activities.moving import not_arrived
@@ -95,6 +96,7 @@ def _night_direction(
             if dawn is None:
                 return None
             return mode_direction(mode, held, dawn, refraction=config.refraction)
+    assert_never(config.night)
 
 
 def sun_height_deg(config: TrackerConfig, sun: SunPosition) -> float:
