@@ -25,7 +25,8 @@ class CommandRejected(Exception):
 class Jog:
     """Turn one axis while the lease is renewed: the same `press_id` renews, a press that ended stays dead.
 
-    `lease` is at most `JOG_LEASE`; `sequence` grows with every renewal of a press.
+    `lease` is at most `JOG_LEASE`; `sequence` grows with every renewal of a press, which begins with 0 or 1:
+    an unknown press with a higher one is the rest of a press that ended.
     """
 
     press_id: str

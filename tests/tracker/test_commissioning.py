@@ -101,7 +101,9 @@ def test_a_clock_that_is_doubted_is_to_be_confirmed_with_its_reasons(told: tuple
 
 
 def test_a_lost_home_is_to_be_done_again_and_says_why() -> None:
-    lost = replace(BLANK, home_lost="The drive of Tracker 1 has restarted.", confirmations={StepName.HOMING: SAVED})
+    lost = replace(
+        BLANK, home_lost="The drive of Tracker 1 has restarted.", confirmations={StepName.HOMING: SAVED}
+    )
     homing = judge(lost, None)[StepName.HOMING]
     assert homing.status is TO_DO
     assert "has restarted" in homing.reasons[0].message
