@@ -23,7 +23,8 @@ WEAKEST_LEVERAGE = 0.15
 """Least singular value: an error of 0.1 degrees in a sighting then moves the result by 0.7 at most."""
 
 LARGEST_LEAN_DEG = 15.0
-ITERATIONS = 6
+ITERATIONS = 8
+DIFFERENCE_DEG = 1e-4
 
 
 class Mistake(StrEnum):
@@ -170,10 +171,10 @@ def fit(sightings: Sequence[Sighting]) -> Pointing:
             f"Three sightings are needed, spread over the day; there are {len(sightings)}.",
             "Take more sightings, in the morning, around noon and in the afternoon.",
         )
-    design = _design(sightings)
-    if float(np.linalg.svd(design, compute_uv=False)[-1]) < WEAKEST_LEVERAGE:
+    start = _start(sightings)
+    if float(np.linalg.svd(_derivatives(sightings, start), compute_uv=False)[-1]) < WEAKEST_LEVERAGE:
         raise _too_alike(sightings)
-    solution = _solve(sightings, design)
+    solution = _solve(sightings, start)
     if max(abs(solution[2]), abs(solution[3])) > LARGEST_LEAN_DEG:
         raise _rejected(
             "implausible_lean",
@@ -185,31 +186,35 @@ def fit(sightings: Sequence[Sighting]) -> Pointing:
     return replace(_pointing(solution), residual_deg=residual_deg)
 
 
-def _solve(sightings: Sequence[Sighting], design: Array) -> Array:
-    solution = np.zeros(4)
+def _start(sightings: Sequence[Sighting]) -> Array:
+    """Return the mean azimuth error alone, so that no other error is near half a turn."""
+    errors = np.radians([seen.panel_azimuth_deg - seen.sun_azimuth_deg for seen in sightings])
+    mean = np.arctan2(np.sin(errors).sum(), np.cos(errors).sum())
+    return np.array([float(np.degrees(mean)), 0.0, 0.0, 0.0])
+
+
+def _solve(sightings: Sequence[Sighting], start: Array) -> Array:
+    solution = start
     for _ in range(ITERATIONS):
         misses = _misses(sightings, _pointing(solution)).ravel()
-        solution = solution + np.linalg.lstsq(design, misses, rcond=None)[0]
-    return solution
+        step = np.linalg.lstsq(_derivatives(sightings, solution), misses, rcond=None)[0]
+        solution = solution + step
+    return np.asarray(solution, dtype=np.float64)
 
 
 def _pointing(solution: Array) -> Pointing:
-    return Pointing(*(float(value) for value in solution))
+    azimuth_deg, *others = (float(value) for value in solution)
+    return Pointing(wrap180(azimuth_deg), *others)
 
 
-def _design(sightings: Sequence[Sighting]) -> Array:
-    """Return the derivatives of both axis angles (azimuth rows first) by the four unknowns, at zero lean."""
-    azimuth = np.radians([sighting.sun_azimuth_deg for sighting in sightings])
-    elevation = np.radians([sighting.sun_elevation_deg for sighting in sightings])
-    nothing, one = np.zeros(len(sightings)), np.ones(len(sightings))
-    azimuth_rows = [
-        np.cos(elevation),
-        nothing,
-        np.sin(azimuth) * np.sin(elevation),
-        -np.cos(azimuth) * np.sin(elevation),
+def _derivatives(sightings: Sequence[Sighting], solution: Array) -> Array:
+    """Return how both predicted axis angles (azimuth rows first) change with each of the four unknowns."""
+    here = _misses(sightings, _pointing(solution)).ravel()
+    columns = [
+        (here - _misses(sightings, _pointing(solution + aside)).ravel()) / DIFFERENCE_DEG
+        for aside in DIFFERENCE_DEG * np.eye(4)
     ]
-    elevation_rows = [nothing, one, np.cos(azimuth), np.sin(azimuth)]
-    return np.hstack([np.array(azimuth_rows), np.array(elevation_rows)]).T
+    return np.array(columns).T
 
 
 def _misses(sightings: Sequence[Sighting], pointing: Pointing) -> Array:

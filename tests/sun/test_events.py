@@ -149,3 +149,23 @@ def test_a_day_that_ends_before_it_begins_is_refused() -> None:
     begin = datetime(2026, 6, 21, tzinfo=UTC)
     with pytest.raises(InstantRefused, match="the first before the second"):
         day_events(Algorithm.PSA, SAMSUN, begin, begin)
+
+
+def test_a_day_that_begins_at_its_transit_has_the_next_one_where_days_are_short() -> None:
+    begin, end = local_day(SAMSUN, 2026, 10, 1)
+    noon = day_events(Algorithm.PSA, SAMSUN, begin, end).transit
+    assert noon is not None
+    for microseconds in range(-3, 4):
+        begin = noon + timedelta(microseconds=microseconds)
+        found = day_events(Algorithm.PSA, SAMSUN, begin, begin + DAY).transit
+        assert found is not None
+        assert begin <= found < begin + DAY
+
+
+def test_a_day_just_shorter_than_from_transit_to_transit_may_have_none() -> None:
+    noon = day_events(Algorithm.PSA, SAMSUN, *local_day(SAMSUN, 2026, 12, 20)).transit
+    assert noon is not None
+    begin = noon + timedelta(seconds=1)
+    found = day_events(Algorithm.PSA, SAMSUN, begin, begin + DAY)
+    assert found.transit is None
+    assert found.transit_elevation_deg is None

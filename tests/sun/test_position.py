@@ -188,3 +188,12 @@ def test_there_is_no_refraction_at_night() -> None:
 def test_the_sun_is_up_while_its_upper_limb_is() -> None:
     assert SunPosition(90.0, -0.83, -0.2).is_up
     assert not SunPosition(90.0, -0.84, -0.2).is_up
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [((91.0, 0.0), "Latitude"), ((0.0, -181.0), "Longitude"), ((0.0, 0.0, 9001.0), "Altitude")],
+)
+def test_a_place_that_is_not_on_earth_is_refused(fields: tuple[float, ...], words: str) -> None:
+    with pytest.raises(ValueError, match=f"{words} must lie between"):
+        Location(*fields)

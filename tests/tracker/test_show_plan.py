@@ -263,3 +263,10 @@ def test_any_show_anywhere_is_either_inside_the_limits_or_refused_with_a_reason(
     if check.feasible:
         assert check.shortest is not None
         assert check.peak_azimuth_dps <= tracker.azimuth.speed_dps
+
+
+def test_where_no_duration_works_the_hint_says_so() -> None:
+    crawling = replace(PLAIN, azimuth=AxisConfig(0.0, 360.0, 0.0005, 6.0, 0.0005, 0.0005))
+    check = check_show(SOLSTICE, crawling)
+    assert check.shortest is None
+    assert check.reasons[0].hint == "No simulation time up to 24 hours works: choose another interval."

@@ -122,7 +122,7 @@ def _too_long(asked: Pace) -> str:
 
 
 def _shortest(course: ShowCourse, tracker: TrackerConfig) -> timedelta | None:
-    """Return the least whole number of seconds at which the course is feasible."""
+    """Return the whole seconds at which the course becomes feasible, by bisection: a second less fails."""
 
     def works(duration_s: int) -> bool:
         return feasible(course.run_in(float(duration_s))[1], tracker)
@@ -133,8 +133,6 @@ def _shortest(course: ShowCourse, tracker: TrackerConfig) -> timedelta | None:
     while low < high:
         middle = (low + high) // 2
         low, high = (low, middle) if works(middle) else (middle + 1, high)
-    while low > SHORTEST_DURATION.total_seconds() and works(low - 1):
-        low -= 1
     return timedelta(seconds=low)
 
 
