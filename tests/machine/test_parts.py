@@ -1,0 +1,226 @@
+"""The parts of the controller service, one by one."""
+
+import asyncio
+import io
+import json
+import logging
+import os
+import signal
+import socket
+import stat
+import threading
+from collections.abc import Iterator
+from datetime import UTC, datetime, timedelta
+from functools import partial
+from pathlib import Path
+
+import pytest
+import structlog
+
+from app.clock import SystemClock, VirtualClock
+from app.logs import set_up_logs
+from app.machine.lock import LOCK_NAME, AlreadyRunning, holder, only_instance
+from app.machine.marker import mark_running, mark_stopped
+from app.machine.supervisor import WRONG_SETTINGS, Child, Supervisor
+from app.machine.systemd import notify
+from app.machine.watchdog import EXIT_CODE, LoopWatchdog
+from app.settings import SettingsWrong, read_settings
+from app.site.ntp import ntp_synchronised
+from tests.machine.service import eventually
+
+NOW = datetime(2026, 11, 21, 9, 0, tzinfo=UTC)
+
+
+def test_one_process_holds_a_data_folder(tmp_path: Path) -> None:
+    assert holder(tmp_path) is None
+    with only_instance(tmp_path, NOW):
+        assert holder(tmp_path) == os.getpid()
+        told = f"process {os.getpid()}, running since 2026-11-21"
+        with pytest.raises(AlreadyRunning, match=told), only_instance(tmp_path, NOW):
+            pass
+    assert holder(tmp_path) is None
+    assert stat.S_IMODE((tmp_path / LOCK_NAME).stat().st_mode) == 0o600
+    with only_instance(tmp_path, NOW):
+        assert holder(tmp_path) == os.getpid()
+
+
+def test_a_life_that_did_not_end_properly_leaves_its_mark(tmp_path: Path) -> None:
+    assert mark_running(tmp_path, NOW) is None
+    assert mark_running(tmp_path, NOW + timedelta(hours=1)) == NOW
+
+    mark_stopped(tmp_path)
+
+    assert mark_running(tmp_path, NOW) is None
+
+
+def test_systemd_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    path = tmp_path / "notify"
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as listener:
+        listener.bind(str(path))
+        monkeypatch.setenv("NOTIFY_SOCKET", str(path))
+        notify("READY=1")
+
+        assert listener.recv(100) == b"READY=1"
+
+
+def test_without_systemd_nobody_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NOTIFY_SOCKET", "/nowhere/notify")
+    notify("READY=1")
+    monkeypatch.delenv("NOTIFY_SOCKET")
+    notify("READY=1")
+
+
+async def test_the_kernel_is_asked_about_ntp() -> None:
+    assert ntp_synchronised() in (True, False, None)
+
+
+class Ending:
+    """Takes the place of the process's end and remembers the exit code."""
+
+    def __init__(self) -> None:
+        self.code: int | None = None
+        self.ended = threading.Event()
+
+    def __call__(self, code: int) -> None:
+        self.code = code
+        self.ended.set()
+
+
+async def test_a_ticker_that_died_ends_the_machine_with_its_drives_stopped() -> None:
+    ending, stopped = Ending(), []
+
+    async def stop_drives() -> None:
+        stopped.append(True)
+
+    watching = asyncio.create_task(
+        LoopWatchdog(SystemClock(), alive=lambda: False, stop_drives=stop_drives, end=ending).run()
+    )
+    await asyncio.to_thread(ending.ended.wait, 10)
+
+    assert (ending.code, stopped) == (EXIT_CODE, [True])
+    watching.cancel()
+    await asyncio.gather(watching, return_exceptions=True)
+
+
+async def test_a_loop_that_hangs_ends_the_machine() -> None:
+    ending = Ending()
+
+    async def stop_drives() -> None:
+        return
+
+    watching = asyncio.create_task(
+        LoopWatchdog(SystemClock(), alive=lambda: True, stop_drives=stop_drives, end=ending).run()
+    )
+    await asyncio.sleep(0.3)
+    assert ending.code is None
+
+    hung_for = ending.ended.wait(10)
+
+    assert hung_for
+    assert ending.code == EXIT_CODE
+    watching.cancel()
+    await asyncio.gather(watching, return_exceptions=True)
+
+
+async def test_a_loop_that_lives_is_left_alone() -> None:
+    ending = Ending()
+
+    async def stop_drives() -> None:
+        return
+
+    watching = asyncio.create_task(
+        LoopWatchdog(SystemClock(), alive=lambda: True, stop_drives=stop_drives, end=ending).run()
+    )
+    await asyncio.sleep(1.6)
+    watching.cancel()
+    await asyncio.gather(watching, return_exceptions=True)
+
+    assert ending.code is None
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> Iterator[Path]:
+    """A folder with the modules that the supervisor's children run."""
+    (tmp_path / "dies.py").write_text("import sys; sys.exit(3)")
+    (tmp_path / "wrong.py").write_text(f"import sys; sys.exit({WRONG_SETTINGS})")
+    (tmp_path / "stays.py").write_text("import time; time.sleep(60)")
+    before = os.environ.get("PYTHONPATH")
+    os.environ["PYTHONPATH"] = str(tmp_path)
+    yield tmp_path
+    if before is None:
+        del os.environ["PYTHONPATH"]
+    else:
+        os.environ["PYTHONPATH"] = before
+
+
+def waits(child: Child, pause: timedelta) -> bool:
+    ended = child.process is not None and child.process.returncode is not None
+    return ended and child.pause == pause
+
+
+@pytest.mark.usefixtures("written")
+async def test_a_child_that_dies_is_started_again_with_a_growing_pause() -> None:
+    clock, child = VirtualClock(NOW), Child("dies", ("dies",))
+    supervisor = Supervisor(clock, child)
+    running = asyncio.create_task(supervisor.run())
+    pauses = [timedelta(milliseconds=200) * 2**n for n in range(3)]
+    for pause in pauses:
+        await eventually(partial(waits, child, pause))
+        await asyncio.sleep(0.1)
+        clock.advance(pause)
+    await eventually(lambda: child.pause == pauses[-1] * 2)
+
+    supervisor.stop()
+
+    assert await running == 0
+
+
+@pytest.mark.usefixtures("written")
+async def test_wrong_settings_of_one_child_end_both() -> None:
+    wrong, other = Child("wrong", ("wrong",)), Child("stays", ("stays",))
+
+    assert await Supervisor(SystemClock(), wrong, other).run() == WRONG_SETTINGS
+
+    assert other.process is not None
+    assert other.process.returncode == -signal.SIGTERM
+
+
+@pytest.fixture
+def _logs_as_before() -> Iterator[None]:
+    root = logging.getLogger()
+    handlers, level = list(root.handlers), root.level
+    yield
+    root.handlers[:] = handlers
+    root.setLevel(level)
+    structlog.reset_defaults()
+
+
+@pytest.mark.usefixtures("_logs_as_before")
+def test_logs_are_json_lines_with_the_process_in_them() -> None:
+    stream = io.StringIO()
+    set_up_logs("machine", log_format="json", log_level="info", stream=stream)
+    structlog.get_logger("x").info("tick_failed", tracker="T1")
+    logging.getLogger("y").warning("from a library")
+    structlog.get_logger("x").debug("not shown")
+
+    lines = [json.loads(line) for line in stream.getvalue().splitlines()]
+
+    assert [line["event"] for line in lines] == ["tick_failed", "from a library"]
+    assert all(line["process"] == "machine" for line in lines)
+    assert lines[0]["tracker"] == "T1"
+
+
+def test_settings_come_from_the_environment_before_the_file(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    file = tmp_path / "settings.toml"
+    file.write_text("HELIOPANEL_PORT = 9001\ntick_ms = 50\n")
+    monkeypatch.setenv("HELIOPANEL_CONFIG", str(file))
+    assert (read_settings().port, read_settings().tick_ms) == (9001, 50)
+
+    monkeypatch.setenv("HELIOPANEL_PORT", "9002")
+    assert read_settings().port == 9002
+
+    file.write_text("colour = 1\n")
+    with pytest.raises(SettingsWrong, match="HELIOPANEL_COLOUR"):
+        read_settings()
