@@ -9,7 +9,6 @@ import orjson
 import structlog
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
-from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
@@ -160,7 +159,7 @@ def install(app: FastAPI) -> None:
         if problem.status >= 500:
             log.error("request failed", path=request.url.path, status=problem.status, error=repr(error))
         response = _respond(request, problem)
-        add_headers(MutableHeaders(scope={"headers": response.raw_headers}))
+        add_headers(response.headers)
         return response
 
     for kind in PROBLEMS:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import uvicorn
 from fastapi import FastAPI
+from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 from starlette.middleware.gzip import GZipMiddleware
 
 from app.clock import Clock, SystemClock
@@ -25,7 +26,7 @@ from app.web.assets import Assets
 from app.web.deps import Panel
 from app.web.documented import DocumentedApp
 from app.web.hub import Hub
-from app.web.security import Guard, SecurityHeaders
+from app.web.security import LARGEST_BODY, Guard, SecurityHeaders
 from app.web.server import (
     FAREWELL_S,
     KEEP_ALIVE_S,
@@ -40,7 +41,6 @@ from app.web.simulations import Simulations
 from app.web.ui.pages import include_pages
 
 STATIC = Path(__file__).resolve().parents[2] / "static"
-LARGEST_BODY = 1024 * 1024
 SMALLEST_COMPRESSED = 600
 
 
@@ -63,12 +63,12 @@ def create_app(
         redoc_url=None,
         openapi_url="/api/v1/openapi.json",
         lifespan=_living,
-        max_body_size=LARGEST_BODY,
     )
     panel = Panel(settings, machine, reader, clock, Assets(STATIC), Hub(machine, clock), Simulations())
     app.state.panel = panel
     _add_doors(app, panel)
     errors.install(app)
+    app.add_middleware(RequestBodyLimitMiddleware, max_body_size=LARGEST_BODY)
     app.add_middleware(GZipMiddleware, minimum_size=SMALLEST_COMPRESSED)
     app.add_middleware(Guard)
     app.add_middleware(SecurityHeaders)

@@ -1,11 +1,14 @@
 """Who may call at all: the guard against foreign pages, and the headers that every answer carries."""
 
+from http import HTTPStatus
 from urllib.parse import urlsplit
 
 import orjson
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+LARGEST_BODY = 1024 * 1024
+TOO_LARGE = "A request to this panel has at most one megabyte."
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
 OWN_SITES = frozenset({"same-origin", "none"})
@@ -59,7 +62,10 @@ class Guard:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on, or answer 403 with the sentence that says why."""
         if scope["type"] in ("http", "websocket") and (refusal := self._refusal(scope)):
-            await _refuse(scope, send, refusal)
+            await _refuse(scope, send, 403, refusal)
+            return
+        if scope["type"] == "http" and _body_size(scope) > LARGEST_BODY:
+            await _refuse(scope, send, 413, TOO_LARGE)
             return
         await self._app(scope, receive, send)
 
@@ -92,11 +98,18 @@ def _foreign(headers: Headers, host: str) -> str | None:
     return None
 
 
-async def _refuse(scope: Scope, send: Send, detail: str) -> None:
+def _body_size(scope: Scope) -> int:
+    length = Headers(scope=scope).get("content-length", "")
+    return int(length) if length.isdigit() else 0
+
+
+async def _refuse(scope: Scope, send: Send, status: int, detail: str) -> None:
     if scope["type"] == "websocket":
         await send({"type": "websocket.close", "code": 1008, "reason": "foreign origin"})
         return
-    body = orjson.dumps({"type": "about:blank", "title": "Forbidden", "status": 403, "detail": detail})
+    body = orjson.dumps(
+        {"type": "about:blank", "title": HTTPStatus(status).phrase, "status": status, "detail": detail}
+    )
     headers = [(b"content-type", b"application/problem+json"), (b"content-length", str(len(body)).encode())]
-    await send({"type": "http.response.start", "status": 403, "headers": headers})
+    await send({"type": "http.response.start", "status": status, "headers": headers})
     await send({"type": "http.response.body", "body": body})

@@ -59,6 +59,8 @@ NOT_FOUND: Responses = {404: _problem("There is no such thing.")}
 REFUSED: Responses = {409: _problem("The state forbids it; `reasons` has every unmet condition.")}
 TOO_MANY: Responses = {429: _problem("Too much of this is under way; try again later.")}
 COMMON: Responses = {
+    400: _problem("The body cannot be read as text."),
+    413: _problem("The body is larger than one megabyte."),
     403: _problem("The request comes from a foreign page or to a foreign host name."),
     422: _problem("Values are missing or wrong."),
     500: _problem("The panel made a mistake."),

@@ -63,6 +63,7 @@ class EventStream(Response):
             ended = await asyncio.gather(*tasks, return_exceptions=True)
         if isinstance(ended[0], TooSlow):
             log.warning("a reader of the event stream was too slow and is dropped")
+            return
         with suppress(OSError):
             await send({"type": "http.response.body", "body": b""})
 

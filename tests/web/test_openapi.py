@@ -1,0 +1,66 @@
+"""The API's document is current and complete, and the API behaves as it says."""
+
+from datetime import timedelta
+
+import schemathesis
+from hypothesis import HealthCheck, Phase, settings
+from schemathesis.checks import not_a_server_error
+from schemathesis.config import SchemathesisConfig
+from schemathesis.specs.openapi.checks import (
+    content_type_conformance,
+    response_schema_conformance,
+    status_code_conformance,
+)
+
+from app.web.documented import written
+from app.web.openapi import DOCUMENT
+from tests.fakes import fake_app
+
+EXAMPLES = 4
+CHECKS = [
+    not_a_server_error,
+    status_code_conformance,
+    content_type_conformance,
+    response_schema_conformance,
+]
+
+
+def test_the_committed_document_is_current() -> None:
+    assert DOCUMENT.read_text() == written(fake_app()), "Run: python -m app.web.openapi"
+
+
+def test_every_operation_is_described() -> None:
+    paths = fake_app().openapi()["paths"]
+    operations = [(path, method, one) for path, item in paths.items() for method, one in item.items()]
+    assert len(operations) > 40
+    for path, method, operation in operations:
+        assert operation.get("summary"), (path, method)
+        assert operation.get("description"), (path, method)
+        assert "422" in operation["responses"], (path, method)
+        assert "503" in operation["responses"], (path, method)
+
+
+CONFIG = SchemathesisConfig.from_dict(
+    {
+        "phases": {
+            "coverage": {"enabled": False},
+            "examples": {"enabled": False},
+            "stateful": {"enabled": False},
+        }
+    }
+)
+APP = fake_app()
+schema = schemathesis.openapi.from_dict(APP.openapi(), config=CONFIG)
+
+
+@schema.exclude(path_regex="stream|simulations|backup").parametrize()
+@settings(
+    max_examples=EXAMPLES,
+    deadline=timedelta(seconds=5),
+    suppress_health_check=list(HealthCheck),
+    derandomize=True,
+    database=None,
+    phases=(Phase.generate,),
+)
+def test_the_api_does_what_its_document_says(case: schemathesis.Case) -> None:
+    case.call_and_validate(app=APP, checks=CHECKS, base_url="http://127.0.0.1:8010")

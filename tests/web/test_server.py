@@ -1,0 +1,97 @@
+"""The real server on a free port: deadlines, limits, and a quick end though streams are open."""
+
+import asyncio
+import contextlib
+import socket
+from collections.abc import AsyncIterator
+from datetime import timedelta
+
+import uvicorn
+from websockets.asyncio.client import connect
+
+from app.clock import SystemClock
+from app.web.server import Connections, PanelServer, cautious
+from tests.fakes import FakeMachine, fake_app
+
+
+@contextlib.asynccontextmanager
+async def serving(connections: Connections, deadline_s: float) -> AsyncIterator[tuple[PanelServer, int]]:
+    app = fake_app(FakeMachine())
+    listener = socket.create_server(("127.0.0.1", 0))
+    config = uvicorn.Config(
+        app,
+        http=cautious(connections, deadline_s),
+        ws="websockets-sansio",
+        log_config=None,
+        timeout_graceful_shutdown=2,
+    )
+    server = PanelServer(config, app.state.panel.hub.closing.set)
+    serving = asyncio.create_task(server._serve([listener]))
+    clock = SystemClock()
+    while not server.started:
+        await clock.sleep_until(clock.now() + timedelta(milliseconds=10))
+    try:
+        yield server, listener.getsockname()[1]
+    finally:
+        server.should_exit = True
+        async with asyncio.timeout(5):
+            await serving
+        listener.close()
+
+
+async def test_request_that_never_ends_is_hung_up_on() -> None:
+    async with serving(Connections(100), 0.2) as (_, port):
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(b"GET /health HTTP/1.1\r\nHost: 127.0")
+        with contextlib.suppress(ConnectionResetError):
+            assert await asyncio.wait_for(reader.read(), 3) == b""
+        writer.close()
+
+
+async def test_client_with_too_many_connections_is_hung_up_on_and_may_come_back() -> None:
+    connections = Connections(100, most_a_client=2)
+    async with serving(connections, 5.0) as (_, port):
+        held = [await asyncio.open_connection("127.0.0.1", port) for _ in range(2)]
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        with contextlib.suppress(ConnectionResetError):
+            assert await asyncio.wait_for(reader.read(), 3) == b""
+        writer.close()
+        for _, other in held:
+            other.close()
+            await other.wait_closed()
+        await asyncio.sleep(0.1)
+        assert await _status(port) == b"200"
+
+
+async def test_live_sockets_do_not_use_up_the_share_of_requests() -> None:
+    pages = contextlib.AsyncExitStack()
+    async with serving(Connections(100, most_a_client=2), 5.0) as (_, port), pages:
+        for _ in range(8):
+            page = await pages.enter_async_context(connect(f"ws://127.0.0.1:{port}/live"))
+            assert '"state"' in await page.recv()
+        assert await _status(port) == b"200"
+
+
+async def test_server_ends_quickly_though_streams_are_open() -> None:
+    loop = asyncio.get_running_loop()
+    async with serving(Connections(100), 5.0) as (server, port):
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(b"GET /api/v1/stream HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
+        assert b"event: snapshot" in await asyncio.wait_for(
+            reader.readuntil(b"\n\n"), 3
+        ) + await reader.readuntil(b"\n\n")
+        page = await connect(f"ws://127.0.0.1:{port}/live")
+        begun = loop.time()
+        server.should_exit = True
+        await asyncio.wait_for(reader.read(), 5)
+        await page.wait_closed()
+        assert timedelta(seconds=loop.time() - begun) < timedelta(seconds=2)
+        writer.close()
+
+
+async def _status(port: int) -> bytes:
+    reader, writer = await asyncio.open_connection("127.0.0.1", port)
+    writer.write(b"GET /health HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
+    answer = await asyncio.wait_for(reader.read(), 3)
+    writer.close()
+    return answer.split(b" ")[1]
