@@ -31,7 +31,7 @@ def is_at_rest(plant: Plant, page: Page) -> bool:
 
 
 def hold(page: Page, plant: Plant, begin: Callable[[], None], release: Callable[[], None]) -> None:
-    """Press until the axis moves; a computer that is too busy ends a hold, as it must, and one presses again."""
+    """Press until the axis moves; a busy computer ends a hold, as it must, and one presses again."""
     for _ in range(TRIES):
         sent = len(plant.orders("jog"))
         begin()
