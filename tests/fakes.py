@@ -10,6 +10,7 @@ from collections.abc import AsyncIterator
 from dataclasses import replace
 from datetime import datetime, timedelta
 from pathlib import Path
+from zoneinfo import available_timezones
 
 import httpx
 import uvicorn
@@ -128,9 +129,11 @@ class FakeMachine:
     def _site_command(self, order: Order, now: datetime) -> None:  # noqa: C901 - one flat table of cases
         match order.command:
             case SetLocation(location=location, time_zone=zone):
+                _check_zone(zone)
                 revision = self.site.location_revision + 1
                 self.site = replace(self.site, location=location, time_zone=zone, location_revision=revision)
             case SetClock(source=source, at=at, time_zone=zone):
+                _check_zone(zone or "UTC")
                 offset_s = (at - now).total_seconds() if at else 0.0
                 setting = ClockSetting(source, offset_s, now, order.actor)
                 self.site = replace(self.site, clock=setting, time_zone=zone or self.site.time_zone)
@@ -228,6 +231,11 @@ class FakeMachine:
     def updates(self) -> AsyncIterator[Update]:
         """Yield what `emit` tells, until the link is cut."""
         return self._outlet.subscribe()
+
+
+def _check_zone(name: str) -> None:
+    if name not in available_timezones():
+        raise ValueError(f"{name} is not a time zone; give an IANA name such as Europe/Istanbul.")
 
 
 def fake_app(machine: FakeMachine | None = None, reader: FakeReader | None = None) -> FastAPI:
