@@ -1,7 +1,7 @@
 """What the kernel knows about the synchronisation of the system clock."""
 
 import ctypes
-import ctypes.util
+import sys
 
 TIME_ERROR = 5
 TIMEX_BYTES = 512
@@ -9,11 +9,7 @@ TIMEX_BYTES = 512
 
 def ntp_synchronised() -> bool | None:
     """Return whether the kernel's clock is disciplined by NTP, None where that cannot be asked."""
-    library = ctypes.util.find_library("c")
-    if library is None:
+    if not sys.platform.startswith("linux"):
         return None
-    adjtimex = getattr(ctypes.CDLL(library, use_errno=True), "adjtimex", None)
-    if adjtimex is None:
-        return None
-    state = int(adjtimex(ctypes.create_string_buffer(TIMEX_BYTES)))
+    state = int(ctypes.CDLL(None).adjtimex(ctypes.create_string_buffer(TIMEX_BYTES)))
     return None if state < 0 else state != TIME_ERROR

@@ -121,7 +121,7 @@ class Recorder:
             day = self._begin(self._days, _day_info(loop, site, site.location, seen.site_time), seen.now)
         if seen.now >= day.due:
             day.due = max(day.due + DAY_STEP, seen.now)
-            day.add(seen.now, seen.site_time, loop.controller.frame())
+            day.add(seen.now, seen.site_time, _day_frame(loop, seen))
 
     def _begin(self, among: dict[str, _Open], info: RecordingInfo, now: datetime) -> _Open:
         opened = _Open(info, now, now)
@@ -142,6 +142,14 @@ class Recorder:
             return
         self._append(one)
         writer.post(lambda store: store.finish_recording(one.info.recording_id, at, outcome))
+
+
+def _day_frame(loop: TrackerLoop, seen: Observation) -> tuple[float, ...]:
+    """Return the frame of this tick with the real sun, also while a show follows another one."""
+    frame = loop.controller.frame()
+    if seen.sun is None:
+        return frame
+    return (*frame[:2], seen.sun.azimuth_deg, sun_height_deg(loop.config, seen.sun), *frame[4:])
 
 
 def _outcome(event: Event) -> str:

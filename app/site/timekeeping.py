@@ -46,6 +46,7 @@ class Timekeeper:
         self._not_before = not_before
         self._setting = setting
         self._followed = drift()
+        self._is_synchronised = synchronised()
         self._jumped_at: datetime | None = None
         self._jumped_by = timedelta(0)
 
@@ -81,10 +82,11 @@ class Timekeeper:
         self._not_before = BUILT_AT
 
     def watch(self) -> Jump | None:
-        """Return the jump of the system's clock since the last look, if there was one.
+        """Look at the system's clock; return its jump since the last look, if there was one.
 
         A clock set by hand keeps showing the operator's time: its offset takes up the jump.
         """
+        self._is_synchronised = self._synchronised()
         moved = self._drift() - self._followed
         self._followed += moved
         if abs(moved) <= LARGEST_STEP:
@@ -128,7 +130,7 @@ class Timekeeper:
             self._setting.source,
             self._setting.offset_s,
             not reasons,
-            self._synchronised(),
+            self._is_synchronised,
             self._setting.set_at,
             reasons,
         )

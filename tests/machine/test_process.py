@@ -2,39 +2,27 @@
 
 import asyncio
 import os
-import random
 import signal
 import sys
 from collections.abc import AsyncIterator
 from contextlib import suppress
-from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-import httpx
 import pytest
 
-from app.link.messages import MachineUnreachable, RenameSite
+from app.link.messages import MachineUnreachable
 from app.machine.marker import MARKER_NAME
 from app.store.engine import open_reader
 from app.store.store import JournalFilter
 from app.tracker.axes import Axis, JogSpeed
-from app.tracker.commands import GoToStart, Jog, RunShow, SelectMode, Track
+from app.tracker.commands import Jog, SelectMode, Track
 from app.tracker.mode import Mode
-from app.tracker.programs.show import ShowPlan
-from app.tracker.recording import RecordingKind
-from app.tracker.snapshot import ActivityName, EventKind, ShowPhase
-from tests.machine.service import SAMSUN, DriveSimulator, Service, eventually
+from app.tracker.snapshot import ActivityName, EventKind
+from tests.machine.service import DriveSimulator, Service, eventually
+from tests.machine.stories import WATCHDOG_AND_RAMP_S, kill_mid_show, kill_panel
 
 KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "10"))
 PANEL_KILLS = 3
-WATCHDOG_AND_RAMP_S = 0.5 + 1.2
-PLAN = ShowPlan(
-    "solstice",
-    datetime(2026, 6, 21, 2, 10, tzinfo=UTC),
-    datetime(2026, 6, 21, 17, 20, tzinfo=UTC),
-    timedelta(minutes=3),
-    SAMSUN,
-)
 
 
 @pytest.fixture
@@ -57,7 +45,7 @@ async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service, dri
     await service.ask(Track())
     before = await service.link.metrics()
     for _ in range(PANEL_KILLS):
-        await _kill_panel(service)
+        await kill_panel(service)
     after = await service.link.metrics()
 
     ticks = after.trackers["T1"].ticks - before.trackers["T1"].ticks
@@ -68,73 +56,13 @@ async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service, dri
     assert seen.tracking_on
 
 
-async def _kill_panel(service: Service) -> None:
-    panels = len(service.starts("web"))
-    service.signal("web", signal.SIGKILL)
-    await eventually(lambda: len(service.starts("web")) > panels)
-    await _until_served(service.port)
-
-
-async def _until_served(port: int) -> None:
-    async with httpx.AsyncClient() as client, asyncio.timeout(20):
-        while True:
-            with suppress(httpx.TransportError):
-                if (await client.get(f"http://127.0.0.1:{port}/health")).status_code == 200:
-                    return
-            await asyncio.sleep(0.05)
-
-
 @pytest.mark.timeout(60 + 15 * KILLS)
 async def test_killed_at_any_instant_of_a_show_nothing_is_lost_and_the_axes_stop(
     service: Service, drive: DriveSimulator
 ) -> None:
     await service.commission(drive)
     for number in range(KILLS):
-        boot_id = await _show_running(service)
-        await asyncio.sleep(random.uniform(0.0, 0.5))
-        name = f"Run {number}"
-        await service.ask(RenameSite(name))
-        service.signal("machine", signal.SIGKILL)
-
-        stopped_after_s = await drive.rests(within_s=WATCHDOG_AND_RAMP_S + 2.0)
-        assert stopped_after_s <= WATCHDOG_AND_RAMP_S + 1.0
-        await _until_restarted(service, boot_id)
-        _check_nothing_lost(service.data_dir, name, number)
-        assert service.tracker() is not None
-        assert service.tracker().activity is not ActivityName.SHOWING  # type: ignore[union-attr]
-
-
-async def _show_running(service: Service) -> str:
-    await service.until(lambda seen: not seen.actions["go_to_start"])
-    await service.ask_until_taken(GoToStart(PLAN))
-    await service.until(lambda seen: seen.show is not None and seen.show.phase is ShowPhase.READY)
-    seen = await service.ask(RunShow(PLAN))
-    return seen.boot_id
-
-
-async def _until_restarted(service: Service, boot_id: str) -> None:
-    def is_new() -> bool:
-        latest = service.link.latest()
-        return latest is not None and latest.boot_id != boot_id
-
-    await eventually(is_new)
-
-
-def _check_nothing_lost(data_dir: Path, name: str, number: int) -> None:
-    reader = open_reader(f"sqlite:///{data_dir / 'heliopanel.db'}")
-    site = reader.site()
-    journal = [entry.event for entry in reader.journal(JournalFilter(limit=1000))]
-    shows = reader.recordings(kind=RecordingKind.SHOW)
-    reader.close()
-    assert site is not None
-    assert site.name == name
-    assert [event for event in journal if event.message == f"The site is now called {name}."]
-    starts = [event for event in journal if event.kind is EventKind.MACHINE_STARTED]
-    assert len(starts) == number + 2
-    assert starts[0].data["clean"] is False
-    assert "without warning" in starts[0].message
-    assert len(shows) == number + 1
-    assert all(show.ended_at is not None for show in shows)
+        assert await kill_mid_show(service, drive, number) <= WATCHDOG_AND_RAMP_S + 1.0
 
 
 async def test_a_frozen_machine_moves_nothing_and_does_not_catch_up(

@@ -1,0 +1,94 @@
+"""What is done to a running service again and again, by tests a few times and by benchmarks often."""
+
+import asyncio
+import random
+import signal
+from contextlib import suppress
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import httpx
+
+from app.link.messages import RenameSite
+from app.store.engine import open_reader
+from app.store.store import JournalFilter
+from app.tracker.commands import GoToStart, RunShow
+from app.tracker.programs.show import ShowPlan
+from app.tracker.recording import RecordingKind
+from app.tracker.snapshot import ActivityName, EventKind, ShowPhase
+from tests.machine.service import SAMSUN, DriveSimulator, Service, eventually
+
+WATCHDOG_AND_RAMP_S = 0.5 + 1.2
+PLAN = ShowPlan(
+    "solstice",
+    datetime(2026, 6, 21, 2, 10, tzinfo=UTC),
+    datetime(2026, 6, 21, 17, 20, tzinfo=UTC),
+    timedelta(minutes=3),
+    SAMSUN,
+)
+
+
+async def kill_mid_show(service: Service, drive: DriveSimulator, number: int) -> float:
+    """Kill the machine somewhere in a show; return after how long the axes stood, all else checked."""
+    boot_id = await _show_running(service)
+    await asyncio.sleep(random.uniform(0.0, 0.5))
+    name = f"Run {number}"
+    await service.ask(RenameSite(name))
+    service.signal("machine", signal.SIGKILL)
+    stopped_after_s = await drive.rests(within_s=WATCHDOG_AND_RAMP_S + 2.0)
+    await _until_restarted(service, boot_id)
+    _check_nothing_lost(service.data_dir, name, number)
+    seen = service.tracker()
+    assert seen is not None
+    assert seen.activity is not ActivityName.SHOWING
+    return stopped_after_s
+
+
+async def kill_panel(service: Service) -> None:
+    """Kill the panel and wait until it serves again."""
+    panels = len(service.starts("web"))
+    service.signal("web", signal.SIGKILL)
+    await eventually(lambda: len(service.starts("web")) > panels)
+    await _until_served(service.port)
+
+
+async def _until_served(port: int) -> None:
+    async with httpx.AsyncClient() as client, asyncio.timeout(20):
+        while True:
+            with suppress(httpx.TransportError):
+                if (await client.get(f"http://127.0.0.1:{port}/health")).status_code == 200:
+                    return
+            await asyncio.sleep(0.05)
+
+
+async def _show_running(service: Service) -> str:
+    await service.until(lambda seen: not seen.actions["go_to_start"])
+    await service.ask_until_taken(GoToStart(PLAN))
+    await service.until(lambda seen: seen.show is not None and seen.show.phase is ShowPhase.READY)
+    seen = await service.ask(RunShow(PLAN))
+    return seen.boot_id
+
+
+async def _until_restarted(service: Service, boot_id: str) -> None:
+    def is_new() -> bool:
+        latest = service.link.latest()
+        return latest is not None and latest.boot_id != boot_id
+
+    await eventually(is_new)
+
+
+def _check_nothing_lost(data_dir: Path, name: str, number: int) -> None:
+    reader = open_reader(f"sqlite:///{data_dir / 'heliopanel.db'}")
+    site = reader.site()
+    journal = [entry.event for entry in reader.journal(JournalFilter(limit=1000))]
+    shows = reader.recordings(kind=RecordingKind.SHOW)
+    reader.close()
+    assert site is not None
+    assert site.name == name
+    assert [event for event in journal if event.message == f"The site is now called {name}."]
+    starts = [event for event in journal if event.kind is EventKind.MACHINE_STARTED]
+    assert len(starts) == number + 2
+    assert starts[0].data["clean"] is False
+    assert "without warning" in starts[0].message
+    assert len(shows) == number + 1
+    assert all(show.ended_at is not None for show in shows)
