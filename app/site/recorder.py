@@ -9,6 +9,7 @@ import numpy as np
 from app.site.ledger import Ledger
 from app.site.loop import TrackerLoop
 from app.sun.position import Location
+from app.tracker.activities.tracking import sun_height_deg
 from app.tracker.memory import SiteState
 from app.tracker.mode import Mode
 from app.tracker.observation import Observation

@@ -1,0 +1,152 @@
+"""The product as a user starts it: `heliopanel serve` and `heliopanel drive-sim`, processes of their own."""
+
+import json
+import os
+import random
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import httpx
+
+COMMAND = str(Path(sys.executable).with_name("heliopanel"))
+LONGEST_WAIT_S = 40.0
+LOOK_EVERY_S = 0.02
+
+
+def free_port() -> int:
+    """Return a port that nobody uses now, below the range of outgoing connections."""
+    while True:
+        port = random.randrange(20_000, 32_000)
+        with socket.socket() as probe, suppress(OSError):
+            probe.bind(("127.0.0.1", port))
+            return port
+
+
+def eventually(found: Callable[[], object], what: str, *, within_s: float = LONGEST_WAIT_S) -> None:
+    """Return once something is so, or fail and say what was waited for."""
+    give_up = time.monotonic() + within_s
+    while not found():
+        if time.monotonic() > give_up:
+            raise TimeoutError(f"Not so within {within_s} s: {what}.")
+        time.sleep(LOOK_EVERY_S)
+
+
+def end(process: subprocess.Popen[bytes]) -> int:
+    """End a process, by force if it does not go."""
+    if process.poll() is None:
+        process.terminate()
+    try:
+        return process.wait(15)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        return process.wait(5)
+
+
+@dataclass
+class DriveSim:
+    """`heliopanel drive-sim` on a free port."""
+
+    port: int
+    process: "subprocess.Popen[bytes]"
+
+    @classmethod
+    def start(cls) -> "DriveSim":
+        """Return once it listens."""
+        port = free_port()
+        process = subprocess.Popen(
+            [COMMAND, "drive-sim", "--tcp", f"127.0.0.1:{port}"], stdout=subprocess.PIPE
+        )
+        assert process.stdout is not None
+        assert process.stdout.readline(), "drive-sim did not start"
+        return cls(port, process)
+
+    def stop(self) -> None:
+        """End it."""
+        assert self.process.stdout is not None
+        end(self.process)
+        self.process.stdout.close()
+
+
+@dataclass
+class Product:
+    """`heliopanel serve` with a data folder and a port of its own."""
+
+    data_dir: Path
+    port: int
+    process: "subprocess.Popen[bytes]"
+    lines: list[dict[str, object]] = field(default_factory=list)
+    reading: threading.Thread | None = None
+
+    @classmethod
+    def start(cls, data_dir: Path) -> "Product":
+        """Return once panel, machine and database answer."""
+        port = free_port()
+        environment = os.environ | {
+            "HELIOPANEL_DATA_DIR": str(data_dir),
+            "HELIOPANEL_PORT": str(port),
+            "HELIOPANEL_LOG_FORMAT": "json",
+        }
+        process = subprocess.Popen(
+            [COMMAND, "serve"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+        )
+        product = cls(data_dir, port, process)
+        product.reading = threading.Thread(target=product._read, daemon=True)
+        product.reading.start()
+        product.until_ready()
+        return product
+
+    @property
+    def url(self) -> str:
+        """Return where a browser finds it."""
+        return f"http://127.0.0.1:{self.port}"
+
+    def until_ready(self) -> None:
+        """Return once panel, machine and database answer, or fail."""
+        eventually(self.is_ready, "panel, machine and database answer")
+
+    def is_ready(self) -> bool:
+        """Return whether panel, machine and database answer now."""
+        with suppress(httpx.TransportError):
+            return httpx.get(f"{self.url}/ready", timeout=2.0).status_code == 200
+        return False
+
+    def starts(self, child: str) -> list[int]:
+        """Return the process ids that `machine` or `web` has had."""
+        return [
+            int(str(line["process_id"]))
+            for line in list(self.lines)
+            if line.get("event") == "child_started" and line.get("child") == child
+        ]
+
+    def signal(self, child: str, number: signal.Signals) -> float:
+        """Send a signal to the newest process of a child and return when."""
+        process_id = self.starts(child)[-1]
+        os.kill(process_id, number)
+        return time.monotonic()
+
+    def stop(self) -> int:
+        """End it and everything it started, whatever state the tests left it in."""
+        for child in ("machine", "web"):
+            for process_id in self.starts(child)[-1:]:
+                with suppress(ProcessLookupError):
+                    os.kill(process_id, signal.SIGCONT)
+        code = end(self.process)
+        if self.reading is not None:
+            self.reading.join(10)
+        assert self.process.stderr is not None
+        self.process.stderr.close()
+        return code
+
+    def _read(self) -> None:
+        assert self.process.stderr is not None
+        for line in self.process.stderr:
+            with suppress(ValueError):
+                self.lines.append(json.loads(line))

@@ -1,0 +1,137 @@
+"""The five steps, tracking and a show on a drive behind Modbus TCP, through the REST API alone."""
+
+import io
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pyarrow.parquet
+import pytest
+
+from tests.e2e.integrator import Integrator, Refused
+from tests.e2e.product import DriveSim
+from tests.e2e.sky import columns, off_spa_deg, off_sun_deg
+
+DEADBAND_DEG = 0.5
+SPA_LIMIT_DEG = 0.01
+SHOW = {
+    "begin_at": "2027-06-21T06:30:00+03:00",
+    "end_at": "2027-06-21T07:45:00+03:00",
+    "duration_s": 10,
+}
+JOGGED_S = 0.7
+
+
+def commission_by_hand(integrator: Integrator, port: int) -> None:
+    assert states(integrator)["location"] == "to_do"
+    integrator.connect(port, refraction=False, deadband_deg=DEADBAND_DEG)
+    integrator.place_and_time()
+    integrator.until(lambda seen: len(seen["actions"]["track"]) == 2, "place and time are known")
+    assert set(codes_of(integrator, "track")) == {"home_not_trusted", "mode_not_selected"}
+    before = integrator.snapshot()["measured"]["azimuth_deg"]
+    integrator.jog(JOGGED_S)
+    integrator.until_allowed("zero")
+    assert integrator.snapshot()["measured"]["azimuth_deg"] > before + 0.5
+    integrator.zero()
+    integrator.command("set_mode", mode="dual")
+    assert set(states(integrator).values()) <= {"done", "to_do"}
+
+
+def states(integrator: Integrator) -> dict[str, str]:
+    return {step["name"]: step["status"] for step in integrator.get("/commissioning")}
+
+
+def codes_of(integrator: Integrator, action: str) -> list[str]:
+    with pytest.raises(Refused) as refused:
+        integrator.command(action)
+    assert refused.value.status == 409
+    return refused.value.codes
+
+
+def track(integrator: Integrator) -> None:
+    integrator.command("track")
+    seen = integrator.until(
+        lambda seen: seen["in_position"] and (seen["off_sun_deg"] or 90.0) <= DEADBAND_DEG,
+        "the panel faces the sun",
+    )
+    assert seen["activity"] == "tracking"
+    assert seen["tracking_on"]
+
+
+def run_show(integrator: Integrator) -> str:
+    planned = integrator.post("/shows", SHOW)
+    assert planned["feasible"]
+    assert planned["reasons"] == []
+    act(integrator, planned["show_id"], "go-to-start")
+    run_to_its_end(integrator, planned["show_id"])
+    return str(planned["show_id"])
+
+
+def act(integrator: Integrator, show_id: str, action: str) -> Any:
+    return integrator.post(f"/shows/{show_id}/{action}")
+
+
+def run_to_its_end(integrator: Integrator, show_id: str) -> None:
+    integrator.until(
+        lambda seen: seen["show"] and seen["show"]["phase"] == "ready", "the panel stands at the start"
+    )
+    act(integrator, show_id, "run")
+    integrator.until(lambda seen: seen["show"] is None, "the show is over")
+
+
+def test_walk_with_the_api_alone(integrator: Integrator, drive: DriveSim) -> None:
+    commission_by_hand(integrator, drive.port)
+    track(integrator)
+    run_show(integrator)
+    (info,) = integrator.get("/api/v1/recordings", kind="show")
+
+    assert info["outcome"] == "completed"
+    frames = check_frames(integrator, info)
+    check_files(integrator, info["recording_id"], frames)
+    check_day(integrator)
+    check_rerun(integrator, info["recording_id"])
+
+
+def check_frames(integrator: Integrator, info: dict[str, Any]) -> dict[str, np.ndarray]:
+    answer = integrator.get(f"/api/v1/recordings/{info['recording_id']}/frames")
+    frames = columns(answer)
+    assert answer["frame_count"] == info["frame_count"] >= SHOW["duration_s"] * 9
+    assert frames["sun_time_s"][0] == pytest.approx(0.0, abs=60.0)
+    assert frames["sun_time_s"][-1] == pytest.approx(75 * 60, abs=80.0)
+    assert not np.isnan(np.stack(list(frames.values()))).any()
+    assert off_spa_deg(info, frames).max() < SPA_LIMIT_DEG
+    assert off_sun_deg(frames).max() <= DEADBAND_DEG
+    return frames
+
+
+def check_files(integrator: Integrator, recording_id: str, frames: dict[str, np.ndarray]) -> None:
+    path = f"/api/v1/recordings/{recording_id}/frames"
+    csv = pd.read_csv(io.StringIO(integrator.call("GET", path, params={"format": "csv"}).text), comment="#")
+    parquet = pyarrow.parquet.read_table(
+        io.BytesIO(integrator.call("GET", path, params={"format": "parquet"}).content)
+    )
+    for name in set(frames) - {"activity"}:
+        np.testing.assert_allclose(csv[name], frames[name], atol=1e-3)
+        np.testing.assert_allclose(parquet[name].to_numpy(), frames[name], atol=1e-9)
+    few = integrator.get(path, points=40)
+    assert 18 <= few["frame_count"] <= 40
+    page = integrator.http.get(f"/recordings/{recording_id}")
+    assert page.status_code == 200
+    assert recording_id in page.text
+
+
+def check_day(integrator: Integrator) -> None:
+    """The day's recording has the real sun in every frame, also while the show followed another."""
+    (day,) = integrator.get("/api/v1/recordings", kind="day")
+    frames = columns(integrator.get(f"/api/v1/recordings/{day['recording_id']}/frames"))
+    assert off_spa_deg(day, frames).max() < SPA_LIMIT_DEG
+
+
+def check_rerun(integrator: Integrator, recording_id: str) -> None:
+    answer = integrator.call("POST", f"/api/v1/recordings/{recording_id}/rerun", json={"duration_s": 10})
+    show_id = answer.headers["Location"].rpartition("/")[2]
+    run_to_its_end(integrator, show_id)
+    again, first = integrator.get("/api/v1/recordings", kind="show")
+    assert first["recording_id"] == recording_id
+    assert again["outcome"] == "completed"
+    assert again["sun_begin_at"] == first["sun_begin_at"]
