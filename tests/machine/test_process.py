@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from app.link.messages import MachineUnreachable
+from app.link.messages import MachineUnreachable, RenameSite
 from app.machine.marker import MARKER_NAME
 from app.store.engine import open_reader
 from app.store.store import JournalFilter
@@ -142,6 +142,35 @@ async def test_when_the_supervisor_is_killed_its_children_end_properly(tmp_path:
 
     await service.stop()
     assert not (service.data_dir / MARKER_NAME).exists()
+
+
+async def test_a_backup_is_restored_while_the_service_runs(service: Service, tmp_path: Path) -> None:
+    kept = tmp_path / "kept.db"
+    first = await service.ask(RenameSite("Samsun"))
+    assert await _command(service, "backup", str(kept)) == 0
+    await service.ask(RenameSite("Bafra"))
+
+    assert await _command(service, "restore", str(kept)) == 0
+    await service.until(lambda _: _boot_id(service) != first.boot_id)
+
+    assert (await service.link.detail()).site.name == "Samsun"
+
+
+def _boot_id(service: Service) -> str:
+    latest = service.link.latest()
+    return "" if latest is None else latest.boot_id
+
+
+async def _command(service: Service, *words: str) -> int:
+    process = await asyncio.create_subprocess_exec(
+        sys.executable,
+        "-m",
+        "app.cli",
+        *words,
+        env=os.environ | {"HELIOPANEL_DATA_DIR": str(service.data_dir)},
+        stdout=asyncio.subprocess.DEVNULL,
+    )
+    return await process.wait()
 
 
 @pytest.mark.parametrize(
