@@ -1,5 +1,6 @@
 """Orders to the site: location, clock, name, trackers, confirmations, plans and recordings."""
 
+import asyncio
 from base64 import b64decode
 from dataclasses import replace
 from typing import assert_never
@@ -229,8 +230,7 @@ async def _stop_all(model: SiteModel, actor: str) -> tuple[Event, ...]:
     happened: list[Event] = []
     for loop in tuple(model.loops.values()):
         happened.extend(tracker_orders.handle_stop(model, loop, actor))
-    for loop in tuple(model.loops.values()):
-        await tracker_orders.finish_stop(model, loop)
+    await asyncio.gather(*(tracker_orders.finish_stop(model, loop) for loop in tuple(model.loops.values())))
     if not model.loops:
         happened.append(model.event(EventKind.STOPPED, "Stop was asked; there is no tracker.", actor))
         model.ledger.post_events(happened)

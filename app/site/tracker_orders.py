@@ -1,9 +1,13 @@
 """Orders to one tracker: commands for its controller, and stop."""
 
+import structlog
+
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
 from app.tracker.commands import Command, CommandRejected, EndJog, Jog, ResetFault, RunShow, Stop
 from app.tracker.snapshot import Event, EventKind
+
+log = structlog.get_logger(__name__)
 
 
 async def command(model: SiteModel, loop: TrackerLoop, given: Command, actor: str) -> tuple[Event, ...]:
@@ -27,7 +31,12 @@ async def command(model: SiteModel, loop: TrackerLoop, given: Command, actor: st
 
 def handle_stop(model: SiteModel, loop: TrackerLoop, actor: str) -> tuple[Event, ...]:
     """Make the controller stop and have the latches stored soon; the drive is told by `finish_stop`."""
-    events = loop.controller.handle(Stop(), model.clock.now(), actor)
+    try:
+        events = loop.controller.handle(Stop(), model.clock.now(), actor)
+    except Exception:
+        log.exception("stop_not_handled", tracker=loop.config.tracker_id)
+        message = "Stop was asked. The controller of this tracker is broken; its drive was told to stop."
+        events = (model.event(EventKind.STOPPED, message, actor, loop.config.tracker_id),)
     loop.wake()
     _post(model, loop, events)
     return events

@@ -30,14 +30,16 @@ from app.site.sky import Sky
 from app.site.timekeeping import Timekeeper
 from app.sun.position import Algorithm, Location
 from app.tracker.axes import Axis, JogSpeed
-from app.tracker.commands import CommandRejected, Jog, Move, ResetFault, SelectMode, Stop, Track
+from app.tracker.commands import Command, CommandRejected, Jog, Move, ResetFault, SelectMode, Stop, Track
 from app.tracker.commissioning import StepStatus
 from app.tracker.config import DriveConfig, DriveKind, Orientation, TrackerConfig
+from app.tracker.controller import Controller, Tick
 from app.tracker.memory import ClockSetting, SiteState, StepName, TrackerMemory, TrackerState
 from app.tracker.mode import Mode
 from app.tracker.motion import DriveCapabilities, DriveCommand, Feedback
-from app.tracker.snapshot import ActivityName, EventKind
-from tests.site.plant import FIRST, SAMSUN, SUMMER_NOON, Plant, make_plant
+from app.tracker.observation import Observation
+from app.tracker.snapshot import ActivityName, Event, EventKind
+from tests.site.plant import FIRST, SAMSUN, SUMMER_NOON, Plant, make_plant, settle
 
 SECOND = TrackerState(TrackerConfig("T2", "Tracker 2"), TrackerMemory())
 
@@ -50,6 +52,7 @@ class WrappedDrive:
     hangs: bool = False
     nonsense: bool = False
     refuses: bool = False
+    deaf: bool = False
     stops: int = 0
 
     @property
@@ -70,6 +73,8 @@ class WrappedDrive:
 
     async def stop(self) -> None:
         self.stops += 1
+        if self.deaf:
+            await asyncio.Event().wait()
         await self.inner.stop()
 
     async def set_clock(self, at: datetime) -> None:
@@ -77,6 +82,19 @@ class WrappedDrive:
 
     async def close(self) -> None:
         await self.inner.close()
+
+
+class BrokenController(Controller):
+    """A mind that fails at whatever it is asked."""
+
+    def __init__(self, state: TrackerState) -> None:
+        super().__init__(state.config, state.memory, DriveCapabilities(True, None, True, True, "", True))
+
+    def handle(self, command: Command, now: datetime, actor: str = "operator") -> tuple[Event, ...]:
+        raise RuntimeError("a programming error")
+
+    def tick(self, seen: Observation) -> Tick:
+        raise RuntimeError("a programming error")
 
 
 async def running(plant: Plant) -> Plant:
@@ -254,6 +272,32 @@ async def test_stop_all_stops_every_tracker() -> None:
 
     assert [wrapped(plant, name).stops for name in ("T1", "T2")] == [1, 1]
     assert all(plant.tracker(name).activity is ActivityName.HOLDING for name in ("T1", "T2"))
+    await plant.close()
+
+
+async def test_a_drive_that_does_not_hear_stop_holds_up_no_other() -> None:
+    plant = await running(make_plant(trackers=(FIRST, SECOND), wrap=WrappedDrive))
+    await plant.forward(seconds=0.2)
+    wrapped(plant, "T1").deaf = True
+    stopping = asyncio.create_task(plant.site.execute(Order(StopAll(), "anna")))
+    await settle()
+
+    assert wrapped(plant, "T2").stops == 1
+    assert not stopping.done()
+    await stopping
+    wrapped(plant, "T1").deaf = False
+    await plant.close()
+
+
+async def test_stop_reaches_the_drive_of_a_tracker_whose_controller_is_broken() -> None:
+    plant = await running(make_plant(wrap=WrappedDrive))
+    await plant.forward(seconds=0.2)
+    plant.site.model.tracker("T1").controller = BrokenController(FIRST)
+
+    await plant.ask(Stop())
+
+    assert wrapped(plant, "T1").stops >= 1
+    assert "broken" in plant.happened(EventKind.STOPPED)[0].message
     await plant.close()
 
 
