@@ -17,7 +17,8 @@ export function duration(seconds) {
   const minutes = Math.floor((total % 3600) / 60);
   const two = (number) => String(number).padStart(2, "0");
   if (hours) return `${hours} h ${two(minutes)} min`;
-  return minutes ? `${minutes} min ${two(total % 60)} s` : `${total} s`;
+  if (minutes && total % 60) return `${minutes} min ${two(total % 60)} s`;
+  return minutes ? `${minutes} min` : `${total} s`;
 }
 
 export function signedSeconds(value) {

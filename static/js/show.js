@@ -82,7 +82,7 @@ function paint() {
   phase.textContent = PHASES[show.phase] ?? words(show.phase);
   document.getElementById("show-clock").textContent = clockTime(show.sun_time, live.zone);
   document.getElementById("show-progress").value = show.elapsed_s / show.duration_s;
-  document.getElementById("show-elapsed").textContent = `${duration(show.elapsed_s)} of ${duration(show.duration_s)}, ${Math.round(show.acceleration)} times as fast as the sun${show.sun_is_up ? "" : "; the sun is down, the panel holds"}`;
+  document.getElementById("show-elapsed").textContent = `${duration(show.elapsed_s)} of ${duration(show.duration_s)} · ${Math.round(show.acceleration)} × the sun${show.sun_is_up ? "" : "; the sun is down, the panel holds"}`;
   note(show);
 }
 

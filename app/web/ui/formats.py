@@ -30,13 +30,15 @@ def compass(azimuth_deg: float) -> str:
 
 
 def duration(value: timedelta | float) -> str:
-    """Return a length of time such as `3 min 05 s` or `15 h 12 min`."""
+    """Return a length of time such as `3 min`, `3 min 05 s` or `15 h 12 min`."""
     total_s = round(value.total_seconds() if isinstance(value, timedelta) else value)
     hours, rest = divmod(abs(total_s), 3600)
     minutes, seconds = divmod(rest, 60)
     if hours:
         return f"{hours} h {minutes:02d} min"
-    return f"{minutes} min {seconds:02d} s" if minutes else f"{seconds} s"
+    if minutes and seconds:
+        return f"{minutes} min {seconds:02d} s"
+    return f"{minutes} min" if minutes else f"{seconds} s"
 
 
 def signed_seconds(value: float) -> str:

@@ -210,7 +210,7 @@ def _verdict(wanted: ShowPlan, tracker: TrackerDetail, zone: str, typed: Typed) 
 def _headline(check: ShowCheck, wanted: ShowPlan) -> str:
     if not check.feasible:
         return "This show cannot be run."
-    return f"This works: {duration(wanted.duration)}, {wanted.acceleration:.0f} times as fast as the sun."
+    return f"This works: {duration(wanted.duration)}, {wanted.acceleration:.0f} × the sun's speed."
 
 
 def _shortest(check: ShowCheck, typed: Typed) -> Link | None:
