@@ -5,6 +5,7 @@ from dataclasses import asdict
 from datetime import datetime
 from enum import Enum
 from html import escape
+from pathlib import Path
 from typing import Any
 from zoneinfo import ZoneInfo
 
@@ -12,6 +13,8 @@ from fpdf import FPDF
 
 from app.web.record import CommissioningRecord
 
+FONT = "DejaVu"
+FONTS = Path(__file__).parents[2] / "static" / "vendor" / "dejavu" / "2.37.3"
 Section = tuple[str, list[tuple[str, str]]]
 SIGNATURES = (("Commissioned by", ""), ("Accepted by", ""), ("Date", ""))
 STATUS_WORDS = {"done": "done", "to_do": "to do", "to_be_confirmed": "to be confirmed"}
@@ -32,18 +35,52 @@ def record_html(record: CommissioningRecord) -> str:
 
 
 def record_pdf(record: CommissioningRecord) -> bytes:
-    """Return the record as a PDF on A4."""
-    pdf = FPDF(format="A4")
-    pdf.set_title(_latin(_title(record)))
+    """Return the record as a PDF on A4, every section a table, with lines to sign on."""
+    pdf = _Paper(_title(record))
     pdf.set_creation_date(record.written_at)
-    pdf.add_page()
-    _line(pdf, _title(record), style="B", size=16)
+    pdf.heading()
     for heading, rows in sections(record):
-        pdf.ln(3)
-        _line(pdf, heading, style="B", size=12)
-        for name, value in rows:
-            _line(pdf, f"{name}: {value}", style="", size=9)
+        pdf.section(heading, rows)
     return bytes(pdf.output())
+
+
+class _Paper(FPDF):
+    """A4 with the project's font, which has the letters of people's names, and page numbers."""
+
+    def __init__(self, title: str) -> None:
+        super().__init__(format="A4")
+        self._words = title
+        self.set_title(title)
+        self.add_font(FONT, "", FONTS / "DejaVuSans.ttf")
+        self.add_font(FONT, "B", FONTS / "DejaVuSans-Bold.ttf")
+        self.set_margins(18, 18)
+        self.set_auto_page_break(auto=True, margin=20)
+        self.add_page()
+
+    def heading(self) -> None:
+        """Write the title of the paper."""
+        self.set_font(FONT, "B", 15)
+        self.multi_cell(0, 8, self._words, new_x="LMARGIN", new_y="NEXT")
+
+    def section(self, heading: str, rows: list[tuple[str, str]]) -> None:
+        """Write one section; a row without a value is a line to sign on."""
+        self.ln(4)
+        self.set_font(FONT, "B", 11)
+        self.multi_cell(0, 7, heading, new_x="LMARGIN", new_y="NEXT")
+        self.set_font(FONT, "", 8.5)
+        with self.table(
+            col_widths=(3, 5), first_row_as_headings=False, borders_layout="HORIZONTAL_LINES", line_height=5
+        ) as table:
+            for name, value in rows:
+                row = table.row(min_height=12 if not value else None)
+                row.cell(name)
+                row.cell(value)
+
+    def footer(self) -> None:
+        """Number the pages."""
+        self.set_y(-14)
+        self.set_font(FONT, "", 8)
+        self.cell(0, 6, f"{self._words} - page {self.page_no()}", align="C")
 
 
 def sections(record: CommissioningRecord) -> Iterator[Section]:
@@ -117,13 +154,3 @@ def _local(at: datetime, zone: ZoneInfo) -> str:
 
 def _title(record: CommissioningRecord) -> str:
     return f"Commissioning record: {record.tracker.name} ({record.tracker.tracker_id})"
-
-
-def _line(pdf: FPDF, text: str, *, style: str, size: int) -> None:
-    pdf.set_font("helvetica", style, size)
-    pdf.multi_cell(0, size * 0.5, _latin(text), new_x="LMARGIN", new_y="NEXT")
-
-
-def _latin(text: str) -> str:
-    """Return the text in the letters that the PDF's built-in font has."""
-    return text.encode("latin-1", "replace").decode("latin-1")
