@@ -1,0 +1,92 @@
+"""The three ways to use a page: mouse, finger and keyboard, behind one small set of words."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from playwright.sync_api import Locator, Page
+
+HOLD_MS = 700
+
+
+class Hands(Protocol):
+    """What a technician does with a page."""
+
+    def press(self, key: Locator) -> None: ...
+    def choose(self, radio: Locator) -> None: ...
+    def write(self, field: Locator, text: str) -> None: ...
+    def hold(self, key: Locator) -> None: ...
+
+
+def middle(thing: Locator) -> tuple[float, float]:
+    thing.scroll_into_view_if_needed()
+    box = thing.bounding_box()
+    assert box is not None
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+@dataclass
+class Mouse:
+    page: Page
+
+    def press(self, key: Locator) -> None:
+        key.click()
+
+    def choose(self, radio: Locator) -> None:
+        radio.check()
+
+    def write(self, field: Locator, text: str) -> None:
+        field.click()
+        field.fill(text)
+
+    def hold(self, key: Locator) -> None:
+        self.page.mouse.move(*middle(key))
+        self.page.mouse.down()
+        self.page.wait_for_timeout(HOLD_MS)
+        self.page.mouse.up()
+
+
+@dataclass
+class Finger:
+    page: Page
+
+    def press(self, key: Locator) -> None:
+        key.tap()
+
+    def choose(self, radio: Locator) -> None:
+        radio.tap()
+
+    def write(self, field: Locator, text: str) -> None:
+        field.tap()
+        field.fill(text)
+
+    def hold(self, key: Locator) -> None:
+        x, y = middle(key)
+        session = self.page.context.new_cdp_session(self.page)
+        point = {"x": x, "y": y, "id": 0}
+        session.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": [point]})
+        self.page.wait_for_timeout(HOLD_MS)
+        session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+
+
+@dataclass
+class Keyboard:
+    page: Page
+
+    def press(self, key: Locator) -> None:
+        key.focus()
+        self.page.keyboard.press("Enter")
+
+    def choose(self, radio: Locator) -> None:
+        radio.focus()
+        self.page.keyboard.press(" ")
+
+    def write(self, field: Locator, text: str) -> None:
+        field.focus()
+        self.page.keyboard.press("Control+A")
+        self.page.keyboard.type(text)
+
+    def hold(self, key: Locator) -> None:
+        key.focus()
+        self.page.keyboard.down(" ")
+        self.page.wait_for_timeout(HOLD_MS)
+        self.page.keyboard.up(" ")
