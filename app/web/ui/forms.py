@@ -12,7 +12,7 @@ from app.web.contexts import Field, Form
 T = TypeVar("T")
 NUMBER = r"(\d+(?:[.,]\d+)?)"
 ANGLE = re.compile(
-    rf"([NSEW])?\s*([+-])?\s*{NUMBER}\s*[°d:]?\s*(?:{NUMBER}\s*['′’:m]?\s*(?:{NUMBER}\s*(?:\"|″|”|''|s)?)?)?\s*([NSEW])?",
+    rf"([NSEW])?\s*([+-])?\s*{NUMBER}\s*[°d:]?\s*(?:{NUMBER}\s*['′’:m]?\s*(?:{NUMBER}\s*(?:\"|″|”|'')?)?)?\s*([NSEW])?",
     re.IGNORECASE,
 )
 PAIR = re.compile(r"\s*([+-]?\d+\.\d+)\s*[,;]\s*([+-]?\d+\.\d+)\s*")

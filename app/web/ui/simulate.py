@@ -64,6 +64,7 @@ async def run(
         info, chunks = await built.simulations.run(wanted)
     except ValueError as error:
         raise NotAcceptable(str(error)) from error
+    press.issued_at = None  # It took a while, and nothing moves: this order is never too old.
     await press.send(SaveRecording(info, chunks))
     return go(press.request, f"/recordings/{info.recording_id}")
 

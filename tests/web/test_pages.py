@@ -1,0 +1,287 @@
+"""Pages and forms without a browser: what they answer, keep, refuse and send to the machine."""
+
+import re
+from collections.abc import AsyncIterator
+from dataclasses import fields
+
+import httpx
+import pytest
+
+from app.link.messages import ConfigureTracker, SetClock, SetLocation
+from app.tracker.commands import GoToStart, Move, SelectMode, SetZero, Step
+from app.tracker.mode import Mode
+from app.tracker.reason import Reason
+from app.web import contexts
+from app.web.ui import forms
+from app.web.ui.formats import compass, duration, shown
+from app.web.ui.render import environment
+from tests.fakes import FakeMachine, FakeReader, fake_app, serving
+
+T1 = "/trackers/T1"
+HTMX = {"HX-Request": "true", "HX-Request-Type": "partial"}
+PAGES = (
+    "/", T1, f"{T1}/commissioning/location", f"{T1}/commissioning/clock", f"{T1}/commissioning/homing",
+    f"{T1}/commissioning/mode", f"{T1}/commissioning/mode/orientation", f"{T1}/commissioning/run",
+    f"{T1}/sun-check", f"{T1}/record", f"{T1}/settings", f"{T1}/show", "/recordings", "/recordings/show-1",
+    "/recordings/show-1?with=day-1", "/simulate", "/journal", "/journal?tracker=T1",
+)  # fmt: skip
+
+
+@pytest.fixture
+def machine() -> FakeMachine:
+    return FakeMachine()
+
+
+@pytest.fixture
+async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
+    async with serving(fake_app(machine, FakeReader())) as browser:
+        yield browser
+
+
+def sent(machine: FakeMachine, kind: type) -> list:
+    return [order.command for order in machine.orders if isinstance(order.command, kind)]
+
+
+@pytest.mark.parametrize("path", PAGES)
+async def test_every_page_is_whole_and_has_stop(path: str, client: httpx.AsyncClient) -> None:
+    answer = await client.get(path)
+    assert answer.status_code == 200
+    assert answer.headers["cache-control"] == "no-store"
+    assert answer.text.count("<h1") == 1
+    assert 'id="stop-key"' in answer.text
+    assert "not an emergency stop" in answer.text
+    assert "HX-Request" in answer.headers["vary"]
+
+
+@pytest.mark.parametrize("path", PAGES)
+async def test_no_page_needs_inline_style_or_script(path: str, client: httpx.AsyncClient) -> None:
+    text = (await client.get(path)).text
+    assert not re.search(r"\sstyle=|<style|\son[a-z]+=|hx-on|javascript:", text)
+    assert not re.search(r"<script(?![^>]*src=)", text)
+    assert not re.search(r"(?:src|href|action)=\"https?:", text)
+
+
+async def test_pages_answer_while_the_machine_is_away(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    machine.cut()
+    answer = await client.get(T1)
+    assert answer.status_code == 503
+    assert "controller service does not answer" in answer.text
+    assert 'id="stop-key"' in answer.text
+
+
+async def test_unknown_tracker_is_a_page_that_says_so(client: httpx.AsyncClient) -> None:
+    answer = await client.get("/trackers/T9")
+    assert answer.status_code == 404
+    assert "There is no tracker T9" in answer.text
+
+
+async def test_location_is_saved_and_leads_on(machine: FakeMachine, client: httpx.AsyncClient) -> None:
+    typed = {"latitude": "33° 55' 12\"", "latitude_side": "S", "longitude": "18,4233", "longitude_side": "E"}
+    answer = await client.post(f"{T1}/commissioning/location", data=typed)
+    assert answer.status_code == 303
+    assert answer.headers["location"] == f"{T1}/commissioning/clock"
+    (order,) = sent(machine, SetLocation)
+    assert order.location.latitude_deg == pytest.approx(-33.92)
+    assert order.location.longitude_deg == pytest.approx(18.4233)
+    assert order.time_zone == "Africa/Johannesburg"
+
+
+async def test_wrong_location_keeps_what_was_typed(machine: FakeMachine, client: httpx.AsyncClient) -> None:
+    typed = {"latitude": "91,5", "longitude": "abc", "altitude": "12"}
+    answer = await client.post(f"{T1}/commissioning/location", data=typed, headers=HTMX)
+    assert answer.status_code == 422
+    assert "<html" not in answer.text
+    assert 'value="91,5"' in answer.text
+    assert 'value="abc"' in answer.text
+    assert answer.text.count('aria-invalid="true"') == 2
+    assert 'role="alert"' in answer.text
+    assert not machine.orders
+
+
+async def test_preview_tells_the_sun_of_the_place(client: httpx.AsyncClient) -> None:
+    typed = {"latitude": "41.2867, 36.3300"}
+    answer = await client.get(f"{T1}/commissioning/location/preview", params=typed, headers=HTMX)
+    assert "Europe/Istanbul" in answer.text
+    assert "41° 17′ 12.1″ N" in answer.text
+    assert re.search(r"Sunrise</dt><dd>\d\d:\d\d", answer.text)
+
+
+@pytest.mark.parametrize(
+    ("text", "side", "degrees"),
+    [
+        ("41.2867", "N", 41.2867),
+        ("41,2867", "S", -41.2867),
+        ("-41.2867", "N", -41.2867),
+        ("41° 17' 12\"", "N", 41.286667),
+        ("41 17 12,5 S", "N", -41.286806),
+        ("S 33 55", "N", -33.916667),
+        ("−0.5", "N", -0.5),
+    ],
+)
+def test_angles_as_people_write_them(text: str, side: str, degrees: float) -> None:
+    assert forms.angle(text, "Latitude", "NS", side, 90.0) == pytest.approx(degrees, abs=1e-6)
+
+
+@pytest.mark.parametrize("text", ["", "abc", "91", "41 60", "41 E", "N 41 S", "-41 S", "1e3"])
+def test_angles_that_mean_nothing_are_refused_with_a_sentence(text: str) -> None:
+    with pytest.raises(forms.Unreadable, match=r"^Latitude.*\.$"):
+        forms.angle(text, "Latitude", "NS", "N", 90.0)
+
+
+async def test_clock_is_kept_copied_or_typed(machine: FakeMachine, client: httpx.AsyncClient) -> None:
+    root = f"{T1}/commissioning/clock"
+    await client.post(f"{root}/system")
+    await client.post(f"{root}/device", data={"at": "2026-06-21T09:00:00.000Z"})
+    typed = {"date": "2026-06-21", "time": "12:00:30", "time_zone": "Europe/Istanbul"}
+    await client.post(root, data=typed)
+    system, device, manual = sent(machine, SetClock)
+    assert (system.source, system.at) == ("system", None)
+    assert device.at.isoformat() == "2026-06-21T09:00:00+00:00"
+    assert manual.at.isoformat() == "2026-06-21T12:00:30+03:00"
+
+
+async def test_clock_that_means_nothing_is_refused(machine: FakeMachine, client: httpx.AsyncClient) -> None:
+    typed = {"date": "21.6.26", "time": "25:00", "time_zone": "Nowhere"}
+    answer = await client.post(f"{T1}/commissioning/clock", data=typed, headers=HTMX)
+    assert answer.status_code == 422
+    assert "type a date such as 2026-06-21" in answer.text
+    assert (await client.post(f"{T1}/commissioning/clock/device", data={"at": "?"})).status_code == 422
+    assert not machine.orders
+
+
+async def test_zero_and_steps_go_to_the_machine(machine: FakeMachine, client: httpx.AsyncClient) -> None:
+    await client.post(f"{T1}/zero", data={"key": "press-1"})
+    await client.post(f"{T1}/step", data={"move": "elevation-minus", "size": "0.1"})
+    assert sent(machine, SetZero)
+    assert sent(machine, Step)[0].degrees == pytest.approx(-0.1)
+    assert machine.orders[0].key == "press-1"
+
+
+async def test_step_of_another_size_is_refused(machine: FakeMachine, client: httpx.AsyncClient) -> None:
+    answer = await client.post(f"{T1}/step", data={"move": "azimuth-plus", "size": "90"})
+    assert answer.status_code == 422
+    assert not machine.orders
+
+
+async def test_refusal_names_every_reason_below_the_key(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    machine.rejects["zero"] = (Reason("a", "The axes move.", "Wait."), Reason("b", "The drive is silent."))
+    answer = await client.post(f"{T1}/zero", headers=HTMX)
+    assert answer.status_code == 409
+    assert "Not done." in answer.text
+    assert "The axes move." in answer.text
+    assert "The drive is silent." in answer.text
+
+
+async def test_fixed_mode_saves_and_goes(machine: FakeMachine, client: httpx.AsyncClient) -> None:
+    answer = await client.post(f"{T1}/commissioning/mode", data={"mode": "fixed"})
+    assert answer.headers["location"] == f"{T1}/commissioning/mode/orientation"
+    await client.post(f"{T1}/commissioning/mode/orientation", data={"azimuth": "170", "elevation": "30,5"})
+    assert sent(machine, SelectMode)[-1].mode is Mode.FIXED
+    assert sent(machine, Move)[0].orientation.elevation_deg == pytest.approx(30.5)
+
+
+async def test_orientation_beyond_the_limits_is_refused(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    await client.post(f"{T1}/commissioning/mode", data={"mode": "fixed"})
+    typed = {"azimuth": "170", "elevation": "95"}
+    answer = await client.post(f"{T1}/commissioning/mode/orientation", data=typed, headers=HTMX)
+    assert answer.status_code == 422
+    assert "between 0 and 90" in answer.text
+    assert not sent(machine, Move)
+
+
+async def test_show_too_fast_offers_the_shortest(client: httpx.AsyncClient) -> None:
+    plan = {"date": "2026-06-21", "start": "05:07", "end": "20:10", "minutes": "0.3"}
+    text = (await client.get(f"{T1}/show", params=plan)).text
+    assert "This show cannot be run." in text
+    offered = re.search(r'href="(\?[^"]*minutes=[^"]*)">Take', text)
+    assert offered
+    again = (await client.get(f"{T1}/show{offered[1].replace('&amp;', '&')}")).text
+    assert "This works" in again
+
+
+async def test_show_goes_to_its_start(machine: FakeMachine, client: httpx.AsyncClient) -> None:
+    plan = {"date": "2026-06-21", "start": "05:07", "end": "20:10", "minutes": "3"}
+    answer = await client.post(f"{T1}/show/go-to-start", data=plan)
+    (order,) = sent(machine, GoToStart)
+    assert answer.headers["location"] == f"{T1}/shows/{order.plan.show_id}"
+    assert order.plan.begin_at.isoformat() == "2026-06-21T05:07:00+03:00"
+    assert order.plan.duration.total_seconds() == 180
+
+
+async def test_show_across_midnight_ends_on_the_next_day(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    plan = {"date": "2026-06-21", "start": "18:00", "end": "08:00", "minutes": "5"}
+    await client.post(f"{T1}/show/go-to-start", data=plan)
+    assert sent(machine, GoToStart)[0].plan.end_at.isoformat() == "2026-06-22T08:00:00+03:00"
+
+
+async def test_settings_are_saved_whole_or_not_at_all(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    page = (await client.get(f"{T1}/settings")).text
+    typed = dict(re.findall(r'name="([a-z_]+)"[^>]*?value="([^"]*)"', page))
+    typed |= {"drive": "modbus-tcp", "algorithm": "koblick", "night": "park", "host": "10.0.0.5"}
+    wrong = typed | {"azimuth_minimum": "300", "azimuth_maximum": "60"}
+    assert (await client.post(f"{T1}/settings", data=wrong)).status_code == 422
+    assert not machine.orders
+    await client.post(f"{T1}/settings", data=typed)
+    (order,) = sent(machine, ConfigureTracker)
+    assert order.config.drive.host == "10.0.0.5"
+    assert order.config.algorithm == "koblick"
+
+
+async def test_tracker_is_removed_only_after_its_id_was_typed(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    assert (await client.post(f"{T1}/settings/remove", data={"typed_id": "T2"})).status_code == 422
+    assert (await client.post(f"{T1}/settings/remove", data={"typed_id": "T1"})).status_code == 303
+    assert "T1" not in machine.trackers
+
+
+async def test_theme_goes_round(client: httpx.AsyncClient) -> None:
+    seen = []
+    for _ in range(3):
+        answer = await client.post("/theme", data={"back": "/journal"})
+        assert answer.headers["location"] == "/journal"
+        seen.append(client.cookies["theme"])
+    assert seen == ["sun", "night", "day"]
+
+
+@pytest.mark.parametrize("back", ["//elsewhere.example", "https://elsewhere.example", "/\\elsewhere"])
+async def test_no_form_leads_to_another_site(back: str, client: httpx.AsyncClient) -> None:
+    assert (await client.post("/theme", data={"back": back})).headers["location"] == "/"
+
+
+async def test_step_bar_opens_forward_only_as_far_as_steps_are_done(client: httpx.AsyncClient) -> None:
+    await client.post("/trackers", data={"tracker_id": "T3", "name": "New"})
+    text = (await client.get("/trackers/T3/commissioning/homing")).text
+    assert 'href="/trackers/T3/commissioning/clock"' in text
+    assert 'class="step-link" href="/trackers/T3/commissioning/run"' not in text
+
+
+def test_every_context_names_a_template_that_exists() -> None:
+    env = environment()
+    templates = [
+        kind.template for kind in vars(contexts).values() if isinstance(getattr(kind, "template", None), str)
+    ]
+    assert len(templates) >= 18
+    for template in templates:
+        assert env.get_template(template)
+    assert all(fields(kind) for kind in (contexts.Frame, contexts.HomingPage))
+
+
+def test_values_read_the_same_everywhere() -> None:
+    assert shown(-0.001, "angle2", "UTC") == "0.00°"
+    assert shown(-1.5, "angle1", "UTC") == "−1.5°"
+    assert shown(None, "angle2", "UTC") == "–"
+    assert duration(180) == "3 min"
+    assert duration(185) == "3 min 05 s"
+    assert duration(54720) == "15 h 12 min"
+    assert [compass(angle) for angle in (0, 191, 359)] == ["N", "S", "N"]
