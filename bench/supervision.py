@@ -25,7 +25,7 @@ from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
 from app.tracker.mode import Mode
 from app.tracker.recording import RecordingKind
 from bench.table import Row
-from tests.machine.service import DriveSimulator, Service, end
+from tests.machine.service import DriveSimulator, Service, end, eventually
 from tests.machine.stories import kill_mid_show, kill_panel
 
 COMMAND = "python -m bench supervision"
@@ -90,6 +90,7 @@ async def _jog_rows(data_dir: Path) -> list[Row]:
     service = await Service.start(data_dir)
     try:
         eyes = [await _add(service, number, port) for number, port in enumerate(ports)]
+        await eventually(lambda: _all_can_jog(service))
         rows = []
         for name, released in (("key released", True), ("client vanished, from its last heartbeat", False)):
             each = TRIALS // TRACKERS
@@ -110,6 +111,11 @@ async def _add(service: Service, number: int, port: int) -> Drive:
     config = TrackerConfig(f"B{number}", "Bench", drive=DriveConfig(DriveKind.MODBUS_TCP, port=port))
     await service.link.execute(Order(AddTracker(config), "bench"))
     return make_drive(config, SystemClock(), None)
+
+
+def _all_can_jog(service: Service) -> bool:
+    latest = service.link.latest()
+    return latest is not None and not any(tracker.actions["jog"] for tracker in latest.trackers)
 
 
 async def _jogs(link: LinkClient, number: int, drive: Drive, trials: int, *, released: bool) -> list[float]:

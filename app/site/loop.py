@@ -85,9 +85,9 @@ class TrackerLoop:
         return seen is not None and (seen.azimuth.moving or seen.elevation.moving)
 
     @property
-    def alive(self) -> bool:
-        """Return whether this loop still ticks."""
-        return self._task is not None and not self._task.done()
+    def died(self) -> bool:
+        """Return whether this loop was started and ended by itself, which it never should."""
+        return self._task is not None and self._task.done()
 
     def take_changed(self) -> bool:
         """Return whether the latches changed since this was last asked."""
@@ -101,10 +101,10 @@ class TrackerLoop:
 
     async def close(self) -> None:
         """Stop the drive, end ticking and let go of the drive."""
-        if self._task is not None:
-            self._task.cancel()
-            await asyncio.gather(self._task, return_exceptions=True)
-            self._task = None
+        task, self._task = self._task, None
+        if task is not None:
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
         await self.stop_drive()
         try:
             await self.drive.close()

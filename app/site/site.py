@@ -159,9 +159,9 @@ class Site:
 
     @property
     def alive(self) -> bool:
-        """Return whether every loop still runs."""
+        """Return whether every loop that was started still runs."""
         pulse_runs = self._pulse is not None and not self._pulse.done()
-        return pulse_runs and all(loop.alive for loop in self.model.loops.values())
+        return pulse_runs and not any(loop.died for loop in self.model.loops.values())
 
     async def _carry_out(self, order: Order) -> SiteSnapshot:
         refuse_old(order, self.model.now())

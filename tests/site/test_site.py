@@ -499,3 +499,32 @@ async def test_a_profile_that_does_not_exist_is_refused(tmp_path: Path) -> None:
 
     with pytest.raises(ValueError, match="acme"):
         await site.execute(Order(AddTracker(TrackerConfig("T2", "Two", drive=drive)), "anna"))
+
+
+async def test_the_site_counts_as_alive_while_trackers_come_change_and_go(plant: Plant) -> None:
+    watched = []
+
+    async def watch() -> None:
+        while True:
+            watched.append(plant.site.alive)
+            await asyncio.sleep(0)
+
+    watching = asyncio.create_task(watch())
+    added = TrackerConfig("T2", "Second")
+    await plant.ask(AddTracker(added))
+    await plant.ask(ConfigureTracker(replace(added, azimuth=replace(added.azimuth, maximum_deg=350.0))))
+    await plant.ask(RemoveTracker("T2"))
+    watching.cancel()
+
+    assert len(watched) > 30
+    assert all(watched)
+
+
+async def test_a_site_whose_ticker_died_is_not_alive(plant: Plant) -> None:
+    def fail(*_: object) -> None:
+        raise RuntimeError("a programming error beside the controller")
+
+    plant.site.model.tracker("T1")._on_tick = fail
+    await plant.forward(seconds=1)
+
+    assert not plant.site.alive
