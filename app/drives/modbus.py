@@ -9,6 +9,7 @@ from datetime import datetime, timedelta
 from enum import IntEnum
 from heapq import heapify, heappop, heappush
 
+import structlog
 from pymodbus.client import AsyncModbusTcpClient
 from pymodbus.exceptions import ModbusException
 from pymodbus.pdu import ModbusPDU
@@ -68,6 +69,8 @@ EXCEPTIONS = {
 }
 PERMANENT = (1, 2, 3)
 UNREACHABLE = (10, 11)
+
+log = structlog.get_logger(__name__)
 
 
 class ModbusLink:
@@ -166,18 +169,25 @@ class ModbusLink:
                 self._wake.clear()
                 await self._wake.wait()
             job = heappop(self._waiting)
-            if job.answer.done() and job.priority is not Priority.STOP:
-                continue
-            try:
-                found = await self._carry_out(job)
-            except DriveError as error:
-                _fail(job, error)
-            except asyncio.CancelledError:
-                _fail(job, DriveSilent(f"The connection to the drive at {self._address} was closed."))
-                raise
-            else:
-                if not job.answer.done():
-                    job.answer.set_result(found)
+            if not job.answer.done() or job.priority is Priority.STOP:
+                await self._serve(job)
+
+    async def _serve(self, job: _Job) -> None:
+        """Do one request and answer whoever waits for it; whatever goes wrong, the next one is served."""
+        try:
+            found = await self._carry_out(job)
+        except DriveError as error:
+            _fail(job, error)
+        except asyncio.CancelledError:
+            _fail(job, DriveSilent(f"The connection to the drive at {self._address} was closed."))
+            raise
+        except Exception:
+            log.exception("modbus_request_failed", device=str(self._address), what=job.what)
+            self._drop()
+            _fail(job, DriveError(f"An unexpected error ended a request ({job.what}); the log has it."))
+        else:
+            if not job.answer.done():
+                job.answer.set_result(found)
 
     async def _carry_out(self, job: _Job) -> list[int]:
         """Do one request; only a read whose connection broke or whose reply was bad is done again, once."""

@@ -38,6 +38,7 @@ class PlcDrive:
         self._seen: list[int] = []
         self._keep_alive = 0
         self._ticket: int | None = None
+        self._stops = 0
         self._request_number = 0
         self._boot_count: int | None = None
         self._unchanged: dict[str, tuple[int, int]] = {}
@@ -70,7 +71,7 @@ class PlcDrive:
     async def write(self, command: DriveCommand) -> None:
         """Send what changed and a new keep-alive value, or raise `DriveError`; nothing is sent twice."""
         if self._ticket != self._link.ticket:
-            await self.read()
+            await self._look_again()
         ticket = self._ticket
         self._keep_alive = self._keep_alive % 0xFFFF + 1
         words = self._map.command_words(command) | self._map.words("keep_alive", self._keep_alive)
@@ -92,6 +93,7 @@ class PlcDrive:
     async def stop(self) -> None:
         """Ramp both axes down, ahead of everything that waits, or raise `DriveError`."""
         self._forget()
+        self._stops += 1
         stop = self._map.words("stop", 1) or self._map.command_words(STAND)
         for address, values in _runs(stop, stop):
             await self._link.stop(address, values, what=f"stop, {self._profile.at(address)}")
@@ -116,6 +118,17 @@ class PlcDrive:
             with suppress(DriveError):
                 await self.stop()
         await self._link.close()
+
+    async def _look_again(self) -> None:
+        """Read the state anew; raise `DriveError` if it is not the one that the command was meant for."""
+        stops, boot_count = self._stops, self._boot_count
+        await self.read()
+        if self._stops != stops:
+            raise DriveError("A stop overtook this command; it was not written.")
+        if boot_count not in (None, self._boot_count):
+            raise DriveError(
+                f"The drive at {self._address} has restarted: a command from before was not written."
+            )
 
     async def _poll(self) -> list[int]:
         block = self._block

@@ -309,3 +309,11 @@ async def test_a_connection_lost_at_rest_is_renewed_by_the_next_read() -> None:
         await asyncio.sleep(0.02)
         await server.start(port)
         assert await read(link) == RIGHT
+
+
+async def test_an_error_that_nobody_foresaw_ends_one_request_and_not_the_link() -> None:
+    async with linked(good) as (link, server, _):
+        with pytest.raises(DriveError, match="unexpected"):
+            await asyncio.wait_for(link.write(100, [70_000], what="what fits no register", ticket=None), 1.0)
+        await asyncio.wait_for(link.stop(33, [1], what="stop"), 1.0)
+        assert [request[9] for request in server.requests if request[7] == 6] == [33]

@@ -1,5 +1,6 @@
 """The PLC adapter: its words on the bus, who else is there, and what it does not believe."""
 
+import asyncio
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, replace
@@ -87,11 +88,13 @@ class Wire(SimulatedPlc):
         super().__init__(profile, drive, clock)
         self.writes: list[tuple[int, list[int]]] = []
         self.reads = 0
+        self.asked = asyncio.Event()
         self.damage: list[dict[int, int]] = []
         self.still: dict[int, int] = {}
 
     def read_registers(self, function: int, address: int, count: int) -> Sequence[int]:
         self.reads += 1
+        self.asked.set()
         words = list(super().read_registers(function, address, count))
         damage = self.still | (self.damage.pop(0) if self.damage else {})
         for place, word in damage.items():
@@ -303,3 +306,27 @@ async def test_without_a_watchdog_the_capabilities_say_so() -> None:
     assert drive.capabilities.watchdog_s is None
     await drive.close()
     await server.close()
+
+
+async def test_a_command_from_before_a_stop_is_not_written_after_it() -> None:
+    async with on_the_bench() as bench:
+        writing = asyncio.create_task(bench.drive.write(DriveCommand(azimuth=Velocity(1.0))))
+        await bench.wire.asked.wait()
+        await bench.drive.stop()
+        with pytest.raises(DriveError, match="stop overtook"):
+            await writing
+        assert bench.machine.command == DriveCommand()
+
+
+async def test_a_drive_that_restarted_is_not_given_the_command_from_before() -> None:
+    async with on_the_bench() as bench:
+        await bench.drive.read()
+        await bench.drive.write(DriveCommand(Position(110.0, 6.0)))
+        bench.machine.inject(Fault(FaultKind.CORRUPT_REPLIES))
+        with pytest.raises(DriveError):
+            await bench.drive.read()
+        bench.machine.clear_faults()
+        bench.machine.inject(Fault(FaultKind.POWER_LOSS))
+        with pytest.raises(DriveError, match="restarted"):
+            await bench.drive.write(DriveCommand(Position(110.0, 6.0)))
+        assert bench.machine.command == DriveCommand()
