@@ -29,7 +29,7 @@ from tests.machine.service import DriveSimulator, Service, end, eventually
 from tests.machine.stories import kill_mid_show, kill_panel
 
 COMMAND = "python -m bench supervision"
-TRACKERS = 8
+TRACKERS = 4
 TRIALS = int(os.environ.get("HELIOPANEL_BENCH_JOGS", "1000"))
 PANEL_KILLS = int(os.environ.get("HELIOPANEL_BENCH_PANEL_KILLS", "20"))
 MACHINE_KILLS = int(os.environ.get("HELIOPANEL_BENCH_KILLS", "100"))
@@ -38,6 +38,8 @@ STORMERS = 16
 STORM_S = 15.0
 HEARTBEAT_S = 0.05
 LOOK_EVERY_S = 0.003
+NOT_BEFORE_S = 0.2
+"""Looking at the axes costs the simulated drives time: while the lease still runs nobody looks."""
 MOST_LOOKS = 1000
 STOP_LIMIT_MS = 300.0
 RAMP_S = ELEVATION_DEFAULT.jog_slow_dps / ELEVATION_DEFAULT.acceleration_dps2
@@ -132,6 +134,8 @@ async def _jogs(link: LinkClient, number: int, drive: Drive, trials: int, *, rel
         if released:
             last = loop.time()
             await link.execute(Order(EndJog(press), "bench", tracker_id))
+        else:
+            await asyncio.sleep(NOT_BEFORE_S - (loop.time() - last))
         await _rest(drive)
         times.append((loop.time() - last - RAMP_S) * 1000.0)
         await asyncio.sleep(random.uniform(0.02, 0.08))

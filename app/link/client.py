@@ -25,6 +25,7 @@ from app.link.codec import (
     Told,
     decode_telling,
     encode_request,
+    let_go,
     read_body,
 )
 from app.link.messages import (
@@ -105,7 +106,10 @@ class LinkClient:
         answer = await self._ask(request, patience_s)
         if not isinstance(answer, Done):
             raise _out_of_place(answer)
-        return answer.snapshot
+        snapshot = answer.snapshot or self._outlet.latest
+        if snapshot is None:
+            raise MachineUnreachable(TOO_LATE)
+        return snapshot
 
     async def detail(self) -> SiteDetail:
         """Return stored settings, steps and capabilities."""
@@ -171,7 +175,7 @@ class LinkClient:
                     body = await read_body(reader)
                 self._hear(decode_telling(body))
         finally:
-            writer.close()
+            await let_go(writer)
 
     def _hear(self, telling: Telling) -> None:
         match telling:

@@ -1,6 +1,7 @@
 """The wire form: requests, answers and updates as length-prefixed JSON frames."""
 
 import asyncio
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
@@ -91,10 +92,10 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class Done:
-    """An order was carried out; the snapshot after it."""
+    """An order was carried out; the snapshot after it, None if it is the newest that was told."""
 
     number: int
-    snapshot: SiteSnapshot
+    snapshot: SiteSnapshot | None
     tell: Literal["done"] = "done"
 
 
@@ -206,3 +207,10 @@ async def read_body(reader: asyncio.StreamReader) -> bytes:
     if length > LONGEST_FRAME:
         raise FrameBroken(f"A frame of {length} bytes is longer than {LONGEST_FRAME}.")
     return await reader.readexactly(length)
+
+
+async def let_go(writer: asyncio.StreamWriter) -> None:
+    """Close a connection at once, whatever is not yet sent, and return when it is closed."""
+    writer.transport.abort()
+    with suppress(OSError):
+        await writer.wait_closed()

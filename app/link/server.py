@@ -25,12 +25,14 @@ from app.link.codec import (
     Told,
     decode_request,
     encode_telling,
+    let_go,
     problem_of,
     read_body,
 )
 from app.link.messages import Machine, StopAll, Update
 from app.link.metrics import MachineMetrics
 from app.tracker.commands import EndJog, Stop
+from app.tracker.snapshot import SiteSnapshot
 
 MOST_REQUESTS = 256
 MOST_UNSENT_BYTES = 64 * 1024 * 1024
@@ -91,7 +93,7 @@ class LinkServer:
         except FrameBroken as error:
             log.warning("link_client_dropped", reason=str(error))
         finally:
-            writer.close()
+            await let_go(writer)
 
     def _client_count(self) -> int:
         return len(self._conversations)
@@ -107,6 +109,7 @@ class _Conversation:
         self._writer = writer
         self._client_count = client_count
         self._tasks: set[asyncio.Task[None]] = set()
+        self._told: SiteSnapshot | None = None
 
     async def run(self, reader: asyncio.StreamReader) -> None:
         """Answer and tell until the client leaves; an order that was begun is carried to its end."""
@@ -128,6 +131,7 @@ class _Conversation:
     async def _tell(self, updates: AsyncIterator[Update]) -> None:
         async for update in updates:
             self._send(Told(update))
+            self._told = update.snapshot
             await self._writer.drain()
 
     async def _answer(self, request: Request) -> None:
@@ -145,7 +149,8 @@ class _Conversation:
             case Execute():
                 if _is_late(request):
                     return Refused(request.number, LATE)
-                return Done(request.number, await self._machine.execute(request.order()))
+                snapshot = await self._machine.execute(request.order())
+                return Done(request.number, None if snapshot is self._told else snapshot)
             case Ask(do="detail"):
                 return Detailed(request.number, await self._machine.detail())
             case Ask(do="metrics"):

@@ -22,6 +22,7 @@ from app.site.recorder import Recorder
 from app.site.repeats import Repeats, refuse_old
 from app.site.timekeeping import Timekeeper
 from app.sun.position import Algorithm
+from app.tracker.commands import Jog
 from app.tracker.commissioning import steps
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import SiteState, TrackerState
@@ -171,6 +172,9 @@ class Site:
         else:
             loop = self.model.tracker(order.tracker_id)
             events = await tracker_orders.command(self.model, loop, command, order.actor)
+            newest = self._outlet.latest
+            if isinstance(command, Jog) and not events and newest is not None:
+                return newest
         return self._publish(events)
 
     async def _carry_out_for_site(self, command: SiteCommand, actor: str) -> tuple[Event, ...]:

@@ -11,7 +11,10 @@ log = structlog.get_logger(__name__)
 
 
 async def command(model: SiteModel, loop: TrackerLoop, given: Command, actor: str) -> tuple[Event, ...]:
-    """Have the controller obey, and return once what changed is on disk; a jog does not wait for that."""
+    """Have the controller obey, and return once what changed is on disk; a jog does not wait for that.
+
+    A renewed jog changes only when its lease ends: no tick is needed before the next one.
+    """
     if isinstance(given, Stop):
         events = handle_stop(model, loop, actor)
         await finish_stop(model, loop)
@@ -21,7 +24,8 @@ async def command(model: SiteModel, loop: TrackerLoop, given: Command, actor: st
     events = loop.controller.handle(given, model.clock.now(), actor)
     if isinstance(given, RunShow):
         model.recorder.announce(loop.config.tracker_id, given.plan)
-    loop.wake()
+    if events or not isinstance(given, Jog):
+        loop.wake()
     if isinstance(given, Jog | EndJog):
         _post(model, loop, events)
     else:

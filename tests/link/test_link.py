@@ -51,6 +51,7 @@ class ScriptedMachine:
     orders: list[Order] = field(default_factory=list)
     failure: Exception | None = None
     gate: asyncio.Event | None = None
+    answer: SiteSnapshot | None = None
 
     async def execute(self, order: Order) -> SiteSnapshot:
         if self.gate is not None and not isinstance(order.command, Stop):
@@ -58,7 +59,7 @@ class ScriptedMachine:
         self.orders.append(order)
         if self.failure is not None:
             raise self.failure
-        return snapshot(len(self.orders))
+        return self.answer or snapshot(len(self.orders))
 
     async def detail(self) -> SiteDetail:
         return SiteDetail(SiteState(name="Samsun"))
@@ -114,6 +115,17 @@ async def test_an_order_arrives_as_it_was_given(link: Link) -> None:
 
     assert answer == snapshot(1)
     assert link.machine.orders == [given]
+
+
+async def test_a_snapshot_that_was_told_is_not_sent_again(link: Link) -> None:
+    newest = snapshot(99)
+    link.machine.answer = newest
+    updates = link.client.updates()
+    await anext(updates)
+    link.machine.outlet.publish(newest)
+    await anext(updates)
+
+    assert await link.client.execute(Order(Jog("p", Axis.AZIMUTH, 1), "anna", "T1")) == newest
 
 
 async def test_only_the_owner_can_open_the_socket(link: Link) -> None:
