@@ -262,7 +262,6 @@ class TrackerPage:
     choice: ModeChoice | None
     form: Form
     limits: str
-    drive: str
     diagram: SunDiagram | None
     arc: Arc
 

@@ -93,7 +93,6 @@ def _answer(request: Request, tracker: TrackerDetail, typed: Typed, *, status: i
         choice=choice(memory.mode) if memory.mode else None,
         form=typed.form(("azimuth", "elevation")),
         limits=limits_text(config),
-        drive=tracker.capabilities.description if tracker.capabilities else config.drive.kind.value,
         diagram=diagram(frame.site, config),
         arc=todays_arc(frame.site, config),
     )
