@@ -87,8 +87,9 @@ def plant() -> Iterator[Plant]:
     assert not thread.is_alive(), "the panel did not stop"
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
+    """Run one browser for this folder; Playwright's loop must have ended before other tests run theirs."""
     if not Path(CHROMIUM).exists():
         pytest.fail("These tests need Chromium: apt-get install -y chromium")
     with sync_playwright() as playwright:
