@@ -145,7 +145,7 @@ class Service:
     async def ask(self, command: Command | SiteCommand, tracker_id: str = "T1") -> SiteSnapshot:
         """Give an order once."""
         addressed = None if isinstance(command, SiteCommand) else tracker_id
-        return await self.link.execute(Order(command, "anna", addressed))
+        return await self.link.execute(Order(command, "technician", addressed))
 
     async def ask_until_taken(self, command: Command | SiteCommand) -> SiteSnapshot:
         async with asyncio.timeout(LONGEST_WAIT_S):
