@@ -25,6 +25,7 @@ from app.link.codec import (
     Told,
     decode_telling,
     encode_request,
+    ends_motion,
     let_go,
     read_body,
 )
@@ -140,7 +141,9 @@ class LinkClient:
         return self._outlet.subscribe()
 
     async def _ask(self, request: Request, patience_s: float) -> Answer:
-        if self._writer is None or self._outlet.latest is None or len(self._waiting) >= MOST_WAITING:
+        if self._writer is None or self._outlet.latest is None:
+            raise MachineUnreachable(DOWN)
+        if len(self._waiting) >= MOST_WAITING and not ends_motion(request):
             raise MachineUnreachable(DOWN)
         answered: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
         self._waiting[request.number] = answered

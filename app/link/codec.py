@@ -14,12 +14,13 @@ from app.link.messages import (
     Order,
     SiteCommand,
     SiteDetail,
+    StopAll,
     UnknownRecording,
     UnknownTracker,
     Update,
 )
 from app.link.metrics import MachineMetrics
-from app.tracker.commands import Command, CommandRejected
+from app.tracker.commands import Command, CommandRejected, EndJog, Stop
 from app.tracker.reason import Reason
 from app.tracker.snapshot import SiteSnapshot
 
@@ -148,6 +149,11 @@ Telling = Answer | Told
 
 _requests: TypeAdapter[Request] = TypeAdapter(Annotated[Request, Discriminator("do")])
 _tellings: TypeAdapter[Telling] = TypeAdapter(Annotated[Telling, Discriminator("tell")])
+
+
+def ends_motion(request: Request) -> bool:
+    """Return whether this is an order to stop: never too late, never one too many."""
+    return isinstance(request, Execute) and isinstance(request.command, Stop | StopAll | EndJog)
 
 
 def problem_of(error: Exception) -> Problem:

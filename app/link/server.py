@@ -25,13 +25,13 @@ from app.link.codec import (
     Told,
     decode_request,
     encode_telling,
+    ends_motion,
     let_go,
     problem_of,
     read_body,
 )
-from app.link.messages import Machine, StopAll, Update
+from app.link.messages import Machine, Update
 from app.link.metrics import MachineMetrics
-from app.tracker.commands import EndJog, Stop
 from app.tracker.snapshot import SiteSnapshot
 
 MOST_REQUESTS = 256
@@ -118,7 +118,7 @@ class _Conversation:
         try:
             while True:
                 request = decode_request(await read_body(reader))
-                if len(self._tasks) >= MOST_REQUESTS:
+                if len(self._tasks) >= MOST_REQUESTS and not ends_motion(request):
                     self._send(Refused(request.number, BUSY))
                     continue
                 task = asyncio.create_task(self._answer(request))
@@ -171,6 +171,4 @@ class _Conversation:
 
 def _is_late(request: Execute) -> bool:
     """Return whether the panel has given up on this order; stopping is never too late."""
-    if isinstance(request.command, Stop | StopAll | EndJog):
-        return False
-    return asyncio.get_running_loop().time() > request.good_until_s
+    return not ends_motion(request) and asyncio.get_running_loop().time() > request.good_until_s

@@ -14,14 +14,14 @@ from app.site.lateness import TickCounter
 from app.tracker.config import TrackerConfig
 from app.tracker.controller import Controller
 from app.tracker.memory import TrackerMemory, TrackerState
-from app.tracker.motion import HALT, DriveCommand, Feedback
+from app.tracker.motion import HALT, AxisCommand, DriveCommand, Feedback, Velocity
 from app.tracker.observation import Observation
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
 
 READ_SHARE = 0.8
 STOP_WITHIN_S = 0.5
-HALT_BOTH = DriveCommand(HALT, HALT)
+STANDSTILL = Velocity(0.0)
 NEVER_FORBIDDEN = ("stop", "reset_fault")
 
 log = structlog.get_logger(__name__)
@@ -58,6 +58,7 @@ class TrackerLoop:
         self._on_tick = on_tick
         self._trouble: Reason | None = None
         self._write_failed = False
+        self._ending = False
         self._stored_memory = state.memory
         self._last_snapshot: Snapshot | None = None
         self._awake = asyncio.Event()
@@ -125,18 +126,15 @@ class TrackerLoop:
             return False
         return True
 
-    async def change_drive(self, drive: Drive) -> None:
-        """Let go of the drive and go on with another one."""
-        old, self.drive = self.drive, drive
-        self.feedback = None
-        try:
-            await old.close()
-        except DriveError as error:
-            log.warning("drive_not_closed", tracker=self.config.tracker_id, reason=str(error))
+    async def stop_for_good(self) -> None:
+        """Ramp both axes down and command no motion any more: this life of the machine is about to end."""
+        self._ending = True
+        await self.stop_drive()
 
     def repair(self) -> None:
-        """Begin again with a new mind after an unexpected error; what is stored stays."""
-        self.controller = Controller(self.config, self.memory, self.drive.capabilities)
+        """Begin again with a new mind after an unexpected error; tracking waits for the operator."""
+        memory = replace(self.memory, fault_code=None, fault_text="")
+        self.controller = Controller(self.config, memory, self.drive.capabilities, resumes=False)
         self.broken = None
         self.wake()
 
@@ -192,11 +190,13 @@ class TrackerLoop:
             await self._break_off(error)
 
     async def _tick(self) -> None:
+        """Read, decide, write; after a write that failed nothing moves until one was taken and judged."""
         self.counter.ticks += 1
+        unheard = self._write_failed
         self.feedback = await self._read()
         seen = self._surroundings.observe(self.config, self.feedback)
         tick = self.controller.tick(seen)
-        await self._write(tick.command)
+        await self._write(_unmoved(tick.command) if unheard or self._ending else tick.command)
         self._on_tick(self, seen, tick.events)
 
     async def _read(self) -> Feedback | None:
@@ -230,10 +230,21 @@ class TrackerLoop:
             f"{name} was stopped: the controller met an unexpected error ({type(error).__name__}).",
             "Keep the log for the maker, then reset the fault.",
         )
+        memory = replace(self.memory, fault_code=self.broken.code, fault_text=self.broken.message)
+        self.controller = Controller(self.config, memory, self.drive.capabilities)
         await self.stop_drive()
         seen = self._surroundings.observe(self.config, None)
         event = Event(seen.site_time, EventKind.FAULT_RAISED, name, self.broken.message)
         self._on_tick(self, seen, (event,))
+
+
+def _unmoved(command: DriveCommand) -> DriveCommand:
+    """Return a command without its motion and its request; what ends a search for the origin stays."""
+    return DriveCommand(_still(command.azimuth), _still(command.elevation))
+
+
+def _still(axis: AxisCommand) -> AxisCommand:
+    return axis if axis == STANDSTILL else HALT
 
 
 def _trouble(error: DriveError | TimeoutError) -> Reason:
@@ -242,16 +253,26 @@ def _trouble(error: DriveError | TimeoutError) -> Reason:
 
 
 def _broken_snapshot(last: Snapshot, at: datetime, broken: Reason) -> Snapshot:
+    """Return what is still known of a tracker whose controller broke: nothing that was measured is live."""
     forbidden: dict[str, tuple[Reason, ...]] = {
         action: () if action in NEVER_FORBIDDEN else (broken,) for action in last.actions
     }
+    age_s = last.position_age_s
     return replace(
         last,
         at=at,
         activity=ActivityName.FAULTED,
         activity_text=broken.message,
         fault=broken,
+        target=None,
+        setpoint=None,
         measured=None,
+        position_age_s=None if age_s is None else age_s + (at - last.at).total_seconds(),
+        following_error_deg=None,
+        off_sun_deg=None,
+        in_position=False,
+        azimuth=None,
+        elevation=None,
         show=None,
         actions=forbidden,
     )

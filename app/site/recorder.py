@@ -48,7 +48,7 @@ class Recorder:
 
     def __init__(self, ledger: Ledger, period: timedelta) -> None:
         self._ledger = ledger
-        self._step = period * 0.8
+        self._period = period
         self._plans: dict[str, ShowPlan] = {}
         self._shows: dict[str, _Open] = {}
         self._days: dict[str, _Open] = {}
@@ -106,8 +106,8 @@ class Recorder:
         if running is None:
             info = _show_info(loop, site, self._plans[tracker_id], show, seen.site_time)
             running = self._begin(self._shows, info, seen.now)
-        if seen.now >= running.due:
-            running.due = seen.now + self._step
+        if seen.now >= running.due - self._period / 2:
+            running.due = min(max(running.due + self._period, seen.now), seen.now + self._period)
             running.add(seen.now, show.sun_time, loop.controller.frame())
 
     def _observe_day(self, loop: TrackerLoop, site: SiteState, seen: Observation) -> None:

@@ -13,6 +13,7 @@ from app.tracker.snapshot import SiteSnapshot
 
 MOST_REMEMBERED = 500
 OLDEST_ORDER = timedelta(seconds=2)
+ENDS_MOTION = Stop | StopAll | EndJog
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,8 +29,8 @@ class Repeats:
         self._known: OrderedDict[str, _Remembered] = OrderedDict()
 
     async def once(self, order: Order, carry_out: Callable[[Order], Awaitable[SiteSnapshot]]) -> SiteSnapshot:
-        """Carry out an order unless its key was seen before; then answer as then."""
-        if order.key is None:
+        """Carry out an order, unless its key is known: then answer as then. A stop is never a repeat."""
+        if order.key is None or isinstance(order.command, ENDS_MOTION):
             return await carry_out(order)
         known = self._known.get(order.key)
         if known is None:
@@ -57,7 +58,7 @@ class Repeats:
 
 def refuse_old(order: Order, now: datetime) -> None:
     """Raise `CommandRejected` for an order given more than 2 s ago; to stop is never too late."""
-    if order.issued_at is None or isinstance(order.command, Stop | StopAll | EndJog):
+    if order.issued_at is None or isinstance(order.command, ENDS_MOTION):
         return
     age = now - order.issued_at
     if age > OLDEST_ORDER:

@@ -108,8 +108,8 @@ class Site:
         self._outlet.end()
 
     async def stop_drives(self) -> None:
-        """Stop every drive now, as far as each can be reached."""
-        await asyncio.gather(*(loop.stop_drive() for loop in self.model.loops.values()))
+        """Stop every drive for good, as far as each can be reached: the machine is about to end."""
+        await asyncio.gather(*(loop.stop_for_good() for loop in self.model.loops.values()))
 
     async def execute(self, order: Order) -> SiteSnapshot:
         """Carry out one order and return the snapshot after it."""
@@ -168,7 +168,7 @@ class Site:
         refuse_old(order, self.model.now())
         command = order.command
         if isinstance(command, SiteCommand):
-            events = await self._carry_out_for_site(command, order.actor)
+            events = await self._carry_out_for_site(order, command)
         else:
             loop = self.model.tracker(order.tracker_id)
             events = await tracker_orders.command(self.model, loop, command, order.actor)
@@ -177,11 +177,12 @@ class Site:
                 return newest
         return self._publish(events)
 
-    async def _carry_out_for_site(self, command: SiteCommand, actor: str) -> tuple[Event, ...]:
+    async def _carry_out_for_site(self, order: Order, command: SiteCommand) -> tuple[Event, ...]:
         if isinstance(command, StopAll):
-            return await site_orders.carry_out(self.model, command, actor)
+            return await site_orders.carry_out(self.model, command, order.actor)
         async with self._changing:
-            return await site_orders.carry_out(self.model, command, actor)
+            refuse_old(order, self.model.now())
+            return await site_orders.carry_out(self.model, command, order.actor)
 
     def _on_tick(self, loop: TrackerLoop, seen: Observation, events: tuple[Event, ...]) -> None:
         """Keep what a tick changed, record it and tell it."""

@@ -1,11 +1,16 @@
 """Orders to one tracker: commands for its controller, and stop."""
 
+import asyncio
+from contextlib import suppress
+
 import structlog
 
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
 from app.tracker.commands import Command, CommandRejected, EndJog, Jog, ResetFault, RunShow, Stop
 from app.tracker.snapshot import Event, EventKind
+
+STORED_WITHIN_S = 0.5
 
 log = structlog.get_logger(__name__)
 
@@ -47,12 +52,11 @@ def handle_stop(model: SiteModel, loop: TrackerLoop, actor: str) -> tuple[Event,
 
 
 async def finish_stop(model: SiteModel, loop: TrackerLoop) -> None:
-    """Tell the drive to stop beside the controller, then wait for the latches to be on disk, if they can."""
+    """Tell the drive to stop beside the controller, then give the latches half a second to be on disk."""
     await loop.stop_drive()
-    try:
-        await model.ledger.keep(lambda writer: None, 0)
-    except CommandRejected:
-        return
+    with suppress(CommandRejected, TimeoutError):
+        async with asyncio.timeout(STORED_WITHIN_S):
+            await model.ledger.keep(lambda writer: None, 0)
 
 
 def _repair(model: SiteModel, loop: TrackerLoop, given: Command, actor: str) -> tuple[Event, ...]:
@@ -65,7 +69,7 @@ def _repair(model: SiteModel, loop: TrackerLoop, given: Command, actor: str) -> 
         actor,
         loop.config.tracker_id,
     )
-    model.ledger.post_events((event,))
+    _post(model, loop, (event,))
     return (event,)
 
 
@@ -84,7 +88,6 @@ async def _store(model: SiteModel, loop: TrackerLoop, events: tuple[Event, ...])
         else:
             await model.ledger.append(events)
     except CommandRejected:
-        loop.controller.handle(Stop(), model.clock.now(), "machine")
-        loop.wake()
+        handle_stop(model, loop, "machine")
         await loop.stop_drive()
         raise

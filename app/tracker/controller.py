@@ -46,8 +46,16 @@ class Tick(NamedTuple):
 class Controller:
     """Decides for one tracker; pure: reads no clock and no drive, knows only what it is told."""
 
-    def __init__(self, config: TrackerConfig, memory: TrackerMemory, capabilities: DriveCapabilities) -> None:
+    def __init__(
+        self,
+        config: TrackerConfig,
+        memory: TrackerMemory,
+        capabilities: DriveCapabilities,
+        *,
+        resumes: bool = True,
+    ) -> None:
         self._mind = Mind(config, memory, capabilities)
+        self._resumes = resumes
         if memory.fault_code is not None:
             self._mind.activity = Faulted(Reason(memory.fault_code, memory.fault_text, _RESET_HINT))
 
@@ -133,7 +141,7 @@ class Controller:
         if mind.memory.showing is not None:
             show_id = mind.memory.showing
             mind.remember(showing=None)
-            message = "The show was cut off by a restart of the controller service."
+            message = "The show was cut off: the controller was started again."
             mind.say(EventKind.SHOW_ENDED, message, outcome="interrupted", show_id=show_id)
 
     def _blind(self, seen: Observation) -> DriveCommand:
@@ -168,7 +176,7 @@ class Controller:
 
     def _first_reading(self) -> None:
         """Decide once whether tracking goes on after a restart."""
-        if isinstance(self._mind.activity, Holding | Faulted):
+        if self._resumes and isinstance(self._mind.activity, Holding | Faulted):
             tracking.resume(self._mind)
 
     def _step(self, feedback: Feedback, seen: Observation) -> Turn:

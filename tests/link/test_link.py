@@ -22,7 +22,7 @@ from app.link.messages import (
 )
 from app.link.metrics import MachineMetrics
 from app.link.outlet import MOST_EVENTS_WAITING, Outlet
-from app.link.server import LinkServer
+from app.link.server import MOST_REQUESTS, LinkServer
 from app.sun.position import Location
 from app.tracker.axes import Axis
 from app.tracker.commands import CommandRejected, Jog, Stop, Track
@@ -109,7 +109,7 @@ async def test_an_order_arrives_as_it_was_given(link: Link) -> None:
     plan = ShowPlan(
         "s1", NOON, NOON + timedelta(hours=3), timedelta(minutes=3), Location(41.2867, 36.33, 4.0)
     )
-    given = Order(SavePlan("T1", plan), "anna", key="k1", issued_at=NOON)
+    given = Order(SavePlan("T1", plan), "technician", key="k1", issued_at=NOON)
 
     answer = await link.client.execute(given)
 
@@ -125,7 +125,7 @@ async def test_a_snapshot_that_was_told_is_not_sent_again(link: Link) -> None:
     link.machine.outlet.publish(newest)
     await anext(updates)
 
-    assert await link.client.execute(Order(Jog("p", Axis.AZIMUTH, 1), "anna", "T1")) == newest
+    assert await link.client.execute(Order(Jog("p", Axis.AZIMUTH, 1), "technician", "T1")) == newest
 
 
 async def test_only_the_owner_can_open_the_socket(link: Link) -> None:
@@ -147,7 +147,7 @@ async def test_an_error_crosses_as_the_same_error(link: Link, failure: Exception
     link.machine.failure = failure
 
     with pytest.raises(type(failure)) as caught:
-        await link.client.execute(Order(Track(), "anna", "T1"))
+        await link.client.execute(Order(Track(), "technician", "T1"))
 
     assert str(caught.value) == str(failure)
     assert getattr(caught.value, "reasons", None) == getattr(failure, "reasons", None)
@@ -157,7 +157,7 @@ async def test_an_unexpected_error_says_so_without_its_text(link: Link) -> None:
     link.machine.failure = KeyError("secret")
 
     with pytest.raises(MachineUnreachable, match="unexpected error") as caught:
-        await link.client.execute(Order(Track(), "anna", "T1"))
+        await link.client.execute(Order(Track(), "technician", "T1"))
 
     assert "secret" not in str(caught.value)
 
@@ -173,18 +173,31 @@ async def test_a_stop_overtakes_orders_that_wait(link: Link) -> None:
     waiting = [asyncio.create_task(link.client.execute(Order(Track(), "a", "T1"))) for _ in range(20)]
     await asyncio.sleep(0)
 
-    await link.client.execute(Order(Stop(), "anna", "T1"))
+    await link.client.execute(Order(Stop(), "technician", "T1"))
 
     assert [type(order.command) for order in link.machine.orders] == [Stop]
     link.machine.gate.set()
     await asyncio.gather(*waiting)
 
 
+async def test_a_stop_is_carried_out_however_many_orders_wait(link: Link) -> None:
+    link.machine.gate = asyncio.Event()
+    orders = [link.client.execute(Order(Track(), "a", "T1")) for _ in range(MOST_REQUESTS + 10)]
+    waiting = [asyncio.create_task(order) for order in orders]
+    await asyncio.sleep(0.1)
+
+    await link.client.execute(Order(Stop(), "technician", "T1"))
+
+    assert [type(order.command) for order in link.machine.orders] == [Stop]
+    link.machine.gate.set()
+    await asyncio.gather(*waiting, return_exceptions=True)
+
+
 async def test_an_order_is_given_up_in_time(link: Link) -> None:
     link.machine.gate = asyncio.Event()
 
     with pytest.raises(MachineUnreachable, match="may or may not"):
-        await link.client.execute(Order(Jog("p1", Axis.AZIMUTH, 1), "anna", "T1"))
+        await link.client.execute(Order(Jog("p1", Axis.AZIMUTH, 1), "technician", "T1"))
 
     link.machine.gate.set()
 
@@ -193,7 +206,7 @@ async def test_without_a_machine_an_order_fails_at_once_and_is_not_kept(tmp_path
     path = tmp_path / "machine.sock"
     async with LinkClient(path) as client:
         with pytest.raises(MachineUnreachable, match="nothing was done"):
-            await client.execute(Order(Track(), "anna", "T1"))
+            await client.execute(Order(Track(), "technician", "T1"))
         assert client.latest() is None
         machine = ScriptedMachine()
         machine.outlet.publish(snapshot(7))
@@ -219,7 +232,7 @@ async def test_when_the_machine_dies_the_page_knows_at_once_and_finds_it_again(l
     await again.start()
     await link.until_up()
 
-    assert (await link.client.execute(Order(Track(), "anna", "T1"))).boot_id == "boot"
+    assert (await link.client.execute(Order(Track(), "technician", "T1"))).boot_id == "boot"
     await again.close()
 
 
@@ -287,5 +300,5 @@ async def test_a_silent_machine_counts_as_lost(tmp_path: Path) -> None:
     async with LinkClient(path) as client:
         await asyncio.sleep(0.1)
         with pytest.raises(MachineUnreachable):
-            await client.execute(Order(SetLocation(Location(0, 0), "UTC"), "anna"))
+            await client.execute(Order(SetLocation(Location(0, 0), "UTC"), "technician"))
     server.close()

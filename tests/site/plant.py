@@ -49,7 +49,7 @@ class Plant:
         self, command: Command | SiteCommand, tracker_id: str | None = "T1", **more: object
     ) -> SiteSnapshot:
         addressed = None if isinstance(command, SiteCommand) else tracker_id
-        asking = asyncio.create_task(self.site.execute(Order(command, "anna", addressed, **more)))  # type: ignore[arg-type]
+        asking = asyncio.create_task(self.site.execute(Order(command, "technician", addressed, **more)))  # type: ignore[arg-type]
         while not asking.done():
             await settle()
         return await asking

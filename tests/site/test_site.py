@@ -1,14 +1,14 @@
 """What belongs to the whole site: orders, trackers, faults that stay where they arise, the clock."""
 
 import asyncio
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
 
 from app.clock import VirtualClock
-from app.drives.drive import Drive, DriveSilent
+from app.drives.drive import Drive
 from app.drives.factory import make_drive
 from app.link.messages import (
     AddTracker,
@@ -36,52 +36,13 @@ from app.tracker.config import DriveConfig, DriveKind, Orientation, TrackerConfi
 from app.tracker.controller import Controller, Tick
 from app.tracker.memory import ClockSetting, SiteState, StepName, TrackerMemory, TrackerState
 from app.tracker.mode import Mode
-from app.tracker.motion import DriveCapabilities, DriveCommand, Feedback
+from app.tracker.motion import DriveCapabilities
 from app.tracker.observation import Observation
 from app.tracker.snapshot import ActivityName, Event, EventKind
 from tests.site.plant import FIRST, SAMSUN, SUMMER_NOON, Plant, make_plant, settle
+from tests.site.wrapped_drive import WrappedDrive, wrapped
 
 SECOND = TrackerState(TrackerConfig("T2", "Tracker 2"), TrackerMemory())
-
-
-@dataclass
-class WrappedDrive:
-    """A drive that can be made to hang, to fail or to answer nonsense."""
-
-    inner: Drive
-    hangs: bool = False
-    nonsense: bool = False
-    refuses: bool = False
-    deaf: bool = False
-    stops: int = 0
-
-    @property
-    def capabilities(self) -> DriveCapabilities:
-        return self.inner.capabilities
-
-    async def read(self) -> Feedback:
-        if self.hangs:
-            await asyncio.Event().wait()
-        if self.nonsense:
-            raise RuntimeError("a programming error")
-        return await self.inner.read()
-
-    async def write(self, command: DriveCommand) -> None:
-        if self.refuses:
-            raise DriveSilent("The drive did not take the command.")
-        await self.inner.write(command)
-
-    async def stop(self) -> None:
-        self.stops += 1
-        if self.deaf:
-            await asyncio.Event().wait()
-        await self.inner.stop()
-
-    async def set_clock(self, at: datetime) -> None:
-        await self.inner.set_clock(at)
-
-    async def close(self) -> None:
-        await self.inner.close()
 
 
 class BrokenController(Controller):
@@ -100,12 +61,6 @@ class BrokenController(Controller):
 async def running(plant: Plant) -> Plant:
     await plant.start()
     return plant
-
-
-def wrapped(plant: Plant, tracker_id: str) -> WrappedDrive:
-    drive = plant.drives[tracker_id]
-    assert isinstance(drive, WrappedDrive)
-    return drive
 
 
 async def test_a_repeated_order_is_carried_out_once_and_answers_as_the_first(plant: Plant) -> None:
@@ -279,7 +234,7 @@ async def test_a_drive_that_does_not_hear_stop_holds_up_no_other() -> None:
     plant = await running(make_plant(trackers=(FIRST, SECOND), wrap=WrappedDrive))
     await plant.forward(seconds=0.2)
     wrapped(plant, "T1").deaf = True
-    stopping = asyncio.create_task(plant.site.execute(Order(StopAll(), "anna")))
+    stopping = asyncio.create_task(plant.site.execute(Order(StopAll(), "technician")))
     await settle()
 
     assert wrapped(plant, "T2").stops == 1
@@ -388,7 +343,7 @@ async def test_a_clock_that_shows_less_than_the_journal_is_not_trusted() -> None
     keeper = Timekeeper(clock, ClockSetting("system"), not_before=SUMMER_NOON + timedelta(days=1))
     assert [reason.code for reason in keeper.reasons()] == ["clock_implausible"]
 
-    keeper.adopt(keeper.choose("system", None, "anna"))
+    keeper.adopt(keeper.choose("system", None, "technician"))
 
     assert keeper.reasons() == ()
 
@@ -472,7 +427,7 @@ async def test_the_next_dawn_is_worked_out_once_and_again_after_it() -> None:
 
 
 async def test_orders_at_the_same_time_do_not_mix(plant: Plant) -> None:
-    orders = [Order(SetLocation(Location(40.0 + n, 30.0), "UTC"), "anna") for n in range(5)]
+    orders = [Order(SetLocation(Location(40.0 + n, 30.0), "UTC"), "technician") for n in range(5)]
     asking = [asyncio.create_task(plant.site.execute(order)) for order in orders]
     await plant.forward(seconds=0.2)
     await asyncio.gather(*asking)
@@ -498,7 +453,7 @@ async def test_a_profile_that_does_not_exist_is_refused(tmp_path: Path) -> None:
     drive = DriveConfig(DriveKind.MODBUS_TCP, profile="acme")
 
     with pytest.raises(ValueError, match="acme"):
-        await site.execute(Order(AddTracker(TrackerConfig("T2", "Two", drive=drive)), "anna"))
+        await site.execute(Order(AddTracker(TrackerConfig("T2", "Two", drive=drive)), "technician"))
 
 
 async def test_the_site_counts_as_alive_while_trackers_come_change_and_go(plant: Plant) -> None:

@@ -86,7 +86,7 @@ async def test_stop_ends_tracking_and_stays_stopped(plant: Plant) -> None:
     assert stopped.activity is ActivityName.HOLDING
     assert plant.tracker().measured == stopped.measured
     assert plant.tracker().tracking_on is False
-    assert plant.happened(EventKind.STOPPED)[0].actor == "anna"
+    assert plant.happened(EventKind.STOPPED)[0].actor == "technician"
 
 
 async def test_tracking_is_refused_with_every_reason(plant: Plant) -> None:
