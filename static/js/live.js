@@ -203,7 +203,10 @@ export function start() {
   root.dataset.link = "starting";
   live.on("state", paint);
   live.on("link", paintLink);
-  addEventListener("pagehide", () => { leaving = true; socket?.close(); });
+  addEventListener("pagehide", () => {
+    leaving = true;
+    if (socket?.readyState === WebSocket.OPEN) socket.close();
+  });
   addEventListener("pageshow", (shownAgain) => { if (shownAgain.persisted) location.reload(); });
   document.addEventListener("htmx:after:swap", paint);
   setInterval(judge, 250);

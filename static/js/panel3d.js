@@ -4,10 +4,10 @@
 import { colour } from "./colours.js";
 
 const RAD = Math.PI / 180;
-const MAST = 0.46;
-const HALF_WIDTH = 0.44;
-const HALF_HEIGHT = 0.27;
-const SKY = 1.18;
+const MAST = 0.4;
+const HALF_WIDTH = 0.42;
+const HALF_HEIGHT = 0.26;
+const SKY = 1.1;
 const COLUMNS = 8;
 const ROWS = 5;
 const TURN_DEG = 30;
@@ -19,6 +19,8 @@ export const towards = (azimuth, elevation, length = 1) => [
   length * Math.sin(elevation * RAD),
 ];
 const add = (a, b, factor = 1) => a.map((value, index) => value + factor * b[index]);
+// The sky is drawn around the panel, so that its normal meets the sun when it points there.
+const inSky = (azimuth, elevation) => add([0, 0, MAST], towards(azimuth, elevation, SKY));
 
 export class PanelScene {
   constructor(canvas) {
@@ -96,8 +98,8 @@ export class PanelScene {
     if (this.canvas.height !== Math.round(height * ratio)) this.canvas.height = Math.round(height * ratio);
     this.pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.pen.clearRect(0, 0, width, height);
-    this.size = Math.min(width / 2.5, height / 1.9);
-    this.middle = [width / 2, height * 0.7];
+    this.size = Math.min(width / 2.5, height / 2.05);
+    this.middle = [width / 2, height * 0.74];
     this.#scene();
     if (moving) this.draw();
   }
@@ -144,7 +146,7 @@ export class PanelScene {
     this.#ground();
     if (sun && panel && sun.elevation > 1.5) this.#shadow(sun, panel);
     this.#arc(false);
-    const behind = sun && this.at(towards(sun.azimuth, sun.elevation, SKY))[2] < 0;
+    const behind = sun && this.at(inSky(sun.azimuth, sun.elevation))[2] < 0;
     if (sun && behind) this.#sun(sun);
     this.#mast();
     if (target && panel && Math.abs(target.elevation - panel.elevation) + Math.abs(target.azimuth - panel.azimuth) > 1) this.#outline(target);
@@ -230,7 +232,7 @@ export class PanelScene {
 
   #ray(middle, normal, sun) {
     if (sun && sun.elevation > -1) {
-      this.line([middle, towards(sun.azimuth, sun.elevation, SKY)]);
+      this.line([middle, inSky(sun.azimuth, sun.elevation)]);
       this.stroke("text", 1.2, [2, 5]);
     }
     const tip = add(middle, normal, 0.5);
@@ -249,7 +251,7 @@ export class PanelScene {
       points = [];
     };
     for (const [azimuth, elevation] of this.arc) {
-      const point = towards(azimuth, elevation, SKY);
+      const point = inSky(azimuth, elevation);
       if (elevation < -0.9 || this.at(point)[2] >= 0 !== nearSide) { if (points.length) points.push(point); flush(); continue; }
       points.push(point);
     }
@@ -257,7 +259,7 @@ export class PanelScene {
   }
 
   #sun({ azimuth, elevation }) {
-    const [x, y] = this.at(towards(azimuth, elevation, SKY));
+    const [x, y] = this.at(inSky(azimuth, elevation));
     const up = elevation > -0.9;
     if (up) this.#beams(x, y);
     this.pen.beginPath();
@@ -265,7 +267,7 @@ export class PanelScene {
     this.fill(up ? "sun-disc" : "ground");
     this.stroke("outline", 3, up ? [] : [4, 4]);
     if (up) {
-      this.line([towards(azimuth, elevation, SKY), towards(azimuth, 0, SKY * Math.cos(elevation * RAD))]);
+      this.line([inSky(azimuth, elevation), towards(azimuth, 0, SKY * Math.cos(elevation * RAD))]);
       this.pen.globalAlpha = 0.35;
       this.stroke("line", 1, [3, 5]);
       this.pen.globalAlpha = 1;
