@@ -70,12 +70,15 @@ class LoopWatchdog:
 
     def _give_up(self, loop: asyncio.AbstractEventLoop) -> None:
         log.critical("control_loop_dead", action="drives are stopped and the controller service ends")
-        stopping = asyncio.run_coroutine_threadsafe(_ended(self._stop_drives), loop)
         try:
+            stopping = asyncio.run_coroutine_threadsafe(_ended(self._stop_drives), loop)
             stopping.result(LAST_STOP_S)
         except TooLate:
             log.critical("drives_not_told", action="each drive's own watchdog stops it")
-        self._end(EXIT_CODE)
+        except Exception:
+            log.exception("drives_not_told", action="each drive's own watchdog stops it")
+        finally:
+            self._end(EXIT_CODE)
 
 
 async def _ended(stop_drives: Callable[[], Awaitable[None]]) -> None:

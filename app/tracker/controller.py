@@ -23,7 +23,15 @@ from app.tracker.commands import Command
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import Confirmation, Pointing, Sighting, StepName, TrackerMemory
 from app.tracker.mind import HALTED, NOWHERE, STANDING, Mind, Turn
-from app.tracker.motion import AxisCommand, DriveCapabilities, DriveCommand, Feedback, Halt, Position
+from app.tracker.motion import (
+    AxisCommand,
+    DriveCapabilities,
+    DriveCommand,
+    Feedback,
+    Halt,
+    Position,
+    RequestKind,
+)
 from app.tracker.observation import Observation
 from app.tracker.orders import obey
 from app.tracker.protect import check_following, found, miss, obey_switches, protect
@@ -152,7 +160,7 @@ class Controller:
         if isinstance(mind.activity, Jogging) and seen.now >= mind.activity.until:
             jogging.end(mind, mind.activity, "it was not renewed in time.", "expired")
         if mind.lost or isinstance(mind.activity, Holding | Stopping | Faulted):
-            return HALTED
+            return STANDING if mind.command is STANDING or _may_search(mind) else HALTED
         return mind.command
 
     def _see(self, seen: Observation, feedback: Feedback) -> DriveCommand:
@@ -207,6 +215,13 @@ class Controller:
             _setpoint_deg(command.elevation, before.elevation_deg),
         )
         return command
+
+
+def _may_search(mind: Mind) -> bool:
+    """Return whether the drive may still pursue its origin switches, as far as is known."""
+    request = mind.command.request
+    told = request is not None and request.kind is RequestKind.HOME
+    return told or (mind.feedback is not None and mind.feedback.homing)
 
 
 def _setpoint_deg(command: AxisCommand, before_deg: float | None) -> float | None:

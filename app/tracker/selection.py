@@ -26,7 +26,7 @@ def select_mode(mind: Mind, command: SelectMode) -> None:
     }
     mind.remember(mode=command.mode, orientation=orientation, confirmations=confirmations)
     mind.say(EventKind.MODE_SELECTED, f"Mode {command.mode} selected.", mode=command.mode)
-    if mind.feedback is not None and at_orientation(mind, mind.feedback):
+    if mind.feedback is not None and not mind.misses and at_orientation(mind, mind.feedback):
         confirm_mode(mind, mind.actor)
 
 

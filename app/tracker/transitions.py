@@ -54,6 +54,12 @@ def _say_what_ended(mind: Mind, activity: Unfaulted, why: str) -> None:
             assert_never(activity)
 
 
+def end_move(mind: Mind, why: str) -> None:
+    """End a move that something else takes the place of."""
+    if isinstance(mind.activity, Moving):
+        leave(mind, why)
+
+
 def end_show(mind: Mind, showing: Showing, message: str, outcome: str) -> None:
     """Say that a show has ended; nothing is running any more."""
     mind.remember(showing=None)
@@ -86,8 +92,9 @@ def lose_home(mind: Mind, reason: Reason) -> None:
 
 
 def switch_tracking_off(mind: Mind, why: str) -> None:
-    """Switch tracking off and say so, because something else was commanded."""
+    """Switch tracking off and say so, because something else was commanded; a move ends for it too."""
     mind.wait = None
+    end_move(mind, why)
     if isinstance(mind.activity, Tracking):
         mind.activity = HOLDING
     if mind.memory.tracking_on:

@@ -102,6 +102,22 @@ async def test_a_ticker_that_died_ends_the_machine_with_its_drives_stopped() -> 
     await asyncio.gather(watching, return_exceptions=True)
 
 
+async def test_drives_that_cannot_be_stopped_do_not_keep_a_dead_machine_alive() -> None:
+    ending = Ending()
+
+    async def stop_drives() -> None:
+        raise RuntimeError("a programming error")
+
+    watching = asyncio.create_task(
+        LoopWatchdog(SystemClock(), alive=lambda: False, stop_drives=stop_drives, end=ending).run()
+    )
+    await asyncio.to_thread(ending.ended.wait, 5)
+
+    assert ending.code == EXIT_CODE
+    watching.cancel()
+    await asyncio.gather(watching, return_exceptions=True)
+
+
 async def test_a_loop_that_hangs_ends_the_machine() -> None:
     ending = Ending()
 

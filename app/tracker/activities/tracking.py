@@ -20,7 +20,7 @@ from app.tracker.observation import Observation
 from app.tracker.reason import Reason
 from app.tracker.runs import arrived, new_run
 from app.tracker.snapshot import EventKind
-from app.tracker.transitions import fail, interrupt
+from app.tracker.transitions import end_move, fail, interrupt
 
 SUN_DPS = 15.0 / 3600.0
 TWILIGHT_DEG = -1.0
@@ -38,6 +38,7 @@ def track(mind: Mind) -> None:
     mind.wait = None
     if isinstance(mind.activity, Tracking):
         return
+    end_move(mind, "tracking was started.")
     mind.activity = TRACKING[TrackPhase.FOLLOWING]
     mind.remember(tracking_on=True)
     mind.say(EventKind.TRACKING_STARTED, f"Tracking started, mode {mind.memory.mode}.", mode=mind.memory.mode)

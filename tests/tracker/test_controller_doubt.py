@@ -1,0 +1,48 @@
+"""What is not known: nothing goes on, nothing is confirmed, and everything that ends says so."""
+
+from dataclasses import replace
+
+from app.tracker.commands import Home, Move, Park, SelectMode, Track
+from app.tracker.config import Orientation
+from app.tracker.memory import StepName
+from app.tracker.mode import Mode
+from app.tracker.motion import DriveCommand, Velocity
+from app.tracker.snapshot import ActivityName, EventKind
+from tests.tracker.plant import READY, Plant
+from tests.tracker.scripted import Scripted
+
+STANDSTILL = DriveCommand(Velocity(0.0), Velocity(0.0))
+
+
+def test_a_drive_that_is_lost_while_it_searches_is_told_to_end_the_search() -> None:
+    script = Scripted()
+    script.tick()
+    script.ask(Home())
+    assert script.reading is not None
+    script.reading = replace(script.reading, homing=True)
+    script.forward(1.0)
+    script.reading = None
+    script.forward(1.0)
+    assert script.happened(EventKind.DRIVE_LOST)
+    assert script.told == STANDSTILL, "a halt alone lets the search go on"
+
+
+def test_an_old_reading_confirms_no_orientation() -> None:
+    script = Scripted(READY)
+    script.tick()
+    script.reading = None
+    script.forward(1.0)
+    script.ask(SelectMode(Mode.FIXED, Orientation(0.0, 0.0)))
+    assert StepName.MODE not in script.controller.memory.confirmations
+
+
+def test_a_move_that_another_order_replaces_says_that_it_ended() -> None:
+    plant = Plant(READY)
+    plant.tick()
+    plant.ask(Move(Orientation(120.0, 40.0)))
+    for number, order in enumerate((Move(Orientation(60.0, 30.0)), Park(), Track()), start=1):
+        plant.forward(1.0)
+        plant.ask(order)
+        ended = plant.happened(EventKind.MOVE_ENDED)
+        assert [event.data["outcome"] for event in ended] == ["interrupted"] * number
+    assert plant.activity is ActivityName.TRACKING
