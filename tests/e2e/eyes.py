@@ -3,12 +3,15 @@
 import socket
 import threading
 import time
+from collections import deque
 from dataclasses import dataclass
 from struct import pack, unpack_from
 
 from app.drives.sim_training import TRUE_AZIMUTH
 
 LOOK_EVERY_S = 0.003
+JUDGE_EVERY_S = 0.01
+MOST_SIGHTS = 6000
 RESTS_AFTER_S = 0.15
 STEP_DEG = 0.0005
 HEADER = 9
@@ -64,7 +67,7 @@ class Eyes:
     """
 
     def __init__(self, port: int) -> None:
-        self.sights: list[Sight] = []
+        self.sights: deque[Sight] = deque(maxlen=MOST_SIGHTS)
         self._modbus = ModbusEyes(port)
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._watch, daemon=True)
@@ -85,7 +88,7 @@ class Eyes:
 
     def moved_after(self, at: float) -> bool:
         """Return whether the panel has turned at any time after an instant."""
-        seen = [sight for sight in self.sights if sight.at >= at]
+        seen = self._since(at)
         return any(sight.is_apart(seen[0]) for sight in seen)
 
     def until_moving(self, *, within_s: float = 5.0) -> None:
@@ -94,14 +97,34 @@ class Eyes:
         give_up = begun.at + within_s
         while not self.now.is_apart(begun):
             assert self.now.at < give_up, "the panel does not turn"
-            time.sleep(LOOK_EVERY_S)
+            time.sleep(JUDGE_EVERY_S)
 
     def rest_after(self, at: float, *, within_s: float = 5.0) -> float:
         """Return how long after an instant the panel turned for the last time, once it stands still."""
         while (last := self._last_turn()) > self.now.at - RESTS_AFTER_S or self.now.at < at + RESTS_AFTER_S:
             assert self.now.at < at + within_s, "the panel still turns"
-            time.sleep(LOOK_EVERY_S)
+            time.sleep(JUDGE_EVERY_S)
         return max(0.0, last - at)
+
+    def first_rest_after(self, at: float, *, within_s: float = 5.0) -> float:
+        """Return how long after an instant the panel stood still for the first time."""
+        give_up = at + within_s
+        while (rest := self._first_rest(at)) is None:
+            assert self.now.at < give_up, "the panel still turns"
+            time.sleep(JUDGE_EVERY_S)
+        return rest.at - at
+
+    def _since(self, at: float) -> list[Sight]:
+        return [sight for sight in list(self.sights) if sight.at >= at]
+
+    def _first_rest(self, at: float) -> Sight | None:
+        stood: Sight | None = None
+        for sight in self._since(at):
+            if stood is None or sight.is_apart(stood):
+                stood = sight
+            elif sight.at - stood.at >= RESTS_AFTER_S:
+                return stood
+        return None
 
     def _last_turn(self) -> float:
         sights = list(self.sights)

@@ -1,0 +1,135 @@
+"""The machine killed at random instants of tracking and of a show, the panel killed under both."""
+
+import random
+import signal
+import time
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from app.tracker.axes import AZIMUTH_DEFAULT
+from tests.e2e.eyes import Eyes
+from tests.e2e.integrator import Integrator
+from tests.e2e.product import Product, eventually
+from tests.e2e.sky import columns
+
+WATCHDOG_S = 0.5
+RAMP_S = AZIMUTH_DEFAULT.speed_dps / AZIMUTH_DEFAULT.acceleration_dps2
+AWAY_DEG = 8.0
+LONGEST_INSTANT_S = 1.2
+TICKS_A_SECOND = 10
+SHOW = {"begin_at": "2027-06-21T06:00:00+03:00", "end_at": "2027-06-21T07:30:00+03:00"}
+
+
+@dataclass
+class Killing:
+    """A product that is killed again and again, and what has to survive."""
+
+    product: Product
+    integrator: Integrator
+    eyes: Eyes
+    names: list[str] = field(default_factory=list)
+    chance: random.Random = field(default_factory=lambda: random.Random(20270621))
+
+    def kill_tracking(self) -> float:
+        """Kill the machine on its way to the sun; return after how long the axes stood, all else checked.
+
+        The zero is trusted still, so that tracking goes on by itself after the restart.
+        """
+        self._stop()
+        self.integrator.until_allowed("move")
+        away = self.integrator.snapshot()["sun"]["azimuth_deg"] - AWAY_DEG
+        self.integrator.command("move", azimuth_deg=away, elevation_deg=5.0)
+        self._until(lambda seen: seen["activity"] == "holding", "the panel is away from the sun")
+        self.integrator.command("track")
+        rested_s = self._kill()
+        self._until(lambda seen: seen["activity"] == "tracking", "tracking goes on by itself")
+        return rested_s
+
+    def kill_show(self) -> float:
+        """Kill the machine in a show; return after how long the axes stood, all else checked."""
+        self._stop()
+        self.integrator.until_allowed("go_to_start")
+        before = len(self.shows())
+        self.begin_show(20.0)
+        rested_s = self._kill()
+        shows = self.shows()
+        assert len(shows) == before + 1
+        assert all(show["ended_at"] is not None for show in shows)
+        assert "cut off" in shows[0]["outcome"]
+        assert shows[0]["frame_count"] == self._frames(shows[0]["recording_id"])["elapsed_s"].size
+        assert self.integrator.snapshot()["activity"] == "holding"
+        assert shows[0]["recording_id"] in self.integrator.journal("machine_started")[0]["data"]["cut_off"]
+        return rested_s
+
+    def begin_show(self, seconds: float) -> None:
+        """Go to the start of the show and run it."""
+        show_id = self.integrator.post("/shows", {**SHOW, "duration_s": seconds})["show_id"]
+        self.integrator.post(f"/shows/{show_id}/go-to-start")
+        self._until(lambda seen: seen["show"] and seen["show"]["phase"] == "ready", "the show is ready")
+        self.integrator.post(f"/shows/{show_id}/run")
+
+    def kill_panel(self) -> None:
+        """Kill the panel and wait until it serves again."""
+        panels = len(self.product.starts("web"))
+        self.product.signal("web", signal.SIGKILL)
+        eventually(lambda: len(self.product.starts("web")) > panels, "the panel is started again")
+        self.product.until_ready()
+
+    def metric(self, name: str) -> float:
+        """Return a number that the product tells a monitor."""
+        lines = self.integrator.call("GET", "/api/v1/metrics").text.splitlines()
+        return next(float(line.rpartition(" ")[2]) for line in lines if line.startswith(f"heliopanel_{name}"))
+
+    def ticks(self) -> tuple[float, float]:
+        """Return the ticks so far and the seconds for which the machine has run."""
+        return self.metric("tracker_ticks_total"), self.metric("uptime_s")
+
+    def shows(self) -> list[dict[str, Any]]:
+        """Return the recorded shows, newest first."""
+        found: list[dict[str, Any]] = self.integrator.get("/api/v1/recordings", kind="show")
+        return found
+
+    def elapsed_s(self, recording_id: str) -> np.ndarray:
+        """Return when each frame of a recording was taken, seconds since it began."""
+        return self._frames(recording_id)["elapsed_s"]
+
+    def _frames(self, recording_id: str) -> dict[str, np.ndarray]:
+        return columns(self.integrator.get(f"/api/v1/recordings/{recording_id}/frames"))
+
+    def _kill(self) -> float:
+        machines = len(self.product.starts("machine"))
+        time.sleep(self.chance.uniform(0.0, LONGEST_INSTANT_S))
+        self.names.append(f"Run {len(self.names)}")
+        self.integrator.call("PATCH", "/api/v1/site", json={"name": self.names[-1]})
+        rested_s = self._dead_until_rest()
+        eventually(lambda: len(self.product.starts("machine")) > machines, "the machine is started again")
+        self.product.until_ready()
+        self.integrator.until(lambda seen: seen["measured"], "the drive is found again")
+        self._check_nothing_lost()
+        return rested_s
+
+    def _dead_until_rest(self) -> float:
+        """Kill the machine; its supervisor is kept from starting it again until the drive has stopped."""
+        self.product.process.send_signal(signal.SIGSTOP)
+        try:
+            at = self.product.signal("machine", signal.SIGKILL)
+            return self.eyes.first_rest_after(at)
+        finally:
+            self.product.process.send_signal(signal.SIGCONT)
+
+    def _check_nothing_lost(self) -> None:
+        assert self.integrator.get("/api/v1/site")["site_name"] == self.names[-1]
+        told = [event["message"] for event in reversed(self.integrator.journal("tracker_changed"))]
+        assert told[-len(self.names) :] == [f"The site is now called {name}." for name in self.names]
+        started = self.integrator.journal("machine_started")
+        assert len(started) == len(self.names) + 1
+        assert started[0]["data"]["clean"] is False
+        assert "without warning" in started[0]["message"]
+
+    def _stop(self) -> None:
+        self.integrator.post("/stop")
+
+    def _until(self, reached: Any, what: str) -> None:
+        self.integrator.until(reached, what)
