@@ -26,7 +26,7 @@ export function chart(holder, wanted) {
     ],
     series: [
       { label: wanted.xLabel ?? "Time", value: (_, at) => (at === null ? "–" : wanted.zone ? clockTime(at * 1000, wanted.zone) : wanted.xText?.(at) ?? at) },
-      ...wanted.series.map((one) => ({ label: one.label, stroke: colour(one.colour), width: one.width ?? 2, dash: one.dash, points: { show: false }, value: (_, value) => text(value), spanGaps: wanted.join ?? false })),
+      ...wanted.series.map((one) => ({ label: one.label, stroke: colour(one.colour), width: one.width ?? 2, dash: one.dash, points: { show: false }, value: (_, value) => text(value), spanGaps: false })),
     ],
     hooks: wanted.hooks,
   }, wanted.data ?? [[], ...wanted.series.map(() => [])], holder);

@@ -62,19 +62,19 @@ const SERIES = [
 function draw() {
   plots.forEach((plot) => plot.destroy());
   const cursor = { lock: false, sync: { key: "player" } };
-  const withOther = other ? [{ label: "Other azimuth", colour: "p1", width: 1.5, gaps: true }, { label: "Other elevation", colour: "p1", width: 1.5, dash: [4, 3], gaps: true }] : [];
+  const withOther = other ? [{ label: "Other azimuth", colour: "p1", width: 1.5 }, { label: "Other elevation", colour: "p1", width: 1.5, dash: [4, 3] }] : [];
   const base = [tape.time, ...curves(tape)];
   const angles = other ? window.uPlot.join([base, [shifted(other), unbroken(other.columns.measured_azimuth_deg), other.columns.measured_elevation_deg]]) : base;
   const errors = other ? window.uPlot.join([[tape.time, tape.error], [shifted(other), other.error]]) : [tape.time, tape.error];
   plots = [
-    chart(document.getElementById("angles"), { zone: head.playerZone, data: angles, range: [0, 360], cursor, join: Boolean(other), series: [...SERIES, ...withOther] }),
-    chart(document.getElementById("errors"), { height: 180, zone: head.playerZone, data: errors, cursor, join: Boolean(other), digits: 3,
+    chart(document.getElementById("angles"), { zone: head.playerZone, data: angles, range: [0, 360], cursor, series: [...SERIES, ...withOther] }),
+    chart(document.getElementById("errors"), { height: 180, zone: head.playerZone, data: errors, cursor, digits: 3,
       range: (_, least, most) => [0, Math.max(0.1, (most ?? 0) * 1.1)], series: [{ label: "Tracking error", colour: "text" }, ...(other ? [{ label: "Other", colour: "p1", width: 1.5 }] : [])] }),
   ];
   for (const plot of plots) {
     plot.over.addEventListener("click", () => { if (plot.cursor.left >= 0) seek(elapsedAt(plot.posToVal(plot.cursor.left, "x"))); });
   }
-  show();
+  requestAnimationFrame(show);  // A new chart has its scales only after its first frame.
 }
 
 function elapsedAt(unixSeconds) {
