@@ -18,8 +18,8 @@ class BackgroundWriter(Protocol):
     async def call(self, work: Callable[[Writer], T]) -> T:
         """Do the work in its turn and return what it returned, or raise what it raised."""
 
-    def post(self, work: Callable[[Writer], object]) -> None:
-        """Do the work in its turn; failures go to whoever watches the writer."""
+    def post(self, work: Callable[[Writer], object]) -> bool:
+        """Do the work in its turn, or return that there is no room; failures go to who watches the writer."""
 
 
 class Ledger:
@@ -28,6 +28,12 @@ class Ledger:
     def __init__(self, writer: BackgroundWriter | None) -> None:
         self._writer = writer
         self.event_count = 0
+        self._behind = False
+
+    @property
+    def behind(self) -> bool:
+        """Return whether something that was to be stored was not, so that the disk holds an older state."""
+        return self._behind
 
     @property
     def writer(self) -> BackgroundWriter | None:
@@ -69,18 +75,40 @@ class Ledger:
 
     def post_tracker(self, state: TrackerState, events: Sequence[Event]) -> None:
         """Have the tracker and its events stored soon, in order, without waiting."""
-        self.event_count += len(events)
-        if self._writer is not None:
-            self._writer.post(lambda writer: writer.save_tracker(state, events))
+        self._post(lambda writer: writer.save_tracker(state, events), len(events))
 
     def post_site(self, site: SiteState, events: Sequence[Event]) -> None:
         """Have the site and its events stored soon, in order, without waiting."""
-        self.event_count += len(events)
-        if self._writer is not None:
-            self._writer.post(lambda writer: writer.save_site(site, events))
+        self._post(lambda writer: writer.save_site(site, events), len(events))
 
     def post_events(self, events: Sequence[Event]) -> None:
         """Have events stored soon, in order, without waiting."""
-        self.event_count += len(events)
-        if self._writer is not None and events:
-            self._writer.post(lambda writer: writer.append_events(events))
+        if events:
+            self._post(lambda writer: writer.append_events(events), len(events))
+
+    def catch_up(self, site: SiteState, trackers: Sequence[TrackerState]) -> None:
+        """Have the whole state stored anew; once it is on disk, nothing is behind any more."""
+
+        def store(writer: Writer) -> None:
+            writer.save_site(site)
+            for state in trackers:
+                writer.save_tracker(state)
+            self._behind = False
+
+        self._post(store, 0)
+
+    def _post(self, work: Callable[[Writer], object], event_count: int) -> None:
+        """Have the work done behind the loop; whether it failed is noted on the writer's thread."""
+        self.event_count += event_count
+        if self._writer is None:
+            return
+
+        def noted(writer: Writer) -> None:
+            try:
+                work(writer)
+            except Exception:
+                self._behind = True
+                raise
+
+        if not self._writer.post(noted):
+            self._behind = True

@@ -227,13 +227,20 @@ class Site:
             now = self._clock.now()
             if now - self._flushed_at >= FLUSH_EVERY:
                 self._flushed_at = now
-                self.model.recorder.flush()
+                self._flush()
             if now - self._pruned_at >= PRUNE_EVERY:
                 self._prune()
             if self._due(AT_REST):
                 self._publish()
             due = max(due + PULSE, now)
             await self._clock.sleep_until(due)
+
+    def _flush(self) -> None:
+        """Hand frames to the store, and what it could not take before: a latch must outlive a power cut."""
+        model = self.model
+        if model.ledger.behind:
+            model.ledger.catch_up(model.state, tuple(loop.state for loop in model.loops.values()))
+        model.recorder.flush()
 
     def _watch_clock(self) -> None:
         jump = self.model.timekeeper.watch()

@@ -8,9 +8,15 @@ import structlog
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
 from app.tracker.commands import Command, CommandRejected, EndJog, Jog, ResetFault, RunShow, Stop
+from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind
 
 STORED_WITHIN_S = 0.5
+NOT_RECORDED = Reason(
+    "not_stored",
+    "The axis is not moved by hand, because that cannot be recorded: the store fails.",
+    "Free the disk or check it; it is tried again every two seconds.",
+)
 
 log = structlog.get_logger(__name__)
 
@@ -18,6 +24,7 @@ log = structlog.get_logger(__name__)
 async def command(model: SiteModel, loop: TrackerLoop, given: Command, actor: str) -> tuple[Event, ...]:
     """Have the controller obey, and return once what changed is on disk; a jog does not wait for that.
 
+    Without a store that works a jog is refused, and one that lasts ends with its lease.
     A renewed jog changes only when its lease ends: no tick is needed before the next one.
     """
     if isinstance(given, Stop):
@@ -26,6 +33,8 @@ async def command(model: SiteModel, loop: TrackerLoop, given: Command, actor: st
         return events
     if loop.broken is not None:
         return _repair(model, loop, given, actor)
+    if isinstance(given, Jog) and model.ledger.behind:
+        raise CommandRejected(NOT_RECORDED)
     events = loop.controller.handle(given, model.clock.now(), actor)
     if isinstance(given, RunShow):
         model.recorder.announce(loop.config.tracker_id, given.plan)

@@ -57,13 +57,18 @@ class WriterThread:
         self._put(lambda: self._answer(work, answer))
         return await asyncio.wrap_future(answer)
 
-    def post(self, work: Callable[[Writer], object]) -> None:
-        """Have the work done later, without waiting; a failure or a full queue is counted and reported."""
+    def post(self, work: Callable[[Writer], object]) -> bool:
+        """Have the work done later, without waiting, and return whether there was room for it.
+
+        A failure or a full queue is counted and reported.
+        """
         try:
             self._put(lambda: self._report(work))
         except StoreFailed as failure:
             self._dropped += 1
             self._on_failure(failure)
+            return False
+        return True
 
     def close(self, *, seconds: float = 10.0) -> bool:
         """Refuse new writes, finish those that wait within a bound, and return whether all were finished."""

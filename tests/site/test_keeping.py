@@ -1,10 +1,11 @@
 """What a site writes down: settings before it answers, events and recordings behind the loop."""
 
 from collections.abc import AsyncIterator, Callable
+from contextlib import suppress
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from typing import TypeVar
+from typing import TypeVar, cast
 
 import numpy as np
 import pytest
@@ -44,6 +45,16 @@ PLAN = ShowPlan(
 )
 
 
+class FullStore:
+    """A store on a full disk."""
+
+    def __getattr__(self, name: str) -> Callable[..., None]:
+        def fail(*_: object, **__: object) -> None:
+            raise StoreFailed("The disk is full. Free some space.")
+
+        return fail
+
+
 class ImmediateWriter:
     """Does every write at once, in order, and can be made to fail."""
 
@@ -56,9 +67,10 @@ class ImmediateWriter:
             raise StoreFailed("The disk is full. Free some space.")
         return work(self.writer)
 
-    def post(self, work: Callable[[Writer], object]) -> None:
-        if not self.full:
-            work(self.writer)
+    def post(self, work: Callable[[Writer], object]) -> bool:
+        with suppress(StoreFailed):
+            work(cast(Writer, FullStore()) if self.full else self.writer)
+        return True
 
 
 @pytest.fixture
@@ -121,14 +133,43 @@ async def test_what_cannot_be_stored_is_not_done(kept: tuple[Plant, ImmediateWri
     assert list(plant.site.model.loops) == ["T1"]
 
 
-async def test_a_jog_does_not_wait_for_the_disk(kept: tuple[Plant, ImmediateWriter]) -> None:
+async def test_a_jog_that_cannot_be_recorded_ends_with_its_lease_and_the_next_one_is_refused(
+    kept: tuple[Plant, ImmediateWriter],
+) -> None:
     plant, writer = kept
     writer.full = True
-
     await plant.ask(Jog("p1", Axis.AZIMUTH, 1))
-    await plant.forward(seconds=0.1)
 
+    with pytest.raises(CommandRejected, match="cannot be recorded"):
+        await plant.ask(Jog("p1", Axis.AZIMUTH, 1, sequence=1))
+    await plant.forward(seconds=1)
+    assert not plant.site.model.tracker("T1").moving
+    with pytest.raises(CommandRejected, match="cannot be recorded"):
+        await plant.ask(Jog("p2", Axis.AZIMUTH, 1))
+
+    writer.full = False
+    await plant.forward(seconds=3)
+    await plant.ask(Jog("p3", Axis.AZIMUTH, 1))
+    await plant.forward(seconds=0.1)
     assert plant.site.model.tracker("T1").moving
+
+
+async def test_a_stop_on_a_full_disk_is_stored_as_soon_as_there_is_room(
+    kept: tuple[Plant, ImmediateWriter],
+) -> None:
+    plant, writer = kept
+    await plant.commission()
+    await plant.ask(SelectMode(Mode.DUAL))
+    await plant.ask(Track())
+    writer.full = True
+    await plant.ask(Stop())
+    await plant.forward(seconds=3)
+    assert writer.writer.trackers()[0].memory.tracking_on
+
+    writer.full = False
+    await plant.forward(seconds=3)
+
+    assert not writer.writer.trackers()[0].memory.tracking_on
 
 
 async def test_trackers_come_and_go_on_disk(kept: tuple[Plant, ImmediateWriter]) -> None:

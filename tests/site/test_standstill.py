@@ -164,8 +164,8 @@ class StalledWriter:
             await asyncio.Event().wait()
         return cast(T, None)
 
-    def post(self, work: Callable[[Writer], object]) -> None:
-        return
+    def post(self, work: Callable[[Writer], object]) -> bool:
+        return True
 
 
 async def test_stop_is_answered_although_the_disk_is_stalled() -> None:

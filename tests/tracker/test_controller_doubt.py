@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from app.tracker.commands import Home, Move, Park, SelectMode, Track
+from app.tracker.commands import Command, Home, Move, Park, SelectMode, Track
 from app.tracker.config import Orientation
 from app.tracker.memory import StepName
 from app.tracker.mode import Mode
@@ -40,7 +40,8 @@ def test_a_move_that_another_order_replaces_says_that_it_ended() -> None:
     plant = Plant(READY)
     plant.tick()
     plant.ask(Move(Orientation(120.0, 40.0)))
-    for number, order in enumerate((Move(Orientation(60.0, 30.0)), Park(), Track()), start=1):
+    orders: tuple[Command, ...] = (Move(Orientation(60.0, 30.0)), Park(), Track())
+    for number, order in enumerate(orders, start=1):
         plant.forward(1.0)
         plant.ask(order)
         ended = plant.happened(EventKind.MOVE_ENDED)
