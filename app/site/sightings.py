@@ -1,5 +1,7 @@
 """Sightings of the sun: stored one by one, fitted to a pointing correction."""
 
+from dataclasses import replace
+
 from app.link.messages import ApplySightings
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
@@ -26,8 +28,9 @@ async def take(model: SiteModel, tracker_id: str, actor: str) -> tuple[Event, ..
         actor,
         tracker_id,
     )
+    memory = replace(loop.memory, sightings=taken)
+    await model.ledger.save_tracker(replace(loop.state, memory=memory), (event,))
     loop.controller.set_sightings(taken)
-    await model.ledger.save_tracker(loop.state, (event,))
     return (event,)
 
 
@@ -61,13 +64,14 @@ async def apply(model: SiteModel, given: ApplySightings, actor: str) -> tuple[Ev
     loop = model.tracker(given.tracker_id)
     refuse_while_busy(model, loop)
     pointing = fit(given.keep) if given.keep else Pointing()
-    loop.controller.set_sightings(given.keep)
-    loop.controller.set_pointing(pointing)
     message = (
         f"The pointing correction was fitted to {len(given.keep)} sightings."
         if given.keep
         else "The pointing correction was removed."
     )
     event = model.event(EventKind.TRACKER_CHANGED, message, actor, given.tracker_id)
-    await model.ledger.save_tracker(loop.state, (event,))
+    memory = replace(loop.memory, sightings=given.keep, pointing=pointing)
+    await model.ledger.save_tracker(replace(loop.state, memory=memory), (event,))
+    loop.controller.set_sightings(given.keep)
+    loop.controller.set_pointing(pointing)
     return (event,)

@@ -31,6 +31,7 @@ from app.site.model import SiteModel
 from app.store.store import PlannedShow, Writer
 from app.tracker.commands import CommandRejected
 from app.tracker.memory import Confirmation, SiteState, StepName
+from app.tracker.mode import Mode
 from app.tracker.reason import Reason
 from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import ActivityName, Event, EventKind
@@ -203,8 +204,9 @@ async def _confirm(model: SiteModel, command: ConfirmStep, actor: str) -> tuple[
         if command.step is StepName.CLOCK:
             model.timekeeper.adopt(model.timekeeper.setting)
         return events
+    confirmed = replace(loop.memory, confirmations={**loop.memory.confirmations, command.step: given})
+    await model.ledger.save_tracker(replace(loop.state, memory=confirmed), (event,))
     loop.controller.confirm(command.step, given)
-    await model.ledger.save_tracker(loop.state, (event,))
     return (event,)
 
 
@@ -216,7 +218,7 @@ def _not_confirmable(model: SiteModel, command: ConfirmStep) -> Reason | None:
         StepName.LOCATION: model.state.location is not None,
         StepName.CLOCK: model.state.clock.source != "unset",
         StepName.HOMING: memory.home is not None,
-        StepName.MODE: memory.mode is not None,
+        StepName.MODE: memory.mode is Mode.DUAL or StepName.MODE in memory.confirmations,
         StepName.RUN: memory.tracking_on,
     }
     if there[command.step]:

@@ -61,11 +61,20 @@ async def configure(model: SiteModel, config: TrackerConfig, actor: str) -> tupl
     memory = _memory_for(loop.memory, old, config) if rebuilt else loop.memory
     await model.ledger.save_tracker(TrackerState(config, memory), (event,))
     if rebuilt:
-        await loop.close()
-        model.add(TrackerState(config, memory)).start()
+        loop = await _rebuild(model, loop, config)
     else:
         loop.controller.configure(config, loop.drive.capabilities)
+    if loop.memory != memory:
+        await model.ledger.save_tracker(loop.state, ())
     return (event,)
+
+
+async def _rebuild(model: SiteModel, loop: TrackerLoop, config: TrackerConfig) -> TrackerLoop:
+    """Put a new loop with a new drive in the place of one that ends, with what that one knew last."""
+    await loop.close()
+    fresh = model.add(TrackerState(config, _memory_for(loop.memory, loop.config, config)))
+    fresh.start()
+    return fresh
 
 
 def _memory_for(memory: TrackerMemory, old: TrackerConfig, new: TrackerConfig) -> TrackerMemory:
@@ -86,10 +95,13 @@ async def remove(model: SiteModel, tracker_id: str, actor: str) -> tuple[Event, 
     event = model.event(
         EventKind.TRACKER_REMOVED, f"Tracker {loop.config.name} was removed.", actor, tracker_id
     )
+    memory = loop.memory
     await model.ledger.remove_tracker(tracker_id, (event,))
     del model.loops[tracker_id]
     model.recorder.finish(tracker_id, model.now(), "tracker removed")
     await loop.close()
+    if loop.memory is not memory:
+        await model.ledger.remove_tracker(tracker_id, ())
     return (event,)
 
 

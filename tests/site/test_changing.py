@@ -1,0 +1,122 @@
+"""Changing a tracker while its disk is slow: what happens meanwhile is neither lost nor overwritten."""
+
+import asyncio
+from collections.abc import AsyncIterator, Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TypeVar
+
+import pytest
+
+from app.drives.faults import Fault, FaultKind
+from app.drives.simulated import SimulatedDrive
+from app.link.messages import ConfigureTracker, ConfirmStep, RemoveTracker
+from app.site.beginning import begin
+from app.store.engine import open_writer
+from app.store.migrations import upgrade
+from app.store.store import StoreFailed, Writer
+from app.tracker.axes import Axis
+from app.tracker.commands import CommandRejected, SelectMode
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.memory import StepName
+from app.tracker.mode import Mode
+from tests.site.plant import SUMMER_NOON, Plant, make_plant, settle
+
+T = TypeVar("T")
+
+
+class SlowWriter:
+    """Writes in order; `hold` keeps the answers back although the write is done, as a slow disk may."""
+
+    def __init__(self, writer: Writer) -> None:
+        self.writer = writer
+        self.goes_on = asyncio.Event()
+        self.goes_on.set()
+        self.full = False
+
+    async def call(self, work: Callable[[Writer], T]) -> T:
+        if self.full:
+            raise StoreFailed("The disk is full.")
+        done = work(self.writer)
+        await self.goes_on.wait()
+        return done
+
+    def post(self, work: Callable[[Writer], object]) -> bool:
+        work(self.writer)
+        return True
+
+
+@pytest.fixture
+async def slow(tmp_path: Path) -> AsyncIterator[tuple[Plant, SlowWriter]]:
+    url = f"sqlite:///{tmp_path / 'heliopanel.db'}"
+    upgrade(url)
+    store = open_writer(url)
+    writer = SlowWriter(store)
+    beginning = begin(store, SUMMER_NOON, unclean_since=None)
+    plant = make_plant(writer=writer, state=beginning.site, trackers=beginning.trackers)
+    await plant.start()
+    await plant.commission()
+    yield plant, writer
+    await plant.close()
+    store.close()
+
+
+def faster(config: TrackerConfig) -> TrackerConfig:
+    return replace(config, azimuth=replace(config.azimuth, maximum_deg=350.0))
+
+
+@pytest.mark.parametrize("change", [lambda config: replace(config, name="New"), faster])
+async def test_a_latch_that_falls_while_the_configuration_is_stored_stays_fallen(
+    slow: tuple[Plant, SlowWriter], change: Callable[[TrackerConfig], TrackerConfig]
+) -> None:
+    plant, writer = slow
+    config = change(plant.site.model.tracker("T1").config)
+    writer.goes_on.clear()
+    changing = asyncio.create_task(plant.ask(ConfigureTracker(config)))
+    await settle()
+    drive = plant.drives["T1"]
+    assert isinstance(drive, SimulatedDrive)
+    drive.inject(Fault(FaultKind.ENCODER_JUMP, Axis.AZIMUTH, 12.0))
+    await plant.forward(seconds=0.5)
+    assert plant.site.model.tracker("T1").memory.home is None
+    writer.goes_on.set()
+    await changing
+
+    (stored,) = writer.writer.trackers()
+    assert stored.memory.home is None
+    assert stored.config == config
+    assert plant.site.model.tracker("T1").memory.home is None
+
+
+async def test_a_tracker_that_was_removed_does_not_come_back(slow: tuple[Plant, SlowWriter]) -> None:
+    plant, writer = slow
+    writer.goes_on.clear()
+    removing = asyncio.create_task(plant.ask(RemoveTracker("T1")))
+    await settle()
+    selecting = asyncio.create_task(plant.ask(SelectMode(Mode.FIXED, Orientation(10.0, 10.0))))
+    await settle()
+    writer.goes_on.set()
+    await asyncio.gather(removing, selecting, return_exceptions=True)
+
+    assert writer.writer.trackers() == []
+
+
+async def test_a_confirmation_that_could_not_be_stored_was_not_given(slow: tuple[Plant, SlowWriter]) -> None:
+    plant, writer = slow
+    before = plant.site.model.tracker("T1").memory
+    writer.full = True
+
+    with pytest.raises(CommandRejected):
+        await plant.ask(ConfirmStep("T1", StepName.HOMING))
+
+    assert plant.site.model.tracker("T1").memory == before
+
+
+async def test_an_orientation_where_the_panel_never_was_cannot_be_confirmed(
+    slow: tuple[Plant, SlowWriter],
+) -> None:
+    plant, _ = slow
+    await plant.ask(SelectMode(Mode.FIXED, Orientation(200.0, 50.0)))
+
+    with pytest.raises(CommandRejected, match="not done"):
+        await plant.ask(ConfirmStep("T1", StepName.MODE))
