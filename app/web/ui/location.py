@@ -17,7 +17,7 @@ from app.sun.events import PolarDay, SunEvents, day_events
 from app.sun.position import Location
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import SiteState, StepName
-from app.web.contexts import Forward, LocationPage, LocationPreview
+from app.web.contexts import LocationPage, LocationPreview
 from app.web.deps import Panel, PanelDep
 from app.web.ui import forms
 from app.web.ui.formats import decimals, local
@@ -143,7 +143,7 @@ def _answer(
     status: int = 200,
 ) -> Response:
     tracker = tracker_of(detail, tracker_id)
-    frame = wizard_frame(request, tracker, StepName.LOCATION, Forward("Save, next", form="step-form"))
+    frame = wizard_frame(request, tracker, StepName.LOCATION)
     untouched = not any(found.typed.texts[name] for name in ("latitude", "longitude"))
     if untouched and status == 200:
         found.typed.errors.clear()

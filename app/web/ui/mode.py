@@ -12,7 +12,7 @@ from app.tracker.commands import Move, SelectMode
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import StepName
 from app.tracker.mode import Mode
-from app.web.contexts import Forward, ModeChoice, ModePage, OrientationPage
+from app.web.contexts import ModeChoice, ModePage, OrientationPage
 from app.web.deps import MachineDep
 from app.web.errors import NotAcceptable
 from app.web.ui.forms import Typed
@@ -47,7 +47,7 @@ class OrientationForm(BaseModel):
 async def show(request: Request, tracker_id: str, machine: MachineDep) -> Response:
     """Show the four modes."""
     tracker = tracker_of(await machine.detail(), tracker_id)
-    frame = wizard_frame(request, tracker, StepName.MODE, Forward("Save, next", form="step-form"))
+    frame = wizard_frame(request, tracker, StepName.MODE)
     return page(request, ModePage(frame=frame, choices=CHOICES, chosen=tracker.state.memory.mode))
 
 

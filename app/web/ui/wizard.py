@@ -9,7 +9,6 @@ from starlette.responses import RedirectResponse, Response
 from app.link.messages import ConfirmStep, SiteDetail, TrackerDetail, UnknownTracker
 from app.tracker.commissioning import Step, StepStatus
 from app.tracker.memory import StepName
-from app.tracker.mode import Mode
 from app.web.contexts import Forward, Frame, Link, ProgressPart
 from app.web.deps import MachineDep
 from app.web.ui.frame import STEP_LABELS, step_marks, tracker_frame
@@ -18,6 +17,7 @@ from app.web.ui.render import page
 
 router = APIRouter(prefix="/trackers/{tracker_id}/commissioning")
 ORDER = tuple(StepName)
+PAGES_TO_SAVE = ("/commissioning/location", "/commissioning/mode")
 
 
 def tracker_of(detail: SiteDetail, tracker_id: str) -> TrackerDetail:
@@ -32,18 +32,17 @@ def step_of(tracker: TrackerDetail, name: StepName) -> Step:
     return next(step for step in tracker.steps if step.name is name)
 
 
-def wizard_frame(
-    request: Request, tracker: TrackerDetail, step: StepName, forward: Forward | None = None
-) -> Frame:
-    """Return the frame of one step."""
+def wizard_frame(request: Request, tracker: TrackerDetail, step: StepName, here: str | None = None) -> Frame:
+    """Return the frame of one step; `here` is the page that asks, if it is not the one requested."""
+    here = here or request.url.path
     tracker_id = tracker.state.config.tracker_id
     return tracker_frame(
         request,
         tracker_id,
         STEP_LABELS[step],
         steps=step_marks(tracker, step),
-        back=_back(tracker_id, step, request.url.path),
-        forward=forward or onwards(tracker, step, request.url.path),
+        back=_back(tracker_id, step, here),
+        forward=onwards(tracker, step, here),
     )
 
 
@@ -56,14 +55,13 @@ def _back(tracker_id: str, step: StepName, here: str) -> Link:
 
 
 def onwards(tracker: TrackerDetail, step: StepName, here: str) -> Forward:
-    """Return the key forward: open only when the step is done."""
+    """Return the key forward: it saves a page that is a form; elsewhere it opens when the step is done."""
     root = f"/trackers/{tracker.state.config.tracker_id}"
     found = step_of(tracker, step)
     if step is StepName.RUN:
         return Forward("Live", root)
-    needs_orientation = tracker.state.memory.mode not in (None, Mode.DUAL)
-    if step is StepName.MODE and needs_orientation and not here.endswith("/orientation"):
-        return Forward("Next", f"{root}/commissioning/mode/orientation")
+    if here.endswith(PAGES_TO_SAVE):
+        return Forward("Save, next", form="step-form")
     if found.status is StepStatus.DONE:
         return Forward("Next", f"{root}/commissioning/{ORDER[ORDER.index(step) + 1]}")
     return Forward("Next", reasons=found.reasons)
@@ -83,8 +81,7 @@ async def progress(
 ) -> Response:
     """Return the step bar and the key forward as they stand now."""
     tracker = tracker_of(await machine.detail(), tracker_id)
-    frame = wizard_frame(request, tracker, step, onwards(tracker, step, here))
-    return page(request, ProgressPart(frame=frame))
+    return page(request, ProgressPart(frame=wizard_frame(request, tracker, step, here)))
 
 
 @router.post("/{step}/confirm")
