@@ -76,9 +76,20 @@ def invalid(error: RequestValidationError) -> Problem:
     return Problem(422, "Some values are missing or wrong; see errors.", errors=found)
 
 
+REFUSALS = {
+    404: "There is nothing at this address. Check it, or begin at the overview of all trackers.",
+    405: "This address does not take this method; the Allow header names those that it takes.",
+}
+
+
 def refused_by_http(error: HTTPException) -> Problem:
-    """Return what the framework refused, such as 404 and 405."""
-    return Problem(error.status_code, error.detail, headers=dict(error.headers or {}))
+    """Return what the framework refused, such as 404 and 405, with a sentence that says what to do."""
+    detail = REFUSALS.get(error.status_code, error.detail) if error.detail == _phrase(error) else error.detail
+    return Problem(error.status_code, detail, headers=dict(error.headers or {}))
+
+
+def _phrase(error: HTTPException) -> str:
+    return HTTPStatus(error.status_code).phrase
 
 
 def _unreachable(error: Exception) -> Problem:

@@ -11,7 +11,7 @@ from fastapi import APIRouter, Form, Query
 from pydantic import BaseModel
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
-from starlette.responses import Response
+from starlette.responses import RedirectResponse, Response
 
 from app.link.messages import SavePlan, SiteDetail, TrackerDetail
 from app.sun.events import day_events
@@ -53,7 +53,10 @@ class ShowForm(BaseModel):
 async def plan(
     request: Request, tracker_id: str, typed: Annotated[ShowForm, Query()], built: PanelDep
 ) -> Response:
-    """Show the form and what the check says about what is typed in it."""
+    """Show the form and what the check says about what is typed in it; while a show is under way, the show."""
+    seen = snapshot_of(built.machine.latest(), tracker_id)
+    if seen is not None and seen.show is not None and not request.query_params:
+        return RedirectResponse(f"/trackers/{tracker_id}/shows/{seen.show.show_id}", 303)
     detail = await built.machine.detail()
     return await run_in_threadpool(_plan_page, request, tracker_id, detail, typed, built)
 
