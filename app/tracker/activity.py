@@ -28,6 +28,7 @@ class TrackPhase(StrEnum):
     KEYHOLE = "keyhole"
     FIXED = "fixed"
     NIGHT = "night"
+    PAUSED = "paused"
 
 
 @dataclass(frozen=True, slots=True)

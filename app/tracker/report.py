@@ -114,7 +114,7 @@ def _in_position(mind: Mind, feedback: Feedback | None) -> bool:
     if feedback is None or not at_rest(feedback):
         return False
     if isinstance(mind.activity, Tracking):
-        return mind.activity.run is None
+        return mind.activity.run is None and mind.activity.phase is not TrackPhase.PAUSED
     if mind.setpoint == AxisPair(None, None):
         return False
     return arrived(mind.setpoint, feedback, mind.config.in_position_deg)
@@ -127,7 +127,7 @@ def _axis_state(axis: AxisFeedback) -> AxisState:
 def _waiting(mind: Mind) -> tuple[Reason, ...]:
     """Return why a tracker that should track does not move."""
     if isinstance(mind.activity, Tracking):
-        return (_SUN_DOWN,) if mind.activity.phase is TrackPhase.NIGHT else ()
+        return _HOLDS.get(mind.activity.phase, ())
     if not mind.memory.tracking_on:
         return ()
     known = () if mind.wait is None else (mind.wait,)
@@ -164,6 +164,12 @@ def _show(showing: Showing) -> ShowProgress:
 
 
 _SUN_DOWN = Reason("sun_down", "The sun is below the horizon.", "Tracking goes on by itself when it rises.")
+_CLOCK_DOUBTED = Reason(
+    "clock_untrusted",
+    "The site's clock is not trusted.",
+    "Confirm the clock in step 2, or wait until it has been stable for 60 s; then tracking goes on.",
+)
+_HOLDS = {TrackPhase.NIGHT: (_SUN_DOWN,), TrackPhase.PAUSED: (_CLOCK_DOUBTED,)}
 _OPERATOR = Reason(
     "operator_needed", "Tracking was interrupted and waits for the operator.", "Press Start tracking."
 )

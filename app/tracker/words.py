@@ -80,6 +80,8 @@ def _tracking(mind: Mind, tracking: Tracking) -> str:
     match tracking.phase:
         case TrackPhase.NIGHT:
             return "waiting for the sun to rise"
+        case TrackPhase.PAUSED:
+            return "holding until the site's clock is trusted again"
         case TrackPhase.FIXED:
             return "holding the fixed orientation"
         case TrackPhase.LIMITED:

@@ -19,7 +19,7 @@ from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
 SAMSUN = Location(41.2867, 36.33, 4.0)
 MORNING = datetime(2026, 6, 21, 6, 0, tzinfo=UTC)
 CONFIG = TrackerConfig("T1", "Tracker 1")
-TRUST = HomeTrust(MORNING, "Ayse", "set by hand", 1)
+TRUST = HomeTrust(MORNING, "technician", "set by hand", 1)
 BLANK = TrackerMemory()
 READY = TrackerMemory(mode=Mode.DUAL, home=TRUST)
 
@@ -52,7 +52,7 @@ class Plant:
         self.clock.move_to(at)
         self.controller = Controller(config, memory, self.drive.capabilities)
 
-    def ask(self, command: Command, actor: str = "Ayse") -> list[EventKind]:
+    def ask(self, command: Command, actor: str = "technician") -> list[EventKind]:
         """Give a command and tick at once, as the loop does; return what happened."""
         happened = list(self.controller.handle(command, self.clock.now(), actor))
         self.events += happened

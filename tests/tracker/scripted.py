@@ -39,7 +39,7 @@ class Scripted:
         self.events: list[Event] = []
 
     def ask(self, command: Command) -> list[EventKind]:
-        happened = list(self.controller.handle(command, self.clock.now(), "Ayse"))
+        happened = list(self.controller.handle(command, self.clock.now(), "technician"))
         self.events += happened
         return [event.kind for event in happened + self.tick()]
 

@@ -14,11 +14,11 @@ from app.tracker.snapshot import ClockState, Snapshot
 from tests.tracker.plant import BLANK, MORNING, READY, SAMSUN, Plant
 from tests.tracker.test_controller_show import PLAN, at_start
 
-SAVED = Confirmation(MORNING, "Ayse", 1)
+SAVED = Confirmation(MORNING, "technician", 1)
 SITE = SiteState(
     location=SAMSUN,
     location_revision=1,
-    clock=ClockSetting("system", 0.0, MORNING, "Ayse"),
+    clock=ClockSetting("system", 0.0, MORNING, "technician"),
     confirmations={StepName.LOCATION: SAVED, StepName.CLOCK: SAVED},
 )
 CLOCK = ClockState("system", 0.0, trusted=True, ntp_synchronised=True, set_at=MORNING)
@@ -87,7 +87,7 @@ def test_a_new_location_asks_for_everything_after_it_to_be_confirmed() -> None:
     known = judge(plant.controller.memory, plant.snapshot, site=moved)
     assert known[StepName.MODE].reasons[0].code == "location_changed"
     assert "is to be confirmed: The location has changed" in known[StepName.RUN].reasons[0].message
-    assert known[StepName.HOMING].confirmed_by == "Ayse"
+    assert known[StepName.HOMING].confirmed_by == "technician"
     plant.controller.confirm(StepName.HOMING, replace(SAVED, location_revision=2))
     assert of(plant, site=moved) == [DONE, CONFIRM, DONE, CONFIRM, TO_DO]
 

@@ -29,7 +29,7 @@ def test_zero_is_set_axis_by_axis_read_back_and_trusted() -> None:
     assert plant.snapshot.home_trusted
     home = plant.controller.memory.home
     assert home is not None
-    assert (home.by, home.how, home.boot_count) == ("Ayse", "set by hand", 1)
+    assert (home.by, home.how, home.boot_count) == ("technician", "set by hand", 1)
     assert plant.controller.memory.confirmations[StepName.HOMING].location_revision == 1
     assert len(plant.happened(EventKind.ZERO_SET)) == 1
 
@@ -246,7 +246,7 @@ def test_another_drive_is_another_zero() -> None:
 
 def test_confirmations_sightings_and_pointing_are_kept() -> None:
     plant = Plant(READY)
-    saved = Confirmation(MORNING, "Ayse", 3)
+    saved = Confirmation(MORNING, "technician", 3)
     sighting = Sighting(MORNING, 90.0, 40.0, 91.0, 40.5)
     before = plant.controller.memory
     plant.controller.confirm(StepName.MODE, saved)

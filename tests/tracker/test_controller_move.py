@@ -124,7 +124,7 @@ def test_a_mode_is_confirmed_once_the_panel_holds_what_it_holds(
     assert StepName.MODE not in memory.confirmations
     plant.ask(Move(there))
     plant.forward(20.0)
-    assert plant.controller.memory.confirmations[StepName.MODE].by == "Ayse"
+    assert plant.controller.memory.confirmations[StepName.MODE].by == "technician"
     plant.ask(SelectMode(mode, held))
     assert StepName.MODE in plant.controller.memory.confirmations
 

@@ -202,7 +202,7 @@ def test_tracking_needs_everything_that_the_earlier_steps_give_and_says_all_of_i
 
 
 def test_a_step_saved_for_a_former_location_has_to_be_confirmed_first() -> None:
-    plant = Plant(replace(READY, confirmations={StepName.MODE: Confirmation(MORNING, "Ayse", 0)}))
+    plant = Plant(replace(READY, confirmations={StepName.MODE: Confirmation(MORNING, "technician", 0)}))
     plant.tick()
     with pytest.raises(CommandRejected, match="location has changed since step 4, mode"):
         plant.ask(Track())
@@ -263,16 +263,23 @@ def test_rehoming_leaves_the_start_to_the_operator() -> None:
     assert plant.activity is ActivityName.TRACKING
 
 
-def test_a_doubted_clock_holds_the_panel_until_the_operator_starts_again() -> None:
+def test_a_doubted_clock_holds_the_panel_until_it_is_trusted_again() -> None:
     plant = tracking()
     plant.clock_trusted = False
-    plant.forward(1.0)
-    assert plant.activity is ActivityName.HOLDING
+    plant.forward(3.0)
+    stands_deg = plant.azimuth_deg
+    plant.forward(3600.0)
+    shown = plant.snapshot
+    assert plant.azimuth_deg == stands_deg
     assert plant.controller.memory.tracking_on
-    assert plant.snapshot.waiting[0].code == "clock_untrusted"
+    assert not shown.in_position
+    assert shown.waiting[0].code == "clock_untrusted"
+    assert "clock" in shown.activity_text
+    assert len(plant.happened(EventKind.TRACKING_WAITING)) == 1
     plant.clock_trusted = True
-    plant.forward(5.0)
-    assert plant.activity is ActivityName.HOLDING
+    plant.forward(60.0)
+    assert plant.snapshot.off_sun_deg is not None
+    assert plant.snapshot.off_sun_deg < plant.controller.config.deadband_deg
 
 
 def test_a_sun_that_is_not_known_holds_the_panel() -> None:

@@ -10,7 +10,7 @@ from typing import assert_never
 from app.sun.position import Location, SunPosition
 from app.tracker.activities.moving import not_arrived
 from app.tracker.activity import AxisPair, Run, Tracking, TrackPhase
-from app.tracker.conditions import Action, demand, on_time, unmet
+from app.tracker.conditions import Action, demand, unmet
 from app.tracker.config import NightBehaviour, Orientation, TrackerConfig
 from app.tracker.mind import HALTED, Mind, Turn
 from app.tracker.mode import Mode
@@ -61,8 +61,10 @@ def resume(mind: Mind) -> None:
 def step(mind: Mind, tracking: Tracking, feedback: Feedback, seen: Observation) -> Turn:
     """Return a run to the target where the panel is about to leave the deadband, else hold."""
     sun, mode = seen.sun, mind.memory.mode
-    if sun is None or mode is None or not seen.clock_trusted:
-        interrupt(mind, on_time(mind) or _SUN_UNKNOWN)
+    if not seen.clock_trusted:
+        return Turn(_paused(mind, tracking), HALTED, None, sun)
+    if sun is None or mode is None:
+        interrupt(mind, _SUN_UNKNOWN)
         return Turn(mind.activity, HALTED, None, sun)
     config, pointing, held = mind.config, mind.memory.pointing, mind.memory.orientation
     night = mode is not Mode.FIXED and sun_height_deg(config, sun) < TWILIGHT_DEG
@@ -82,6 +84,13 @@ def step(mind: Mind, tracking: Tracking, feedback: Feedback, seen: Observation) 
         return Turn(TRACKING[phase], HALTED, direction, sun)
     run = new_run(config, feedback, AxisPair(target.azimuth_deg, target.elevation_deg), mind.now)
     return Turn(Tracking(phase, run), run.command, direction, sun)
+
+
+def _paused(mind: Mind, tracking: Tracking) -> Tracking:
+    """Return tracking that holds while the clock is doubted; it goes on once the clock is trusted again."""
+    if tracking.phase is not TrackPhase.PAUSED:
+        mind.say(EventKind.TRACKING_WAITING, "Tracking holds until the site's clock is trusted again.")
+    return TRACKING[TrackPhase.PAUSED]
 
 
 def _night_direction(
