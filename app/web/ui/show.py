@@ -53,7 +53,7 @@ class ShowForm(BaseModel):
 async def plan(
     request: Request, tracker_id: str, typed: Annotated[ShowForm, Query()], built: PanelDep
 ) -> Response:
-    """Show the form and what the check says about what is typed in it; while a show is under way, the show."""
+    """Show the form and what the check says about what is typed in it; while a show runs, the show."""
     seen = snapshot_of(built.machine.latest(), tracker_id)
     if seen is not None and seen.show is not None and not request.query_params:
         return RedirectResponse(f"/trackers/{tracker_id}/shows/{seen.show.show_id}", 303)
