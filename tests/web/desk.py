@@ -29,8 +29,9 @@ class DirectWriter:
     async def call(self, work: Callable[[Writer], T]) -> T:
         return work(self.writer)
 
-    def post(self, work: Callable[[Writer], object]) -> None:
+    def post(self, work: Callable[[Writer], object]) -> bool:
         work(self.writer)
+        return True
 
 
 class Desk:
