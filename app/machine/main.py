@@ -26,6 +26,7 @@ from app.site.ntp import ntp_synchronised
 from app.site.site import Site, SiteOptions
 from app.site.timekeeping import Timekeeper
 from app.store.engine import open_writer
+from app.store.integrity import sqlite_notice
 from app.store.migrations import upgrade
 from app.store.offloaded import WriterThread
 from app.store.restore import apply_pending_restore
@@ -82,6 +83,9 @@ async def _serve(settings: Settings, clock: SystemClock, writer: Writer) -> None
     gc.collect()
     gc.freeze()
     log.info("machine_ready", version=VERSION, link=str(settings.link_path), sqlite=sqlite3.sqlite_version)
+    notice = sqlite_notice()
+    if notice is not None:
+        log.warning("sqlite_is_old", notice=notice)
     notify("READY=1")
     await stopped.wait()
     notify("STOPPING=1")

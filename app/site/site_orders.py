@@ -27,6 +27,7 @@ from app.link.messages import (
 )
 from app.site import sightings, tracker_orders, tracker_setup
 from app.site.checks import check_name, check_time_zone
+from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
 from app.store.store import PlannedShow, Writer
 from app.tracker.commands import CommandRejected
@@ -37,6 +38,7 @@ from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import ActivityName, Event, EventKind
 
 FOLLOWS_THE_SUN = {ActivityName.TRACKING, ActivityName.SHOWING}
+CLOCK_SET_WITHIN_S = 2.0
 KEEPS_NOTHING = Reason("no_store", "This machine runs without a store and keeps no recordings.")
 
 log = structlog.get_logger(__name__)
@@ -171,13 +173,18 @@ async def _set_clock(model: SiteModel, command: SetClock, actor: str) -> tuple[E
 
 
 async def _set_drive_clocks(model: SiteModel) -> None:
-    for tracker_id, loop in model.loops.items():
-        if not loop.drive.capabilities.settable_clock:
-            continue
-        try:
+    """Set them side by side: drives that do not answer hold up neither the others nor the site's orders."""
+    await asyncio.gather(*(_set_drive_clock(model, loop) for loop in tuple(model.loops.values())))
+
+
+async def _set_drive_clock(model: SiteModel, loop: TrackerLoop) -> None:
+    if not loop.drive.capabilities.settable_clock:
+        return
+    try:
+        async with asyncio.timeout(CLOCK_SET_WITHIN_S):
             await loop.drive.set_clock(model.now())
-        except DriveError as error:
-            log.warning("drive_clock_not_set", tracker=tracker_id, reason=str(error))
+    except (DriveError, TimeoutError) as error:
+        log.warning("drive_clock_not_set", tracker=loop.config.tracker_id, reason=str(error))
 
 
 async def _rename(model: SiteModel, command: RenameSite, actor: str) -> tuple[Event, ...]:

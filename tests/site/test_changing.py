@@ -3,6 +3,7 @@
 import asyncio
 from collections.abc import AsyncIterator, Callable
 from dataclasses import replace
+from datetime import timedelta
 from pathlib import Path
 from typing import TypeVar
 
@@ -10,7 +11,7 @@ import pytest
 
 from app.drives.faults import Fault, FaultKind
 from app.drives.simulated import SimulatedDrive
-from app.link.messages import ConfigureTracker, ConfirmStep, RemoveTracker
+from app.link.messages import ConfigureTracker, ConfirmStep, Order, RemoveTracker, SetClock
 from app.site.beginning import begin
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
@@ -18,9 +19,10 @@ from app.store.store import StoreFailed, Writer
 from app.tracker.axes import Axis
 from app.tracker.commands import CommandRejected, SelectMode
 from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.memory import StepName
+from app.tracker.memory import StepName, TrackerMemory, TrackerState
 from app.tracker.mode import Mode
-from tests.site.plant import SUMMER_NOON, Plant, make_plant, settle
+from tests.site.plant import FIRST, SUMMER_NOON, Plant, make_plant, settle
+from tests.site.wrapped_drive import WrappedDrive, wrapped
 
 T = TypeVar("T")
 
@@ -120,3 +122,20 @@ async def test_an_orientation_where_the_panel_never_was_cannot_be_confirmed(
 
     with pytest.raises(CommandRejected, match="not done"):
         await plant.ask(ConfirmStep("T1", StepName.MODE))
+
+
+async def test_a_drive_that_hangs_keeps_no_other_from_its_clock() -> None:
+    second = TrackerState(TrackerConfig("T2", "Two"), TrackerMemory())
+    plant = make_plant(trackers=(FIRST, second), wrap=WrappedDrive)
+    await plant.start()
+    wrapped(plant, "T1").hangs = True
+    shown = SUMMER_NOON + timedelta(hours=1)
+    setting = asyncio.create_task(plant.site.execute(Order(SetClock("manual", shown), "technician")))
+    await settle()
+
+    drive = wrapped(plant, "T2").inner
+    assert isinstance(drive, SimulatedDrive)
+    assert drive.wall_clock == shown
+    setting.cancel()
+    await asyncio.gather(setting, return_exceptions=True)
+    await plant.close()

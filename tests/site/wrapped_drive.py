@@ -45,6 +45,8 @@ class WrappedDrive:
         await self.inner.stop()
 
     async def set_clock(self, at: datetime) -> None:
+        if self.hangs:
+            await asyncio.Event().wait()
         await self.inner.set_clock(at)
 
     async def close(self) -> None:
