@@ -9,7 +9,7 @@ import pyarrow.parquet
 import pytest
 
 from tests.e2e.integrator import Integrator, Refused
-from tests.e2e.product import DriveSim
+from tests.e2e.product import DriveSim, eventually
 from tests.e2e.sky import columns, off_spa_deg, off_sun_deg
 
 DEADBAND_DEG = 0.5
@@ -83,13 +83,23 @@ def test_walk_with_the_api_alone(integrator: Integrator, drive: DriveSim) -> Non
     commission_by_hand(integrator, drive.port)
     track(integrator)
     run_show(integrator)
-    (info,) = integrator.get("/api/v1/recordings", kind="show")
-
-    assert info["outcome"] == "completed"
+    info = finished_show(integrator)
     frames = check_frames(integrator, info)
     check_files(integrator, info["recording_id"], frames)
     check_day(integrator)
     check_rerun(integrator, info["recording_id"])
+
+
+def finished_show(integrator: Integrator) -> dict[str, Any]:
+    """Return the head of the newest show once the store has its end."""
+
+    def newest() -> dict[str, Any]:
+        return dict(integrator.get("/api/v1/recordings", kind="show")[0])
+
+    eventually(lambda: newest()["ended_at"], "the recording is finished")
+    info = newest()
+    assert info["outcome"] == "completed"
+    return info
 
 
 def check_frames(integrator: Integrator, info: dict[str, Any]) -> dict[str, np.ndarray]:
@@ -131,7 +141,8 @@ def check_rerun(integrator: Integrator, recording_id: str) -> None:
     answer = integrator.call("POST", f"/api/v1/recordings/{recording_id}/rerun", json={"duration_s": 10})
     show_id = answer.headers["Location"].rpartition("/")[2]
     run_to_its_end(integrator, show_id)
-    again, first = integrator.get("/api/v1/recordings", kind="show")
-    assert first["recording_id"] == recording_id
-    assert again["outcome"] == "completed"
-    assert again["sun_begin_at"] == first["sun_begin_at"]
+    again = finished_show(integrator)
+    assert again["recording_id"] != recording_id
+    first = integrator.get(f"/api/v1/recordings/{recording_id}")
+    for name in ("sun_begin_at", "sun_end_at", "mode", "location"):
+        assert again[name] == first[name]

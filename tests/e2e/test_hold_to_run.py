@@ -22,7 +22,7 @@ WATCHDOG_S = 0.5
 RAMP_S = AZIMUTH_DEFAULT.jog_fast_dps / AZIMUTH_DEFAULT.acceleration_dps2
 AT_SPEED_DEG = 1.2
 """After this angle the axis turns at its full speed."""
-STAYS_S = 0.6
+STAYS_S = 0.4
 
 
 @pytest.fixture(scope="module")
