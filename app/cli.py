@@ -20,19 +20,20 @@ from app.machine.lock import AlreadyRunning, holder
 from app.machine.main import run as run_machine
 from app.machine.supervisor import end_with_parent, supervise
 from app.settings import Settings, SettingsWrong, read_settings
-from app.show.simulate import simulate_date
+from app.show.simulate import simulate_date, simulate_show_of_date
 from app.store.backup import backup as back_up
 from app.store.exports import to_csv, to_parquet
 from app.store.restore import Restored, RestorePending, request_restore
 from app.store.store import StoreFailed
 from app.sun.position import Algorithm, Location, sun_position
+from app.tracker.commands import CommandRejected
 from app.tracker.config import TrackerConfig
 from app.tracker.mode import Mode
 from app.tracker.recording import Frames, RecordingInfo
 from app.web.main import run as run_web
 
 FAILED = 2
-FORESEEN = (SettingsWrong, AlreadyRunning, StoreFailed, DriveError, ValueError, OSError)
+FORESEEN = (SettingsWrong, AlreadyRunning, StoreFailed, DriveError, CommandRejected, ValueError, OSError)
 
 cli = typer.Typer(
     name="heliopanel",
@@ -112,16 +113,19 @@ def simulate(
     mode: Annotated[Mode, typer.Option(help="Tracking mode.")] = Mode.DUAL,
     algorithm: Annotated[Algorithm, typer.Option(help="Published algorithm.")] = Algorithm.PSA,
     step_s: Annotated[float, typer.Option(min=0.1, max=60.0, help="Seconds between ticks.")] = 1.0,
+    show_minutes: Annotated[
+        float | None, typer.Option(help="Instead, show the day from sunrise to sunset in so many minutes.")
+    ] = None,
 ) -> None:
-    """Simulate a whole day with the real controller on a virtual clock and write its recording."""
-    info, frames = simulate_date(
-        TrackerConfig("T1", "Tracker 1", algorithm=algorithm),
-        Location(lat, lon),
-        time_zone,
-        datetime.fromisoformat(date).date(),
-        mode=mode,
-        step=timedelta(seconds=step_s),
-    )
+    """Simulate a day, or a show of it, with the real controller on a virtual clock; write the recording."""
+    tracker, place = TrackerConfig("T1", "Tracker 1", algorithm=algorithm), Location(lat, lon)
+    day = datetime.fromisoformat(date).date()
+    if show_minutes is None:
+        step = timedelta(seconds=step_s)
+        info, frames = simulate_date(tracker, place, time_zone, day, mode=mode, step=step)
+    else:
+        length = timedelta(minutes=show_minutes)
+        info, frames = simulate_show_of_date(tracker, place, time_zone, day, length, mode=mode)
     _write(out, info, frames)
     typer.echo(f"{len(frames)} frames of {info.title} are in {out}.")
 

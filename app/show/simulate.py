@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from app.show.rehearsal import SHORT_STEP, Rehearsal, RehearsalFailed
 from app.store.chunks import encode_all
+from app.sun.events import day_events
 from app.sun.position import Location, SunPosition, sun_path
 from app.tracker.commands import GoToStart, Move, RunShow, SelectMode, Track
 from app.tracker.config import Orientation, TrackerConfig
@@ -85,10 +86,34 @@ def simulate_date(
     step: timedelta = SECOND,
 ) -> tuple[RecordingInfo, Frames]:
     """Return a simulation of a local day, midnight to midnight."""
-    zone = ZoneInfo(time_zone)
-    begin, end = (datetime.combine(at, time.min, zone) for at in (day, day + timedelta(days=1)))
+    begin, end = _local_day(day, time_zone)
     held = Orientation(180.0, 45.0)
     return simulate(config, Pointing(), location, time_zone, mode, held, begin, end, step=step)
+
+
+def simulate_show_of_date(
+    config: TrackerConfig,
+    location: Location,
+    time_zone: str,
+    day: date,
+    duration: timedelta,
+    *,
+    mode: Mode = Mode.DUAL,
+) -> tuple[RecordingInfo, Frames]:
+    """Return the simulation of a show of a local day from sunrise to sunset, the whole day in polar day."""
+    begin, end = _local_day(day, time_zone)
+    sun = day_events(config.algorithm, location, begin, end)
+    held = Orientation(180.0, 45.0)
+    plan = ShowPlan(
+        "simulated", sun.rise or begin, sun.set or end, duration, location, mode, held, config.algorithm
+    )
+    return simulate_show(config, Pointing(), time_zone, plan)
+
+
+def _local_day(day: date, time_zone: str) -> tuple[datetime, datetime]:
+    zone = ZoneInfo(time_zone)
+    begin, end = (datetime.combine(at, time.min, zone) for at in (day, day + timedelta(days=1)))
+    return begin, end
 
 
 def encoded(frames: Frames) -> tuple[str, ...]:

@@ -52,5 +52,5 @@ def _message(unclean_since: datetime | None, cut: list[RecordingInfo]) -> str:
     lost = f" Cut off: {'; '.join(shows)}." if shows else ""
     return (
         f"The controller service started again. Its last run, begun {unclean_since:%Y-%m-%d %H:%M:%S} UTC, "
-        f"ended without warning (a crash or a power cut); the drives stopped by themselves.{lost}"
+        f"ended without warning (a crash or a power cut); drives with a watchdog stopped.{lost}"
     )

@@ -46,13 +46,6 @@ def steps(
     return (*earlier, _run(earlier, snapshot))
 
 
-def forward_allowed(known: Sequence[Step], name: StepName) -> bool:
-    """Return whether the wizard may pass from a step to the next: it and every earlier one is done."""
-    order = list(StepName)
-    needed = order[: order.index(name) + 1]
-    return all(step.status is StepStatus.DONE for step in known if step.name in needed)
-
-
 def _location(site: SiteState) -> Step:
     reason = _LOCATION_UNKNOWN if site.location is None else None
     return _step(StepName.LOCATION, site.confirmations, to_do=(reason,))

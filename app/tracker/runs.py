@@ -10,13 +10,17 @@ GRACE_S = 5.0
 PATIENCE = 2.0
 
 
-def new_run(config: TrackerConfig, feedback: Feedback, target: AxisPair, now: datetime) -> Run:
-    """Return a run at rated speed; it is overdue after twice the travel time plus 5 s."""
-    azimuth_s = _travel_s(feedback.azimuth, target.azimuth_deg, config.azimuth.speed_dps)
-    elevation_s = _travel_s(feedback.elevation, target.elevation_deg, config.elevation.speed_dps)
+def new_run(
+    config: TrackerConfig, feedback: Feedback, target: AxisPair, now: datetime, *, by_hand: bool = False
+) -> Run:
+    """Return a run at rated speed, `by_hand` no faster than a jog; overdue after twice its time plus 5 s."""
+    azimuth_dps = config.azimuth.jog_fast_dps if by_hand else config.azimuth.speed_dps
+    elevation_dps = config.elevation.jog_fast_dps if by_hand else config.elevation.speed_dps
+    azimuth_s = _travel_s(feedback.azimuth, target.azimuth_deg, azimuth_dps)
+    elevation_s = _travel_s(feedback.elevation, target.elevation_deg, elevation_dps)
     command = DriveCommand(
-        _go(target.azimuth_deg, config.azimuth.speed_dps),
-        _go(target.elevation_deg, config.elevation.speed_dps),
+        _go(target.azimuth_deg, azimuth_dps),
+        _go(target.elevation_deg, elevation_dps),
     )
     allowed = timedelta(seconds=max(azimuth_s, elevation_s) * PATIENCE + GRACE_S)
     return Run(target, command, now + allowed)

@@ -41,7 +41,7 @@ class Day:
         return self._controller.snapshot(self.site_time)
 
     def ask(self, command: Command) -> None:
-        self._controller.handle(command, self._rig.clock.now(), "anna")
+        self._controller.handle(command, self._rig.clock.now(), "technician")
 
     async def tick(self, period: timedelta) -> tuple[float, ...]:
         self._rig.clock.advance(period)

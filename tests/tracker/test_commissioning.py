@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from app.tracker.commands import Move, RunShow, SelectMode, SetZero, Track
-from app.tracker.commissioning import Step, StepStatus, forward_allowed, steps
+from app.tracker.commissioning import Step, StepStatus, steps
 from app.tracker.config import Orientation
 from app.tracker.memory import ClockSetting, Confirmation, SiteState, StepName, TrackerMemory
 from app.tracker.mode import Mode
@@ -121,13 +121,3 @@ def test_tracking_that_waits_says_for_what() -> None:
     plant.tick()
     codes = {reason.code for reason in judge(plant.controller.memory, plant.snapshot)[StepName.RUN].reasons}
     assert {"mode_not_selected", "not_running"} <= codes
-
-
-def test_forward_needs_every_earlier_step() -> None:
-    plant = Plant()
-    plant.tick()
-    known = steps(SITE, plant.controller.memory, plant.snapshot, CLOCK)
-    assert forward_allowed(known, StepName.LOCATION)
-    assert forward_allowed(known, StepName.CLOCK)
-    assert not forward_allowed(known, StepName.HOMING)
-    assert not forward_allowed(known, StepName.RUN)

@@ -7,7 +7,7 @@ import pytest
 
 from app.drives.faults import Fault, FaultKind
 from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, Home, Move, Park, SelectMode, Stop, Track
+from app.tracker.commands import CommandRejected, Home, Move, Park, SelectMode, Step, Stop, Track
 from app.tracker.config import Orientation
 from app.tracker.memory import Pointing, StepName
 from app.tracker.mode import Mode
@@ -199,3 +199,11 @@ def test_a_blocked_axis_is_a_fault_that_is_latched_and_reset() -> None:
     assert "does not follow" in plant.snapshot.fault.message
     assert plant.clock.now() - plant.happened(EventKind.FAULT_RAISED)[0].at < timedelta(seconds=5)
     assert plant.snapshot.home_trusted
+
+
+def test_a_small_step_is_no_faster_than_a_jog() -> None:
+    plant = Plant(READY)
+    plant.tick()
+    plant.ask(Step(Axis.AZIMUTH, 5.0))
+    plant.forward(0.2)
+    assert plant.told.azimuth == Position(pytest.approx(5.0), CONFIG.azimuth.jog_fast_dps)

@@ -84,7 +84,8 @@ def _go(mind: Mind, feedback: Feedback, orientation: Orientation, kind: MoveKind
 
 
 def _begin(mind: Mind, feedback: Feedback, target: AxisPair, kind: MoveKind, text: str) -> None:
-    mind.activity = Moving(kind, new_run(mind.config, feedback, target, mind.now), mind.actor)
+    run = new_run(mind.config, feedback, target, mind.now, by_hand=kind is MoveKind.STEP)
+    mind.activity = Moving(kind, run, mind.actor)
     mind.say(EventKind.MOVE_STARTED, text, move=kind)
 
 
