@@ -24,7 +24,7 @@ from tests.drives.scripted_server import (
     silent,
 )
 
-TIMEOUT = timedelta(milliseconds=150)
+TIMEOUT = timedelta(milliseconds=600)
 RIGHT = [30, 33, 36, 39]
 
 
@@ -103,7 +103,7 @@ async def test_silence_is_noticed_within_the_time_out_and_costs_the_connection()
         began = time.monotonic()
         with pytest.raises(DriveSilent, match="did not answer within"):
             await read(link)
-        assert 0.1 < time.monotonic() - began < 0.3
+        assert 0.5 < time.monotonic() - began < 5.0
         assert len(server.requests) == 1, "a silent device is not asked twice in one call"
         assert await read(link) == RIGHT
         assert server.connections == 2
