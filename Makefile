@@ -6,7 +6,7 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-ON_PROCESSES := tests/machine tests/browser tests/e2e
+ON_PROCESSES := tests/drives tests/machine tests/browser tests/e2e
 
 .DEFAULT_GOAL := help
 .PHONY: help setup run test check bench format lock browser system-packages clean
@@ -39,7 +39,7 @@ system-packages:
 test: $(VENV)/.dev system-packages ## Set up what tests need and run them all, browser tests included
 	@echo "Running the tests that share the computer's cores ..."
 	@$(BIN)/python -m pytest -n 2 --dist loadfile $(ON_PROCESSES:%=--ignore=%)
-	@echo "Running the tests on real processes and in the browser, one at a time, as they measure ..."
+	@echo "Running the tests on real sockets, processes and in the browser, one at a time, as they measure ..."
 	@$(BIN)/python -m pytest $(ON_PROCESSES)
 
 browser: $(VENV)/.dev system-packages ## Run the browser tests alone; screenshots go to build/screens
