@@ -162,9 +162,12 @@ def _on_store_failure(error: Exception) -> None:
 
 
 def _raise_priority() -> None:
-    """Ask for real-time scheduling, for this thread only; without it the machine still runs."""
-    policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
+    """Ask for real-time scheduling of this thread and those it starts; without it the machine still runs.
+
+    The thread that writes needs it too: while it holds the interpreter the loop waits, and other programs
+    must not make both wait.
+    """
     try:
-        os.sched_setscheduler(0, policy, os.sched_param(FIFO_PRIORITY))
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(FIFO_PRIORITY))
     except OSError as error:
         log.info("no_real_time_scheduling", reason=error.strerror)
