@@ -7,6 +7,8 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
+from contextlib import suppress
+from math import ceil
 from pathlib import Path
 from struct import pack, unpack_from
 
@@ -28,6 +30,8 @@ BEAT_S = 0.05
 LOOK_EVERY_S = 0.004
 LIMIT_MS = 300.0
 STILL_TURNS_AFTER_S = 2.0
+PRESSES = 5
+FIFO_PRIORITY = 5
 REGISTERS = load_profile("simulated-plc").registers
 MOTION = REGISTERS["azimuth_motion"].address
 HALT, VELOCITY = 0, 1
@@ -50,12 +54,12 @@ class Drive:
         motion, setpoint = unpack_from(">Hi", reply, 9)
         return bool(motion != HALT and not (motion == VELOCITY and setpoint == 0))
 
-    async def until(self, *, turning: bool) -> float:
-        """Return when the command was first seen to be so."""
+    async def until_told(self) -> float:
+        """Return when the command was first seen to be velocity 0."""
         loop = asyncio.get_running_loop()
         give_up = loop.time() + STILL_TURNS_AFTER_S
-        while await self.turns() is not turning:
-            assert loop.time() < give_up, "the drive was not told in time"
+        while await self.turns():
+            assert loop.time() < give_up, "the axis was not told to stop"
             await asyncio.sleep(LOOK_EVERY_S)
         return loop.time()
 
@@ -101,6 +105,8 @@ def measure() -> list[Row]:
         assert farm.stdout is not None
         product = Product.start(Path(folder) / "data")
         try:
+            _keep_punctual(farm.pid)
+            _keep_punctual(0)
             ports = [int(word) for word in farm.stdout.readline().split()]
             for number, port in enumerate(ports):
                 _add(product.url, f"B{number}", port)
@@ -109,6 +115,13 @@ def measure() -> list[Row]:
             product.stop()
             end(farm)
             farm.stdout.close()
+
+
+def _keep_punctual(process_id: int) -> None:
+    """Let other programs not delay the drives and the watch: only the product is measured."""
+    with suppress(OSError):
+        policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
+        os.sched_setscheduler(process_id, policy, os.sched_param(FIFO_PRIORITY))
 
 
 def _add(url: str, tracker_id: str, port: int) -> None:
@@ -149,25 +162,34 @@ async def _holds(panel_port: int, tracker_id: str, port: int, *, released: bool)
     return times
 
 
-async def _hold(page: Page, drive: Drive, press_id: str, direction: int, *, released: bool) -> float:
+async def _hold(page: Page, drive: Drive, name: str, direction: int, *, released: bool) -> float:
+    """Press until a press is not refused, hold, end; return the milliseconds until velocity command 0."""
+    for press in range(PRESSES):
+        press_id = f"{name}-{press}"
+        last_s = await _held(page, press_id, direction)
+        if not await drive.turns():
+            await asyncio.sleep(1.0)
+            continue
+        if released:
+            last_s = await page.let_go(press_id)
+        took_s = await drive.until_told() - last_s
+        await asyncio.sleep(random.uniform(0.15, 0.25))
+        return took_s * 1000.0
+    raise AssertionError(f"{PRESSES} presses in a row did not move the axis")
+
+
+async def _held(page: Page, press_id: str, direction: int) -> float:
+    """Say some times that the key is held, and return when for the last time, just before the next is due."""
     loop = asyncio.get_running_loop()
     last_s = loop.time()
-    for sequence in range(random.randint(4, 7)):
+    for sequence in range(random.randint(5, 8)):
         last_s = await page.beat(press_id, direction, sequence)
-        if sequence == 0:
-            await drive.until(turning=True)
         await asyncio.sleep(max(0.0, last_s + BEAT_S - loop.time()))
-    if released:
-        last_s = await page.let_go(press_id)
-    took_s = await drive.until(turning=False) - last_s
-    await asyncio.sleep(random.uniform(0.15, 0.25))
-    return took_s * 1000.0
+    return last_s
 
 
 def _row(name: str, times_ms: Sequence[float]) -> Row:
-    p50, p99, p999 = (
-        times_ms[min(len(times_ms) - 1, int(len(times_ms) * share))] for share in (0.5, 0.99, 0.999)
-    )
+    p50, p99, p999 = (times_ms[ceil(len(times_ms) * share) - 1] for share in (0.5, 0.99, 0.999))
     return Row(
         f"{name}: {len(times_ms)} holds through WebSocket, panel, machine and Modbus TCP, "
         f"{TRACKERS} trackers at once",
