@@ -201,7 +201,7 @@ def _finished(info: RecordingInfo, title: str, frames: Frames) -> RecordingInfo:
         title=title,
         ended_at=info.began_at + timedelta(seconds=lasted_s),
         duration_s=lasted_s,
-        outcome="complete",
+        outcome="completed",
         frame_count=len(frames),
     )
 

@@ -114,7 +114,7 @@ class Recorder:
         tracker_id = loop.config.tracker_id
         day = self._days.get(tracker_id)
         if day is not None and not _same_day(day.info, site, seen.site_time):
-            self._finish(self._days, tracker_id, seen.site_time, "complete")
+            self._finish(self._days, tracker_id, seen.site_time, "completed")
             day = None
         if day is None:
             if site.location is None:

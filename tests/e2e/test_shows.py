@@ -102,7 +102,7 @@ def codes(reasons: list[dict[str, str]]) -> tuple[str, ...]:
 def follow(plan: ShowPlan) -> dict[str, Column]:
     """Return what the tracker does in the show, with the drive's own ramps and speeds."""
     info, frames = simulate_show(TRACKER, Pointing(), "UTC", plan)
-    assert info.outcome == "complete"
+    assert info.outcome == "completed"
     assert info.duration_s == pytest.approx(plan.duration.total_seconds(), abs=0.3)
     return {name: frames.column(name) for name in COLUMNS}
 

@@ -236,7 +236,7 @@ async def test_days_are_recorded_at_one_frame_a_second_and_change_at_local_midni
 
     newest, older = writer.writer.recordings(kind=RecordingKind.DAY)
     assert newest.sun_begin_at == pytest.approx(midnight, abs=timedelta(seconds=0.2))
-    assert older.outcome == "complete"
+    assert older.outcome == "completed"
     assert older.sun_end_at == midnight
     frames = writer.writer.frames(newest.recording_id)
     assert np.diff(frames.column("elapsed_s")) == pytest.approx(np.ones(len(frames) - 1), abs=0.11)
