@@ -18,12 +18,37 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.typing import Origin
 
 from app.drives.profile import load_profile
-from bench.supervision import FARM
 from bench.table import Row
 from tests.e2e.integrator import Integrator
 from tests.e2e.product import Product, end
 
 COMMAND = "python -m bench jog"
+FARM = """
+import asyncio
+import signal
+import sys
+from datetime import timedelta
+from app.clock import SystemClock
+from app.drives.profile import load_profile
+from app.drives.sim_server import serve
+from app.drives.simulated import SimulatedDrive
+from app.tracker.config import TrackerConfig
+
+async def main():
+    clock, profile, servers = SystemClock(), load_profile("simulated-plc"), []
+    for number in range(int(sys.argv[1])):
+        drive = SimulatedDrive(TrackerConfig(f"T{number}", "Bench"), clock)
+        servers.append(await serve("127.0.0.1", 0, profile, drive, clock))
+    print(*(port for _, port in servers), flush=True)
+    ended = asyncio.Event()
+    asyncio.get_running_loop().add_signal_handler(signal.SIGTERM, ended.set)
+    await ended.wait()
+    for server, _ in servers:
+        await server.close()
+
+asyncio.run(main())
+"""
+
 TRIALS = int(os.environ.get("HELIOPANEL_BENCH_JOGS", "1000"))
 TRACKERS = 8
 BEAT_S = 0.05
