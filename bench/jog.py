@@ -1,6 +1,7 @@
 """Hold-to-run: from the last sign of a held key to velocity command 0 at a Modbus drive, the whole way"""
 
 import asyncio
+import gc
 import os
 import random
 import subprocess
@@ -25,6 +26,7 @@ from tests.e2e.product import Product, end
 COMMAND = "python -m bench jog"
 FARM = """
 import asyncio
+import gc
 import signal
 import sys
 from datetime import timedelta
@@ -40,6 +42,7 @@ async def main():
         drive = SimulatedDrive(TrackerConfig(f"T{number}", "Bench"), clock)
         servers.append(await serve("127.0.0.1", 0, profile, drive, clock))
     print(*(port for _, port in servers), flush=True)
+    gc.freeze()
     ended = asyncio.Event()
     asyncio.get_running_loop().add_signal_handler(signal.SIGTERM, ended.set)
     await ended.wait()
@@ -132,6 +135,7 @@ def measure() -> list[Row]:
         try:
             _keep_punctual(farm.pid)
             _keep_punctual(0)
+            gc.freeze()
             ports = [int(word) for word in farm.stdout.readline().split()]
             for number, port in enumerate(ports):
                 _add(product.url, f"B{number}", port)

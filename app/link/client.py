@@ -39,6 +39,7 @@ from app.link.messages import (
 )
 from app.link.metrics import MachineMetrics
 from app.link.outlet import Outlet
+from app.tracker.commands import Jog
 from app.tracker.snapshot import SiteSnapshot
 
 RECONNECT_AFTER = timedelta(milliseconds=300)
@@ -95,6 +96,7 @@ class LinkClient:
     async def execute(self, order: Order) -> SiteSnapshot:
         """Carry out one order and return the snapshot after it."""
         patience_s = _patience_s(order)
+        good_for_s = order.command.lease.total_seconds() if isinstance(order.command, Jog) else patience_s
         request = Execute(
             next(self._numbers),
             order.command,
@@ -102,7 +104,7 @@ class LinkClient:
             order.tracker_id,
             order.key,
             order.issued_at,
-            asyncio.get_running_loop().time() + patience_s,
+            asyncio.get_running_loop().time() + good_for_s,
         )
         answer = await self._ask(request, patience_s)
         if not isinstance(answer, Done):

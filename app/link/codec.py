@@ -2,8 +2,8 @@
 
 import asyncio
 from contextlib import suppress
-from dataclasses import dataclass
-from datetime import datetime
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
 from enum import StrEnum
 from typing import Annotated, Literal
 
@@ -20,7 +20,7 @@ from app.link.messages import (
     Update,
 )
 from app.link.metrics import MachineMetrics
-from app.tracker.commands import Command, CommandRejected, EndJog, Stop
+from app.tracker.commands import Command, CommandRejected, EndJog, Jog, Stop
 from app.tracker.reason import Reason
 from app.tracker.snapshot import SiteSnapshot
 
@@ -34,7 +34,10 @@ class FrameBroken(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Execute:
-    """An `Order` on the wire. `good_until_s` is on the monotonic counter that both processes share."""
+    """An `Order` on the wire. `good_until_s` is on the monotonic counter that both processes share.
+
+    A jog is good for its lease, so that the way to the machine takes time from it and never adds any.
+    """
 
     number: int
     command: Annotated[Command | SiteCommand, Discriminator("kind")]
@@ -45,9 +48,12 @@ class Execute:
     good_until_s: float
     do: Literal["execute"] = "execute"
 
-    def order(self) -> Order:
-        """Return the order that the panel gave."""
-        return Order(self.command, self.actor, self.tracker_id, self.key, self.issued_at)
+    def order(self, at_s: float) -> Order:
+        """Return the order that the panel gave, with what is left of a jog's lease at `at_s`."""
+        command = self.command
+        if isinstance(command, Jog):
+            command = replace(command, lease=min(command.lease, timedelta(seconds=self.good_until_s - at_s)))
+        return Order(command, self.actor, self.tracker_id, self.key, self.issued_at)
 
 
 @dataclass(frozen=True, slots=True)

@@ -147,9 +147,10 @@ class _Conversation:
     async def _carry_out(self, request: Request) -> Telling:
         match request:
             case Execute():
-                if _is_late(request):
+                at_s = asyncio.get_running_loop().time()
+                if at_s > request.good_until_s and not ends_motion(request):
                     return Refused(request.number, LATE)
-                snapshot = await self._machine.execute(request.order())
+                snapshot = await self._machine.execute(request.order(at_s))
                 return Done(request.number, None if snapshot is self._told else snapshot)
             case Ask(do="detail"):
                 return Detailed(request.number, await self._machine.detail())
@@ -167,8 +168,3 @@ class _Conversation:
             self._writer.transport.abort()
         elif not self._writer.is_closing():
             self._writer.write(encode_telling(telling))
-
-
-def _is_late(request: Execute) -> bool:
-    """Return whether the panel has given up on this order; stopping is never too late."""
-    return not ends_motion(request) and asyncio.get_running_loop().time() > request.good_until_s

@@ -1,6 +1,7 @@
 """The panel's process: what it consists of, and how it is served."""
 
 import asyncio
+import gc
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
 from importlib.metadata import version
@@ -132,4 +133,6 @@ def run(settings: Settings) -> None:
         timeout_keep_alive=KEEP_ALIVE_S,
         timeout_graceful_shutdown=FAREWELL_S,
     )
+    gc.collect()
+    gc.freeze()
     PanelServer(config, app.state.panel.hub.closing.set).run()

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from app.link.client import LinkClient
+from app.link.codec import Execute
 from app.link.messages import (
     MachineUnreachable,
     Order,
@@ -302,3 +303,13 @@ async def test_a_silent_machine_counts_as_lost(tmp_path: Path) -> None:
         with pytest.raises(MachineUnreachable):
             await client.execute(Order(SetLocation(Location(0, 0), "UTC"), "technician"))
     server.close()
+
+
+def test_the_way_to_the_machine_takes_time_from_a_jogs_lease() -> None:
+    jog = Jog("p1", Axis.AZIMUTH, 1, lease=timedelta(milliseconds=200))
+    request = Execute(1, jog, "operator", "T1", None, None, good_until_s=100.2)
+    assert request.order(at_s=100.0).command == jog
+    late = request.order(at_s=100.06).command
+    assert isinstance(late, Jog)
+    assert late.lease == timedelta(milliseconds=140)
+    assert request.order(at_s=99.0).command == jog
