@@ -1,7 +1,7 @@
 """A small Modbus TCP server: function codes 1 to 6, 15, 16 and 23, requests answered in their order."""
 
 import asyncio
-from collections.abc import Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from struct import error, pack, unpack_from
 from typing import Protocol
 
@@ -40,14 +40,31 @@ class Device(Protocol):
         """Return what is sent for a reply; None for silence. A sound device returns the reply as it is."""
 
 
-class ModbusServer:
-    """Answers for one unit id; requests for any other are not answered, as on a bus."""
+Respond = Callable[[bytes, str], Awaitable[bytes]]
+"""Returns the reply to one request, function code first; it is told the host that asks, and may take time."""
 
-    def __init__(self, device: Device, unit: int = 1) -> None:
+
+class ModbusServer:
+    """Answers for one unit id; requests for any other are not answered, as on a bus.
+
+    `respond` answers in the device's place where an answer takes time. More than `most_clients` at once are
+    turned away.
+    """
+
+    def __init__(
+        self, device: Device, unit: int = 1, *, respond: Respond | None = None, most_clients: int = 64
+    ) -> None:
         self._device = device
         self._unit = unit
+        self._respond = respond or self._answer_at_once
+        self._most_clients = most_clients
         self._server: asyncio.Server | None = None
         self._serving: set[asyncio.Task[None]] = set()
+
+    @property
+    def client_count(self) -> int:
+        """Return how many clients are connected."""
+        return len(self._serving)
 
     async def start(self, host: str, port: int) -> int:
         """Listen, and return the port."""
@@ -65,6 +82,9 @@ class ModbusServer:
             await self._server.wait_closed()
 
     def _begin(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        if len(self._serving) >= self._most_clients:
+            writer.close()
+            return
         task = asyncio.create_task(self._serve(reader, writer))
         self._serving.add(task)
         task.add_done_callback(self._serving.discard)
@@ -87,12 +107,15 @@ class ModbusServer:
         request = await reader.readexactly(length - 1)
         if unit != self._unit:
             return True
-        body = answer(self._device, request)
+        body = await self._respond(request, str(writer.get_extra_info("peername", ("",))[0]))
         reply = await self._device.let_out(pack(">HHHB", transaction, 0, len(body) + 1, unit) + body)
         if reply is not None:
             writer.write(reply)
             await writer.drain()
         return True
+
+    async def _answer_at_once(self, request: bytes, _: str) -> bytes:
+        return answer(self._device, request)
 
 
 def answer(device: Device, request: bytes) -> bytes:
