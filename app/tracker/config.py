@@ -2,9 +2,11 @@
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import assert_never
 
 from app.sun.position import Algorithm
 from app.tracker.axes import AZIMUTH_DEFAULT, ELEVATION_DEFAULT, Axis, AxisConfig
+from app.tracker.strategy import DEADBAND, NO_HYBRID, HybridConfig, Strategy
 
 
 class NightBehaviour(StrEnum):
@@ -20,17 +22,97 @@ class DriveKind(StrEnum):
 
     SIMULATED = "simulated"
     MODBUS_TCP = "modbus-tcp"
+    MODBUS_RTU = "modbus-rtu"
+    MODBUS_RTU_OVER_TCP = "modbus-rtu-over-tcp"
+
+
+class Parity(StrEnum):
+    """The check bit of a character on a serial line."""
+
+    NONE = "none"
+    EVEN = "even"
+    ODD = "odd"
+
+
+@dataclass(frozen=True, slots=True)
+class SerialConfig:
+    """A serial line: its device, best by a name that stays (`/dev/serial/by-id/...`), and its characters."""
+
+    port: str = ""
+    baud_rate: int = 19200
+    parity: Parity = Parity.EVEN
+    stop_bits: int = 1
+
+    def __post_init__(self) -> None:
+        if not 300 <= self.baud_rate <= 4_000_000:
+            raise ValueError("The baud rate must lie between 300 and 4000000.")
+        if self.stop_bits not in (1, 2):
+            raise ValueError("A character ends with 1 or 2 stop bits.")
+
+    @property
+    def bits(self) -> int:
+        """Return how many bits one character of eight data bits takes."""
+        return 9 + (self.parity is not Parity.NONE) + self.stop_bits
+
+
+@dataclass(frozen=True, slots=True)
+class AxisDrive:
+    """How one axis hangs on its drive.
+
+    `unit` None means the drive's unit, `steps_per_revolution` None the profile's; `gear_ratio` is motor
+    revolutions for one revolution of the axis; `inverted` turns the direction round.
+    """
+
+    unit: int | None = None
+    steps_per_revolution: float | None = None
+    gear_ratio: float = 1.0
+    inverted: bool = False
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.gear_ratio < 1e6:
+            raise ValueError("The gear ratio must be above zero and below a million.")
+        if self.steps_per_revolution is not None and not 0.0 < self.steps_per_revolution < 1e9:
+            raise ValueError("The steps per revolution must be above zero and below 1e9.")
 
 
 @dataclass(frozen=True, slots=True)
 class DriveConfig:
-    """Which drive moves the axes; host, port and unit count only for Modbus TCP."""
+    """Which drive moves the axes. Host and port count for Modbus TCP and RTU over TCP, serial for RTU."""
 
     kind: DriveKind = DriveKind.SIMULATED
     profile: str = "simulated-plc"
     host: str = "127.0.0.1"
     port: int = 5020
     unit: int = 1
+    serial: SerialConfig = field(default_factory=SerialConfig)
+    azimuth: AxisDrive = field(default_factory=AxisDrive)
+    elevation: AxisDrive = field(default_factory=AxisDrive)
+
+    def axis(self, axis: Axis) -> AxisDrive:
+        """Return how one axis hangs on its drive."""
+        return self.azimuth if axis is Axis.AZIMUTH else self.elevation
+
+    @property
+    def units(self) -> tuple[int, ...]:
+        """Return the unit ids in use, azimuth's first; one if both axes share it."""
+        return tuple(
+            dict.fromkeys(
+                self.unit if one.unit is None else one.unit for one in (self.azimuth, self.elevation)
+            )
+        )
+
+    @property
+    def line(self) -> str:
+        """Return the name of the connection that drives share: the same text is the same line."""
+        match self.kind:
+            case DriveKind.SIMULATED:
+                return ""
+            case DriveKind.MODBUS_TCP | DriveKind.MODBUS_RTU_OVER_TCP:
+                return f"{self.host}:{self.port}"
+            case DriveKind.MODBUS_RTU:
+                return self.serial.port
+            case _ as never:
+                assert_never(never)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +139,8 @@ class TrackerConfig:
     following_error_deg: float = 2.0
     night: NightBehaviour = NightBehaviour.SUNRISE
     park: Orientation = Orientation(180.0, 90.0)
+    strategy: Strategy = DEADBAND
+    hybrid: HybridConfig = NO_HYBRID
 
     def axis(self, axis: Axis) -> AxisConfig:
         """Return the configuration of one axis."""
