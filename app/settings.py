@@ -50,6 +50,9 @@ class Settings(BaseSettings):
     recordings_keep: int = Field(
         500, ge=1, description="Shows and simulations beyond this number are removed, oldest first."
     )
+    weather_stale_s: int = Field(
+        300, ge=5, le=86400, description="A weather report older than this is shown as stale and not used."
+    )
 
     @classmethod
     def settings_customise_sources(

@@ -27,6 +27,7 @@ from app.link.messages import (
     Order,
     RemoveTracker,
     RenameSite,
+    ReportWeather,
     SavePlan,
     SaveRecording,
     SetClock,
@@ -64,6 +65,7 @@ from app.tracker.snapshot import (
     Pair,
     SiteSnapshot,
 )
+from app.tracker.weather import WeatherNow
 from app.web.main import create_app
 from tests.fake_data import commissioned, made_up_sun, site_state
 from tests.fake_store import FakeReader
@@ -98,6 +100,7 @@ class FakeMachine:
         self.orders: list[Order] = []
         self.rejects: dict[str, tuple[Reason, ...]] = {}
         self.reachable = True
+        self.weather: WeatherNow | None = None
         self.sequence = 0
         self._outlet = Outlet()
         self.emit()
@@ -170,6 +173,8 @@ class FakeMachine:
             case ApplySightings(tracker_id=tracker_id, keep=keep):
                 tracker = self._tracker(tracker_id)
                 tracker.memory = replace(tracker.memory, sightings=keep)
+            case ReportWeather(readings=readings, measured_at=at):
+                self.weather = WeatherNow(readings, at or now, 0.0, stale=False, source=order.actor)
 
     def _tracker(self, tracker_id: str) -> FakeTracker:
         if tracker_id not in self.trackers:
@@ -206,6 +211,7 @@ class FakeMachine:
             clock=ClockState(clock.source, clock.offset_s, clock.source != "unset", None, clock.set_at),
             sun=made_up_sun(now),
             trackers=tuple(tracker.snapshot(now, self.sequence) for tracker in self.trackers.values()),
+            weather=self.weather,
         )
 
     async def detail(self) -> SiteDetail:

@@ -14,6 +14,7 @@ from app.tracker.motion import DriveCapabilities
 from app.tracker.programs.show import ShowPlan
 from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import Event, SiteSnapshot
+from app.tracker.weather import Weather
 
 
 class MachineUnreachable(Exception):
@@ -138,9 +139,19 @@ class DeleteRecording:
     kind: Literal["delete_recording"] = "delete_recording"
 
 
+@dataclass(frozen=True, slots=True)
+class ReportWeather:
+    """What a weather station measured, at `measured_at` (None: now). Nothing moves because of it."""
+
+    readings: Weather
+    measured_at: datetime | None = None
+    kind: Literal["report_weather"] = "report_weather"
+
+
 SiteCommand = (
     SetLocation | SetClock | RenameSite | AddTracker | ConfigureTracker | RemoveTracker | ConfirmStep
     | SavePlan | TakeSighting | ApplySightings | StopAll | SaveRecording | DeleteRecording
+    | ReportWeather
 )  # fmt: skip
 
 

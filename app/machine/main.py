@@ -140,6 +140,7 @@ def _site(
             period=timedelta(milliseconds=settings.tick_ms),
             retention=timedelta(days=settings.telemetry_retention_days),
             recordings_keep=settings.recordings_keep,
+            weather_stale_after=timedelta(seconds=settings.weather_stale_s),
         ),
     )
 

@@ -13,6 +13,7 @@ from app.site.recorder import Recorder
 from app.site.sky import Sky
 from app.site.timekeeping import Timekeeper
 from app.site.unusable import UnusableDrive
+from app.site.weather import WeatherStation
 from app.tracker.config import DriveKind, TrackerConfig
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.motion import Feedback
@@ -36,6 +37,7 @@ class SiteModel:
     on_tick: Callable[[TrackerLoop, Observation, tuple[Event, ...]], None]
     loops: dict[str, TrackerLoop] = field(default_factory=dict)
     sky: Sky = field(default_factory=Sky)
+    weather: WeatherStation = field(default_factory=WeatherStation)
 
     def now(self) -> datetime:
         """Return the site's time."""

@@ -21,6 +21,7 @@ from app.site.model import SiteModel
 from app.site.recorder import Recorder
 from app.site.repeats import Repeats, refuse_old
 from app.site.timekeeping import Timekeeper
+from app.site.weather import STALE_AFTER, WeatherStation
 from app.sun.position import Algorithm
 from app.tracker.commands import Jog
 from app.tracker.commissioning import steps
@@ -46,6 +47,7 @@ class SiteOptions:
     period: timedelta = timedelta(milliseconds=100)
     retention: timedelta = timedelta(days=400)
     recordings_keep: int = 500
+    weather_stale_after: timedelta = STALE_AFTER
 
 
 class Site:
@@ -74,6 +76,7 @@ class Site:
             self._options.period,
             make_drive,
             self._on_tick,
+            weather=WeatherStation(self._options.weather_stale_after),
         )
         for tracker in trackers:
             self.model.add(tracker)
@@ -106,6 +109,11 @@ class Site:
         self.model.ledger.post_events(events)
         self._publish(events)
         self._outlet.end()
+
+    def note(self, *events: Event) -> None:
+        """Journal and tell what happened at one of the site's other doors."""
+        self.model.ledger.post_events(events)
+        self._publish(events)
 
     async def stop_drives(self) -> None:
         """Stop every drive for good, as far as each can be reached: the machine is about to end."""
@@ -217,6 +225,7 @@ class Site:
             clock=self.model.timekeeper.state(),
             sun=self.model.sky.sun(state.location, algorithm, at),
             trackers=trackers,
+            weather=self.model.weather.now(self._clock.now()),
         )
 
     async def _beat(self) -> None:

@@ -16,6 +16,7 @@ from app.link.messages import (
     DeleteRecording,
     RemoveTracker,
     RenameSite,
+    ReportWeather,
     SavePlan,
     SaveRecording,
     SetClock,
@@ -57,6 +58,10 @@ async def carry_out(model: SiteModel, command: SiteCommand, actor: str) -> tuple
             return await _change_recordings(model, command, actor)
         case StopAll():
             return await _stop_all(model, actor)
+        case ReportWeather():
+            at, now = model.now(), model.clock.now()
+            model.weather.receive(command.readings, command.measured_at, actor, at, now)
+            return ()
         case _:
             assert_never(command)
 

@@ -9,6 +9,7 @@ from app.sun.position import Location, SunPosition
 from app.tracker.config import Orientation
 from app.tracker.mode import Mode
 from app.tracker.reason import Reason
+from app.tracker.weather import WeatherNow
 
 
 class ActivityName(StrEnum):
@@ -146,6 +147,8 @@ class EventKind(StrEnum):
     LIMIT_REACHED = "limit_reached"
     SIGHTING_TAKEN = "sighting_taken"
     RECORDING_DELETED = "recording_deleted"
+    REMOTE_WRITTEN = "remote_written"
+    REMOTE_REFUSED = "remote_refused"
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,3 +191,4 @@ class SiteSnapshot:
     clock: ClockState
     sun: SunPosition | None
     trackers: tuple[Snapshot, ...]
+    weather: WeatherNow | None = None
