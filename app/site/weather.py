@@ -37,9 +37,10 @@ class WeatherStation:
                 f"{site_time.isoformat()}. Set the station's clock, or leave the time out."
             )
         if age > self._stale_after:
+            limit_s = self._stale_after.total_seconds()
             raise ValueError(
-                f"The weather is {age.total_seconds():.0f} s old; older than "
-                f"{self._stale_after.total_seconds():.0f} s is not taken. Send it sooner, or leave the time out."
+                f"The weather is {age.total_seconds():.0f} s old; older than {limit_s:.0f} s is not taken. "
+                "Send it sooner, or leave the time out."
             )
         self._report = _Report(readings, measured_at, source, max(age, timedelta(0)), now)
 

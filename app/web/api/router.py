@@ -15,11 +15,13 @@ from app.web.api import (
     sun,
     telemetry,
     trackers,
+    weather,
 )
 from app.web.api.base import COMMON
 
 ROUTERS = (
     site.router,
+    weather.router,
     sun.router,
     trackers.router,
     commissioning.router,

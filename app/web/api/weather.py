@@ -1,0 +1,56 @@
+"""The weather that a station of the site measures."""
+
+from typing import Annotated
+
+from fastapi import APIRouter
+from pydantic import AwareDatetime, Field
+
+from app.link.messages import ReportWeather
+from app.tracker.weather import RANGES, Weather, WeatherNow
+from app.web.api.base import NOT_FOUND, REFUSED, Input
+from app.web.api.orders import SenderDep
+from app.web.deps import SnapshotDep
+from app.web.errors import NotAcceptable, NotFound
+
+router = APIRouter(prefix="/site/weather", tags=["site"])
+
+
+def _measured(name: str, example: float) -> object:
+    title, low, high, unit = RANGES[name]
+    return Field(None, ge=low, le=high, description=f"{title}, {unit}.", examples=[example])
+
+
+class WeatherReport(Input):
+    """What a station measured; leave out what it does not measure, but give at least one value."""
+
+    measured_at: AwareDatetime | None = Field(
+        None, description="When it was measured, by the site's clock; left out it is now."
+    )
+    wind_mps: Annotated[float | None, _measured("wind_mps", 4.2)] = None
+    wind_direction_deg: Annotated[float | None, _measured("wind_direction_deg", 210.0)] = None
+    light_wm2: Annotated[float | None, _measured("light_wm2", 820.0)] = None
+    snow_kg: Annotated[float | None, _measured("snow_kg", 0.0)] = None
+    snow_mm: Annotated[float | None, _measured("snow_mm", 0.0)] = None
+    temperature_degc: Annotated[float | None, _measured("temperature_degc", 24.5)] = None
+    humidity_pct: Annotated[float | None, _measured("humidity_pct", 48.0)] = None
+    pressure_hpa: Annotated[float | None, _measured("pressure_hpa", 1013.0)] = None
+    rain_mm: Annotated[float | None, _measured("rain_mm", 0.0)] = None
+
+
+@router.get("", summary="The newest weather report", responses=NOT_FOUND)
+async def read_weather(snapshot: SnapshotDep) -> WeatherNow:
+    """Return the newest report with its age; 404 as long as no station has sent one."""
+    if snapshot.weather is None:
+        raise NotFound("No weather has been reported since the controller service started.")
+    return snapshot.weather
+
+
+@router.put("", summary="Report the weather", responses=REFUSED)
+async def report_weather(report: WeatherReport, sender: SenderDep) -> WeatherNow:
+    """Put a report in the place of the one before; nothing moves because of it."""
+    try:
+        readings = Weather(**report.model_dump(exclude={"measured_at"}))
+    except ValueError as error:
+        raise NotAcceptable(str(error)) from error
+    after = await sender.send(ReportWeather(readings, report.measured_at))
+    return await read_weather(after)
