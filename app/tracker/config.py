@@ -123,6 +123,81 @@ class Orientation:
     elevation_deg: float
 
 
+class MountKind(StrEnum):
+    """How the panel hangs on its axes."""
+
+    AZIMUTH_ELEVATION = "azimuth-elevation"
+    EQUATORIAL = "equatorial"
+    HORIZONTAL_SINGLE_AXIS = "horizontal-single-axis"
+    TILTED_SINGLE_AXIS = "tilted-single-axis"
+    VERTICAL_SINGLE_AXIS = "vertical-single-axis"
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """Rows of single-axis trackers that would shade each other: with them the mount backtracks.
+
+    `ground_coverage_ratio` is the width of a row's panel over the distance between two row axes;
+    `cross_axis_tilt_deg` is the slope of the plane through the row axes, perpendicular to them, with the
+    signs of pvlib's `tracking.singleaxis`.
+    """
+
+    ground_coverage_ratio: float
+    cross_axis_tilt_deg: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.ground_coverage_ratio <= 1.0:
+            raise ValueError("The ground coverage ratio must be above 0 and at most 1.")
+        if not -60.0 <= self.cross_axis_tilt_deg <= 60.0:
+            raise ValueError("The slope across the rows must lie between -60 and 60 degrees.")
+
+
+@dataclass(frozen=True, slots=True)
+class MountConfig:
+    """The first axis in the landscape, as pvlib has it.
+
+    The axis lies along `axis_azimuth_deg` and dips by `axis_tilt_deg` in that direction, so that a panel at
+    rotation zero faces it. An equatorial mount's axis dips by the latitude, to the south on the northern
+    half of the globe and to the north on the southern. `panel_tilt_deg` is the fixed tilt from horizontal of
+    a panel on a vertical axis. With `least_incidence`, elevation tracking turns to the smallest angle of
+    incidence and not to the sun's elevation. What does not belong to the kind is not looked at.
+    """
+
+    kind: MountKind = MountKind.AZIMUTH_ELEVATION
+    axis_azimuth_deg: float = 180.0
+    axis_tilt_deg: float = 0.0
+    panel_tilt_deg: float = 45.0
+    rows: Rows | None = None
+    least_incidence: bool = False
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.axis_azimuth_deg < 360.0:
+            raise ValueError("The azimuth of the axis must be at least 0 and below 360 degrees.")
+        if not 0.0 <= self.axis_tilt_deg <= 90.0:
+            raise ValueError("The tilt of the axis must lie between 0 and 90 degrees.")
+        if not 0.0 <= self.panel_tilt_deg <= 90.0:
+            raise ValueError("The tilt of the panel must lie between 0 and 90 degrees.")
+        if self.rows is not None and self.kind not in ROW_KINDS:
+            raise ValueError(
+                "Only a horizontal or tilted single axis backtracks between rows: remove the rows, or choose "
+                "another mount."
+            )
+
+    @property
+    def single_axis(self) -> bool:
+        """Return whether the mount has a first axis only."""
+        return self.kind in SINGLE_AXIS_KINDS
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """Return the axes that the mount has; the names stand for first and second axis."""
+        return (Axis.AZIMUTH,) if self.single_axis else (Axis.AZIMUTH, Axis.ELEVATION)
+
+
+ROW_KINDS = frozenset({MountKind.HORIZONTAL_SINGLE_AXIS, MountKind.TILTED_SINGLE_AXIS})
+SINGLE_AXIS_KINDS = ROW_KINDS | {MountKind.VERTICAL_SINGLE_AXIS}
+
+
 @dataclass(frozen=True, slots=True)
 class TrackerConfig:
     """Everything that is set, not measured, about one tracker."""
@@ -141,6 +216,7 @@ class TrackerConfig:
     park: Orientation = Orientation(180.0, 90.0)
     strategy: Strategy = DEADBAND
     hybrid: HybridConfig = NO_HYBRID
+    mount: MountConfig = MountConfig()
 
     def axis(self, axis: Axis) -> AxisConfig:
         """Return the configuration of one axis."""
