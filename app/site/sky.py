@@ -5,8 +5,10 @@ from datetime import datetime, timedelta
 
 from app.sun.events import next_rise
 from app.sun.position import Algorithm, InstantRefused, Location, SunPosition, sun_position
+from app.sun.spa import AlgorithmMissing
 
 NO_DAWN_FOR = timedelta(hours=1)
+UNKNOWN = (InstantRefused, AlgorithmMissing)
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,12 +29,12 @@ class Sky:
         self._dawns: dict[Algorithm, _Dawn] = {}
 
     def sun(self, location: Location | None, algorithm: Algorithm, at: datetime) -> SunPosition | None:
-        """Return where the sun stands, None without a location or outside the years that are covered."""
+        """Return where the sun stands, None without a location, or where the algorithm does not tell."""
         if location is None:
             return None
         try:
             return sun_position(algorithm, location, at)
-        except InstantRefused:
+        except UNKNOWN:
             return None
 
     def dawn(self, location: Location | None, algorithm: Algorithm, at: datetime) -> SunPosition | None:
@@ -49,7 +51,7 @@ class Sky:
 def _next_dawn(location: Location, algorithm: Algorithm, at: datetime) -> _Dawn:
     try:
         rise = next_rise(algorithm, location, at)
-    except InstantRefused:
+    except UNKNOWN:
         rise = None
     if rise is None:
         return _Dawn(location, algorithm, at, at + NO_DAWN_FOR, None)

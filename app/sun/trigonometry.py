@@ -16,7 +16,7 @@ T = TypeVar("T", float, NDArray[np.float64])
 
 @dataclass(frozen=True, slots=True)
 class Trigonometry(Generic[T]):
-    """Trigonometric functions of radians over one kind of number, and `wrap`: the value modulo a length."""
+    """Trigonometric functions of radians over one kind of number; `wrap` is the value modulo a length."""
 
     sin: Callable[[T], T]
     cos: Callable[[T], T]
@@ -24,6 +24,7 @@ class Trigonometry(Generic[T]):
     atan2: Callable[[T, T], T]
     hypot: Callable[[T, T], T]
     sqrt: Callable[[T], T]
+    floor: Callable[[T], T]
     wrap: Callable[[T, float], T]
 
 
@@ -37,6 +38,8 @@ def _wrap_array(value: Array, length: float) -> Array:
 
 
 SCALAR: Trigonometry[float] = Trigonometry(
-    math.sin, math.cos, math.tan, math.atan2, math.hypot, math.sqrt, _wrap_number
+    math.sin, math.cos, math.tan, math.atan2, math.hypot, math.sqrt, math.floor, _wrap_number
 )
-ARRAY: Trigonometry[Array] = Trigonometry(np.sin, np.cos, np.tan, np.arctan2, np.hypot, np.sqrt, _wrap_array)
+ARRAY: Trigonometry[Array] = Trigonometry(
+    np.sin, np.cos, np.tan, np.arctan2, np.hypot, np.sqrt, np.floor, _wrap_array
+)

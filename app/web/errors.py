@@ -15,6 +15,7 @@ from starlette.responses import Response
 from app.link.messages import MachineUnreachable, UnknownRecording, UnknownTracker
 from app.store.store import StoreFailed
 from app.sun.position import InstantRefused
+from app.sun.spa import AlgorithmMissing
 from app.tracker.commands import CommandRejected
 from app.tracker.reason import Reason
 from app.web.security import add_headers
@@ -116,6 +117,7 @@ PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
     MachineUnreachable: _unreachable,
     StoreFailed: lambda error: Problem(503, str(error), headers=RETRY_LATER),
     InstantRefused: lambda error: Problem(422, str(error)),
+    AlgorithmMissing: lambda error: Problem(422, str(error)),
     NotAcceptable: lambda error: Problem(422, str(error)),
     Busy: lambda error: Problem(429, str(error), headers={"Retry-After": "5"}),
     NotFound: lambda error: Problem(404, str(error)),
