@@ -54,6 +54,8 @@ class PlcDrive:
             limit_switches="switches" in self._profile.bits,
             description=f"{self._profile.title} on Modbus TCP, {self._address}",
             verified=self._profile.verified,
+            watchdog_action=self._profile.watchdog.action if self._profile.watchdog is not None else "",
+            unverified=self._profile.unverified,
         )
 
     async def read(self) -> Feedback:

@@ -6,27 +6,25 @@ from dataclasses import dataclass
 from datetime import timedelta
 from enum import StrEnum
 from pathlib import Path
-from typing import Any, TypeVar
 
-from app.drives.drive import DriveError
+from app.drives.profile_text import ProfileError as ProfileError
+from app.drives.profile_text import Source, Table
 from app.drives.register import Access, Register, WordOrder, WordType
 
 PROFILES = Path(__file__).parent / "profiles"
+SUFFIX = ".toml"
 MOST_REGISTERS = 125
 LAST_ADDRESS = 0xFFFF
-
-T = TypeVar("T")
-Word = TypeVar("Word", bound=StrEnum)
-
-
-class ProfileError(DriveError):
-    """A profile is missing or wrong; the text names file, line, key and rule."""
 
 
 class Adapter(StrEnum):
     """Which code turns the registers into the drive protocol."""
 
     PLC = "plc"
+    CIA402 = "cia402"
+    PR = "pr"
+    DIRECT = "direct"
+    SUNSPEC = "sunspec"
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,10 +37,21 @@ class Block:
 
 
 @dataclass(frozen=True, slots=True)
-class Watchdog:
-    """The device's own communication watchdog: what feeds it, when it trips and what it does then."""
+class SequenceStep:
+    """One write of a sequence: a register and the number that goes into it."""
 
     register: str
+    value: int
+
+
+@dataclass(frozen=True, slots=True)
+class Watchdog:
+    """The device's own communication watchdog: what feeds it, when it trips and what it does then.
+
+    `register` None says that every request feeds it.
+    """
+
+    register: str | None
     timeout_ms: int
     readback: str | None
     action: str
@@ -64,6 +73,13 @@ class Profile:
     registers: Mapping[str, Register]
     bits: Mapping[str, Mapping[str, int]]
     enums: Mapping[str, Mapping[str, int]]
+    sequences: Mapping[str, tuple[SequenceStep, ...]]
+    steps_per_revolution: float
+
+    @property
+    def unverified(self) -> tuple[str, ...]:
+        """Return the names of the registers that nobody has tried on a device or found in its manual."""
+        return tuple(register.name for register in self.registers.values() if not register.verified)
 
     @property
     def timeout(self) -> timedelta:
@@ -85,7 +101,7 @@ def known_profiles() -> tuple[str, ...]:
 
 def load_profile(name: str) -> Profile:
     """Return a profile by its name or by the path of its file, or raise `ProfileError`."""
-    path = Path(name) if name.endswith(".toml") else PROFILES / f"{name}.toml"
+    path = Path(name) if name.endswith(SUFFIX) else PROFILES / f"{name}{SUFFIX}"
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
@@ -102,100 +118,22 @@ def parse_profile(text: str, file: str) -> Profile:
         content = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ProfileError(f"{file}: this is not TOML: {error}.") from error
-    profile = _profile(_Table(content, _Source(file, text)))
-    _check_overlaps(profile, _Source(file, text))
+    profile = _profile(Table(content, Source(file, text)))
+    _check_overlaps(profile, Source(file, text))
     return profile
 
 
-@dataclass(frozen=True, slots=True)
-class _Source:
-    file: str
-    text: str
-
-    def error(self, key: str, rule: str) -> ProfileError:
-        return ProfileError(f"{self.file}{self._line(key)}, {key}: {rule}.")
-
-    def _line(self, key: str) -> str:
-        """Return where the innermost part of a dotted key stands, as far as it can be found."""
-        section, found = "", ""
-        for number, line in enumerate(self.text.splitlines(), start=1):
-            bare = line.strip()
-            if bare.startswith("["):
-                section = bare.strip("[]").strip() + "."
-                here = section.rstrip(".")
-            else:
-                here = section + bare.partition("=")[0].strip()
-            if here and (key == here or key.startswith(here + ".")):
-                found = f", line {number}"
-        return found
-
-
-@dataclass(frozen=True, slots=True)
-class _Table:
-    """A TOML table that says what is wrong with its values."""
-
-    content: Mapping[str, Any]
-    source: _Source
-    path: str = ""
-
-    def error(self, key: str, rule: str) -> ProfileError:
-        return self.source.error(self.path + key, rule)
-
-    def only(self, *keys: str) -> None:
-        for key in self.content:
-            if key not in keys:
-                raise self.error(key, f"is not known here; known are {', '.join(keys)}")
-
-    def table(self, key: str) -> "_Table":
-        content = self.content.get(key, {})
-        if not isinstance(content, dict):
-            raise self.error(key, "must be a table")
-        return _Table(content, self.source, f"{self.path}{key}.")
-
-    def get(self, key: str, kind: type[T], default: T | None = None) -> T:
-        value = self.content.get(key, default)
-        if value is None:
-            raise self.error(key, "is missing")
-        if kind is float and type(value) is int:
-            value = float(value)
-        if type(value) is not kind:
-            raise self.error(key, f"must be {_KINDS[kind]}, not {value!r}")
-        return value
-
-    def whole(self, key: str, low: int, high: int, default: int | None = None) -> int:
-        value = self.get(key, int, default)
-        if not low <= value <= high:
-            raise self.error(key, f"must lie between {low} and {high}, not {value}")
-        return value
-
-    def word(self, key: str, words: type[Word], default: Word | None = None) -> Word:
-        value = self.get(key, str, default.value if default is not None else None)
-        try:
-            return words(value)
-        except ValueError as error:
-            raise self.error(key, f"must be one of {', '.join(words)}, not {value!r}") from error
-
-    def limit(self, key: str) -> float | None:
-        return self.get(key, float) if key in self.content else None
-
-
-_KINDS: dict[type, str] = {
-    int: "a whole number",
-    float: "a number",
-    str: "text in quotes",
-    bool: "true or false",
-}
 _TOP = (
     "name", "title", "adapter", "word_order", "verified", "source", "timing", "watchdog", "blocks",
-    "registers", "bits", "enums",
+    "registers", "bits", "enums", "axis", "sequences",
 )  # fmt: skip
 _REGISTER = (
     "address", "type", "word_order", "scale", "sign", "unit", "access", "minimum", "maximum", "expect",
-    "text", "source", "verified",
+    "text", "source", "verified", "optional",
 )  # fmt: skip
 
 
-def _profile(top: _Table) -> Profile:
+def _profile(top: Table) -> Profile:
     top.only(*_TOP)
     order = top.word("word_order", WordOrder, WordOrder.HIGH_FIRST)
     verified, source = top.get("verified", bool), top.get("source", str)
@@ -204,6 +142,9 @@ def _profile(top: _Table) -> Profile:
         name: _register(name, rows.table(name), order, source, verified=verified) for name in rows.content
     }
     timing = top.table("timing")
+    enums = {
+        name: _numbers(top.table("enums").table(name), LAST_ADDRESS) for name in top.table("enums").content
+    }
     return Profile(
         name=top.get("name", str),
         title=top.get("title", str),
@@ -216,14 +157,13 @@ def _profile(top: _Table) -> Profile:
         blocks={name: _block(name, top.table("blocks").table(name)) for name in top.table("blocks").content},
         registers=registers,
         bits={name: _numbers(top.table("bits").table(name), 15) for name in top.table("bits").content},
-        enums={
-            name: _numbers(top.table("enums").table(name), LAST_ADDRESS)
-            for name in top.table("enums").content
-        },
+        enums=enums,
+        sequences=_sequences(top, registers, enums),
+        steps_per_revolution=_steps(top.table("axis")),
     )
 
 
-def _register(name: str, row: _Table, order: WordOrder, source: str, *, verified: bool) -> Register:
+def _register(name: str, row: Table, order: WordOrder, source: str, *, verified: bool) -> Register:
     row.only(*_REGISTER)
     scale = row.get("scale", float, 1.0)
     if scale <= 0.0:
@@ -240,21 +180,22 @@ def _register(name: str, row: _Table, order: WordOrder, source: str, *, verified
         sign=sign,
         unit=row.get("unit", str, ""),
         access=row.word("access", Access, Access.READ),
-        minimum=row.limit("minimum"),
-        maximum=row.limit("maximum"),
+        minimum=row.number("minimum"),
+        maximum=row.number("maximum"),
         expect=row.whole("expect", 0, LAST_ADDRESS) if "expect" in row.content else None,
         text=row.get("text", str, ""),
         source=row.get("source", str, source),
         verified=row.get("verified", bool, verified),
+        optional=row.get("optional", bool, False),
     )
 
 
-def _block(name: str, row: _Table) -> Block:
+def _block(name: str, row: Table) -> Block:
     row.only("address", "count")
     return Block(name, row.whole("address", 0, LAST_ADDRESS), row.whole("count", 1, MOST_REGISTERS))
 
 
-def _watchdog(row: _Table, registers: Mapping[str, Register]) -> Watchdog | None:
+def _watchdog(row: Table, registers: Mapping[str, Register]) -> Watchdog | None:
     if not row.content:
         return None
     row.only("register", "timeout_ms", "readback", "action")
@@ -262,14 +203,52 @@ def _watchdog(row: _Table, registers: Mapping[str, Register]) -> Watchdog | None
         if key in row.content and row.get(key, str) not in registers:
             raise row.error(key, f"names no register: {row.get(key, str)!r}")
     return Watchdog(
-        register=row.get("register", str),
+        register=row.get("register", str) if "register" in row.content else None,
         timeout_ms=row.whole("timeout_ms", 50, 60_000),
         readback=row.get("readback", str) if "readback" in row.content else None,
         action=row.get("action", str),
     )
 
 
-def _numbers(row: _Table, highest: int) -> dict[str, int]:
+def _steps(row: Table) -> float:
+    row.only("steps_per_revolution")
+    steps = row.get("steps_per_revolution", float, 1.0)
+    if steps <= 0.0:
+        raise row.error("steps_per_revolution", f"must be above zero, not {steps}")
+    return steps
+
+
+def _sequences(
+    top: Table, registers: Mapping[str, Register], enums: Mapping[str, Mapping[str, int]]
+) -> dict[str, tuple[SequenceStep, ...]]:
+    table = top.table("sequences")
+    return {
+        name: tuple(_step(table, name, text, registers, enums) for text in table.texts(name))
+        for name in table.content
+    }
+
+
+def _step(
+    table: Table,
+    name: str,
+    text: str,
+    registers: Mapping[str, Register],
+    enums: Mapping[str, Mapping[str, int]],
+) -> SequenceStep:
+    """Return the write that `register = word or number` says."""
+    register, _, value = (part.strip() for part in text.partition("="))
+    if register not in registers:
+        raise table.error(name, f"{text!r} names no register")
+    words = enums.get(register, {})
+    if value in words:
+        return SequenceStep(register, words[value])
+    try:
+        return SequenceStep(register, int(value, 0))
+    except ValueError as error:
+        raise table.error(name, f"{text!r} needs a number or one of the words in enums.{register}") from error
+
+
+def _numbers(row: Table, highest: int) -> dict[str, int]:
     numbers = {name: row.whole(name, 0, highest) for name in row.content}
     for name, number in numbers.items():
         if list(numbers.values()).count(number) > 1:
@@ -277,7 +256,7 @@ def _numbers(row: _Table, highest: int) -> dict[str, int]:
     return numbers
 
 
-def _check_overlaps(profile: Profile, source: _Source) -> None:
+def _check_overlaps(profile: Profile, source: Source) -> None:
     taken: dict[int, str] = {}
     for register in profile.registers.values():
         for address in register.addresses:

@@ -30,7 +30,10 @@ class Access(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Register:
-    """A value: its value in `unit` is the packed integer times `scale` times `sign`."""
+    """A value: its value in `unit` is the packed integer times `scale` times `sign`.
+
+    Without an `optional` register a device can do its work: it is left out where the device refuses it.
+    """
 
     name: str
     address: int
@@ -46,6 +49,7 @@ class Register:
     text: str = ""
     source: str = ""
     verified: bool = False
+    optional: bool = False
 
     @property
     def is_wide(self) -> bool:

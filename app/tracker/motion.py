@@ -95,7 +95,8 @@ class DriveCapabilities:
     """What this drive can do; nobody has to find out by trying.
 
     `watchdog_s` is the time after which the drive itself ramps down without a fresh command, None
-    where it has no such watchdog. `automatic_homing` needs origin switches.
+    where it has no such watchdog, and `watchdog_action` says what it does then. `automatic_homing` needs
+    origin switches. `unverified` names the registers that nobody has tried on such a device yet.
     """
 
     automatic_homing: bool
@@ -104,3 +105,5 @@ class DriveCapabilities:
     limit_switches: bool
     description: str
     verified: bool
+    watchdog_action: str = ""
+    unverified: tuple[str, ...] = ()
