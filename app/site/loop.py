@@ -196,7 +196,8 @@ class TrackerLoop:
         self.feedback = await self._read()
         seen = self._surroundings.observe(self.config, self.feedback)
         tick = self.controller.tick(seen)
-        await self._write(_unmoved(tick.command) if unheard or self._ending else tick.command)
+        if not self.controller.is_silent:
+            await self._write(_unmoved(tick.command) if unheard or self._ending else tick.command)
         self._on_tick(self, seen, tick.events)
 
     async def _read(self) -> Feedback | None:

@@ -8,6 +8,7 @@ from typing import Literal
 from app.tracker.axes import Axis, JogSpeed
 from app.tracker.motion import DriveCommand
 from app.tracker.programs.show import ShowCourse
+from app.tracker.proofs import StopSpeed
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ActivityName, ShowPhase
 
@@ -18,6 +19,8 @@ class MoveKind(StrEnum):
     MOVE = "move"
     PARK = "park"
     STEP = "step"
+    DIRECTION = "direction"
+    SCALE = "scale"
 
 
 class TrackPhase(StrEnum):
@@ -115,6 +118,39 @@ class Showing:
 
 
 @dataclass(frozen=True, slots=True)
+class Asked:
+    """What an axis did at the instant from which its coming to rest is measured, and since.
+
+    `reacted_at` is when it was first seen to slow down, `looked_at` when it was last seen to move.
+    """
+
+    at: datetime
+    position_deg: float
+    velocity_dps: float
+    looked_at: datetime
+    reacted_at: datetime | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Measuring:
+    """An axis turns in order to come to rest: stopped at a `speed`, or left without commands (None).
+
+    The command is one to a place not far ahead, so that the way is bounded whatever happens. `steady_at` is
+    when the axis has its speed; `asked` is what it did when the measurement began.
+    """
+
+    axis: Axis
+    speed: StopSpeed | None
+    speed_dps: float
+    from_deg: float
+    command: DriveCommand
+    steady_at: datetime
+    until: datetime
+    actor: str
+    asked: Asked | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Stopping:
     """Coming to rest after a stop."""
 
@@ -128,7 +164,7 @@ class Faulted:
     until: datetime | None = None
 
 
-Unfaulted = Holding | Jogging | Moving | Zeroing | Homing | Tracking | Showing | Stopping
+Unfaulted = Holding | Jogging | Moving | Zeroing | Homing | Tracking | Showing | Measuring | Stopping
 Activity = Unfaulted | Faulted
 
 NAMES: dict[type[Activity], ActivityName] = {
@@ -139,6 +175,7 @@ NAMES: dict[type[Activity], ActivityName] = {
     Homing: ActivityName.HOMING,
     Tracking: ActivityName.TRACKING,
     Showing: ActivityName.SHOWING,
+    Measuring: ActivityName.MEASURING,
     Stopping: ActivityName.STOPPING,
     Faulted: ActivityName.FAULTED,
 }

@@ -8,6 +8,7 @@ from app.tracker.axes import Axis, JogSpeed
 from app.tracker.config import Orientation
 from app.tracker.mode import Mode
 from app.tracker.programs.show import ShowPlan
+from app.tracker.proofs import StopSpeed
 from app.tracker.reason import Reason
 
 JOG_LEASE = timedelta(milliseconds=240)
@@ -139,6 +140,39 @@ class StopShow:
 
 
 @dataclass(frozen=True, slots=True)
+class ProveDirection:
+    """Turn one axis a little, so that somebody can see which way the panel goes."""
+
+    axis: Axis
+    kind: Literal["prove_direction"] = "prove_direction"
+
+
+@dataclass(frozen=True, slots=True)
+class ProveScale:
+    """Turn one axis by 10 degrees, so that somebody can measure by how much the panel turned."""
+
+    axis: Axis
+    kind: Literal["prove_scale"] = "prove_scale"
+
+
+@dataclass(frozen=True, slots=True)
+class MeasureStop:
+    """Bring one axis up to speed, stop it, and measure time and way until it stands."""
+
+    axis: Axis
+    speed: StopSpeed
+    kind: Literal["measure_stop"] = "measure_stop"
+
+
+@dataclass(frozen=True, slots=True)
+class MeasureLinkLoss:
+    """Move one axis slowly, then send the drive nothing, and see what it does by itself."""
+
+    axis: Axis
+    kind: Literal["measure_link_loss"] = "measure_link_loss"
+
+
+@dataclass(frozen=True, slots=True)
 class Stop:
     """Stop both axes now and switch tracking off. Needs nothing, is never refused, resumes nothing."""
 
@@ -155,4 +189,5 @@ class ResetFault:
 Command = (
     Jog | EndJog | Step | SetZero | Home | SelectMode | Move | Park | Track
     | GoToStart | RunShow | PauseShow | ResumeShow | StopShow | Stop | ResetFault
+    | ProveDirection | ProveScale | MeasureStop | MeasureLinkLoss
 )  # fmt: skip

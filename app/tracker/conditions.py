@@ -33,6 +33,11 @@ class Action(StrEnum):
     STOP_SHOW = "stop_show"
     STOP = "stop"
     RESET_FAULT = "reset_fault"
+    PROVE_DIRECTION = "prove_direction"
+    PROVE_SCALE = "prove_scale"
+    MEASURE_STOP = "measure_stop"
+    MEASURE_LINK_LOSS = "measure_link_loss"
+    SET_LIMIT = "set_limit"
 
 
 def unmet(mind: Mind, action: Action) -> tuple[Reason, ...]:
@@ -117,6 +122,17 @@ def self_homing(mind: Mind) -> Reason | None:
         "no_origin_switches",
         f"The drive of {mind.config.name} has no origin switches to search for.",
         "Turn the panel to north and the horizon by hand, then press Set as zero.",
+    )
+
+
+def watched(mind: Mind) -> Reason | None:
+    """Return that the drive has no watchdog that could be tested."""
+    if mind.capabilities.watchdog_s is not None:
+        return None
+    return Reason(
+        "no_watchdog",
+        f"The drive of {mind.config.name} has no watchdog: it does not stop by itself when it loses contact.",
+        "Hand motion comes in short bounded steps for that reason; the hard-wired stop must be within reach.",
     )
 
 
@@ -206,6 +222,7 @@ _DOING = {
     ActivityName.TRACKING: ("is tracking", _STOP_FIRST),
     ActivityName.SHOWING: ("is busy with a show", "Stop the show first."),
     ActivityName.STOPPING: ("is coming to rest", "Wait until both axes stand still."),
+    ActivityName.MEASURING: ("is measuring how it stops", "Wait until it has finished, or press Stop."),
 }
 _SHOW_IS = {
     None: "has no show under way",
@@ -224,6 +241,7 @@ _SHOW_HINT = {
 _HOLD, _JOG, _MOVE = ActivityName.HOLDING, ActivityName.JOGGING, ActivityName.MOVING
 _TRACK, _SHOW, _STOPPING = ActivityName.TRACKING, ActivityName.SHOWING, ActivityName.STOPPING
 _CAN_MOVE = (reachable, sound, homed)
+_CAN_PROVE = (reachable, sound, while_(_HOLD), resting)
 
 REQUIRED: dict[Action, tuple[Condition, ...]] = {
     Action.JOG: (reachable, sound, while_(_HOLD, _JOG)),
@@ -251,4 +269,9 @@ REQUIRED: dict[Action, tuple[Condition, ...]] = {
     ),
     Action.STOP: (),
     Action.RESET_FAULT: (reachable, faulted),
+    Action.PROVE_DIRECTION: _CAN_PROVE,
+    Action.PROVE_SCALE: _CAN_PROVE,
+    Action.MEASURE_STOP: _CAN_PROVE,
+    Action.MEASURE_LINK_LOSS: (*_CAN_PROVE, watched),
+    Action.SET_LIMIT: (*_CAN_PROVE, homed),
 }

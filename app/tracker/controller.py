@@ -4,7 +4,7 @@ from datetime import datetime, timedelta
 from typing import NamedTuple, assert_never
 
 from app.tracker import report
-from app.tracker.activities import faulted, jogging, moving, showing, tracking, zeroing
+from app.tracker.activities import faulted, jogging, measuring, moving, showing, tracking, zeroing
 from app.tracker.activity import (
     HOLDING,
     NAMES,
@@ -13,6 +13,7 @@ from app.tracker.activity import (
     Holding,
     Homing,
     Jogging,
+    Measuring,
     Moving,
     Showing,
     Stopping,
@@ -82,6 +83,11 @@ class Controller:
         """Return what the tracker is doing."""
         return NAMES[type(self._mind.activity)]
 
+    @property
+    def is_silent(self) -> bool:
+        """Return whether the drive is to be told nothing at all, so that its watchdog is not fed."""
+        return measuring.is_silent(self._mind)
+
     def handle(self, command: Command, now: datetime, actor: str = "operator") -> tuple[Event, ...]:
         """Obey a command and return what happened, or raise `CommandRejected` with all unmet conditions.
 
@@ -113,8 +119,13 @@ class Controller:
         return report.frame(self._mind)
 
     def deadline(self) -> datetime | None:
-        """Return the instant by which `tick` must be called again (a jog's lease ends), else None."""
+        """Return the instant by which `tick` must be called again, else None.
+
+        That is when a jog's lease ends, and soon again while it is measured how an axis comes to rest.
+        """
         activity = self._mind.activity
+        if isinstance(activity, Measuring) and activity.asked is not None:
+            return self._mind.now + measuring.LOOK_EVERY
         return activity.until if isinstance(activity, Jogging) else None
 
     def configure(self, config: TrackerConfig, capabilities: DriveCapabilities) -> None:
@@ -197,10 +208,8 @@ class Controller:
                 return Turn(HOLDING if at_rest(feedback) else activity)
             case Showing():
                 return showing.step(mind, activity, feedback)
-            case Jogging():
-                return jogging.step(mind, activity, feedback)
-            case Moving():
-                return moving.step(mind, activity, feedback)
+            case Jogging() | Moving() | Measuring():
+                return _step_by_order(mind, activity, feedback)
             case Zeroing() | Homing():
                 return zeroing.step(mind, activity, feedback)
             case Faulted():
@@ -215,6 +224,17 @@ class Controller:
             _setpoint_deg(command.elevation, before.elevation_deg),
         )
         return command
+
+
+def _step_by_order(mind: Mind, activity: Jogging | Moving | Measuring, feedback: Feedback) -> Turn:
+    match activity:
+        case Jogging():
+            return jogging.step(mind, activity, feedback)
+        case Moving():
+            return moving.step(mind, activity, feedback)
+        case Measuring():
+            return measuring.step(mind, activity, feedback)
+    assert_never(activity)
 
 
 def _may_search(mind: Mind) -> bool:

@@ -5,8 +5,9 @@ from datetime import datetime
 from enum import StrEnum
 
 from app.sun.position import Location
-from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.config import DriveConfig, Orientation, TrackerConfig
 from app.tracker.mode import Mode
+from app.tracker.proofs import Proofs
 
 
 class StepName(StrEnum):
@@ -67,7 +68,8 @@ class Pointing:
 class TrackerMemory:
     """The latches of one tracker: on disk before the command that changes them is acknowledged.
 
-    `home_lost` says why a zero that was set is no longer trusted.
+    `home_lost` says why a zero that was set is no longer trusted; `former_drive` are the drive settings
+    before the last change, so that it can be undone.
     """
 
     mode: Mode | None = None
@@ -81,6 +83,8 @@ class TrackerMemory:
     confirmations: dict[StepName, Confirmation] = field(default_factory=dict)
     sightings: tuple[Sighting, ...] = ()
     pointing: Pointing = Pointing()
+    proofs: Proofs = field(default_factory=Proofs)
+    former_drive: DriveConfig | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from typing import assert_never
 
-from app.tracker.activities import faulted, jogging, moving, showing, tracking, zeroing
+from app.tracker.activities import faulted, jogging, measuring, moving, proving, showing, tracking, zeroing
 from app.tracker.activity import STOPPING, Faulted
 from app.tracker.commands import (
     Command,
@@ -10,9 +10,13 @@ from app.tracker.commands import (
     GoToStart,
     Home,
     Jog,
+    MeasureLinkLoss,
+    MeasureStop,
     Move,
     Park,
     PauseShow,
+    ProveDirection,
+    ProveScale,
     ResetFault,
     ResumeShow,
     RunShow,
@@ -40,6 +44,8 @@ def obey(mind: Mind, command: Command) -> None:
             _obey_automatic(mind, command)
         case GoToStart() | RunShow() | PauseShow() | ResumeShow() | StopShow():
             _obey_show(mind, command)
+        case ProveDirection() | ProveScale() | MeasureStop() | MeasureLinkLoss():
+            _obey_proof(mind, command)
         case _:
             assert_never(command)
 
@@ -98,5 +104,19 @@ def _obey_show(mind: Mind, command: GoToStart | RunShow | PauseShow | ResumeShow
             showing.resume_show(mind)
         case StopShow():
             showing.stop_show(mind)
+        case _:
+            assert_never(command)
+
+
+def _obey_proof(mind: Mind, command: ProveDirection | ProveScale | MeasureStop | MeasureLinkLoss) -> None:
+    match command:
+        case ProveDirection():
+            proving.prove_direction(mind, command)
+        case ProveScale():
+            proving.prove_scale(mind, command)
+        case MeasureStop():
+            measuring.measure_stop(mind, command)
+        case MeasureLinkLoss():
+            measuring.measure_link_loss(mind, command)
         case _:
             assert_never(command)

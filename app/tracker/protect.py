@@ -4,11 +4,13 @@ from datetime import datetime, timedelta
 from typing import assert_never
 
 from app.tracker import guards
+from app.tracker.activities.measuring import is_silent
 from app.tracker.activity import (
     Faulted,
     Holding,
     Homing,
     Jogging,
+    Measuring,
     Moving,
     Showing,
     Stopping,
@@ -55,7 +57,8 @@ def found(mind: Mind) -> None:
 
 def protect(mind: Mind, before: Feedback | None, feedback: Feedback, elapsed_s: float) -> None:
     """End what must not go on in the light of a new reading."""
-    if feedback.fault_code or feedback.azimuth.at_upper_limit or feedback.elevation.at_upper_limit:
+    suspicious = feedback.fault_code or feedback.azimuth.at_upper_limit or feedback.elevation.at_upper_limit
+    if suspicious and not is_silent(mind):
         _refuse_fault(mind, feedback)
     if before is not None and before is not feedback:
         _compare(mind, before, feedback, elapsed_s)
@@ -84,7 +87,7 @@ def _compare(mind: Mind, before: Feedback, feedback: Feedback, elapsed_s: float)
     if restarted is not None:
         _doubt_home(mind, restarted)
         return
-    if feedback.watchdog_tripped and not before.watchdog_tripped:
+    if feedback.watchdog_tripped and not before.watchdog_tripped and not is_silent(mind):
         _watchdog_tripped(mind)
     if isinstance(mind.activity, Zeroing | Homing):
         return
@@ -110,7 +113,7 @@ def _watchdog_tripped(mind: Mind) -> None:
             return
         case Tracking():
             pass
-        case Jogging() | Moving() | Zeroing() | Homing() | Showing():
+        case Jogging() | Moving() | Zeroing() | Homing() | Showing() | Measuring():
             interrupt(mind, reason)
         case _:
             assert_never(mind.activity)

@@ -24,6 +24,7 @@ class ActivityName(StrEnum):
     SHOWING = "showing"
     STOPPING = "stopping"
     FAULTED = "faulted"
+    MEASURING = "measuring"
 
 
 class ShowPhase(StrEnum):
@@ -146,6 +147,9 @@ class EventKind(StrEnum):
     DRIVE_FOUND = "drive_found"
     LIMIT_REACHED = "limit_reached"
     SIGHTING_TAKEN = "sighting_taken"
+    PROOF_STARTED = "proof_started"
+    PROOF_ENDED = "proof_ended"
+    DRIVE_CHECKED = "drive_checked"
     RECORDING_DELETED = "recording_deleted"
     REMOTE_WRITTEN = "remote_written"
     REMOTE_REFUSED = "remote_refused"

@@ -1,5 +1,6 @@
 """Leaving what a tracker is doing: every way out says what ended and why."""
 
+from dataclasses import replace
 from typing import assert_never
 
 from app.tracker.activity import (
@@ -8,6 +9,7 @@ from app.tracker.activity import (
     Holding,
     Homing,
     Jogging,
+    Measuring,
     MoveKind,
     Moving,
     Showing,
@@ -35,23 +37,36 @@ def _say_what_ended(mind: Mind, activity: Unfaulted, why: str) -> None:
         case Jogging():
             mind.kill_press(activity.press_id)
             mind.say(EventKind.JOG_ENDED, f"The jog of {activity.axis} ended: {why}", outcome="interrupted")
-        case Moving():
-            mind.say(
-                EventKind.MOVE_ENDED, f"{_MOVES[activity.kind]} ended early: {why}", outcome="interrupted"
-            )
-        case Zeroing():
-            mind.say(EventKind.ZERO_FAILED, f"Zero was not set: {why}")
-            lose_home(mind, Reason("zero_failed", f"setting it was interrupted: {why}"))
-        case Homing():
-            mind.say(
-                EventKind.HOMING_ENDED, f"The search for the origin switches ended: {why}", outcome="failed"
-            )
+        case Moving() | Measuring():
+            _say_order_ended(mind, activity, why)
+        case Zeroing() | Homing():
+            _say_zero_ended(mind, activity, why)
         case Tracking():
             mind.say(EventKind.TRACKING_WAITING, f"Tracking waits for the operator: {why}")
         case Showing():
             end_show(mind, activity, f"The show ended early: {why}", "interrupted")
         case _:
             assert_never(activity)
+
+
+def _say_order_ended(mind: Mind, activity: Moving | Measuring, why: str) -> None:
+    """Say that a move or a test ended early; a watched move that did leaves nothing to judge."""
+    if isinstance(activity, Measuring):
+        text = f"The test of the {activity.axis} axis ended early: {why}"
+        mind.say(EventKind.PROOF_ENDED, text, axis=activity.axis, outcome="interrupted")
+        return
+    mind.say(EventKind.MOVE_ENDED, f"{_MOVES[activity.kind]} ended early: {why}", outcome="interrupted")
+    if activity.kind in (MoveKind.DIRECTION, MoveKind.SCALE):
+        mind.remember(proofs=replace(mind.memory.proofs, move=None))
+
+
+def _say_zero_ended(mind: Mind, activity: Zeroing | Homing, why: str) -> None:
+    if isinstance(activity, Homing):
+        text = f"The search for the origin switches ended: {why}"
+        mind.say(EventKind.HOMING_ENDED, text, outcome="failed")
+        return
+    mind.say(EventKind.ZERO_FAILED, f"Zero was not set: {why}")
+    lose_home(mind, Reason("zero_failed", f"setting it was interrupted: {why}"))
 
 
 def end_move(mind: Mind, why: str) -> None:
@@ -106,4 +121,6 @@ _MOVES = {
     MoveKind.MOVE: "The move",
     MoveKind.PARK: "The move to the park position",
     MoveKind.STEP: "The step",
+    MoveKind.DIRECTION: "The move of the direction proof",
+    MoveKind.SCALE: "The move of the scale proof",
 }

@@ -10,6 +10,7 @@ from app.tracker.activity import (
     Holding,
     Homing,
     Jogging,
+    Measuring,
     MoveKind,
     Moving,
     Showing,
@@ -33,6 +34,8 @@ _MOVING = {
     MoveKind.MOVE: "Moving to the orientation that was asked for",
     MoveKind.PARK: "Moving to the park position",
     MoveKind.STEP: "Moving by a small step",
+    MoveKind.DIRECTION: "Moving for the direction proof: watch which way the panel goes",
+    MoveKind.SCALE: "Moving by 10 degrees for the scale proof",
 }
 _PLAIN: dict[type[Activity], str] = {
     Zeroing: "Setting zero",
@@ -60,8 +63,8 @@ def _doing(mind: Mind, activity: Activity) -> str:
             return "Holding; tracking waits for the operator" if mind.memory.tracking_on else "Holding"
         case Jogging():
             return f"Jogging {_JOG[activity.axis, activity.direction]}, {activity.speed}"
-        case Moving():
-            return _MOVING[activity.kind]
+        case Moving() | Measuring():
+            return _by_order(activity)
         case Zeroing() | Homing() | Stopping():
             return _PLAIN[type(activity)]
         case Tracking():
@@ -71,6 +74,14 @@ def _doing(mind: Mind, activity: Activity) -> str:
         case Faulted():
             return f"Stopped by a fault: {activity.reason.message}"
     assert_never(activity)
+
+
+def _by_order(activity: Moving | Measuring) -> str:
+    if isinstance(activity, Moving):
+        return _MOVING[activity.kind]
+    if activity.speed is not None:
+        return "Stop test: coming to rest" if activity.asked else "Stop test: gathering speed"
+    return "Link-loss test: the drive is told nothing" if activity.asked else "Link-loss test: moving slowly"
 
 
 def _tracking(mind: Mind, tracking: Tracking) -> str:

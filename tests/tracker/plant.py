@@ -76,7 +76,7 @@ class Plant:
         )
         done = self.controller.tick(seen)
         self.told = done.command
-        if not self.cut:
+        if not self.cut and not self.controller.is_silent:
             self.drive.obey(done.command)
         self.events += done.events
         return list(done.events)

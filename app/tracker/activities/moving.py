@@ -2,6 +2,7 @@
 
 from math import isfinite
 
+from app.tracker.activities import proving
 from app.tracker.activity import HOLDING, AxisPair, MoveKind, Moving
 from app.tracker.axes import Axis
 from app.tracker.commands import Move, Step
@@ -51,6 +52,7 @@ def step(mind: Mind, moving: Moving, feedback: Feedback) -> Turn:
     if arrived(run.target, feedback, mind.config.in_position_deg):
         mind.activity = HOLDING
         mind.say(EventKind.MOVE_ENDED, "The panel is in position.", outcome="in_position", move=moving.kind)
+        proving.arrived(mind, moving, feedback)
         if at_orientation(mind, feedback):
             confirm_mode(mind, moving.actor)
         return Turn(HOLDING)
