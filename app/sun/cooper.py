@@ -17,8 +17,8 @@ MINUTES_A_RADIAN = 229.18
 
 
 def declination(n: T, trig: Trigonometry[T]) -> T:
-    """Return the declination on day n of the year (eq 3; 0.9863 is 360/365), degrees."""
-    return 23.45 * trig.sin((360.0 / 365.0) * (284.0 + n) * PER_DEGREE)
+    """Return the declination on day n of the year (eq 3; its 0.9863 is 360/365 rounded), degrees."""
+    return 23.45 * trig.sin(0.9863 * (284.0 + n) * PER_DEGREE)
 
 
 def spencer_equation_of_time(n: T, trig: Trigonometry[T]) -> T:

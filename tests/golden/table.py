@@ -28,3 +28,9 @@ def _row(row: dict[str, str]) -> GoldenRow:
     values = {key: float(text) for key, text in row.items() if key not in ("case", "utc")}
     at = datetime.fromisoformat(row["utc"] + "+00:00")
     return GoldenRow(row["case"], at, values["lat"], values["lon"], values)
+
+
+def numbers(name: str) -> list[dict[str, float]]:
+    """Return the rows of a table that holds nothing but numbers."""
+    with (Path(__file__).parent / name).open(newline="") as file:
+        return [{key: float(text) for key, text in row.items()} for row in csv.DictReader(file)]

@@ -1,0 +1,54 @@
+"""NREL SPA by pvlib: golden values, delta T, and what happens without pvlib."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from app.sun import koblick, spa
+from app.sun.trigonometry import SCALAR
+from tests.golden.table import GoldenRow, golden
+
+ROWS = golden("spa_skyfield.csv")
+cases = pytest.mark.parametrize("row", ROWS, ids=[row.case for row in ROWS])
+KOBLICK = {row.case: row for row in golden("koblick.csv")}
+
+
+@cases
+def test_spa_is_that_of_the_golden_table(row: GoldenRow) -> None:
+    azimuth, elevation = spa.position_of_one(row.at.timestamp(), row.latitude_deg, row.longitude_deg)
+    level = np.cos(np.radians(elevation))
+    assert azimuth * level == pytest.approx(row.values["spa_az"] * level, abs=2e-4)
+    assert elevation == pytest.approx(row.values["spa_el_true"], abs=2e-4)
+
+
+def test_delta_t_is_measured_interpolated_and_held() -> None:
+    at = np.array([946_728_000.0, 1_104_580_800.0, 1_782_000_000.0, 4_000_000_000.0])
+    assert spa.delta_t_s(at) == pytest.approx([63.8, 64.7, 69.1, 69.1], abs=0.05)
+
+
+def test_without_pvlib_it_says_what_to_do() -> None:
+    with pytest.raises(spa.AlgorithmMissing, match="install it"):
+        spa._solar_position("no_such_package_at_all")
+
+
+def test_neither_pvlib_nor_pandas_is_loaded_for_it() -> None:
+    asked = (
+        "import sys; from app.sun import spa; spa.position_of_one(1.7e9, 41.0, 36.0); "
+        "print([name for name in ('pvlib', 'pandas') if name in sys.modules])"
+    )
+    told = subprocess.run(
+        [sys.executable, "-c", asked], capture_output=True, text=True, check=True, timeout=30
+    )
+    assert told.stdout.strip() == "[]"
+
+
+@cases
+def test_parallax_lowers_koblicks_sun_by_its_own_angle(row: GoldenRow) -> None:
+    instant = (row.at.timestamp(), row.latitude_deg, row.longitude_deg, SCALAR)
+    _, plain = koblick.position(*instant)
+    _, lowered = koblick.position_with_parallax(*instant)
+    distance_au = KOBLICK[row.case].values["r"]
+    expected = 8.794 / 3600.0 / distance_au * np.cos(np.radians(plain))
+    assert plain - lowered == pytest.approx(expected, abs=1e-8)
