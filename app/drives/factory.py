@@ -5,7 +5,7 @@ from typing import assert_never
 from urllib.parse import quote
 
 from app.clock import Clock
-from app.drives.drive import Drive
+from app.drives.drive import Drive, DriveError
 from app.drives.plc import PlcDrive
 from app.drives.profile import Adapter, load_profile
 from app.drives.simulated import SimulatedDrive
@@ -27,6 +27,8 @@ def make_drive(config: TrackerConfig, clock: Clock, data_dir: Path | None) -> Dr
             return SimulatedDrive(config, clock, memory=memory)
         case DriveKind.MODBUS_TCP:
             return _modbus(config, clock)
+        case DriveKind.MODBUS_RTU | DriveKind.MODBUS_RTU_OVER_TCP:
+            raise DriveError(f"A drive on {config.drive.kind} cannot be reached by this version.")
         case _ as never:
             assert_never(never)
 

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable
 from math import isfinite
+from typing import assert_never
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 from app.tracker.axes import AxisConfig
@@ -10,6 +11,8 @@ from app.tracker.config import DriveKind, TrackerConfig
 
 TRACKER_ID = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,15}")
 LONGEST_NAME = 60
+RTU_UNITS = (1, 247)
+"""Unit 0 is the broadcast, which nobody answers and which is never used."""
 RANGES = (
     ("deadband_deg", "The deadband", 0.02, 10.0),
     ("in_position_deg", "The tolerance for being in position", 0.01, 5.0),
@@ -83,11 +86,20 @@ def _reachable(axis: AxisConfig, azimuth_deg: float) -> bool:
 
 
 def _wrong_drive(config: TrackerConfig) -> Iterable[str]:
-    if config.drive.kind is not DriveKind.MODBUS_TCP:
-        return
-    if not config.drive.host.strip():
-        yield "Give the drive's host name or address."
-    if not 1 <= config.drive.port <= 65535:
-        yield "The drive's TCP port must lie between 1 and 65535."
-    if not 0 <= config.drive.unit <= 255:
-        yield "The drive's unit id must lie between 0 and 255."
+    drive = config.drive
+    match drive.kind:
+        case DriveKind.SIMULATED:
+            return
+        case DriveKind.MODBUS_TCP | DriveKind.MODBUS_RTU_OVER_TCP:
+            if not drive.host.strip():
+                yield "Give the drive's host name or address."
+            if not 1 <= drive.port <= 65535:
+                yield "The drive's TCP port must lie between 1 and 65535."
+        case DriveKind.MODBUS_RTU:
+            if not drive.serial.port.strip():
+                yield "Choose the serial port that the drive is connected to."
+        case _ as never:
+            assert_never(never)
+    low, high = (0, 255) if drive.kind is DriveKind.MODBUS_TCP else RTU_UNITS
+    if not all(low <= unit <= high for unit in drive.units):
+        yield f"The drive's unit id must lie between {low} and {high}."

@@ -113,19 +113,26 @@ def refuse_while_busy(model: SiteModel, loop: TrackerLoop) -> None:
 
 
 def _refuse_shared_drive(model: SiteModel, config: TrackerConfig) -> None:
-    if config.drive.kind is not DriveKind.MODBUS_TCP:
+    """Raise `CommandRejected` if another tracker has this drive, or its line with other settings."""
+    drive = config.drive
+    if drive.kind is DriveKind.SIMULATED:
         return
-    address = (config.drive.host, config.drive.port, config.drive.unit)
-    for other in model.loops.values():
-        drive = other.config.drive
-        if other.config.tracker_id == config.tracker_id or drive.kind is not DriveKind.MODBUS_TCP:
+    for loop in model.loops.values():
+        other, name = loop.config.drive, loop.config.tracker_id
+        if name == config.tracker_id or other.line != drive.line:
             continue
-        if (drive.host, drive.port, drive.unit) == address:
+        shared = set(other.units) & set(drive.units)
+        if shared:
+            where = f"{drive.line}, unit {min(shared)}"
+            raise CommandRejected(
+                Reason("drive_taken", f"{name} already uses the drive at {where}.", "Give another address.")
+            )
+        serial = drive.kind is DriveKind.MODBUS_RTU and other.serial != drive.serial
+        if other.kind is not drive.kind or serial:
             raise CommandRejected(
                 Reason(
-                    "drive_taken",
-                    f"{other.config.tracker_id} already uses the drive at {drive.host}:{drive.port}, "
-                    f"unit {drive.unit}.",
-                    "Give another address.",
+                    "line_differs",
+                    f"{name} uses the line {drive.line} with other settings.",
+                    "All drives on one line have the same baud rate, parity and stop bits.",
                 )
             )

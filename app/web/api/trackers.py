@@ -1,13 +1,14 @@
 """Trackers: what is set, what is, what can be done."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter
 from pydantic import Field, TypeAdapter, ValidationError
 
 from app.link.messages import AddTracker, ConfigureTracker, RemoveTracker, TrackerDetail, UnknownTracker
 from app.sun.position import Algorithm
-from app.tracker.config import DriveKind, NightBehaviour, TrackerConfig
+from app.tracker.axes import Axis
+from app.tracker.config import DriveKind, NightBehaviour, Parity, TrackerConfig
 from app.tracker.motion import DriveCapabilities
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Snapshot
@@ -20,6 +21,7 @@ router = APIRouter(prefix="/trackers", tags=["trackers"])
 
 _config: TypeAdapter[TrackerConfig] = TypeAdapter(TrackerConfig)
 Positive = Annotated[float, Field(gt=0, le=1000)]
+NULLABLE = ("unit", "steps_per_revolution")
 AxisAngle = Annotated[float, Field(ge=-720, le=720, description="Axis degrees, not wrapped.")]
 
 
@@ -34,6 +36,26 @@ class AxisChange(Input):
     jog_fast_dps: Positive | None = None
 
 
+class SerialChange(Input):
+    """A serial line; what is left out stays."""
+
+    port: str | None = Field(None, max_length=255, examples=["/dev/serial/by-id/usb-FTDI_USB-RS485"])
+    baud_rate: int | None = Field(None, ge=300, le=4_000_000, examples=[19200])
+    parity: Parity | None = None
+    stop_bits: Literal[1, 2] | None = None
+
+
+class AxisDriveChange(Input):
+    """How one axis hangs on its drive; what is left out stays, null takes the drive's or profile's value."""
+
+    unit: int | None = Field(None, ge=0, le=255, description="Modbus unit id; null: the drive's.")
+    steps_per_revolution: Annotated[float, Field(gt=0, lt=1e9)] | None = Field(
+        None, description="Of the motor; null: the profile's."
+    )
+    gear_ratio: float | None = Field(None, gt=0, lt=1e6, description="Motor revolutions a revolution.")
+    inverted: bool | None = Field(None, description="The motor turns the axis the other way.")
+
+
 class DriveChange(Input):
     """How the drive is reached; what is left out stays."""
 
@@ -42,6 +64,9 @@ class DriveChange(Input):
     host: str | None = Field(None, min_length=1, max_length=253, examples=["192.168.0.20"])
     port: int | None = Field(None, ge=1, le=65535, examples=[502])
     unit: int | None = Field(None, ge=0, le=255, description="Modbus unit id.")
+    serial: SerialChange | None = Field(None, description="For Modbus RTU.")
+    azimuth: AxisDriveChange | None = None
+    elevation: AxisDriveChange | None = None
 
 
 class OrientationIn(Input):
@@ -152,7 +177,7 @@ async def read_actions(tracker_id: TrackerId, site: SnapshotDep) -> list[ActionS
 
 
 def _changed(config: TrackerConfig, change: TrackerChange) -> TrackerConfig:
-    given = change.model_dump(mode="json", exclude_none=True)
+    given = _merged(change.model_dump(mode="json", exclude_none=True), _back_to_default(change))
     try:
         return _config.validate_python(_merged(_config.dump_python(config, mode="json"), given))
     except ValidationError as error:
@@ -160,7 +185,21 @@ def _changed(config: TrackerConfig, change: TrackerChange) -> TrackerConfig:
         raise NotAcceptable(" ".join(sentences)) from error
 
 
+def _back_to_default(change: TrackerChange) -> dict[str, Any]:
+    """Return what was given as null on purpose: an axis's own unit and steps that shall count no more."""
+    axes = {} if change.drive is None else {axis: getattr(change.drive, axis) for axis in Axis}
+    nulls = {
+        str(axis): {
+            name: None for name in NULLABLE if name in one.model_fields_set and getattr(one, name) is None
+        }
+        for axis, one in axes.items()
+        if one is not None
+    }
+    return {"drive": nulls} if nulls else {}
+
+
 def _merged(old: dict[str, Any], new: dict[str, Any]) -> dict[str, Any]:
     return old | {
-        name: _merged(old[name], value) if isinstance(value, dict) else value for name, value in new.items()
+        name: _merged(old.get(name, {}), value) if isinstance(value, dict) else value
+        for name, value in new.items()
     }

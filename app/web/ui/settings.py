@@ -125,7 +125,7 @@ def _read(typed: Typed, config: TrackerConfig) -> TrackerConfig | None:
     """Return the typed configuration, None while anything in it is wrong."""
     name = typed.read("name", _name, "")
     azimuth, elevation = _axis(typed, "azimuth", config.azimuth), _axis(typed, "elevation", config.elevation)
-    drive = _drive(typed)
+    drive = _drive(typed, config.drive)
     park = Orientation(
         typed.number("park_azimuth", "Park azimuth", 0, 360),
         typed.number("park_elevation", "Park elevation", 0, 90),
@@ -184,7 +184,7 @@ def _axis(typed: Typed, name: str, stored: AxisConfig) -> AxisConfig:
         return stored
 
 
-def _drive(typed: Typed) -> DriveConfig:
+def _drive(typed: Typed, stored: DriveConfig) -> DriveConfig:
     kind = typed.read("drive", _drive_kind, DriveKind.SIMULATED)
     port = typed.whole("port", "Port", 1, 65535)
     unit = typed.whole("unit", "Unit", 0, 255)
@@ -193,7 +193,7 @@ def _drive(typed: Typed) -> DriveConfig:
         typed.errors["host"] = "Host: give the address of the drive, such as 192.168.1.20."
     if not profile:
         typed.errors["profile"] = "Profile: give the name of the drive's profile, such as simulated-plc."
-    return DriveConfig(kind, profile, host, port, unit)
+    return replace(stored, kind=kind, profile=profile, host=host, port=port, unit=unit)
 
 
 def _drive_kind(text: str) -> DriveKind:
