@@ -1,12 +1,14 @@
-"""Simulations run in a process of their own, so that they delay neither pages nor the machine."""
+"""Simulations and surveys run in a process of their own, so that they delay neither pages nor the machine."""
 
 import asyncio
 import multiprocessing
 import os
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from datetime import datetime, timedelta
+from typing import TypeVar
 
 from app.show.simulate import encoded, simulate
 from app.sun.position import Location
@@ -19,9 +21,11 @@ from app.web.errors import Busy
 MOST_AT_ONCE = 4
 LONGEST = timedelta(seconds=120)
 KINDLY = 10
-BUSY = "Other simulations are under way; try again when one of them has ended."
-TOO_LONG = "The simulation took too long and was given up; take a shorter span or a longer step."
+BUSY = "Other calculations are under way; try again when one of them has ended."
+TOO_LONG = "The calculation took too long and was given up; take a shorter span or a longer step."
 Simulated = tuple[RecordingInfo, tuple[str, ...]]
+Asked = TypeVar("Asked")
+Found = TypeVar("Found")
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,23 +53,27 @@ class Simulations:
 
     async def run(self, request: SimulationRequest) -> Simulated:
         """Return the recording and its encoded frames; raise `Busy`, or `ValueError` for what cannot be."""
+        return await self.work_out(simulated, request)
+
+    async def work_out(self, function: Callable[[Asked], Found], asked: Asked) -> Found:
+        """Return what a function of a module makes of its argument, in the worker; raise `Busy`."""
         if self._waiting >= MOST_AT_ONCE:
             raise Busy(BUSY)
         self._waiting += 1
         try:
             async with asyncio.timeout(LONGEST.total_seconds()):
-                return await self._work(request)
+                return await self._work(function, asked)
         except (TimeoutError, BrokenProcessPool) as error:
             self.close()
             raise Busy(TOO_LONG) from error
         finally:
             self._waiting -= 1
 
-    async def _work(self, request: SimulationRequest) -> Simulated:
+    async def _work(self, function: Callable[[Asked], Found], asked: Asked) -> Found:
         if self._pool is None:
             context = multiprocessing.get_context("spawn")
             self._pool = ProcessPoolExecutor(1, mp_context=context, initializer=os.nice, initargs=(KINDLY,))
-        return await asyncio.get_running_loop().run_in_executor(self._pool, simulated, request)
+        return await asyncio.get_running_loop().run_in_executor(self._pool, function, asked)
 
     def close(self) -> None:
         """Give up what is under way and end the worker."""
