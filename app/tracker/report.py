@@ -11,10 +11,11 @@ from app.tracker.conditions import Action, unmet
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.mind import Mind
 from app.tracker.mode import Mode
-from app.tracker.motion import AxisFeedback, Feedback
+from app.tracker.motion import AxisFeedback, Feedback, Position
 from app.tracker.mount import sky
+from app.tracker.progress import step_progress
 from app.tracker.reason import Reason
-from app.tracker.runs import arrived, at_rest
+from app.tracker.runs import arrived, at_rest, close_to
 from app.tracker.snapshot import ActivityName, AxisState, Pair, ShowProgress, Snapshot
 from app.tracker.words import activity_text
 
@@ -54,6 +55,7 @@ def snapshot(mind: Mind, at: datetime) -> Snapshot:
         waiting=_waiting(mind),
         notices=_notices(mind),
         show=_show(mind.activity) if isinstance(mind.activity, Showing) else None,
+        program=step_progress(mind),
         actions={action.value: unmet(mind, action) for action in Action},
     )
 
@@ -111,7 +113,11 @@ def _following_error_deg(mind: Mind) -> float | None:
 
 
 def _in_position(mind: Mind, feedback: Feedback | None) -> bool:
-    if feedback is None or not at_rest(feedback):
+    if feedback is None:
+        return False
+    if isinstance(mind.activity, Tracking) and isinstance(mind.command.azimuth, Position):
+        return mind.activity.run is None and close_to(mind.setpoint, feedback, mind.config.in_position_deg)
+    if not at_rest(feedback):
         return False
     if isinstance(mind.activity, Tracking):
         return mind.activity.run is None and mind.activity.phase is not TrackPhase.PAUSED

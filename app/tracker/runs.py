@@ -33,6 +33,13 @@ def arrived(target: AxisPair, feedback: Feedback, tolerance_deg: float) -> bool:
     )
 
 
+def close_to(target: AxisPair, feedback: Feedback, tolerance_deg: float) -> bool:
+    """Return whether every axis that is meant is within the tolerance of its target, moving or not."""
+    return _near(target.azimuth_deg, feedback.azimuth, tolerance_deg) and _near(
+        target.elevation_deg, feedback.elevation, tolerance_deg
+    )
+
+
 def at_rest(feedback: Feedback) -> bool:
     """Return whether neither axis moves."""
     return not (feedback.azimuth.moving or feedback.elevation.moving or feedback.homing)
@@ -47,6 +54,8 @@ def _go(target_deg: float | None, speed_dps: float) -> AxisCommand:
 
 
 def _stands(target_deg: float | None, axis: AxisFeedback, tolerance_deg: float) -> bool:
-    if target_deg is None:
-        return True
-    return not axis.moving and abs(axis.position_deg - target_deg) <= tolerance_deg
+    return target_deg is None or (not axis.moving and _near(target_deg, axis, tolerance_deg))
+
+
+def _near(target_deg: float | None, axis: AxisFeedback, tolerance_deg: float) -> bool:
+    return target_deg is None or abs(axis.position_deg - target_deg) <= tolerance_deg

@@ -71,6 +71,22 @@ class ShowProgress:
 
 
 @dataclass(frozen=True, slots=True)
+class StepProgress:
+    """The step of a program that is held, counted from one, and when the next comes, hours of the day."""
+
+    name: str
+    time_base: str
+    frame: str
+    hour: float
+    step: int
+    steps: int
+    from_h: float
+    next_h: float | None
+    first_deg: float | None
+    second_deg: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class Snapshot:
     """One tracker at one tick. Whatever is not known is None, never an old value.
 
@@ -107,6 +123,7 @@ class Snapshot:
     waiting: tuple[Reason, ...] = ()
     notices: tuple[Reason, ...] = ()
     show: ShowProgress | None = None
+    program: StepProgress | None = None
     actions: dict[str, tuple[Reason, ...]] = field(default_factory=dict)
 
 

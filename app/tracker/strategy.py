@@ -44,7 +44,7 @@ class EncoderDeadband:
     def __post_init__(self) -> None:
         if not 1 <= self.counts_per_turn <= 10_000_000:
             raise ValueError("An encoder has between 1 and 10,000,000 counts a turn.")
-        if not 1 <= self.counts or not 0.02 <= self.band_deg <= 10.0:
+        if self.counts < 1 or not 0.02 <= self.band_deg <= 10.0:
             raise ValueError(
                 "The deadband in counts must be worth between 0.02 and 10 degrees, not "
                 f"{self.band_deg:g} (360 degrees times counts, divided by counts a turn)."
@@ -58,7 +58,7 @@ class EncoderDeadband:
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """A move every so many minutes, counted from midnight UTC: to the sun in the interval's middle, or now."""
+    """A move every so many minutes from midnight UTC on: to the sun in the interval's middle, or now."""
 
     minutes: int = 10
     aim: IntervalAim = IntervalAim.MIDDLE
@@ -88,8 +88,8 @@ class HybridConfig:
     """How photo-sensor pairs correct the computed position; off unless `enabled`.
 
     While both sensors of a pair see at least `threshold_wm2`, the axis's correction changes by `gain_dps`
-    degrees a second times (higher - lower) / (higher + lower), within +-`bound_deg`. In less light it falls to
-    zero with the time constant `decay_s`, or stays as it is where that is 0.
+    degrees a second times (higher - lower) / (higher + lower), within +-`bound_deg`. In less light it falls
+    to zero with the time constant `decay_s`, or stays as it is where that is 0.
     """
 
     enabled: bool = False

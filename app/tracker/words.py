@@ -3,7 +3,7 @@
 from typing import assert_never
 
 from app.angles import separation_deg
-from app.tracker.activities.tracking import SUN_DPS, trigger_deg
+from app.tracker.activities.tracking import SUN_DPS
 from app.tracker.activity import (
     Activity,
     Faulted,
@@ -22,7 +22,11 @@ from app.tracker.activity import (
 from app.tracker.axes import Axis
 from app.tracker.mind import Mind
 from app.tracker.mount import sky
+from app.tracker.programs.stepped import clock_text
+from app.tracker.progress import step_progress
+from app.tracker.pursuit import trigger_deg
 from app.tracker.snapshot import ShowPhase
+from app.tracker.strategy import Continuous, Deadband, EncoderDeadband, Interval, Stepped
 
 _JOG = {
     (Axis.AZIMUTH, 1): "azimuth east (clockwise)",
@@ -105,6 +109,22 @@ def _tracking(mind: Mind, tracking: Tracking) -> str:
 
 
 def _next_move(mind: Mind) -> str:
+    """Return when the panel will have to follow, by the tracker's strategy."""
+    match mind.config.strategy:
+        case Continuous():
+            return "following the sun without a stop"
+        case Deadband():
+            return _next_run(mind)
+        case EncoderDeadband(counts):
+            return f"standing until an axis is off by {counts} counts"
+        case Interval(minutes):
+            return f"standing until the next move, one every {minutes} min"
+        case Stepped():
+            return _held_step(mind)
+    assert_never(mind.config.strategy)
+
+
+def _next_run(mind: Mind) -> str:
     """Return when the sun will have moved so far that the panel has to follow."""
     feedback, target = mind.feedback, mind.target
     if feedback is None or target is None:
@@ -114,3 +134,11 @@ def _next_move(mind: Mind) -> str:
     off_deg = separation_deg(faced.azimuth_deg, faced.elevation_deg, target.azimuth_deg, target.elevation_deg)
     minutes = (trigger_deg(mind.config) - off_deg) / SUN_DPS / 60.0
     return f"next move in about {round(minutes)} min" if minutes >= 1.0 else "next move within a minute"
+
+
+def _held_step(mind: Mind) -> str:
+    held = step_progress(mind)
+    if held is None:
+        return "standing in the place of its program"
+    text = f"holding step {held.step} of {held.steps} of {held.name}"
+    return text if held.next_h is None else f"{text} until {clock_text(held.next_h)} {held.time_base} time"

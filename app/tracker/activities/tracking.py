@@ -1,7 +1,7 @@
-"""Following the selected mode: run to zero whenever the panel is about to leave the deadband.
+"""Following the selected mode by the tracker's strategy.
 
-The target is judged against the deadband less a margin, so that the panel stays *within* the deadband: the
-sun moves 0.0042 degrees a second, and a run takes a second or two.
+With a deadband the target is judged against the deadband less a margin, so that the panel stays *within* the
+deadband: the sun moves 0.0042 degrees a second, and a run takes a second or two.
 """
 
 from math import cos, radians, sin
@@ -9,25 +9,32 @@ from typing import assert_never
 
 from app.sun.position import Location, SunPosition
 from app.tracker.activities.moving import not_arrived
-from app.tracker.activity import AxisPair, Run, Tracking, TrackPhase
+from app.tracker.activity import Tracking, TrackPhase
 from app.tracker.conditions import Action, demand, unmet
-from app.tracker.config import NightBehaviour, Orientation, TrackerConfig
+from app.tracker.config import NightBehaviour, TrackerConfig
 from app.tracker.mind import HALTED, Mind, Turn
 from app.tracker.mode import Mode
 from app.tracker.motion import Feedback
-from app.tracker.mount import AxisTarget, aim, mode_direction, needs_move
 from app.tracker.observation import Observation
+from app.tracker.programs.schedule import Aimed, Followed, Moment, aimed, scheduled, scheduled_dawn
+from app.tracker.pursuit import next_run, pursue, widened
 from app.tracker.reason import Reason
-from app.tracker.runs import arrived, new_run
+from app.tracker.runs import arrived
 from app.tracker.snapshot import EventKind
+from app.tracker.strategy import (
+    DEADBAND,
+    Continuous,
+    Deadband,
+    EncoderDeadband,
+    Interval,
+    Stepped,
+    Strategy,
+)
 from app.tracker.transitions import end_move, fail, interrupt
 
 SUN_DPS = 15.0 / 3600.0
 TWILIGHT_DEG = -1.0
 """The sun is followed along the horizon from here on, so that the panel faces it when it rises."""
-MARGIN_SHARE = 0.2
-MARGIN_DEG = 0.1
-UNWIND_DEG = 180.0
 
 TRACKING = {phase: Tracking(phase) for phase in TrackPhase}
 
@@ -63,27 +70,29 @@ def step(mind: Mind, tracking: Tracking, feedback: Feedback, seen: Observation) 
     sun, mode = seen.sun, mind.memory.mode
     if not seen.clock_trusted:
         return Turn(_paused(mind, tracking), HALTED, None, sun)
-    if sun is None or mode is None:
+    if sun is None or mode is None or seen.location is None:
         interrupt(mind, _SUN_UNKNOWN)
         return Turn(mind.activity, HALTED, None, sun)
-    config, pointing, held = mind.config, mind.memory.pointing, mind.memory.orientation
-    night = mode is not Mode.FIXED and sun_height_deg(config, sun) < TWILIGHT_DEG
+    followed = Followed(mind.config, mind.memory.pointing, mode, mind.memory.orientation)
+    moment = Moment(seen.site_time, sun, seen.location)
+    strategy = DEADBAND if mode is Mode.FIXED else mind.config.strategy
+    night = mode is not Mode.FIXED and sun_height_deg(mind.config, sun) < TWILIGHT_DEG
     if night:
-        direction = _night_direction(config, mode, held, seen.dawn)
+        wanted = _night_place(strategy, followed, moment, seen)
     else:
-        direction = mode_direction(mode, held, sun, refraction=config.refraction)
+        wanted = _day_place(strategy, followed, moment, feedback.azimuth.position_deg)
     run = tracking.run
-    if run is not None and not arrived(run.target, feedback, config.in_position_deg):
-        return _go_on(mind, tracking, run, direction, sun)
-    if direction is None:
+    if run is not None and not arrived(run.target, feedback, mind.config.in_position_deg):
+        return _go_on(mind, tracking, strategy, feedback, wanted, sun)
+    if wanted is None:
         return Turn(TRACKING[TrackPhase.NIGHT], HALTED, None, sun)
-    near_deg = _night_near_deg(config, seen) if night else feedback.azimuth.position_deg
-    target = aim(config, pointing, direction, near_deg)
-    phase = TrackPhase.NIGHT if night else _phase(config, mode, direction, target)
-    if not off_target(config, feedback, target):
-        return Turn(TRACKING[phase], HALTED, direction, sun)
-    run = new_run(config, feedback, AxisPair(target.azimuth_deg, target.elevation_deg), mind.now)
-    return Turn(Tracking(phase, run), run.command, direction, sun)
+    phase = TrackPhase.NIGHT if night else _phase(mind.config, mode, wanted)
+    if isinstance(strategy, Continuous) and not night:
+        return Turn(TRACKING[phase], pursue(mind.config, wanted.target), wanted.direction, sun)
+    run = next_run(strategy, mind.config, feedback, wanted.target, mind.now)
+    if run is None:
+        return Turn(TRACKING[phase], HALTED, wanted.direction, sun)
+    return Turn(Tracking(phase, run), run.command, wanted.direction, sun)
 
 
 def _paused(mind: Mind, tracking: Tracking) -> Tracking:
@@ -93,20 +102,31 @@ def _paused(mind: Mind, tracking: Tracking) -> Tracking:
     return TRACKING[TrackPhase.PAUSED]
 
 
-def _night_direction(
-    config: TrackerConfig, mode: Mode, held: Orientation, dawn: SunPosition | None
-) -> Orientation | None:
-    """Return where the panel waits for the sun, in the sky; None: wherever it is."""
-    match config.night:
+def _day_place(strategy: Strategy, followed: Followed, moment: Moment, near_deg: float) -> Aimed:
+    """Return where the panel shall face while the sun is up."""
+    match strategy:
+        case Interval() | Stepped():
+            return scheduled(strategy, followed, moment, near_deg)
+        case Continuous() | Deadband() | EncoderDeadband():
+            return aimed(followed, followed.direction(moment.sun), near_deg)
+    assert_never(strategy)
+
+
+def _night_place(strategy: Strategy, followed: Followed, moment: Moment, seen: Observation) -> Aimed | None:
+    """Return where the panel waits for the sun; None: wherever it is."""
+    near_deg = _night_near_deg(followed.config, seen)
+    match followed.config.night:
         case NightBehaviour.HOLD:
             return None
         case NightBehaviour.PARK:
-            return config.park
+            return aimed(followed, followed.config.park, near_deg)
         case NightBehaviour.SUNRISE:
-            if dawn is None:
+            if seen.dawn is None:
                 return None
-            return mode_direction(mode, held, dawn, refraction=config.refraction)
-    assert_never(config.night)
+            if isinstance(strategy, Interval | Stepped):
+                return scheduled_dawn(strategy, followed, moment, seen.dawn, near_deg)
+            return aimed(followed, followed.direction(seen.dawn), near_deg)
+    assert_never(followed.config.night)
 
 
 def sun_height_deg(config: TrackerConfig, sun: SunPosition) -> float:
@@ -114,33 +134,32 @@ def sun_height_deg(config: TrackerConfig, sun: SunPosition) -> float:
     return sun.apparent_elevation_deg if config.refraction else sun.elevation_deg
 
 
-def trigger_deg(config: TrackerConfig) -> float:
-    """Return the error at which a run begins: the deadband less a margin."""
-    return config.deadband_deg - min(MARGIN_DEG, MARGIN_SHARE * config.deadband_deg)
-
-
-def off_target(config: TrackerConfig, feedback: Feedback, target: AxisTarget) -> bool:
-    """Return whether the panel is about to leave the deadband, or stands a turn of the cable away."""
-    measured = Orientation(feedback.azimuth.position_deg, feedback.elevation.position_deg)
-    if abs(measured.azimuth_deg - target.azimuth_deg) > UNWIND_DEG:
-        return True
-    place = Orientation(target.azimuth_deg, target.elevation_deg)
-    return needs_move(config, measured, place, trigger_deg(config))
-
-
-def _go_on(mind: Mind, tracking: Tracking, run: Run, target: Orientation | None, sun: SunPosition) -> Turn:
-    if mind.now >= run.until:
+def _go_on(
+    mind: Mind,
+    tracking: Tracking,
+    strategy: Strategy,
+    feedback: Feedback,
+    wanted: Aimed | None,
+    sun: SunPosition,
+) -> Turn:
+    """Go on with the run under way; one that does not arrive in time is a fault."""
+    direction = None if wanted is None else wanted.direction
+    if tracking.run is None or mind.now >= tracking.run.until:
         fail(mind, not_arrived(mind))
-        return Turn(mind.activity, HALTED, target, sun)
-    return Turn(tracking, run.command, target, sun)
+        return Turn(mind.activity, HALTED, direction, sun)
+    run = tracking.run
+    if wanted is not None:
+        run = widened(run, strategy, mind.config, feedback, wanted.target, mind.now)
+    same = run is tracking.run
+    return Turn(tracking if same else Tracking(tracking.phase, run), run.command, direction, sun)
 
 
-def _phase(config: TrackerConfig, mode: Mode, direction: Orientation, target: AxisTarget) -> TrackPhase:
+def _phase(config: TrackerConfig, mode: Mode, wanted: Aimed) -> TrackPhase:
     if mode is Mode.FIXED:
         return TrackPhase.FIXED
-    if target.limited:
+    if wanted.target.limited:
         return TrackPhase.LIMITED
-    if config.azimuth.speed_dps * cos(radians(direction.elevation_deg)) < SUN_DPS:
+    if config.azimuth.speed_dps * cos(radians(wanted.direction.elevation_deg)) < SUN_DPS:
         return TrackPhase.KEYHOLE
     return TrackPhase.FOLLOWING
 

@@ -10,11 +10,15 @@ from app.sun.position import Algorithm, Location
 from app.tracker.config import Orientation
 from app.tracker.mode import Mode
 from app.tracker.reason import Reason
+from app.tracker.strategy import Schedule
 
 
 @dataclass(frozen=True, slots=True)
 class ShowPlan:
-    """Sun time from `begin_at` to `end_at`, played in `duration` of the drive's time. Complete in itself."""
+    """Sun time from `begin_at` to `end_at`, played in `duration` of the drive's time. Complete in itself.
+
+    With a `schedule` the panel stands still between its moves; without one it follows the sun smoothly.
+    """
 
     show_id: str
     begin_at: datetime
@@ -25,6 +29,7 @@ class ShowPlan:
     orientation: Orientation = Orientation(0.0, 0.0)
     algorithm: Algorithm = Algorithm.PSA
     refraction: bool = True
+    schedule: Schedule | None = None
 
     @property
     def acceleration(self) -> float:

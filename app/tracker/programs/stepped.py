@@ -1,9 +1,9 @@
 """A step program: angles to hold from given times of the day on, as data.
 
-Times are hours of the day: solar time (12 when the sun crosses the meridian, as C. Alexandru counts), or clock
-time at a fixed distance from UTC, without summer time. Angles are degrees of the program's frame: a direction
-of the sky by azimuth (clockwise from north) and elevation, the same direction by hour angle (positive after
-noon, so that it grows with the time) and declination, or the angles of the mount's own two axes.
+Times are hours of the day: solar time (12 when the sun crosses the meridian, as C. Alexandru counts), or
+clock time at a fixed distance from UTC, without summer time. Angles are degrees of the program's frame: a
+direction of the sky by azimuth (clockwise from north) and elevation, the same direction by hour angle
+(positive after noon, so that it grows with the time) and declination, or the mount's own two axis angles.
 """
 
 from bisect import bisect_right
@@ -73,6 +73,11 @@ class StepProgram:
         wrong = program_errors(self)
         if wrong:
             raise ValueError(" ".join(wrong))
+
+    @property
+    def complete(self) -> bool:
+        """Return whether every step gives both angles."""
+        return all(None not in (step.first_deg, step.second_deg) for step in self.steps)
 
     def index_at(self, hour: float) -> int:
         """Return which step is held at a time of the day, hours; before the first step it is the first."""
@@ -149,3 +154,9 @@ def step_errors(step: ProgramStep, frame: StepFrame) -> tuple[str, ...]:
         if angle_deg is not None and not (isfinite(angle_deg) and low_deg <= angle_deg <= high_deg):
             found.append(f"its {name} lies between {low_deg:g} and {high_deg:g} degrees, not {angle_deg:g}.")
     return tuple(found)
+
+
+def clock_text(hour: float) -> str:
+    """Return a time of the day in hours as a clock shows it, to the minute: 7.88 is 07:53."""
+    minutes = round(hour * 60.0)
+    return f"{minutes // 60:02d}:{minutes % 60:02d}"

@@ -1,0 +1,46 @@
+"""How far a tracker is in its step program."""
+
+from app.tracker.activity import Showing, Tracking
+from app.tracker.mind import Mind
+from app.tracker.programs.schedule import Moment, hour_of
+from app.tracker.programs.stepped import StepProgram
+from app.tracker.snapshot import StepProgress
+from app.tracker.strategy import Stepped
+
+
+def step_progress(mind: Mind) -> StepProgress | None:
+    """Return which step is held and when the next one comes; None while no program is followed."""
+    found = _followed(mind)
+    if found is None:
+        return None
+    program, moment = found
+    hour = hour_of(program, moment)
+    index = program.index_at(hour)
+    step = program.steps[index]
+    return StepProgress(
+        name=program.name,
+        time_base=program.time_base.value,
+        frame=program.frame.value,
+        hour=hour,
+        step=index + 1,
+        steps=len(program.steps),
+        from_h=step.from_h,
+        next_h=program.next_h(hour),
+        first_deg=step.first_deg,
+        second_deg=step.second_deg,
+    )
+
+
+def _followed(mind: Mind) -> tuple[StepProgram, Moment] | None:
+    sun, seen = mind.sun, mind.seen
+    strategy = mind.config.strategy
+    if sun is None or seen is None or seen.location is None:
+        return None
+    if isinstance(mind.activity, Tracking) and isinstance(strategy, Stepped):
+        return strategy.program, Moment(seen.site_time, sun, seen.location)
+    if isinstance(mind.activity, Showing):
+        plan = mind.activity.course.plan
+        if isinstance(plan.schedule, Stepped):
+            at = plan.sun_time(mind.activity.elapsed)
+            return plan.schedule.program, Moment(at, sun, plan.location)
+    return None

@@ -1,0 +1,119 @@
+"""When a tracking strategy moves which axis: the next motion towards axis angles, if any is due."""
+
+from dataclasses import replace
+from datetime import datetime
+from typing import assert_never
+
+from app.tracker.activity import AxisPair, Run
+from app.tracker.axes import AxisConfig
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.motion import AxisCommand, AxisFeedback, DriveCommand, Feedback, Position
+from app.tracker.mount import AxisTarget, needs_move
+from app.tracker.runs import new_run
+from app.tracker.strategy import Continuous, Deadband, EncoderDeadband, Interval, Stepped, Strategy
+
+MARGIN_SHARE = 0.2
+MARGIN_DEG = 0.1
+UNWIND_DEG = 180.0
+FULL_TURN_DEG = 360.0
+
+
+def trigger_deg(config: TrackerConfig) -> float:
+    """Return the error at which a run of the deadband begins: the deadband less a margin."""
+    return config.deadband_deg - min(MARGIN_DEG, MARGIN_SHARE * config.deadband_deg)
+
+
+def next_run(
+    strategy: Strategy, config: TrackerConfig, feedback: Feedback, target: AxisTarget, now: datetime
+) -> Run | None:
+    """Return the run that a strategy begins now; None while the panel stands where the strategy lets it."""
+    pair = _due(strategy, config, feedback, target)
+    return None if pair == _NONE else new_run(config, feedback, pair, now)
+
+
+def widened(
+    run: Run,
+    strategy: Strategy,
+    config: TrackerConfig,
+    feedback: Feedback,
+    target: AxisTarget,
+    now: datetime,
+) -> Run:
+    """Return a run under way with the axis that has become due meanwhile: in counts axes are independent."""
+    if not isinstance(strategy, EncoderDeadband) or None not in _both(run.target):
+        return run
+    due = _due(strategy, config, feedback, target)
+    pair = AxisPair(
+        due.azimuth_deg if run.target.azimuth_deg is None else run.target.azimuth_deg,
+        due.elevation_deg if run.target.elevation_deg is None else run.target.elevation_deg,
+    )
+    if pair == run.target:
+        return run
+    wider = new_run(config, feedback, pair, now)
+    return replace(wider, until=max(wider.until, run.until))
+
+
+def pursue(config: TrackerConfig, target: AxisTarget) -> DriveCommand:
+    """Return the command of one tick that has both axes follow the target without a stop."""
+    return DriveCommand(
+        _follow(config.azimuth, target.azimuth_deg), _follow(config.elevation, target.elevation_deg)
+    )
+
+
+def _follow(axis: AxisConfig, target_deg: float) -> AxisCommand:
+    return Position(target_deg, axis.speed_dps)
+
+
+def _due(strategy: Strategy, config: TrackerConfig, feedback: Feedback, target: AxisTarget) -> AxisPair:
+    """Return the target of each axis that has to move now, None for one that may stand."""
+    match strategy:
+        case Deadband():
+            return _both_if(_off_target(config, feedback, target), target)
+        case EncoderDeadband():
+            return AxisPair(
+                _counted(strategy, config.azimuth, feedback.azimuth, target.azimuth_deg),
+                _counted(strategy, config.elevation, feedback.elevation, target.elevation_deg),
+            )
+        case Stepped(program) if not program.complete:
+            return _both_if(_off_target(config, feedback, target), target)
+        case Continuous() | Interval() | Stepped():
+            return _both_if(_off_place(config, feedback, target), target)
+    assert_never(strategy)
+
+
+def _both_if(due: bool, target: AxisTarget) -> AxisPair:
+    return AxisPair(target.azimuth_deg, target.elevation_deg) if due else _NONE
+
+
+def _off_target(config: TrackerConfig, feedback: Feedback, target: AxisTarget) -> bool:
+    """Return whether the panel is about to leave the deadband, or stands a turn of the cable away."""
+    measured = Orientation(feedback.azimuth.position_deg, feedback.elevation.position_deg)
+    if abs(measured.azimuth_deg - target.azimuth_deg) > UNWIND_DEG:
+        return True
+    place = Orientation(target.azimuth_deg, target.elevation_deg)
+    return needs_move(config, measured, place, trigger_deg(config))
+
+
+def _off_place(config: TrackerConfig, feedback: Feedback, target: AxisTarget) -> bool:
+    """Return whether an axis does not stand at its place."""
+    away_deg = max(
+        abs(feedback.azimuth.position_deg - target.azimuth_deg),
+        abs(feedback.elevation.position_deg - target.elevation_deg),
+    )
+    return away_deg > config.in_position_deg
+
+
+def _counted(
+    strategy: EncoderDeadband, axis: AxisConfig, seen: AxisFeedback, target_deg: float
+) -> float | None:
+    """Return the place, a whole count, to which an axis runs; None while it is off by too few counts."""
+    counts_per_deg = strategy.counts_per_turn / FULL_TURN_DEG
+    wanted, counted = round(target_deg * counts_per_deg), round(seen.position_deg * counts_per_deg)
+    return axis.clamp(wanted / counts_per_deg) if abs(wanted - counted) >= strategy.counts else None
+
+
+def _both(pair: AxisPair) -> tuple[float | None, float | None]:
+    return pair.azimuth_deg, pair.elevation_deg
+
+
+_NONE = AxisPair(None, None)
