@@ -1,16 +1,18 @@
 """The environment as one frozen object, read once by the mains and the command line."""
 
 import hashlib
+import ipaddress
 import os
 import tempfile
 import tomllib
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, ValidationError, field_validator
+from pydantic import Field, SecretStr, ValidationError, ValidationInfo, field_validator, model_validator
 from pydantic_settings import (
     BaseSettings,
     InitSettingsSource,
+    NoDecode,
     PydanticBaseSettingsSource,
     SettingsConfigDict,
 )
@@ -53,6 +55,45 @@ class Settings(BaseSettings):
     weather_stale_s: int = Field(
         300, ge=5, le=86400, description="A weather report older than this is shown as stale and not used."
     )
+    sunspec_port: int | None = Field(
+        None, ge=0, le=65535, description="TCP port of the SunSpec server; off unless set."
+    )
+    sunspec_host: str = Field("127.0.0.1", description="Address the SunSpec server listens on; loopback only.")
+    sunspec_unit: int = Field(1, ge=1, le=247, description="Modbus unit id that the SunSpec servers answer.")
+    sunspec_serial: str | None = Field(
+        None, description="Serial device of a SunSpec server over Modbus RTU; off unless set."
+    )
+    sunspec_baud: int = Field(19200, ge=1200, le=1_000_000, description="Its baud rate; 8 data bits.")
+    sunspec_parity: Literal["none", "even", "odd"] = Field("even", description="Its parity.")
+    sunspec_write_hosts: Annotated[tuple[str, ...], NoDecode] = Field(
+        (),
+        description="Addresses or networks that may write over SunSpec, separated by commas; `serial` is the "
+        "serial line. Nobody unless set.",
+    )
+    mqtt_host: str | None = Field(None, description="Host of the MQTT broker; off unless set.")
+    mqtt_port: int | None = Field(
+        None, ge=1, le=65535, description="Its port; default is 1883, with TLS 8883."
+    )
+    mqtt_topic: str = Field(
+        "heliopanel",
+        pattern=r"^[^+#/\s][^+#\s]{0,98}[^+#/\s]$",
+        description="First levels of every topic; another one for every machine on a broker.",
+    )
+    mqtt_client: str = Field(
+        "heliopanel", min_length=1, max_length=64, description="Client id, unique on the broker."
+    )
+    mqtt_username: str | None = Field(None, description="User at the broker.")
+    mqtt_password: SecretStr | None = Field(None, description="Its password.")
+    mqtt_tls: bool = Field(False, description="Speak TLS and check the broker's certificate.")
+    mqtt_ca_file: Path | None = Field(None, description="Certificates to trust instead of the system's.")
+    mqtt_cert_file: Path | None = Field(None, description="Own certificate, where the broker wants one.")
+    mqtt_key_file: Path | None = Field(None, description="Key of the own certificate.")
+    mqtt_snapshot_s: float = Field(1.0, ge=0.1, le=3600, description="Seconds between two snapshots.")
+    mqtt_snapshots: Literal["trackers", "columns"] = Field(
+        "trackers", description="One message a tracker, or one message of columns for the whole site."
+    )
+    mqtt_discovery: bool = Field(False, description="Announce sensors to Home Assistant.")
+    mqtt_commands: bool = Field(False, description="Take commands over MQTT.")
 
     @classmethod
     def settings_customise_sources(
@@ -66,16 +107,37 @@ class Settings(BaseSettings):
         """Return where settings come from: arguments before the environment before the file."""
         return init_settings, env_settings, InitSettingsSource(settings_cls, _from_file())
 
-    @field_validator("host")
+    @field_validator("host", "sunspec_host")
     @classmethod
-    def _loopback_only(cls, host: str) -> str:
+    def _loopback_only(cls, host: str, info: ValidationInfo) -> str:
         if host not in LOOPBACK:
+            variable = PREFIX + str(info.field_name).upper()
             raise ValueError(
                 f"Heliopanel does not listen on {host}: until access control is built, only loopback is "
-                "allowed (127.0.0.1 or ::1). Leave HELIOPANEL_HOST unset, or use an SSH tunnel to this "
+                f"allowed (127.0.0.1 or ::1). Leave {variable} unset, or use an SSH tunnel to this "
                 "computer."
             )
         return host
+
+    @field_validator("sunspec_write_hosts", mode="before")
+    @classmethod
+    def _hosts(cls, given: object) -> object:
+        if not isinstance(given, str):
+            return given
+        hosts = tuple(host.strip() for host in given.split(",") if host.strip())
+        for host in hosts:
+            if host != "serial":
+                _check_network(host)
+        return hosts
+
+    @model_validator(mode="after")
+    def _discovery_of_trackers(self) -> Self:
+        if self.mqtt_discovery and self.mqtt_snapshots != "trackers":
+            raise ValueError(
+                "HELIOPANEL_MQTT_DISCOVERY needs HELIOPANEL_MQTT_SNAPSHOTS=trackers: Home Assistant reads one "
+                "message a tracker."
+            )
+        return self
 
     @property
     def url(self) -> str:
@@ -98,6 +160,16 @@ def read_settings() -> Settings:
         return Settings()
     except ValidationError as error:
         raise SettingsWrong(" ".join(_sentence(detail) for detail in error.errors())) from error
+
+
+def _check_network(host: str) -> None:
+    try:
+        ipaddress.ip_network(host, strict=False)
+    except ValueError as error:
+        raise ValueError(
+            f"HELIOPANEL_SUNSPEC_WRITE_HOSTS names {host!r}, which is no address. Write addresses or networks "
+            "such as 127.0.0.1 or 10.0.0.0/24, separated by commas, or serial."
+        ) from error
 
 
 def _sentence(detail: Any) -> str:

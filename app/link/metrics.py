@@ -1,6 +1,7 @@
 """What the machine counts about itself, as plain data; the panel makes the text of it."""
 
 from dataclasses import dataclass, field
+from enum import StrEnum
 
 LATENESS_BOUNDS_MS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0)
 
@@ -21,6 +22,28 @@ class TrackerMetrics:
     lateness_max_ms: float
 
 
+class GatewayStatus(StrEnum):
+    """How one of the machine's other doors is doing."""
+
+    OFF = "off"
+    LISTENING = "listening"
+    CONNECTING = "connecting"
+    CONNECTED = "connected"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True, slots=True)
+class GatewayMetrics:
+    """One other door: where it is, who uses it, what went wrong last, what waits to be sent."""
+
+    name: str
+    status: GatewayStatus
+    where: str = ""
+    clients: int = 0
+    error: str = ""
+    waiting: int = 0
+
+
 @dataclass(frozen=True, slots=True)
 class MachineMetrics:
     """Counters and queue lengths of the whole machine."""
@@ -37,3 +60,4 @@ class MachineMetrics:
     store_queue: int = 0
     store_failures: int = 0
     resident_bytes: int = 0
+    gateways: tuple[GatewayMetrics, ...] = ()

@@ -1,0 +1,1 @@
+"""The machine's other doors: SunSpec over Modbus, MQTT."""

@@ -1,0 +1,101 @@
+"""Calibrate, as SunSpec means it: stop, search the origin switches, and go back to automatic."""
+
+from dataclasses import dataclass
+from enum import Enum, auto
+
+from app.gateway.door import Door, Update, refused, send
+from app.tracker.commands import CommandRejected, Home, Stop, Track
+from app.tracker.reason import Reason
+from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
+
+PASSING = ("busy_", "axes_moving")
+COMES_TO_REST = {ActivityName.STOPPING, ActivityName.HOLDING}
+
+
+class _Phase(Enum):
+    STOPPING = auto()
+    HOMING = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class _Calibration:
+    phase: _Phase
+    actor: str
+
+
+class Calibrations:
+    """Which trackers are being calibrated; whoever else stops or moves one ends its calibration."""
+
+    def __init__(self, door: Door) -> None:
+        self._door = door
+        self._running: dict[str, _Calibration] = {}
+
+    @property
+    def trackers(self) -> frozenset[str]:
+        """Return the trackers that are being calibrated."""
+        return frozenset(self._running)
+
+    async def begin(self, tracker: Snapshot, actor: str) -> None:
+        """Begin with one tracker, or raise `CommandRejected` before anything is stopped."""
+        against = lasting(tracker)
+        if against:
+            rejected = CommandRejected(*against)
+            refused(self._door, tracker.tracker_id, actor, f"The calibration was not begun: {rejected}")
+            raise rejected
+        if tracker.actions["home"]:
+            await send(self._door, Stop(), tracker.tracker_id, actor)
+            self._running[tracker.tracker_id] = _Calibration(_Phase.STOPPING, actor)
+        else:
+            await self._home(tracker.tracker_id, actor)
+
+    def forget(self, tracker_id: str) -> None:
+        """End a calibration, because something else was ordered at this door."""
+        self._running.pop(tracker_id, None)
+
+    async def follow(self, update: Update) -> None:
+        """Take every calibration on as far as the update allows."""
+        trackers = {one.tracker_id: one for one in update.snapshot.trackers}
+        for tracker_id, running in tuple(self._running.items()):
+            tracker = trackers.get(tracker_id)
+            if tracker is None:
+                self.forget(tracker_id)
+                continue
+            events = tuple(event for event in update.events if event.tracker_id == tracker_id)
+            try:
+                await self._step(tracker, running, events)
+            except CommandRejected:
+                self.forget(tracker_id)
+
+    async def _step(self, tracker: Snapshot, running: _Calibration, events: tuple[Event, ...]) -> None:
+        if any(event.kind is EventKind.STOPPED and event.actor != running.actor for event in events):
+            self._give_up(tracker, running, "the tracker was stopped.")
+        elif running.phase is _Phase.HOMING:
+            await self._homing(tracker, running, events)
+        elif tracker.activity not in COMES_TO_REST:
+            self._give_up(tracker, running, f"the tracker is {tracker.activity}.")
+        elif not tracker.actions["home"]:
+            await self._home(tracker.tracker_id, running.actor)
+
+    async def _homing(self, tracker: Snapshot, running: _Calibration, events: tuple[Event, ...]) -> None:
+        ended = next((event for event in events if event.kind is EventKind.HOMING_ENDED), None)
+        if ended is None:
+            if tracker.activity is not ActivityName.HOMING:
+                self._give_up(tracker, running, "the search for the origin switches was interrupted.")
+            return
+        self.forget(tracker.tracker_id)
+        if ended.data.get("outcome") == "homed":
+            await send(self._door, Track(), tracker.tracker_id, running.actor)
+
+    async def _home(self, tracker_id: str, actor: str) -> None:
+        await send(self._door, Home(), tracker_id, actor)
+        self._running[tracker_id] = _Calibration(_Phase.HOMING, actor)
+
+    def _give_up(self, tracker: Snapshot, running: _Calibration, why: str) -> None:
+        self.forget(tracker.tracker_id)
+        message = f"The calibration was given up, and tracking was not started: {why}"
+        refused(self._door, tracker.tracker_id, running.actor, message)
+
+
+def lasting(tracker: Snapshot) -> tuple[Reason, ...]:
+    """Return what forbids homing and would still forbid it after a stop."""
+    return tuple(reason for reason in tracker.actions["home"] if not reason.code.startswith(PASSING))

@@ -1,0 +1,41 @@
+"""What a gateway needs of the machine: orders in, updates out, and the journal."""
+
+from typing import Protocol
+
+from app.link.messages import Machine, Order, Update
+from app.tracker.commands import Command, CommandRejected
+from app.tracker.snapshot import Event, EventKind, SiteSnapshot
+
+__all__ = ["Door", "Update", "refused", "send", "written"]
+
+
+class Door(Machine, Protocol):
+    """A machine whose journal takes notes, too."""
+
+    def note(self, *events: Event) -> None:
+        """Journal and tell what happened at this door."""
+
+
+async def send(door: Door, command: Command, tracker_id: str, actor: str, key: str | None = None) -> None:
+    """Send one order; one that is refused is journalled with its reasons before it raises."""
+    try:
+        await door.execute(Order(command, actor, tracker_id, key))
+    except CommandRejected as rejected:
+        refused(door, tracker_id, actor, f"{command.kind} was refused: {rejected}")
+        raise
+
+
+def written(door: Door, tracker_id: str | None, actor: str, message: str) -> None:
+    """Journal what was written."""
+    _note(door, EventKind.REMOTE_WRITTEN, tracker_id, actor, message)
+
+
+def refused(door: Door, tracker_id: str | None, actor: str, message: str) -> None:
+    """Journal what was refused."""
+    _note(door, EventKind.REMOTE_REFUSED, tracker_id, actor, message)
+
+
+def _note(door: Door, kind: EventKind, tracker_id: str | None, actor: str, message: str) -> None:
+    site: SiteSnapshot | None = door.latest()
+    if site is not None:
+        door.note(Event(site.at, kind, tracker_id, message, actor))

@@ -1,0 +1,109 @@
+"""What a plant's control system writes: targets are kept, and the control register acts."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import assert_never
+
+from app.drives.modbus_server import ILLEGAL_ADDRESS, ILLEGAL_VALUE, Refusal
+from app.gateway.calibration import Calibrations
+from app.gateway.door import Door, refused, send, written
+from app.gateway.sunspec_values import Control, Targets
+from app.link.messages import UnknownTracker
+from app.tracker.commands import CommandRejected, Move, Track
+from app.tracker.config import Orientation
+from app.tracker.reason import Reason
+from app.tracker.snapshot import SiteSnapshot, Snapshot
+
+BUSY = 6
+TARGETS = {"ElCtl": (-90.0, 90.0), "AzCtl": (0.0, 360.0)}
+WRONG_VALUE = {"beyond_limits", "no_target"}
+NO_TARGET = Reason(
+    "no_target", "Manual was written, but no target was.", "Write ElCtl and AzCtl, then write 1 to Ctl."
+)
+
+Written = Mapping[str, float | None]
+"""Values by the names of model 601's points; those for all trackers begin with Glbl."""
+
+
+class Controls:
+    """Carries out what is written through the same orders as every door, and journals all of it."""
+
+    def __init__(self, door: Door) -> None:
+        self._door = door
+        self.targets: dict[str | None, Targets] = {}
+        self.calibrations = Calibrations(door)
+
+    async def write(self, tracker_id: str | None, values: Written, actor: str) -> None:
+        """Keep targets and act on the control register; None writes for all trackers.
+
+        Raises `Refusal` with exception 3 for a value that cannot be, 6 for what is not possible now.
+        """
+        values = {name.removeprefix("Glbl"): value for name, value in values.items()}
+        self._check(tracker_id, values, actor)
+        kept = self.targets.get(tracker_id, Targets())
+        kept = replace(
+            kept,
+            elevation_deg=values.get("ElCtl", kept.elevation_deg),
+            azimuth_deg=values.get("AzCtl", kept.azimuth_deg),
+        )
+        self.targets[tracker_id] = kept
+        told = ", ".join(f"{name} = {value:g}" for name, value in values.items())
+        written(self._door, tracker_id, actor, f"{told} was written over SunSpec.")
+        if "Ctl" in values:
+            await self._act(tracker_id, Control(int(values["Ctl"] or 0)), kept, actor)
+
+    def _check(self, tracker_id: str | None, values: Written, actor: str) -> None:
+        for name, value in values.items():
+            low, high = TARGETS.get(name, (min(Control), max(Control)))
+            if value is None or not low <= value <= high:
+                said = "nothing" if value is None else f"{value:g}"
+                message = (
+                    f"{said} was written to {name} over SunSpec; it must lie between {low:g} and {high:g}."
+                )
+                refused(self._door, tracker_id, actor, message.capitalize())
+                raise Refusal(ILLEGAL_VALUE)
+
+    async def _act(self, tracker_id: str | None, control: Control, targets: Targets, actor: str) -> None:
+        """Act on one tracker or on all; of all, those that can do it, and it fails if none can."""
+        failures: list[Refusal] = []
+        trackers = _addressed(self._door.latest(), tracker_id)
+        for tracker in trackers:
+            try:
+                await self._act_on(tracker, control, targets, actor)
+            except CommandRejected as rejected:
+                wrong = any(reason.code in WRONG_VALUE for reason in rejected.reasons)
+                failures.append(Refusal(ILLEGAL_VALUE if wrong else BUSY))
+            except UnknownTracker:
+                failures.append(Refusal(ILLEGAL_ADDRESS))
+        if len(failures) == len(trackers):
+            raise failures[0] if failures else Refusal(BUSY)
+
+    async def _act_on(self, tracker: Snapshot, control: Control, targets: Targets, actor: str) -> None:
+        name = tracker.tracker_id
+        self.calibrations.forget(name)
+        match control:
+            case Control.AUTOMATIC:
+                await send(self._door, Track(), name, actor)
+            case Control.MANUAL:
+                await self._move(tracker, targets, actor)
+            case Control.CALIBRATE:
+                await self.calibrations.begin(tracker, actor)
+            case _:
+                assert_never(control)
+
+    async def _move(self, tracker: Snapshot, targets: Targets, actor: str) -> None:
+        """Go to the targets; an angle that was never written stays as it is measured."""
+        azimuth_deg, elevation_deg = targets.azimuth_deg, targets.elevation_deg
+        if tracker.measured is not None and (azimuth_deg is not None or elevation_deg is not None):
+            azimuth_deg = tracker.measured.azimuth_deg if azimuth_deg is None else azimuth_deg
+            elevation_deg = tracker.measured.elevation_deg if elevation_deg is None else elevation_deg
+        if azimuth_deg is None or elevation_deg is None:
+            refused(self._door, tracker.tracker_id, actor, f"{NO_TARGET.message} {NO_TARGET.hint}")
+            raise CommandRejected(NO_TARGET)
+        orientation = Orientation(azimuth_deg % 360.0, elevation_deg)
+        await send(self._door, Move(orientation), tracker.tracker_id, actor)
+
+
+def _addressed(site: SiteSnapshot | None, tracker_id: str | None) -> tuple[Snapshot, ...]:
+    trackers = () if site is None else site.trackers
+    return tuple(one for one in trackers if tracker_id in (None, one.tracker_id))
