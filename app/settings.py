@@ -58,7 +58,9 @@ class Settings(BaseSettings):
     sunspec_port: int | None = Field(
         None, ge=0, le=65535, description="TCP port of the SunSpec server; off unless set."
     )
-    sunspec_host: str = Field("127.0.0.1", description="Address the SunSpec server listens on; loopback only.")
+    sunspec_host: str = Field(
+        "127.0.0.1", description="Address the SunSpec server listens on; loopback only."
+    )
     sunspec_unit: int = Field(1, ge=1, le=247, description="Modbus unit id that the SunSpec servers answer.")
     sunspec_serial: str | None = Field(
         None, description="Serial device of a SunSpec server over Modbus RTU; off unless set."
@@ -134,8 +136,8 @@ class Settings(BaseSettings):
     def _discovery_of_trackers(self) -> Self:
         if self.mqtt_discovery and self.mqtt_snapshots != "trackers":
             raise ValueError(
-                "HELIOPANEL_MQTT_DISCOVERY needs HELIOPANEL_MQTT_SNAPSHOTS=trackers: Home Assistant reads one "
-                "message a tracker."
+                "HELIOPANEL_MQTT_DISCOVERY needs HELIOPANEL_MQTT_SNAPSHOTS=trackers: Home Assistant reads "
+                "one message a tracker."
             )
         return self
 
@@ -167,8 +169,8 @@ def _check_network(host: str) -> None:
         ipaddress.ip_network(host, strict=False)
     except ValueError as error:
         raise ValueError(
-            f"HELIOPANEL_SUNSPEC_WRITE_HOSTS names {host!r}, which is no address. Write addresses or networks "
-            "such as 127.0.0.1 or 10.0.0.0/24, separated by commas, or serial."
+            f"HELIOPANEL_SUNSPEC_WRITE_HOSTS names {host!r}, which is no address. Write addresses or "
+            "networks such as 127.0.0.1 or 10.0.0.0/24, separated by commas, or serial."
         ) from error
 
 

@@ -44,7 +44,9 @@ class SunSpecTcp:
         """Return how it is doing."""
         status = GatewayStatus.LISTENING if self._listening else GatewayStatus.FAILED
         where = f"{self._host}:{self._port}"
-        return GatewayMetrics("SunSpec over Modbus TCP", status, where, self._server.client_count, self._error)
+        return GatewayMetrics(
+            "SunSpec over Modbus TCP", status, where, self._server.client_count, self._error
+        )
 
     async def run(self) -> None:
         """Serve until cancelled."""

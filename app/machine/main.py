@@ -14,6 +14,7 @@ from app.build import BUILT_AT, VERSION
 from app.clock import SystemClock
 from app.drives.drive import Drive
 from app.drives.factory import make_drive
+from app.gateway.gateways import Gateways
 from app.link.server import LinkServer
 from app.logs import set_up_logs
 from app.machine.lock import only_instance
@@ -73,10 +74,12 @@ async def _serve(settings: Settings, clock: SystemClock, writer: Writer) -> None
     background = WriterThread(writer, _on_store_failure)
     beginning = begin(writer, clock.now(), unclean_since=mark_running(settings.data_dir, clock.now()))
     site = _site(settings, clock, background, writer, beginning)
-    server = LinkServer(site, settings.link_path)
+    gateways = Gateways(site, clock, settings)
+    server = LinkServer(gateways, settings.link_path)
     stopped = _on_signals()
     await site.start(*beginning.events)
     await server.start()
+    gateways.start()
     watching = asyncio.create_task(
         LoopWatchdog(clock, alive=lambda: site.alive, stop_drives=site.stop_drives).run()
     )
@@ -89,18 +92,20 @@ async def _serve(settings: Settings, clock: SystemClock, writer: Writer) -> None
     notify("READY=1")
     await stopped.wait()
     notify("STOPPING=1")
-    await _take_down(settings, site, server, watching, background)
+    await _take_down(settings, site, gateways, server, watching, background)
 
 
 async def _take_down(
     settings: Settings,
     site: Site,
+    gateways: Gateways,
     server: LinkServer,
     watching: asyncio.Task[None],
     background: WriterThread,
 ) -> None:
     """Stop the drives first, then tell and keep what is left."""
     await site.stop_drives()
+    await gateways.close()
     watching.cancel()
     await asyncio.gather(watching, return_exceptions=True)
     event = Event(site.model.now(), EventKind.MACHINE_STOPPED, None, "The controller service was stopped.")
