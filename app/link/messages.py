@@ -6,12 +6,15 @@ from datetime import datetime
 from typing import Literal, Protocol
 
 from app.sun.position import Location
+from app.tracker.axes import Axis
 from app.tracker.commands import Command
 from app.tracker.commissioning import Step
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import Sighting, SiteState, StepName, TrackerState
 from app.tracker.motion import DriveCapabilities
 from app.tracker.programs.show import ShowPlan
+from app.tracker.proof_states import ProofState
+from app.tracker.proofs import AxisEnd
 from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import Event, SiteSnapshot
 from app.tracker.weather import Weather
@@ -107,6 +110,46 @@ class ApplySightings:
 
 
 @dataclass(frozen=True, slots=True)
+class AnswerDirection:
+    """Somebody saw the panel turn: as the controller says, or the other way round."""
+
+    tracker_id: str
+    right: bool
+    kind: Literal["answer_direction"] = "answer_direction"
+
+
+@dataclass(frozen=True, slots=True)
+class AnswerScale:
+    """Somebody measured by how many degrees the panel turned, without a sign."""
+
+    tracker_id: str
+    measured_deg: float
+    kind: Literal["answer_scale"] = "answer_scale"
+
+
+@dataclass(frozen=True, slots=True)
+class SetSoftLimit:
+    """An axis stands where its lower or upper soft limit shall be."""
+
+    tracker_id: str
+    axis: Axis
+    end: AxisEnd
+    kind: Literal["set_soft_limit"] = "set_soft_limit"
+
+
+@dataclass(frozen=True, slots=True)
+class RestoreDrive:
+    """Set the drive as it was before its settings were changed last."""
+
+    tracker_id: str
+    kind: Literal["restore_drive"] = "restore_drive"
+
+
+DriveOrder = AnswerDirection | AnswerScale | SetSoftLimit | RestoreDrive
+"""What concerns the set-up of one tracker's drive."""
+
+
+@dataclass(frozen=True, slots=True)
 class SavePlan:
     """Keep the plan of a show so that it can be found by its id."""
 
@@ -151,6 +194,7 @@ class ReportWeather:
 SiteCommand = (
     SetLocation | SetClock | RenameSite | AddTracker | ConfigureTracker | RemoveTracker | ConfirmStep
     | SavePlan | TakeSighting | ApplySightings | StopAll | SaveRecording | DeleteRecording
+    | AnswerDirection | AnswerScale | SetSoftLimit | RestoreDrive
     | ReportWeather
 )  # fmt: skip
 
@@ -180,11 +224,12 @@ class Update:
 
 @dataclass(frozen=True, slots=True)
 class TrackerDetail:
-    """What changes seldom about a tracker: stored state, the five steps, what its drive can do."""
+    """What changes seldom about a tracker: stored state, the five steps, its drive's abilities and proofs."""
 
     state: TrackerState
     steps: tuple[Step, ...]
     capabilities: DriveCapabilities | None
+    proofs: tuple[ProofState, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,6 +28,7 @@ from app.tracker.commissioning import steps
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.observation import Observation
+from app.tracker.proof_states import proof_states
 from app.tracker.snapshot import Event, EventKind, SiteSnapshot
 
 PULSE = timedelta(milliseconds=500)
@@ -136,6 +137,7 @@ class Site:
                 loop.state,
                 steps(self.model.state, loop.memory, loop.snapshot(at), clock),
                 loop.drive.capabilities,
+                proof_states(loop.config, loop.memory, loop.drive.capabilities),
             )
             for tracker_id, loop in self.model.loops.items()
         }

@@ -10,23 +10,28 @@ import structlog
 from app.drives.drive import DriveError
 from app.link.messages import (
     AddTracker,
+    AnswerDirection,
+    AnswerScale,
     ApplySightings,
     ConfigureTracker,
     ConfirmStep,
     DeleteRecording,
+    DriveOrder,
     RemoveTracker,
     RenameSite,
     ReportWeather,
+    RestoreDrive,
     SavePlan,
     SaveRecording,
     SetClock,
     SetLocation,
+    SetSoftLimit,
     SiteCommand,
     StopAll,
     TakeSighting,
     UnknownRecording,
 )
-from app.site import sightings, tracker_orders, tracker_setup
+from app.site import proving, sightings, tracker_orders, tracker_setup
 from app.site.checks import check_name, check_time_zone
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
@@ -56,6 +61,8 @@ async def carry_out(model: SiteModel, command: SiteCommand, actor: str) -> tuple
             return await _note(model, command, actor)
         case SaveRecording() | DeleteRecording():
             return await _change_recordings(model, command, actor)
+        case AnswerDirection() | AnswerScale() | SetSoftLimit() | RestoreDrive():
+            return await _set_up_drive(model, command, actor)
         case StopAll():
             return await _stop_all(model, actor)
         case ReportWeather():
@@ -108,6 +115,20 @@ async def _note(
             model.tracker(command.tracker_id)
             await model.ledger.save_show(PlannedShow(command.tracker_id, command.plan))
             return ()
+        case _:
+            assert_never(command)
+
+
+async def _set_up_drive(model: SiteModel, command: DriveOrder, actor: str) -> tuple[Event, ...]:
+    match command:
+        case AnswerDirection():
+            return await proving.answer_direction(model, command, actor)
+        case AnswerScale():
+            return await proving.answer_scale(model, command, actor)
+        case SetSoftLimit():
+            return await proving.set_soft_limit(model, command, actor)
+        case RestoreDrive():
+            return await proving.restore_drive(model, command, actor)
         case _:
             assert_never(command)
 

@@ -81,7 +81,13 @@ def _memory_for(memory: TrackerMemory, old: TrackerConfig, new: TrackerConfig) -
     """Return what stays true with other limits or another drive: a new drive has no trusted zero."""
     if old.drive == new.drive:
         return replace(memory, tracking_on=False)
-    return replace(memory, home=None, home_lost="another drive was configured.", tracking_on=False)
+    return replace(
+        memory,
+        home=None,
+        home_lost="another drive was configured.",
+        tracking_on=False,
+        former_drive=old.drive,
+    )
 
 
 def _changed(old: TrackerConfig, new: TrackerConfig) -> list[str]:

@@ -149,9 +149,10 @@ class ProveDirection:
 
 @dataclass(frozen=True, slots=True)
 class ProveScale:
-    """Turn one axis by 10 degrees, so that somebody can measure by how much the panel turned."""
+    """Turn one axis by 10, 30 or 90 degrees, so that somebody can measure by how much the panel turned."""
 
     axis: Axis
+    degrees: float = 10.0
     kind: Literal["prove_scale"] = "prove_scale"
 
 

@@ -35,6 +35,7 @@ from app.tracker.motion import (
 )
 from app.tracker.observation import Observation
 from app.tracker.orders import obey
+from app.tracker.proofs import Proofs
 from app.tracker.protect import check_following, found, miss, obey_switches, protect
 from app.tracker.reason import Reason
 from app.tracker.runs import at_rest
@@ -149,6 +150,10 @@ class Controller:
         """Remember that the operator said a step is right."""
         confirmations = {**self._mind.memory.confirmations, step: confirmation}
         self._mind.remember(confirmations=confirmations)
+
+    def set_proofs(self, proofs: Proofs) -> None:
+        """Take over what somebody said about the drive."""
+        self._mind.remember(proofs=proofs)
 
     def set_sightings(self, sightings: tuple[Sighting, ...]) -> None:
         """Keep these sightings and forget all others."""

@@ -12,8 +12,8 @@ from typing import TypeVar
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import DriveConfig
 
-SCALE_TOLERANCE = 0.02
-"""A measured angle may differ from the commanded one by this share: about what an inclinometer tells."""
+MEASURABLE_DEG = 0.2
+"""A measured angle may differ from the commanded one by this much: about what an inclinometer tells."""
 
 
 class ProofKind(StrEnum):
@@ -94,7 +94,7 @@ class ScaleProof:
     @property
     def within_tolerance(self) -> bool:
         """Return whether measured and commanded angle agree as well as they can be measured."""
-        return abs(self.error_share) <= SCALE_TOLERANCE
+        return abs(self.measured_deg - self.moved_deg) <= MEASURABLE_DEG
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,7 +39,7 @@ _MOVING = {
     MoveKind.PARK: "Moving to the park position",
     MoveKind.STEP: "Moving by a small step",
     MoveKind.DIRECTION: "Moving for the direction proof: watch which way the panel goes",
-    MoveKind.SCALE: "Moving by 10 degrees for the scale proof",
+    MoveKind.SCALE: "Moving for the scale proof: measure by how much the panel turns",
 }
 _PLAIN: dict[type[Activity], str] = {
     Zeroing: "Setting zero",

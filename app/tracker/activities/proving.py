@@ -1,4 +1,4 @@
-"""Moves that somebody watches: a small one for the direction, one of 10 degrees for the scale."""
+"""Moves that somebody watches: a small one for the direction, one of 10 degrees or more for the scale."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ from app.tracker.snapshot import EventKind
 from app.tracker.transitions import switch_tracking_off
 
 DIRECTION_DEG = 3.0
-SCALE_DEG = 10.0
+SCALE_WAYS_DEG = (10.0, 30.0, 90.0)
 _KINDS = {MoveKind.DIRECTION: ProofKind.DIRECTION, MoveKind.SCALE: ProofKind.SCALE}
 
 
@@ -26,8 +26,16 @@ def prove_direction(mind: Mind, command: ProveDirection) -> None:
 
 
 def prove_scale(mind: Mind, command: ProveScale) -> None:
-    """Turn the axis by 10 degrees, or raise `CommandRejected`."""
-    _begin(mind, command.axis, SCALE_DEG, MoveKind.SCALE, Action.PROVE_SCALE)
+    """Turn the axis by 10, 30 or 90 degrees, or raise `CommandRejected`."""
+    if command.degrees not in SCALE_WAYS_DEG:
+        raise CommandRejected(
+            Reason(
+                "scale_way",
+                f"The scale is proven over 10, 30 or 90 degrees, not {command.degrees:g}.",
+                "Begin with 10; a longer way tells more exactly.",
+            )
+        )
+    _begin(mind, command.axis, command.degrees, MoveKind.SCALE, Action.PROVE_SCALE)
 
 
 def arrived(mind: Mind, moving: Moving, feedback: Feedback) -> None:
