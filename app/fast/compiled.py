@@ -28,5 +28,5 @@ def _compiled(function: F, **options: Any) -> F:
     """Compile for vector units: sums may be reordered, and a division by zero gives infinity, as in NumPy."""
     if njit is None:
         return function
-    code: F = njit(fastmath={"reassoc", "contract", "arcp", "nsz"}, error_model="numpy", **options)(function)
+    code: F = njit(fastmath={"reassoc", "contract", "arcp", "nsz", "nnan"}, error_model="numpy", **options)(function)
     return code
