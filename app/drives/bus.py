@@ -1,0 +1,333 @@
+"""One bus: one owner task, one request at a time, the urgent ones first; a handle for every device on it."""
+
+import asyncio
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+from enum import IntEnum
+from heapq import heapify, heappop, heappush
+
+import structlog
+
+from app.clock import Clock
+from app.drives.drive import DriveError, DriveRefused, DriveSilent
+from app.drives.wire import Ask, Broken, GivenUp, Refused, Timing, Unanswered, Wire
+
+FIRST_DELAY = timedelta(milliseconds=100)
+LONGEST_DELAY = timedelta(seconds=1)
+MOST_WAITING = 200
+SILENT_TIMES = 3
+FIRST_REST = timedelta(milliseconds=250)
+LONGEST_REST = timedelta(seconds=4)
+
+
+class Priority(IntEnum):
+    """Who goes first when several wait."""
+
+    STOP = 0
+    JOG = 1
+    COMMAND = 2
+    POLL = 3
+
+
+@dataclass(order=True, slots=True)
+class _Job:
+    priority: Priority
+    number: int
+    unit: "BusUnit" = field(compare=False)
+    ask: Ask = field(compare=False)
+    ticket: int | None = field(compare=False)
+    what: str = field(compare=False)
+    answer: "asyncio.Future[list[int]]" = field(compare=False)
+
+
+EXCEPTIONS = {
+    1: "does not know this function",
+    2: "has no such register",
+    3: "does not accept this value",
+    4: "reports a failure of its own",
+    5: "needs more time for this",
+    6: "is busy",
+    10: "cannot be reached through its gateway",
+    11: "does not answer its gateway",
+}
+PERMANENT = (1, 2, 3)
+UNREACHABLE = (10, 11)
+
+log = structlog.get_logger(__name__)
+
+
+class BusUnit:
+    """One device on a bus. Replies are checked byte by byte, writes are never sent twice.
+
+    `ticket` changes with every new connection, every lost reply and every stop: a write that was issued
+    under an older one is not sent, so that nothing moves before the state has been read again.
+    """
+
+    def __init__(self, name: str, unit: int, timing: Timing, find_bus: Callable[[], "Bus"]) -> None:
+        self.unit = unit
+        self.timing = timing
+        self._name = name
+        self._find_bus = find_bus
+        self._bus: Bus | None = None
+        self._stops = 0
+        self._silences = 0
+        self._rests_until: datetime | None = None
+        self._closed = False
+
+    def __str__(self) -> str:
+        return f"{self._name} unit {self.unit}"
+
+    @property
+    def ticket(self) -> int:
+        """Return the number under which a write may be sent."""
+        return self._stops + (0 if self._bus is None else self._bus.epoch(self.unit))
+
+    @property
+    def unit_count(self) -> int:
+        """Return how many devices share the bus, this one included."""
+        return 1 if self._bus is None else self._bus.unit_count
+
+    async def read(
+        self, address: int, count: int, *, what: str, priority: Priority = Priority.POLL
+    ) -> list[int]:
+        """Return holding registers, or raise `DriveError`; a damaged reply is asked for once more."""
+        return await self._submit(priority, Ask(self.unit, address, count), None, what)
+
+    async def write(
+        self,
+        address: int,
+        words: Sequence[int],
+        *,
+        what: str,
+        ticket: int | None,
+        priority: Priority = Priority.COMMAND,
+    ) -> None:
+        """Write holding registers in one frame, once, or raise `DriveError`; `ticket` None always goes."""
+        await self._submit(priority, Ask(self.unit, address, len(words), tuple(words)), ticket, what)
+
+    async def stop(self, address: int, words: Sequence[int], *, what: str) -> None:
+        """Write ahead of everything that waits, and drop this device's writes that wait.
+
+        A stop is sent even if its caller gives up waiting; a newer one takes its place.
+        """
+        self._stops += 1
+        if self._bus is not None:
+            self._bus.overtake(self)
+        await self._submit(Priority.STOP, Ask(self.unit, address, len(words), tuple(words)), None, what)
+
+    async def close(self) -> None:
+        """Let go of the bus, which closes with its last device; who still waits is told."""
+        if self._closed:
+            return
+        self._closed = True
+        if self._bus is not None:
+            await self._bus.leave(self)
+
+    def resting(self, now: datetime) -> bool:
+        """Return whether this silent device is left alone for a moment, for the others' sake."""
+        return self.unit_count > 1 and self._rests_until is not None and now < self._rests_until
+
+    def heard(self) -> None:
+        """Note that the device answered."""
+        self._silences, self._rests_until = 0, None
+
+    def unheard(self, now: datetime) -> None:
+        """Note that the device did not answer; a bus with other devices asks it less and less often."""
+        self._silences += 1
+        if self._silences >= SILENT_TIMES:
+            doubled = FIRST_REST * 2 ** min(self._silences - SILENT_TIMES, 8)
+            self._rests_until = now + min(LONGEST_REST, doubled)
+
+    async def _submit(self, priority: Priority, ask: Ask, ticket: int | None, what: str) -> list[int]:
+        if self._closed:
+            raise DriveSilent(f"The connection to the drive at {self} was closed.")
+        if self._bus is None:
+            self._bus = self._find_bus()
+            self._bus.join(self)
+        return await self._bus.submit(self, priority, ask, ticket, what)
+
+
+class Bus:
+    """Owns the wire to one bus: a gateway, a device or a serial line, with one device or many."""
+
+    def __init__(self, name: str, wire: Wire, clock: Clock) -> None:
+        self.name = name
+        self._wire = wire
+        self._clock = clock
+        self._units: list[BusUnit] = []
+        self._waiting: list[_Job] = []
+        self._flying: _Job | None = None
+        self._wake = asyncio.Event()
+        self._owner: asyncio.Task[None] | None = None
+        self._number = 0
+        self._delay = FIRST_DELAY
+        self._next_attempt_at: datetime | None = None
+
+    @property
+    def unit_count(self) -> int:
+        """Return how many devices are in use on this bus."""
+        return len(self._units)
+
+    def unit(self, unit: int, timing: Timing) -> BusUnit:
+        """Return a handle for a device on this bus."""
+        return BusUnit(self.name, unit, timing, lambda: self)
+
+    def join(self, unit: BusUnit) -> None:
+        """Count a device in."""
+        self._units.append(unit)
+
+    def epoch(self, unit: int) -> int:
+        """Return a number that grows whenever it is no longer certain what a device has taken."""
+        return self._wire.epoch(unit)
+
+    def overtake(self, unit: BusUnit) -> None:
+        """Drop the writes of a device that wait, and shorten the wait for a reply that does not come."""
+        self._waiting = [job for job in self._waiting if not job.answer.done()]
+        heapify(self._waiting)
+        for job in self._waiting:
+            if job.unit is unit and job.ask.words and job.ticket is not None:
+                _fail(job, DriveError(f"A stop overtook this: {job.what} was not written."))
+        if self._flying is not None and self._flying.priority is not Priority.STOP:
+            self._wire.hurry()
+
+    async def submit(
+        self, unit: BusUnit, priority: Priority, ask: Ask, ticket: int | None, what: str
+    ) -> list[int]:
+        """Queue a request and return its reply, or raise `DriveError`."""
+        if len(self._waiting) >= MOST_WAITING and priority is not Priority.STOP:
+            raise DriveSilent(f"The drive at {unit} is too slow: {MOST_WAITING} requests wait.")
+        if self._owner is None:
+            self._owner = asyncio.create_task(self._own(), name=f"modbus {self.name}")
+        self._number += 1
+        answer: asyncio.Future[list[int]] = asyncio.get_running_loop().create_future()
+        heappush(self._waiting, _Job(priority, self._number, unit, ask, ticket, what, answer))
+        self._wake.set()
+        return await answer
+
+    async def leave(self, unit: BusUnit) -> None:
+        """Tell who waits for a device that it is closed; with the last one the bus closes."""
+        closed = DriveSilent(f"The connection to the drive at {unit} was closed.")
+        for job in self._waiting:
+            if job.unit is unit:
+                _fail(job, closed)
+        if self._flying is not None and self._flying.unit is unit:
+            _fail(self._flying, closed)
+        self._units.remove(unit)
+        if self._units:
+            return
+        owner, self._owner = self._owner, None
+        self._wire.close()
+        if owner is not None:
+            owner.cancel()
+            with suppress(asyncio.CancelledError):
+                await owner
+
+    async def _own(self) -> None:
+        """Serve the waiting requests for ever, the most urgent first, one at a time."""
+        while True:
+            while not self._waiting:
+                self._wake.clear()
+                await self._wake.wait()
+            job = heappop(self._waiting)
+            if not job.answer.done() or job.priority is Priority.STOP:
+                self._flying = job
+                await self._serve(job)
+                self._flying = None
+
+    async def _serve(self, job: _Job) -> None:
+        """Do one request and answer whoever waits for it; whatever goes wrong, the next one is served."""
+        try:
+            found = await self._carry_out(job)
+        except DriveError as error:
+            _fail(job, error)
+        except asyncio.CancelledError:
+            _fail(job, DriveSilent(f"The connection to the drive at {job.unit} was closed."))
+            raise
+        except Exception:
+            log.exception("modbus_request_failed", device=str(job.unit), what=job.what)
+            self._wire.close()
+            _fail(job, DriveError(f"An unexpected error ended a request ({job.what}); the log has it."))
+        else:
+            if not job.answer.done():
+                job.answer.set_result(found)
+
+    async def _carry_out(self, job: _Job) -> list[int]:
+        """Do one request; a read or a stop whose reply was bad is done again, once; no other write is."""
+        try:
+            return await self._ask(job)
+        except Broken as broken:
+            if job.ask.words and job.priority is not Priority.STOP:
+                raise DriveError(
+                    f"Writing {job.what} to the drive at {job.unit} failed: {broken}. It is not sent again."
+                ) from broken
+        try:
+            return await self._ask(job)
+        except Broken as broken:
+            verb = "Writing" if job.ask.words else "Reading"
+            raise DriveError(
+                f"{verb} {job.what} failed twice at the drive at {job.unit}: {broken}. {self._wire.advice}"
+            ) from broken
+
+    async def _ask(self, job: _Job) -> list[int]:
+        urgent = job.priority is Priority.STOP
+        if not urgent and job.unit.resting(self._clock.now()):
+            raise DriveSilent(f"The drive at {job.unit} does not answer; it is asked again in a moment.")
+        if not self._wire.connected:
+            await self._connect(job.unit, urgent=urgent)
+        if job.ticket is not None and job.ticket != job.unit.ticket:
+            raise DriveError(
+                f"The connection to the drive at {job.unit} was renewed or stopped in between: "
+                f"{job.what} was not written; its state is read first."
+            )
+        try:
+            found = await self._wire.exchange(job.ask, job.unit.timing, urgent=urgent)
+        except Refused as refused:
+            if refused.code in UNREACHABLE:
+                job.unit.unheard(self._clock.now())
+            else:
+                job.unit.heard()
+            raise _refusal(refused.code, job) from refused
+        except GivenUp as given_up:
+            raise DriveSilent(
+                f"The wait for the drive at {job.unit} was given up for a stop ({job.what})."
+            ) from given_up
+        except Unanswered as unanswered:
+            job.unit.unheard(self._clock.now())
+            raise DriveSilent(
+                f"The drive at {job.unit} did not answer within {job.unit.timing.timeout_s:g} s "
+                f"({job.what}). Check its power, cable and address."
+            ) from unanswered
+        job.unit.heard()
+        return found
+
+    async def _connect(self, unit: BusUnit, *, urgent: bool) -> None:
+        """Connect, or raise `DriveSilent`; after a failure not before some time has passed."""
+        now = self._clock.now()
+        too_soon = self._next_attempt_at is not None and now < self._next_attempt_at and not urgent
+        if not too_soon and await self._wire.connect():
+            self._next_attempt_at, self._delay = None, FIRST_DELAY
+            return
+        if not too_soon:
+            self._next_attempt_at = now + self._delay
+            self._delay = min(LONGEST_DELAY, self._delay * 2)
+        raise DriveSilent(
+            f"There is no connection to the drive at {unit}. {self._wire.advice} "
+            "The connection is tried again by itself."
+        )
+
+
+def _refusal(code: int, job: _Job) -> DriveError:
+    text = EXCEPTIONS.get(code, "answered with an unknown exception")
+    sentence = f"The drive at {job.unit} {text} (Modbus exception {code}): {job.what}."
+    if code in PERMANENT:
+        return DriveRefused(f"{sentence} Check that the profile fits the device.")
+    if code in UNREACHABLE:
+        return DriveSilent(sentence)
+    return DriveError(f"{sentence} It is asked again in the next cycle.")
+
+
+def _fail(job: _Job, error: DriveError) -> None:
+    if not job.answer.done():
+        job.answer.set_exception(error)

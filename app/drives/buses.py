@@ -1,0 +1,59 @@
+"""The buses in use: drives on the same line or at the same gateway share one, with one owner."""
+
+from dataclasses import replace
+from typing import assert_never
+
+from app.clock import Clock
+from app.drives.bus import Bus, BusUnit
+from app.drives.drive import DriveError
+from app.drives.line import SerialLine, TcpLine
+from app.drives.modbus_rtu import RtuWire
+from app.drives.modbus_tcp import TcpWire
+from app.drives.wire import Timing, Wire
+from app.tracker.config import DriveConfig, DriveKind
+
+
+class Buses:
+    """Hands out devices and brings those together that hang on the same wire."""
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+        self._buses: dict[str, tuple[DriveConfig, Bus]] = {}
+
+    def unit(self, drive: DriveConfig, unit: int, timing: Timing) -> BusUnit:
+        """Return a device; its bus is found or made with the first request."""
+        return BusUnit(drive.line, unit, timing, lambda: self._bus(drive))
+
+    def _bus(self, drive: DriveConfig) -> Bus:
+        """Return the bus of a drive, or raise `DriveError` if its line is in use with other settings."""
+        wiring = _wiring(drive)
+        used, bus = self._buses.get(drive.line, (None, None))
+        if bus is None or bus.unit_count == 0:
+            bus = Bus(drive.line, _wire(drive), self._clock)
+            self._buses[drive.line] = wiring, bus
+        elif used != wiring:
+            raise DriveError(
+                f"The line {drive.line} is in use with other settings. All drives on one line have the same "
+                "kind of connection, baud rate, parity and stop bits."
+            )
+        return bus
+
+
+def _wiring(drive: DriveConfig) -> DriveConfig:
+    """Return what all drives on one line have in common."""
+    plain = DriveConfig(drive.kind, host=drive.host, port=drive.port)
+    return replace(plain, serial=drive.serial) if drive.kind is DriveKind.MODBUS_RTU else plain
+
+
+def _wire(drive: DriveConfig) -> Wire:
+    match drive.kind:
+        case DriveKind.MODBUS_TCP:
+            return TcpWire(drive.host, drive.port)
+        case DriveKind.MODBUS_RTU_OVER_TCP:
+            return RtuWire(TcpLine(drive.host, drive.port))
+        case DriveKind.MODBUS_RTU:
+            return RtuWire(SerialLine(drive.serial))
+        case DriveKind.SIMULATED:
+            raise DriveError("A simulated drive hangs on no bus.")
+        case _ as never:
+            assert_never(never)
