@@ -12,7 +12,7 @@ from app.sun.position import Algorithm, Location, SunPosition, sun_path, sun_pos
 from app.sun.trigonometry import SCALAR, Array
 from app.tracker.commands import CommandRejected
 from app.tracker.memory import Pointing, Sighting
-from app.tracker.mount import to_axes
+from app.tracker.mount import PLAIN, to_axes
 from app.tracker.reason import Reason
 
 FEWEST_SIGHTINGS = 3
@@ -222,7 +222,7 @@ def _misses(sightings: Sequence[Sighting], pointing: Pointing) -> Array:
     rows = []
     for sighting in sightings:
         azimuth_deg, elevation_deg = to_axes(
-            pointing, sighting.sun_azimuth_deg, sighting.sun_elevation_deg, SCALAR
+            PLAIN, pointing, sighting.sun_azimuth_deg, sighting.sun_elevation_deg, SCALAR
         )
         shrink = SCALAR.cos(np.radians(sighting.sun_elevation_deg))
         off_deg = wrap180(sighting.panel_azimuth_deg - azimuth_deg)

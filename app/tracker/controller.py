@@ -1,5 +1,6 @@
 """One tracker's mind: `handle` and `tick` are the two ways in."""
 
+from dataclasses import replace
 from datetime import datetime, timedelta
 from typing import NamedTuple, assert_never
 
@@ -33,6 +34,7 @@ from app.tracker.motion import (
     Position,
     RequestKind,
 )
+from app.tracker.mounts.absent import as_mounted, for_drive
 from app.tracker.observation import Observation
 from app.tracker.orders import obey
 from app.tracker.proofs import Proofs
@@ -103,11 +105,14 @@ class Controller:
     def tick(self, seen: Observation) -> Tick:
         """Return what the drive shall do from now on and what happened since the last tick."""
         mind = self._mind
+        if mind.config.mount.single_axis:
+            seen = replace(seen, feedback=as_mounted(mind.config, seen.feedback))
         mind.now, mind.site_time, mind.seen, mind.actor = seen.now, seen.site_time, seen, "machine"
         mind.ticks += 1
         if mind.started_at is None:
             self._start(seen.now)
         command = self._blind(seen) if seen.feedback is None else self._see(seen, seen.feedback)
+        command = for_drive(mind.config, command)
         mind.command = command
         return Tick(command, mind.drain())
 

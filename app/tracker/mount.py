@@ -1,21 +1,24 @@
-"""The azimuth-elevation mount: from a direction of the sky to axis angles within limits, and back."""
+"""From a direction of the sky to axis angles within limits, and back, for every mount."""
 
 from dataclasses import dataclass
 from math import ceil, cos, radians, sin
-from typing import assert_never
 
 from app.angles import separation_deg, wrap180, wrap360
 from app.sun.position import SunPosition
 from app.sun.trigonometry import PER_DEGREE, PER_RADIAN, SCALAR, T, Trigonometry
 from app.tracker.axes import AxisConfig
-from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.config import MountConfig, MountKind, Orientation, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
+from app.tracker.mounts.kinematics import angles, direction, fixed_deg, followed
+
+PLAIN = MountConfig()
+UNLIMITED = AxisConfig(-360.0, 360.0, 360.0, 360.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
 class AxisTarget:
-    """Axis angles to go to; `limited` says that the soft limits forbid the direction asked for."""
+    """Angles of first and second axis to go to; `limited`: the soft limits forbid the direction asked for."""
 
     azimuth_deg: float
     elevation_deg: float
@@ -23,18 +26,19 @@ class AxisTarget:
 
 
 def aim(
-    config: TrackerConfig, pointing: Pointing, direction: Orientation, near_azimuth_deg: float
+    config: TrackerConfig, pointing: Pointing, wanted: Orientation, near_azimuth_deg: float
 ) -> AxisTarget:
-    """Return axis angles, degrees, at which the panel faces a direction of the sky.
+    """Return axis angles, degrees, at which the panel faces a direction of the sky as nearly as it can.
 
-    Of the equivalent azimuths (+-360 degrees) inside the soft limits the nearest to `near_azimuth_deg`; where
-    none is inside, the nearest reachable angles.
+    Of the equivalent angles (+-360 degrees) of the first axis inside the soft limits the nearest to
+    `near_azimuth_deg`; where none is inside, the nearest reachable angles, each axis for itself.
     """
-    azimuth_deg, elevation_deg = to_axes(pointing, direction.azimuth_deg, direction.elevation_deg, SCALAR)
-    azimuth_reached_deg, reachable = _within(config.azimuth, azimuth_deg, near_azimuth_deg)
-    elevation_reached_deg = config.elevation.clamp(elevation_deg)
-    limited = not reachable or elevation_reached_deg != elevation_deg
-    return AxisTarget(azimuth_reached_deg, elevation_reached_deg, limited)
+    first_deg, second_deg = to_axes(config.mount, pointing, wanted.azimuth_deg, wanted.elevation_deg, SCALAR)
+    first_reached_deg, reachable = _within(config.azimuth, first_deg, near_azimuth_deg)
+    second_reached_deg = second_axis(config).clamp(second_deg)
+    return AxisTarget(
+        first_reached_deg, second_reached_deg, not reachable or second_reached_deg != second_deg
+    )
 
 
 def sky(
@@ -44,8 +48,43 @@ def sky(
 
     Azimuth in [0, 360); an axis elevation beyond 90 degrees faces the opposite azimuth.
     """
-    azimuth_deg = azimuth_axis_deg - pointing.azimuth_offset_deg
-    elevation_deg = elevation_axis_deg - pointing.elevation_offset_deg
+    first_deg = azimuth_axis_deg - pointing.azimuth_offset_deg
+    second_deg = elevation_axis_deg - pointing.elevation_offset_deg
+    if config.mount.kind is MountKind.AZIMUTH_ELEVATION:
+        return _sky_of_mast(pointing, first_deg, second_deg)
+    azimuth_deg, elevation_deg = direction(config.mount, first_deg, second_deg, SCALAR)
+    return Orientation(wrap360(azimuth_deg), elevation_deg)
+
+
+def to_axes(
+    mount: MountConfig, pointing: Pointing, azimuth_deg: T, elevation_deg: T, trig: Trigonometry[T]
+) -> tuple[T, T]:
+    """Return angles of first and second axis, degrees, for sky angles, without limits.
+
+    Offsets are added on every mount; only on an azimuth-elevation mount a mast leans.
+    """
+    if mount.kind is not MountKind.AZIMUTH_ELEVATION:
+        first_deg, second_deg = angles(mount, azimuth_deg, elevation_deg, trig)
+    elif pointing.lean_north_deg or pointing.lean_east_deg:
+        first_deg, second_deg = _leaning(pointing, azimuth_deg, elevation_deg, trig)
+    else:
+        first_deg, second_deg = azimuth_deg, elevation_deg
+    if mount.single_axis:
+        return first_deg + pointing.azimuth_offset_deg, second_deg
+    return first_deg + pointing.azimuth_offset_deg, second_deg + pointing.elevation_offset_deg
+
+
+def second_axis(config: TrackerConfig) -> AxisConfig:
+    """Return limits and speeds of the second axis; where the mount has none, it stands for a fixed angle."""
+    return UNLIMITED if config.mount.single_axis else config.elevation
+
+
+def absent_deg(config: TrackerConfig) -> float:
+    """Return the angle for which the second axis stands where the mount has none."""
+    return fixed_deg(config.mount)
+
+
+def _sky_of_mast(pointing: Pointing, azimuth_deg: float, elevation_deg: float) -> Orientation:
     if elevation_deg > 90.0:
         azimuth_deg, elevation_deg = azimuth_deg + 180.0, 180.0 - elevation_deg
     if pointing.lean_north_deg or pointing.lean_east_deg:
@@ -53,20 +92,19 @@ def sky(
     return Orientation(wrap360(azimuth_deg), elevation_deg)
 
 
-def to_axes(pointing: Pointing, azimuth_deg: T, elevation_deg: T, trig: Trigonometry[T]) -> tuple[T, T]:
-    """Return axis angles, degrees, for sky angles: the mast's lean taken out, offsets added, no limits."""
-    if pointing.lean_north_deg or pointing.lean_east_deg:
-        azimuth_deg, elevation_deg = _leaning(pointing, azimuth_deg, elevation_deg, trig)
-    return azimuth_deg + pointing.azimuth_offset_deg, elevation_deg + pointing.elevation_offset_deg
-
-
 def _leaning(pointing: Pointing, azimuth_deg: T, elevation_deg: T, trig: Trigonometry[T]) -> tuple[T, T]:
-    """Turn a direction into the frame of a mast that leans first north, then east."""
+    """Turn a direction into the frame of a mast that leans first north, then east.
+
+    An elevation beyond 90 degrees stays beyond it, so that the azimuth axis does not turn over.
+    """
     azimuth, elevation = azimuth_deg * PER_DEGREE, elevation_deg * PER_DEGREE
-    north, east = trig.cos(elevation) * trig.cos(azimuth), trig.cos(elevation) * trig.sin(azimuth)
+    level = trig.cos(elevation)
+    side = level / trig.hypot(level, 0.0 * level)
+    north, east = level * trig.cos(azimuth), level * trig.sin(azimuth)
     north, up = _turn(north, trig.sin(elevation), pointing.lean_north_deg)
     east, up = _turn(east, up, pointing.lean_east_deg)
-    return trig.atan2(east, north) * PER_RADIAN, trig.atan2(up, trig.hypot(north, east)) * PER_RADIAN
+    leaning_deg = trig.atan2(up, side * trig.hypot(north, east)) * PER_RADIAN
+    return trig.atan2(side * east, side * north) * PER_RADIAN, leaning_deg
 
 
 def _upright(pointing: Pointing, azimuth_deg: float, elevation_deg: float) -> tuple[float, float]:
@@ -97,22 +135,21 @@ def _within(axis: AxisConfig, azimuth_deg: float, near_deg: float) -> tuple[floa
     return min(ends, key=lambda end: (abs(wrap180(azimuth_deg - end)), abs(end - near_deg))), False
 
 
-def mode_direction(mode: Mode, held: Orientation, sun: SunPosition, *, refraction: bool) -> Orientation:
-    """Return where the panel should face in a mode: the sun's angle on each axis that follows, else the held.
+def mode_direction(
+    mode: Mode, held: Orientation, sun: SunPosition, *, refraction: bool, mount: MountConfig = PLAIN
+) -> Orientation:
+    """Return where the panel should face in a mode, soft limits aside.
 
-    Elevation is the apparent one if `refraction`.
+    That is the sun's angle on each axis that follows, else the held one's; a single axis faces the sun as
+    nearly as it can, or backtracks. Elevation is the apparent one if `refraction`. With `least_incidence` it
+    may pass 90 degrees, over the top to the other side.
     """
-    elevation_deg = sun.apparent_elevation_deg if refraction else sun.elevation_deg
-    match mode:
-        case Mode.FIXED:
-            return held
-        case Mode.AZIMUTH:
-            return Orientation(sun.azimuth_deg, held.elevation_deg)
-        case Mode.ELEVATION:
-            return Orientation(held.azimuth_deg, elevation_deg)
-        case Mode.DUAL:
-            return Orientation(sun.azimuth_deg, elevation_deg)
-    assert_never(mode)
+    height_deg = sun.apparent_elevation_deg if refraction else sun.elevation_deg
+    if mount.kind is MountKind.AZIMUTH_ELEVATION and mode is Mode.DUAL:
+        return Orientation(sun.azimuth_deg, height_deg)
+    place = (held.azimuth_deg, held.elevation_deg)
+    faced = direction(mount, *followed(mount, mode, place, (sun.azimuth_deg, height_deg), SCALAR), SCALAR)
+    return Orientation(wrap360(faced[0]), faced[1])
 
 
 def needs_move(

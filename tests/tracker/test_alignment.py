@@ -13,7 +13,7 @@ from app.sun.trigonometry import SCALAR
 from app.tracker.alignment import Mistake, diagnose, fit
 from app.tracker.commands import CommandRejected
 from app.tracker.memory import Pointing, Sighting
-from app.tracker.mount import to_axes
+from app.tracker.mount import PLAIN, to_axes
 
 SAMSUN = Location(41.2867, 36.33)
 JUNE = datetime(2026, 6, 21, tzinfo=UTC)
@@ -32,7 +32,7 @@ def sighting(
     shown = at + clock_fast
     thought = sun_position(Algorithm.PSA, believed, shown)
     truth = sun_position(Algorithm.PSA, SAMSUN, at)
-    axes = to_axes(pointing, truth.azimuth_deg, truth.apparent_elevation_deg, SCALAR)
+    axes = to_axes(PLAIN, pointing, truth.azimuth_deg, truth.apparent_elevation_deg, SCALAR)
     return Sighting(shown, thought.azimuth_deg, thought.apparent_elevation_deg, *axes)
 
 
@@ -143,8 +143,8 @@ def test_noisy_sightings_are_fitted_to_their_noise_and_point_well() -> None:
     found = fit(noisy)
     assert found.residual_deg is not None
     assert 0.01 < found.residual_deg < 0.15
-    right = to_axes(truth, 200.0, 60.0, SCALAR)
-    assert separation_deg(*right, *to_axes(found, 200.0, 60.0, SCALAR)) < 0.1
+    right = to_axes(PLAIN, truth, 200.0, 60.0, SCALAR)
+    assert separation_deg(*right, *to_axes(PLAIN, found, 200.0, 60.0, SCALAR)) < 0.1
 
 
 def test_three_sightings_of_a_short_winter_day_are_enough() -> None:

@@ -8,7 +8,7 @@ from app.sun.position import SunPosition, sun_position
 from app.tracker.axes import AxisConfig
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import Pointing
-from app.tracker.mount import AxisTarget, aim, mode_direction, sky
+from app.tracker.mount import AxisTarget, aim, mode_direction, second_axis, sky
 from app.tracker.programs.pace import Night, Pace, Repositioning, pace, travel_s
 from app.tracker.programs.path import EDGE_DEG, Stretch, sampled, stretches
 from app.tracker.programs.plan import ShowPlan
@@ -55,7 +55,7 @@ class ShowCourse:
         self.plan = plan
         self._tracker = tracker
         self._pointing = pointing
-        self._sampled = sampled(plan, pointing)
+        self._sampled = sampled(plan, tracker.mount, pointing)
         self._begins_s = [samples.begin_s for samples in self._sampled]
         self._zero_s = plan.begin_at.timestamp()
         self.stretches, self.pace = self.run_in(plan.duration.total_seconds())
@@ -93,7 +93,10 @@ class ShowCourse:
     def _direction(self, sun: SunPosition, target: AxisTarget, *, following: bool) -> Orientation:
         if following:
             refraction = self.plan.refraction
-            return mode_direction(self.plan.mode, self.plan.orientation, sun, refraction=refraction)
+            mount = self._tracker.mount
+            return mode_direction(
+                self.plan.mode, self.plan.orientation, sun, refraction=refraction, mount=mount
+            )
         return sky(self._tracker, self._pointing, target.azimuth_deg, target.elevation_deg)
 
     def _resting_place(self) -> AxisTarget:
@@ -131,7 +134,7 @@ class ShowCourse:
     def _lead(self, elapsed_s: float, place: _Place) -> AxisTarget:
         """Return the set-point: each axis as far ahead as its deceleration from the planned speed takes."""
         azimuth_s = elapsed_s + lead_s(self._tracker.azimuth, place.azimuth_dps)
-        elevation_s = elapsed_s + lead_s(self._tracker.elevation, place.elevation_dps)
+        elevation_s = elapsed_s + lead_s(second_axis(self._tracker), place.elevation_dps)
         last_s = self.plan.duration.total_seconds()
         azimuth = self._place(min(azimuth_s, last_s)).target
         elevation = self._place(min(elevation_s, last_s)).target
@@ -172,7 +175,7 @@ def _interpolate(stretch: Stretch, tracker: TrackerConfig, unix_s: float, accele
     azimuth_deg += part * azimuth_step_deg + 360.0 * stretch.turns.item(i)
     elevation_deg += part * elevation_step_deg
     azimuth_reached_deg = tracker.azimuth.clamp(azimuth_deg)
-    elevation_reached_deg = tracker.elevation.clamp(elevation_deg)
+    elevation_reached_deg = second_axis(tracker).clamp(elevation_deg)
     missed_deg = max(abs(azimuth_reached_deg - azimuth_deg), abs(elevation_reached_deg - elevation_deg))
     target = AxisTarget(azimuth_reached_deg, elevation_reached_deg, missed_deg > EDGE_DEG)
     dps = acceleration / step_s

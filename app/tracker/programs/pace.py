@@ -2,8 +2,8 @@
 
 Outside of repositioning, an axis may be asked for at most 95 % of its rated speed, so that it can catch up
 what it loses while it gathers speed, and gathering that speed may take at most 5 % of the show. Repositioning
-is what no axis can follow: unwinding from an end stop, and the azimuth swing near the zenith (the keyhole).
-It may take at most a fifth of the show.
+is what no axis can follow: unwinding from an end stop, and the swing of the first axis where the sun lies
+along it (the keyhole, for azimuth near the zenith). It may take at most a fifth of the show.
 """
 
 from collections.abc import Iterator, Sequence
@@ -14,12 +14,13 @@ import numpy as np
 from app.sun.trigonometry import Array
 from app.tracker.axes import AxisConfig
 from app.tracker.config import TrackerConfig
+from app.tracker.mount import second_axis
 from app.tracker.programs.path import Stretch
 
 SPEED_SHARE = 0.95
 RAMP_SHARE = 0.05
 REPOSITIONING_SHARE = 0.20
-KEYHOLE_ELEVATION_DEG = 80.0
+KEYHOLE_DEG = 80.0
 NIGHT_MARGIN_S = 0.5
 SETTLE_S = 0.35
 """What a repositioning takes longer than from rest to rest: it ends on a target that moves."""
@@ -81,7 +82,7 @@ def feasible(pace: Pace, tracker: TrackerConfig) -> bool:
     """Return whether the axes can run the path at this pace."""
     return (
         pace.peak_azimuth_dps <= usable_dps(tracker.azimuth, pace.duration_s)
-        and pace.peak_elevation_dps <= usable_dps(tracker.elevation, pace.duration_s)
+        and pace.peak_elevation_dps <= usable_dps(second_axis(tracker), pace.duration_s)
         and pace.repositions_in_time
         and all(night.long_enough for night in pace.nights)
     )
@@ -132,10 +133,10 @@ def _repositionings(
     stretch: Stretch, axis: AxisConfig, elapsed_s: Array, duration_s: float
 ) -> Iterator[Repositioning]:
     """Yield the spans from where the axis loses the sun to where, at rated speed, it is on it again."""
-    azimuth_deg, sun_deg = stretch.azimuth_deg, stretch.samples.sun_elevation_deg
+    azimuth_deg, sun_deg = stretch.azimuth_deg, stretch.samples.sun_along_deg
     unwinds = np.diff(stretch.turns) != 0
     too_fast = _speeds(azimuth_deg, elapsed_s) > usable_dps(axis, duration_s)
-    keyhole = np.maximum(sun_deg[1:], sun_deg[:-1]) >= KEYHOLE_ELEVATION_DEG
+    keyhole = np.maximum(sun_deg[1:], sun_deg[:-1]) >= KEYHOLE_DEG
     free_s = 0.0
     for i in np.flatnonzero(unwinds | (too_fast & keyhole)).tolist():
         begin_s = float(elapsed_s[i + 1] if unwinds[i] else elapsed_s[i])
@@ -166,5 +167,5 @@ def _speeds(angle_deg: Array, elapsed_s: Array) -> Array:
 def _night_travel_s(left: Stretch, right: Stretch, tracker: TrackerConfig) -> float:
     azimuth_deg = abs(float(right.azimuth_deg[0] - left.azimuth_deg[-1]))
     elevation_deg = abs(float(right.elevation_deg[0] - left.elevation_deg[-1]))
-    needed_s = max(travel_s(tracker.azimuth, azimuth_deg), travel_s(tracker.elevation, elevation_deg))
+    needed_s = max(travel_s(tracker.azimuth, azimuth_deg), travel_s(second_axis(tracker), elevation_deg))
     return needed_s + NIGHT_MARGIN_S if needed_s > 0.0 else 0.0

@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.sun.events import crossings
-from app.sun.position import SunPath, sun_path, sun_position
+from app.sun.position import sun_path, sun_position
 from app.sun.trigonometry import ARRAY, Array
 from app.tracker.axes import AxisConfig
-from app.tracker.config import TrackerConfig
+from app.tracker.config import MountConfig, TrackerConfig
 from app.tracker.memory import Pointing
-from app.tracker.mode import Mode
-from app.tracker.mount import to_axes
+from app.tracker.mount import second_axis, to_axes
+from app.tracker.mounts.kinematics import along_deg, direction, followed
 from app.tracker.programs.plan import ShowPlan
 
 SAMPLE_S = 10.0
@@ -34,12 +34,13 @@ FARTHEST_BEYOND_DEG = 15.0
 class Samples:
     """One stretch of sun: columns over equal steps of sun time, from `begin_s` to `end_s` (unix seconds).
 
-    `azimuth_deg` (continuous) and `elevation_deg` are axis angles without limits.
+    `azimuth_deg` (continuous) and `elevation_deg` are angles of first and second axis without limits;
+    `sun_along_deg` is how far the sun lies along the first axis (its elevation, where that axis is upright).
     """
 
     begin_s: float
     end_s: float
-    sun_elevation_deg: Array
+    sun_along_deg: Array
     azimuth_deg: Array
     elevation_deg: Array
 
@@ -68,9 +69,11 @@ class Stretch:
         return np.maximum(azimuth_deg, np.abs(self.samples.elevation_deg - self.elevation_deg))
 
 
-def sampled(plan: ShowPlan, pointing: Pointing) -> tuple[Samples, ...]:
+def sampled(plan: ShowPlan, mount: MountConfig, pointing: Pointing) -> tuple[Samples, ...]:
     """Return the plan's stretches of sun in order."""
-    return tuple(_samples(plan, pointing, begin.timestamp(), end.timestamp()) for begin, end in sun_up(plan))
+    return tuple(
+        _samples(plan, mount, pointing, begin.timestamp(), end.timestamp()) for begin, end in sun_up(plan)
+    )
 
 
 def stretches(path: Sequence[Samples], tracker: TrackerConfig, unwinding_s: float) -> tuple[Stretch, ...]:
@@ -84,7 +87,7 @@ def stretches(path: Sequence[Samples], tracker: TrackerConfig, unwinding_s: floa
     for samples in path:
         turns = branches(axis, samples.azimuth_deg, near_deg, int(unwinding_s / samples.step_s))
         azimuth_deg = _clip(axis, samples.azimuth_deg + 360.0 * turns)
-        elevation_deg = _clip(tracker.elevation, samples.elevation_deg)
+        elevation_deg = _clip(second_axis(tracker), samples.elevation_deg)
         found.append(Stretch(samples, turns, azimuth_deg, elevation_deg))
         near_deg = float(azimuth_deg[-1])
     return tuple(found)
@@ -103,23 +106,16 @@ def sun_up(plan: ShowPlan) -> tuple[tuple[datetime, datetime], ...]:
     return tuple(spans)
 
 
-def _samples(plan: ShowPlan, pointing: Pointing, begin_s: float, end_s: float) -> Samples:
+def _samples(plan: ShowPlan, mount: MountConfig, pointing: Pointing, begin_s: float, end_s: float) -> Samples:
     count = max(FEWEST_SAMPLES, ceil((end_s - begin_s) / SAMPLE_S)) + 1
     sun = sun_path(plan.algorithm, plan.location, np.linspace(begin_s, end_s, count))
-    azimuth_deg, elevation_deg = to_axes(pointing, *_directions(plan, sun), ARRAY)
+    height_deg = sun.apparent_elevation_deg if plan.refraction else sun.elevation_deg
+    held = (plan.orientation.azimuth_deg, plan.orientation.elevation_deg)
+    angles_deg = followed(mount, plan.mode, held, (sun.azimuth_deg, height_deg), ARRAY)
+    along = along_deg(mount, sun.azimuth_deg, sun.elevation_deg, ARRAY)
+    azimuth_deg, elevation_deg = to_axes(mount, pointing, *direction(mount, *angles_deg, ARRAY), ARRAY)
     azimuth_deg = np.unwrap(azimuth_deg, period=360.0)
-    return Samples(begin_s, end_s, sun.elevation_deg, azimuth_deg, elevation_deg)
-
-
-def _directions(plan: ShowPlan, sun: SunPath) -> tuple[Array, Array]:
-    """Return `mount.mode_direction` for many instants."""
-    azimuth_deg = sun.azimuth_deg
-    elevation_deg = sun.apparent_elevation_deg if plan.refraction else sun.elevation_deg
-    if plan.mode in (Mode.FIXED, Mode.ELEVATION):
-        azimuth_deg = np.full_like(azimuth_deg, plan.orientation.azimuth_deg)
-    if plan.mode in (Mode.FIXED, Mode.AZIMUTH):
-        elevation_deg = np.full_like(elevation_deg, plan.orientation.elevation_deg)
-    return azimuth_deg, elevation_deg
+    return Samples(begin_s, end_s, along, azimuth_deg, elevation_deg)
 
 
 def branches(axis: AxisConfig, azimuth_deg: Array, near_deg: float, patience: int = 0) -> NDArray[np.int64]:

@@ -11,7 +11,7 @@ from app.sun.position import InstantRefused, Location, SunPosition, sun_position
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
-from app.tracker.mount import AxisTarget, aim, mode_direction, sky
+from app.tracker.mount import AxisTarget, aim, mode_direction, second_axis, sky
 from app.tracker.programs.stepped import HOURS_A_DAY, ProgramStep, StepFrame, StepProgram, TimeBase
 from app.tracker.strategy import Interval, IntervalAim, Schedule, Stepped
 
@@ -39,7 +39,8 @@ class Followed:
 
     def direction(self, sun: SunPosition) -> Orientation:
         """Return where the panel faces if it follows the sun itself."""
-        return mode_direction(self.mode, self.held, sun, refraction=self.config.refraction)
+        config = self.config
+        return mode_direction(self.mode, self.held, sun, refraction=config.refraction, mount=config.mount)
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +161,7 @@ def _on_axes(step: ProgramStep, followed: Followed, direction: Orientation, near
     reached = aim(config, pointing, direction, near_deg)
     wanted = _filled(step, Orientation(reached.azimuth_deg, reached.elevation_deg))
     first_deg = config.azimuth.clamp(wanted.azimuth_deg)
-    second_deg = config.elevation.clamp(wanted.elevation_deg)
+    second_deg = second_axis(config).clamp(wanted.elevation_deg)
     limited = (first_deg, second_deg) != (wanted.azimuth_deg, wanted.elevation_deg)
     return Aimed(
         sky(config, pointing, first_deg, second_deg),
