@@ -27,11 +27,14 @@ from app.store.engine import open_reader
 from app.store.exports import to_csv, to_parquet
 from app.store.restore import Restored, RestorePending, request_restore
 from app.store.store import StoreFailed
+from app.sun.accuracy import Question, survey
+from app.sun.accuracy_table import table
 from app.sun.position import Algorithm, Location, sun_position
 from app.tracker.commands import CommandRejected
 from app.tracker.config import TrackerConfig
 from app.tracker.mode import Mode
 from app.tracker.recording import Frames, RecordingInfo
+from app.web.api.accuracy import AccuracyReport
 from app.web.main import run as run_web
 
 FAILED = 2
@@ -106,6 +109,25 @@ def sun(
 
 
 @cli.command()
+def accuracy(
+    lat: Annotated[float | None, typer.Option("--lat", help="Latitude of a site, north positive.")] = None,
+    lon: Annotated[float | None, typer.Option("--lon", help="Longitude of a site, east positive.")] = None,
+    from_year: Annotated[int, typer.Option("--from", help="First year.")] = 2000,
+    to_year: Annotated[int, typer.Option("--to", help="Last year.")] = 2049,
+    samples: Annotated[int, typer.Option(help="Instants to draw.")] = 100_000,
+    *,
+    globe: Annotated[bool, typer.Option("--globe", help="Latitude -65 to 65 instead of a site.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, with the curves.")] = False,
+) -> None:
+    """Measure every sun algorithm against NREL SPA."""
+    if (lat is None or lon is None) and not globe:
+        raise ValueError("Give --lat and --lon of a site, or --globe.")
+    place = None if globe or lat is None or lon is None else Location(lat, lon)
+    found = survey(Question(place, from_year, to_year, samples))
+    typer.echo(AccuracyReport.of(found).model_dump_json(indent=2) if as_json else table(found))
+
+
+@cli.command()
 def simulate(
     lat: Latitude,
     lon: Longitude,
@@ -148,7 +170,10 @@ def drive_sim(
 
 @cli.command("sunspec-map")
 def print_sunspec_map(
-    *, weather: Annotated[bool, typer.Option("--weather", help="With model 307, which comes with weather.")] = False
+    *,
+    weather: Annotated[
+        bool, typer.Option("--weather", help="With model 307, which comes with weather.")
+    ] = False,
 ) -> None:
     """Print the SunSpec map of the present site as a table."""
     reader = open_reader(read_settings().url)

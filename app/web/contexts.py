@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
 from app.store.store import JournalEntry
+from app.sun.algorithms import PUBLISHED
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import ClockSetting, HomeTrust, Pointing, Sighting, StepName, TrackerMemory
 from app.tracker.mode import Mode
@@ -17,6 +18,9 @@ from app.web.ui.drawings import DayChart, SunDiagram
 
 Arc = tuple[tuple[float, float], ...]
 """Azimuth and elevation of the sun through a day, degrees."""
+
+ALGORITHMS = tuple((algorithm.value, one.expected) for algorithm, one in PUBLISHED.items())
+"""What can be chosen as sun algorithm, each with the error to expect."""
 
 
 class Context(Protocol):
@@ -365,6 +369,7 @@ class SettingsPage:
 
     frame: Frame
     form: Form
+    algorithms: tuple[tuple[str, str], ...] = ALGORITHMS
 
 
 @dataclass(frozen=True, slots=True)

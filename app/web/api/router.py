@@ -3,6 +3,7 @@
 from fastapi import APIRouter
 
 from app.web.api import (
+    accuracy,
     commissioning,
     journal,
     motion,
@@ -23,6 +24,7 @@ ROUTERS = (
     site.router,
     weather.router,
     sun.router,
+    accuracy.router,
     trackers.router,
     commissioning.router,
     motion.router,

@@ -1,5 +1,6 @@
 """A whole day at the controller's fidelity on a virtual clock; nothing moves."""
 
+from dataclasses import replace
 from datetime import date, datetime, timedelta
 from typing import Self
 
@@ -8,6 +9,7 @@ from fastapi.responses import Response
 from pydantic import AwareDatetime, Field, model_validator
 
 from app.link.messages import SaveRecording
+from app.sun.algorithms import Algorithm
 from app.tracker.config import Orientation
 from app.tracker.mode import Mode
 from app.tracker.recording import RecordingInfo
@@ -36,6 +38,7 @@ class NewSimulation(Input):
     azimuth_deg: Azimuth | None = Field(None, description="For modes that hold the azimuth.")
     elevation_deg: Elevation | None = Field(None, description="For modes that hold the elevation.")
     step_s: float = Field(1.0, ge=0.1, le=60, description="Seconds between frames.")
+    algorithm: Algorithm | None = Field(None, description="Left out: the tracker's own.")
     title: str = Field("", max_length=120)
 
     @model_validator(mode="after")
@@ -72,7 +75,7 @@ async def simulate_span(
     held = state.memory.orientation
     begin, end = new.span(site)
     request = SimulationRequest(
-        config=state.config,
+        config=replace(state.config, algorithm=new.algorithm or state.config.algorithm),
         pointing=state.memory.pointing,
         location=location_of(site),
         time_zone=site.time_zone,
