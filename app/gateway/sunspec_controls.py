@@ -56,11 +56,11 @@ class Controls:
         for name, value in values.items():
             low, high = TARGETS.get(name, (min(Control), max(Control)))
             if value is None or not low <= value <= high:
-                said = "nothing" if value is None else f"{value:g}"
+                said = "Nothing" if value is None else f"{value:g}"
                 message = (
                     f"{said} was written to {name} over SunSpec; it must lie between {low:g} and {high:g}."
                 )
-                refused(self._door, tracker_id, actor, message.capitalize())
+                refused(self._door, tracker_id, actor, message)
                 raise Refusal(ILLEGAL_VALUE)
 
     async def _act(self, tracker_id: str | None, control: Control, targets: Targets, actor: str) -> None:

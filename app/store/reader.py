@@ -56,7 +56,7 @@ class DatabaseReader:
         return [TRACKER.read(row.document, row.tracker_id) for row in rows]
 
     def journal(self, wanted: JournalFilter) -> list[JournalEntry]:
-        """Return entries, newest first."""
+        """Return entries, newest first; with `after` oldest first."""
         with self._read() as connection:
             rows = connection.execute(_journal_query(wanted)).all()
         return [_entry(row) for row in rows]
@@ -122,7 +122,10 @@ def head(row: Row[*tuple[Any, ...]]) -> RecordingInfo:
 
 def _journal_query(wanted: JournalFilter) -> Select[Any]:
     columns = tables.events.c
-    query = select(tables.events).order_by(columns.number.desc()).limit(wanted.limit)
+    order = columns.number.desc() if wanted.after is None else columns.number.asc()
+    query = select(tables.events).order_by(order).limit(wanted.limit)
+    if wanted.after is not None:
+        query = query.where(columns.number > wanted.after)
     if wanted.before is not None:
         query = query.where(columns.number < wanted.before)
     if wanted.tracker_id is not None:

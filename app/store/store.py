@@ -33,7 +33,10 @@ class PlannedShow:
 
 @dataclass(frozen=True, slots=True)
 class JournalFilter:
-    """Which entries: newest first, `before` is the cursor (a number), all others narrow."""
+    """Which entries: newest first, `before` is the cursor (a number), all others narrow.
+
+    `after` is the cursor the other way: with it the oldest entries behind that number, oldest first.
+    """
 
     before: int | None = None
     limit: int = 100
@@ -41,6 +44,7 @@ class JournalFilter:
     kinds: tuple[EventKind, ...] = ()
     since: datetime | None = None
     until: datetime | None = None
+    after: int | None = None
 
 
 class Reader(Protocol):
@@ -53,7 +57,7 @@ class Reader(Protocol):
         """Return the stored trackers in the order they were added."""
 
     def journal(self, wanted: JournalFilter) -> list[JournalEntry]:
-        """Return entries, newest first."""
+        """Return entries, newest first; with `after` oldest first."""
 
     def show(self, show_id: str) -> PlannedShow | None:
         """Return the plan of a show."""

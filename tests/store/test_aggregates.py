@@ -95,6 +95,7 @@ def test_the_journal_is_read_newest_first_by_a_cursor(writer: DatabaseWriter, re
     ("wanted", "numbers"),
     [
         (JournalFilter(tracker_id="T2"), [3]),
+        (JournalFilter(after=1, limit=2), [1, 2]),
         (JournalFilter(kinds=(EventKind.STOPPED, EventKind.JOG_STARTED)), [2, 1]),
         (JournalFilter(since=NOON + timedelta(seconds=2)), [3, 2]),
         (JournalFilter(until=NOON + timedelta(seconds=1)), [1, 0]),
