@@ -3,13 +3,13 @@
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from datetime import timedelta
 from enum import StrEnum
 from pathlib import Path
 
 from app.drives.profile_text import ProfileError as ProfileError
 from app.drives.profile_text import Source, Table
 from app.drives.register import Access, Register, WordOrder, WordType
+from app.drives.wire import Timing
 
 PROFILES = Path(__file__).parent / "profiles"
 SUFFIX = ".toml"
@@ -68,6 +68,8 @@ class Profile:
     source: str
     timeout_ms: int
     poll_ms: int
+    rest_ms: int
+    longest_reply_ms: int
     watchdog: Watchdog | None
     blocks: Mapping[str, Block]
     registers: Mapping[str, Register]
@@ -82,9 +84,18 @@ class Profile:
         return tuple(register.name for register in self.registers.values() if not register.verified)
 
     @property
-    def timeout(self) -> timedelta:
-        """Return after which time a reply counts as none."""
-        return timedelta(milliseconds=self.timeout_ms)
+    def timing(self) -> Timing:
+        """Return what the device needs on its bus."""
+        longest_s = self.longest_reply_ms / 1000.0 if self.longest_reply_ms else None
+        return Timing(self.timeout_ms / 1000.0, self.rest_ms / 1000.0, longest_s)
+
+    def block_of(self, register: Register) -> Block | None:
+        """Return the block that a register is read with, None if it is read alone."""
+        for block in self.blocks.values():
+            inside = range(block.address, block.address + block.count)
+            if all(address in inside for address in register.addresses):
+                return block
+        return None
 
     def at(self, address: int) -> str:
         """Return a register by its address in words for people."""
@@ -153,6 +164,8 @@ def _profile(top: Table) -> Profile:
         source=source,
         timeout_ms=timing.whole("timeout_ms", 20, 5000, 300),
         poll_ms=timing.whole("poll_ms", 20, 5000, 100),
+        rest_ms=timing.whole("rest_ms", 0, 1000, 0),
+        longest_reply_ms=timing.whole("longest_reply_ms", 0, 5000, 0),
         watchdog=_watchdog(top.table("watchdog"), registers),
         blocks={name: _block(name, top.table("blocks").table(name)) for name in top.table("blocks").content},
         registers=registers,

@@ -1,6 +1,6 @@
 """One value in a device's register map, and how it is packed into 16-bit words."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -105,3 +105,18 @@ RANGES = {
     WordType.UINT32: (0, 0xFFFF_FFFF),
     WordType.INT32: (-0x8000_0000, 0x7FFF_FFFF),
 }
+
+
+def runs(changed: Mapping[int, int], known: Mapping[int, int]) -> list[tuple[int, list[int]]]:
+    """Return runs of neighbouring addresses; a gap whose words are known is filled to save a frame."""
+    runs: list[tuple[int, list[int]]] = []
+    for address in sorted(changed):
+        if runs:
+            start, values = runs[-1]
+            gap = range(start + len(values), address)
+            if all(between in known for between in gap):
+                values.extend(known[between] for between in gap)
+                values.append(changed[address])
+                continue
+        runs.append((address, [changed[address]]))
+    return runs

@@ -1,0 +1,291 @@
+"""Another tracker controller as a drive: SunSpec model 601, of which the first tracker is moved.
+
+Source: SunSpec Information Model 601 (Tracker Controller, draft 2): control unit and repeating tracker
+block; targets and positions in degrees times ten to the power of `Dgr_SF`.
+"""
+
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+from typing import assert_never
+
+from app.clock import Clock
+from app.drives.drive import DriveError, DriveRefused
+from app.drives.plausibility import Plausibility
+from app.drives.profile import Profile
+from app.drives.register_axis import LEASE_S
+from app.drives.unit import Link, Unit
+from app.tracker.axes import Axis
+from app.tracker.config import TrackerConfig
+from app.tracker.motion import (
+    AxisCommand,
+    AxisFeedback,
+    DriveCapabilities,
+    DriveCommand,
+    DriveRequest,
+    Feedback,
+    Halt,
+    Position,
+    RequestKind,
+    Velocity,
+)
+
+END_MODEL, MOST_MODELS = 0xFFFF, 40
+MODEL_HEADER = 2
+NOT_IMPLEMENTED = -0x8000_0000
+NOT_IMPLEMENTED_SCALE = -0x8000
+BOOT_COUNT = 1
+BEGINNING = timedelta(milliseconds=500)
+"""How long after a new target the axes count as moving although no motion shows yet."""
+READ = (
+    "alarms", "scale", "elevation_position", "azimuth_position", "control", "tracker_alarms",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    at: datetime
+    azimuth_deg: float
+    elevation_deg: float
+
+
+class SunSpecDrive:
+    """Gives targets in manual control; the other controller keeps its own reference, speeds and limits.
+
+    It has no watchdog: what it was told last it goes on doing, so hand motion is made of short steps.
+    """
+
+    def __init__(self, config: TrackerConfig, profile: Profile, link: Link, clock: Clock, where: str) -> None:
+        self._config = config
+        self._profile = profile
+        self._link = link
+        self._clock = clock
+        self._where = where
+        self._unit = Unit(profile, link, where)
+        self._controls = profile.enums["control"]
+        self._plausibility = Plausibility(config, clock, {})
+        self._is_found = False
+        self._step_deg = 1.0
+        self._control = 0
+        self._last: _Seen | None = None
+        self._told_at: datetime | None = None
+        self._doing: DriveCommand | None = None
+        self._request: DriveRequest | None = None
+        self._number = self._done = self._stops = 0
+        self._failed = False
+
+    @property
+    def capabilities(self) -> DriveCapabilities:
+        """Return what model 601 offers."""
+        return DriveCapabilities(
+            automatic_homing=True,
+            watchdog_s=None,
+            settable_clock=False,
+            limit_switches=False,
+            description=f"{self._profile.title}, {self._where}",
+            verified=self._profile.verified,
+            unverified=self._profile.unverified,
+        )
+
+    async def read(self) -> Feedback:
+        """Return one fresh reading, or raise `DriveError`."""
+        if not self._is_found:
+            await self._find_model()
+        feedback = await self._read()
+        if self._plausibility.doubt(feedback) is not None:
+            feedback = self._plausibility.settle(feedback, await self._read())
+        self._plausibility.accept(feedback)
+        return feedback
+
+    async def write(self, command: DriveCommand) -> None:
+        """Send new targets if there are any, or raise `DriveError`."""
+        if not self._unit.is_fresh:
+            await self._look_again()
+        if command.request is not None and command.request.number != self._number:
+            await self._begin(command.request)
+        halted = isinstance(command.azimuth, Halt) and isinstance(command.elevation, Halt)
+        if self._request is not None and halted:
+            return
+        command = replace(command, request=None)
+        if command == self._doing and not _is_stepped(command):
+            return
+        if self._doing is None and halted:
+            self._doing = command
+            return
+        self._give_up()
+        await self._aim(command)
+
+    async def stop(self) -> None:
+        """Make the present position the target, ahead of everything that waits."""
+        self._stops += 1
+        self._give_up()
+        self._doing = None
+        seen = self._last
+        if seen is None:
+            raise DriveError(
+                f"The tracker controller at {self._where} cannot be stopped: its position was never read. "
+                "Use its own stop."
+            )
+        await self._unit.stop(self._targets(seen.azimuth_deg, seen.elevation_deg))
+
+    async def set_clock(self, at: datetime) -> None:
+        """Do nothing: model 601 shows a clock and has none to set."""
+
+    async def close(self) -> None:
+        """Stop the axes, which stay in manual control where they are, then let go of the connection."""
+        if self._unit.was_read and self._last is not None:
+            with suppress(DriveError):
+                await self.stop()
+        await self._unit.close()
+
+    async def _find_model(self) -> None:
+        """Walk the models of the device to number 601, or raise `DriveRefused`; shift the profile to it."""
+        registers = self._profile.registers
+        await self._identify()
+        address = registers["first_model"].address
+        for _ in range(MOST_MODELS):
+            model, length = await self._unit.look(address, MODEL_HEADER, "model header")
+            if model == registers["model"].expect:
+                self._unit = Unit(_shifted(self._profile, address), self._link, self._where)
+                self._is_found = True
+                return
+            if model == END_MODEL:
+                break
+            address += MODEL_HEADER + length
+        raise DriveRefused(f"The device at {self._where} has no SunSpec model 601. Check unit and profile.")
+
+    async def _identify(self) -> None:
+        found = await self._unit.poll("sunspec_id")
+        if found["sunspec_id"] != self._profile.enums["sunspec_id"]["first_word"]:
+            raise DriveRefused(
+                f"The device at {self._where} is no SunSpec device: its map does not begin with SunS. "
+                "Check address, unit and profile."
+            )
+
+    async def _read(self) -> Feedback:
+        await self._unit.confirm()
+        values = await self._unit.poll(*READ)
+        now = self._clock.now()
+        if values["scale"] == NOT_IMPLEMENTED_SCALE:
+            raise DriveError(f"The tracker controller at {self._where} gives no scale for its degrees.")
+        self._step_deg = 10.0 ** values["scale"]
+        seen = _Seen(
+            now,
+            self._degrees(values, "azimuth_position"),
+            self._degrees(values, "elevation_position"),
+        )
+        azimuth, elevation = self._axis("azimuth", seen), self._axis("elevation", seen)
+        fault_code = int(values["alarms"]) | int(values["tracker_alarms"])
+        self._control = int(values["control"])
+        self._watch_request(fault_code, moving=azimuth.moving or elevation.moving)
+        self._last = seen
+        return Feedback(
+            azimuth=azimuth,
+            elevation=elevation,
+            boot_count=BOOT_COUNT,
+            fault_code=fault_code,
+            homing=self._control == self._controls["calibrate"],
+            request_done=self._done,
+            request_failed=self._failed,
+        )
+
+    def _degrees(self, values: Mapping[str, float], name: str) -> float:
+        if values[name] == NOT_IMPLEMENTED:
+            raise DriveError(
+                f"The tracker controller at {self._where} does not report {name}. It cannot move both axes."
+            )
+        return round(values[name] * self._step_deg, 9)
+
+    def _axis(self, name: str, seen: _Seen) -> AxisFeedback:
+        position_deg = float(getattr(seen, f"{name}_deg"))
+        velocity_dps = 0.0
+        if self._last is not None and seen.at > self._last.at:
+            way_deg = position_deg - float(getattr(self._last, f"{name}_deg"))
+            velocity_dps = way_deg / (seen.at - self._last.at).total_seconds()
+        just_told = self._told_at is not None and seen.at - self._told_at < BEGINNING
+        return AxisFeedback(position_deg, velocity_dps, moving=velocity_dps != 0.0 or just_told, homed=True)
+
+    async def _look_again(self) -> None:
+        stops = self._stops
+        self._unit.forget()
+        self._doing = None
+        await self.read()
+        if self._stops != stops:
+            raise DriveError("A stop overtook this command; it was not written.")
+
+    async def _begin(self, request: DriveRequest) -> None:
+        """Begin calibration; what the model has no way for is answered as failed at once."""
+        self._number, self._request = request.number, request
+        match request.kind:
+            case RequestKind.HOME:
+                self._told_at = self._clock.now()
+                self._control = self._controls["calibrate"]
+                await self._unit.put({"control": self._control}, renewed=True)
+            case RequestKind.SET_ZERO_AZIMUTH | RequestKind.SET_ZERO_ELEVATION:
+                self._give_up()
+            case RequestKind.RESET_FAULT:
+                pass
+            case _ as never:
+                assert_never(never)
+
+    def _give_up(self) -> None:
+        if self._request is not None:
+            self._request, self._done, self._failed = None, self._number, True
+
+    def _watch_request(self, fault_code: int, *, moving: bool) -> None:
+        """End calibration when the controller has gone back to automatic, a reset when no alarm is left."""
+        if self._request is None or (self._request.kind is RequestKind.HOME and moving and not fault_code):
+            return
+        if self._control != self._controls["calibrate"] or fault_code:
+            self._request, self._done, self._failed = None, self._number, fault_code != 0
+
+    async def _aim(self, command: DriveCommand) -> None:
+        seen = self._last
+        if seen is None:
+            raise DriveError(f"The tracker controller at {self._where} was not read yet; it is not moved.")
+        azimuth_deg = self._target(Axis.AZIMUTH, command.azimuth, seen.azimuth_deg)
+        elevation_deg = self._target(Axis.ELEVATION, command.elevation, seen.elevation_deg)
+        stepped = _is_stepped(command)
+        targets = self._targets(azimuth_deg, elevation_deg)
+        await self._unit.put(targets, renewed=True, confirmed=not stepped)
+        self._doing, self._told_at = command, self._clock.now()
+
+    def _target(self, axis: Axis, command: AxisCommand, here_deg: float) -> float:
+        match command:
+            case Position(position_deg, speed_dps) if speed_dps > 0.0:
+                return position_deg
+            case Velocity(velocity_dps):
+                acceleration_dps2 = self._config.axis(axis).acceleration_dps2
+                reach_deg = abs(velocity_dps) * LEASE_S + velocity_dps**2 / (2.0 * acceleration_dps2)
+                return here_deg + (reach_deg if velocity_dps > 0.0 else -reach_deg)
+            case _:
+                return here_deg
+
+    def _targets(self, azimuth_deg: float, elevation_deg: float) -> dict[str, float]:
+        return {
+            "elevation_target": round(elevation_deg / self._step_deg),
+            "azimuth_target": round(azimuth_deg / self._step_deg),
+            "control": self._controls["manual"],
+        }
+
+
+def _is_stepped(command: DriveCommand) -> bool:
+    return isinstance(command.azimuth, Velocity) or isinstance(command.elevation, Velocity)
+
+
+def _shifted(profile: Profile, model_address: int) -> Profile:
+    """Return the profile with everything from model 601 on where this device has it."""
+    first = profile.registers["model"].address
+    by = model_address - first
+    return replace(
+        profile,
+        registers={
+            name: replace(one, address=one.address + by) if one.address >= first else one
+            for name, one in profile.registers.items()
+        },
+        blocks={
+            name: replace(one, address=one.address + by) if one.address >= first else one
+            for name, one in profile.blocks.items()
+        },
+    )

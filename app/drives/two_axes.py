@@ -1,0 +1,162 @@
+"""A tracker whose axes have a drive each: two units of one bus behind the drive protocol."""
+
+import asyncio
+from collections.abc import Mapping
+from contextlib import suppress
+from datetime import datetime
+
+from app.clock import Clock
+from app.drives.bus import Priority
+from app.drives.drive import DriveError
+from app.drives.plausibility import Plausibility
+from app.drives.profile import Profile
+from app.drives.register_axis import AxisReading, RegisterAxis
+from app.tracker.axes import Axis
+from app.tracker.config import TrackerConfig
+from app.tracker.motion import (
+    AxisCommand,
+    DriveCapabilities,
+    DriveCommand,
+    DriveRequest,
+    Feedback,
+    Halt,
+    RequestKind,
+    Velocity,
+)
+
+BOOT_COUNT = 1
+"""These drives do not count their starts: one that restarted shows it by having lost its zero."""
+REQUESTED = {
+    RequestKind.SET_ZERO_AZIMUTH: (Axis.AZIMUTH,),
+    RequestKind.SET_ZERO_ELEVATION: (Axis.ELEVATION,),
+    RequestKind.HOME: (Axis.AZIMUTH, Axis.ELEVATION),
+    RequestKind.RESET_FAULT: (Axis.AZIMUTH, Axis.ELEVATION),
+}
+
+
+class TwoAxisDrive:
+    """The drive protocol on two axes that know nothing of each other."""
+
+    def __init__(
+        self,
+        config: TrackerConfig,
+        profile: Profile,
+        axes: Mapping[Axis, RegisterAxis],
+        clock: Clock,
+        where: str,
+    ) -> None:
+        self._profile = profile
+        self._axes = axes
+        self._where = where
+        self._plausibility = Plausibility(config, clock, {})
+        self._number = 0
+        self._pending: tuple[Axis, ...] = ()
+        self._done = 0
+        self._failed = False
+        self._stops = 0
+        self._homed: dict[Axis, bool] = {}
+
+    @property
+    def capabilities(self) -> DriveCapabilities:
+        """Return what the profile offers."""
+        watchdog = self._profile.watchdog
+        has_switches = "inputs" in self._profile.bits
+        return DriveCapabilities(
+            automatic_homing=has_switches or "home" in self._profile.enums.get("homing_method", {}),
+            watchdog_s=watchdog.timeout_ms / 1000.0 if watchdog is not None else None,
+            settable_clock=False,
+            limit_switches=has_switches and all(axis.unit.has("inputs") for axis in self._axes.values()),
+            description=f"{self._profile.title}, {self._where}",
+            verified=self._profile.verified,
+            watchdog_action=watchdog.action if watchdog is not None else "",
+            unverified=self._profile.unverified,
+        )
+
+    async def read(self) -> Feedback:
+        """Return one fresh reading of both axes, or raise `DriveError`."""
+        feedback = await self._read()
+        if self._plausibility.doubt(feedback) is not None:
+            feedback = self._plausibility.settle(feedback, await self._read())
+        self._plausibility.accept(feedback)
+        return feedback
+
+    async def write(self, command: DriveCommand) -> None:
+        """Send what changed, or raise `DriveError`; nothing is sent twice."""
+        if not all(axis.unit.is_fresh for axis in self._axes.values()):
+            await self._look_again()
+        for axis, wanted in ((Axis.AZIMUTH, command.azimuth), (Axis.ELEVATION, command.elevation)):
+            self._axes[axis].unit.priority = _priority(wanted)
+        if command.request is not None and command.request.number != self._number:
+            await self._begin(command.request)
+        await self._axes[Axis.AZIMUTH].write(command.azimuth)
+        await self._axes[Axis.ELEVATION].write(command.elevation)
+
+    async def stop(self) -> None:
+        """Ramp both axes down ahead of everything that waits; raise `DriveError` after both were tried."""
+        self._stops += 1
+        stops = (axis.stop() for axis in self._axes.values())
+        found = await asyncio.gather(*stops, return_exceptions=True)
+        for error in found:
+            if isinstance(error, BaseException):
+                raise error
+
+    async def set_clock(self, at: datetime) -> None:
+        """Do nothing: these drives have no clock."""
+
+    async def close(self) -> None:
+        """Stop the axes if they can be reached, then let go of the bus."""
+        if all(axis.unit.was_read for axis in self._axes.values()):
+            with suppress(DriveError):
+                await self.stop()
+        for axis in self._axes.values():
+            await axis.unit.close()
+
+    async def _read(self) -> Feedback:
+        readings = {axis: await one.read() for axis, one in self._axes.items()}
+        self._notice_lost_zero(readings)
+        self._watch_request(readings)
+        faults = [reading.fault_code for reading in readings.values() if reading.fault_code]
+        return Feedback(
+            azimuth=readings[Axis.AZIMUTH].feedback,
+            elevation=readings[Axis.ELEVATION].feedback,
+            boot_count=BOOT_COUNT,
+            fault_code=faults[0] if faults else 0,
+            homing=any(reading.homing for reading in readings.values()),
+            request_done=self._done,
+            request_failed=self._failed,
+        )
+
+    async def _look_again(self) -> None:
+        """Read the state anew; raise `DriveError` if a stop came in between."""
+        stops = self._stops
+        for axis in self._axes.values():
+            axis.forget()
+        await self.read()
+        if self._stops != stops:
+            raise DriveError("A stop overtook this command; it was not written.")
+
+    async def _begin(self, request: DriveRequest) -> None:
+        self._number = request.number
+        self._pending = REQUESTED[request.kind]
+        for axis in self._pending:
+            await self._axes[axis].begin(request.kind)
+
+    def _watch_request(self, readings: Mapping[Axis, AxisReading]) -> None:
+        """Answer a request once every axis that it concerns has ended it."""
+        outcomes = [readings[axis].outcome for axis in self._pending]
+        if not outcomes:
+            return
+        if None not in outcomes:
+            self._done, self._failed, self._pending = self._number, not all(outcomes), ()
+
+    def _notice_lost_zero(self, readings: Mapping[Axis, AxisReading]) -> None:
+        """Forget the requests of the life that a drive has lost with its zero, unless it is homing."""
+        homed = {axis: reading.feedback.homed for axis, reading in readings.items()}
+        lost = any(self._homed.get(axis, False) and not homed[axis] for axis in homed)
+        if lost and not self._pending:
+            self._done, self._failed = 0, False
+        self._homed = homed
+
+
+def _priority(command: AxisCommand) -> Priority:
+    return Priority.JOG if isinstance(command, Velocity | Halt) else Priority.COMMAND
