@@ -9,11 +9,16 @@ import structlog
 
 from app.clock import Clock
 from app.gateway.door import Door
+from app.gateway.mqtt import MqttGateway
+from app.gateway.outbox import Outbox
 from app.gateway.sunspec import SunSpecTcp
 from app.link.messages import Order, SiteDetail, Update
 from app.link.metrics import GatewayMetrics, GatewayStatus, MachineMetrics
 from app.settings import Settings
+from app.store.store import Reader
 from app.tracker.snapshot import SiteSnapshot
+
+OUTBOX_NAME = "mqtt-outbox.json"
 
 log = structlog.get_logger(__name__)
 
@@ -38,9 +43,9 @@ class MeteredDoor(Door, Protocol):
 class Gateways:
     """Runs every door that the settings open, and is the machine for the panel, with the doors' metrics."""
 
-    def __init__(self, machine: MeteredDoor, clock: Clock, settings: Settings) -> None:
+    def __init__(self, machine: MeteredDoor, clock: Clock, settings: Settings, reader: Reader) -> None:
         self._machine = machine
-        self._open, self._off = _doors(machine, clock, settings)
+        self._open, self._off = _doors(machine, clock, settings, reader)
         self._tasks: list[asyncio.Task[None]] = []
 
     def start(self) -> None:
@@ -79,7 +84,7 @@ class Gateways:
 
 
 def _doors(
-    machine: Door, clock: Clock, settings: Settings
+    machine: Door, clock: Clock, settings: Settings, reader: Reader
 ) -> tuple[tuple[Gateway, ...], tuple[GatewayMetrics, ...]]:
     """Return the doors that are open, and what is told of those that are not."""
     opened: list[Gateway] = []
@@ -88,6 +93,11 @@ def _doors(
         opened.append(SunSpecTcp(machine, clock, settings))
     else:
         off.append(_off("SunSpec over Modbus TCP", "SUNSPEC_PORT"))
+    if settings.mqtt_host is not None:
+        outbox = Outbox(reader, settings.data_dir / OUTBOX_NAME)
+        opened.append(MqttGateway(machine, clock, settings, outbox))
+    else:
+        off.append(_off("MQTT", "MQTT_HOST"))
     return tuple(opened), tuple(off)
 
 

@@ -74,7 +74,7 @@ async def _serve(settings: Settings, clock: SystemClock, writer: Writer) -> None
     background = WriterThread(writer, _on_store_failure)
     beginning = begin(writer, clock.now(), unclean_since=mark_running(settings.data_dir, clock.now()))
     site = _site(settings, clock, background, writer, beginning)
-    gateways = Gateways(site, clock, settings)
+    gateways = Gateways(site, clock, settings, writer)
     server = LinkServer(gateways, settings.link_path)
     stopped = _on_signals()
     await site.start(*beginning.events)

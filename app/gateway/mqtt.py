@@ -1,0 +1,216 @@
+"""The MQTT gateway: tells snapshots, events and recordings, and takes commands if it may.
+
+The machine never waits for the broker: snapshots are taken from the newest one there is, events from the
+journal on disk, and both by tasks of their own.
+"""
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+from datetime import timedelta
+from pathlib import Path
+
+import structlog
+from aiomqtt import Client, MqttError, TLSParameters, Will
+
+from app.clock import Clock
+from app.gateway.door import Door
+from app.gateway.mqtt_commands import obey
+from app.gateway.mqtt_discovery import announcements
+from app.gateway.mqtt_messages import (
+    OFFLINE,
+    ONLINE,
+    Topics,
+    columns_payload,
+    event_payload,
+    recording_payload,
+    site_payload,
+    tracker_payload,
+)
+from app.gateway.outbox import Outbox
+from app.link.metrics import GatewayMetrics, GatewayStatus
+from app.settings import Settings
+from app.store.store import StoreFailed
+from app.tracker.snapshot import SiteSnapshot
+
+FIRST_DELAY, LONGEST_DELAY = timedelta(seconds=1), timedelta(seconds=30)
+LOOK_FOR_EVENTS = timedelta(milliseconds=500)
+LOOK_FOR_RECORDINGS = timedelta(seconds=5)
+AT_ONCE = 50
+ANSWER_WITHIN_S = 5.0
+KEEPALIVE_S = 15
+MOST_COMMANDS_WAITING = 100
+AT_LEAST_ONCE = 1
+
+log = structlog.get_logger(__name__)
+
+
+class MqttGateway:
+    """Keeps one connection to a broker; while it is down, events wait on disk."""
+
+    def __init__(self, door: Door, clock: Clock, settings: Settings, outbox: Outbox) -> None:
+        self._door = door
+        self._clock = clock
+        self._settings = settings
+        self._outbox = outbox
+        self._topics = Topics(settings.mqtt_topic)
+        self._every = timedelta(seconds=settings.mqtt_snapshot_s)
+        self._status = GatewayStatus.CONNECTING
+        self._error = ""
+        self._waiting = 0
+        self._announced: dict[str, bytes] = {}
+
+    def metrics(self) -> GatewayMetrics:
+        """Return how it is doing."""
+        connected = self._status is GatewayStatus.CONNECTED
+        return GatewayMetrics("MQTT", self._status, self._where, int(connected), self._error, self._waiting)
+
+    @property
+    def _port(self) -> int:
+        return self._settings.mqtt_port or (8883 if self._settings.mqtt_tls else 1883)
+
+    @property
+    def _where(self) -> str:
+        return f"{self._settings.mqtt_host}:{self._port}"
+
+    async def run(self) -> None:
+        """Connect, tell, and connect again, until cancelled."""
+        delay = FIRST_DELAY
+        while True:
+            try:
+                await asyncio.to_thread(self._outbox.begin)
+                async with self._connected() as client:
+                    delay = FIRST_DELAY
+                    await self._tell(client)
+            except* (MqttError, StoreFailed, OSError) as errors:
+                self._note_failure(errors)
+            await self._count_waiting()
+            await self._clock.sleep_until(self._clock.now() + delay)
+            delay = min(2 * delay, LONGEST_DELAY)
+
+    def _note_failure(self, errors: ExceptionGroup[Exception]) -> None:
+        first: BaseException = errors
+        while isinstance(first, BaseExceptionGroup):
+            first = first.exceptions[0]
+        self._status = GatewayStatus.CONNECTING
+        self._error = f"The broker at {self._where} is not reached: {first}. It is tried again."
+        log.warning("mqtt_disconnected", reason=str(first), broker=self._where)
+
+    @asynccontextmanager
+    async def _connected(self) -> AsyncIterator[Client]:
+        """Connect with a last will, say that we are online, and take it back at a proper end."""
+        async with self._client() as client:
+            await client.publish(self._topics.availability, ONLINE, AT_LEAST_ONCE, retain=True)
+            self._status, self._error, self._announced = GatewayStatus.CONNECTED, "", {}
+            log.info("mqtt_connected", broker=self._where)
+            try:
+                yield client
+            finally:
+                self._status = GatewayStatus.CONNECTING
+                with suppress(MqttError):
+                    await client.publish(
+                        self._topics.availability, OFFLINE, AT_LEAST_ONCE, retain=True, timeout=1.0
+                    )
+
+    def _client(self) -> Client:
+        settings = self._settings
+        password = settings.mqtt_password
+        return Client(
+            settings.mqtt_host or "",
+            self._port,
+            username=settings.mqtt_username,
+            password=None if password is None else password.get_secret_value(),
+            identifier=settings.mqtt_client,
+            will=Will(self._topics.availability, OFFLINE, AT_LEAST_ONCE, retain=True),
+            tls_params=self._tls() if settings.mqtt_tls else None,
+            timeout=ANSWER_WITHIN_S,
+            keepalive=KEEPALIVE_S,
+            max_queued_incoming_messages=MOST_COMMANDS_WAITING,
+        )
+
+    def _tls(self) -> TLSParameters:
+        settings = self._settings
+        return TLSParameters(
+            ca_certs=_path(settings.mqtt_ca_file),
+            certfile=_path(settings.mqtt_cert_file),
+            keyfile=_path(settings.mqtt_key_file),
+        )
+
+    async def _tell(self, client: Client) -> None:
+        client.pending_calls_threshold = 2 * AT_ONCE
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(self._tell_snapshots(client))
+            tasks.create_task(self._tell_events(client))
+            tasks.create_task(self._tell_recordings(client))
+            tasks.create_task(self._take_commands(client))
+
+    async def _tell_snapshots(self, client: Client) -> None:
+        """Tell the newest snapshot at the set rate; what could not be told in time is left out."""
+        due = self._clock.now()
+        while True:
+            site = self._door.latest()
+            if site is not None:
+                await self._announce(client, site)
+                await self._tell_site(client, site)
+            due = max(due + self._every, self._clock.now())
+            await self._clock.sleep_until(due)
+
+    async def _tell_site(self, client: Client, site: SiteSnapshot) -> None:
+        await client.publish(self._topics.site, site_payload(site))
+        if self._settings.mqtt_snapshots == "columns":
+            await client.publish(self._topics.columns, columns_payload(site))
+            return
+        for tracker in site.trackers:
+            await client.publish(self._topics.snapshot(tracker.tracker_id), tracker_payload(site, tracker))
+
+    async def _announce(self, client: Client, site: SiteSnapshot) -> None:
+        """Announce trackers that are new or changed to Home Assistant, and take back those that are gone."""
+        if not self._settings.mqtt_discovery:
+            return
+        wanted = announcements(self._topics, site.trackers, commands=self._settings.mqtt_commands)
+        gone = dict.fromkeys(self._announced.keys() - wanted.keys(), b"")
+        for topic, payload in (wanted | gone).items():
+            if self._announced.get(topic) != payload:
+                await client.publish(topic, payload, AT_LEAST_ONCE, retain=True)
+        self._announced = wanted
+
+    async def _tell_events(self, client: Client) -> None:
+        """Tell the journal in its order; what the broker has not acknowledged is told again."""
+        while True:
+            entries = await asyncio.to_thread(self._outbox.events, AT_ONCE)
+            payloads = [event_payload(self._outbox.series, entry) for entry in entries]
+            topic = self._topics.events
+            async with asyncio.TaskGroup() as tasks:
+                for payload in payloads:
+                    tasks.create_task(client.publish(topic, payload, AT_LEAST_ONCE))
+            if entries:
+                await asyncio.to_thread(self._outbox.acknowledge, entries[-1].number)
+            if len(entries) < AT_ONCE:
+                self._waiting = 0
+                await self._clock.sleep_until(self._clock.now() + LOOK_FOR_EVENTS)
+
+    async def _tell_recordings(self, client: Client) -> None:
+        while True:
+            for recording in await asyncio.to_thread(self._outbox.recordings):
+                await client.publish(self._topics.recordings, recording_payload(recording), AT_LEAST_ONCE)
+                await asyncio.to_thread(self._outbox.announced, recording)
+            await self._clock.sleep_until(self._clock.now() + LOOK_FOR_RECORDINGS)
+
+    async def _take_commands(self, client: Client) -> None:
+        if not self._settings.mqtt_commands:
+            return
+        await client.subscribe(self._topics.commands, AT_LEAST_ONCE)
+        async for message in client.messages:
+            tracker_id = self._topics.addressed(message.topic.value)
+            payload = message.payload if isinstance(message.payload, bytes) else b""
+            if payload:
+                answer = await obey(self._door, tracker_id, payload, retained=message.retain)
+                await client.publish(self._topics.result(tracker_id), answer, AT_LEAST_ONCE)
+
+    async def _count_waiting(self) -> None:
+        with suppress(StoreFailed):
+            self._waiting = await asyncio.to_thread(self._outbox.waiting)
+
+
+def _path(file: Path | None) -> str | None:
+    return None if file is None else str(file)

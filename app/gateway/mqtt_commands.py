@@ -1,0 +1,97 @@
+"""Commands over MQTT: read, sent through the same orders as every door, and answered."""
+
+from dataclasses import asdict
+from typing import Annotated, Literal
+
+import orjson
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+from app.gateway.door import Door, refused
+from app.link.messages import MachineUnreachable, Order, UnknownTracker
+from app.tracker.commands import Command, CommandRejected, Home, Move, Park, ResetFault, Stop, Track
+from app.tracker.config import Orientation
+from app.tracker.reason import Reason
+
+
+class _Message(BaseModel):
+    """What every command carries: who asks, and what keeps a repeat or a late one from being carried out."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    client: str = Field(min_length=1, max_length=40, pattern=r"^[\w.@ -]+$")
+    key: str | None = Field(None, min_length=1, max_length=64)
+    issued_at: AwareDatetime | None = None
+
+
+class _Plain(_Message):
+    """A command without values."""
+
+    type: Literal["track", "park", "stop", "home", "reset_fault"]
+
+    def command(self) -> Command:
+        return PLAIN[self.type]()
+
+
+class _Move(_Message):
+    """Go to an orientation and stay there."""
+
+    type: Literal["move"]
+    azimuth_deg: float = Field(ge=0, lt=360)
+    elevation_deg: float = Field(ge=-90, le=90)
+
+    def command(self) -> Command:
+        return Move(Orientation(self.azimuth_deg, self.elevation_deg))
+
+
+PLAIN: dict[str, type[Track | Park | Stop | Home | ResetFault]] = {
+    "track": Track,
+    "park": Park,
+    "stop": Stop,
+    "home": Home,
+    "reset_fault": ResetFault,
+}
+RETAINED = Reason(
+    "retained",
+    "A retained command is not carried out: it would be repeated with every connection.",
+    "Send it again without the retain flag, and clear the retained one with an empty message.",
+)
+_messages: TypeAdapter[_Plain | _Move] = TypeAdapter(Annotated[_Plain | _Move, Field(discriminator="type")])
+
+
+async def obey(door: Door, tracker_id: str, payload: bytes, *, retained: bool) -> bytes:
+    """Carry out one command and return the answer: its key, whether it was accepted, and if not why."""
+    try:
+        message = _messages.validate_json(payload)
+    except ValidationError as error:
+        return _answer(None, _malformed(error))
+    actor = f"mqtt {message.client}"
+    reasons = (RETAINED,) if retained else await _carry_out(door, tracker_id, message, actor)
+    if reasons:
+        told = " ".join(reason.message for reason in reasons)
+        refused(door, tracker_id, actor, f"{message.type} over MQTT was refused: {told}")
+    return _answer(message.key, *reasons)
+
+
+async def _carry_out(door: Door, tracker_id: str, message: _Plain | _Move, actor: str) -> tuple[Reason, ...]:
+    """Return why it was refused, nothing if it was carried out."""
+    order = Order(message.command(), actor, tracker_id, message.key, message.issued_at)
+    try:
+        await door.execute(order)
+    except CommandRejected as rejected:
+        return rejected.reasons
+    except (UnknownTracker, MachineUnreachable, ValueError) as error:
+        return (Reason(type(error).__name__, str(error)),)
+    return ()
+
+
+def _malformed(error: ValidationError) -> Reason:
+    places = "; ".join(
+        f"{'.'.join(map(str, one['loc'])) or 'message'}: {one['msg']}" for one in error.errors()
+    )
+    return Reason("malformed", f"This is no command: {places}.", "docs/mqtt.md shows every command.")
+
+
+def _answer(key: str | None, *reasons: Reason) -> bytes:
+    return orjson.dumps(
+        {"key": key, "accepted": not reasons, "reasons": [asdict(reason) for reason in reasons]}
+    )

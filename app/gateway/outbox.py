@@ -1,0 +1,119 @@
+"""What is still to be told: the journal behind a cursor on disk, and recordings that were not announced.
+
+The journal is on disk before anybody hears of an event, so it is the outbox: nothing is kept twice, and
+what happened while the broker, the network or this computer was down is sent later, in order.
+"""
+
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from threading import RLock
+from uuid import uuid4
+
+import orjson
+
+from app.store.store import JournalEntry, JournalFilter, Reader
+from app.tracker.recording import RecordingInfo
+
+MOST_UNSENT = 100_000
+RECORDINGS_KNOWN = 500
+
+
+@dataclass(slots=True)
+class _Cursor:
+    """How far a series of numbers was acknowledged, and how each recording was last announced."""
+
+    series: str
+    number: int
+    recordings: dict[str, str] = field(default_factory=dict)
+
+
+class Outbox:
+    """Reads what was not acknowledged yet. Its calls block: make them in a thread; one at a time is served."""
+
+    def __init__(self, reader: Reader, path: Path) -> None:
+        self._reader = reader
+        self._path = path
+        self._cursor: _Cursor | None = None
+        self._one_at_a_time = RLock()
+        self.dropped = 0
+
+    def begin(self) -> None:
+        """Fix on disk where the telling begins; call it before anything happens."""
+        with self._one_at_a_time:
+            self._known()
+            self._save()
+
+    @property
+    def series(self) -> str:
+        """Return the name of the numbering, which changes when the journal was replaced by an older one."""
+        return self._known().series
+
+    def events(self, limit: int) -> list[JournalEntry]:
+        """Return the oldest events that were not acknowledged; too old ones are dropped and counted."""
+        with self._one_at_a_time:
+            cursor, newest = self._known(), self._newest()
+            if newest < cursor.number:
+                cursor.series, cursor.number = uuid4().hex, newest
+            excess = newest - cursor.number - MOST_UNSENT
+            if excess > 0:
+                cursor.number += excess
+                self.dropped += excess
+            return self._reader.journal(JournalFilter(after=cursor.number, limit=limit))
+
+    def waiting(self) -> int:
+        """Return how many events are not acknowledged, at most."""
+        with self._one_at_a_time:
+            return max(0, self._newest() - self._known().number)
+
+    def acknowledge(self, number: int) -> None:
+        """Note that every event up to a number has arrived."""
+        with self._one_at_a_time:
+            self._known().number = number
+            self._save()
+
+    def recordings(self) -> list[RecordingInfo]:
+        """Return recordings whose state was not announced yet, oldest first."""
+        with self._one_at_a_time:
+            known = self._known().recordings
+            found = self._reader.recordings()
+            return [one for one in reversed(found) if known.get(one.recording_id) != recording_state(one)]
+
+    def announced(self, recording: RecordingInfo) -> None:
+        """Note that a recording's state has arrived."""
+        with self._one_at_a_time:
+            known = self._known().recordings
+            known[recording.recording_id] = recording_state(recording)
+            for oldest in list(known)[: len(known) - RECORDINGS_KNOWN]:
+                del known[oldest]
+            self._save()
+
+    def _known(self) -> _Cursor:
+        if self._cursor is None:
+            self._cursor = self._load() or self._fresh()
+        return self._cursor
+
+    def _load(self) -> _Cursor | None:
+        try:
+            return _Cursor(**orjson.loads(self._path.read_bytes()))
+        except (OSError, ValueError, TypeError):
+            return None
+
+    def _fresh(self) -> _Cursor:
+        """Begin with what happens from now on: old history is not poured out."""
+        known = {one.recording_id: recording_state(one) for one in self._reader.recordings()}
+        return _Cursor(uuid4().hex, self._newest(), known)
+
+    def _newest(self) -> int:
+        newest = self._reader.journal(JournalFilter(limit=1))
+        return newest[0].number if newest else 0
+
+    def _save(self) -> None:
+        """Replace the cursor's file; one that is lost in a power cut makes duplicates, never gaps."""
+        fresh = self._path.with_suffix(".new")
+        fresh.write_bytes(orjson.dumps(asdict(self._known())))
+        fresh.replace(self._path)
+
+
+def recording_state(recording: RecordingInfo) -> str:
+    """Return what is announced of a recording: that it runs, or how it ended."""
+    return "running" if recording.ended_at is None else "finished"
