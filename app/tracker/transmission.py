@@ -1,0 +1,151 @@
+"""Linear actuators: the triangle that turns a stroke in millimetres into the angle of an axis, and back.
+
+The mechanism of C. Alexandru, Mathematics 2024, 12, 1034, doi:10.3390/math12071034: one end of the actuator is
+held by the part that the axis turns against, the other by the part that turns. Between the ends of the stroke
+the formulas hold exactly; beyond them the angle goes on in a straight line, so that a reading of a drive that
+has lost its zero still means something.
+"""
+
+from dataclasses import dataclass
+from math import acos, atan2, cos, degrees, hypot, radians, sin, sqrt
+
+LEAST_TRANSMISSION_DEG = 10.0
+MOST_TRANSMISSION_DEG = 170.0
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """A place in the frame of an axis, millimetres: z along the axis, a growing angle turns x towards y."""
+
+    x_mm: float
+    y_mm: float
+    z_mm: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class LinearActuator:
+    """An actuator between `base`, which stays, and `joint`, which turns with the axis, by its points.
+
+    `joint` is where it is at the axis angle `at_deg`. The length runs from `retracted_mm` over `travel_mm`,
+    at `speed_mm_s` or less. Raises `ValueError` for points that cannot have these lengths, and for a
+    transmission angle outside of 10 to 170 degrees, where the actuator could jam.
+    """
+
+    base: Point
+    joint: Point
+    at_deg: float
+    retracted_mm: float
+    travel_mm: float
+    speed_mm_s: float
+
+    def __post_init__(self) -> None:
+        if min(self.retracted_mm, self.travel_mm, self.speed_mm_s) <= 0.0:
+            raise ValueError("The actuator's length, stroke and speed must be above zero.")
+        held, arm, aside = _triangle(self)
+        if min(held, arm) <= 0.0:
+            raise ValueError("Neither end of the actuator may lie on the axis: it could not turn it.")
+        shortest, longest = hypot(held - arm, aside), hypot(held + arm, aside)
+        if not shortest < self.retracted_mm < self.retracted_mm + self.travel_mm < longest:
+            raise ValueError(
+                f"With these points the actuator is between {shortest:.1f} and {longest:.1f} mm long; from "
+                f"{self.retracted_mm:g} to {self.retracted_mm + self.travel_mm:g} mm it cannot go."
+            )
+        ends_deg = [_transmission_deg(self, self.retracted_mm + stroke) for stroke in (0.0, self.travel_mm)]
+        if min(ends_deg) < LEAST_TRANSMISSION_DEG or max(ends_deg) > MOST_TRANSMISSION_DEG:
+            raise ValueError(
+                f"The transmission angle runs from {min(ends_deg):.1f} to {max(ends_deg):.1f} degrees; it must "
+                "stay between 10 and 170, so that the actuator does not jam."
+            )
+
+    @property
+    def range_deg(self) -> tuple[float, float]:
+        """Return the lowest and the highest axis angle within the stroke."""
+        ends_deg = self.angle_deg(0.0), self.angle_deg(self.travel_mm)
+        return min(ends_deg), max(ends_deg)
+
+    def length_mm(self, angle_deg: float) -> float:
+        """Return the distance of both ends at an axis angle."""
+        held, arm, aside = _triangle(self)
+        opening = radians(angle_deg - self.at_deg) + _phase(self)
+        return sqrt(held * held + arm * arm + aside * aside - 2.0 * held * arm * cos(opening))
+
+    def stroke_mm(self, angle_deg: float) -> float:
+        """Return how far the actuator is driven out at an axis angle; a straight line beyond its ends."""
+        low_deg, high_deg = self.range_deg
+        inside_deg = min(high_deg, max(low_deg, angle_deg))
+        beyond_deg = angle_deg - inside_deg
+        stroke_mm = self.length_mm(inside_deg) - self.retracted_mm
+        return stroke_mm + beyond_deg * self.mm_per_deg(inside_deg) if beyond_deg else stroke_mm
+
+    def angle_deg(self, stroke_mm: float) -> float:
+        """Return the axis angle at a stroke: the inverse of `stroke_mm`."""
+        held, arm, aside = _triangle(self)
+        inside_mm = min(self.travel_mm, max(0.0, stroke_mm))
+        length_mm = self.retracted_mm + inside_mm
+        cosine = (held * held + arm * arm + aside * aside - length_mm * length_mm) / (2.0 * held * arm)
+        opening_deg = degrees(acos(min(1.0, max(-1.0, cosine))))
+        angle_deg = self.at_deg + _side(self) * opening_deg - degrees(_phase(self))
+        beyond_mm = stroke_mm - inside_mm
+        return angle_deg + beyond_mm / self.mm_per_deg(angle_deg) if beyond_mm else angle_deg
+
+    def mm_per_deg(self, angle_deg: float) -> float:
+        """Return how far the actuator is driven out for a degree; negative where that turns the axis back."""
+        held, arm, _ = _triangle(self)
+        low_deg, high_deg = _open_range_deg(self)
+        opening = radians(min(high_deg, max(low_deg, angle_deg)) - self.at_deg) + _phase(self)
+        return radians(held * arm * sin(opening) / self.length_mm(angle_deg))
+
+    def transmission_deg(self, angle_deg: float) -> float:
+        """Return the angle at the joint between the actuator and the arm to the axis."""
+        return _transmission_deg(self, self.length_mm(angle_deg))
+
+    def slowest_dps(self, low_deg: float, high_deg: float) -> float:
+        """Return how fast the actuator turns the axis where it turns it slowest, between two axis angles."""
+        steepest_deg = self.at_deg - degrees(_phase(self)) + _side(self) * degrees(acos(_steepest(self)))
+        angles_deg = [low_deg, high_deg]
+        if low_deg < steepest_deg < high_deg:
+            angles_deg.append(steepest_deg)
+        return self.speed_mm_s / max(abs(self.mm_per_deg(angle_deg)) for angle_deg in angles_deg)
+
+
+def _triangle(actuator: LinearActuator) -> tuple[float, float, float]:
+    """Return the distances of base and joint from the axis, and from each other along it."""
+    base, joint = actuator.base, actuator.joint
+    return hypot(base.x_mm, base.y_mm), hypot(joint.x_mm, joint.y_mm), joint.z_mm - base.z_mm
+
+
+def _phase(actuator: LinearActuator) -> float:
+    """Return the angle at the axis from the base to the joint where it is given, in (-pi, pi], radians."""
+    base, joint = actuator.base, actuator.joint
+    across = base.x_mm * joint.y_mm - base.y_mm * joint.x_mm
+    return atan2(across, base.x_mm * joint.x_mm + base.y_mm * joint.y_mm)
+
+
+def _side(actuator: LinearActuator) -> float:
+    """Return on which side of the base the joint turns, 1 or -1: the whole stroke lies on one."""
+    return -1.0 if _phase(actuator) < 0.0 else 1.0
+
+
+def _open_range_deg(actuator: LinearActuator) -> tuple[float, float]:
+    """Return the axis angles between which a longer actuator always means a greater opening."""
+    straight_deg = actuator.at_deg - degrees(_phase(actuator))
+    ends_deg = straight_deg, straight_deg + _side(actuator) * 180.0
+    return min(ends_deg), max(ends_deg)
+
+
+def _steepest(actuator: LinearActuator) -> float:
+    """Return the cosine of the opening at which a degree takes the longest stroke.
+
+    There the derivative of sin(opening) / length is zero: with length^2 = s - q cos(opening), the cosine c
+    solves q c^2 / 2 - s c + q / 2 = 0.
+    """
+    held, arm, aside = _triangle(actuator)
+    total, product = held * held + arm * arm + aside * aside, 2.0 * held * arm
+    return (total - sqrt(total * total - product * product)) / product
+
+
+def _transmission_deg(actuator: LinearActuator, length_mm: float) -> float:
+    held, arm, aside = _triangle(actuator)
+    flat = length_mm * length_mm - aside * aside
+    cosine = (arm * arm + flat - held * held) / (2.0 * arm * length_mm)
+    return degrees(acos(min(1.0, max(-1.0, cosine))))
