@@ -13,10 +13,11 @@ from pathlib import Path
 from pymodbus.client import AsyncModbusTcpClient
 
 from app.clock import SystemClock, VirtualClock
-from app.drives.modbus import Address, ModbusLink
-from app.drives.plc import PlcDrive
-from app.drives.profile import load_profile
+from app.drives.bus import Bus
+from app.drives.factory import DriveFactory
+from app.drives.modbus_tcp import TcpWire
 from app.drives.simulated import SimulatedDrive
+from app.drives.wire import Timing
 from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
 from app.tracker.motion import DriveCommand, Position
 from bench.table import Row
@@ -96,9 +97,9 @@ async def _polls(port: int, *, with_drive: bool) -> dict[str, list[float]]:
     clock = SystemClock()
     plain = AsyncModbusTcpClient("127.0.0.1", port=port, timeout=0.3, retries=0, reconnect_delay=0)
     await plain.connect()
-    link = ModbusLink(Address("127.0.0.1", port, 1), clock)
+    link = Bus("bench", TcpWire("127.0.0.1", port), clock).unit(1, Timing())
     config = TrackerConfig("T1", "Bench", drive=DriveConfig(DriveKind.MODBUS_TCP, port=port))
-    drive = PlcDrive(config, load_profile("simulated-plc"), clock)
+    drive = DriveFactory(clock).make(config)
     ways: dict[str, Poll] = {
         "pymodbus": lambda: plain.read_holding_registers(0, count=REGISTERS, device_id=1),
         "link": lambda: link.read(0, REGISTERS, what="bench"),

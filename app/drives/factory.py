@@ -5,36 +5,47 @@ from typing import assert_never
 from urllib.parse import quote
 
 from app.clock import Clock
-from app.drives.drive import Drive, DriveError
+from app.drives.buses import Buses
+from app.drives.drive import Drive
 from app.drives.plc import PlcDrive
-from app.drives.profile import Adapter, load_profile
+from app.drives.profile import Adapter, ProfileError, load_profile
 from app.drives.simulated import SimulatedDrive
 from app.tracker.config import DriveKind, TrackerConfig
 
 
-def make_drive(config: TrackerConfig, clock: Clock, data_dir: Path | None) -> Drive:
-    """Return the drive of a tracker, not yet connected, or raise `ProfileError` for a bad profile.
+class DriveFactory:
+    """Makes drives, and keeps the buses that they share; a process has one.
 
     A simulated drive keeps its position memory in the data folder; without one it forgets.
     """
-    match config.drive.kind:
-        case DriveKind.SIMULATED:
-            memory = (
-                data_dir / "drives" / f"{quote(config.tracker_id, safe='')}.json"
-                if data_dir is not None
-                else None
-            )
-            return SimulatedDrive(config, clock, memory=memory)
-        case DriveKind.MODBUS_TCP:
-            return _modbus(config, clock)
-        case DriveKind.MODBUS_RTU | DriveKind.MODBUS_RTU_OVER_TCP:
-            raise DriveError(f"A drive on {config.drive.kind} cannot be reached by this version.")
-        case _ as never:
-            assert_never(never)
 
+    def __init__(self, clock: Clock, data_dir: Path | None = None) -> None:
+        self.buses = Buses(clock)
+        self._clock = clock
+        self._data_dir = data_dir
 
-def _modbus(config: TrackerConfig, clock: Clock) -> Drive:
-    profile = load_profile(config.drive.profile)
-    match profile.adapter:
-        case Adapter.PLC:
-            return PlcDrive(config, profile, clock)
+    def make(self, config: TrackerConfig) -> Drive:
+        """Return the drive of a tracker, not yet connected, or raise `ProfileError` for a bad profile."""
+        match config.drive.kind:
+            case DriveKind.SIMULATED:
+                return SimulatedDrive(config, self._clock, memory=self._memory(config.tracker_id))
+            case DriveKind.MODBUS_TCP | DriveKind.MODBUS_RTU | DriveKind.MODBUS_RTU_OVER_TCP:
+                return self._modbus(config)
+            case _ as never:
+                assert_never(never)
+
+    def _memory(self, tracker_id: str) -> Path | None:
+        if self._data_dir is None:
+            return None
+        return self._data_dir / "drives" / f"{quote(tracker_id, safe='')}.json"
+
+    def _modbus(self, config: TrackerConfig) -> Drive:
+        profile = load_profile(config.drive.profile)
+        unit = self.buses.unit(config.drive, config.drive.unit, profile.timing)
+        match profile.adapter:
+            case Adapter.PLC:
+                return PlcDrive(config, profile, self._clock, unit)
+            case Adapter.CIA402 | Adapter.PR | Adapter.DIRECT | Adapter.SUNSPEC as other:
+                raise ProfileError(f"{profile.name}.toml: the adapter {other} is not known to this version.")
+            case _ as never:
+                assert_never(never)

@@ -1,10 +1,11 @@
 """Can a position be true? Modbus TCP carries no checksum: damage shows only in what a value says."""
 
+from collections.abc import Mapping
 from datetime import datetime
 
 from app.clock import Clock
 from app.drives.drive import DriveError
-from app.drives.profile import Profile
+from app.drives.register import Register
 from app.tracker.axes import Axis
 from app.tracker.config import TrackerConfig
 from app.tracker.motion import AxisFeedback, Feedback
@@ -20,9 +21,9 @@ class Plausibility:
     controller to judge; two that do not are damage on the way.
     """
 
-    def __init__(self, config: TrackerConfig, profile: Profile, clock: Clock) -> None:
+    def __init__(self, config: TrackerConfig, clock: Clock, registers: Mapping[Axis, Register]) -> None:
         self._config = config
-        self._registers = {axis: profile.registers[f"{axis}_position"] for axis in Axis}
+        self._registers = registers
         self._clock = clock
         self._last: tuple[Feedback, datetime] | None = None
 
@@ -71,7 +72,11 @@ class Plausibility:
 
 
 def _zero_may_have_changed(last: Feedback, feedback: Feedback) -> bool:
-    return (last.request_done, last.boot_count) != (feedback.request_done, feedback.boot_count)
+    return _life(last) != _life(feedback)
+
+
+def _life(feedback: Feedback) -> tuple[int, int, bool, bool]:
+    return feedback.request_done, feedback.boot_count, feedback.azimuth.homed, feedback.elevation.homed
 
 
 def _of(feedback: Feedback, axis: Axis) -> AxisFeedback:

@@ -5,11 +5,12 @@ from contextlib import suppress
 from datetime import UTC, datetime
 
 from app.clock import Clock
+from app.drives.bus import BusUnit, Priority
 from app.drives.drive import DriveError, DriveRefused
-from app.drives.modbus import Address, ModbusLink, Priority
 from app.drives.plausibility import Plausibility
 from app.drives.plc_map import CLOCK_PARTS, PlcMap
 from app.drives.profile import Profile
+from app.drives.register import runs
 from app.tracker.config import TrackerConfig
 from app.tracker.motion import HALT, DriveCapabilities, DriveCommand, Feedback, Velocity
 
@@ -25,14 +26,11 @@ class PlcDrive:
     Only what changed is written, in one frame with the keep-alive value that feeds the PLC's watchdog.
     """
 
-    def __init__(
-        self, config: TrackerConfig, profile: Profile, clock: Clock, link: ModbusLink | None = None
-    ) -> None:
+    def __init__(self, config: TrackerConfig, profile: Profile, clock: Clock, link: BusUnit) -> None:
         self._profile = profile
         self._map = PlcMap(profile)
-        self._address = Address(config.drive.host, config.drive.port, config.drive.unit)
-        self._link = link if link is not None else ModbusLink(self._address, clock, profile.timeout)
-        self._plausibility = Plausibility(config, profile, clock)
+        self._link = link
+        self._plausibility = Plausibility(config, clock, self._map.positions)
         self._block = profile.blocks["status"]
         self._taken: dict[int, int] = {}
         self._seen: list[int] = []
@@ -52,7 +50,7 @@ class PlcDrive:
             watchdog_s=self._watchdog_s,
             settable_clock="clock" in self._profile.blocks,
             limit_switches="switches" in self._profile.bits,
-            description=f"{self._profile.title} on Modbus TCP, {self._address}",
+            description=f"{self._profile.title}, {self._link}",
             verified=self._profile.verified,
             watchdog_action=self._profile.watchdog.action if self._profile.watchdog is not None else "",
             unverified=self._profile.unverified,
@@ -97,7 +95,7 @@ class PlcDrive:
         self._forget()
         self._stops += 1
         stop = self._map.words("stop", 1) or self._map.command_words(STAND)
-        for address, values in _runs(stop, stop):
+        for address, values in runs(stop, stop):
             await self._link.stop(address, values, what=f"stop, {self._profile.at(address)}")
 
     async def set_clock(self, at: datetime) -> None:
@@ -111,7 +109,7 @@ class PlcDrive:
             for part in CLOCK_PARTS
             for address, word in self._map.words(part, getattr(utc, part)).items()
         }
-        for address, values in _runs(words, words):
+        for address, values in runs(words, words):
             await self._link.write(address, values, what="the clock", ticket=None)
 
     async def close(self) -> None:
@@ -129,7 +127,7 @@ class PlcDrive:
             raise DriveError("A stop overtook this command; it was not written.")
         if boot_count not in (None, self._boot_count):
             raise DriveError(
-                f"The drive at {self._address} has restarted: a command from before was not written."
+                f"The drive at {self._link} has restarted: a command from before was not written."
             )
 
     async def _poll(self) -> list[int]:
@@ -154,7 +152,7 @@ class PlcDrive:
             found = self._integer(register.name, words)
             if found != register.expect:
                 raise DriveRefused(
-                    f"The device at {self._address} is no {self._profile.title}: register "
+                    f"The device at {self._link} is no {self._profile.title}: register "
                     f"{self._profile.at(register.address)} holds {found} instead of {register.expect}. "
                     "Check address, unit and profile."
                 )
@@ -168,7 +166,7 @@ class PlcDrive:
         self._unchanged["heartbeat"] = (value, times)
         if times >= MOST_UNCHANGED:
             raise DriveError(
-                f"The drive at {self._address} answers, but its heartbeat stands still: its readings are "
+                f"The drive at {self._link} answers, but its heartbeat stands still: its readings are "
                 "old. Check that its program runs."
             )
 
@@ -195,11 +193,11 @@ class PlcDrive:
         where = self._profile.at(first + wrong[0])
         if before and all(words[place] == before[place] for place in wrong):
             raise DriveError(
-                f"The drive at {self._address} acknowledged a command and did not take it (register {where}"
+                f"The drive at {self._link} acknowledged a command and did not take it (register {where}"
                 "). Check that it is in remote operation."
             )
         raise DriveError(
-            f"Someone else commands the drive at {self._address}: register {where} holds what this program "
+            f"Someone else commands the drive at {self._link}: register {where} holds what this program "
             "did not write. Disconnect the other Modbus master."
         )
 
@@ -213,7 +211,7 @@ class PlcDrive:
         """
         changed = {address: word for address, word in words.items() if taken.get(address) != word}
         keep_alive = self._profile.registers["keep_alive"].address
-        frames = _runs(changed, words)
+        frames = runs(changed, words)
         return sorted(
             frames, key=lambda frame: frame[0] <= keep_alive < frame[0] + len(frame[1]), reverse=not taken
         )
@@ -236,21 +234,6 @@ def _with_request(feedback: Feedback, number: int) -> Feedback:
         number,
         feedback.request_failed,
     )
-
-
-def _runs(changed: Mapping[int, int], known: Mapping[int, int]) -> list[tuple[int, list[int]]]:
-    """Return runs of neighbouring addresses; a gap whose words are known is filled to save a frame."""
-    runs: list[tuple[int, list[int]]] = []
-    for address in sorted(changed):
-        if runs:
-            start, values = runs[-1]
-            gap = range(start + len(values), address)
-            if all(between in known for between in gap):
-                values.extend(known[between] for between in gap)
-                values.append(changed[address])
-                continue
-        runs.append((address, [changed[address]]))
-    return runs
 
 
 def _priority(command: DriveCommand) -> Priority:

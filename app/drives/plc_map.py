@@ -33,6 +33,7 @@ class PlcMap:
     def __init__(self, profile: Profile) -> None:
         _check(profile)
         self._registers = profile.registers
+        self.positions = {axis: profile.registers[f"{axis}_position"] for axis in Axis}
         self._status = profile.bits["status"]
         self._switches = profile.bits.get("switches", NO_SWITCHES)
         self._motions = profile.enums["motion"]

@@ -12,8 +12,7 @@ import structlog
 
 from app.build import BUILT_AT, VERSION
 from app.clock import SystemClock
-from app.drives.drive import Drive
-from app.drives.factory import make_drive
+from app.drives.factory import DriveFactory
 from app.gateway.gateways import Gateways
 from app.link.server import LinkServer
 from app.logs import set_up_logs
@@ -32,7 +31,6 @@ from app.store.migrations import upgrade
 from app.store.offloaded import WriterThread
 from app.store.restore import apply_pending_restore
 from app.store.store import JournalFilter, StoreFailed, Writer
-from app.tracker.config import TrackerConfig
 from app.tracker.snapshot import Event, EventKind
 
 FIFO_PRIORITY = 10
@@ -123,9 +121,6 @@ def _site(
     writer: Writer,
     beginning: Beginning,
 ) -> Site:
-    def drive_for(config: TrackerConfig) -> Drive:
-        return make_drive(config, clock, settings.data_dir)
-
     timekeeper = Timekeeper(
         clock,
         beginning.site.clock,
@@ -135,7 +130,7 @@ def _site(
     )
     return Site(
         clock,
-        drive_for,
+        DriveFactory(clock, settings.data_dir).make,
         beginning.site,
         beginning.trackers,
         timekeeper=timekeeper,

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from app.clock import VirtualClock
 from app.drives.drive import Drive
-from app.drives.plc import PlcDrive
+from app.drives.factory import DriveFactory
 from app.drives.profile import load_profile
 from app.drives.sim_server import serve
 from app.drives.simulated import SimulatedDrive
@@ -76,8 +76,8 @@ async def modbus_rig(name: str = "simulated-plc") -> AsyncIterator[Rig]:
     machine = SimulatedDrive(CONFIG, clock)
     profile = load_profile(name)
     server, port = await serve("127.0.0.1", 0, profile, machine, clock)
-    config = replace(CONFIG, drive=DriveConfig(DriveKind.MODBUS_TCP, port=port))
-    drive = PlcDrive(config, profile, clock)
+    config = replace(CONFIG, drive=DriveConfig(DriveKind.MODBUS_TCP, name, port=port))
+    drive = DriveFactory(clock).make(config)
     try:
         yield Rig(drive, machine, clock)
     finally:

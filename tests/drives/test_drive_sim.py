@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from app.clock import SystemClock, VirtualClock
-from app.drives.factory import make_drive
+from app.drives.factory import DriveFactory
 from app.drives.faults import Fault, FaultKind
 from app.drives.plc import PlcDrive
 from app.drives.profile import ProfileError
@@ -59,7 +59,7 @@ async def running(memory: Path, *inject: str) -> AsyncIterator[Running]:
     line = (await asyncio.wait_for(process.stdout.readline(), 20.0)).decode()
     port = int(line.split("127.0.0.1:")[1].split(",")[0])
     config = replace(CONFIG, drive=DriveConfig(DriveKind.MODBUS_TCP, port=port))
-    drive = make_drive(config, SystemClock(), None)
+    drive = DriveFactory(SystemClock()).make(config)
     assert isinstance(drive, PlcDrive)
     try:
         yield Running(process, drive)
@@ -107,15 +107,17 @@ async def test_faults_can_be_given_at_the_start(tmp_path: Path) -> None:
 
 def test_the_factory_makes_a_simulated_drive_with_its_memory(tmp_path: Path) -> None:
     clock = VirtualClock(START)
-    assert isinstance(make_drive(replace(CONFIG, tracker_id="../T 1"), clock, tmp_path), SimulatedDrive)
+    assert isinstance(
+        DriveFactory(clock, tmp_path).make(replace(CONFIG, tracker_id="../T 1")), SimulatedDrive
+    )
     assert [path.name for path in (tmp_path / "drives").iterdir()] == ["..%2FT%201.json"]
-    assert isinstance(make_drive(CONFIG, clock, None), SimulatedDrive)
+    assert isinstance(DriveFactory(clock).make(CONFIG), SimulatedDrive)
 
 
 def test_the_factory_refuses_an_unknown_profile() -> None:
     config = replace(CONFIG, drive=DriveConfig(DriveKind.MODBUS_TCP, profile="nonsense"))
     with pytest.raises(ProfileError, match="no drive profile"):
-        make_drive(config, VirtualClock(START), None)
+        DriveFactory(VirtualClock(START)).make(config)
 
 
 def test_addresses_are_host_and_port() -> None:

@@ -9,8 +9,10 @@ from datetime import timedelta
 import pytest
 
 from app.clock import VirtualClock
+from app.drives.bus import MOST_WAITING, Bus, BusUnit, Priority
 from app.drives.drive import DriveError, DriveRefused, DriveSilent
-from app.drives.modbus import MOST_WAITING, Address, ModbusLink, Priority
+from app.drives.modbus_tcp import TcpWire
+from app.drives.wire import Timing
 from tests.drives.rigs import START, pending_tasks
 from tests.drives.scripted_server import (
     Answer,
@@ -24,15 +26,19 @@ from tests.drives.scripted_server import (
     silent,
 )
 
-TIMEOUT = timedelta(milliseconds=600)
+TIMEOUT_S = 0.6
 RIGHT = [30, 33, 36, 39]
 
 
+def linked_to(port: int, clock: VirtualClock) -> BusUnit:
+    return Bus("bench", TcpWire("127.0.0.1", port), clock).unit(1, Timing(TIMEOUT_S))
+
+
 @asynccontextmanager
-async def linked(*script: Answer) -> AsyncIterator[tuple[ModbusLink, ScriptedServer, VirtualClock]]:
+async def linked(*script: Answer) -> AsyncIterator[tuple[BusUnit, ScriptedServer, VirtualClock]]:
     clock = VirtualClock(START)
     async with scripted(*script) as server:
-        link = ModbusLink(Address("127.0.0.1", server.port, 1), clock, TIMEOUT)
+        link = linked_to(server.port, clock)
         try:
             yield link, server, clock
         finally:
@@ -40,7 +46,7 @@ async def linked(*script: Answer) -> AsyncIterator[tuple[ModbusLink, ScriptedSer
     assert not pending_tasks(), "a closed link leaves no task behind"
 
 
-async def read(link: ModbusLink) -> list[int]:
+async def read(link: BusUnit) -> list[int]:
     return await link.read(10, 4, what="four registers")
 
 
@@ -189,7 +195,7 @@ async def test_a_first_connection_that_fails_is_tried_again_with_growing_delay()
     port = server.port
     await server.close()
     clock = VirtualClock(START)
-    link = ModbusLink(Address("127.0.0.1", port, 1), clock, TIMEOUT)
+    link = linked_to(port, clock)
     for _ in range(6):
         with pytest.raises(DriveSilent, match="no connection"):
             await read(link)
@@ -222,7 +228,7 @@ async def test_a_stop_is_sent_even_if_its_caller_gives_up() -> None:
         await asyncio.sleep(0.02)
         for _ in range(3):
             with pytest.raises(TimeoutError):
-                await asyncio.wait_for(link.stop(33, [1], what="stop"), 0.02)
+                await asyncio.wait_for(link.stop(33, [1], what="stop"), 0.005)
         with pytest.raises(DriveSilent):
             await poll
         assert await read(link) == RIGHT

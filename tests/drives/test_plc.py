@@ -9,15 +9,19 @@ from datetime import timedelta
 import pytest
 
 from app.clock import VirtualClock
+from app.drives.bus import Bus, BusUnit
+from app.drives.buses import Buses
 from app.drives.drive import DriveError, DriveRefused
+from app.drives.factory import DriveFactory
 from app.drives.faults import Fault, FaultKind
-from app.drives.modbus import Address, ModbusLink
 from app.drives.modbus_server import ModbusServer
+from app.drives.modbus_tcp import TcpWire
 from app.drives.plc import PlcDrive
 from app.drives.plc_map import PlcMap
 from app.drives.profile import Profile, load_profile
 from app.drives.sim_plc import SimulatedPlc
 from app.drives.simulated import SimulatedDrive
+from app.drives.wire import Timing
 from app.tracker.config import DriveConfig, DriveKind
 from app.tracker.motion import (
     HALT,
@@ -106,6 +110,13 @@ class Wire(SimulatedPlc):
         super().write_registers(address, words)
 
 
+def plc_at(port: int, clock: VirtualClock) -> PlcDrive:
+    config = replace(CONFIG, drive=DriveConfig(DriveKind.MODBUS_TCP, port=port))
+    drive = DriveFactory(clock).make(config)
+    assert isinstance(drive, PlcDrive)
+    return drive
+
+
 @dataclass
 class Bench:
     drive: PlcDrive
@@ -125,7 +136,7 @@ async def on_the_bench() -> AsyncIterator[Bench]:
     wire = Wire(PROFILE, machine, clock)
     server = ModbusServer(wire)
     port = await server.start("127.0.0.1", 0)
-    drive = PlcDrive(replace(CONFIG, drive=DriveConfig(DriveKind.MODBUS_TCP, port=port)), PROFILE, clock)
+    drive = plc_at(port, clock)
     try:
         yield Bench(drive, wire, machine, clock, port)
     finally:
@@ -167,8 +178,8 @@ async def test_after_a_stop_everything_is_written_anew() -> None:
 
 
 @asynccontextmanager
-async def another_master(bench: Bench) -> AsyncIterator[ModbusLink]:
-    link = ModbusLink(Address("127.0.0.1", bench.port, 1), bench.clock)
+async def another_master(bench: Bench) -> AsyncIterator[BusUnit]:
+    link = Bus("other", TcpWire("127.0.0.1", bench.port), bench.clock).unit(1, Timing())
     try:
         yield link
     finally:
@@ -258,7 +269,9 @@ async def test_a_device_without_the_registers_is_refused_with_their_name() -> No
     wide = replace(PROFILE, blocks={"status": replace(PROFILE.blocks["status"], count=50)})
     async with on_the_bench() as bench:
         config = replace(CONFIG, drive=DriveConfig(DriveKind.MODBUS_TCP, port=bench.port))
-        drive = PlcDrive(config, wide, bench.clock)
+        drive = PlcDrive(
+            config, wide, bench.clock, DriveFactory(bench.clock).buses.unit(config.drive, 1, wide.timing)
+        )
         with pytest.raises(DriveRefused, match=r"no such register.*block status of profile simulated-plc"):
             await drive.read()
         await drive.close()
@@ -301,7 +314,7 @@ async def test_without_a_watchdog_the_capabilities_say_so() -> None:
     machine = SimulatedDrive(CONFIG, clock, watchdog=None)
     server = ModbusServer(SimulatedPlc(PROFILE, machine, clock))
     port = await server.start("127.0.0.1", 0)
-    drive = PlcDrive(replace(CONFIG, drive=DriveConfig(DriveKind.MODBUS_TCP, port=port)), PROFILE, clock)
+    drive = plc_at(port, clock)
     await drive.read()
     assert drive.capabilities.watchdog_s is None
     await drive.close()

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from app.clock import SystemClock
 from app.drives.drive import Drive
-from app.drives.factory import make_drive
+from app.drives.factory import DriveFactory
 from app.link.client import LinkClient
 from app.link.messages import ConfigureTracker, MachineUnreachable, Order, SetClock, SetLocation, SiteCommand
 from app.sun.position import Location
@@ -64,7 +64,7 @@ class DriveSimulator:
         assert process.stdout is not None
         async with asyncio.timeout(LONGEST_WAIT_S):
             await process.stdout.readline()
-        return cls(port, process, make_drive(config_for(port), SystemClock(), None))
+        return cls(port, process, DriveFactory(SystemClock()).make(config_for(port)))
 
     async def look(self) -> Feedback:
         return await self.eyes.read()

@@ -9,7 +9,7 @@ import pytest
 
 from app.clock import VirtualClock
 from app.drives.drive import Drive
-from app.drives.factory import make_drive
+from app.drives.factory import DriveFactory
 from app.link.messages import (
     AddTracker,
     ApplySightings,
@@ -449,7 +449,7 @@ async def test_a_drive_whose_profile_is_gone_leaves_the_site_alive() -> None:
 
 async def test_a_profile_that_does_not_exist_is_refused(tmp_path: Path) -> None:
     clock = VirtualClock(SUMMER_NOON)
-    site = Site(clock, lambda config: make_drive(config, clock, tmp_path), SiteState(), (FIRST,))
+    site = Site(clock, DriveFactory(clock, tmp_path).make, SiteState(), (FIRST,))
     drive = DriveConfig(DriveKind.MODBUS_TCP, profile="acme")
 
     with pytest.raises(ValueError, match="acme"):
