@@ -13,6 +13,7 @@ from fastapi import APIRouter, Query
 from fastapi.responses import Response
 from pydantic import AwareDatetime, Field
 
+from app.sun.algorithms import PUBLISHED
 from app.sun.events import PolarDay, day_events
 from app.sun.position import Algorithm, Location, sun_path, sun_position
 from app.tracker.commands import CommandRejected
@@ -26,6 +27,14 @@ router = APIRouter(prefix="/sun", tags=["sun"])
 NO_LOCATION = Reason(
     "location_not_set", "The site's location is not known.", "Set it in step 1: PUT /api/v1/site/location."
 )
+AlgorithmQuery = Annotated[
+    Algorithm,
+    Query(
+        description="Published algorithm, and its error with the sun up, 2000 to 2049: "
+        + "; ".join(f"`{algorithm}` up to {one.max_deg:g} degrees" for algorithm, one in PUBLISHED.items())
+        + "."
+    ),
+]
 CSV: Responses = {
     200: {"content": {"text/csv": {"schema": {"type": "string"}}}, "description": "As JSON or as CSV."}
 }
@@ -80,7 +89,7 @@ class SunDay(Output):
 async def read_sun(
     site: SnapshotDep,
     at: Annotated[AwareDatetime | None, Query(description="With offset; left out: now.")] = None,
-    algorithm: Algorithm = Algorithm.PSA,
+    algorithm: AlgorithmQuery = Algorithm.PSA,
 ) -> SunNow:
     """Return the sun's place over the site."""
     place, instant = location_of(site), at or site.at
@@ -101,7 +110,7 @@ def read_day(
     site: SnapshotDep,
     date: Annotated[date | None, Query(description="Civil date of the site; left out: today.")] = None,
     step_s: Annotated[int, Query(ge=10, le=21600, description="Seconds between points.")] = 300,
-    algorithm: Algorithm = Algorithm.PSA,
+    algorithm: AlgorithmQuery = Algorithm.PSA,
     format: TextFormat = TextFormat.JSON,
 ) -> SunDay | Response:
     """Return rise, transit, set and the path, as JSON or as CSV."""
