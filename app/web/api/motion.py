@@ -12,8 +12,12 @@ from app.tracker.commands import (
     EndJog,
     Home,
     Jog,
+    MeasureLinkLoss,
+    MeasureStop,
     Move,
     Park,
+    ProveDirection,
+    ProveScale,
     ResetFault,
     SelectMode,
     SetZero,
@@ -23,6 +27,7 @@ from app.tracker.commands import (
 )
 from app.tracker.config import Orientation
 from app.tracker.mode import Mode
+from app.tracker.proofs import StopSpeed
 from app.tracker.snapshot import SiteSnapshot, Snapshot
 from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, TrackerId
 from app.web.api.orders import SenderDep, tracker_of
@@ -131,6 +136,52 @@ class ResetFaultCommand(_Command):
         return ResetFault()
 
 
+class ProveDirectionCommand(_Command):
+    """Turn one axis by 3 degrees, so that somebody can see which way the panel goes."""
+
+    type: Literal["prove_direction"]
+    axis: Axis
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return ProveDirection(self.axis)
+
+
+class ProveScaleCommand(_Command):
+    """Turn one axis by 10, 30 or 90 degrees, so that somebody can measure by how much the panel turned."""
+
+    type: Literal["prove_scale"]
+    axis: Axis
+    degrees: Literal[10, 30, 90] = 10
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return ProveScale(self.axis, float(self.degrees))
+
+
+class MeasureStopCommand(_Command):
+    """Bring one axis up to speed, stop it, and measure time and way until it stands."""
+
+    type: Literal["measure_stop"]
+    axis: Axis
+    speed: StopSpeed
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return MeasureStop(self.axis, self.speed)
+
+
+class MeasureLinkLossCommand(_Command):
+    """Move one axis slowly, then send the drive nothing, and measure what it does by itself."""
+
+    type: Literal["measure_link_loss"]
+    axis: Axis
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return MeasureLinkLoss(self.axis)
+
+
 AnyCommand = Annotated[
     MoveCommand
     | StepCommand
@@ -139,7 +190,11 @@ AnyCommand = Annotated[
     | ModeCommand
     | TrackCommand
     | ParkCommand
-    | ResetFaultCommand,
+    | ResetFaultCommand
+    | ProveDirectionCommand
+    | ProveScaleCommand
+    | MeasureStopCommand
+    | MeasureLinkLossCommand,
     Field(discriminator="type"),
 ]
 

@@ -1,0 +1,87 @@
+"""What was proven about a tracker's drive, and what somebody at the machine says about it."""
+
+from typing import Annotated
+
+from fastapi import APIRouter
+from pydantic import Field
+
+from app.link.messages import AnswerDirection, AnswerScale, RestoreDrive, SetSoftLimit
+from app.tracker.axes import Axis
+from app.tracker.config import TrackerConfig
+from app.tracker.proof_states import ProofState
+from app.tracker.proofs import AxisEnd, Proofs
+from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, TrackerId
+from app.web.api.orders import SenderDep
+from app.web.api.trackers import detail_of
+from app.web.deps import MachineDep
+
+router = APIRouter(prefix="/trackers/{tracker_id}", tags=["drive"])
+
+
+class DriveProofs(Output):
+    """Where every proof stands, and all that was measured."""
+
+    states: tuple[ProofState, ...] = Field(
+        description="Each proof: to do, to be confirmed (a later change made it untrue) or done, and why."
+    )
+    measured: Proofs = Field(description="The newest of each sort; `move` waits to be judged.")
+
+
+class SeenDirection(Input):
+    """What somebody saw after `prove_direction`."""
+
+    right: bool = Field(description="True: the panel turned as the sign of `measured.move` says.")
+
+
+class MeasuredAngle(Input):
+    """What somebody measured after `prove_scale`."""
+
+    measured_deg: Annotated[float, Field(gt=0, le=720, description="Degrees, without a sign.")]
+
+
+class TakenLimit(Input):
+    """The axis stands where this soft limit shall be."""
+
+    axis: Axis
+    end: AxisEnd
+
+
+@router.get("/proofs", summary="What was proven about the drive", responses=NOT_FOUND)
+async def read_proofs(tracker_id: TrackerId, machine: MachineDep) -> DriveProofs:
+    """Return every proof; they begin with a command of type `prove_...` or `measure_...`."""
+    tracker = await detail_of(machine, tracker_id)
+    return DriveProofs(states=tracker.proofs, measured=tracker.state.memory.proofs)
+
+
+@router.post("/proofs/direction", summary="Say which way it went", responses=NOT_FOUND | REFUSED)
+async def judge_direction(
+    tracker_id: TrackerId, seen: SeenDirection, sender: SenderDep, machine: MachineDep
+) -> DriveProofs:
+    """Keep that the direction is right, or turn it round in the settings: then prove it again."""
+    await sender.send(AnswerDirection(tracker_id, seen.right))
+    return await read_proofs(tracker_id, machine)
+
+
+@router.post("/proofs/scale", summary="Say how far it went", responses=NOT_FOUND | REFUSED)
+async def judge_scale(
+    tracker_id: TrackerId, measured: MeasuredAngle, sender: SenderDep, machine: MachineDep
+) -> DriveProofs:
+    """Keep that the scale is right (within 0.2 degrees), or correct the gear ratio: then prove it again."""
+    await sender.send(AnswerScale(tracker_id, measured.measured_deg))
+    return await read_proofs(tracker_id, machine)
+
+
+@router.post("/proofs/limits", summary="Take a soft limit here", responses=NOT_FOUND | REFUSED)
+async def take_limit(
+    tracker_id: TrackerId, taken: TakenLimit, sender: SenderDep, machine: MachineDep
+) -> DriveProofs:
+    """Take the place where the axis stands as its lower or upper soft limit."""
+    await sender.send(SetSoftLimit(tracker_id, taken.axis, taken.end))
+    return await read_proofs(tracker_id, machine)
+
+
+@router.post("/drive/restore", summary="Undo the last change of the drive", responses=NOT_FOUND | REFUSED)
+async def restore_drive(tracker_id: TrackerId, sender: SenderDep, machine: MachineDep) -> TrackerConfig:
+    """Set the drive as it was before its settings were changed last; once more goes forth again."""
+    await sender.send(RestoreDrive(tracker_id))
+    return (await detail_of(machine, tracker_id)).state.config
