@@ -6,6 +6,7 @@ from urllib.parse import quote
 
 from app.clock import Clock
 from app.drives.buses import Buses
+from app.drives.corrected import corrected
 from app.drives.drive import Drive
 from app.drives.plc import PlcDrive
 from app.drives.profile import Adapter, ProfileError, load_profile
@@ -28,11 +29,14 @@ class DriveFactory:
         """Return the drive of a tracker, not yet connected, or raise `ProfileError` for a bad profile."""
         match config.drive.kind:
             case DriveKind.SIMULATED:
-                return SimulatedDrive(config, self._clock, memory=self._memory(config.tracker_id))
+                return corrected(config, self._simulated)
             case DriveKind.MODBUS_TCP | DriveKind.MODBUS_RTU | DriveKind.MODBUS_RTU_OVER_TCP:
                 return self._modbus(config)
             case _ as never:
                 assert_never(never)
+
+    def _simulated(self, config: TrackerConfig) -> Drive:
+        return SimulatedDrive(config, self._clock, memory=self._memory(config.tracker_id))
 
     def _memory(self, tracker_id: str) -> Path | None:
         if self._data_dir is None:
@@ -44,7 +48,7 @@ class DriveFactory:
         unit = self.buses.unit(config.drive, config.drive.unit, profile.timing)
         match profile.adapter:
             case Adapter.PLC:
-                return PlcDrive(config, profile, self._clock, unit)
+                return corrected(config, lambda own: PlcDrive(own, profile, self._clock, unit))
             case Adapter.CIA402 | Adapter.PR | Adapter.DIRECT | Adapter.SUNSPEC as other:
                 raise ProfileError(f"{profile.name}.toml: the adapter {other} is not known to this version.")
             case _ as never:

@@ -6,8 +6,9 @@ from math import isfinite
 from typing import assert_never
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
+from app.drives.corrected import check_ratio
 from app.tracker.axes import AxisConfig
-from app.tracker.config import DriveKind, TrackerConfig
+from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
 
 TRACKER_ID = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,15}")
 LONGEST_NAME = 60
@@ -89,6 +90,7 @@ def _wrong_drive(config: TrackerConfig) -> Iterable[str]:
     drive = config.drive
     match drive.kind:
         case DriveKind.SIMULATED:
+            yield from _wrong_ratios(drive)
             return
         case DriveKind.MODBUS_TCP | DriveKind.MODBUS_RTU_OVER_TCP:
             if not drive.host.strip():
@@ -103,3 +105,11 @@ def _wrong_drive(config: TrackerConfig) -> Iterable[str]:
     low, high = (0, 255) if drive.kind is DriveKind.MODBUS_TCP else RTU_UNITS
     if not all(low <= unit <= high for unit in drive.units):
         yield f"The drive's unit id must lie between {low} and {high}."
+
+
+def _wrong_ratios(drive: DriveConfig) -> Iterable[str]:
+    for own in (drive.azimuth, drive.elevation):
+        try:
+            check_ratio(own.gear_ratio)
+        except ValueError as error:
+            yield str(error)
