@@ -66,13 +66,13 @@ class AxisConfig:
         low_deg, high_deg = actuator.range_deg
         if self.minimum_deg < low_deg - ROUNDING_DEG or self.maximum_deg > high_deg + ROUNDING_DEG:
             raise ValueError(
-                f"The actuator's stroke turns the axis from {low_deg:.2f} to {high_deg:.2f} degrees; the soft "
-                "limits must lie within that."
+                f"The actuator's stroke turns the axis from {low_deg:.2f} to {high_deg:.2f} degrees; the "
+                "soft limits must lie within that."
             )
         if not low_deg <= 0.0 <= high_deg:
             raise ValueError(
-                f"The actuator's stroke turns the axis from {low_deg:.2f} to {high_deg:.2f} degrees; it must be "
-                "able to stand at 0, where the zero is set."
+                f"The actuator's stroke turns the axis from {low_deg:.2f} to {high_deg:.2f} degrees; it "
+                "must be able to stand at 0, where the zero is set."
             )
         slowest_dps = actuator.slowest_dps(self.minimum_deg, self.maximum_deg)
         if self.speed_dps > slowest_dps + ROUNDING_DEG:

@@ -1,9 +1,9 @@
 """Linear actuators: the triangle that turns a stroke in millimetres into the angle of an axis, and back.
 
-The mechanism of C. Alexandru, Mathematics 2024, 12, 1034, doi:10.3390/math12071034: one end of the actuator is
-held by the part that the axis turns against, the other by the part that turns. Between the ends of the stroke
-the formulas hold exactly; beyond them the angle goes on in a straight line, so that a reading of a drive that
-has lost its zero still means something.
+The mechanism of C. Alexandru, Mathematics 2024, 12, 1034, doi:10.3390/math12071034: one end of the actuator
+is held by the part that the axis turns against, the other by the part that turns. Between the ends of the
+stroke the formulas hold exactly; beyond them the angle goes on in a straight line, so that a reading of a drive
+that has lost its zero still means something.
 """
 
 from dataclasses import dataclass
@@ -53,8 +53,8 @@ class LinearActuator:
         ends_deg = [_transmission_deg(self, self.retracted_mm + stroke) for stroke in (0.0, self.travel_mm)]
         if min(ends_deg) < LEAST_TRANSMISSION_DEG or max(ends_deg) > MOST_TRANSMISSION_DEG:
             raise ValueError(
-                f"The transmission angle runs from {min(ends_deg):.1f} to {max(ends_deg):.1f} degrees; it must "
-                "stay between 10 and 170, so that the actuator does not jam."
+                f"The transmission angle runs from {min(ends_deg):.1f} to {max(ends_deg):.1f} degrees; it "
+                "must stay between 10 and 170, so that the actuator does not jam."
             )
 
     @property
