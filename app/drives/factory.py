@@ -11,6 +11,7 @@ from app.drives.drive import Drive
 from app.drives.plc import PlcDrive
 from app.drives.profile import Adapter, ProfileError, load_profile
 from app.drives.simulated import SimulatedDrive
+from app.drives.transmitted import TransmittedDrive, has_actuators, in_millimetres
 from app.tracker.config import DriveKind, TrackerConfig
 
 
@@ -27,6 +28,12 @@ class DriveFactory:
 
     def make(self, config: TrackerConfig) -> Drive:
         """Return the drive of a tracker, not yet connected, or raise `ProfileError` for a bad profile."""
+        if has_actuators(config):
+            return TransmittedDrive(self._counting(in_millimetres(config)), config)
+        return self._counting(config)
+
+    def _counting(self, config: TrackerConfig) -> Drive:
+        """Return the drive as it counts: degrees of an axis, or millimetres of its actuator."""
         match config.drive.kind:
             case DriveKind.SIMULATED:
                 return corrected(config, self._simulated)

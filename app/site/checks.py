@@ -7,11 +7,13 @@ from typing import assert_never
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 from app.drives.corrected import check_ratio
-from app.tracker.axes import AxisConfig
+from app.sun.trigonometry import SCALAR
+from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
 
 TRACKER_ID = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,15}")
 LONGEST_NAME = 60
+WIDEST_RANGE_DEG = 720.0
 RTU_UNITS = (1, 247)
 """Unit 0 is the broadcast, which nobody answers and which is never used."""
 RANGES = (
@@ -65,10 +67,13 @@ def _wrong_numbers(config: TrackerConfig) -> Iterable[str]:
     for axis in (config.azimuth, config.elevation):
         if not all(isfinite(value) for value in _numbers(axis)):
             yield "Soft limits, speeds and acceleration must be numbers."
-    if not _reachable(config.azimuth, config.park.azimuth_deg):
-        yield "The park position's azimuth lies outside the soft limits."
-    if not config.elevation.contains(config.park.elevation_deg):
-        yield "The park position's elevation lies outside the soft limits."
+        if axis.maximum_deg - axis.minimum_deg > WIDEST_RANGE_DEG:
+            yield "An axis range above 720 degrees is not plausible; check the soft limits."
+    first_deg, second_deg = angles(config.mount, config.park.azimuth_deg, config.park.elevation_deg, SCALAR)
+    if not _reachable(config.azimuth, first_deg):
+        yield f"The park position's {axis_title(config.mount, Axis.AZIMUTH)} lies outside the soft limits."
+    if not second_axis(config).contains(second_deg):
+        yield f"The park position's {axis_title(config.mount, Axis.ELEVATION)} lies outside the soft limits."
 
 
 def _numbers(axis: AxisConfig) -> tuple[float, ...]:

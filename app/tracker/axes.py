@@ -40,8 +40,6 @@ class AxisConfig:
     def __post_init__(self) -> None:
         if not self.minimum_deg < self.maximum_deg:
             raise ValueError("The lower soft limit must lie below the upper one.")
-        if self.maximum_deg - self.minimum_deg > 720.0:
-            raise ValueError("An axis range above 720 degrees is not plausible; check the soft limits.")
         if min(self.speed_dps, self.acceleration_dps2, self.jog_slow_dps, self.jog_fast_dps) <= 0.0:
             raise ValueError("Speeds and acceleration must be above zero.")
         if max(self.jog_slow_dps, self.jog_fast_dps) > self.speed_dps:

@@ -3,8 +3,9 @@
 C. Alexandru, Mathematics 2024, 12, 1034, doi:10.3390/math12071034, latitude 45.65 degrees. Its frame has x to
 the back (north), z upwards and so y to the west. The paper does not give the axes' places. The diurnal axis
 rises to the back in the plane y = 0; that the actuator is 950 mm long in the evening leaves one place for it,
-511.282 mm above the origin, at which it turns the right way and stays within its transmission angles. The hinge
-of the elevation lies where both its lengths, 550 and 750 mm, are met. The speed is ours: the paper gives none.
+511.282 mm above the origin, at which it turns the right way and stays within its transmission angles. The
+hinge of the elevation lies where both its lengths, 550 and 750 mm, are met. The speed is ours: the paper has
+none.
 """
 
 from math import cos, radians, sin

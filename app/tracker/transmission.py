@@ -2,8 +2,8 @@
 
 The mechanism of C. Alexandru, Mathematics 2024, 12, 1034, doi:10.3390/math12071034: one end of the actuator
 is held by the part that the axis turns against, the other by the part that turns. Between the ends of the
-stroke the formulas hold exactly; beyond them the angle goes on in a straight line, so that a reading of a drive
-that has lost its zero still means something.
+stroke the formulas hold exactly; beyond them the angle goes on in a straight line, so that a reading of a
+drive that has lost its zero still means something.
 """
 
 from dataclasses import dataclass
