@@ -21,9 +21,10 @@ LATITUDES = (-65.0, 65.0)
 FIRST_YEAR, LAST_YEAR = 1901, 2099
 FEWEST, MOST = 1_000, 500_000
 INSTANTS_A_PLACE = 500
-YEAR_STEP_DAYS = 5.0
-ELEVATION_STEP_DEG = 5.0
 DAYS_A_YEAR = 365.25
+SEASONS, HEIGHTS = 73, 18
+YEAR_STEP_DAYS = DAYS_A_YEAR / SEASONS
+ELEVATION_STEP_DEG = 90.0 / HEIGHTS
 MEASURED = tuple(algorithm for algorithm in Algorithm if algorithm is not Algorithm.SPA)
 
 
@@ -126,8 +127,8 @@ def survey(question: Question, algorithms: Sequence[Algorithm] = MEASURED) -> Su
     return Survey(
         question=question,
         sun_up=sum(len(sample.unix_s) for sample in samples),
-        day_of_year=_centres(YEAR_STEP_DAYS, _season_bins()),
-        elevation_deg=_centres(ELEVATION_STEP_DEG, _height_bins()),
+        day_of_year=_centres(YEAR_STEP_DAYS, SEASONS),
+        elevation_deg=_centres(ELEVATION_STEP_DEG, HEIGHTS),
         errors=tuple(_errors(algorithm, samples, bins) for algorithm in algorithms),
     )
 
@@ -158,14 +159,6 @@ def _bins(samples: Sequence[_Sample]) -> _Bins:
     return _Bins(np.floor(days / YEAR_STEP_DAYS), np.floor(np.minimum(heights, 89.999) / ELEVATION_STEP_DEG))
 
 
-def _season_bins() -> int:
-    return int(DAYS_A_YEAR // YEAR_STEP_DAYS) + 1
-
-
-def _height_bins() -> int:
-    return int(90.0 / ELEVATION_STEP_DEG)
-
-
 def _centres(step: float, count: int) -> Array:
     return np.asarray((np.arange(count) + 0.5) * step, dtype=np.float64)
 
@@ -177,8 +170,8 @@ def _errors(algorithm: Algorithm, samples: Sequence[_Sample], bins: _Bins) -> Al
     return AlgorithmError(
         algorithm=algorithm,
         spreads={sight: _spread(by_sight[sight]) for sight in Sight},
-        over_year=_profile(true, bins.season, _season_bins()),
-        over_elevation=_profile(true, bins.height, _height_bins()),
+        over_year=_profile(true, bins.season, SEASONS),
+        over_elevation=_profile(true, bins.height, HEIGHTS),
     )
 
 

@@ -49,7 +49,7 @@ def test_the_profiles_reach_the_maximum_and_mean_the_rms(globe: Survey) -> None:
         for profile in (error.over_year, error.over_elevation):
             assert np.nanmax(profile.max_deg) == whole.max_deg
             assert np.nanmin(profile.rms_deg) <= whole.rms_deg <= np.nanmax(profile.rms_deg)
-    assert len(globe.day_of_year) == len(globe.errors[0].over_year.max_deg) == 74
+    assert len(globe.day_of_year) == len(globe.errors[0].over_year.max_deg) == 73
     assert len(globe.elevation_deg) == len(globe.errors[0].over_elevation.max_deg) == 18
 
 

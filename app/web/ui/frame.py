@@ -28,6 +28,7 @@ SITE_TABS = (
     ("Trackers", "/"),
     ("Recordings", "/recordings"),
     ("Simulate a day", "/simulate"),
+    ("Accuracy", "/accuracy"),
     ("Journal", "/journal"),
 )
 TRACKER_TABS = (

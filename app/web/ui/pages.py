@@ -7,6 +7,7 @@ from starlette.responses import Response
 from app.web.contexts import Outcome, ProblemPage
 from app.web.errors import Problem
 from app.web.ui import (
+    accuracy,
     clock,
     homing,
     journal,
@@ -43,6 +44,7 @@ ROUTERS = (
     settings.router,
     recordings.router,
     simulate.router,
+    accuracy.router,
     journal.router,
     wizard.router,
 )
