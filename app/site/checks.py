@@ -7,9 +7,8 @@ from typing import assert_never
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 from app.drives.corrected import check_ratio
-from app.sun.trigonometry import SCALAR
-from app.tracker.axes import Axis, AxisConfig
-from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
+from app.tracker.axes import AxisConfig
+from app.tracker.config import DriveConfig, DriveKind, MountKind, TrackerConfig
 
 TRACKER_ID = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,15}")
 LONGEST_NAME = 60
@@ -69,11 +68,16 @@ def _wrong_numbers(config: TrackerConfig) -> Iterable[str]:
             yield "Soft limits, speeds and acceleration must be numbers."
         if axis.maximum_deg - axis.minimum_deg > WIDEST_RANGE_DEG:
             yield "An axis range above 720 degrees is not plausible; check the soft limits."
-    first_deg, second_deg = angles(config.mount, config.park.azimuth_deg, config.park.elevation_deg, SCALAR)
-    if not _reachable(config.azimuth, first_deg):
-        yield f"The park position's {axis_title(config.mount, Axis.AZIMUTH)} lies outside the soft limits."
-    if not second_axis(config).contains(second_deg):
-        yield f"The park position's {axis_title(config.mount, Axis.ELEVATION)} lies outside the soft limits."
+    if config.mount.kind is MountKind.AZIMUTH_ELEVATION:
+        yield from _wrong_park(config)
+
+
+def _wrong_park(config: TrackerConfig) -> Iterable[str]:
+    """Yield what is wrong with a park position; other mounts park as near to it as they can."""
+    if not _reachable(config.azimuth, config.park.azimuth_deg):
+        yield "The park position's azimuth lies outside the soft limits."
+    if not config.elevation.contains(config.park.elevation_deg):
+        yield "The park position's elevation lies outside the soft limits."
 
 
 def _numbers(axis: AxisConfig) -> tuple[float, ...]:
