@@ -13,17 +13,15 @@ from typing import Annotated
 import typer
 
 from app.build import VERSION
+from app.cli_drives import drive, drive_sim
 from app.clock import SystemClock
 from app.drives.drive import DriveError
-from app.drives.sim_server import run_drive_sim
-from app.gateway.sunspec_map import map_table, sunspec_map
 from app.machine.lock import AlreadyRunning, holder
 from app.machine.main import run as run_machine
 from app.machine.supervisor import end_with_parent, supervise
 from app.settings import Settings, SettingsWrong, read_settings
 from app.show.simulate import simulate_date, simulate_show_of_date
 from app.store.backup import backup as back_up
-from app.store.engine import open_reader
 from app.store.exports import to_csv, to_parquet
 from app.store.restore import Restored, RestorePending, request_restore
 from app.store.store import StoreFailed
@@ -47,6 +45,9 @@ cli = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+
+cli.add_typer(drive)
+cli.command()(drive_sim)
 
 Supervised = Annotated[int | None, typer.Option(hidden=True, help="Process id of the supervisor.")]
 Latitude = Annotated[float, typer.Option("--lat", help="Latitude, degrees, north positive.")]
@@ -152,36 +153,6 @@ def simulate(
         info, frames = simulate_show_of_date(tracker, place, time_zone, day, length, mode=mode)
     _write(out, info, frames)
     typer.echo(f"{len(frames)} frames of {info.title} are in {out}.")
-
-
-@cli.command()
-def drive_sim(
-    tcp: Annotated[str, typer.Option(help="HOST:PORT to serve Modbus TCP on.")] = "127.0.0.1:5020",
-    profile: Annotated[str, typer.Option(help="Register map, by name or file.")] = "simulated-plc",
-    unit: Annotated[int, typer.Option(min=0, max=255, help="Modbus unit id.")] = 1,
-    memory: Annotated[
-        Path | None, typer.Option(help="File in which the drive remembers its position.")
-    ] = None,
-    watchdog_ms: Annotated[int, typer.Option(min=50, help="Time-out of the drive's own watchdog.")] = 500,
-) -> None:
-    """Serve a simulated tracker over Modbus TCP, to practise on and to test with."""
-    run_drive_sim(tcp, profile, unit=unit, memory=memory, watchdog_ms=watchdog_ms)
-
-
-@cli.command("sunspec-map")
-def print_sunspec_map(
-    *,
-    weather: Annotated[
-        bool, typer.Option("--weather", help="With model 307, which comes with weather.")
-    ] = False,
-) -> None:
-    """Print the SunSpec map of the present site as a table."""
-    reader = open_reader(read_settings().url)
-    try:
-        tracker_ids = [state.config.tracker_id for state in reader.trackers()]
-    finally:
-        reader.close()
-    typer.echo(map_table(sunspec_map(tracker_ids, weather=weather)), nl=False)
 
 
 @cli.command()

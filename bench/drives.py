@@ -30,8 +30,8 @@ SECONDS_A_DAY = 86_400
 SERVER = """
 import sys
 from pathlib import Path
-from app.drives.sim_server import run_drive_sim
-run_drive_sim("127.0.0.1:0", "simulated-plc", memory=Path(sys.argv[1]))
+from app.drives.sim_server import Doors, run_drive_sim
+run_drive_sim(Doors("127.0.0.1:0"), "simulated-plc", memory=Path(sys.argv[1]))
 """
 
 FIXED_SERVER = """

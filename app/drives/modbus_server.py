@@ -1,7 +1,7 @@
 """A small Modbus TCP server: function codes 1 to 6, 15, 16 and 23, requests answered in their order."""
 
 import asyncio
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from struct import error, pack, unpack_from
 from typing import Protocol
 
@@ -45,18 +45,23 @@ Respond = Callable[[bytes, str], Awaitable[bytes]]
 
 
 class ModbusServer:
-    """Answers for one unit id; requests for any other are not answered, as on a bus.
+    """Answers for its devices' unit ids; requests for any other are not answered, as on a bus.
 
-    `respond` answers in the device's place where an answer takes time. More than `most_clients` at once are
-    turned away.
+    `others` are further devices by their unit ids, as behind a gateway. `respond` answers in the devices'
+    place where an answer takes time. More than `most_clients` at once are turned away.
     """
 
     def __init__(
-        self, device: Device, unit: int = 1, *, respond: Respond | None = None, most_clients: int = 64
+        self,
+        device: Device,
+        unit: int = 1,
+        *,
+        others: Mapping[int, Device] | None = None,
+        respond: Respond | None = None,
+        most_clients: int = 64,
     ) -> None:
-        self._device = device
-        self._unit = unit
-        self._respond = respond or self._answer_at_once
+        self._devices = {**(others or {}), unit: device}
+        self._respond = respond
         self._most_clients = most_clients
         self._server: asyncio.Server | None = None
         self._serving: set[asyncio.Task[None]] = set()
@@ -105,17 +110,18 @@ class ModbusServer:
         if protocol != 0 or not 2 <= length <= LONGEST_LENGTH:
             return False
         request = await reader.readexactly(length - 1)
-        if unit != self._unit:
+        device = self._devices.get(unit)
+        if device is None:
             return True
-        body = await self._respond(request, str(writer.get_extra_info("peername", ("",))[0]))
-        reply = await self._device.let_out(pack(">HHHB", transaction, 0, len(body) + 1, unit) + body)
+        if self._respond is None:
+            body = answer(device, request)
+        else:
+            body = await self._respond(request, str(writer.get_extra_info("peername", ("",))[0]))
+        reply = await device.let_out(pack(">HHHB", transaction, 0, len(body) + 1, unit) + body)
         if reply is not None:
             writer.write(reply)
             await writer.drain()
         return True
-
-    async def _answer_at_once(self, request: bytes, _: str) -> bytes:
-        return answer(self._device, request)
 
 
 def answer(device: Device, request: bytes) -> bytes:

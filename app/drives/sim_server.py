@@ -1,23 +1,50 @@
-"""The simulated drive as a process of its own, on Modbus TCP."""
+"""Simulated drives as a process of their own, on Modbus TCP, a serial line or both."""
 
 import asyncio
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from datetime import timedelta
 from pathlib import Path
+from typing import Protocol
 
 from app.clock import Clock, SystemClock
 from app.drives.faults import Fault, FaultKind
-from app.drives.modbus_server import ModbusServer
+from app.drives.line import Line, SerialLine
+from app.drives.listening_line import ListeningLine
+from app.drives.modbus_server import Device, ModbusServer
 from app.drives.profile import Profile, load_profile
+from app.drives.pty_line import PtyLine
+from app.drives.rtu_server import RtuServer
 from app.drives.sim_plc import SimulatedPlc
 from app.drives.simulated import SimulatedDrive
 from app.drives.simulated_machine import SimulatedMachine
 from app.tracker.axes import Axis
-from app.tracker.config import TrackerConfig
+from app.tracker.config import SerialConfig, TrackerConfig
 
 CYCLE = timedelta(milliseconds=100)
+
+
+class Server(Protocol):
+    """What serves the simulated drives."""
+
+    async def close(self) -> None:
+        """Stop serving."""
+
+
+@dataclass(frozen=True, slots=True)
+class Doors:
+    """Where simulated drives are served: Modbus TCP, a serial line or pseudo-terminal, RTU over TCP.
+
+    `serial.port` is a serial device that exists, or the name that a pseudo-terminal shall have, which then
+    keeps the pace of the baud rate if `paced`.
+    """
+
+    tcp: str = ""
+    serial: SerialConfig | None = None
+    rtu_over_tcp: str = ""
+    paced: bool = False
 
 
 async def serve(
@@ -28,29 +55,52 @@ async def serve(
     return server, await server.start(host, port)
 
 
+async def serve_doors(doors: Doors, devices: Mapping[int, Device]) -> tuple[list[Server], list[str]]:
+    """Serve devices on every door, or raise `OSError`; return the servers and where they are, for people."""
+    servers: list[Server] = []
+    places: list[str] = []
+    if doors.tcp:
+        host, port = parse_address(doors.tcp)
+        first, *others = devices
+        server = ModbusServer(devices[first], first, others={unit: devices[unit] for unit in others})
+        places.append(f"Modbus TCP {host}:{await server.start(host, port)}")
+        servers.append(server)
+    if doors.serial is not None:
+        servers.append(await _rtu(_serial_line(doors.serial, paced=doors.paced), devices))
+        places.append(f"Modbus RTU {doors.serial.port}")
+    if doors.rtu_over_tcp:
+        gateway = ListeningLine(*parse_address(doors.rtu_over_tcp))
+        servers.append(await _rtu(gateway, devices))
+        places.append(f"Modbus RTU over TCP {gateway.host}:{gateway.port}")
+    return servers, places
+
+
 def run_drive_sim(
-    tcp: str,
+    doors: Doors,
     profile: str,
     *,
-    unit: int = 1,
+    units: Sequence[int] = (1,),
     memory: Path | None = None,
     watchdog_ms: int = 500,
     inject: Sequence[str] = (),
 ) -> None:
-    """Serve a simulated drive on `HOST:PORT` until SIGTERM or SIGINT; port 0 takes a free one.
+    """Serve simulated drives, one for each unit id, until SIGTERM or SIGINT; TCP port 0 takes a free one.
 
-    `inject` plays faults from the start, each as `kind`, `kind:axis` or `kind:axis:amount`. Raises
-    `ProfileError` for a bad profile, `ValueError` for a bad address or fault, `OSError` for a taken port.
+    `inject` plays faults on the first from the start, each as `kind`, `kind:axis` or `kind:axis:amount`.
+    Raises `ProfileError` for a bad profile, `ValueError` for a bad address or fault, `OSError` for a taken
+    port.
     """
-    host, port = parse_address(tcp)
     faults = [parse_fault(text) for text in inject]
     watchdog = timedelta(milliseconds=watchdog_ms) if watchdog_ms > 0 else None
     clock = SystemClock()
     config = TrackerConfig("simulated", "Simulated tracker")
-    drive = SimulatedDrive(config, clock, memory=memory, watchdog=watchdog)
+    drives = {
+        unit: SimulatedDrive(config, clock, memory=_memory_of(memory, unit, units), watchdog=watchdog)
+        for unit in units
+    }
     for fault in faults:
-        drive.inject(fault)
-    asyncio.run(_run(host, port, load_profile(profile), drive, clock, unit))
+        drives[units[0]].inject(fault)
+    asyncio.run(_run(doors, load_profile(profile), drives, clock))
 
 
 def parse_address(text: str) -> tuple[str, int]:
@@ -74,28 +124,53 @@ def parse_fault(text: str) -> Fault:
         ) from error
 
 
-async def _run(
-    host: str, port: int, profile: Profile, drive: SimulatedDrive, clock: Clock, unit: int
-) -> None:
+async def _rtu(line: Line, devices: Mapping[int, Device]) -> RtuServer:
+    server = RtuServer(devices, line)
+    await server.start()
+    return server
+
+
+def _serial_line(serial: SerialConfig, *, paced: bool) -> Line:
+    """Return a serial device that exists, or a pseudo-terminal to be made under that name."""
+    path = Path(serial.port)
+    if path.exists() and not path.is_symlink():
+        return SerialLine(serial)
+    return PtyLine(path, serial.bits / serial.baud_rate if paced else 0.0)
+
+
+def _memory_of(memory: Path | None, unit: int, units: Sequence[int]) -> Path | None:
+    """Return the file of one drive: the first has the given one, the others their unit id in the name."""
+    if memory is None or unit == units[0]:
+        return memory
+    return memory.with_name(f"{memory.stem}-{unit}{memory.suffix}")
+
+
+async def _run(doors: Doors, profile: Profile, drives: Mapping[int, SimulatedDrive], clock: Clock) -> None:
     ended = asyncio.Event()
     loop = asyncio.get_running_loop()
     for number in (signal.SIGTERM, signal.SIGINT):
         loop.add_signal_handler(number, ended.set)
-    server, port = await serve(host, port, profile, drive, clock, unit=unit)
-    sys.stdout.write(
-        f"Simulated drive on Modbus TCP {host}:{port}, unit {unit}, profile {profile.name}. Ctrl-C ends it.\n"
-    )
+    devices = {unit: SimulatedPlc(profile, drive, clock) for unit, drive in drives.items()}
+    servers, places = await serve_doors(doors, devices)
+    units = ", ".join(str(unit) for unit in drives)
+    for place in places:
+        sys.stdout.write(
+            f"Simulated drive on {place}, unit {units}, profile {profile.name}. Ctrl-C ends it.\n"
+        )
     sys.stdout.flush()
-    watching = asyncio.create_task(_watch(drive, clock))
+    watching = asyncio.create_task(_watch(tuple(drives.values()), clock))
     await ended.wait()
     watching.cancel()
     await asyncio.gather(watching, return_exceptions=True)
-    await server.close()
-    await drive.close()
+    for server in servers:
+        await server.close()
+    for drive in drives.values():
+        await drive.close()
 
 
-async def _watch(drive: SimulatedMachine, clock: Clock) -> None:
-    """Let the drive notice its watchdog and keep its position memory although nobody asks it anything."""
+async def _watch(drives: Sequence[SimulatedMachine], clock: Clock) -> None:
+    """Let drives notice their watchdogs and keep their position memories although nobody asks anything."""
     while True:
         await clock.sleep_until(clock.now() + CYCLE)
-        _ = drive.is_resting
+        for drive in drives:
+            _ = drive.is_resting

@@ -26,8 +26,8 @@ from tests.drives.rigs import CONFIG, START
 PROGRAM = """
 import sys
 from pathlib import Path
-from app.drives.sim_server import run_drive_sim
-run_drive_sim("127.0.0.1:0", "simulated-plc", memory=Path(sys.argv[1]), inject=sys.argv[2:])
+from app.drives.sim_server import Doors, run_drive_sim
+run_drive_sim(Doors("127.0.0.1:0"), "simulated-plc", memory=Path(sys.argv[1]), inject=sys.argv[2:])
 """
 
 

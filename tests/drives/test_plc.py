@@ -10,7 +10,6 @@ import pytest
 
 from app.clock import VirtualClock
 from app.drives.bus import Bus, BusUnit
-from app.drives.buses import Buses
 from app.drives.drive import DriveError, DriveRefused
 from app.drives.factory import DriveFactory
 from app.drives.faults import Fault, FaultKind

@@ -1,0 +1,57 @@
+"""The commands around drives: simulated ones to practise on, and the serial ports of this computer."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.drives.line import list_ports
+from app.drives.sim_server import Doors, run_drive_sim
+from app.tracker.config import Parity, SerialConfig
+
+TCP = "127.0.0.1:5020"
+
+drive = typer.Typer(name="drive", help="Drives and the lines they hang on.", no_args_is_help=True)
+
+BaudRate = Annotated[int, typer.Option(min=300, help="Speed of the serial line.")]
+ParityBit = Annotated[Parity, typer.Option(help="Check bit of the serial line.")]
+StopBits = Annotated[int, typer.Option(min=1, max=2, help="Stop bits of the serial line.")]
+
+
+def drive_sim(
+    tcp: Annotated[str, typer.Option(help=f"HOST:PORT to serve Modbus TCP on. [default: {TCP}]")] = "",
+    rtu: Annotated[
+        str, typer.Option(help="Serve Modbus RTU: a serial device, or the name of a new pseudo-terminal.")
+    ] = "",
+    rtu_over_tcp: Annotated[str, typer.Option(help="HOST:PORT to serve RTU frames on, as a gateway.")] = "",
+    profile: Annotated[str, typer.Option(help="Register map, by name or file.")] = "simulated-plc",
+    unit: Annotated[
+        list[int] | None, typer.Option(help="Modbus unit id; several make several drives. [default: 1]")
+    ] = None,
+    baud_rate: BaudRate = 19200,
+    parity: ParityBit = Parity.EVEN,
+    stop_bits: StopBits = 1,
+    memory: Annotated[
+        Path | None, typer.Option(help="File in which the drive remembers its position.")
+    ] = None,
+    watchdog_ms: Annotated[int, typer.Option(min=50, help="Time-out of the drive's own watchdog.")] = 500,
+    *,
+    paced: Annotated[bool, typer.Option(help="Keep the pace of the baud rate on a pseudo-terminal.")] = False,
+) -> None:
+    """Serve a simulated tracker over Modbus TCP or RTU, to practise on and to test with."""
+    serial = SerialConfig(rtu, baud_rate, parity, stop_bits) if rtu else None
+    doors = Doors(tcp or ("" if rtu or rtu_over_tcp else TCP), serial, rtu_over_tcp, paced)
+    units = unit or [1]
+    if not all(1 <= one <= 247 for one in units) and (rtu or rtu_over_tcp):
+        raise ValueError("A unit id on a serial line lies between 1 and 247.")
+    run_drive_sim(doors, profile, units=units, memory=memory, watchdog_ms=watchdog_ms)
+
+
+@drive.command()
+def ports() -> None:
+    """List this computer's serial ports by names that stay when adapters are plugged in anew."""
+    found = list_ports()
+    for name, what in found:
+        typer.echo(f"{name}  {what}")
+    if not found:
+        typer.echo("No serial port was found. Plug the adapter in, then try again.")

@@ -1,0 +1,96 @@
+"""A serial line that is not there: a pseudo-terminal, paced like a line if that is wanted."""
+
+import asyncio
+import os
+import tty
+from contextlib import suppress
+from pathlib import Path
+
+from app.drives.line import CHUNK, Lost, Received
+
+PIECE = 8
+
+
+class PtyLine:
+    """The far end of a pseudo-terminal; the near end can be opened as a serial port by the name `path`.
+
+    With a `character_s` above zero both directions take as long as on a line of that speed.
+    """
+
+    def __init__(self, path: Path, character_s: float = 0.0) -> None:
+        self._path = path
+        self._character_s = character_s
+        self._ends: tuple[int, int] | None = None
+        self._sent_until_s = self._heard_until_s = 0.0
+        self._received: Received | None = None
+
+    @property
+    def is_open(self) -> bool:
+        """Return whether the pseudo-terminal is there."""
+        return self._ends is not None
+
+    @property
+    def character_s(self) -> float:
+        """Return how long one character takes."""
+        return self._character_s
+
+    @property
+    def advice(self) -> str:
+        """Return what to check when it cannot be made."""
+        return f"Check that {self._path} can be written and is no other file."
+
+    async def open(self, received: Received, lost: Lost) -> bool:
+        """Make the pseudo-terminal and its name; `lost` is never called."""
+        ends = os.openpty()
+        tty.setraw(ends[1])
+        os.set_blocking(ends[0], False)
+        self._ends, self._received = ends, received
+        if self._path.is_symlink():
+            self._path.unlink()
+        self._path.symlink_to(os.ttyname(ends[1]))
+        asyncio.get_running_loop().add_reader(ends[0], self._read)
+        return True
+
+    def write(self, data: bytes) -> None:
+        """Send bytes, each when a line of this speed would have carried it."""
+        if self._character_s == 0.0:
+            self._put(data)
+            return
+        loop = asyncio.get_running_loop()
+        self._sent_until_s = max(self._sent_until_s, loop.time())
+        for start in range(0, len(data), PIECE):
+            piece = data[start : start + PIECE]
+            self._sent_until_s += len(piece) * self._character_s
+            loop.call_at(self._sent_until_s, self._put, piece)
+
+    def close(self) -> None:
+        """Take the pseudo-terminal away, as an adapter that is unplugged."""
+        ends, self._ends = self._ends, None
+        if ends is None:
+            return
+        asyncio.get_running_loop().remove_reader(ends[0])
+        for end in ends:
+            os.close(end)
+        with suppress(OSError):
+            self._path.unlink()
+
+    def _put(self, data: bytes) -> None:
+        if self._ends is not None:
+            with suppress(BlockingIOError):
+                os.write(self._ends[0], data)
+
+    def _read(self) -> None:
+        if self._ends is None:
+            return
+        with suppress(BlockingIOError):
+            data = os.read(self._ends[0], CHUNK)
+            if self._character_s == 0.0:
+                self._take(data)
+                return
+            loop = asyncio.get_running_loop()
+            self._heard_until_s = max(self._heard_until_s, loop.time()) + len(data) * self._character_s
+            loop.call_at(self._heard_until_s, self._take, data)
+
+    def _take(self, data: bytes) -> None:
+        if self._ends is not None and self._received is not None:
+            self._received(data)
