@@ -1,0 +1,1 @@
+"""Energy studies of a site, worked out in a process of their own."""
