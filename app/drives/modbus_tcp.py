@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import socket
 from collections.abc import Awaitable
 
 from pymodbus.client import AsyncModbusTcpClient
@@ -13,6 +14,7 @@ from app.drives.wire import Ask, Broken, GivenUp, Refused, Timing, Unanswered
 
 STOP_PATIENCE_S = 0.03
 CONNECT_WITHIN_S = 0.3
+WHY_WITHIN_S = 0.3
 
 
 class TcpWire:
@@ -31,6 +33,7 @@ class TcpWire:
         self._hurrying: asyncio.TimerHandle | None = None
         self._transaction = 0
         self._connections = 0
+        self._why = ""
 
     @property
     def connected(self) -> bool:
@@ -40,7 +43,7 @@ class TcpWire:
     @property
     def advice(self) -> str:
         """Return what to check when there is no connection."""
-        return "Check its power, cable and address, and that only Modbus TCP is spoken there."
+        return f"{self._why}Check its power, cable and address, and that only Modbus TCP is spoken there."
 
     def epoch(self, unit: int) -> int:
         """Return a number that grows with every new and every lost connection."""
@@ -61,7 +64,9 @@ class TcpWire:
         self._client = client
         if not await client.connect():
             self.close()
+            self._why = await _why_not(self._host, self._port)
             return False
+        self._why = ""
         client.ctx.next_tid = self._transaction
         self._connections += 1
         return True
@@ -145,3 +150,18 @@ def _asked(client: AsyncModbusTcpClient, ask: Ask) -> Awaitable[ModbusPDU]:
     if ask.count == 1:
         return client.write_register(ask.address, ask.words[0], device_id=ask.unit)
     return client.write_registers(ask.address, list(ask.words), device_id=ask.unit)
+
+
+async def _why_not(host: str, port: int) -> str:
+    """Return a sentence that says how a connection fails, as pymodbus does not tell."""
+    try:
+        async with asyncio.timeout(WHY_WITHIN_S):
+            _, writer = await asyncio.open_connection(host, port)
+    except ConnectionRefusedError:
+        return f"The device at {host} answers, but nothing listens on port {port}. "
+    except socket.gaierror:
+        return f"The host name {host} is not known. "
+    except (OSError, TimeoutError):
+        return f"Nothing answers at {host}. "
+    writer.transport.abort()
+    return ""

@@ -100,6 +100,7 @@ class Controller:
         mind.site_time = mind.seen.site_time + (now - mind.seen.now) if mind.seen else now
         mind.now, mind.actor = now, actor
         obey(mind, command)
+        mind.aftermath = None
         return mind.drain()
 
     def tick(self, seen: Observation) -> Tick:
@@ -188,7 +189,7 @@ class Controller:
         mind = self._mind
         before, before_at = mind.feedback, mind.feedback_at
         if mind.misses:
-            found(mind)
+            found(mind, feedback)
         mind.feedback, mind.feedback_at = feedback, seen.now
         elapsed_s = (seen.now - before_at).total_seconds() if before_at else 0.0
         protect(mind, before, feedback, elapsed_s)

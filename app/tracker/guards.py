@@ -60,6 +60,26 @@ def restart(name: str, before: Feedback, feedback: Feedback) -> Reason | None:
     )
 
 
+def came_back(name: str, before: Feedback | None, feedback: Feedback) -> Reason:
+    """Return what a drive that did not answer for a while did meanwhile, as far as it tells."""
+    again = f"The drive of {name} answers again."
+    if before is not None and before.boot_count != feedback.boot_count:
+        homed = feedback.azimuth.homed and feedback.elevation.homed
+        lost = "" if homed else " and has lost its zero"
+        return Reason(
+            "drive_restarted", f"{again} It has restarted meanwhile{lost}.", "Set the zero again in step 3."
+        )
+    if feedback.watchdog_tripped:
+        return Reason(
+            "watchdog_tripped",
+            f"{again} It had stopped by itself: its watchdog tripped, because no command reached it.",
+            "Its zero is kept. Find out why the connection failed before you go on.",
+        )
+    return Reason(
+        "drive_back", f"{again} It was not restarted.", "Find out why the connection failed before you go on."
+    )
+
+
 def home_doubt(name: str, home: HomeTrust, feedback: Feedback) -> Reason | None:
     """Return why a zero that was trusted no longer is, judged from one reading."""
     if home.boot_count != feedback.boot_count:

@@ -41,6 +41,7 @@ class Mind:
     __slots__ = (
         "activity",
         "actor",
+        "aftermath",
         "capabilities",
         "command",
         "config",
@@ -79,6 +80,7 @@ class Mind:
         self.feedback_at: datetime | None = None
         self.misses = 0
         self.lost = False
+        self.aftermath: Reason | None = None
         self.wait: Reason | None = None
         self.command = HALTED
         self.setpoint = NOWHERE

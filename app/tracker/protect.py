@@ -47,12 +47,17 @@ def miss(mind: Mind, now: datetime) -> None:
     interrupt(mind, reason)
 
 
-def found(mind: Mind) -> None:
-    """Note a good reading; after a loss say that the drive is back. Nothing resumes by itself."""
+def found(mind: Mind, feedback: Feedback) -> None:
+    """Note a good reading; after a loss say that the drive is back, and what it did meanwhile.
+
+    Nothing resumes by itself.
+    """
     mind.misses = 0
-    if mind.lost:
-        mind.lost = False
-        mind.say(EventKind.DRIVE_FOUND, f"The drive of {mind.config.name} answers again.")
+    if not mind.lost:
+        return
+    mind.lost = False
+    mind.aftermath = guards.came_back(mind.config.name, mind.feedback, feedback)
+    mind.say(EventKind.DRIVE_FOUND, mind.aftermath.message, code=mind.aftermath.code)
 
 
 def protect(mind: Mind, before: Feedback | None, feedback: Feedback, elapsed_s: float) -> None:

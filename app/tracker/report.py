@@ -151,7 +151,8 @@ def _notices(mind: Mind) -> tuple[Reason, ...]:
         (mind.capabilities.watchdog_s is None, _NO_WATCHDOG),
         (not mind.capabilities.verified, _UNVERIFIED),
     )
-    return tuple(reason for present, reason in found if present)
+    told = () if mind.aftermath is None else (mind.aftermath,)
+    return told + tuple(reason for present, reason in found if present)
 
 
 def _show(showing: Showing) -> ShowProgress:
