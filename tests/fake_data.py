@@ -105,7 +105,8 @@ def frames(info: RecordingInfo) -> Frames:
     measured = elevation - 0.02 + 0.01 * sin(1.0)
     columns = (
         elapsed_s, sun_time_s, azimuth, elevation, azimuth, elevation,
-        azimuth, elevation, azimuth - 0.05, measured, np.full_like(elapsed_s, 6.0),
+        azimuth, elevation, azimuth - 0.05, measured, np.zeros_like(elapsed_s), np.zeros_like(elapsed_s),
+        np.full_like(elapsed_s, 6.0),
     )  # fmt: skip
     assert len(columns) == len(COLUMNS)
     return Frames(np.column_stack(columns))

@@ -22,6 +22,9 @@ LEVEL = 6
 WIDTHS = (2, 4, 8)
 HEADER = struct.Struct("<IHBB")
 LARGEST = 2**53
+FORMER_COLUMNS = tuple(name for name in COLUMNS if not name.startswith("correction_"))
+"""What chunks held before there was a correction: nothing was corrected then, so it is read as zero."""
+FORMER = [COLUMNS.index(name) for name in FORMER_COLUMNS]
 LONGEST_BODY = HEADER.size + len(COLUMNS) * (8 + CHUNK_FRAMES * 9)
 
 STEPS_PER_UNIT = {"activity": 1.0}
@@ -63,10 +66,14 @@ def decode(chunk: bytes) -> Frames:
 def decode_all(chunks: Sequence[bytes]) -> Frames:
     """Return the frames of chunks one after the other, or raise `ChunkDamaged`."""
     bodies = [_open(chunk) for chunk in chunks]
-    values = np.empty((sum(body.rows for body in bodies), len(COLUMNS)))
+    values = np.zeros((sum(body.rows for body in bodies), len(COLUMNS)))
     begin = 0
     for body in bodies:
-        _unpack(body, values[begin : begin + body.rows])
+        rows = values[begin : begin + body.rows]
+        if body.columns == len(COLUMNS):
+            _unpack(body, SCALES, rows)
+        else:
+            rows[:, FORMER] = _unpack(body, SCALES[:, FORMER], np.empty((body.rows, body.columns)))
         begin += body.rows
     return Frames(values)
 
@@ -100,6 +107,7 @@ class _Body:
     """What a chunk's header says, and the whole of what was compressed."""
 
     rows: int
+    columns: int
     width: int
     has_gaps: bool
     content: bytes
@@ -107,12 +115,12 @@ class _Body:
     @property
     def gap_bytes(self) -> int:
         """Return how long the map of gaps is."""
-        return -(-self.rows * len(COLUMNS) // 8) if self.has_gaps else 0
+        return -(-self.rows * self.columns // 8) if self.has_gaps else 0
 
     @property
     def length(self) -> int:
         """Return how long the content must be."""
-        return HEADER.size + self.gap_bytes + len(COLUMNS) * (8 + self.rows * self.width)
+        return HEADER.size + self.gap_bytes + self.columns * (8 + self.rows * self.width)
 
 
 def _open(chunk: bytes) -> _Body:
@@ -121,8 +129,8 @@ def _open(chunk: bytes) -> _Body:
         rows, columns, width, has_gaps = HEADER.unpack_from(content)
     except (ValueError, struct.error, zlib.error) as error:
         raise ChunkDamaged(f"A chunk of {len(chunk)} bytes is damaged: {error}.") from error
-    body = _Body(rows, width, bool(has_gaps), content)
-    if columns != len(COLUMNS) or width not in WIDTHS or not 1 <= rows <= CHUNK_FRAMES:
+    body = _Body(rows, columns, width, bool(has_gaps), content)
+    if columns not in (len(COLUMNS), len(FORMER)) or width not in WIDTHS or not 1 <= rows <= CHUNK_FRAMES:
         raise ChunkDamaged(f"A chunk says that it has {rows} frames of {columns} columns; it is damaged.")
     if len(content) != body.length:
         raise ChunkDamaged(f"A chunk of {rows} frames has {len(content)} bytes, not {body.length}.")
@@ -139,14 +147,15 @@ def _inflate(chunk: bytes) -> bytes:
     return content
 
 
-def _unpack(body: _Body, into: NDArray[np.float64]) -> None:
-    """Write the values of one chunk; sums of whole numbers below 2**53 are exact in floating point."""
-    gaps_at = HEADER.size + 8 * len(COLUMNS)
+def _unpack(body: _Body, scales: NDArray[np.float64], into: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the values of one chunk, written; sums of whole numbers below 2**53 are exact in floats."""
+    gaps_at = HEADER.size + 8 * body.columns
     differences = np.frombuffer(body.content, f"<i{body.width}", into.size, gaps_at + body.gap_bytes)
     steps = differences.reshape(into.shape).astype(np.float64)
-    steps[0] = np.frombuffer(body.content, "<i8", len(COLUMNS), HEADER.size)
+    steps[0] = np.frombuffer(body.content, "<i8", body.columns, HEADER.size)
     np.add.accumulate(steps, axis=0, out=steps)
-    np.divide(steps, SCALES[: body.rows], out=into)
+    np.divide(steps, scales[: body.rows], out=into)
     if body.has_gaps:
         packed = np.frombuffer(body.content, np.uint8, body.gap_bytes, gaps_at)
         into[np.unpackbits(packed, count=into.size).view(np.bool_).reshape(into.shape)] = np.nan
+    return into

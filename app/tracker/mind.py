@@ -10,6 +10,7 @@ from app.tracker.activity import HOLDING, Activity, AxisPair
 from app.tracker.axes import Axis
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.follow import AxisWatch
+from app.tracker.hybrid import Corrected
 from app.tracker.memory import TrackerMemory
 from app.tracker.motion import DriveCapabilities, DriveCommand, Feedback, Velocity
 from app.tracker.observation import Observation
@@ -45,6 +46,7 @@ class Mind:
         "capabilities",
         "command",
         "config",
+        "corrected",
         "dead_presses",
         "events",
         "feedback",
@@ -85,6 +87,7 @@ class Mind:
         self.command = HALTED
         self.setpoint = NOWHERE
         self.target: Orientation | None = None
+        self.corrected: Corrected | None = None
         self.sun: SunPosition | None = None
         self.events: list[Event] = []
         self.dead_presses: dict[str, None] = {}

@@ -72,12 +72,31 @@ class AxisFeedback:
 
 
 @dataclass(frozen=True, slots=True)
+class LightPair:
+    """The two photo-sensors of one axis, W/m2: each looks out from the panel towards one side of its normal.
+
+    `higher` looks where the axis angle grows: west and up on a panel that faces south.
+    """
+
+    lower_wm2: float
+    higher_wm2: float
+
+
+@dataclass(frozen=True, slots=True)
+class LightReading:
+    """What the photo-sensor pairs of both axes read."""
+
+    azimuth: LightPair
+    elevation: LightPair
+
+
+@dataclass(frozen=True, slots=True)
 class Feedback:
     """One complete, consistent reading of a drive.
 
     `boot_count` changes when the drive has restarted; `fault_code` is zero without a fault;
     `request_done` is the number of the last request that the drive completed, and `request_failed`
-    says that it could not do it.
+    says that it could not do it. `light` is None where the drive has no photo-sensors.
     """
 
     azimuth: AxisFeedback
@@ -88,6 +107,7 @@ class Feedback:
     watchdog_tripped: bool = False
     request_done: int = 0
     request_failed: bool = False
+    light: LightReading | None = None
 
 
 @dataclass(frozen=True, slots=True)

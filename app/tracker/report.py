@@ -9,6 +9,7 @@ from app.tracker.activities.tracking import sun_height_deg
 from app.tracker.activity import NAMES, AxisPair, Faulted, Showing, Tracking, TrackPhase
 from app.tracker.conditions import Action, unmet
 from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.hybrid import Corrected
 from app.tracker.mind import Mind
 from app.tracker.mode import Mode
 from app.tracker.motion import AxisFeedback, Feedback, Position
@@ -16,7 +17,7 @@ from app.tracker.mount import sky
 from app.tracker.progress import step_progress
 from app.tracker.reason import Reason
 from app.tracker.runs import arrived, at_rest, close_to
-from app.tracker.snapshot import ActivityName, AxisState, Pair, ShowProgress, Snapshot
+from app.tracker.snapshot import ActivityName, AxisState, HybridState, Pair, ShowProgress, Snapshot
 from app.tracker.words import activity_text
 
 _INDEX = {kind: float(list(ActivityName).index(name)) for kind, name in NAMES.items()}
@@ -46,7 +47,7 @@ def snapshot(mind: Mind, at: datetime) -> Snapshot:
         last_measured=_pair(_faced(mind, mind.feedback)),
         position_age_s=(mind.now - mind.feedback_at).total_seconds() if mind.feedback_at else None,
         following_error_deg=_following_error_deg(mind),
-        off_sun_deg=_off_deg(mind.config, faced, mind.sun) if sun_is_up else None,
+        off_sun_deg=_off_deg(mind.config, _uncorrected(mind, fresh), mind.sun) if sun_is_up else None,
         in_position=_in_position(mind, fresh),
         home_trusted=mind.memory.home is not None,
         azimuth=_axis_state(fresh.azimuth) if fresh else None,
@@ -56,6 +57,7 @@ def snapshot(mind: Mind, at: datetime) -> Snapshot:
         notices=_notices(mind),
         show=_show(mind.activity) if isinstance(mind.activity, Showing) else None,
         program=step_progress(mind),
+        hybrid=_hybrid(mind, fresh),
         actions={action.value: unmet(mind, action) for action in Action},
     )
 
@@ -73,8 +75,17 @@ def frame(mind: Mind) -> tuple[float, ...]:
         nan if setpoint.elevation_deg is None else setpoint.elevation_deg,
         nan if feedback is None else wrap360(feedback.azimuth.position_deg),
         nan if feedback is None else feedback.elevation.position_deg,
+        *_corrections(mind),
         _INDEX[type(mind.activity)],
     )
+
+
+def _corrections(mind: Mind) -> tuple[float, float]:
+    """Return what the light sensors add to the computed axis angles."""
+    corrected = _correction(mind)
+    if corrected is None:
+        return 0.0, 0.0
+    return corrected.azimuth.degrees, corrected.elevation.degrees
 
 
 def _faced(mind: Mind, feedback: Feedback | None) -> Orientation | None:
@@ -82,6 +93,37 @@ def _faced(mind: Mind, feedback: Feedback | None) -> Orientation | None:
         return None
     return sky(
         mind.config, mind.memory.pointing, feedback.azimuth.position_deg, feedback.elevation.position_deg
+    )
+
+
+def _uncorrected(mind: Mind, feedback: Feedback | None) -> Orientation | None:
+    """Return where the panel faces, the pointing error that the light sensors found taken out."""
+    corrected = _correction(mind)
+    if feedback is None or corrected is None:
+        return _faced(mind, feedback)
+    return sky(
+        mind.config,
+        mind.memory.pointing,
+        feedback.azimuth.position_deg - corrected.azimuth.degrees,
+        feedback.elevation.position_deg - corrected.elevation.degrees,
+    )
+
+
+def _correction(mind: Mind) -> Corrected | None:
+    return mind.corrected if mind.config.hybrid.enabled and isinstance(mind.activity, Tracking) else None
+
+
+def _hybrid(mind: Mind, feedback: Feedback | None) -> HybridState | None:
+    corrected = _correction(mind)
+    if corrected is None:
+        return None
+    return HybridState(
+        computed=Pair(corrected.computed.azimuth_deg, corrected.computed.elevation_deg),
+        correction=Pair(corrected.azimuth.degrees, corrected.elevation.degrees),
+        sum=Pair(corrected.target.azimuth_deg, corrected.target.elevation_deg),
+        azimuth_phase=corrected.azimuth.phase,
+        elevation_phase=corrected.elevation.phase,
+        light=feedback.light if feedback else None,
     )
 
 

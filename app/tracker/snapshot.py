@@ -7,7 +7,9 @@ from typing import Any
 
 from app.sun.position import Location, SunPosition
 from app.tracker.config import Orientation
+from app.tracker.hybrid import HybridPhase
 from app.tracker.mode import Mode
+from app.tracker.motion import LightReading
 from app.tracker.reason import Reason
 from app.tracker.weather import WeatherNow
 
@@ -87,14 +89,30 @@ class StepProgress:
 
 
 @dataclass(frozen=True, slots=True)
+class HybridState:
+    """Computed axis angles, the correction by the light sensors, and their sum within the limits, degrees.
+
+    The words say what the correction of each axis is doing; `light` is what the sensors read, if anything.
+    """
+
+    computed: Pair
+    correction: Pair
+    sum: Pair
+    azimuth_phase: HybridPhase
+    elevation_phase: HybridPhase
+    light: LightReading | None
+
+
+@dataclass(frozen=True, slots=True)
 class Snapshot:
     """One tracker at one tick. Whatever is not known is None, never an old value.
 
     `sun` is the sun that is followed: the accelerated one during a show. `target` is where the panel
     should point, `setpoint` what the drive was told, `measured` what the drive reports, in sky
     degrees; `position_age_s` is the age of the last good reading. `off_sun_deg` is the angle between
-    the panel's normal and the sun (None while the sun is down). `waiting` says why a tracker that
-    should move does not. `actions` maps every action to the reasons that forbid it (none: allowed).
+    the panel's normal and the sun (None while the sun is down), the correction of `hybrid` taken out.
+    `waiting` says why a tracker that should move does not. `actions` maps every action to the reasons
+    that forbid it (none: allowed).
     """
 
     tracker_id: str
@@ -124,6 +142,7 @@ class Snapshot:
     notices: tuple[Reason, ...] = ()
     show: ShowProgress | None = None
     program: StepProgress | None = None
+    hybrid: HybridState | None = None
     actions: dict[str, tuple[Reason, ...]] = field(default_factory=dict)
 
 

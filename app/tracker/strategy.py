@@ -94,7 +94,7 @@ class HybridConfig:
 
     enabled: bool = False
     threshold_wm2: float = 150.0
-    gain_dps: float = 0.5
+    gain_dps: float = 1.0
     bound_deg: float = 2.0
     decay_s: float = 900.0
 

@@ -100,15 +100,31 @@ def _packed(body: bytes) -> bytes:
         (encode(Frames(np.zeros((5, len(COLUMNS)))))[:-3], "cut short"),
         (_packed(b"\x00" * 10_000_000), "cut short or too long"),
         (_packed(b"abc"), "damaged"),
-        (_packed(HEADER.pack(5, len(COLUMNS) + 1, 2, 0)), "5 frames of 12 columns"),
-        (_packed(HEADER.pack(5, len(COLUMNS), 3, 0)), "5 frames of 11 columns"),
-        (_packed(HEADER.pack(0, len(COLUMNS), 2, 0)), "0 frames of 11 columns"),
-        (_packed(HEADER.pack(5, len(COLUMNS), 2, 0)), "not 206"),
+        (_packed(HEADER.pack(5, len(COLUMNS) + 1, 2, 0)), "5 frames of 14 columns"),
+        (_packed(HEADER.pack(5, len(COLUMNS), 3, 0)), "5 frames of 13 columns"),
+        (_packed(HEADER.pack(0, len(COLUMNS), 2, 0)), "0 frames of 13 columns"),
+        (_packed(HEADER.pack(5, len(COLUMNS), 2, 0)), "not 242"),
     ],
 )
 def test_damage_is_told(damaged: bytes, sentence: str) -> None:
     with pytest.raises(ChunkDamaged, match=sentence):
         decode(damaged)
+
+
+def test_a_chunk_from_before_corrections_were_recorded_is_read_with_none() -> None:
+    """Eleven columns, as version 1.0 wrote them: two frames, the second of which lacks its setpoints."""
+    first = [0, 0, 180_000, 45_000, 180_000, 45_000, 180_250, 45_000, 180_249, 45_001, 5]
+    change = [1000, 1000, 4, -3, 4, -3, 0, 0, 1, -1, 0]
+    gaps = np.zeros((2, 11), dtype=np.bool_)
+    gaps[1, 6:8] = True
+    body = HEADER.pack(2, 11, 2, 1) + np.array(first, "<i8").tobytes() + np.packbits(gaps).tobytes()
+    frames = decode(_packed(body + np.array([[0] * 11, change], "<i2").tobytes()))
+    assert frames.column("elapsed_s").tolist() == [0.0, 1.0]
+    assert frames.column("measured_elevation_deg").tolist() == [45.001, 45.0]
+    assert frames.column("correction_azimuth_deg").tolist() == [0.0, 0.0]
+    assert frames.column("activity").tolist() == [5.0, 5.0]
+    assert np.isnan(frames.values[1, 6:8]).all()
+    assert np.isfinite(np.delete(frames.values, [6, 7], axis=1)).all()
 
 
 @given(st.integers(0, 10_000), st.integers(1, 255))

@@ -57,5 +57,5 @@ def test_what_is_short_stays_whole() -> None:
 
 
 def test_too_few_points_are_refused() -> None:
-    with pytest.raises(ValueError, match="at least 18 points"):
+    with pytest.raises(ValueError, match="at least 22 points"):
         decimate(tracked_day(300), FEWEST_POINTS - 1)

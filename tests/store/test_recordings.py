@@ -13,7 +13,7 @@ from app.store.connections import transaction, writing_engine
 from app.store.reader import DatabaseReader
 from app.store.store import StoreFailed
 from app.store.writer import DatabaseWriter
-from app.tracker.recording import Frames, RecordingInfo, RecordingKind
+from app.tracker.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
 from tests.store.tracked_day import MIDNIGHT, day_info, tracked_day
 
 RESOLUTION = 0.00051
@@ -73,7 +73,7 @@ def test_what_grew_in_pieces_is_stored_like_what_came_at_once(url: str, writer: 
 def test_a_range_of_time_is_cut_out(
     writer: DatabaseWriter, begin_s: float, end_s: float | None, first: float, last: float, count: int
 ) -> None:
-    values = np.zeros((2000, 11))
+    values = np.zeros((2000, len(COLUMNS)))
     values[:, 0] = np.arange(2000)
     writer.save_recording(finished("show-1", days=0), encode_all(Frames(values)))
     elapsed_s = writer.frames("show-1", begin_s=begin_s, end_s=end_s).column("elapsed_s")

@@ -53,7 +53,8 @@ def tracked_day(seconds: int = 86400, *, begin_s: float = 0.0) -> Frames:
     aim = [np.where(up, angle, np.nan) for angle in (azimuth, elevation)]
     names = list(ActivityName)
     activity = np.where(up, names.index(ActivityName.TRACKING), names.index(ActivityName.HOLDING))
-    columns = [elapsed_s, elapsed_s, azimuth, elevation, *aim, *setpoints, *measured, activity]
+    corrections = [np.where(up, np.round(0.3 + share * 0.01, 3), 0.0) for share in (1.0, 2.0)]
+    columns = [elapsed_s, elapsed_s, azimuth, elevation, *aim, *setpoints, *measured, *corrections, activity]
     return Frames(np.column_stack(columns))
 
 

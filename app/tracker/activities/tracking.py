@@ -4,6 +4,7 @@ With a deadband the target is judged against the deadband less a margin, so that
 deadband: the sun moves 0.0042 degrees a second, and a run takes a second or two.
 """
 
+from dataclasses import replace
 from math import cos, radians, sin
 from typing import assert_never
 
@@ -11,10 +12,12 @@ from app.sun.position import Location, SunPosition
 from app.tracker.activities.moving import not_arrived
 from app.tracker.activity import Tracking, TrackPhase
 from app.tracker.conditions import Action, demand, unmet
-from app.tracker.config import NightBehaviour, TrackerConfig
+from app.tracker.config import MountConfig, MountKind, NightBehaviour, TrackerConfig
+from app.tracker.hybrid import correct
 from app.tracker.mind import HALTED, Mind, Turn
 from app.tracker.mode import Mode
 from app.tracker.motion import Feedback
+from app.tracker.mounts.kinematics import FIRST_FOLLOWS
 from app.tracker.observation import Observation
 from app.tracker.programs.schedule import Aimed, Followed, Moment, aimed, scheduled, scheduled_dawn
 from app.tracker.pursuit import next_run, pursue, widened
@@ -81,13 +84,22 @@ def step(mind: Mind, tracking: Tracking, feedback: Feedback, seen: Observation) 
         wanted = _night_place(strategy, followed, moment, seen)
     else:
         wanted = _day_place(strategy, followed, moment, feedback.azimuth.position_deg)
+    if wanted is not None and mind.config.hybrid.enabled:
+        wanted = _corrected(mind, followed, moment, wanted, feedback)
     run = tracking.run
     if run is not None and not arrived(run.target, feedback, mind.config.in_position_deg):
         return _go_on(mind, tracking, strategy, feedback, wanted, sun)
     if wanted is None:
         return Turn(TRACKING[TrackPhase.NIGHT], HALTED, None, sun)
     phase = TrackPhase.NIGHT if night else _phase(mind.config, mode, wanted)
-    if isinstance(strategy, Continuous) and not night:
+    return _begin(mind, strategy, phase, feedback, wanted, sun)
+
+
+def _begin(
+    mind: Mind, strategy: Strategy, phase: TrackPhase, feedback: Feedback, wanted: Aimed, sun: SunPosition
+) -> Turn:
+    """Return the motion that the strategy begins now, or stand."""
+    if isinstance(strategy, Continuous) and phase is not TrackPhase.NIGHT:
         return Turn(TRACKING[phase], pursue(mind.config, wanted.target), wanted.direction, sun)
     run = next_run(strategy, mind.config, feedback, wanted.target, mind.now)
     if run is None:
@@ -110,6 +122,15 @@ def _day_place(strategy: Strategy, followed: Followed, moment: Moment, near_deg:
         case Continuous() | Deadband() | EncoderDeadband():
             return aimed(followed, followed.direction(moment.sun), near_deg)
     assert_never(strategy)
+
+
+def _corrected(mind: Mind, followed: Followed, moment: Moment, wanted: Aimed, feedback: Feedback) -> Aimed:
+    """Return the place with the correction that the light sensors ask for added to its axis angles."""
+    sun_target = aimed(followed, followed.direction(moment.sun), feedback.azimuth.position_deg).target
+    mind.corrected = correct(
+        mind.corrected, mind.config, followed.mode, sun_target, wanted.target, feedback, mind.now
+    )
+    return replace(wanted, target=mind.corrected.target)
 
 
 def _night_place(strategy: Strategy, followed: Followed, moment: Moment, seen: Observation) -> Aimed | None:
@@ -159,20 +180,31 @@ def _phase(config: TrackerConfig, mode: Mode, wanted: Aimed) -> TrackPhase:
         return TrackPhase.FIXED
     if wanted.target.limited:
         return TrackPhase.LIMITED
-    if config.azimuth.speed_dps * cos(radians(wanted.direction.elevation_deg)) < SUN_DPS:
+    reach_dps = config.azimuth.speed_dps * abs(cos(radians(wanted.target.elevation_deg)))
+    if mode in FIRST_FOLLOWS and reach_dps < SUN_DPS:
         return TrackPhase.KEYHOLE
     return TrackPhase.FOLLOWING
 
 
 def _night_near_deg(config: TrackerConfig, seen: Observation) -> float:
-    """Return the end of the azimuth range from which the coming day can be followed without unwinding.
+    """Return the end of the first axis's range from which the coming day needs no unwinding."""
+    return config.azimuth.minimum_deg if _grows(config.mount, seen) else config.azimuth.maximum_deg
 
-    Where the sun passes south of the zenith its azimuth grows, so the day begins low; elsewhere it falls.
+
+def _grows(mount: MountConfig, seen: Observation) -> bool:
+    """Return whether the first axis's angle grows from dawn to dusk.
+
+    An azimuth does where the sun passes south of the zenith, an hour angle always, and the rotation about a
+    level or tilted axis where that points to the south.
     """
-    if seen.dawn is None or seen.location is None:
-        return config.azimuth.minimum_deg
-    grows = _passes_south(seen.location, seen.dawn)
-    return config.azimuth.minimum_deg if grows else config.azimuth.maximum_deg
+    match mount.kind:
+        case MountKind.EQUATORIAL:
+            return True
+        case MountKind.HORIZONTAL_SINGLE_AXIS | MountKind.TILTED_SINGLE_AXIS:
+            return cos(radians(mount.axis_azimuth_deg)) <= 0.0
+        case MountKind.AZIMUTH_ELEVATION | MountKind.VERTICAL_SINGLE_AXIS:
+            return seen.dawn is None or seen.location is None or _passes_south(seen.location, seen.dawn)
+    assert_never(mount.kind)
 
 
 def _passes_south(location: Location, dawn: SunPosition) -> bool:

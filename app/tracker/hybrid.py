@@ -1,0 +1,163 @@
+"""Hybrid correction: photo-sensor pairs add a bounded correction to the computed axis angles.
+
+The paper on a PLC of Bosch Rexroth with the PSA algorithm has u = computed + correction and gives neither
+thresholds nor gains. Here the correction of an axis changes, while both sensors of its pair see enough light
+and the axis stands where it was sent, at the rate gain (R1 - R2) / (R1 + R2): R1 looks towards larger axis
+angles. It never exceeds its bound, in less light it decays or is held, and a pair that keeps pulling at the
+bound, or differs by more than a panel near the sun can see, is not believed.
+"""
+
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+from enum import StrEnum
+from math import exp, isfinite
+
+from app.tracker.axes import Axis, AxisConfig
+from app.tracker.config import TrackerConfig
+from app.tracker.mode import Mode
+from app.tracker.motion import Feedback, LightPair, LightReading
+from app.tracker.mount import AxisTarget
+from app.tracker.strategy import HybridConfig, Stepped
+
+ON_PLACE_DEG = 0.1
+"""So near to its computed and corrected place an axis has to be for its pair to tell a pointing error."""
+LARGEST_RATIO = 0.5
+LONGEST_STEP_S = 2.0
+PATIENCE = timedelta(seconds=60)
+FOLLOWING = {
+    Mode.FIXED: (False, False),
+    Mode.AZIMUTH: (True, False),
+    Mode.ELEVATION: (False, True),
+    Mode.DUAL: (True, True),
+}
+
+
+class HybridPhase(StrEnum):
+    """What the correction of an axis is doing."""
+
+    UNUSED = "unused"
+    CORRECTING = "correcting"
+    WAITING = "waiting"
+    DARK = "dark"
+    DOUBTED = "doubted"
+
+
+@dataclass(frozen=True, slots=True)
+class AxisCorrection:
+    """The correction of one axis, degrees; `at_bound_since` is when it last came to its bound."""
+
+    degrees: float = 0.0
+    phase: HybridPhase = HybridPhase.UNUSED
+    at_bound_since: datetime | None = None
+
+
+NO_CORRECTION = AxisCorrection()
+
+
+@dataclass(frozen=True, slots=True)
+class Corrected:
+    """Computed axis angles, the correction of each axis at an instant, and their sum within the limits."""
+
+    at: datetime
+    computed: AxisTarget
+    target: AxisTarget
+    azimuth: AxisCorrection
+    elevation: AxisCorrection
+
+
+def correct(
+    before: Corrected | None,
+    config: TrackerConfig,
+    mode: Mode,
+    sun_target: AxisTarget,
+    target: AxisTarget,
+    feedback: Feedback,
+    now: datetime,
+) -> Corrected:
+    """Return where the axes go: `target` plus the correction, within the soft limits.
+
+    `sun_target` are the computed axis angles of the sun, which the sensors are compared with; `target` is
+    where the strategy wants the axes. A step program is never corrected: its panel need not face the sun.
+    """
+    elapsed_s = 0.0 if before is None else (now - before.at).total_seconds()
+    used = config.hybrid.enabled and not isinstance(config.strategy, Stepped)
+    axes = []
+    for axis, follows in zip(Axis, FOLLOWING[mode], strict=True):
+        was = NO_CORRECTION if before is None else _of(before, axis)
+        if not (used and follows):
+            axes.append(NO_CORRECTION)
+            continue
+        pair, on_place = _pair(feedback.light, axis), _on_place(was, feedback, sun_target, axis)
+        axes.append(axis_correction(was, config.hybrid, pair, now, elapsed_s, on_place=on_place))
+    azimuth, elevation = axes
+    summed = replace(
+        target,
+        azimuth_deg=_sum_deg(config.azimuth, target.azimuth_deg, azimuth),
+        elevation_deg=_sum_deg(config.elevation, target.elevation_deg, elevation),
+    )
+    return Corrected(now, target, summed, azimuth, elevation)
+
+
+def axis_correction(
+    before: AxisCorrection,
+    config: HybridConfig,
+    pair: LightPair | None,
+    now: datetime,
+    elapsed_s: float,
+    *,
+    on_place: bool,
+) -> AxisCorrection:
+    """Return the correction of one axis after a time in which its pair read so."""
+    ratio = _ratio(pair, config.threshold_wm2)
+    if ratio is None:
+        return AxisCorrection(_decayed(before.degrees, config, elapsed_s), HybridPhase.DARK)
+    if abs(ratio) > LARGEST_RATIO or before.phase is HybridPhase.DOUBTED:
+        return AxisCorrection(_decayed(before.degrees, config, elapsed_s), HybridPhase.DOUBTED)
+    if not on_place:
+        return replace(before, phase=HybridPhase.WAITING)
+    change_deg = config.gain_dps * ratio * min(max(elapsed_s, 0.0), LONGEST_STEP_S)
+    degrees = min(config.bound_deg, max(-config.bound_deg, before.degrees + change_deg))
+    if abs(degrees) < config.bound_deg:
+        return AxisCorrection(degrees, HybridPhase.CORRECTING)
+    since = before.at_bound_since or now
+    phase = HybridPhase.DOUBTED if now - since >= PATIENCE else HybridPhase.CORRECTING
+    return AxisCorrection(degrees, phase, since)
+
+
+def _ratio(pair: LightPair | None, threshold_wm2: float) -> float | None:
+    """Return (R1 - R2) / (R1 + R2); None unless both sensors see enough light."""
+    if pair is None:
+        return None
+    higher, lower = pair.higher_wm2, pair.lower_wm2
+    if not (isfinite(higher) and isfinite(lower) and min(higher, lower) >= threshold_wm2):
+        return None
+    return (higher - lower) / (higher + lower)
+
+
+def _decayed(degrees: float, config: HybridConfig, elapsed_s: float) -> float:
+    """Return a correction after a time without light: held where there is no decay."""
+    degrees = min(config.bound_deg, max(-config.bound_deg, degrees))
+    return degrees if config.decay_s == 0.0 else degrees * exp(-max(elapsed_s, 0.0) / config.decay_s)
+
+
+def _on_place(was: AxisCorrection, feedback: Feedback, sun_target: AxisTarget, axis: Axis) -> bool:
+    """Return whether the pair of an axis sees the pointing error and little else."""
+    on_azimuth = axis is Axis.AZIMUTH
+    measured_deg = (feedback.azimuth if on_azimuth else feedback.elevation).position_deg
+    computed_deg = sun_target.azimuth_deg if on_azimuth else sun_target.elevation_deg
+    return not sun_target.limited and abs(computed_deg + was.degrees - measured_deg) <= ON_PLACE_DEG
+
+
+def _sum_deg(axis: AxisConfig, computed_deg: float, correction: AxisCorrection) -> float:
+    """Return computed angle plus correction, which never leads beyond a soft limit."""
+    return axis.clamp(computed_deg + correction.degrees) if correction.degrees else computed_deg
+
+
+def _pair(light: LightReading | None, axis: Axis) -> LightPair | None:
+    if light is None:
+        return None
+    return light.azimuth if axis is Axis.AZIMUTH else light.elevation
+
+
+def _of(corrected: Corrected, axis: Axis) -> AxisCorrection:
+    return corrected.azimuth if axis is Axis.AZIMUTH else corrected.elevation
