@@ -16,12 +16,14 @@ from app.build import VERSION
 from app.cli_drives import drive, drive_sim
 from app.clock import SystemClock
 from app.drives.drive import DriveError
+from app.gateway.sunspec_map import map_table, sunspec_map
 from app.machine.lock import AlreadyRunning, holder
 from app.machine.main import run as run_machine
 from app.machine.supervisor import end_with_parent, supervise
 from app.settings import Settings, SettingsWrong, read_settings
 from app.show.simulate import simulate_date, simulate_show_of_date
 from app.store.backup import backup as back_up
+from app.store.engine import open_reader
 from app.store.exports import to_csv, to_parquet
 from app.store.restore import Restored, RestorePending, request_restore
 from app.store.store import StoreFailed
@@ -153,6 +155,22 @@ def simulate(
         info, frames = simulate_show_of_date(tracker, place, time_zone, day, length, mode=mode)
     _write(out, info, frames)
     typer.echo(f"{len(frames)} frames of {info.title} are in {out}.")
+
+
+@cli.command("sunspec-map")
+def print_sunspec_map(
+    *,
+    weather: Annotated[
+        bool, typer.Option("--weather", help="With model 307, which comes with weather.")
+    ] = False,
+) -> None:
+    """Print the SunSpec map of the present site as a table."""
+    reader = open_reader(read_settings().url)
+    try:
+        tracker_ids = [state.config.tracker_id for state in reader.trackers()]
+    finally:
+        reader.close()
+    typer.echo(map_table(sunspec_map(tracker_ids, weather=weather)), nl=False)
 
 
 @cli.command()
