@@ -98,8 +98,10 @@ class MqttGateway:
 
     @asynccontextmanager
     async def _connected(self) -> AsyncIterator[Client]:
-        """Connect with a last will, say that we are online, and take it back at a proper end."""
+        """Connect with a last will, hear commands, say that we are online, and take it back at the end."""
         async with self._client() as client:
+            if self._settings.mqtt_commands:
+                await client.subscribe(self._topics.commands, AT_LEAST_ONCE)
             await client.publish(self._topics.availability, ONLINE, AT_LEAST_ONCE, retain=True)
             self._status, self._error, self._announced = GatewayStatus.CONNECTED, "", {}
             log.info("mqtt_connected", broker=self._where)
@@ -184,7 +186,7 @@ class MqttGateway:
                 for payload in payloads:
                     tasks.create_task(client.publish(topic, payload, AT_LEAST_ONCE))
             if entries:
-                await asyncio.to_thread(self._outbox.acknowledge, entries[-1].number)
+                await asyncio.to_thread(self._outbox.acknowledge, entries[-1])
             if len(entries) < AT_ONCE:
                 self._waiting = 0
                 await self._clock.sleep_until(self._clock.now() + LOOK_FOR_EVENTS)
@@ -197,9 +199,6 @@ class MqttGateway:
             await self._clock.sleep_until(self._clock.now() + LOOK_FOR_RECORDINGS)
 
     async def _take_commands(self, client: Client) -> None:
-        if not self._settings.mqtt_commands:
-            return
-        await client.subscribe(self._topics.commands, AT_LEAST_ONCE)
         async for message in client.messages:
             tracker_id = self._topics.addressed(message.topic.value)
             payload = message.payload if isinstance(message.payload, bytes) else b""

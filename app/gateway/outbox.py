@@ -20,15 +20,19 @@ RECORDINGS_KNOWN = 500
 
 @dataclass(slots=True)
 class _Cursor:
-    """How far a series of numbers was acknowledged, and how each recording was last announced."""
+    """How far a series of numbers was acknowledged, and how each recording was last announced.
+
+    `at` is when the event of that number happened: another one there means another journal.
+    """
 
     series: str
     number: int
+    at: str = ""
     recordings: dict[str, str] = field(default_factory=dict)
 
 
 class Outbox:
-    """Reads what was not acknowledged yet. Its calls block: make them in a thread; one at a time is served."""
+    """Reads what was not acknowledged yet. Its calls block, so make them in a thread; they wait in turn."""
 
     def __init__(self, reader: Reader, path: Path) -> None:
         self._reader = reader
@@ -40,7 +44,9 @@ class Outbox:
     def begin(self) -> None:
         """Fix on disk where the telling begins; call it before anything happens."""
         with self._one_at_a_time:
-            self._known()
+            cursor = self._known()
+            if cursor.at and cursor.at != self._at(cursor.number):
+                self._cursor = self._fresh()
             self._save()
 
     @property
@@ -52,8 +58,6 @@ class Outbox:
         """Return the oldest events that were not acknowledged; too old ones are dropped and counted."""
         with self._one_at_a_time:
             cursor, newest = self._known(), self._newest()
-            if newest < cursor.number:
-                cursor.series, cursor.number = uuid4().hex, newest
             excess = newest - cursor.number - MOST_UNSENT
             if excess > 0:
                 cursor.number += excess
@@ -65,10 +69,11 @@ class Outbox:
         with self._one_at_a_time:
             return max(0, self._newest() - self._known().number)
 
-    def acknowledge(self, number: int) -> None:
-        """Note that every event up to a number has arrived."""
+    def acknowledge(self, entry: JournalEntry) -> None:
+        """Note that every event up to this one has arrived."""
         with self._one_at_a_time:
-            self._known().number = number
+            cursor = self._known()
+            cursor.number, cursor.at = entry.number, entry.event.at.isoformat()
             self._save()
 
     def recordings(self) -> list[RecordingInfo]:
@@ -83,7 +88,7 @@ class Outbox:
         with self._one_at_a_time:
             known = self._known().recordings
             known[recording.recording_id] = recording_state(recording)
-            for oldest in list(known)[: len(known) - RECORDINGS_KNOWN]:
+            for oldest in list(known)[: max(0, len(known) - RECORDINGS_KNOWN)]:
                 del known[oldest]
             self._save()
 
@@ -101,7 +106,12 @@ class Outbox:
     def _fresh(self) -> _Cursor:
         """Begin with what happens from now on: old history is not poured out."""
         known = {one.recording_id: recording_state(one) for one in self._reader.recordings()}
-        return _Cursor(uuid4().hex, self._newest(), known)
+        number = self._newest()
+        return _Cursor(uuid4().hex, number, self._at(number), known)
+
+    def _at(self, number: int) -> str:
+        found = self._reader.journal(JournalFilter(after=number - 1, limit=1))
+        return found[0].event.at.isoformat() if found and found[0].number == number else ""
 
     def _newest(self) -> int:
         newest = self._reader.journal(JournalFilter(limit=1))

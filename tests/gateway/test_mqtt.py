@@ -1,0 +1,337 @@
+"""MQTT against a real Mosquitto: what is told, what is kept while it is down, and what it may ask."""
+
+import asyncio
+import contextlib
+import json
+import shutil
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+from aiomqtt import Client, MqttError
+from pydantic import SecretStr
+
+from app.gateway.gateways import Gateways
+from app.link.messages import RenameSite
+from app.link.metrics import GatewayMetrics, GatewayStatus
+from app.settings import Settings
+from app.store.store import JournalEntry, JournalFilter, Writer
+from app.tracker.snapshot import ActivityName
+from tests.gateway.rigs import eventually, free_port, gateway, kept_plant, opened
+from tests.site.plant import SAMSUN
+
+MOSQUITTO = shutil.which("mosquitto") or "/usr/sbin/mosquitto"
+
+
+@dataclass
+class Broker:
+    """A Mosquitto on a free port that can be killed and started again, and everything that it passed on."""
+
+    folder: Path
+    port: int = field(default_factory=free_port)
+    lines: tuple[str, ...] = ()
+    process: asyncio.subprocess.Process | None = None
+    heard: list[tuple[str, bytes, bool]] = field(default_factory=list)
+    listening: asyncio.Task[None] | None = None
+
+    async def start(self) -> None:
+        assert shutil.which(MOSQUITTO), "The tests need mosquitto. Install it with: make system-packages"
+        config = self.folder / "mosquitto.conf"
+        config.write_text("\n".join((f"listener {self.port} 127.0.0.1", "allow_anonymous true", *self.lines)))
+        self.process = await asyncio.create_subprocess_exec(
+            MOSQUITTO, "-c", str(config), stderr=asyncio.subprocess.DEVNULL
+        )
+        for _ in range(500):
+            with contextlib.suppress(OSError):
+                _, writer = await asyncio.open_connection("127.0.0.1", self.port)
+                writer.close()
+                await writer.wait_closed()
+                break
+            await asyncio.sleep(0.01)
+
+    async def kill(self) -> None:
+        assert self.process is not None
+        self.process.kill()
+        await self.process.wait()
+        if self.listening is not None:
+            await asyncio.gather(self.listening, return_exceptions=True)
+
+    async def listen(self) -> None:
+        """Keep every message from now on; the subscription stands when this returns."""
+        subscribed = asyncio.Event()
+        self.listening = asyncio.create_task(self._listen(subscribed))
+        await subscribed.wait()
+
+    async def _listen(self, subscribed: asyncio.Event) -> None:
+        with contextlib.suppress(MqttError):
+            async with Client("127.0.0.1", self.port) as client:
+                await client.subscribe("#", 1)
+                subscribed.set()
+                async for message in client.messages:
+                    assert isinstance(message.payload, bytes)
+                    self.heard.append((message.topic.value, message.payload, message.retain))
+
+    async def send(self, topic: str, told: dict[str, Any], *, retain: bool = False) -> None:
+        async with Client("127.0.0.1", self.port) as client:
+            await client.publish(topic, json.dumps(told), 1, retain=retain)
+
+    def told(self, topic: str) -> list[Any]:
+        return [json.loads(payload) for name, payload, _ in self.heard if name == topic]
+
+    def sentences(self) -> list[str]:
+        return [event["message"] for event in self.told("plant/north/events")]
+
+
+@asynccontextmanager
+async def running(folder: Path, *lines: str) -> AsyncIterator[Broker]:
+    broker = Broker(folder, lines=lines)
+    await broker.start()
+    await broker.listen()
+    try:
+        yield broker
+    finally:
+        if broker.listening is not None:
+            broker.listening.cancel()
+        await broker.kill()
+
+
+@pytest.fixture
+async def broker(tmp_path: Path) -> AsyncIterator[Broker]:
+    async with running(tmp_path) as found:
+        yield found
+
+
+def settings(tmp_path: Path, broker: Broker, **more: Any) -> Settings:
+    return Settings(
+        data_dir=tmp_path, mqtt_host="127.0.0.1", mqtt_port=broker.port, mqtt_topic="plant/north", **more
+    )
+
+
+async def test_snapshots_are_told_as_one_message_a_tracker(tmp_path: Path, broker: Broker) -> None:
+    async with (
+        kept_plant(tmp_path, "T1", "T2") as (plant, store),
+        opened(plant, settings(tmp_path, broker), store),
+    ):
+        await plant.commission()
+        await plant.forward(seconds=1)
+        topic = "plant/north/trackers/T1/snapshot"
+        await eventually(lambda: any(one["home_trusted"] for one in broker.told(topic)))
+        newest = broker.told(topic)[-1]
+        assert newest["measured_azimuth_deg"] == pytest.approx(plant.tracker().measured.azimuth_deg)  # type: ignore[union-attr]
+        assert newest["activity"] == "holding"
+        assert broker.told("plant/north/trackers/T2/snapshot")[-1]["home_trusted"] is False
+        site = broker.told("plant/north/site")[-1]
+        assert site["location"]["latitude_deg"] == SAMSUN.latitude_deg
+        assert site["trackers"] == ["T1", "T2"]
+        assert ("plant/north/availability", b"online", False) in broker.heard
+
+
+async def test_snapshots_are_told_as_columns(tmp_path: Path, broker: Broker) -> None:
+    wanted = settings(tmp_path, broker, mqtt_snapshots="columns")
+    async with kept_plant(tmp_path, "T1", "T2", "T3") as (plant, store), opened(plant, wanted, store):
+        await plant.forward(seconds=0.2)
+        await eventually(lambda: broker.told("plant/north/columns"))
+        columns = broker.told("plant/north/columns")[-1]["columns"]
+        assert columns["tracker_id"] == ["T1", "T2", "T3"]
+        assert {len(column) for column in columns.values()} == {3}
+        assert not broker.told("plant/north/trackers/T1/snapshot")
+
+
+async def test_a_killed_broker_loses_no_event_and_the_site_does_not_wait(
+    tmp_path: Path, broker: Broker
+) -> None:
+    async with (
+        kept_plant(tmp_path) as (plant, store),
+        opened(plant, settings(tmp_path, broker), store) as gateways,
+    ):
+        await plant.commission()
+        await eventually(lambda: any("location was set" in one for one in broker.sentences()))
+        await broker.kill()
+        before = plant.tracker().tick
+        for number in range(120):
+            await plant.ask(RenameSite(f"Field {number}"))
+        await plant.forward(seconds=1)
+        assert plant.tracker().tick > before, "the site ticks on while the broker is away"
+        lost = await _until(gateways, lambda seen: seen.status is GatewayStatus.CONNECTING)
+        assert "is tried again" in lost.error
+        await broker.start()
+        await broker.listen()
+        await eventually(lambda: any("Field 119" in one for one in broker.sentences()))
+        told = broker.told("plant/north/events")
+        assert _all_once(told) == [entry.number for entry in _journal(store)]
+        assert (await gateway(gateways, "MQTT")).waiting == 0
+
+
+async def test_a_restarted_machine_tells_what_it_had_not(tmp_path: Path, broker: Broker) -> None:
+    wanted = settings(tmp_path, broker)
+    async with kept_plant(tmp_path) as (plant, store):
+        async with opened(plant, wanted, store):
+            await eventually(lambda: broker.told("plant/north/site"))
+        await eventually(lambda: ("plant/north/availability", b"offline", False) in broker.heard)
+        await plant.ask(RenameSite("Unheard"))
+        async with opened(plant, wanted, store):
+            await eventually(lambda: any("Unheard" in one for one in broker.sentences()))
+
+
+async def test_the_last_will_says_that_a_lost_machine_is_offline(tmp_path: Path, broker: Broker) -> None:
+    relay = await asyncio.start_server(lambda r, w: _relay(r, w, broker.port), "127.0.0.1", 0)
+    port = relay.sockets[0].getsockname()[1]
+    wanted = settings(tmp_path, broker).model_copy(update={"mqtt_port": port})
+    async with kept_plant(tmp_path) as (plant, store), opened(plant, wanted, store):
+        await eventually(lambda: ("plant/north/availability", b"online", False) in broker.heard)
+        relay.close()
+        for writer in RELAYED:
+            writer.transport.abort()
+        await eventually(lambda: ("plant/north/availability", b"offline", False) in broker.heard)
+
+
+async def test_recordings_are_announced_when_they_begin_and_end(tmp_path: Path, broker: Broker) -> None:
+    async with kept_plant(tmp_path) as (plant, store), opened(plant, settings(tmp_path, broker), store):
+        await plant.commission()
+        await plant.forward(seconds=1)
+        await eventually(lambda: broker.told("plant/north/recordings"))
+        assert broker.told("plant/north/recordings")[0]["state"] == "running"
+        plant.site.model.recorder.finish("T1", plant.site.model.now(), "ended by the test")
+        await eventually(lambda: broker.told("plant/north/recordings")[-1]["state"] == "finished")
+        assert broker.told("plant/north/recordings")[-1]["outcome"] == "ended by the test"
+
+
+async def test_commands_go_through_the_same_door_when_they_are_allowed(
+    tmp_path: Path, broker: Broker
+) -> None:
+    wanted = settings(tmp_path, broker, mqtt_commands=True)
+    async with kept_plant(tmp_path) as (plant, store), opened(plant, wanted, store):
+        await plant.commission()
+        await eventually(lambda: ("plant/north/availability", b"online", False) in broker.heard)
+        result = "plant/north/trackers/T1/result"
+        move = {"type": "move", "azimuth_deg": 90, "elevation_deg": 40, "client": "scada", "key": "m-1"}
+        await broker.send("plant/north/trackers/T1/command", move)
+        await eventually(lambda: broker.told(result))
+        assert broker.told(result) == [{"key": "m-1", "accepted": True, "reasons": []}]
+        assert plant.tracker().activity is ActivityName.MOVING
+        await broker.send("plant/north/trackers/T1/command", {"type": "home", "client": "scada"})
+        await eventually(lambda: len(broker.told(result)) == 2)
+        assert broker.told(result)[1]["reasons"][0]["code"] == "busy_moving"
+        await broker.send("plant/north/trackers/T1/command", {"type": "fly", "client": "scada"})
+        await eventually(lambda: len(broker.told(result)) == 3)
+        assert broker.told(result)[2]["reasons"][0]["code"] == "malformed"
+        await broker.send("plant/north/trackers/T1/command", {"type": "stop", "client": "scada"}, retain=True)
+        await eventually(lambda: len(broker.told(result)) == 4)
+        journal = [(entry.event.actor, entry.event.message) for entry in _journal(store)]
+        assert ("mqtt scada", "Going to azimuth 90.0, elevation 40.0 degrees.") in journal
+        assert any(actor == "mqtt scada" and "was refused" in message for actor, message in journal)
+
+
+async def test_a_command_that_was_retained_is_not_carried_out(tmp_path: Path, broker: Broker) -> None:
+    await broker.send("plant/north/trackers/T1/command", {"type": "home", "client": "scada"}, retain=True)
+    wanted = settings(tmp_path, broker, mqtt_commands=True)
+    async with kept_plant(tmp_path) as (plant, store), opened(plant, wanted, store):
+        await eventually(lambda: broker.told("plant/north/trackers/T1/result"))
+        assert broker.told("plant/north/trackers/T1/result")[0]["reasons"][0]["code"] == "retained"
+        assert plant.tracker().activity is ActivityName.HOLDING
+
+
+async def test_commands_are_not_heard_unless_they_are_allowed(tmp_path: Path, broker: Broker) -> None:
+    async with kept_plant(tmp_path) as (plant, store), opened(plant, settings(tmp_path, broker), store):
+        await plant.commission()
+        await broker.send("plant/north/trackers/T1/command", {"type": "home", "client": "scada"})
+        sites = len(broker.told("plant/north/site"))
+        await eventually(lambda: len(broker.told("plant/north/site")) > sites + 3)
+        assert plant.tracker().activity is ActivityName.HOLDING
+        assert not broker.told("plant/north/trackers/T1/result")
+
+
+@pytest.mark.parametrize("commands", [False, True])
+async def test_home_assistant_finds_sensors_and_buttons_only_if_commands_are_allowed(
+    tmp_path: Path, broker: Broker, commands: bool
+) -> None:
+    wanted = settings(tmp_path, broker, mqtt_discovery=True, mqtt_commands=commands)
+    async with kept_plant(tmp_path) as (plant, store), opened(plant, wanted, store):
+        await plant.forward(seconds=0.2)
+        await eventually(lambda: broker.told("plant/north/site"))
+        found = {
+            name: json.loads(told) for name, told, _ in broker.heard if name.startswith("homeassistant/")
+        }
+        azimuth = found["homeassistant/sensor/plant_north_T1/measured_azimuth_deg/config"]
+        assert azimuth["state_topic"] == "plant/north/trackers/T1/snapshot"
+        assert azimuth["availability_topic"] == "plant/north/availability"
+        buttons = {name for name in found if name.startswith("homeassistant/button/")}
+        assert len(buttons) == (3 if commands else 0)
+        if commands:
+            press = found["homeassistant/button/plant_north_T1/stop/config"]
+            await broker.send(press["command_topic"], json.loads(press["payload_press"]))
+            await eventually(lambda: broker.told("plant/north/trackers/T1/result"))
+            assert broker.told("plant/north/trackers/T1/result")[0]["accepted"] is True
+
+
+# paho leaves a socket to the garbage collector when it does not trust the broker's certificate.
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+async def test_tls_and_a_password_open_a_broker_that_wants_them(tmp_path: Path) -> None:
+    certificate, key, passwords = tmp_path / "cert.pem", tmp_path / "key.pem", tmp_path / "passwords"
+    await _run("openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1",
+               "-nodes", "-keyout", str(key), "-out", str(certificate), "-subj", "/CN=127.0.0.1",
+               "-addext", "subjectAltName=IP:127.0.0.1")  # fmt: skip
+    await _run("mosquitto_passwd", "-b", "-c", str(passwords), "heliopanel", "open sesame")
+    broker = Broker(tmp_path, lines=(
+        f"listener {(tls_port := free_port())} 127.0.0.1", f"certfile {certificate}", f"keyfile {key}",
+        "allow_anonymous false", f"password_file {passwords}", "user root",
+    ))  # fmt: skip
+    await broker.start()
+    async with kept_plant(tmp_path) as (plant, store):
+        wanted = settings(
+            tmp_path, broker, mqtt_tls=True, mqtt_ca_file=certificate, mqtt_username="heliopanel"
+        )
+        wanted = wanted.model_copy(update={"mqtt_port": tls_port})
+        async with opened(plant, wanted, store) as gateways:
+            await _until(gateways, lambda seen: "Not authorized" in seen.error)
+        right = wanted.model_copy(update={"mqtt_password": SecretStr("open sesame")})
+        async with opened(plant, right, store) as gateways:
+            await _until(gateways, lambda seen: seen.status is GatewayStatus.CONNECTED)
+        strange = right.model_copy(update={"mqtt_ca_file": None})
+        async with opened(plant, strange, store) as gateways:
+            await _until(gateways, lambda seen: "certificate" in seen.error)
+    await broker.kill()
+
+
+async def _run(*words: str) -> None:
+    process = await asyncio.create_subprocess_exec(*words, stderr=asyncio.subprocess.DEVNULL)
+    assert await process.wait() == 0, words
+
+
+RELAYED: list[asyncio.StreamWriter] = []
+
+
+async def _relay(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, port: int) -> None:
+    """Pass bytes on both ways, so that a connection can be cut without a farewell."""
+    there, back = await asyncio.open_connection("127.0.0.1", port)
+    RELAYED.extend((writer, back))
+
+    async def pass_on(source: asyncio.StreamReader, sink: asyncio.StreamWriter) -> None:
+        with contextlib.suppress(ConnectionError):
+            while data := await source.read(4096):
+                sink.write(data)
+        sink.transport.abort()
+
+    await asyncio.gather(pass_on(reader, back), pass_on(there, writer))
+
+
+def _journal(store: Writer) -> list[JournalEntry]:
+    return store.journal(JournalFilter(after=0, limit=10_000))
+
+
+def _all_once(told: list[Any]) -> list[int]:
+    """Return the sequence numbers as a receiver keeps them: a repeat is dropped."""
+    assert len({one["series"] for one in told}) == 1
+    return list(dict.fromkeys(one["sequence"] for one in told))
+
+
+async def _until(gateways: Gateways, found: Callable[[GatewayMetrics], bool]) -> GatewayMetrics:
+    for _ in range(500):
+        seen = await gateway(gateways, "MQTT")
+        if found(seen):
+            return seen
+        await asyncio.sleep(0.02)
+    raise AssertionError(f"it did not become so: {seen}")

@@ -1,0 +1,311 @@
+"""The SunSpec server, read and written by pysunspec2 and by hand."""
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator
+from dataclasses import dataclass
+from pathlib import Path
+from struct import pack, unpack
+from typing import Any
+
+import pytest
+import sunspec2.modbus.client as sunspec
+from sunspec2.modbus.modbus import ModbusClientException
+
+from app.drives.faults import Fault, FaultKind
+from app.drives.simulated import SimulatedDrive
+from app.gateway.sunspec import SunSpecTcp
+from app.gateway.sunspec_map import BASE, END, map_table, sunspec_map
+from app.link.messages import ReportWeather
+from app.settings import Settings
+from app.tracker.commands import SelectMode, Stop
+from app.tracker.mode import Mode
+from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.weather import Weather
+from tests.gateway.rigs import HurriedClock, eventually, tracker
+from tests.site.plant import Plant, make_plant, settle
+
+NOTHING = 0x8000_0000
+FIRST_TRACKER = BASE + 70 + 28
+EL_CTL, AZ_CTL, CTL = FIRST_TRACKER + 16, FIRST_TRACKER + 18, FIRST_TRACKER + 20
+GLOBAL_CTL = BASE + 70 + 24
+
+
+@dataclass
+class Scada:
+    """A plant's control system in front of the server."""
+
+    plant: Plant
+    server: SunSpecTcp
+
+    async def scan(self) -> Any:
+        return await asyncio.to_thread(self._scan)
+
+    def _scan(self) -> Any:
+        device = sunspec.SunSpecModbusClientDeviceTCP(1, "127.0.0.1", self.server.port, timeout=3.0)
+        device.scan()
+        device.connect()
+        return device
+
+    async def ask(self, request: bytes, unit: int = 1) -> bytes:
+        """Send one request and return the body of the reply."""
+        reader, writer = await asyncio.open_connection("127.0.0.1", self.server.port)
+        writer.write(pack(">HHHB", 7, 0, len(request) + 1, unit) + request)
+        transaction, _, length, _ = unpack(">HHHB", await asyncio.wait_for(reader.readexactly(7), 3.0))
+        body = await reader.readexactly(length - 1)
+        writer.close()
+        await writer.wait_closed()
+        assert transaction == 7
+        return body
+
+    async def read(self, address: int, count: int) -> list[int]:
+        body = await self.ask(pack(">BHH", 3, address, count))
+        assert body[0] == 3, body
+        return list(unpack(f">{count}H", body[2:]))
+
+    async def write(self, address: int, *words: int) -> bytes:
+        head = pack(">BHHB", 16, address, len(words), 2 * len(words))
+        return await self.ask(head + pack(f">{len(words)}H", *words))
+
+    def journal(self) -> list[tuple[EventKind, str, str]]:
+        return [(event.kind, event.actor, event.message) for event in self.plant.events]
+
+
+@contextlib.asynccontextmanager
+async def scada(*trackers: str, write_hosts: str = "127.0.0.1") -> AsyncIterator[Scada]:
+    plant = make_plant(trackers=tuple(map(tracker, trackers or ("T1",))))
+    await plant.start()
+    wanted = Settings(sunspec_port=0, sunspec_write_hosts=write_hosts)  # type: ignore[arg-type]
+    server = SunSpecTcp(plant.site, HurriedClock(), wanted)
+    serving = asyncio.create_task(server.run())
+    await eventually(lambda: server.port)
+    try:
+        yield Scada(plant, server)
+    finally:
+        serving.cancel()
+        await asyncio.gather(serving, return_exceptions=True)
+        await plant.close()
+
+
+def two(words: list[int]) -> int:
+    return words[0] << 16 | words[1]
+
+
+def packed(angle_deg: float) -> tuple[int, int]:
+    raw = round(angle_deg * 1000) & 0xFFFF_FFFF
+    return raw >> 16, raw & 0xFFFF
+
+
+async def test_pysunspec_scans_the_models_of_every_tracker() -> None:
+    async with scada("T1", "T2", "T3") as system:
+        await system.plant.commission("T2")
+        device = await system.scan()
+        try:
+            assert device.base_addr == BASE
+            assert [name for name in device.models if isinstance(name, int)] == [1, 601, 305]
+            assert all(not model[0].error_info for model in device.models.values())
+            controller = device.tracker_controller[0]
+            assert (controller.L.value, controller.N.value) == (26 + 22 * 3, 3)
+            second = controller.tracker[1]
+            measured = system.plant.tracker("T2").measured
+            assert measured is not None
+            assert second.AzPos.cvalue == pytest.approx(measured.azimuth_deg, abs=5e-4)
+            assert second.ElPos.cvalue == pytest.approx(measured.elevation_deg, abs=5e-4)
+            assert second.Id.value == "Tracker T2"
+            assert (controller.DtLoc.value, controller.Day.value) == ("20270621", 172)
+            place = device.location[0]
+            assert (place.Lat.cvalue, place.Long.cvalue) == (41.2867, 36.33)
+            assert device.common[0].Mn.value == "Heliopanel"
+        finally:
+            device.disconnect()
+
+
+async def test_pysunspec_writes_targets_and_control_and_is_refused_what_is_out_of_range() -> None:
+    async with scada() as system:
+        await system.plant.commission()
+        device = await system.scan()
+        controller = device.tracker_controller[0]
+
+        def write(**values: float) -> None:
+            for name, value in values.items():
+                group = controller if name.startswith("Glbl") else controller.tracker[0]
+                point = getattr(group, name)
+                point.cvalue = value
+            controller.write()
+
+        try:
+            await asyncio.to_thread(write, ElCtl=40.0, AzCtl=170.0, Ctl=1)
+            assert system.plant.tracker().activity is ActivityName.MOVING
+            for wrong in (
+                {"ElCtl": 90.5},
+                {"AzCtl": 361.0},
+                {"GlblElCtl": -91.0},
+                {"Ctl": 3},
+                {"GlblCtl": 7},
+            ):
+                with pytest.raises(ModbusClientException, match="3"):
+                    await asyncio.to_thread(lambda values=wrong: write(**values))
+            await asyncio.to_thread(write, GlblElCtl=30.0, GlblAzCtl=120.0, GlblCtl=1)
+            await asyncio.to_thread(controller.read)
+            assert controller.tracker[0].ElCtl.cvalue == 40.0
+            assert controller.GlblAzCtl.cvalue == 120.0
+        finally:
+            device.disconnect()
+        told = system.journal()
+        assert (
+            EventKind.MOVE_STARTED,
+            "sunspec 127.0.0.1",
+            "Going to azimuth 120.0, elevation 30.0 degrees.",
+        ) in told
+        refused = [message for kind, _, message in told if kind is EventKind.REMOTE_REFUSED]
+        assert "90.5 was written to ElCtl over SunSpec; it must lie between -90 and 90." in refused
+        assert len(refused) == 5
+
+
+async def test_what_is_not_known_is_not_implemented_and_never_an_old_value() -> None:
+    async with scada() as system:
+        await system.plant.commission()
+        drive = system.plant.drives["T1"]
+        assert two(await system.read(FIRST_TRACKER + 14, 2)) != NOTHING
+        assert isinstance(drive, SimulatedDrive)
+        drive.inject(Fault(FaultKind.SILENCE))
+        await system.plant.forward(seconds=1)
+        assert two(await system.read(FIRST_TRACKER + 12, 2)) == NOTHING
+        assert two(await system.read(FIRST_TRACKER + 14, 2)) == NOTHING
+        assert two(await system.read(EL_CTL, 2)) == NOTHING, "nothing was written yet"
+        assert await system.read(FIRST_TRACKER + 21, 1) == [1], "the set point is not known to be reached"
+
+
+async def test_weather_brings_model_307_and_stale_weather_is_not_told() -> None:
+    async with scada() as system:
+        before = await system.read(BASE + 70 + 2 + 48 + 38, 2)
+        assert before == list(END)
+        await system.plant.ask(ReportWeather(Weather(wind_mps=7.4, temperature_degc=-3.24)))
+        device = await system.scan()
+        try:
+            met = device.base_met[0]
+            assert (met.WndSpd.cvalue, met.TmpAmb.cvalue, met.RH.cvalue) == (7, -3.2, None)
+            await system.plant.forward(seconds=301)
+            await asyncio.to_thread(met.read)
+            assert (met.WndSpd.cvalue, met.TmpAmb.cvalue) == (None, None)
+        finally:
+            device.disconnect()
+
+
+async def test_calibrate_stops_homes_and_goes_back_to_automatic() -> None:
+    async with scada() as system:
+        plant = system.plant
+        await _tracking(system)
+        assert await system.read(CTL, 1) == [0]
+        assert (await system.write(CTL, 2))[0] == 16
+        await settle()
+        assert await system.read(CTL, 1) == [2]
+        await plant.until(lambda seen: seen.activity is ActivityName.HOMING)
+        await plant.until(lambda seen: seen.activity is ActivityName.TRACKING)
+        await settle()
+        assert await system.read(CTL, 1) == [0]
+
+
+async def test_a_stop_by_somebody_else_ends_a_calibration_for_good() -> None:
+    async with scada() as system:
+        plant = system.plant
+        await _tracking(system)
+        await system.write(CTL, 2)
+        await plant.until(lambda seen: seen.activity is ActivityName.HOMING)
+        await plant.ask(Stop())
+        await plant.forward(seconds=60)
+        assert plant.tracker().activity is ActivityName.HOLDING
+        assert not plant.tracker().tracking_on
+        assert any("The calibration was given up" in message for _, _, message in system.journal())
+        assert await system.read(CTL, 1) == [1]
+
+
+async def test_what_is_not_allowed_now_is_answered_busy_and_journalled_with_the_reasons() -> None:
+    async with scada() as system:
+        assert await system.write(CTL, 0) == bytes((0x90, 6))
+        kind, actor, message = system.journal()[-1]
+        assert (kind, actor) == (EventKind.REMOTE_REFUSED, "sunspec 127.0.0.1")
+        assert "has no trusted zero" in message
+        assert "no location" in message
+        assert await system.write(CTL, 1) == bytes((0x90, 3)), "no target was written"
+
+
+async def test_all_trackers_do_what_they_can_and_only_then_it_fails() -> None:
+    async with scada("T1", "T2") as system:
+        await system.plant.commission("T2")
+        words = (*packed(30.0), *packed(100.0), 1)
+        assert (await system.write(BASE + 70 + 20, *words))[0] == 16
+        assert system.plant.tracker("T2").activity is ActivityName.MOVING
+        assert system.plant.tracker("T1").activity is ActivityName.HOLDING
+        assert any(
+            kind is EventKind.REMOTE_REFUSED and "Tracker T1 has no trusted zero" in message
+            for kind, _, message in system.journal()
+        )
+
+
+@pytest.mark.parametrize("write_hosts", ["", "10.0.0.0/8, serial"])
+async def test_other_hosts_may_only_read(write_hosts: str) -> None:
+    async with scada(write_hosts=write_hosts) as system:
+        await system.plant.commission()
+        for _ in range(5):
+            assert await system.write(EL_CTL, *packed(45.0)) == bytes((0x90, 1))
+        refused = [message for kind, _, message in system.journal() if kind is EventKind.REMOTE_REFUSED]
+        assert len(refused) == 1, "a host that goes on does not fill the journal"
+        assert "only the hosts in HELIOPANEL_SUNSPEC_WRITE_HOSTS may" in refused[0]
+        assert two(await system.read(EL_CTL, 2)) == NOTHING
+
+
+REFUSED = {
+    "before the map": (pack(">BHH", 3, BASE - 1, 2), 2),
+    "behind the map": (pack(">BHH", 3, BASE + 70 + 2 + 48 + 38 + 1, 2), 2),
+    "address 0": (pack(">BHH", 3, 0, 3), 2),
+    "coils": (pack(">BHH", 1, BASE, 1), 2),
+    "a coil": (pack(">BHH", 5, BASE, 0xFF00), 2),
+    "what can only be read": (pack(">BHH", 6, BASE + 70 + 11, 5), 2),
+    "the unit id": (pack(">BHH", 6, BASE + 68, 9), 2),
+    "half of an angle": (pack(">BHH", 6, EL_CTL, 1), 3),
+    "an angle and half of the next": (pack(">BHHB3H", 16, EL_CTL, 3, 6, 0, 1000, 0), 3),
+    "a span into what can only be read": (pack(">BHHB2H", 16, CTL, 2, 4, 1, 0), 2),
+    "nothing": (pack(">BHHBI", 16, EL_CTL, 2, 4, NOTHING), 3),
+    "too many": (pack(">BHH", 3, BASE, 126), 3),
+    "a function that is not there": (bytes((43, 14, 1, 0)), 1),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+async def test_what_cannot_be_done_is_answered_with_its_exception(name: str) -> None:
+    request, code = REFUSED[name]
+    async with scada() as system:
+        assert await system.ask(request) == bytes((request[0] | 0x80, code))
+
+
+async def test_every_span_of_the_map_reads_the_same_words() -> None:
+    async with scada("T1", "T2") as system:
+        await system.plant.commission()
+        end = sunspec_map(("T1", "T2"), weather=False).end
+        whole = [
+            word for start in range(BASE, end, 64) for word in await system.read(start, min(64, end - start))
+        ]
+        assert whole[:2] == [0x5375, 0x6E53]
+        assert whole[-2:] == list(END)
+        for start, count in ((0, 1), (1, 2), (69, 3), (95, 20), (97, 46), (len(whole) - 3, 3)):
+            assert await system.read(BASE + start, count) == whole[start : start + count]
+
+
+async def test_reading_and_writing_in_one_request_answers_what_is_there_after_the_write() -> None:
+    async with scada() as system:
+        request = pack(">BHHHHB2H", 23, EL_CTL, 2, EL_CTL, 2, 4, *packed(12.5))
+        assert await system.ask(request) == bytes((23, 4)) + pack(">2H", *packed(12.5))
+
+
+def test_the_document_has_the_map_of_the_code() -> None:
+    document = (Path(__file__).parents[2] / "docs" / "sunspec.md").read_text()
+    assert map_table(sunspec_map(("T1",), weather=True)) in document
+
+
+async def _tracking(system: Scada) -> None:
+    plant = system.plant
+    await plant.commission()
+    await plant.ask(SelectMode(Mode.DUAL))
+    assert (await system.write(CTL, 0))[0] == 16
+    await plant.until(lambda seen: seen.in_position and seen.activity is ActivityName.TRACKING)
