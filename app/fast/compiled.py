@@ -1,15 +1,19 @@
 """The compiler, where it is installed: without numba the same functions run as plain Python."""
 
 from collections.abc import Callable
-from typing import Any, Final, TypeVar
+from typing import Any, Final, TypeVar, cast
 
 try:
     from numba import njit
 except ImportError:
-    njit = None
+    installed = False
+else:
+    installed = True
 
-COMPILED: Final = njit is not None
+COMPILED: Final = installed
 """Whether the extra `fast` is installed."""
+ARITHMETIC = {"reassoc", "contract", "arcp", "nsz", "nnan"}
+"""What the compiler may assume, so that loops become vector code: sums in any order, and no NaN comes in."""
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -25,8 +29,7 @@ def inlined(function: F) -> F:
 
 
 def _compiled(function: F, **options: Any) -> F:
-    """Compile for vector units: sums may be reordered, and a division by zero gives infinity, as in NumPy."""
-    if njit is None:
+    """Compile with NumPy's division: by zero it gives infinity."""
+    if not COMPILED:
         return function
-    code: F = njit(fastmath={"reassoc", "contract", "arcp", "nsz", "nnan"}, error_model="numpy", **options)(function)
-    return code
+    return cast(F, njit(fastmath=ARITHMETIC, error_model="numpy", **options)(function))

@@ -1,4 +1,4 @@
-"""Where a tracker shall face at each tick of a day: the same for all trackers of one site, mode and setting."""
+"""Where a tracker shall face at each tick of a day: the same for all trackers of one site and mode."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -21,8 +21,8 @@ NO_DAWN_FOR = timedelta(hours=1)
 class Directions:
     """Columns with one row a tick, `step_s` seconds apart; angles of the sky in degrees.
 
-    `meant` is False where the panel stays wherever it is; at `night` the azimuth nearest to `near_deg` is taken
-    instead of the one nearest to the panel; `up` tells whether the sun is.
+    `meant` is False where the panel stays wherever it is; at `night` the azimuth nearest to `near_deg` is
+    taken instead of the one nearest to the panel; `up` tells whether the sun is.
     """
 
     step_s: float

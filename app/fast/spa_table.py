@@ -1,8 +1,8 @@
 """NREL SPA as a table: for each day cubics of the sun's hour angle at Greenwich and of its declination.
 
-Reda and Andreas, "Solar position algorithm for solar radiation applications", Solar Energy 76 (2004) 577-589,
-doi:10.1016/j.solener.2003.12.003, as pvlib computes it. What changes with the observer is left out of the table
-and added by whoever reads it.
+Reda and Andreas, "Solar position algorithm for solar radiation applications", Solar Energy 76 (2004)
+577-589, doi:10.1016/j.solener.2003.12.003, as pvlib computes it. What changes with the observer is left out
+of the table and added by whoever reads it.
 """
 
 from dataclasses import dataclass

@@ -58,8 +58,9 @@ def spa_angles(table: SpaTable, location: Location, at_unix_s: Array) -> tuple[A
     axial, polar = _geocentric(latitude, location.altitude_m)
     place = (sin(latitude), cos(latitude), radians(location.longitude_deg), axial, polar)
     begins_s = (table.first_day + np.arange(len(table.terms) + 1)) * DAY_S
+    noons_s = np.asarray(begins_s[:-1] + DAY_S / 2.0, dtype=np.float64)
     edges = np.searchsorted(at_unix_s, begins_s)
-    _spa(at_unix_s, edges, begins_s[:-1] + DAY_S / 2.0, table.terms, place, azimuth_deg, elevation_deg)
+    _spa(at_unix_s, edges, noons_s, table.terms, place, azimuth_deg, elevation_deg)
     return azimuth_deg, elevation_deg
 
 
@@ -68,7 +69,7 @@ def _path(azimuth_deg: Array, elevation_deg: Array) -> SunPath:
 
 
 def _geocentric(latitude: float, altitude_m: float) -> tuple[float, float]:
-    """Return the observer's distance from the Earth's axis and from the equator, in Earth radii (SPA 3.12)."""
+    """Return the distance from the Earth's axis and from the equator, in Earth radii (SPA 3.12)."""
     u = np.arctan2(POLAR_FLATTENING * sin(latitude), cos(latitude))
     height = altitude_m / EARTH_RADIUS_M
     return cos(u) + height * cos(latitude), POLAR_FLATTENING * sin(u) + height * sin(latitude)
@@ -84,7 +85,9 @@ def _psa_plus(
         n = (at_unix_s[i] - J2000_UNIX_S) * PER_DAY
         sin_node, cos_node = sine_cosine(2.267127827 - 9.300339267e-4 * n)
         sin_g, cos_g = sine_cosine(6.239468336 + 1.720200135e-2 * n)
-        centre = sin_g * (3.338320972e-2 + 6.995193752e-4 * cos_g) - 1.544353226e-4 - 8.689729360e-6 * sin_node
+        centre = (
+            sin_g * (3.338320972e-2 + 6.995193752e-4 * cos_g) - 1.544353226e-4 - 8.689729360e-6 * sin_node
+        )
         y_ecliptic, x = sine_cosine(4.895036035 + 1.720279602e-2 * n + centre)
         tilt = 4.090904909e-1 - TILT - 6.213605399e-9 * n + 4.418094944e-5 * cos_node
         y, z = (COS_TILT - SIN_TILT * tilt) * y_ecliptic, (SIN_TILT + COS_TILT * tilt) * y_ecliptic
