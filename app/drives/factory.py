@@ -5,11 +5,12 @@ from typing import assert_never
 from urllib.parse import quote
 
 from app.clock import Clock
+from app.drives.adapters import drive_on
+from app.drives.bus import BusUnit
 from app.drives.buses import Buses
 from app.drives.corrected import corrected
 from app.drives.drive import Drive
-from app.drives.plc import PlcDrive
-from app.drives.profile import Adapter, ProfileError, load_profile
+from app.drives.profile import load_profile
 from app.drives.simulated import SimulatedDrive
 from app.drives.transmitted import TransmittedDrive, has_actuators, in_millimetres
 from app.tracker.config import DriveKind, TrackerConfig
@@ -52,11 +53,10 @@ class DriveFactory:
 
     def _modbus(self, config: TrackerConfig) -> Drive:
         profile = load_profile(config.drive.profile)
-        unit = self.buses.unit(config.drive, config.drive.unit, profile.timing)
-        match profile.adapter:
-            case Adapter.PLC:
-                return corrected(config, lambda own: PlcDrive(own, profile, self._clock, unit))
-            case Adapter.CIA402 | Adapter.PR | Adapter.DIRECT | Adapter.SUNSPEC as other:
-                raise ProfileError(f"{profile.name}.toml: the adapter {other} is not known to this version.")
-            case _ as never:
-                assert_never(never)
+
+        def unit_of(number: int) -> BusUnit:
+            return self.buses.unit(config.drive, number, profile.timing)
+
+        if profile.adapter.counts_degrees:
+            return corrected(config, lambda own: drive_on(own, profile, unit_of, self._clock))
+        return drive_on(config, profile, unit_of, self._clock)

@@ -26,6 +26,16 @@ class Adapter(StrEnum):
     DIRECT = "direct"
     SUNSPEC = "sunspec"
 
+    @property
+    def counts_degrees(self) -> bool:
+        """Return whether the device speaks degrees of the axes, not steps of motors."""
+        return self in (Adapter.PLC, Adapter.SUNSPEC)
+
+    @property
+    def has_unit_per_axis(self) -> bool:
+        """Return whether each axis is a device of its own on the bus."""
+        return not self.counts_degrees
+
 
 @dataclass(frozen=True, slots=True)
 class Block:

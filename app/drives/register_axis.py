@@ -76,13 +76,14 @@ class RegisterAxis:
         fault_code = await self._fault_code(status)
         self._is_faulty = fault_code != 0
         self._watch_task(status, position_deg)
+        turned = self._gearing.direction < 0
         self._last = AxisFeedback(
             position_deg=position_deg,
             velocity_dps=velocity_dps,
             moving=status.moving,
             homed=status.homed,
-            at_lower_limit=status.at_lower_limit,
-            at_upper_limit=status.at_upper_limit,
+            at_lower_limit=status.at_upper_limit if turned else status.at_lower_limit,
+            at_upper_limit=status.at_lower_limit if turned else status.at_upper_limit,
             at_origin=status.at_origin,
         )
         return AxisReading(self._last, fault_code, self._is_homing, self._outcome)

@@ -152,6 +152,36 @@ class SimulatedMachine:
         self._end_homing(failed=True)
         self._turn(command, now_s)
 
+    def turn(self, axis: Axis, command: AxisCommand) -> None:
+        """Make one axis do this from now on, as a drive of its own would; the other goes on."""
+        now_s = self._advance()
+        self._change(now_s)
+        azimuth, elevation = self._command.azimuth, self._command.elevation
+        if axis is Axis.AZIMUTH:
+            self._command = DriveCommand(command, elevation)
+        else:
+            self._command = DriveCommand(azimuth, command)
+        self._axis(axis).obey(HALT if self._fault_code else command, now_s)
+
+    def seek_origin(self, axis: Axis) -> None:
+        """Send one axis to its origin switch, whatever the encoder says."""
+        now_s = self._advance()
+        self._change(now_s)
+        self._axis(axis).seek_origin(now_s)
+
+    def set_zero(self, axis: Axis) -> bool:
+        """Call the present position of one axis zero; return whether it stood still, as it must."""
+        now_s = self._advance()
+        self._change(now_s)
+        return self._set_zero(self._axis(axis), now_s)
+
+    def reset_fault(self) -> None:
+        """Clear a drive fault; both axes stay where they are."""
+        now_s = self._advance()
+        self._change(now_s)
+        self._fault_code = 0
+        self._turn(STOP_ALL, now_s)
+
     def halt(self) -> None:
         """Ramp both axes down now and end homing."""
         now_s = self._advance()
@@ -199,6 +229,9 @@ class SimulatedMachine:
         self._ignores_writes = False
         self._azimuth.clear_faults(now_s)
         self._elevation.clear_faults(now_s)
+
+    def _axis(self, axis: Axis) -> SimulatedAxis:
+        return self._azimuth if axis is Axis.AZIMUTH else self._elevation
 
     def _advance(self) -> float:
         """Let everything happen that the time since the last call brings, and return the time in seconds."""

@@ -38,6 +38,7 @@ NOT_IMPLEMENTED_SCALE = -0x8000
 BOOT_COUNT = 1
 BEGINNING = timedelta(milliseconds=500)
 """How long after a new target the axes count as moving although no motion shows yet."""
+MARK = ("sunspec_id", "sunspec_id_end")
 READ = (
     "alarms", "scale", "elevation_position", "azimuth_position", "control", "tracker_alarms",
 )  # fmt: skip
@@ -156,8 +157,8 @@ class SunSpecDrive:
         raise DriveRefused(f"The device at {self._where} has no SunSpec model 601. Check unit and profile.")
 
     async def _identify(self) -> None:
-        found = await self._unit.poll("sunspec_id")
-        if found["sunspec_id"] != self._profile.enums["sunspec_id"]["first_word"]:
+        found = await self._unit.poll(*MARK)
+        if any(value != self._profile.registers[name].expect for name, value in found.items()):
             raise DriveRefused(
                 f"The device at {self._where} is no SunSpec device: its map does not begin with SunS. "
                 "Check address, unit and profile."

@@ -1,0 +1,53 @@
+"""Which simulated device answers to which profile, and under which unit ids."""
+
+from collections.abc import Callable, Mapping
+from typing import assert_never
+
+from app.clock import Clock
+from app.drives.devices.axis_device import AxisDevice
+from app.drives.devices.kinco import KincoDrive
+from app.drives.devices.leadshine import LeadshineDrive
+from app.drives.devices.oriental import OrientalDrive
+from app.drives.devices.sunspec import SunSpecTracker
+from app.drives.modbus_server import Device
+from app.drives.profile import Adapter, Profile
+from app.drives.sim_plc import SimulatedPlc
+from app.drives.simulated_machine import SimulatedMachine
+from app.tracker.axes import Axis
+
+
+def devices(
+    profile: Profile, machine: SimulatedMachine, clock: Clock, unit: int, gear_ratio: float = 1.0
+) -> Mapping[int, Device]:
+    """Return the devices that a tracker with this profile has, by unit id.
+
+    Drives of one axis are two: azimuth at `unit`, elevation at the next.
+    """
+    match profile.adapter:
+        case Adapter.PLC:
+            return {unit: SimulatedPlc(profile, machine, clock)}
+        case Adapter.SUNSPEC:
+            return {unit: SunSpecTracker(machine, clock)}
+        case Adapter.CIA402:
+            return _pair(KincoDrive, profile, machine, clock, unit, gear_ratio)
+        case Adapter.PR:
+            return _pair(LeadshineDrive, profile, machine, clock, unit, gear_ratio)
+        case Adapter.DIRECT:
+            return _pair(OrientalDrive, profile, machine, clock, unit, gear_ratio)
+        case _ as never:
+            assert_never(never)
+
+
+def _pair(
+    device: Callable[[SimulatedMachine, Axis, Clock, float], AxisDevice],
+    profile: Profile,
+    machine: SimulatedMachine,
+    clock: Clock,
+    unit: int,
+    gear_ratio: float,
+) -> Mapping[int, Device]:
+    steps_per_deg = profile.steps_per_revolution * gear_ratio / 360.0
+    return {
+        unit: device(machine, Axis.AZIMUTH, clock, steps_per_deg),
+        unit + 1: device(machine, Axis.ELEVATION, clock, steps_per_deg),
+    }
