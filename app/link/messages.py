@@ -9,7 +9,8 @@ from app.sun.position import Location
 from app.tracker.axes import Axis
 from app.tracker.commands import Command
 from app.tracker.commissioning import Step
-from app.tracker.config import TrackerConfig
+from app.tracker.config import DriveConfig, TrackerConfig
+from app.tracker.drive_check import DriveCheck, DriveChoices
 from app.tracker.memory import Sighting, SiteState, StepName, TrackerState
 from app.tracker.motion import DriveCapabilities
 from app.tracker.programs.show import ShowPlan
@@ -145,7 +146,16 @@ class RestoreDrive:
     kind: Literal["restore_drive"] = "restore_drive"
 
 
-DriveOrder = AnswerDirection | AnswerScale | SetSoftLimit | RestoreDrive
+@dataclass(frozen=True, slots=True)
+class CheckConnection:
+    """Read a drive with these settings, which need not be the tracker's; nothing is changed."""
+
+    tracker_id: str
+    drive: DriveConfig
+    kind: Literal["check_connection"] = "check_connection"
+
+
+DriveOrder = AnswerDirection | AnswerScale | SetSoftLimit | RestoreDrive | CheckConnection
 """What concerns the set-up of one tracker's drive."""
 
 
@@ -194,7 +204,7 @@ class ReportWeather:
 SiteCommand = (
     SetLocation | SetClock | RenameSite | AddTracker | ConfigureTracker | RemoveTracker | ConfirmStep
     | SavePlan | TakeSighting | ApplySightings | StopAll | SaveRecording | DeleteRecording
-    | AnswerDirection | AnswerScale | SetSoftLimit | RestoreDrive
+    | AnswerDirection | AnswerScale | SetSoftLimit | RestoreDrive | CheckConnection
     | ReportWeather
 )  # fmt: skip
 
@@ -230,6 +240,7 @@ class TrackerDetail:
     steps: tuple[Step, ...]
     capabilities: DriveCapabilities | None
     proofs: tuple[ProofState, ...] = ()
+    check: DriveCheck | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,6 +249,7 @@ class SiteDetail:
 
     site: SiteState
     trackers: dict[str, TrackerDetail] = field(default_factory=dict)
+    choices: DriveChoices = field(default_factory=DriveChoices)
 
 
 class Machine(Protocol):

@@ -13,6 +13,7 @@ import structlog
 from app.build import BUILT_AT, VERSION
 from app.clock import SystemClock
 from app.drives.factory import DriveFactory
+from app.drives.probe import DriveProbe
 from app.gateway.gateways import Gateways
 from app.link.server import LinkServer
 from app.logs import set_up_logs
@@ -128,9 +129,10 @@ def _site(
         synchronised=ntp_synchronised,
         not_before=_newest_event(writer),
     )
+    factory = DriveFactory(clock, settings.data_dir)
     return Site(
         clock,
-        DriveFactory(clock, settings.data_dir).make,
+        factory.make,
         beginning.site,
         beginning.trackers,
         timekeeper=timekeeper,
@@ -142,6 +144,7 @@ def _site(
             recordings_keep=settings.recordings_keep,
             weather_stale_after=timedelta(seconds=settings.weather_stale_s),
         ),
+        tools=DriveProbe(factory.buses),
     )
 
 

@@ -7,6 +7,7 @@ from datetime import datetime, timedelta
 from app.clock import Clock
 from app.drives.drive import Drive, DriveError
 from app.link.messages import UnknownTracker
+from app.site.checking import Checks
 from app.site.ledger import Ledger
 from app.site.loop import TrackerLoop
 from app.site.recorder import Recorder
@@ -37,6 +38,7 @@ class SiteModel:
     on_tick: Callable[[TrackerLoop, Observation, tuple[Event, ...]], None]
     loops: dict[str, TrackerLoop] = field(default_factory=dict)
     sky: Sky = field(default_factory=Sky)
+    checks: Checks = field(default_factory=Checks)
     weather: WeatherStation = field(default_factory=WeatherStation)
 
     def now(self) -> datetime:

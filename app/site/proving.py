@@ -3,7 +3,7 @@
 from dataclasses import replace
 from math import isfinite
 
-from app.link.messages import AnswerDirection, AnswerScale, RestoreDrive, SetSoftLimit
+from app.link.messages import AnswerDirection, AnswerScale, CheckConnection, RestoreDrive, SetSoftLimit
 from app.site import tracker_setup
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
@@ -11,6 +11,7 @@ from app.tracker.axes import Axis, AxisConfig
 from app.tracker.commands import CommandRejected
 from app.tracker.conditions import Action
 from app.tracker.config import AxisDrive, DriveConfig, TrackerConfig
+from app.tracker.drive_check import DriveCheck
 from app.tracker.guards import axis_feedback
 from app.tracker.proofs import (
     AxisEnd,
@@ -111,6 +112,23 @@ async def restore_drive(model: SiteModel, wanted: RestoreDrive, actor: str) -> t
     if former is None:
         raise CommandRejected(NOTHING_TO_UNDO)
     return await tracker_setup.configure(model, replace(loop.config, drive=former), actor)
+
+
+async def check_connection(model: SiteModel, wanted: CheckConnection, actor: str) -> tuple[Event, ...]:
+    """Read a drive while the tracker stands still, change nothing, and keep what it answered."""
+    loop = model.tracker(wanted.tracker_id)
+    tracker_setup.refuse_while_busy(model, loop)
+    readings = await model.checks.look(wanted.drive)
+    model.checks.keep(wanted.tracker_id, DriveCheck(wanted.drive, model.now(), actor, readings))
+    event = model.event(
+        EventKind.DRIVE_CHECKED,
+        f"The connection to the drive of {loop.config.name} was tested: {readings.message}",
+        actor,
+        wanted.tracker_id,
+        outcome=readings.outcome,
+    )
+    await model.ledger.append((event,))
+    return (event,)
 
 
 def _judged(model: SiteModel, tracker_id: str, kind: ProofKind) -> tuple[TrackerLoop, ProofMove]:

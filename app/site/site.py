@@ -11,10 +11,11 @@ import structlog
 
 from app.clock import Clock
 from app.drives.drive import Drive
-from app.link.messages import Order, SiteCommand, SiteDetail, StopAll, TrackerDetail, Update
+from app.link.messages import CheckConnection, Order, SiteCommand, SiteDetail, StopAll, TrackerDetail, Update
 from app.link.metrics import MachineMetrics
 from app.link.outlet import Outlet
 from app.site import site_orders, tracker_orders
+from app.site.checking import Checks, DriveTools
 from app.site.ledger import BackgroundWriter, Ledger
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
@@ -64,6 +65,7 @@ class Site:
         timekeeper: Timekeeper | None = None,
         writer: BackgroundWriter | None = None,
         options: SiteOptions | None = None,
+        tools: DriveTools | None = None,
     ) -> None:
         self._options = options or SiteOptions()
         self._clock = clock
@@ -77,6 +79,7 @@ class Site:
             self._options.period,
             make_drive,
             self._on_tick,
+            checks=Checks(tools),
             weather=WeatherStation(self._options.weather_stale_after),
         )
         for tracker in trackers:
@@ -138,10 +141,11 @@ class Site:
                 steps(self.model.state, loop.memory, loop.snapshot(at), clock),
                 loop.drive.capabilities,
                 proof_states(loop.config, loop.memory, loop.drive.capabilities),
+                self.model.checks.newest(tracker_id),
             )
             for tracker_id, loop in self.model.loops.items()
         }
-        return SiteDetail(self.model.state, trackers)
+        return SiteDetail(self.model.state, trackers, await self.model.checks.choices())
 
     def latest(self) -> SiteSnapshot | None:
         """Return the newest snapshot that was told."""
@@ -188,7 +192,7 @@ class Site:
         return self._publish(events)
 
     async def _carry_out_for_site(self, order: Order, command: SiteCommand) -> tuple[Event, ...]:
-        if isinstance(command, StopAll):
+        if isinstance(command, StopAll | CheckConnection):
             return await site_orders.carry_out(self.model, command, order.actor)
         async with self._changing:
             refuse_old(order, self.model.now())

@@ -13,6 +13,7 @@ from app.link.messages import (
     AnswerDirection,
     AnswerScale,
     ApplySightings,
+    CheckConnection,
     ConfigureTracker,
     ConfirmStep,
     DeleteRecording,
@@ -61,7 +62,7 @@ async def carry_out(model: SiteModel, command: SiteCommand, actor: str) -> tuple
             return await _note(model, command, actor)
         case SaveRecording() | DeleteRecording():
             return await _change_recordings(model, command, actor)
-        case AnswerDirection() | AnswerScale() | SetSoftLimit() | RestoreDrive():
+        case AnswerDirection() | AnswerScale() | SetSoftLimit() | RestoreDrive() | CheckConnection():
             return await _set_up_drive(model, command, actor)
         case StopAll():
             return await _stop_all(model, actor)
@@ -129,6 +130,8 @@ async def _set_up_drive(model: SiteModel, command: DriveOrder, actor: str) -> tu
             return await proving.set_soft_limit(model, command, actor)
         case RestoreDrive():
             return await proving.restore_drive(model, command, actor)
+        case CheckConnection():
+            return await proving.check_connection(model, command, actor)
         case _:
             assert_never(command)
 
