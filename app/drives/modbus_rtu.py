@@ -15,7 +15,7 @@ from app.drives.rtu_frame import CRC_BYTES, is_whole, request_frame, sealed
 from app.drives.wire import Ask, Broken, GivenUp, Refused, Timing, Unanswered
 
 SILENT_CHARACTERS = 3.5
-SHORTEST_SILENCE_S = 0.00175
+SHORTEST_SILENCE_S, GATEWAY_SILENCE_S = 0.00175, 0.0005
 BROKEN_OFF_S = 0.05
 TURNAROUND_S = 0.04
 NEVER_SILENT_S, STOP_SPEAKS_AFTER_S = 0.1, 0.02
@@ -28,7 +28,8 @@ class RtuWire:
     def __init__(self, line: Line) -> None:
         self._line = line
         self._character_s = line.character_s
-        self._silence_s = max(SILENT_CHARACTERS * line.character_s, SHORTEST_SILENCE_S)
+        shortest_s = SHORTEST_SILENCE_S if line.character_s else GATEWAY_SILENCE_S
+        self._silence_s = max(SILENT_CHARACTERS * line.character_s, shortest_s)
         self._buffer = bytearray()
         self._flying: Ask | None = None
         self._echo: bytes | None = None

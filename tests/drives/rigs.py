@@ -5,21 +5,44 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
+from enum import Enum, auto
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from app.clock import VirtualClock
 from app.drives.drive import Drive
 from app.drives.factory import DriveFactory
+from app.drives.listening_line import ListeningLine
 from app.drives.profile import load_profile
+from app.drives.pty_line import PtyLine
+from app.drives.rtu_server import RtuServer
+from app.drives.sim_plc import SimulatedPlc
 from app.drives.sim_server import serve
 from app.drives.simulated import SimulatedDrive
-from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
+from app.tracker.config import DriveConfig, DriveKind, SerialConfig, TrackerConfig
 from app.tracker.motion import DriveCommand, Feedback
 
 START = datetime(2026, 6, 21, 4, 0, tzinfo=UTC)
 TICK = timedelta(milliseconds=50)
+STRIDE = timedelta(milliseconds=400)
 CONFIG = TrackerConfig("T1", "Tracker 1")
+
+
+class Trait(Enum):
+    """What not every drive has."""
+
+    BOOT_COUNT = auto()
+    CLOCK = auto()
+    FAULT_RESET = auto()
+    SPEED = auto()
+    STEPS = auto()
+    SWITCHES = auto()
+    WATCHDOG = auto()
+    ZERO = auto()
+
+
+FULL = frozenset(Trait) - {Trait.STEPS}
 
 
 @dataclass
@@ -29,14 +52,18 @@ class Rig:
     drive: Drive
     machine: SimulatedDrive
     clock: VirtualClock
+    traits: frozenset[Trait] = FULL
+    speed_step_dps: float = 1e-6
 
-    async def forward(self, seconds: float, command: DriveCommand | None = None) -> Feedback:
+    async def forward(
+        self, seconds: float, command: DriveCommand | None = None, tick: timedelta = TICK
+    ) -> Feedback:
         """Tick as the control loop does, read then write, and return the last reading."""
         end = self.clock.now() + timedelta(seconds=seconds)
         feedback = await self.drive.read()
         await self.drive.write(command or DriveCommand())
         while self.clock.now() < end:
-            self.clock.advance(TICK)
+            self.clock.advance(tick)
             feedback = await self.drive.read()
             await self.drive.write(command or DriveCommand())
         return feedback
@@ -45,7 +72,7 @@ class Rig:
         """Tick until neither axis moves nor homes."""
         end = self.clock.now() + timedelta(seconds=seconds)
         while self.clock.now() < end:
-            feedback = await self.forward(TICK.total_seconds(), command)
+            feedback = await self.forward(STRIDE.total_seconds(), command, STRIDE)
             if not (feedback.azimuth.moving or feedback.elevation.moving or feedback.homing):
                 return feedback
         raise AssertionError(f"the axes did not come to rest within {seconds} s")
@@ -86,8 +113,56 @@ async def modbus_rig(name: str = "simulated-plc") -> AsyncIterator[Rig]:
         assert not pending_tasks(), "a closed drive leaves no task behind"
 
 
+@asynccontextmanager
+async def rtu_rig() -> AsyncIterator[Rig]:
+    """The drive on a serial line that is a pseudo-terminal, beside another drive on the same line."""
+    clock = VirtualClock(START)
+    machine = SimulatedDrive(CONFIG, clock)
+    profile = load_profile("simulated-plc")
+    with TemporaryDirectory() as folder:
+        line = PtyLine(Path(folder) / "line")
+        devices = {7: SimulatedPlc(profile, machine, clock), 8: another_device(clock)}
+        server = RtuServer(devices, line)
+        await server.start()
+        serial = SerialConfig(str(Path(folder) / "line"), 115_200)
+        async with connected(DriveConfig(DriveKind.MODBUS_RTU, unit=7, serial=serial), clock) as drive:
+            yield Rig(drive, machine, clock)
+        await server.close()
+        assert not pending_tasks(), "a closed drive leaves no task behind"
+
+
+@asynccontextmanager
+async def gateway_rig() -> AsyncIterator[Rig]:
+    """The drive behind a gateway that passes raw RTU frames on."""
+    clock = VirtualClock(START)
+    machine = SimulatedDrive(CONFIG, clock)
+    line = ListeningLine("127.0.0.1", 0)
+    server = RtuServer({1: SimulatedPlc(load_profile("simulated-plc"), machine, clock)}, line)
+    await server.start()
+    async with connected(DriveConfig(DriveKind.MODBUS_RTU_OVER_TCP, port=line.port), clock) as drive:
+        yield Rig(drive, machine, clock)
+    await server.close()
+    assert not pending_tasks(), "a closed drive leaves no task behind"
+
+
+@asynccontextmanager
+async def connected(config: DriveConfig, clock: VirtualClock) -> AsyncIterator[Drive]:
+    """A drive that is closed at the end."""
+    drive = DriveFactory(clock).make(replace(CONFIG, drive=config))
+    try:
+        yield drive
+    finally:
+        await drive.close()
+
+
+def another_device(clock: VirtualClock) -> SimulatedPlc:
+    return SimulatedPlc(load_profile("simulated-plc"), SimulatedDrive(CONFIG, clock), clock)
+
+
 RIGS = {
     "simulated": simulated_rig,
     "modbus-tcp": modbus_rig,
+    "modbus-rtu": rtu_rig,
+    "modbus-rtu-over-tcp": gateway_rig,
     "modbus-tcp, another map": partial(modbus_rig, str(Path(__file__).with_name("other-map.toml"))),
 }
