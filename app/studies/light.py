@@ -45,7 +45,7 @@ def clear_days(asked: StudyRequest) -> Days:
     days, weights = days_of(asked.span, asked.on)
     offset_h = standard_offset_h(asked.time_zone, asked.on.year)
     steps = HOURS * 60 // asked.step_min
-    at_s = _midnights_s(days, offset_h)[:, None] + 60.0 * asked.step_min * (np.arange(steps) + 0.5)
+    at_s = midnights_s(days, offset_h)[:, None] + 60.0 * asked.step_min * (np.arange(steps) + 0.5)
     light = clear_light(asked.light, asked.location, at_s)
     air, wind = (np.full_like(at_s, value) for value in (asked.module.air_degc, asked.module.wind_mps))
     source = f"clear sky, {asked.light}"
@@ -59,7 +59,7 @@ def weather_days(asked: StudyRequest, weather: WeatherYear) -> Days:
     shift = round(offset_h - weather.utc_offset_h)
     year, _ = days_of(type(asked.span).YEAR, asked.on)
     centres_h = np.arange(HOURS) + weather.centre_h
-    at_s = _midnights_s(year, weather.utc_offset_h)[:, None] + 3600.0 * centres_h
+    at_s = midnights_s(year, weather.utc_offset_h)[:, None] + 3600.0 * centres_h
     rows = [year.index(day) for day in chosen]
 
     def local(hourly: Array) -> Array:
@@ -110,7 +110,8 @@ def _whole_offset_h(asked: StudyRequest, weather: WeatherYear) -> float:
     return weather.utc_offset_h + round(wanted_h - weather.utc_offset_h)
 
 
-def _midnights_s(days: tuple[date, ...], offset_h: float) -> Array:
+def midnights_s(days: tuple[date, ...], offset_h: float) -> Array:
+    """Return when days begin at a clock that is ahead of UTC, seconds since 1970."""
     at = (datetime(day.year, day.month, day.day, tzinfo=UTC) for day in days)
     return np.array([one.timestamp() - 3600.0 * offset_h for one in at])
 
