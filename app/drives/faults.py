@@ -22,15 +22,25 @@ class FaultKind(StrEnum):
     WRONG_DIRECTION = "wrong_direction"
     POWER_LOSS = "power_loss"
     DRIVE_FAULT = "drive_fault"
+    MISALIGNED = "misaligned"
+    CLOUD = "cloud"
+    LIGHT_SENSOR_STUCK = "light_sensor_stuck"
 
 
 LINK_FAULTS = frozenset({FaultKind.SILENCE, FaultKind.LATE_REPLIES, FaultKind.CORRUPT_REPLIES})
 """Faults of the connection, not of the machine."""
 
+LIGHT_FAULTS = frozenset({FaultKind.MISALIGNED, FaultKind.CLOUD, FaultKind.LIGHT_SENSOR_STUCK})
+"""What only photo-sensors notice."""
+
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One fault: `axis` None means both; `amount` is degrees (jump), degrees a second (slip) or a code."""
+    """One fault: `axis` None means both.
+
+    `amount` is degrees (jump, misalignment), degrees a second (slip), a code (drive fault), the share of the
+    beam that is taken (cloud) or W/m2 (stuck light sensor).
+    """
 
     kind: FaultKind
     axis: Axis | None = None

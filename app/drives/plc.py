@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import replace
 from datetime import UTC, datetime
 
 from app.clock import Clock
@@ -224,16 +225,7 @@ class PlcDrive:
 
 
 def _with_request(feedback: Feedback, number: int) -> Feedback:
-    return Feedback(
-        feedback.azimuth,
-        feedback.elevation,
-        feedback.boot_count,
-        feedback.fault_code,
-        feedback.homing,
-        feedback.watchdog_tripped,
-        number,
-        feedback.request_failed,
-    )
+    return replace(feedback, request_done=number)
 
 
 def _priority(command: DriveCommand) -> Priority:

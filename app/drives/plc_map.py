@@ -1,6 +1,7 @@
 """Commands and readings as the registers of a PLC with setpoints: the same table for master and server."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import astuple
 
 from app.drives.profile import Profile, ProfileError
 from app.drives.register import Register
@@ -13,6 +14,8 @@ from app.tracker.motion import (
     DriveRequest,
     Feedback,
     Halt,
+    LightPair,
+    LightReading,
     Position,
     RequestKind,
     Velocity,
@@ -22,6 +25,7 @@ NEEDED = (
     "keep_alive", "status", "fault_code", "boot_count", "request_number", "request_kind", "request_done",
     *(f"{axis}_{part}" for axis in Axis for part in ("motion", "setpoint", "speed", "position", "velocity")),
 )  # fmt: skip
+LIGHT = tuple(f"light_{axis}_{side}" for axis in Axis for side in ("lower", "higher"))
 CLOCK_PARTS = ("year", "month", "day", "hour", "minute", "second")
 NEEDED_ENUMS = {"motion": ("halt", "velocity", "position"), "request": ("none",)}
 NO_SWITCHES: Mapping[str, int] = {}
@@ -87,6 +91,7 @@ class PlcMap:
             **self.words("elevation_position", feedback.elevation.position_deg),
             **self.words("azimuth_velocity", feedback.azimuth.velocity_dps),
             **self.words("elevation_velocity", feedback.elevation.velocity_dps),
+            **self._light_words(feedback.light),
         }
 
     def feedback(self, words: Sequence[int], first_address: int) -> Feedback:
@@ -102,7 +107,27 @@ class PlcMap:
             watchdog_tripped=_flag(self._status, "watchdog_tripped", status),
             request_done=self._integer("request_done", words, first_address),
             request_failed=_flag(self._status, "request_failed", status),
+            light=self._light(words, first_address),
         )
+
+    def _light(self, words: Sequence[int], first_address: int) -> LightReading | None:
+        """Return what the photo-sensors read; None without registers for all four, or if all read nothing."""
+        if not all(name in self._registers for name in LIGHT):
+            return None
+        read = [self._registers[name].value(words, first_address) for name in LIGHT]
+        if not any(read):
+            return None
+        return LightReading(LightPair(read[0], read[1]), LightPair(read[2], read[3]))
+
+    def _light_words(self, light: LightReading | None) -> dict[int, int]:
+        if light is None:
+            return {}
+        values = (*astuple(light.azimuth), *astuple(light.elevation))
+        return {
+            address: word
+            for name, value in zip(LIGHT, values, strict=True)
+            for address, word in self.words(name, value).items()
+        }
 
     def _axis_feedback(
         self, axis: str, words: Sequence[int], first_address: int, status: int, switches: int
@@ -192,7 +217,7 @@ def _check(profile: Profile) -> None:
 def _check_block(profile: Profile) -> None:
     block = profile.blocks["status"]
     inside = range(block.address, block.address + block.count)
-    for name in NEEDED:
+    for name in (*NEEDED, *(light for light in LIGHT if light in profile.registers)):
         register: Register = profile.registers[name]
         if not all(address in inside for address in register.addresses):
             raise ProfileError(f"Profile {profile.name}: register {name} lies outside the status block.")

@@ -27,7 +27,8 @@ AMOUNT = Register(
     WordType.INT32,
     scale=0.001,
     access=Access.READ_WRITE,
-    text="Degrees of a jump, degrees a second of a slip, or a fault code",
+    text="Degrees of a jump or misalignment, degrees a second of a slip, a fault code, the share that a "
+    "cloud takes, or W/m2 of a stuck light sensor",
 )
 TRUE_AZIMUTH = Register(
     "true_azimuth", FIRST + 4, WordType.INT32, scale=0.001, unit="deg", text="Where the panel really points"

@@ -1,12 +1,14 @@
 """The machine of a simulated tracker: both axes, watchdog, requests, faults and position memory."""
 
+from dataclasses import replace
 from datetime import datetime, timedelta
 from pathlib import Path
 
 from app.clock import Clock
-from app.drives.faults import LINK_FAULTS, Fault, FaultKind
+from app.drives.faults import LIGHT_FAULTS, LINK_FAULTS, Fault, FaultKind
 from app.drives.position_memory import AxisMemory, PositionMemory, recall, remember
 from app.drives.simulated_axis import STANDARD, Mechanics, SimulatedAxis
+from app.drives.sunlight import Sunlight
 from app.tracker.axes import Axis
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.motion import (
@@ -37,8 +39,10 @@ class SimulatedMachine:
         memory: Path | None = None,
         watchdog: timedelta | None = WATCHDOG,
         mechanics: Mechanics = STANDARD,
+        light: Sunlight | None = None,
     ) -> None:
         self._clock = clock
+        self._light = light
         self._started_at = clock.now()
         self._memory = memory
         self._watchdog_s = watchdog.total_seconds() if watchdog is not None else None
@@ -113,6 +117,13 @@ class SimulatedMachine:
 
     def observe(self, *, told: bool = True) -> Feedback:
         """Return the reading of this instant; `told` says that the master gets to know it."""
+        feedback = self._moved(told=told)
+        if self._light is None:
+            return feedback
+        return replace(feedback, light=self._light.reading(self.true_orientation))
+
+    def _moved(self, *, told: bool) -> Feedback:
+        """Return the reading without the light; the same object while nothing changes."""
         now_s = self._advance()
         if told:
             self._trip_was_read = self._tripped
@@ -208,6 +219,9 @@ class SimulatedMachine:
         match fault.kind:
             case kind if kind in LINK_FAULTS:
                 self._link_fault = kind
+            case kind if kind in LIGHT_FAULTS:
+                if self._light is not None:
+                    self._light.inject(fault)
             case FaultKind.IGNORED_WRITES:
                 self._ignores_writes = True
             case FaultKind.DRIVE_FAULT:
@@ -217,9 +231,12 @@ class SimulatedMachine:
             case FaultKind.POWER_LOSS:
                 self._lose_power(now_s)
             case _:
-                for axis, one in ((Axis.AZIMUTH, self._azimuth), (Axis.ELEVATION, self._elevation)):
-                    if fault.hits(axis):
-                        one.inject(fault, now_s)
+                self._inject_axes(fault, now_s)
+
+    def _inject_axes(self, fault: Fault, now_s: float) -> None:
+        for axis, one in ((Axis.AZIMUTH, self._azimuth), (Axis.ELEVATION, self._elevation)):
+            if fault.hits(axis):
+                one.inject(fault, now_s)
 
     def clear_faults(self) -> None:
         """Be sound again and do what was commanded. A drive fault still waits for its reset."""
@@ -227,6 +244,8 @@ class SimulatedMachine:
         self._change(now_s)
         self._link_fault = None
         self._ignores_writes = False
+        if self._light is not None:
+            self._light.clear()
         self._azimuth.clear_faults(now_s)
         self._elevation.clear_faults(now_s)
 

@@ -84,6 +84,27 @@ DEADBAND = Deadband()
 
 
 @dataclass(frozen=True, slots=True)
+class SimulatedLight:
+    """What a simulated drive plays to its photo-sensors: how far the panel is misaligned, and a cloud.
+
+    `cloud` is the share of the direct light that it takes, from 0 to 1. A real drive has no use for it.
+    """
+
+    azimuth_deg: float = 0.0
+    elevation_deg: float = 0.0
+    cloud: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not max(abs(self.azimuth_deg), abs(self.elevation_deg)) <= 10.0:
+            raise ValueError("The simulated misalignment must lie between -10 and 10 degrees.")
+        if not 0.0 <= self.cloud <= 1.0:
+            raise ValueError("A cloud takes a share between 0 and 1 of the direct light.")
+
+
+CLEAR = SimulatedLight()
+
+
+@dataclass(frozen=True, slots=True)
 class HybridConfig:
     """How photo-sensor pairs correct the computed position; off unless `enabled`.
 
@@ -97,6 +118,7 @@ class HybridConfig:
     gain_dps: float = 1.0
     bound_deg: float = 2.0
     decay_s: float = 900.0
+    simulated: SimulatedLight = CLEAR
 
     def __post_init__(self) -> None:
         if not 1.0 <= self.threshold_wm2 <= 2000.0:
