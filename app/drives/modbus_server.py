@@ -2,11 +2,13 @@
 
 import asyncio
 from collections.abc import Awaitable, Callable, Mapping, Sequence
+from contextlib import suppress
 from struct import error, pack, unpack_from
 from typing import Protocol
 
 MOST_BITS, MOST_REGISTERS, MOST_WRITTEN_BITS, MOST_WRITTEN_REGISTERS = 2000, 125, 1968, 123
 LONGEST_LENGTH = 260
+CLOSE_WITHIN_S = 0.5
 COIL_ON = 0xFF00
 
 
@@ -102,6 +104,9 @@ class ModbusServer:
             pass
         finally:
             writer.close()
+            with suppress(OSError, TimeoutError):
+                async with asyncio.timeout(CLOSE_WITHIN_S):
+                    await writer.wait_closed()
 
     async def _answer_one(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> bool:
         """Answer the next request; return False if what came is no Modbus TCP and the line must be cut."""

@@ -1,7 +1,7 @@
 """All of the machine's other doors together: begun with it, ended with it, never in its way."""
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable, Coroutine
 from dataclasses import replace
 from typing import Protocol
 
@@ -9,9 +9,10 @@ import structlog
 
 from app.clock import Clock
 from app.gateway.door import Door
-from app.gateway.mqtt import MqttGateway
+from app.gateway.mqtt import MQTT, MqttGateway
 from app.gateway.outbox import Outbox
-from app.gateway.sunspec import SunSpecTcp
+from app.gateway.sunspec import RTU, TCP, SunSpecRtu, SunSpecTcp
+from app.gateway.sunspec_device import SunSpecDevice
 from app.link.messages import Order, SiteDetail, Update
 from app.link.metrics import GatewayMetrics, GatewayStatus, MachineMetrics
 from app.settings import Settings
@@ -45,15 +46,39 @@ class Gateways:
 
     def __init__(self, machine: MeteredDoor, clock: Clock, settings: Settings, reader: Reader) -> None:
         self._machine = machine
-        self._open, self._off = _doors(machine, clock, settings, reader)
+        device = SunSpecDevice(
+            machine, clock, unit=settings.sunspec_unit, write_hosts=settings.sunspec_write_hosts
+        )
+        self._sunspec = device
+        self._open: list[Gateway] = []
+        self._off: list[GatewayMetrics] = []
         self._tasks: list[asyncio.Task[None]] = []
+        self._add(TCP, "SUNSPEC_PORT", settings.sunspec_port, lambda: SunSpecTcp(device, clock, settings))
+        self._add(RTU, "SUNSPEC_SERIAL", settings.sunspec_serial, lambda: SunSpecRtu(device, clock, settings))
+        outbox = Outbox(reader, settings.data_dir / OUTBOX_NAME)
+        self._add(
+            MQTT, "MQTT_HOST", settings.mqtt_host, lambda: MqttGateway(machine, clock, settings, outbox)
+        )
+
+    def _add(self, name: str, variable: str, wanted: object, make: Callable[[], Gateway]) -> None:
+        """Make a door if the settings want it, else note how it is opened."""
+        if wanted is None:
+            off = f"set HELIOPANEL_{variable} to open it"
+            self._off.append(GatewayMetrics(name, GatewayStatus.OFF, off))
+        else:
+            self._open.append(make())
 
     def start(self) -> None:
         """Open the doors."""
         for gateway in self._open:
-            task = asyncio.create_task(gateway.run(), name=gateway.metrics().name)
-            task.add_done_callback(_log_end)
-            self._tasks.append(task)
+            self._begin(gateway.run(), gateway.metrics().name)
+        if self._open:
+            self._begin(self._sunspec.follow(), "SunSpec controls")
+
+    def _begin(self, work: Coroutine[None, None, None], name: str) -> None:
+        task = asyncio.create_task(work, name=name)
+        task.add_done_callback(_log_end)
+        self._tasks.append(task)
 
     async def close(self) -> None:
         """Close the doors."""
@@ -81,28 +106,6 @@ class Gateways:
         """Return the machine's counters and how its doors are doing."""
         gateways = (*(gateway.metrics() for gateway in self._open), *self._off)
         return replace(await self._machine.metrics(), gateways=gateways)
-
-
-def _doors(
-    machine: Door, clock: Clock, settings: Settings, reader: Reader
-) -> tuple[tuple[Gateway, ...], tuple[GatewayMetrics, ...]]:
-    """Return the doors that are open, and what is told of those that are not."""
-    opened: list[Gateway] = []
-    off: list[GatewayMetrics] = []
-    if settings.sunspec_port is not None:
-        opened.append(SunSpecTcp(machine, clock, settings))
-    else:
-        off.append(_off("SunSpec over Modbus TCP", "SUNSPEC_PORT"))
-    if settings.mqtt_host is not None:
-        outbox = Outbox(reader, settings.data_dir / OUTBOX_NAME)
-        opened.append(MqttGateway(machine, clock, settings, outbox))
-    else:
-        off.append(_off("MQTT", "MQTT_HOST"))
-    return tuple(opened), tuple(off)
-
-
-def _off(name: str, variable: str) -> GatewayMetrics:
-    return GatewayMetrics(name, GatewayStatus.OFF, f"set HELIOPANEL_{variable} to open it")
 
 
 def _log_end(task: asyncio.Task[None]) -> None:

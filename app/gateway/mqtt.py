@@ -33,6 +33,7 @@ from app.settings import Settings
 from app.store.store import StoreFailed
 from app.tracker.snapshot import SiteSnapshot
 
+MQTT = "MQTT"
 FIRST_DELAY, LONGEST_DELAY = timedelta(seconds=1), timedelta(seconds=30)
 LOOK_FOR_EVENTS = timedelta(milliseconds=500)
 LOOK_FOR_RECORDINGS = timedelta(seconds=5)
@@ -63,7 +64,7 @@ class MqttGateway:
     def metrics(self) -> GatewayMetrics:
         """Return how it is doing."""
         connected = self._status is GatewayStatus.CONNECTED
-        return GatewayMetrics("MQTT", self._status, self._where, int(connected), self._error, self._waiting)
+        return GatewayMetrics(MQTT, self._status, self._where, int(connected), self._error, self._waiting)
 
     @property
     def _port(self) -> int:

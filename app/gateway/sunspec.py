@@ -1,19 +1,23 @@
-"""The SunSpec gateway: one map, served over Modbus TCP and, if asked for, on a serial line."""
+"""The SunSpec gateway: one map, served over Modbus TCP and on a serial line."""
 
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+import asyncio
+from contextlib import suppress
 from datetime import timedelta
 
 import structlog
 
 from app.clock import Clock
+from app.drives.line import SerialLine
 from app.drives.modbus_server import ModbusServer
-from app.gateway.door import Door
-from app.gateway.sunspec_device import SunSpecDevice
+from app.drives.rtu_server import RtuServer
+from app.gateway.sunspec_device import SERIAL, SunSpecDevice
 from app.link.metrics import GatewayMetrics, GatewayStatus
 from app.settings import Settings
+from app.tracker.config import Parity, SerialConfig
 
+TCP, RTU = "SunSpec over Modbus TCP", "SunSpec over Modbus RTU"
 TRY_AGAIN = timedelta(seconds=10)
+MOST_CLIENTS = 16
 
 log = structlog.get_logger(__name__)
 
@@ -21,59 +25,88 @@ log = structlog.get_logger(__name__)
 class SunSpecTcp:
     """Listens on one port; a port that is taken is tried again every ten seconds."""
 
-    def __init__(self, door: Door, clock: Clock, settings: Settings) -> None:
-        self._door = door
+    def __init__(self, device: SunSpecDevice, clock: Clock, settings: Settings) -> None:
         self._clock = clock
         self._host = settings.sunspec_host
         self._port = settings.sunspec_port or 0
-        self._device = SunSpecDevice(
-            door, clock, unit=settings.sunspec_unit, write_hosts=settings.sunspec_write_hosts
-        )
         self._server = ModbusServer(
-            self._device, settings.sunspec_unit, respond=self._device.respond, most_clients=16
+            device, settings.sunspec_unit, respond=device.respond, most_clients=MOST_CLIENTS
         )
         self._listening = False
         self._error = ""
 
     @property
     def port(self) -> int:
-        """Return the port, once it listens."""
+        """Return the port, 0 before it listens on a free one."""
         return self._port
 
     def metrics(self) -> GatewayMetrics:
         """Return how it is doing."""
         status = GatewayStatus.LISTENING if self._listening else GatewayStatus.FAILED
         where = f"{self._host}:{self._port}"
-        return GatewayMetrics(
-            "SunSpec over Modbus TCP", status, where, self._server.client_count, self._error
-        )
+        return GatewayMetrics(TCP, status, where, self._server.client_count, self._error)
 
     async def run(self) -> None:
         """Serve until cancelled."""
-        async with self._served():
-            while True:
-                async for update in self._door.updates():
-                    await self._device.controls.calibrations.follow(update)
-                await self._clock.sleep_until(self._clock.now() + TRY_AGAIN)
-
-    @asynccontextmanager
-    async def _served(self) -> AsyncIterator[None]:
         try:
-            await self._listen()
-            yield
+            while not self._listening:
+                await self._listen()
+            await asyncio.Event().wait()
         finally:
             self._listening = False
             await self._server.close()
 
     async def _listen(self) -> None:
-        while not self._listening:
+        try:
+            self._port = await self._server.start(self._host, self._port)
+        except OSError as error:
+            self._error = (
+                f"It cannot listen on {self._host} port {self._port}: {error.strerror}. Stop the program "
+                "that uses the port, or choose another with HELIOPANEL_SUNSPEC_PORT."
+            )
+            log.error("sunspec_not_listening", reason=self._error)
+            await self._clock.sleep_until(self._clock.now() + TRY_AGAIN)
+        else:
+            self._listening, self._error = True, ""
+
+
+class SunSpecRtu:
+    """Serves a serial line; one that is not there or vanishes is tried again every ten seconds."""
+
+    def __init__(self, device: SunSpecDevice, clock: Clock, settings: Settings) -> None:
+        self._device = device
+        self._clock = clock
+        self._unit = settings.sunspec_unit
+        self._serial = SerialConfig(
+            settings.sunspec_serial or "", settings.sunspec_baud, Parity(settings.sunspec_parity)
+        )
+        self._serving = False
+        self._error = ""
+
+    def metrics(self) -> GatewayMetrics:
+        """Return how it is doing."""
+        status = GatewayStatus.LISTENING if self._serving else GatewayStatus.FAILED
+        line = self._serial
+        where = f"{line.port}, {line.baud_rate} baud, parity {line.parity}"
+        return GatewayMetrics(RTU, status, where, error=self._error)
+
+    async def run(self) -> None:
+        """Serve until cancelled."""
+        while True:
+            server = RtuServer({self._unit: self._device}, SerialLine(self._serial), respond=self._respond)
             try:
-                self._port = await self._server.start(self._host, self._port)
-                self._listening, self._error = True, ""
+                await server.start()
+                self._serving, self._error = True, ""
+                await server.until_lost()
+                self._error = "The serial line was lost."
             except OSError as error:
-                self._error = (
-                    f"It cannot listen on {self._host} port {self._port}: {error.strerror}. Stop the program "
-                    "that uses the port, or choose another with HELIOPANEL_SUNSPEC_PORT."
-                )
-                log.error("sunspec_not_listening", reason=self._error)
-                await self._clock.sleep_until(self._clock.now() + TRY_AGAIN)
+                self._error = f"{error} It is tried again."
+            finally:
+                self._serving = False
+                with suppress(OSError):
+                    await server.close()
+            log.error("sunspec_not_on_line", reason=self._error)
+            await self._clock.sleep_until(self._clock.now() + TRY_AGAIN)
+
+    async def _respond(self, request: bytes, _: str) -> bytes:
+        return await self._device.respond(request, SERIAL)

@@ -6,16 +6,29 @@ from typing import assert_never
 
 from app.drives.modbus_server import ILLEGAL_ADDRESS, ILLEGAL_VALUE, Refusal
 from app.gateway.calibration import Calibrations
-from app.gateway.door import Door, refused, send, written
+from app.gateway.door import Door, Update, refused, send, written
 from app.gateway.sunspec_values import Control, Targets
 from app.link.messages import UnknownTracker
 from app.tracker.commands import CommandRejected, Move, Track
 from app.tracker.config import Orientation
 from app.tracker.reason import Reason
-from app.tracker.snapshot import SiteSnapshot, Snapshot
+from app.tracker.snapshot import EventKind, SiteSnapshot, Snapshot
 
+ACTOR = "sunspec "
+"""What the actor of every order of this door begins with; the host follows."""
 BUSY = 6
 TARGETS = {"ElCtl": (-90.0, 90.0), "AzCtl": (0.0, 360.0)}
+TAKES_OVER = {
+    EventKind.STOPPED,
+    EventKind.JOG_STARTED,
+    EventKind.MOVE_STARTED,
+    EventKind.HOMING_STARTED,
+    EventKind.TRACKING_STARTED,
+    EventKind.SHOW_STARTED,
+    EventKind.FAULT_RAISED,
+    EventKind.DRIVE_LOST,
+    EventKind.HOME_LOST,
+}
 WRONG_VALUE = {"beyond_limits", "no_target"}
 NO_TARGET = Reason(
     "no_target", "Manual was written, but no target was.", "Write ElCtl and AzCtl, then write 1 to Ctl."
@@ -26,12 +39,17 @@ Written = Mapping[str, float | None]
 
 
 class Controls:
-    """Carries out what is written through the same orders as every door, and journals all of it."""
+    """Carries out what is written through the same orders as every door, and journals all of it.
+
+    A target moves nothing until manual control is written; from then on new targets are gone to at once,
+    until somebody else takes the tracker over.
+    """
 
     def __init__(self, door: Door) -> None:
         self._door = door
         self.targets: dict[str | None, Targets] = {}
         self.calibrations = Calibrations(door)
+        self._manual: set[str] = set()
 
     async def write(self, tracker_id: str | None, values: Written, actor: str) -> None:
         """Keep targets and act on the control register; None writes for all trackers.
@@ -51,6 +69,15 @@ class Controls:
         written(self._door, tracker_id, actor, f"{told} was written over SunSpec.")
         if "Ctl" in values:
             await self._act(tracker_id, Control(int(values["Ctl"] or 0)), kept, actor)
+        elif tracker_id in self._manual:
+            await self._act(tracker_id, Control.MANUAL, kept, actor)
+
+    async def follow(self, update: Update) -> None:
+        """Let go of manual control where somebody else took it or a fault ended it; go on calibrating."""
+        for event in update.events:
+            if event.kind in TAKES_OVER and not event.actor.startswith(ACTOR):
+                self._manual.discard(event.tracker_id or "")
+        await self.calibrations.follow(update)
 
     def _check(self, tracker_id: str | None, values: Written, actor: str) -> None:
         for name, value in values.items():
@@ -81,6 +108,7 @@ class Controls:
     async def _act_on(self, tracker: Snapshot, control: Control, targets: Targets, actor: str) -> None:
         name = tracker.tracker_id
         self.calibrations.forget(name)
+        self._manual.discard(name)
         match control:
             case Control.AUTOMATIC:
                 await send(self._door, Track(), name, actor)
@@ -102,6 +130,7 @@ class Controls:
             raise CommandRejected(NO_TARGET)
         orientation = Orientation(azimuth_deg % 360.0, elevation_deg)
         await send(self._door, Move(orientation), tracker.tracker_id, actor)
+        self._manual.add(tracker.tracker_id)
 
 
 def _addressed(site: SiteSnapshot | None, tracker_id: str | None) -> tuple[Snapshot, ...]:

@@ -9,7 +9,7 @@ import structlog
 from app.clock import Clock
 from app.drives.modbus_server import ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, Refusal, answer
 from app.gateway.door import Door, refused
-from app.gateway.sunspec_controls import BUSY, Controls
+from app.gateway.sunspec_controls import ACTOR, BUSY, Controls
 from app.gateway.sunspec_map import BASE, END, MARKER, Block, Placed, SunSpecMap, sunspec_map
 from app.gateway.sunspec_values import View, block_words
 
@@ -21,6 +21,7 @@ READ_WRITE = 23
 SETTING = "HELIOPANEL_SUNSPEC_WRITE_HOSTS"
 TELL_AGAIN = timedelta(minutes=1)
 MOST_HOSTS = 256
+FOLLOW_AGAIN = timedelta(seconds=1)
 
 log = structlog.get_logger(__name__)
 
@@ -64,6 +65,13 @@ class SunSpecDevice:
             return SERIAL in self._write_hosts
         networks = (ip_network(one, strict=False) for one in self._write_hosts if one != SERIAL)
         return any(ip_address(host.partition("%")[0]) in network for network in networks)
+
+    async def follow(self) -> None:
+        """Follow what happens on the site, until cancelled."""
+        while True:
+            async for update in self._door.updates():
+                await self.controls.follow(update)
+            await self._clock.sleep_until(self._clock.now() + FOLLOW_AGAIN)
 
     def read_bits(self, function: int, address: int, count: int) -> list[bool]:
         """Refuse: the map has no bits."""
@@ -127,7 +135,7 @@ class SunSpecDevice:
     async def _carry_out(self, orders: Sequence[Write], host: str) -> None:
         for block, values in orders:
             try:
-                await self.controls.write(block.tracker_id, values, f"sunspec {host}")
+                await self.controls.write(block.tracker_id, values, f"{ACTOR}{host}")
             except Refusal:
                 raise
             except Exception as error:
@@ -142,7 +150,7 @@ class SunSpecDevice:
         if told_at is None or now - told_at >= TELL_AGAIN:
             often = "" if count == 1 else f"{count} times "
             message = f"{host} tried {often}to write over SunSpec, but only the hosts in {SETTING} may."
-            refused(self._door, None, f"sunspec {host}", message)
+            refused(self._door, None, f"{ACTOR}{host}", message)
             told_at, count = now, 0
         if host in self._turned_away or len(self._turned_away) < MOST_HOSTS:
             self._turned_away[host] = (told_at, count)

@@ -15,6 +15,7 @@ from sunspec2.modbus.modbus import ModbusClientException
 from app.drives.faults import Fault, FaultKind
 from app.drives.simulated import SimulatedDrive
 from app.gateway.sunspec import SunSpecTcp
+from app.gateway.sunspec_device import SunSpecDevice
 from app.gateway.sunspec_map import BASE, END, map_table, sunspec_map
 from app.link.messages import ReportWeather
 from app.settings import Settings
@@ -76,14 +77,17 @@ async def scada(*trackers: str, write_hosts: str = "127.0.0.1") -> AsyncIterator
     plant = make_plant(trackers=tuple(map(tracker, trackers or ("T1",))))
     await plant.start()
     wanted = Settings(sunspec_port=0, sunspec_write_hosts=write_hosts)  # type: ignore[arg-type]
-    server = SunSpecTcp(plant.site, HurriedClock(), wanted)
-    serving = asyncio.create_task(server.run())
+    clock = HurriedClock()
+    device = SunSpecDevice(plant.site, clock, write_hosts=wanted.sunspec_write_hosts)
+    server = SunSpecTcp(device, clock, wanted)
+    serving = [asyncio.create_task(work) for work in (server.run(), device.follow())]
     await eventually(lambda: server.port)
     try:
         yield Scada(plant, server)
     finally:
-        serving.cancel()
-        await asyncio.gather(serving, return_exceptions=True)
+        for task in serving:
+            task.cancel()
+        await asyncio.gather(*serving, return_exceptions=True)
         await plant.close()
 
 
@@ -204,6 +208,23 @@ async def test_calibrate_stops_homes_and_goes_back_to_automatic() -> None:
         await plant.until(lambda seen: seen.activity is ActivityName.TRACKING)
         await settle()
         assert await system.read(CTL, 1) == [0]
+
+
+async def test_a_new_target_is_gone_to_only_while_this_door_has_manual_control() -> None:
+    async with scada() as system:
+        plant = system.plant
+        await plant.commission()
+        await system.write(EL_CTL, *packed(30.0))
+        assert plant.tracker().activity is ActivityName.HOLDING, "a target alone moves nothing"
+        await system.write(CTL, 1)
+        await plant.until(lambda seen: seen.in_position and seen.activity is ActivityName.HOLDING)
+        await system.write(EL_CTL, *packed(33.0))
+        assert plant.tracker().activity is ActivityName.MOVING
+        await plant.ask(Stop())
+        await plant.until(lambda seen: seen.activity is ActivityName.HOLDING)
+        await settle()
+        await system.write(EL_CTL, *packed(36.0))
+        assert plant.tracker().activity is ActivityName.HOLDING, "somebody else stopped it"
 
 
 async def test_a_stop_by_somebody_else_ends_a_calibration_for_good() -> None:
