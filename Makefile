@@ -9,7 +9,7 @@ BIN := $(VENV)/bin
 ON_PROCESSES := tests/drives tests/machine tests/browser tests/e2e
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check bench format lock browser system-packages clean
+.PHONY: help setup fast run test check bench format lock browser system-packages clean
 
 help: ## Show what each command does
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-10s %s\n", $$1, $$2}'
@@ -28,6 +28,10 @@ $(VENV)/.dev: requirements-dev.txt $(VENV)/.runtime
 
 setup: $(VENV)/.runtime ## Make .venv with the command heliopanel
 	@echo "Ready: $(BIN)/heliopanel --help"
+
+fast: $(VENV)/.runtime ## Add the compiled loops (numba) that make studies and comparisons quick
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-fast.txt
+	@echo "Ready: studies and comparisons use compiled loops."
 
 run: setup ## Serve the panel with a simulated tracker at http://127.0.0.1:8000
 	@echo "Heliopanel: open http://127.0.0.1:$${HELIOPANEL_PORT:-8000} (Ctrl-C ends it)"
@@ -62,6 +66,7 @@ format: $(VENV)/.dev ## Format the code
 
 lock: ## Renew the locked dependencies (needs uv)
 	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build pyproject.toml -o requirements.txt
+	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra fast -c requirements.txt pyproject.toml -o requirements-fast.txt
 	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra fast --extra dev -c requirements.txt pyproject.toml -o requirements-dev.txt
 
 clean: ## Remove what was built (not the data)
