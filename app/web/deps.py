@@ -16,6 +16,7 @@ from app.web.assets import Assets
 from app.web.errors import NotAcceptable
 from app.web.hub import Hub
 from app.web.simulations import Simulations
+from app.web.studies import Studies
 
 OPERATOR = "operator"
 
@@ -31,6 +32,7 @@ class Panel:
     assets: Assets
     hub: Hub
     simulations: Simulations
+    studies: Studies
 
 
 def panel(connection: HTTPConnection) -> Panel:

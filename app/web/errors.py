@@ -14,6 +14,7 @@ from starlette.responses import Response
 
 from app.link.messages import MachineUnreachable, UnknownRecording, UnknownTracker
 from app.store.store import StoreFailed
+from app.studies.folder import StudyUnknown, WeatherFileRefused
 from app.sun.position import InstantRefused
 from app.sun.spa import AlgorithmMissing
 from app.tracker.commands import CommandRejected
@@ -120,6 +121,8 @@ PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
     AlgorithmMissing: lambda error: Problem(422, str(error)),
     NotAcceptable: lambda error: Problem(422, str(error)),
     Busy: lambda error: Problem(429, str(error), headers={"Retry-After": "5"}),
+    StudyUnknown: lambda error: Problem(404, str(error)),
+    WeatherFileRefused: lambda error: Problem(422, str(error)),
     NotFound: lambda error: Problem(404, str(error)),
     RequestValidationError: invalid,
     HTTPException: refused_by_http,

@@ -27,7 +27,7 @@ from app.web.assets import Assets
 from app.web.deps import Panel
 from app.web.documented import DocumentedApp
 from app.web.hub import Hub
-from app.web.security import LARGEST_BODY, Guard, SecurityHeaders
+from app.web.security import LARGEST_BODY, Guard, SecurityHeaders, Uploads
 from app.web.server import (
     FAREWELL_S,
     KEEP_ALIVE_S,
@@ -39,6 +39,7 @@ from app.web.server import (
     reserve_descriptors,
 )
 from app.web.simulations import Simulations
+from app.web.studies import Studies
 from app.web.ui.pages import include_pages
 
 STATIC = Path(__file__).resolve().parents[2] / "static"
@@ -65,10 +66,13 @@ def create_app(
         openapi_url="/api/v1/openapi.json",
         lifespan=_living,
     )
-    panel = Panel(settings, machine, reader, clock, Assets(STATIC), Hub(machine, clock), Simulations())
+    assets, hub = Assets(STATIC), Hub(machine, clock)
+    studies = Studies(settings.data_dir, clock)
+    panel = Panel(settings, machine, reader, clock, assets, hub, Simulations(), studies)
     app.state.panel = panel
     _add_doors(app, panel)
     errors.install(app)
+    app.add_middleware(Uploads)
     app.add_middleware(RequestBodyLimitMiddleware, max_body_size=LARGEST_BODY)
     app.add_middleware(GZipMiddleware, minimum_size=SMALLEST_COMPRESSED)
     app.add_middleware(Guard)
@@ -108,6 +112,7 @@ async def _living(app: FastAPI) -> AsyncIterator[None]:
         finally:
             panel.hub.closing.set()
             panel.simulations.close()
+            await panel.studies.close()
             following.cancel()
             await asyncio.gather(following, return_exceptions=True)
 

@@ -5,10 +5,15 @@ from urllib.parse import urlsplit
 
 import orjson
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 LARGEST_BODY = 1024 * 1024
-TOO_LARGE = "A request to this panel has at most one megabyte."
+LARGEST_UPLOAD = 9 * 1024 * 1024
+UPLOADS = frozenset({"/api/v1/weather-files", "/studies/weather"})
+"""Where files come in; everywhere else a request has at most `LARGEST_BODY`."""
+
+TOO_LARGE = "A request to this panel has at most one megabyte, an upload of a weather file eight."
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
 OWN_SITES = frozenset({"same-origin", "none"})
@@ -64,7 +69,7 @@ class Guard:
         if scope["type"] in ("http", "websocket") and (refusal := self._refusal(scope)):
             await _refuse(scope, send, 403, refusal)
             return
-        if scope["type"] == "http" and _body_size(scope) > LARGEST_BODY:
+        if scope["type"] == "http" and _body_size(scope) > largest_body(scope):
             await _refuse(scope, send, 413, TOO_LARGE)
             return
         await self._app(scope, receive, send)
@@ -80,6 +85,24 @@ class Guard:
         if scope["type"] == "http" and scope["method"] in SAFE_METHODS:
             return None
         return _foreign(headers, host)
+
+
+class Uploads:
+    """Lets larger bodies through to the addresses that take files."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+        self._larger = RequestBodyLimitMiddleware(app, max_body_size=LARGEST_UPLOAD)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass the request on with the limit of its address."""
+        app = self._larger if scope["type"] == "http" and scope["path"] in UPLOADS else self._app
+        await app(scope, receive, send)
+
+
+def largest_body(scope: Scope) -> int:
+    """Return how many bytes a request may bring."""
+    return LARGEST_UPLOAD if scope["path"] in UPLOADS else LARGEST_BODY
 
 
 def _host_name(host: str) -> str | None:

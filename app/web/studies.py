@@ -47,7 +47,6 @@ TOO_LONG = (
     "The study took longer than ten minutes and was given up: take a longer "
     "step, fewer days or fewer modes."
 )
-)
 DIED = "The process that worked the study out ended without a result; the panel's log says more."
 
 
