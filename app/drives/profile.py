@@ -74,6 +74,7 @@ class Profile:
     name: str
     title: str
     adapter: Adapter
+    word_order: WordOrder
     verified: bool
     source: str
     timeout_ms: int
@@ -170,6 +171,7 @@ def _profile(top: Table) -> Profile:
         name=top.get("name", str),
         title=top.get("title", str),
         adapter=top.word("adapter", Adapter),
+        word_order=order,
         verified=verified and all(register.verified for register in registers.values()),
         source=source,
         timeout_ms=timing.whole("timeout_ms", 20, 5000, 300),

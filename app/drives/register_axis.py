@@ -67,7 +67,7 @@ class RegisterAxis:
 
     async def read(self) -> AxisReading:
         """Return one fresh reading, or raise `DriveError`."""
-        await self.unit.confirm()
+        await self._confirm()
         values = await self.unit.poll("position", "velocity", "inputs", *self._dialect.polled)
         status = self._dialect.status(values)
         position_deg = self._gearing.degrees(values["position"])
@@ -141,6 +141,14 @@ class RegisterAxis:
     @property
     def _is_homing(self) -> bool:
         return self._task is not None and self._task.kind is RequestKind.HOME
+
+    async def _confirm(self) -> None:
+        """Read back what was written; what the drive did not take is written again by the next command."""
+        try:
+            await self.unit.confirm()
+        except DriveError:
+            self._doing = None
+            raise
 
     async def _enable(self) -> None:
         await self._dialect.enable()

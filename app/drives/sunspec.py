@@ -49,6 +49,8 @@ class _Seen:
     at: datetime
     azimuth_deg: float
     elevation_deg: float
+    azimuth_dps: float
+    elevation_dps: float
 
 
 class SunSpecDrive:
@@ -118,7 +120,7 @@ class SunSpecDrive:
         await self._aim(command)
 
     async def stop(self) -> None:
-        """Make the present position the target, ahead of everything that waits."""
+        """Make the nearest point of rest the target, ahead of everything that waits."""
         self._stops += 1
         self._give_up()
         self._doing = None
@@ -128,7 +130,9 @@ class SunSpecDrive:
                 f"The tracker controller at {self._where} cannot be stopped: its position was never read. "
                 "Use its own stop."
             )
-        await self._unit.stop(self._targets(seen.azimuth_deg, seen.elevation_deg))
+        azimuth_deg = self._rest_deg(Axis.AZIMUTH, seen.azimuth_deg, seen.azimuth_dps)
+        elevation_deg = self._rest_deg(Axis.ELEVATION, seen.elevation_deg, seen.elevation_dps)
+        await self._unit.stop(self._targets(azimuth_deg, elevation_deg))
 
     async def set_clock(self, at: datetime) -> None:
         """Do nothing: model 601 shows a clock and has none to set."""
@@ -165,18 +169,22 @@ class SunSpecDrive:
             )
 
     async def _read(self) -> Feedback:
-        await self._unit.confirm()
+        try:
+            await self._unit.confirm()
+        except DriveError:
+            self._doing = None
+            raise
         values = await self._unit.poll(*READ)
-        now = self._clock.now()
         if values["scale"] == NOT_IMPLEMENTED_SCALE:
             raise DriveError(f"The tracker controller at {self._where} gives no scale for its degrees.")
         self._step_deg = 10.0 ** values["scale"]
-        seen = _Seen(
-            now,
+        seen = self._seen(
+            self._clock.now(),
             self._degrees(values, "azimuth_position"),
             self._degrees(values, "elevation_position"),
         )
-        azimuth, elevation = self._axis("azimuth", seen), self._axis("elevation", seen)
+        azimuth = self._axis(seen.azimuth_deg, seen.azimuth_dps)
+        elevation = self._axis(seen.elevation_deg, seen.elevation_dps)
         fault_code = int(values["alarms"]) | int(values["tracker_alarms"])
         self._control = int(values["control"])
         self._watch_request(fault_code, moving=azimuth.moving or elevation.moving)
@@ -198,14 +206,30 @@ class SunSpecDrive:
             )
         return round(values[name] * self._step_deg, 9)
 
-    def _axis(self, name: str, seen: _Seen) -> AxisFeedback:
-        position_deg = float(getattr(seen, f"{name}_deg"))
-        velocity_dps = 0.0
-        if self._last is not None and seen.at > self._last.at:
-            way_deg = position_deg - float(getattr(self._last, f"{name}_deg"))
-            velocity_dps = way_deg / (seen.at - self._last.at).total_seconds()
-        just_told = self._told_at is not None and seen.at - self._told_at < BEGINNING
+    def _seen(self, at: datetime, azimuth_deg: float, elevation_deg: float) -> _Seen:
+        """Return what was read, with speeds from the way since the reading before."""
+        last = self._last
+        if last is None:
+            return _Seen(at, azimuth_deg, elevation_deg, 0.0, 0.0)
+        elapsed_s = (at - last.at).total_seconds()
+        if elapsed_s <= 0.0:
+            return replace(last, azimuth_deg=azimuth_deg, elevation_deg=elevation_deg)
+        return _Seen(
+            at,
+            azimuth_deg,
+            elevation_deg,
+            (azimuth_deg - last.azimuth_deg) / elapsed_s,
+            (elevation_deg - last.elevation_deg) / elapsed_s,
+        )
+
+    def _axis(self, position_deg: float, velocity_dps: float) -> AxisFeedback:
+        just_told = self._told_at is not None and self._clock.now() - self._told_at < BEGINNING
         return AxisFeedback(position_deg, velocity_dps, moving=velocity_dps != 0.0 or just_told, homed=True)
+
+    def _rest_deg(self, axis: Axis, position_deg: float, velocity_dps: float) -> float:
+        """Return where an axis comes to rest if it ramps down now, as the tracker's settings say it can."""
+        braking_deg = velocity_dps**2 / (2.0 * self._config.axis(axis).acceleration_dps2)
+        return position_deg + (braking_deg if velocity_dps > 0.0 else -braking_deg)
 
     async def _look_again(self) -> None:
         stops = self._stops
@@ -245,14 +269,16 @@ class SunSpecDrive:
         seen = self._last
         if seen is None:
             raise DriveError(f"The tracker controller at {self._where} was not read yet; it is not moved.")
-        azimuth_deg = self._target(Axis.AZIMUTH, command.azimuth, seen.azimuth_deg)
-        elevation_deg = self._target(Axis.ELEVATION, command.elevation, seen.elevation_deg)
+        azimuth_deg = self._target(Axis.AZIMUTH, command.azimuth, seen.azimuth_deg, seen.azimuth_dps)
+        elevation_deg = self._target(
+            Axis.ELEVATION, command.elevation, seen.elevation_deg, seen.elevation_dps
+        )
         stepped = _is_stepped(command)
         targets = self._targets(azimuth_deg, elevation_deg)
         await self._unit.put(targets, renewed=True, confirmed=not stepped)
         self._doing, self._told_at = command, self._clock.now()
 
-    def _target(self, axis: Axis, command: AxisCommand, here_deg: float) -> float:
+    def _target(self, axis: Axis, command: AxisCommand, here_deg: float, here_dps: float) -> float:
         match command:
             case Position(position_deg, speed_dps) if speed_dps > 0.0:
                 return position_deg
@@ -261,7 +287,7 @@ class SunSpecDrive:
                 reach_deg = abs(velocity_dps) * LEASE_S + velocity_dps**2 / (2.0 * acceleration_dps2)
                 return here_deg + (reach_deg if velocity_dps > 0.0 else -reach_deg)
             case _:
-                return here_deg
+                return self._rest_deg(axis, here_deg, here_dps)
 
     def _targets(self, azimuth_deg: float, elevation_deg: float) -> dict[str, float]:
         return {

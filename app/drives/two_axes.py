@@ -112,7 +112,11 @@ class TwoAxisDrive:
             await axis.unit.close()
 
     async def _read(self) -> Feedback:
-        readings = {axis: await one.read() for axis, one in self._axes.items()}
+        try:
+            readings = {axis: await one.read() for axis, one in self._axes.items()}
+        except DriveError:
+            self._forget()
+            raise
         self._notice_lost_zero(readings)
         self._watch_request(readings)
         faults = [reading.fault_code for reading in readings.values() if reading.fault_code]
@@ -129,11 +133,14 @@ class TwoAxisDrive:
     async def _look_again(self) -> None:
         """Read the state anew; raise `DriveError` if a stop came in between."""
         stops = self._stops
-        for axis in self._axes.values():
-            axis.forget()
+        self._forget()
         await self.read()
         if self._stops != stops:
             raise DriveError("A stop overtook this command; it was not written.")
+
+    def _forget(self) -> None:
+        for axis in self._axes.values():
+            axis.forget()
 
     async def _begin(self, request: DriveRequest) -> None:
         self._number = request.number

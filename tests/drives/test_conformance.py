@@ -2,12 +2,12 @@
 
 import pytest
 
-from tests.drives.conformance import STORIES, Story
-from tests.drives.rigs import RIGS
+from tests.drives.conformance import Story, stories_for
+from tests.drives.rigs import FULL, RIGS
 
 
 @pytest.mark.parametrize("name", RIGS)
-@pytest.mark.parametrize("tell", STORIES, ids=lambda tell: tell.__name__)
+@pytest.mark.parametrize("tell", stories_for(FULL), ids=lambda tell: tell.__name__)
 async def test_story(name: str, tell: Story) -> None:
     async with RIGS[name]() as rig:
         await tell(rig)

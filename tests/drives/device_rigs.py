@@ -1,0 +1,64 @@
+"""Each shipped profile on the simulated device of its maker, behind a real socket."""
+
+from collections.abc import AsyncIterator, Mapping
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, replace
+from datetime import timedelta
+
+from app.clock import VirtualClock
+from app.drives.devices.shelf import devices
+from app.drives.factory import DriveFactory
+from app.drives.modbus_server import Device, ModbusServer
+from app.drives.profile import load_profile
+from app.drives.simulated import SimulatedDrive
+from app.tracker.config import AxisDrive, DriveConfig, DriveKind
+from tests.drives.rigs import CONFIG, FULL, START, Rig, Trait, pending_tasks
+
+STEPPED = FULL - {Trait.BOOT_COUNT, Trait.CLOCK, Trait.WATCHDOG} | {Trait.STEPS}
+
+
+@dataclass(frozen=True)
+class Bench:
+    """A profile, the gear that makes its steps even fractions of a degree, and what the drive has."""
+
+    profile: str
+    gear_ratio: float = 1.0
+    traits: frozenset[Trait] = STEPPED
+    speed_step_dps: float = 1e-6
+    inverted: bool = False
+
+    @property
+    def drive(self) -> DriveConfig:
+        axis = AxisDrive(gear_ratio=self.gear_ratio, inverted=self.inverted)
+        return DriveConfig(DriveKind.MODBUS_TCP, self.profile, azimuth=axis, elevation=axis)
+
+
+BENCHES = {
+    "kinco-cia402": Bench("kinco-cia402", 36.0, speed_step_dps=1e-4),
+    "leadshine-rs": Bench("leadshine-rs", 36.0, speed_step_dps=0.0834),
+    "oriental-az": Bench("oriental-az", 36.0, STEPPED - {Trait.SWITCHES}, speed_step_dps=0.005),
+    "delta-dvp": Bench("delta-dvp", traits=FULL),
+    "sunspec-601": Bench("sunspec-601", traits=frozenset()),
+}
+
+
+def shelf(bench: Bench, machine: SimulatedDrive, clock: VirtualClock) -> Mapping[int, Device]:
+    return devices(load_profile(bench.profile), machine, clock, 1, bench.gear_ratio)
+
+
+@asynccontextmanager
+async def device_rig(bench: Bench) -> AsyncIterator[Rig]:
+    clock = VirtualClock(START)
+    has_watchdog = Trait.WATCHDOG in bench.traits
+    watchdog = timedelta(milliseconds=500) if has_watchdog else None
+    machine = SimulatedDrive(CONFIG, clock, watchdog=watchdog)
+    found = shelf(bench, machine, clock)
+    server = ModbusServer(found[1], 1, others=found)
+    port = await server.start("127.0.0.1", 0)
+    drive = DriveFactory(clock).make(replace(CONFIG, drive=replace(bench.drive, port=port)))
+    try:
+        yield Rig(drive, machine, clock, bench.traits, bench.speed_step_dps)
+    finally:
+        await drive.close()
+        await server.close()
+        assert not pending_tasks(), "a closed drive leaves no task behind"
