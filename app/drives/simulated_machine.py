@@ -50,6 +50,7 @@ class SimulatedMachine:
         self._boot_count = known.boot_count
         self._azimuth = SimulatedAxis(config.azimuth, mechanics, known.azimuth)
         self._elevation = SimulatedAxis(config.elevation, mechanics, known.elevation)
+        self._mounted = (self._azimuth,) if config.mount.single_axis else (self._azimuth, self._elevation)
         self._kept_trusted = known.trusted
         self._rested_at_s = 0.0
         self._command = STOP_ALL
@@ -340,14 +341,14 @@ class SimulatedMachine:
             self._answer(done=False)
             return
         self._homing = number
-        self._azimuth.seek_origin(now_s)
-        self._elevation.seek_origin(now_s)
+        for axis in self._mounted:
+            axis.seek_origin(now_s)
 
     def _finish_homing(self, now_s: float) -> None:
-        found = self._azimuth.feedback(now_s).at_origin and self._elevation.feedback(now_s).at_origin
+        found = all(axis.feedback(now_s).at_origin for axis in self._mounted)
         if found:
-            self._azimuth.set_zero(now_s)
-            self._elevation.set_zero(now_s)
+            for axis in self._mounted:
+                axis.set_zero(now_s)
         self._end_homing(failed=not found)
 
     def _end_homing(self, *, failed: bool) -> None:

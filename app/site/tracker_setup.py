@@ -7,7 +7,7 @@ from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
 from app.tracker.commands import CommandRejected
 from app.tracker.config import DriveKind, TrackerConfig
-from app.tracker.memory import TrackerMemory, TrackerState
+from app.tracker.memory import Pointing, StepName, TrackerMemory, TrackerState
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind
 
@@ -57,7 +57,7 @@ async def configure(model: SiteModel, config: TrackerConfig, actor: str) -> tupl
         changed=_changed(loop.config, config),
     )
     old = loop.config
-    rebuilt = (old.drive, old.azimuth, old.elevation) != (config.drive, config.azimuth, config.elevation)
+    rebuilt = _machine(old) != _machine(config)
     memory = _memory_for(loop.memory, old, config) if rebuilt else loop.memory
     await model.ledger.save_tracker(TrackerState(config, memory), (event,))
     if rebuilt:
@@ -78,7 +78,9 @@ async def _rebuild(model: SiteModel, loop: TrackerLoop, config: TrackerConfig) -
 
 
 def _memory_for(memory: TrackerMemory, old: TrackerConfig, new: TrackerConfig) -> TrackerMemory:
-    """Return what stays true with other limits or another drive: a new drive has no trusted zero."""
+    """Return what stays true with other limits, another mount or drive; these two have no trusted zero."""
+    if old.mount.kind != new.mount.kind:
+        return _remounted(memory)
     if old.drive == new.drive:
         return replace(memory, tracking_on=False)
     return replace(
@@ -88,6 +90,28 @@ def _memory_for(memory: TrackerMemory, old: TrackerConfig, new: TrackerConfig) -
         tracking_on=False,
         former_drive=old.drive,
     )
+
+
+def _remounted(memory: TrackerMemory) -> TrackerMemory:
+    """Return what stays true on another mount: neither zero nor mode nor corrections."""
+    void = {StepName.HOMING, StepName.MODE}
+    confirmations = {step: saved for step, saved in memory.confirmations.items() if step not in void}
+    return replace(
+        memory,
+        home=None,
+        home_lost="another mount was configured.",
+        tracking_on=False,
+        mode=None,
+        confirmations=confirmations,
+        sightings=(),
+        pointing=Pointing(),
+    )
+
+
+def _machine(config: TrackerConfig) -> tuple[object, ...]:
+    """Return what a drive and its zero depend on; a simulated one also has its light sensors made anew."""
+    light = config.hybrid if config.drive.kind is DriveKind.SIMULATED else None
+    return config.drive, config.azimuth, config.elevation, config.mount, light
 
 
 def _changed(old: TrackerConfig, new: TrackerConfig) -> list[str]:

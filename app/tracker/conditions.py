@@ -8,6 +8,7 @@ from app.tracker.commands import CommandRejected
 from app.tracker.memory import StepName
 from app.tracker.mind import Mind
 from app.tracker.motion import Feedback
+from app.tracker.mounts.abilities import zero_words
 from app.tracker.reason import Reason
 from app.tracker.runs import at_rest
 from app.tracker.snapshot import ActivityName, ShowPhase
@@ -121,7 +122,7 @@ def self_homing(mind: Mind) -> Reason | None:
     return Reason(
         "no_origin_switches",
         f"The drive of {mind.config.name} has no origin switches to search for.",
-        "Turn the panel to north and the horizon by hand, then press Set as zero.",
+        f"Turn each axis to its zero by hand ({zero_words(mind.config.mount)}), then press Set as zero.",
     )
 
 

@@ -34,6 +34,7 @@ from app.tracker.motion import (
     Position,
     RequestKind,
 )
+from app.tracker.mount import upright
 from app.tracker.mounts.absent import as_mounted, for_drive
 from app.tracker.observation import Observation
 from app.tracker.orders import obey
@@ -198,7 +199,7 @@ class Controller:
         if before is None and mind.started_at is not None and seen.now - mind.started_at <= RESUME_WITHIN:
             self._first_reading()
         turn = self._step(feedback, seen)
-        mind.activity, mind.target = turn.activity, turn.target
+        mind.activity, mind.target = turn.activity, upright(turn.target)
         mind.sun = seen.sun if turn.sun is None else turn.sun
         if turn.command is HALTED:
             return STANDING if feedback.homing and not isinstance(turn.activity, Homing) else HALTED

@@ -14,6 +14,7 @@ from app.tracker.motion import (
     Position,
     Velocity,
 )
+from app.tracker.mounts.abilities import axis_of
 from app.tracker.reason import Reason
 
 JUMP_FACTOR = 1.5
@@ -36,14 +37,14 @@ def drive_fault(name: str, feedback: Feedback) -> Reason | None:
     )
 
 
-def wiring_fault(name: str, feedback: Feedback) -> Reason | None:
+def wiring_fault(config: TrackerConfig, feedback: Feedback) -> Reason | None:
     """Return the axis whose two limit switches are pressed at once, which no position can do."""
     for axis in Axis:
         seen = axis_feedback(feedback, axis)
         if seen.at_lower_limit and seen.at_upper_limit:
             return Reason(
                 "limit_switch_wiring",
-                f"Both limit switches of {name}'s {axis} axis are pressed at once, which cannot be.",
+                f"Both limit switches of the {axis_of(config, axis)} are pressed at once, which cannot be.",
                 "Check the wiring of the switches, then press Reset fault.",
             )
     return None
@@ -80,12 +81,12 @@ def came_back(name: str, before: Feedback | None, feedback: Feedback) -> Reason:
     )
 
 
-def home_doubt(name: str, home: HomeTrust, feedback: Feedback) -> Reason | None:
+def home_doubt(config: TrackerConfig, home: HomeTrust, feedback: Feedback) -> Reason | None:
     """Return why a zero that was trusted no longer is, judged from one reading."""
     if home.boot_count != feedback.boot_count:
         return Reason(
             "drive_restarted",
-            f"The drive of {name} has restarted since the zero was set.",
+            f"The drive of {config.name} has restarted since the zero was set.",
             "Go to step 3, Homing, and set the zero again.",
         )
     if feedback.azimuth.homed and feedback.elevation.homed:
@@ -93,7 +94,7 @@ def home_doubt(name: str, home: HomeTrust, feedback: Feedback) -> Reason | None:
     axis = Axis.ELEVATION if feedback.azimuth.homed else Axis.AZIMUTH
     return Reason(
         "not_homed",
-        f"The drive of {name} reports that its {axis} axis has lost its zero.",
+        f"The drive reports that the {axis_of(config, axis)} has lost its zero.",
         "Go to step 3, Homing, and set the zero again.",
     )
 
@@ -105,27 +106,27 @@ def jump(config: TrackerConfig, before: Feedback, feedback: Feedback, elapsed_s:
         if moved_deg > config.axis(axis).speed_dps * elapsed_s * JUMP_FACTOR + JUMP_NOISE_DEG:
             return Reason(
                 "encoder_jump",
-                f"The {axis} position of {config.name} jumped by {moved_deg:.1f} degrees.",
+                f"The position of the {axis_of(config, axis)} jumped by {moved_deg:.1f} degrees.",
                 "Check the encoder and its cable, then set the zero again in step 3, Homing.",
             )
     return None
 
 
-def not_following(name: str, axis: Axis, watch: AxisWatch) -> Reason:
+def not_following(config: TrackerConfig, axis: Axis, watch: AxisWatch) -> Reason:
     """Return that an axis stays behind its command."""
     return Reason(
         "following_error",
-        f"The {axis} axis of {name} does not follow its command: it is {abs(watch.error_deg):.1f} "
-        "degrees behind.",
+        f"The {axis_of(config, axis)} does not follow its command: it is "
+        f"{abs(watch.error_deg):.1f} degrees behind.",
         "Look for something that blocks the axis, check motor and coupling, then press Reset fault.",
     )
 
 
-def wrong_way(name: str, axis: Axis) -> Reason:
+def wrong_way(config: TrackerConfig, axis: Axis) -> Reason:
     """Return that an axis moves against its command."""
     return Reason(
         "wrong_direction",
-        f"The {axis} axis of {name} moves opposite to its command.",
+        f"The {axis_of(config, axis)} moves opposite to its command.",
         "Check the motor's phases and the direction set in the drive, reset the fault, set the zero again.",
     )
 

@@ -16,7 +16,7 @@ from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import TrackerConfig
 from app.tracker.mode import Mode
 from app.tracker.motion import Feedback, LightPair, LightReading
-from app.tracker.mount import AxisTarget
+from app.tracker.mount import AxisTarget, second_axis
 from app.tracker.strategy import HybridConfig, Stepped
 
 ON_PLACE_DEG = 0.1
@@ -93,7 +93,7 @@ def correct(
     summed = replace(
         target,
         azimuth_deg=_sum_deg(config.azimuth, target.azimuth_deg, azimuth),
-        elevation_deg=_sum_deg(config.elevation, target.elevation_deg, elevation),
+        elevation_deg=_sum_deg(second_axis(config), target.elevation_deg, elevation),
     )
     return Corrected(now, target, summed, azimuth, elevation)
 

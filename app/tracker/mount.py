@@ -152,6 +152,13 @@ def mode_direction(
     return Orientation(wrap360(faced[0]), faced[1])
 
 
+def upright(wanted: Orientation | None) -> Orientation | None:
+    """Return the same direction with an elevation of at most 90 degrees."""
+    if wanted is None or wanted.elevation_deg <= 90.0:
+        return wanted
+    return Orientation(wrap360(wanted.azimuth_deg + 180.0), 180.0 - wanted.elevation_deg)
+
+
 def needs_move(
     config: TrackerConfig, measured: Orientation, target: Orientation, deadband_deg: float | None = None
 ) -> bool:

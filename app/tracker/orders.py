@@ -6,6 +6,7 @@ from app.tracker.activities import faulted, jogging, measuring, moving, proving,
 from app.tracker.activity import STOPPING, Faulted
 from app.tracker.commands import (
     Command,
+    CommandRejected,
     EndJog,
     GoToStart,
     Home,
@@ -28,6 +29,7 @@ from app.tracker.commands import (
     Track,
 )
 from app.tracker.mind import NOWHERE, Mind
+from app.tracker.mounts.absent import absent_axis
 from app.tracker.selection import select_mode
 from app.tracker.snapshot import EventKind
 from app.tracker.transitions import leave, switch_tracking_off
@@ -35,6 +37,7 @@ from app.tracker.transitions import leave, switch_tracking_off
 
 def obey(mind: Mind, command: Command) -> None:
     """Change the tracker's mind, or raise `CommandRejected` and change nothing but a refused press."""
+    _refuse_absent_axis(mind, command)
     match command:
         case Stop():
             stop(mind)
@@ -58,6 +61,13 @@ def stop(mind: Mind) -> None:
     if not isinstance(mind.activity, Faulted):
         mind.activity = STOPPING
     mind.say(EventKind.STOPPED, f"{mind.config.name} was stopped.")
+
+
+def _refuse_absent_axis(mind: Mind, command: Command) -> None:
+    """Raise `CommandRejected` for an axis that the mount does not have."""
+    by_axis = Jog | Step | ProveDirection | ProveScale | MeasureStop | MeasureLinkLoss
+    if isinstance(command, by_axis) and command.axis not in mind.config.mount.axes:
+        raise CommandRejected(absent_axis(mind.config))
 
 
 def _obey_by_hand(mind: Mind, command: Jog | EndJog | Step | SetZero | Home | SelectMode) -> None:

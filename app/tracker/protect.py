@@ -21,6 +21,7 @@ from app.tracker.axes import Axis
 from app.tracker.follow import watch
 from app.tracker.mind import HALTED, Mind
 from app.tracker.motion import AxisCommand, DriveCommand, Feedback, Halt
+from app.tracker.mounts.abilities import axis_of
 from app.tracker.reason import Reason
 from app.tracker.snapshot import EventKind
 from app.tracker.transitions import fail, interrupt, leave, lose_home
@@ -69,7 +70,7 @@ def protect(mind: Mind, before: Feedback | None, feedback: Feedback, elapsed_s: 
         _compare(mind, before, feedback, elapsed_s)
     home = mind.memory.home
     if home is not None and not isinstance(mind.activity, Zeroing):
-        doubt = guards.home_doubt(mind.config.name, home, feedback)
+        doubt = guards.home_doubt(mind.config, home, feedback)
         if doubt is not None:
             _doubt_home(mind, doubt)
 
@@ -81,7 +82,7 @@ def _refuse_fault(mind: Mind, feedback: Feedback) -> None:
     if reason is not None:
         lose_home(mind, reason)
     else:
-        reason = guards.wiring_fault(name, feedback)
+        reason = guards.wiring_fault(mind.config, feedback)
     if reason is not None and not isinstance(mind.activity, Faulted):
         fail(mind, reason)
 
@@ -133,7 +134,7 @@ def obey_switches(mind: Mind, command: DriveCommand, feedback: Feedback) -> Driv
         if guards.heads_into_switch(told, seen, tolerance_deg):
             reason = Reason(
                 "limit_switch",
-                f"The {axis} axis of {mind.config.name} has reached its limit switch.",
+                f"The {axis_of(mind.config, axis)} has reached its limit switch.",
                 "Move it away from the switch by hand and check the zero.",
             )
             mind.say(EventKind.LIMIT_REACHED, reason.message, axis=axis)
@@ -163,10 +164,10 @@ def check_following(mind: Mind, feedback: Feedback, now: datetime) -> None:
     mind.watches = watches
     for axis, watched in watches.items():
         if watched.turns_wrongly(guards.axis_feedback(feedback, axis).position_deg, now):
-            reason = guards.wrong_way(mind.config.name, axis)
+            reason = guards.wrong_way(mind.config, axis)
             lose_home(mind, reason)
         elif not watched.follows(now):
-            reason = guards.not_following(mind.config.name, axis, watched)
+            reason = guards.not_following(mind.config, axis, watched)
         else:
             continue
         mind.watches = {}

@@ -27,9 +27,9 @@ COLUMNS = (
 )
 """`elapsed_s`: seconds since the recording began, of the machine. `sun_time_s`: seconds of sun time since
 `RecordingInfo.sun_begin_at`. `sun_elevation_deg` is apparent (refracted) if the tracker refracts. Angles are
-of the sky except that azimuth setpoints and measurements are axis angles wrapped to [0, 360), and that
-corrections are what light sensors add to the computed axis angles. What was not known is NaN. `activity` is
-the index in `list(ActivityName)`."""
+of the sky except that setpoints and measurements of an azimuth-elevation mount are axis angles (azimuth
+wrapped to [0, 360)), and that corrections are what light sensors add to the computed axis angles. What was
+not known is NaN. `activity` is the index in `list(ActivityName)`."""
 
 
 class RecordingKind(StrEnum):

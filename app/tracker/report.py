@@ -8,12 +8,12 @@ from app.sun.position import SunPosition
 from app.tracker.activities.tracking import sun_height_deg
 from app.tracker.activity import NAMES, AxisPair, Faulted, Showing, Tracking, TrackPhase
 from app.tracker.conditions import Action, unmet
-from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.config import MountKind, Orientation, TrackerConfig
 from app.tracker.hybrid import Corrected
 from app.tracker.mind import Mind
-from app.tracker.mode import Mode
 from app.tracker.motion import AxisFeedback, Feedback, Position
 from app.tracker.mount import sky
+from app.tracker.mounts.abilities import default_mode
 from app.tracker.progress import step_progress
 from app.tracker.reason import Reason
 from app.tracker.runs import arrived, at_rest, close_to
@@ -36,7 +36,7 @@ def snapshot(mind: Mind, at: datetime) -> Snapshot:
         tick=mind.ticks,
         activity=NAMES[type(mind.activity)],
         activity_text=activity_text(mind),
-        mode=mind.memory.mode or Mode.DUAL,
+        mode=mind.memory.mode or default_mode(mind.config.mount),
         orientation=mind.memory.orientation,
         tracking_on=mind.memory.tracking_on,
         sun=mind.sun,
@@ -51,7 +51,7 @@ def snapshot(mind: Mind, at: datetime) -> Snapshot:
         in_position=_in_position(mind, fresh),
         home_trusted=mind.memory.home is not None,
         azimuth=_axis_state(fresh.azimuth) if fresh else None,
-        elevation=_axis_state(fresh.elevation) if fresh else None,
+        elevation=_axis_state(fresh.elevation) if fresh and not mind.config.mount.single_axis else None,
         fault=mind.activity.reason if isinstance(mind.activity, Faulted) else None,
         waiting=_waiting(mind),
         notices=_notices(mind),
@@ -64,20 +64,40 @@ def snapshot(mind: Mind, at: datetime) -> Snapshot:
 
 def frame(mind: Mind) -> tuple[float, ...]:
     """Return the last tick in the order of `recording.COLUMNS`; elapsed and sun time are NaN."""
-    sun, target, setpoint = mind.sun, mind.target, mind.setpoint
+    sun, target = mind.sun, mind.target
     feedback = mind.seen.feedback if mind.seen else None
     return (
         nan,
         nan,
         *(_NO_ORIENTATION if sun is None else (sun.azimuth_deg, sun_height_deg(mind.config, sun))),
         *(_NO_ORIENTATION if target is None else (target.azimuth_deg, target.elevation_deg)),
-        nan if setpoint.azimuth_deg is None else wrap360(setpoint.azimuth_deg),
-        nan if setpoint.elevation_deg is None else setpoint.elevation_deg,
-        nan if feedback is None else wrap360(feedback.azimuth.position_deg),
-        nan if feedback is None else feedback.elevation.position_deg,
+        *_told(mind),
+        *_stands(mind, feedback),
         *_corrections(mind),
         _INDEX[type(mind.activity)],
     )
+
+
+def _told(mind: Mind) -> tuple[float, float]:
+    """Return the set-point: of the axes on an azimuth-elevation mount, else of the sky."""
+    if mind.config.mount.kind is not MountKind.AZIMUTH_ELEVATION:
+        told = _setpoint(mind)
+        return _NO_ORIENTATION if told is None else (told.azimuth_deg, told.elevation_deg)
+    azimuth_deg, elevation_deg = mind.setpoint.azimuth_deg, mind.setpoint.elevation_deg
+    return (
+        nan if azimuth_deg is None else wrap360(azimuth_deg),
+        nan if elevation_deg is None else elevation_deg,
+    )
+
+
+def _stands(mind: Mind, feedback: Feedback | None) -> tuple[float, float]:
+    """Return where the panel stands: axis angles on an azimuth-elevation mount, else its direction."""
+    if feedback is None:
+        return _NO_ORIENTATION
+    if mind.config.mount.kind is not MountKind.AZIMUTH_ELEVATION:
+        faced = _faced(mind, feedback)
+        return _NO_ORIENTATION if faced is None else (faced.azimuth_deg, faced.elevation_deg)
+    return wrap360(feedback.azimuth.position_deg), feedback.elevation.position_deg
 
 
 def _corrections(mind: Mind) -> tuple[float, float]:
@@ -169,7 +189,9 @@ def _in_position(mind: Mind, feedback: Feedback | None) -> bool:
 
 
 def _axis_state(axis: AxisFeedback) -> AxisState:
-    return AxisState(axis.moving, axis.homed, axis.at_lower_limit, axis.at_upper_limit, axis.at_origin)
+    return AxisState(
+        axis.moving, axis.homed, axis.at_lower_limit, axis.at_upper_limit, axis.at_origin, axis.position_deg
+    )
 
 
 def _waiting(mind: Mind) -> tuple[Reason, ...]:

@@ -1,17 +1,19 @@
 """What the operator selects: mode and orientation, and whether the panel has been there."""
 
 from math import isfinite
-from typing import assert_never
 
 from app.angles import separation_deg, wrap180
+from app.sun.trigonometry import SCALAR
 from app.tracker.commands import SelectMode
 from app.tracker.conditions import Action, demand
-from app.tracker.config import Orientation
+from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import Confirmation, StepName
 from app.tracker.mind import Mind
 from app.tracker.mode import Mode
 from app.tracker.motion import Feedback
 from app.tracker.mount import aim, sky
+from app.tracker.mounts.abilities import abilities
+from app.tracker.mounts.kinematics import FIRST_FOLLOWS, SECOND_FOLLOWS, angles, direction
 from app.tracker.reason import Reason
 from app.tracker.runs import at_rest
 from app.tracker.snapshot import EventKind
@@ -20,7 +22,9 @@ from app.tracker.snapshot import EventKind
 def select_mode(mind: Mind, command: SelectMode) -> None:
     """Store mode and orientation, or raise `CommandRejected`; step 4 is done once the panel is there."""
     orientation = command.orientation or mind.memory.orientation
-    demand(mind, Action.SET_MODE, _held_out_of_reach(mind, command.mode, orientation))
+    impossible = mode_absent(mind.config, command.mode)
+    beyond = None if impossible else _held_out_of_reach(mind, command.mode, orientation)
+    demand(mind, Action.SET_MODE, impossible, beyond)
     confirmations = {
         step: saved for step, saved in mind.memory.confirmations.items() if step is not StepName.MODE
     }
@@ -30,12 +34,24 @@ def select_mode(mind: Mind, command: SelectMode) -> None:
         confirm_mode(mind, mind.actor)
 
 
+def mode_absent(config: TrackerConfig, mode: Mode) -> Reason | None:
+    """Return that the mount does not have a mode."""
+    known = abilities(config.mount)
+    if mode in known.modes:
+        return None
+    return Reason(
+        "mode_not_possible",
+        f"{config.name} stands on a {known.title.lower()} and cannot do the mode {mode}.",
+        f"Choose one of these: {', '.join(known.modes)}.",
+    )
+
+
 def at_orientation(mind: Mind, feedback: Feedback) -> bool:
     """Return whether the panel stands where the selected mode holds it; dual-axis holds nothing."""
     mode = mind.memory.mode
     if mode is None:
         return False
-    if mode is Mode.DUAL:
+    if mode is Mode.DUAL or (mind.config.mount.single_axis and mode is not Mode.FIXED):
         return True
     if mind.memory.home is None or not at_rest(feedback):
         return False
@@ -59,6 +75,7 @@ def out_of_reach(mind: Mind, orientation: Orientation) -> Reason | None:
     """Return that an orientation lies beyond the soft limits by more than the deadband."""
     config = mind.config
     if isfinite(orientation.azimuth_deg) and isfinite(orientation.elevation_deg):
+        orientation = _nearest(config, orientation)
         reached = aim(config, mind.memory.pointing, orientation, _near_deg(mind))
         if not reached.limited:
             return None
@@ -71,39 +88,52 @@ def out_of_reach(mind: Mind, orientation: Orientation) -> Reason | None:
     return Reason(
         "beyond_limits",
         f"{config.name} cannot face azimuth {orientation.azimuth_deg:g}, elevation "
-        f"{orientation.elevation_deg:g} degrees: its axes turn from {config.azimuth.minimum_deg:g} to "
-        f"{config.azimuth.maximum_deg:g} and from {config.elevation.minimum_deg:g} to "
-        f"{config.elevation.maximum_deg:g} degrees.",
+        f"{orientation.elevation_deg:g} degrees: {_ranges(config)}.",
         "Choose an orientation within the soft limits.",
     )
 
 
+def _ranges(config: TrackerConfig) -> str:
+    """Return how far the axes turn, in a part of a sentence."""
+    turns = [
+        f"from {config.axis(axis).minimum_deg:g} to {config.axis(axis).maximum_deg:g}"
+        for axis in config.mount.axes
+    ]
+    return f"its {'axis turns' if len(turns) == 1 else 'axes turn'} {' and '.join(turns)} degrees"
+
+
+def _nearest(config: TrackerConfig, orientation: Orientation) -> Orientation:
+    """Return the direction that a single axis means by an orientation: the nearest that it can face."""
+    if not config.mount.single_axis:
+        return orientation
+    held = angles(config.mount, orientation.azimuth_deg, orientation.elevation_deg, SCALAR)
+    return Orientation(*direction(config.mount, *held, SCALAR))
+
+
 def _held_out_of_reach(mind: Mind, mode: Mode, orientation: Orientation) -> Reason | None:
     """Judge only the axes that the mode holds: the others are judged in the middle of their range."""
-    azimuth, elevation = mind.config.azimuth, mind.config.elevation
-    middle_azimuth_deg = (azimuth.minimum_deg + azimuth.maximum_deg) / 2.0
-    middle_elevation_deg = (elevation.minimum_deg + elevation.maximum_deg) / 2.0
-    match mode:
-        case Mode.FIXED:
-            return out_of_reach(mind, orientation)
-        case Mode.AZIMUTH:
-            return out_of_reach(mind, Orientation(middle_azimuth_deg, orientation.elevation_deg))
-        case Mode.ELEVATION:
-            return out_of_reach(mind, Orientation(orientation.azimuth_deg, middle_elevation_deg))
-        case Mode.DUAL:
-            return None
-    assert_never(mode)
+    config = mind.config
+    if mode is Mode.FIXED:
+        return out_of_reach(mind, orientation)
+    if mode is Mode.DUAL or config.mount.single_axis:
+        return None
+    first_deg, second_deg = angles(config.mount, orientation.azimuth_deg, orientation.elevation_deg, SCALAR)
+    if mode in FIRST_FOLLOWS:
+        first_deg = (config.azimuth.minimum_deg + config.azimuth.maximum_deg) / 2.0
+    if mode in SECOND_FOLLOWS:
+        second_deg = (config.elevation.minimum_deg + config.elevation.maximum_deg) / 2.0
+    return out_of_reach(mind, Orientation(*direction(config.mount, first_deg, second_deg, SCALAR)))
 
 
 def _off_held_deg(mind: Mind, mode: Mode, feedback: Feedback) -> float:
     """Return how far the axes that the mode holds are off, the larger of both."""
-    faced = sky(
-        mind.config, mind.memory.pointing, feedback.azimuth.position_deg, feedback.elevation.position_deg
-    )
-    held = mind.memory.orientation
-    azimuth_deg = abs(wrap180(faced.azimuth_deg - held.azimuth_deg)) if mode is not Mode.AZIMUTH else 0.0
-    elevation_deg = abs(faced.elevation_deg - held.elevation_deg) if mode is not Mode.ELEVATION else 0.0
-    return max(azimuth_deg, elevation_deg)
+    config, held = mind.config, mind.memory.orientation
+    stands = sky(config, mind.memory.pointing, feedback.azimuth.position_deg, feedback.elevation.position_deg)
+    faced = angles(config.mount, stands.azimuth_deg, stands.elevation_deg, SCALAR)
+    wanted = angles(config.mount, held.azimuth_deg, held.elevation_deg, SCALAR)
+    first_deg = 0.0 if mode in FIRST_FOLLOWS else abs(wrap180(faced[0] - wanted[0]))
+    second_deg = 0.0 if mode in SECOND_FOLLOWS else abs(faced[1] - wanted[1])
+    return max(first_deg, second_deg)
 
 
 def _near_deg(mind: Mind) -> float:

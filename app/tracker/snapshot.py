@@ -48,13 +48,14 @@ class Pair:
 
 @dataclass(frozen=True, slots=True)
 class AxisState:
-    """Switches and trust of one axis as the panel shows them."""
+    """Switches and trust of one axis as the panel shows them, and its own angle."""
 
     moving: bool
     homed: bool
     at_lower_limit: bool
     at_upper_limit: bool
     at_origin: bool
+    position_deg: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,21 +19,15 @@ from app.tracker.activity import (
     TrackPhase,
     Zeroing,
 )
-from app.tracker.axes import Axis
 from app.tracker.mind import Mind
 from app.tracker.mount import sky
+from app.tracker.mounts.abilities import axis_words
 from app.tracker.programs.stepped import clock_text
 from app.tracker.progress import step_progress
 from app.tracker.pursuit import trigger_deg
 from app.tracker.snapshot import ShowPhase
 from app.tracker.strategy import Continuous, Deadband, EncoderDeadband, Interval, Stepped
 
-_JOG = {
-    (Axis.AZIMUTH, 1): "azimuth east (clockwise)",
-    (Axis.AZIMUTH, -1): "azimuth west (anticlockwise)",
-    (Axis.ELEVATION, 1): "elevation up",
-    (Axis.ELEVATION, -1): "elevation down",
-}
 _MOVING = {
     MoveKind.MOVE: "Moving to the orientation that was asked for",
     MoveKind.PARK: "Moving to the park position",
@@ -66,7 +60,7 @@ def _doing(mind: Mind, activity: Activity) -> str:
         case Holding():
             return "Holding; tracking waits for the operator" if mind.memory.tracking_on else "Holding"
         case Jogging():
-            return f"Jogging {_JOG[activity.axis, activity.direction]}, {activity.speed}"
+            return f"Jogging {_jog(mind, activity)}, {activity.speed}"
         case Moving() | Measuring():
             return _by_order(activity)
         case Zeroing() | Homing() | Stopping():
@@ -86,6 +80,13 @@ def _by_order(activity: Moving | Measuring) -> str:
     if activity.speed is not None:
         return "Stop test: coming to rest" if activity.asked else "Stop test: gathering speed"
     return "Link-loss test: the drive is told nothing" if activity.asked else "Link-loss test: moving slowly"
+
+
+def _jog(mind: Mind, jogging: Jogging) -> str:
+    words = axis_words(mind.config.mount, jogging.axis)
+    if words is None:
+        return jogging.axis
+    return f"{words.title.lower()} {words.grows if jogging.direction > 0 else words.falls}"
 
 
 def _tracking(mind: Mind, tracking: Tracking) -> str:

@@ -51,7 +51,7 @@ def test_zero_needs_axes_at_rest_a_drive_and_an_axis() -> None:
     plant = Plant()
     assert plant.reasons("zero") == {"drive_unreachable"}
     plant.tick()
-    with pytest.raises(CommandRejected, match="No axis was named"):
+    with pytest.raises(CommandRejected, match="No axis of this mount was named"):
         plant.ask(SetZero(()))
     script = Scripted()
     script.reading = replace(script.reading, azimuth=replace(script.reading.azimuth, moving=True))
@@ -208,7 +208,7 @@ def test_a_drive_that_reports_a_lost_zero_is_believed(axis: Axis) -> None:
     lost = AxisFeedback(0.0, 0.0, moving=False, homed=False)
     script.reading = replace(script.reading, **{axis.value: lost})
     script.tick()
-    assert f"its {axis} axis has lost its zero" in script.happened(EventKind.HOME_LOST)[0].message
+    assert f"the {axis} axis of Tracker 1 has lost its zero" in script.happened(EventKind.HOME_LOST)[0].message
 
 
 def test_an_encoder_jump_ends_the_trust_and_an_ordinary_stop_does_not() -> None:

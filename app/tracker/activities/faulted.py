@@ -41,7 +41,7 @@ def step(mind: Mind, faulted: Faulted, feedback: Feedback) -> Turn:
 
 def _clear(mind: Mind, feedback: Feedback) -> None:
     """Hold again, unless the limit switches still contradict each other."""
-    wiring = wiring_fault(mind.config.name, feedback)
+    wiring = wiring_fault(mind.config, feedback)
     if wiring is not None:
         mind.activity = Faulted(wiring)
         mind.say(EventKind.FAULT_RAISED, f"The fault is still there: {wiring.message}", code=wiring.code)

@@ -7,6 +7,7 @@ from app.tracker.conditions import Action, unmet
 from app.tracker.guards import axis_feedback, room_deg
 from app.tracker.mind import Mind, Turn
 from app.tracker.motion import HALT, AxisCommand, AxisFeedback, DriveCommand, Feedback, Position, Velocity
+from app.tracker.mounts.abilities import axis_of, axis_title
 from app.tracker.reason import Reason
 from app.tracker.snapshot import EventKind
 from app.tracker.transitions import leave, switch_tracking_off
@@ -43,7 +44,11 @@ def end(mind: Mind, jogging: Jogging, why: str, outcome: str) -> None:
     """End the jog for good."""
     mind.kill_press(jogging.press_id)
     mind.activity = HOLDING
-    mind.say(EventKind.JOG_ENDED, f"The jog of {jogging.axis} ended: {why}", outcome=outcome)
+    mind.say(
+        EventKind.JOG_ENDED,
+        f"The jog of {axis_title(mind.config.mount, jogging.axis)} ended: {why}",
+        outcome=outcome,
+    )
 
 
 def step(mind: Mind, jogging: Jogging, feedback: Feedback) -> Turn:
@@ -94,7 +99,10 @@ def _begin(mind: Mind, command: Jog) -> None:
         mind.now + min(command.lease, JOG_LEASE),
     )
     sign = "+" if command.direction > 0 else "-"
-    mind.say(EventKind.JOG_STARTED, f"Jog of {command.axis} in direction {sign}, {command.speed}.")
+    mind.say(
+        EventKind.JOG_STARTED,
+        f"Jog of {axis_title(mind.config.mount, command.axis)} in direction {sign}, {command.speed}.",
+    )
 
 
 def _against(mind: Mind, command: Jog) -> tuple[Reason, ...]:
@@ -126,7 +134,7 @@ def _in_the_way(mind: Mind, feedback: Feedback, command: Jog) -> tuple[Reason, .
         reasons.append(
             Reason(
                 "at_limit_switch",
-                f"The {command.axis} axis of {mind.config.name} stands on its limit switch.",
+                f"The {axis_of(mind.config, command.axis)} stands on its limit switch.",
                 "It can only be moved away from it, the other way.",
             )
         )
@@ -135,7 +143,7 @@ def _in_the_way(mind: Mind, feedback: Feedback, command: Jog) -> tuple[Reason, .
         reasons.append(
             Reason(
                 "at_soft_limit",
-                f"The {command.axis} axis of {mind.config.name} stands at its soft limit.",
+                f"The {axis_of(mind.config, command.axis)} stands at its soft limit.",
                 "Move it the other way, or change the limit in the tracker's settings.",
             )
         )

@@ -12,6 +12,7 @@ from app.tracker.guards import axis_feedback
 from app.tracker.mind import Mind, Turn
 from app.tracker.motion import Feedback
 from app.tracker.mount import aim, sky
+from app.tracker.mounts.abilities import axis_of, axis_title
 from app.tracker.reason import Reason
 from app.tracker.runs import arrived, new_run
 from app.tracker.selection import at_orientation, confirm_mode, out_of_reach
@@ -42,7 +43,7 @@ def step_by(mind: Mind, command: Step) -> None:
     target_deg = axis_feedback(feedback, command.axis).position_deg + command.degrees
     on_azimuth = command.axis is Axis.AZIMUTH
     target = AxisPair(target_deg if on_azimuth else None, None if on_azimuth else target_deg)
-    text = f"Step of {command.axis} by {command.degrees:+g} degrees."
+    text = f"Step of {axis_title(mind.config.mount, command.axis)} by {command.degrees:+g} degrees."
     _begin(mind, feedback, target, MoveKind.STEP, text)
 
 
@@ -110,6 +111,6 @@ def _step_room(mind: Mind, command: Step) -> Reason | None:
         return None
     return Reason(
         "at_soft_limit",
-        f"This step would take the {command.axis} axis of {mind.config.name} beyond its soft limit.",
+        f"This step would take the {axis_of(mind.config, command.axis)} beyond its soft limit.",
         "Make a smaller step, or move the other way.",
     )

@@ -11,6 +11,7 @@ from app.tracker.guards import axis_feedback
 from app.tracker.memory import HomeTrust, StepName
 from app.tracker.mind import HALTED, NOWHERE, Mind, Turn
 from app.tracker.motion import DriveCommand, DriveRequest, Feedback, RequestKind
+from app.tracker.mounts.abilities import axis_title
 from app.tracker.reason import Reason
 from app.tracker.runs import at_rest
 from app.tracker.selection import confirm_step
@@ -29,10 +30,14 @@ _REQUESTS = {
 def set_zero(mind: Mind, command: SetZero) -> None:
     """Begin to call the present position zero, or raise `CommandRejected`."""
     demand(mind, Action.ZERO)
-    axes = tuple(axis for axis in Axis if axis in command.axes)
+    axes = tuple(axis for axis in mind.config.mount.axes if axis in command.axes)
     if not axes:
         raise CommandRejected(
-            Reason("no_axis", "No axis was named to be set as zero.", "Name azimuth, elevation or both.")
+            Reason(
+                "no_axis",
+                "No axis of this mount was named to be set as zero.",
+                f"Name one or more of these: {', '.join(mind.config.mount.axes)}.",
+            )
         )
     mind.setpoint = NOWHERE
     until = mind.now + ZERO_PATIENCE
@@ -100,15 +105,18 @@ def _read_back(mind: Mind, zeroing: Zeroing, feedback: Feedback) -> Turn:
     for axis in zeroing.axes:
         seen = axis_feedback(feedback, axis)
         if abs(seen.position_deg) > max(ZERO_TOLERANCE_DEG, mind.config.in_position_deg):
-            why = f"the {axis} axis reads {seen.position_deg:.2f} degrees instead of 0."
+            title = axis_title(mind.config.mount, axis)
+            why = f"the {title} axis reads {seen.position_deg:.2f} degrees instead of 0."
             return _zero_failed(mind, why)
         if not seen.homed:
-            return _zero_failed(mind, f"the drive does not report the {axis} axis as homed.")
+            return _zero_failed(
+                mind, f"the drive does not report the {axis_title(mind.config.mount, axis)} axis as homed."
+            )
     mind.zeroed |= frozenset(zeroing.axes)
     mind.activity = HOLDING
-    named = " and ".join(zeroing.axes)
+    named = " and ".join(axis_title(mind.config.mount, axis) for axis in zeroing.axes)
     mind.say(EventKind.ZERO_SET, f"Zero set for {named}, and read back.", axes=list(zeroing.axes))
-    if mind.zeroed == frozenset(Axis) and feedback.azimuth.homed and feedback.elevation.homed:
+    if mind.zeroed.issuperset(mind.config.mount.axes) and feedback.azimuth.homed and feedback.elevation.homed:
         _trust(mind, feedback, zeroing.actor, "set by hand")
     return Turn(HOLDING)
 
@@ -136,7 +144,7 @@ def _homing_failed(mind: Mind, why: str) -> Turn:
 def _homing_time(mind: Mind) -> timedelta:
     """Return twice the time for both full ranges at the slow hand speed, and a minute."""
     seconds = HOMING_GRACE_S
-    for axis in Axis:
+    for axis in mind.config.mount.axes:
         config = mind.config.axis(axis)
         seconds += 2.0 * (config.maximum_deg - config.minimum_deg) / config.jog_slow_dps
     return timedelta(seconds=seconds)

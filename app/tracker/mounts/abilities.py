@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from app.tracker.axes import Axis
-from app.tracker.config import MountConfig, MountKind
+from app.tracker.config import MountConfig, MountKind, TrackerConfig
 from app.tracker.mode import Mode
 
 
@@ -132,6 +132,23 @@ def axis_words(mount: MountConfig, axis: Axis) -> AxisWords | None:
     """Return the words for an axis, None if the mount does not have it."""
     known = abilities(mount)
     return known.first if axis is Axis.AZIMUTH else known.second
+
+
+def default_mode(mount: MountConfig) -> Mode:
+    """Return the mode in which every axis of a mount follows the sun."""
+    return Mode.AZIMUTH if mount.single_axis else Mode.DUAL
+
+
+def zero_words(mount: MountConfig) -> str:
+    """Return where the axes of a mount are zero, in one part of a sentence."""
+    known = abilities(mount)
+    words = [known.first] if known.second is None else [known.first, known.second]
+    return "; ".join(f"{axis.title.lower()}: {axis.zero}" for axis in words)
+
+
+def axis_of(config: TrackerConfig, axis: Axis) -> str:
+    """Return "azimuth axis of T1", for a sentence."""
+    return f"{axis_title(config.mount, axis)} axis of {config.name}"
 
 
 def axis_title(mount: MountConfig, axis: Axis) -> str:
