@@ -7,6 +7,7 @@ import typer
 
 from app.drives.line import list_ports
 from app.drives.sim_server import Doors, run_drive_sim
+from app.sun.position import Location
 from app.tracker.config import Parity, SerialConfig
 
 TCP = "127.0.0.1:5020"
@@ -35,6 +36,8 @@ def drive_sim(
         Path | None, typer.Option(help="File in which the drive remembers its position.")
     ] = None,
     watchdog_ms: Annotated[int, typer.Option(min=50, help="Time-out of the drive's own watchdog.")] = 500,
+    lat: Annotated[float | None, typer.Option(help="With --lon: latitude, for photo-sensors.")] = None,
+    lon: Annotated[float | None, typer.Option(help="With --lat: longitude, east positive.")] = None,
     *,
     paced: Annotated[bool, typer.Option(help="Keep the pace of the baud rate on a pseudo-terminal.")] = False,
 ) -> None:
@@ -44,7 +47,8 @@ def drive_sim(
     units = unit or [1]
     if not all(1 <= one <= 247 for one in units) and (rtu or rtu_over_tcp):
         raise ValueError("A unit id on a serial line lies between 1 and 247.")
-    run_drive_sim(doors, profile, units=units, memory=memory, watchdog_ms=watchdog_ms)
+    location = None if lat is None or lon is None else Location(lat, lon)
+    run_drive_sim(doors, profile, units=units, memory=memory, watchdog_ms=watchdog_ms, location=location)
 
 
 @drive.command()

@@ -1,5 +1,6 @@
 """The one place that knows which kinds of drives there are."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import assert_never
 from urllib.parse import quote
@@ -12,20 +13,30 @@ from app.drives.corrected import corrected
 from app.drives.drive import Drive
 from app.drives.profile import load_profile
 from app.drives.simulated import SimulatedDrive
+from app.drives.sunlight import Sunlight
 from app.drives.transmitted import TransmittedDrive, has_actuators, in_millimetres
+from app.sun.position import SunPosition
 from app.tracker.config import DriveKind, TrackerConfig
 
 
 class DriveFactory:
     """Makes drives, and keeps the buses that they share; a process has one.
 
-    A simulated drive keeps its position memory in the data folder; without one it forgets.
+    A simulated drive keeps its position memory in the data folder; without one it forgets. If its tracker is
+    corrected by light, it has photo-sensors, and `sun` says where the sun stands over them.
     """
 
-    def __init__(self, clock: Clock, data_dir: Path | None = None) -> None:
+    def __init__(
+        self,
+        clock: Clock,
+        data_dir: Path | None = None,
+        *,
+        sun: Callable[[], SunPosition | None] = lambda: None,
+    ) -> None:
         self.buses = Buses(clock)
         self._clock = clock
         self._data_dir = data_dir
+        self._sun = sun
 
     def make(self, config: TrackerConfig) -> Drive:
         """Return the drive of a tracker, not yet connected, or raise `ProfileError` for a bad profile."""
@@ -44,7 +55,8 @@ class DriveFactory:
                 assert_never(never)
 
     def _simulated(self, config: TrackerConfig) -> Drive:
-        return SimulatedDrive(config, self._clock, memory=self._memory(config.tracker_id))
+        light = Sunlight(config, self._sun) if config.hybrid.enabled else None
+        return SimulatedDrive(config, self._clock, memory=self._memory(config.tracker_id), light=light)
 
     def _memory(self, tracker_id: str) -> Path | None:
         if self._data_dir is None:

@@ -20,6 +20,8 @@ from app.drives.rtu_server import RtuServer
 from app.drives.sim_plc import SimulatedPlc
 from app.drives.simulated import SimulatedDrive
 from app.drives.simulated_machine import SimulatedMachine
+from app.drives.sunlight import Sunlight
+from app.sun.position import Location, sun_position
 from app.tracker.axes import Axis
 from app.tracker.config import SerialConfig, TrackerConfig
 
@@ -83,9 +85,11 @@ def run_drive_sim(
     memory: Path | None = None,
     watchdog_ms: int = 500,
     inject: Sequence[str] = (),
+    location: Location | None = None,
 ) -> None:
     """Serve simulated drives, one for each unit id, until SIGTERM or SIGINT; TCP port 0 takes a free one.
 
+    With a `location` they have photo-sensors under the sun of that place and of this computer's clock.
     `inject` plays faults on the first from the start, each as `kind`, `kind:axis` or `kind:axis:amount`.
     Raises `ProfileError` for a bad profile, `ValueError` for a bad address or fault, `OSError` for a taken
     port.
@@ -95,12 +99,24 @@ def run_drive_sim(
     clock = SystemClock()
     config = TrackerConfig("simulated", "Simulated tracker")
     drives = {
-        unit: SimulatedDrive(config, clock, memory=_memory_of(memory, unit, units), watchdog=watchdog)
+        unit: SimulatedDrive(
+            config,
+            clock,
+            memory=_memory_of(memory, unit, units),
+            watchdog=watchdog,
+            light=_light(config, clock, location),
+        )
         for unit in units
     }
     for fault in faults:
         drives[units[0]].inject(fault)
     asyncio.run(_run(doors, load_profile(profile), drives, clock))
+
+
+def _light(config: TrackerConfig, clock: Clock, location: Location | None) -> Sunlight | None:
+    if location is None:
+        return None
+    return Sunlight(config, lambda: sun_position(config.algorithm, location, clock.now()))
 
 
 def parse_address(text: str) -> tuple[str, int]:

@@ -129,8 +129,8 @@ def _site(
         synchronised=ntp_synchronised,
         not_before=_newest_event(writer),
     )
-    factory = DriveFactory(clock, settings.data_dir)
-    return Site(
+    factory = DriveFactory(clock, settings.data_dir, sun=lambda: site.model.sun())
+    site = Site(
         clock,
         factory.make,
         beginning.site,
@@ -146,6 +146,7 @@ def _site(
         ),
         tools=DriveProbe(factory.buses),
     )
+    return site
 
 
 def _newest_event(writer: Writer) -> datetime:

@@ -5,6 +5,7 @@ from datetime import UTC, datetime, timedelta
 
 from app.clock import VirtualClock
 from app.drives.simulated import SimulatedDrive
+from app.drives.sunlight import Sunlight
 from app.site.sky import Sky
 from app.sun.position import Location, SunPosition
 from app.tracker.commands import Command, Home
@@ -36,7 +37,9 @@ class Rehearsal:
         self.location = location
         self.site_time = begin.astimezone(UTC)
         self.clock = VirtualClock(self.site_time)
-        self.drive = SimulatedDrive(config, self.clock, watchdog=None)
+        self._lit: SunPosition | None = None
+        light = Sunlight(config, lambda: self._lit) if config.hybrid.enabled else None
+        self.drive = SimulatedDrive(config, self.clock, watchdog=None, light=light)
         self.controller = Controller(config, TrackerMemory(pointing=pointing), self.drive.capabilities)
         self._sky = Sky()
 
@@ -65,10 +68,11 @@ class Rehearsal:
     def tick(self, sun: SunPosition | None = None) -> tuple[Event, ...]:
         """Read, decide and write once at the present instant; the sun may come worked out in advance."""
         config, location, at = self.config, self.location, self.site_time
+        self._lit = sun or self._sky.sun(location, config.algorithm, at)
         observation = Observation(
             self.clock.now(),
             at,
-            sun or self._sky.sun(location, config.algorithm, at),
+            self._lit,
             self._sky.dawn(location, config.algorithm, at),
             self.drive.observe(),
             True,

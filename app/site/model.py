@@ -15,6 +15,7 @@ from app.site.sky import Sky
 from app.site.timekeeping import Timekeeper
 from app.site.unusable import UnusableDrive
 from app.site.weather import WeatherStation
+from app.sun.position import Algorithm, SunPosition
 from app.tracker.config import DriveKind, TrackerConfig
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.motion import Feedback
@@ -44,6 +45,10 @@ class SiteModel:
     def now(self) -> datetime:
         """Return the site's time."""
         return self.timekeeper.now()
+
+    def sun(self) -> SunPosition | None:
+        """Return where the sun stands over the site now, None while location or clock are unknown."""
+        return self.sky.sun(self.state.location, Algorithm.PSA, self.now())
 
     def tracker(self, tracker_id: str | None) -> TrackerLoop:
         """Return a tracker's loop, or raise `UnknownTracker`."""
