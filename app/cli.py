@@ -13,7 +13,7 @@ from typing import Annotated
 import typer
 
 from app.build import VERSION
-from app.cli_drives import drive, drive_sim
+from app.cli_drives import drive, drive_sim, fault_proxy
 from app.clock import SystemClock
 from app.drives.drive import DriveError
 from app.gateway.sunspec_map import map_table, sunspec_map
@@ -50,6 +50,7 @@ cli = typer.Typer(
 
 cli.add_typer(drive)
 cli.command()(drive_sim)
+cli.command()(fault_proxy)
 
 Supervised = Annotated[int | None, typer.Option(hidden=True, help="Process id of the supervisor.")]
 Latitude = Annotated[float, typer.Option("--lat", help="Latitude, degrees, north positive.")]

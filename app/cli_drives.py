@@ -5,8 +5,10 @@ from typing import Annotated
 
 import typer
 
+from app.drives.fault_proxy import make_proxy, run_fault_proxy
 from app.drives.line import list_ports
 from app.drives.sim_server import Doors, run_drive_sim
+from app.drives.wire_faults import Framing
 from app.sun.position import Location
 from app.tracker.config import Parity, SerialConfig
 
@@ -49,6 +51,23 @@ def drive_sim(
         raise ValueError("A unit id on a serial line lies between 1 and 247.")
     location = None if lat is None or lon is None else Location(lat, lon)
     run_drive_sim(doors, profile, units=units, memory=memory, watchdog_ms=watchdog_ms, location=location)
+
+
+def fault_proxy(
+    near: Annotated[str, typer.Argument(help="Where the master connects: HOST:PORT or a new serial name.")],
+    far: Annotated[str, typer.Argument(help="Where the device is: HOST:PORT or a serial port.")],
+    frames: Annotated[Framing, typer.Option(help="Modbus TCP or RTU frames.")] = Framing.TCP,
+    script: Annotated[str, typer.Option(help="Such as 'after 5 frames: drop 3; delay=400 2'.")] = "",
+    baud_rate: BaudRate = 19200,
+    parity: ParityBit = Parity.EVEN,
+    stop_bits: StopBits = 1,
+    *,
+    paced: Annotated[bool, typer.Option(help="Keep the pace of the baud rate towards the master.")] = False,
+) -> None:
+    """Stand between master and device and make things go wrong: to test, and to train operators."""
+    serial = SerialConfig("", baud_rate, parity, stop_bits)
+    proxy = make_proxy(near, far, frames, script, serial, paced=paced)
+    run_fault_proxy(proxy, f"from {near} to {far}")
 
 
 @drive.command()

@@ -1,6 +1,8 @@
 """The far end of RTU over TCP: what a gateway is to its master."""
 
 import asyncio
+import socket
+from struct import pack
 from typing import cast
 
 from app.drives.line import Lost, Received
@@ -51,11 +53,15 @@ class ListeningLine:
             self._server.close()
         self.cut()
 
-    def cut(self) -> None:
-        """Cut the connection; a new one can be made."""
+    def cut(self, *, reset: bool = False) -> None:
+        """Close the connection, or reset it; a new one can be made."""
         client, self._client = self._client, None
-        if client is not None:
-            client.transport.abort()
+        if client is None:
+            return
+        if reset:
+            connection = client.transport.get_extra_info("socket")
+            connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, pack("ii", 1, 0))
+        client.transport.abort()
 
     def join(self, client: "_Client") -> None:
         """Let a client take the place of the one before."""

@@ -1,0 +1,204 @@
+"""A proxy between master and device that makes things go wrong on purpose, over TCP and serial lines."""
+
+import asyncio
+import signal
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from threading import Thread
+
+from app.drives.line import Line, SerialLine, TcpLine
+from app.drives.listening_line import ListeningLine
+from app.drives.pty_line import PtyLine
+from app.drives.rtu_frame import reply_length, request_length
+from app.drives.sim_server import parse_address
+from app.drives.wire_faults import (
+    LATE_MS,
+    MEANINGS,
+    TCP_HEAD,
+    Framing,
+    Script,
+    Step,
+    WireFault,
+    parse_script,
+    spoiled,
+)
+from app.tracker.config import SerialConfig
+
+SOUND = Step(WireFault.CLEAR)
+MOST_PENDING = 64
+FORGET_AFTER_S = 0.05
+
+Length = Callable[[bytes], int | None]
+
+
+class FaultProxy:
+    """Passes requests from `near`, the master's side, to `far`, the device's, and replies back.
+
+    The script says with every request what happens to it. `requests` counts them.
+    """
+
+    def __init__(self, near: Line, far: Line, framing: Framing, script: Script | None = None) -> None:
+        self.requests = 0
+        self._near = near
+        self._far = far
+        self._framing = framing
+        self._script = script or Script()
+        self._asked, self._answered = bytearray(), bytearray()
+        self._pending: dict[bytes, Step] = {}
+        self._held = b""
+        self._turn = 0
+        self._asked_at_s = 0.0
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    async def start(self) -> None:
+        """Open both sides, or raise `OSError`; a device that is not there yet is looked for again."""
+        if not await self._near.open(self._from_master, _nothing):
+            raise OSError(f"The proxy cannot listen. {self._near.advice}")
+        await self._far.open(self._from_device, _nothing)
+
+    def play(self, text: str) -> None:
+        """Play another script from now on, or raise `ValueError`."""
+        self._script = parse_script(text, self._framing)
+
+    async def close(self) -> None:
+        """Close both sides."""
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        self._near.close()
+        self._far.close()
+
+    def _from_master(self, data: bytes) -> None:
+        now_s = asyncio.get_running_loop().time()
+        if now_s - self._asked_at_s > FORGET_AFTER_S:
+            self._asked.clear()
+        self._asked_at_s = now_s
+        self._asked += data
+        length = _tcp_length if self._framing is Framing.TCP else request_length
+        for request in _frames(self._asked, length):
+            self.requests += 1
+            step = self._script.next()
+            if step.fault is WireFault.BLACK_HOLE:
+                continue
+            while len(self._pending) >= MOST_PENDING:
+                self._pending.pop(next(iter(self._pending)))
+            self._pending[self._key(request)] = step
+            if self._far.is_open:
+                self._far.write(request)
+            else:
+                self._reopen(request)
+
+    def _from_device(self, data: bytes) -> None:
+        self._answered += data
+        length = _tcp_length if self._framing is Framing.TCP else reply_length
+        for reply in _frames(self._answered, length):
+            self._answer(reply, self._pending.pop(self._key(reply), SOUND))
+
+    def _answer(self, reply: bytes, step: Step) -> None:
+        """Let a reply go to the master as the step says."""
+        self._turn += 1
+        match step.fault:
+            case WireFault.DROP:
+                return
+            case WireFault.MERGE:
+                self._held += reply
+            case WireFault.RESET | WireFault.CLOSE:
+                if isinstance(self._near, ListeningLine):
+                    self._near.cut(reset=step.fault is WireFault.RESET)
+            case WireFault.DELAY:
+                late_s = (LATE_MS if step.amount is None else step.amount) / 1000.0
+                asyncio.get_running_loop().call_later(late_s, self._send, reply)
+            case _:
+                self._send(spoiled(reply, step, self._framing, self._turn))
+
+    def _send(self, reply: bytes) -> None:
+        held, self._held = self._held, b""
+        if self._near.is_open:
+            self._near.write(held + reply)
+
+    def _key(self, frame: bytes) -> bytes:
+        """Return what a reply has in common with its request: transaction number, or unit with RTU."""
+        return frame[:2] if self._framing is Framing.TCP else frame[:1]
+
+    def _reopen(self, request: bytes) -> None:
+        async def open_and_ask() -> None:
+            if await self._far.open(self._from_device, _nothing):
+                self._far.write(request)
+
+        task = asyncio.create_task(open_and_ask())
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+
+def make_proxy(
+    near: str, far: str, framing: Framing, script: str, serial: SerialConfig, *, paced: bool
+) -> FaultProxy:
+    """Return a proxy between two places, each `HOST:PORT` or a serial port; raise `ValueError` if unclear."""
+    character_s = serial.bits / serial.baud_rate if paced else 0.0
+    near_line = ListeningLine(*parse_address(near)) if _is_address(near) else PtyLine(Path(near), character_s)
+    far_line = TcpLine(*parse_address(far)) if _is_address(far) else SerialLine(replace(serial, port=far))
+    if framing is Framing.TCP and not (_is_address(near) and _is_address(far)):
+        raise ValueError("Modbus TCP needs HOST:PORT on both sides; on a serial line choose --frames rtu.")
+    return FaultProxy(near_line, far_line, framing, parse_script(script, framing))
+
+
+def run_fault_proxy(proxy: FaultProxy, where: str) -> None:
+    """Run a proxy until SIGTERM or SIGINT; every line on the standard input is a new script."""
+    asyncio.run(_run(proxy, where))
+
+
+async def _run(proxy: FaultProxy, where: str) -> None:
+    ended = asyncio.Event()
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        loop.add_signal_handler(number, ended.set)
+    await proxy.start()
+    _say(f"Fault proxy {where}. Type a fault and Enter, clear to end it, help for the list; Ctrl-C ends.")
+
+    def listen() -> None:
+        for line in sys.stdin:
+            loop.call_soon_threadsafe(_obey, proxy, line.strip())
+
+    Thread(target=listen, name="standard input", daemon=True).start()
+    await ended.wait()
+    await proxy.close()
+
+
+def _obey(proxy: FaultProxy, line: str) -> None:
+    if line == "help":
+        _say("\n".join(f"{fault:18} {meaning}" for fault, meaning in MEANINGS.items()))
+        return
+    try:
+        proxy.play(line)
+    except ValueError as error:
+        _say(str(error))
+    else:
+        _say(f"{line or 'clear'} (after {proxy.requests} requests)")
+
+
+def _say(text: str) -> None:
+    sys.stdout.write(f"{text}\n")
+    sys.stdout.flush()
+
+
+def _frames(buffer: bytearray, length_of: Length) -> list[bytes]:
+    """Take the whole frames off a buffer; what is no frame goes with the next silence of the line."""
+    frames = []
+    while (length := length_of(bytes(buffer))) is not None and len(buffer) >= length:
+        frames.append(bytes(buffer[:length]))
+        del buffer[:length]
+    return frames
+
+
+def _tcp_length(begin: bytes) -> int | None:
+    return TCP_HEAD + int.from_bytes(begin[4:6], "big") if len(begin) >= TCP_HEAD else None
+
+
+def _is_address(text: str) -> bool:
+    return text.rpartition(":")[2].isdecimal()
+
+
+def _nothing() -> None:
+    """Do nothing when a side is lost: it is opened again with the next request."""
