@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Protocol
 
 from app.clock import Clock, SystemClock
+from app.drives.devices.shelf import devices, shelf
 from app.drives.faults import Fault, FaultKind
 from app.drives.line import Line, SerialLine
 from app.drives.listening_line import ListeningLine
@@ -17,7 +18,6 @@ from app.drives.modbus_server import Device, ModbusServer
 from app.drives.profile import Profile, load_profile
 from app.drives.pty_line import PtyLine
 from app.drives.rtu_server import RtuServer
-from app.drives.sim_plc import SimulatedPlc
 from app.drives.simulated import SimulatedDrive
 from app.drives.simulated_machine import SimulatedMachine
 from app.drives.sunlight import Sunlight
@@ -53,26 +53,27 @@ async def serve(
     host: str, port: int, profile: Profile, drive: SimulatedMachine, clock: Clock, *, unit: int = 1
 ) -> tuple[ModbusServer, int]:
     """Serve a simulated drive through a profile's registers; return the running server and its port."""
-    server = ModbusServer(SimulatedPlc(profile, drive, clock), unit)
+    found = devices(profile, drive, clock, unit)
+    server = ModbusServer(found[unit], unit, others=found)
     return server, await server.start(host, port)
 
 
-async def serve_doors(doors: Doors, devices: Mapping[int, Device]) -> tuple[list[Server], list[str]]:
+async def serve_doors(doors: Doors, served: Mapping[int, Device]) -> tuple[list[Server], list[str]]:
     """Serve devices on every door, or raise `OSError`; return the servers and where they are, for people."""
     servers: list[Server] = []
     places: list[str] = []
     if doors.tcp:
         host, port = parse_address(doors.tcp)
-        first, *others = devices
-        server = ModbusServer(devices[first], first, others={unit: devices[unit] for unit in others})
+        first, *others = served
+        server = ModbusServer(served[first], first, others={unit: served[unit] for unit in others})
         places.append(f"Modbus TCP {host}:{await server.start(host, port)}")
         servers.append(server)
     if doors.serial is not None:
-        servers.append(await _rtu(_serial_line(doors.serial, paced=doors.paced), devices))
+        servers.append(await _rtu(_serial_line(doors.serial, paced=doors.paced), served))
         places.append(f"Modbus RTU {doors.serial.port}")
     if doors.rtu_over_tcp:
         gateway = ListeningLine(*parse_address(doors.rtu_over_tcp))
-        servers.append(await _rtu(gateway, devices))
+        servers.append(await _rtu(gateway, served))
         places.append(f"Modbus RTU over TCP {gateway.host}:{gateway.port}")
     return servers, places
 
@@ -86,16 +87,20 @@ def run_drive_sim(
     watchdog_ms: int = 500,
     inject: Sequence[str] = (),
     location: Location | None = None,
+    gear_ratio: float = 1.0,
 ) -> None:
     """Serve simulated drives, one for each unit id, until SIGTERM or SIGINT; TCP port 0 takes a free one.
 
     With a `location` they have photo-sensors under the sun of that place and of this computer's clock.
-    `inject` plays faults on the first from the start, each as `kind`, `kind:axis` or `kind:axis:amount`.
-    Raises `ProfileError` for a bad profile, `ValueError` for a bad address or fault, `OSError` for a taken
-    port.
+    Where each axis has a drive of its own, the elevation answers at the next unit id; `gear_ratio` is the
+    motors' revolutions for one of the axis. `inject` plays faults on the first from the start, each as
+    `kind`, `kind:axis` or `kind:axis:amount`. Raises `ProfileError` for a bad profile, `ValueError` for a
+    bad address or fault, `OSError` for a taken port.
     """
     faults = [parse_fault(text) for text in inject]
-    watchdog = timedelta(milliseconds=watchdog_ms) if watchdog_ms > 0 else None
+    known = load_profile(profile)
+    has_watchdog = known.watchdog is not None and watchdog_ms > 0
+    watchdog = timedelta(milliseconds=watchdog_ms) if has_watchdog else None
     clock = SystemClock()
     config = TrackerConfig("simulated", "Simulated tracker")
     drives = {
@@ -110,7 +115,7 @@ def run_drive_sim(
     }
     for fault in faults:
         drives[units[0]].inject(fault)
-    asyncio.run(_run(doors, load_profile(profile), drives, clock))
+    asyncio.run(_run(doors, known, drives, clock, gear_ratio))
 
 
 def _light(config: TrackerConfig, clock: Clock, location: Location | None) -> Sunlight | None:
@@ -161,14 +166,16 @@ def _memory_of(memory: Path | None, unit: int, units: Sequence[int]) -> Path | N
     return memory.with_name(f"{memory.stem}-{unit}{memory.suffix}")
 
 
-async def _run(doors: Doors, profile: Profile, drives: Mapping[int, SimulatedDrive], clock: Clock) -> None:
+async def _run(
+    doors: Doors, profile: Profile, drives: Mapping[int, SimulatedDrive], clock: Clock, gear_ratio: float
+) -> None:
     ended = asyncio.Event()
     loop = asyncio.get_running_loop()
     for number in (signal.SIGTERM, signal.SIGINT):
         loop.add_signal_handler(number, ended.set)
-    devices = {unit: SimulatedPlc(profile, drive, clock) for unit, drive in drives.items()}
-    servers, places = await serve_doors(doors, devices)
-    units = ", ".join(str(unit) for unit in drives)
+    served = shelf(profile, drives, clock, gear_ratio)
+    servers, places = await serve_doors(doors, served)
+    units = ", ".join(str(unit) for unit in served)
     for place in places:
         sys.stdout.write(
             f"Simulated drive on {place}, unit {units}, profile {profile.name}. Ctrl-C ends it.\n"

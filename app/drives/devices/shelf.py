@@ -38,6 +38,23 @@ def devices(
             assert_never(never)
 
 
+def shelf(
+    profile: Profile, machines: Mapping[int, SimulatedMachine], clock: Clock, gear_ratio: float = 1.0
+) -> Mapping[int, Device]:
+    """Return the devices of several trackers by unit id, or raise `ValueError` if two have the same."""
+    found: dict[int, Device] = {}
+    for unit, machine in machines.items():
+        own = devices(profile, machine, clock, unit, gear_ratio)
+        both = found.keys() & own.keys()
+        if both:
+            raise ValueError(
+                f"Unit {min(both)} is given twice: with profile {profile.name} each tracker takes "
+                f"{len(own)} unit ids, so give every {len(own)}th."
+            )
+        found |= own
+    return found
+
+
 def _pair(
     device: Callable[[SimulatedMachine, Axis, Clock, float], AxisDevice],
     profile: Profile,
