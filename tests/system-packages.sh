@@ -1,16 +1,38 @@
 #!/bin/sh
 # Make sure that the programs the tests need are there: install them on Debian as root, else say the command.
 set -eu
+cd "$(dirname "$0")/.."
 missing=""
-command -v chromium >/dev/null 2>&1 || missing="$missing chromium"
+need() { # program, package
+    PATH="$PATH:/usr/sbin" command -v "$1" >/dev/null 2>&1 || missing="$missing $2"
+}
+need chromium chromium
+need mosquitto mosquitto
+need mosquitto_passwd mosquitto
+need mbpoll mbpoll
+need socat socat
+need openssl openssl
+need gcc gcc
+[ -e /usr/include/modbus/modbus.h ] || missing="$missing libmodbus-dev libc6-dev"
 ls /usr/lib/postgresql/*/bin/initdb >/dev/null 2>&1 || missing="$missing postgresql"
-[ -z "$missing" ] && exit 0
-if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1; then
-    echo "Installing what the tests need:$missing"
-    apt-get update -qq
-    # shellcheck disable=SC2086
-    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
-else
-    echo "The tests need:$missing. Install them with: sudo apt-get install --no-install-recommends$missing" >&2
-    exit 1
+if [ -n "$missing" ]; then
+    if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1; then
+        echo "Installing what the tests need:$missing"
+        apt-get update -qq
+        # shellcheck disable=SC2086
+        DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
+    else
+        echo "The tests need:$missing. Install them with: sudo apt-get install --no-install-recommends$missing" >&2
+        exit 1
+    fi
+fi
+
+# The npm package modbus-serial, an independent Modbus client. Without npm its tests say what is missing.
+peer=tests/peers/modbus-serial
+built=build/modbus-serial
+if command -v npm >/dev/null 2>&1 && ! cmp -s "$peer/package-lock.json" "$built/node_modules/.locked" 2>/dev/null; then
+    mkdir -p "$built"
+    cp "$peer/package.json" "$peer/package-lock.json" "$built"
+    npm ci --prefix "$built" --ignore-scripts --no-audit --no-fund --loglevel=error
+    cp "$peer/package-lock.json" "$built/node_modules/.locked"
 fi
