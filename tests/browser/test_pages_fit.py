@@ -22,6 +22,8 @@ PAGES = {
     "sun-check": f"{T1}/sun-check",
     "record": f"{T1}/record",
     "settings": f"{T1}/settings",
+    "drive": f"{T1}/drive",
+    "proofs": f"{T1}/proofs",
     "show": SHOW,
     "recordings": "/recordings",
     "player": "/recordings/show-1",

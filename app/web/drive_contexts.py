@@ -1,0 +1,50 @@
+"""What the templates of a drive's set-up are given."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from app.tracker.config import TrackerConfig
+from app.tracker.drive_check import DriveCheck, DriveChoices
+from app.tracker.memory import TrackerMemory
+from app.tracker.motion import DriveCapabilities
+from app.tracker.proof_states import ProofState
+from app.tracker.proofs import ProofMove
+from app.web.contexts import Form, Frame
+
+Options = tuple[tuple[str, str], ...]
+"""Values and texts of a list to choose from."""
+
+
+@dataclass(frozen=True, slots=True)
+class DrivePage:
+    """How a tracker's drive is reached and what hangs on it; `check` is the newest look at it."""
+
+    template: ClassVar[str] = "drive.html"
+
+    frame: Frame
+    form: Form
+    choices: DriveChoices
+    profiles: Options
+    ports: Options
+    kinds: Options
+    check: DriveCheck | None
+    capabilities: DriveCapabilities | None
+    can_undo: bool
+    done: str
+
+
+@dataclass(frozen=True, slots=True)
+class ProofsPage:
+    """What is proven at the machine, one kind after the other."""
+
+    template: ClassVar[str] = "proofs.html"
+
+    frame: Frame
+    config: TrackerConfig
+    memory: TrackerMemory
+    capabilities: DriveCapabilities | None
+    states: dict[str, tuple[ProofState, ...]]
+    move: ProofMove | None
+    question: str
+    form: Form
+    left: int

@@ -1,0 +1,103 @@
+"""How a tracker's drive is reached: choose, test the connection, save, undo."""
+
+from dataclasses import replace
+from typing import Annotated
+
+from fastapi import APIRouter, Form
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.link.messages import (
+    CheckConnection,
+    ConfigureTracker,
+    RestoreDrive,
+    SiteDetail,
+    TrackerDetail,
+)
+from app.web.deps import MachineDep
+from app.web.drive_contexts import DrivePage
+from app.web.ui.drive_form import (
+    KINDS,
+    DriveForm,
+    port_options,
+    profile_options,
+    read_drive,
+    texts_of,
+)
+from app.web.ui.forms import Typed
+from app.web.ui.frame import tracker_frame
+from app.web.ui.orders import PressDep
+from app.web.ui.render import go, page
+from app.web.ui.wizard import tracker_of
+
+router = APIRouter(prefix="/trackers/{tracker_id}/drive")
+DONE = {
+    "saved": "The drive settings are saved. Test the connection, then prove the drive.",
+    "restored": "The drive is set as it was before the last change.",
+}
+
+
+@router.get("")
+async def drive(request: Request, tracker_id: str, machine: MachineDep, done: str = "") -> Response:
+    """Show the stored settings and the newest look at the drive."""
+    detail = await machine.detail()
+    tracker = tracker_of(detail, tracker_id)
+    typed = Typed(texts_of(tracker.state.config.drive))
+    return page(request, _context(request, detail, tracker, typed, DONE.get(done, "")))
+
+
+@router.post("")
+async def save(
+    tracker_id: str, press: PressDep, machine: MachineDep, typed: Annotated[DriveForm, Form()]
+) -> Response:
+    """Save all settings, or none of them."""
+    detail = await machine.detail()
+    tracker = tracker_of(detail, tracker_id)
+    config, found = tracker.state.config, Typed(typed.model_dump())
+    wanted = read_drive(found, config.drive, detail.choices)
+    if wanted is None:
+        return page(press.request, _context(press.request, detail, tracker, found), block="form", status=422)
+    await press.send(ConfigureTracker(replace(config, drive=wanted)))
+    return go(press.request, f"/trackers/{tracker_id}/drive?done=saved")
+
+
+@router.post("/test")
+async def test(
+    tracker_id: str, press: PressDep, machine: MachineDep, typed: Annotated[DriveForm, Form()]
+) -> Response:
+    """Have the machine read a drive with the typed settings; nothing is saved, nothing is changed."""
+    detail = await machine.detail()
+    tracker = tracker_of(detail, tracker_id)
+    found = Typed(typed.model_dump())
+    wanted = read_drive(found, tracker.state.config.drive, detail.choices)
+    if wanted is None:
+        return page(press.request, _context(press.request, detail, tracker, found), block="form", status=422)
+    await press.send(CheckConnection(tracker_id, wanted))
+    detail = await machine.detail()
+    context = _context(press.request, detail, tracker_of(detail, tracker_id), found)
+    return page(press.request, context, block="check")
+
+
+@router.post("/restore")
+async def restore(tracker_id: str, press: PressDep) -> Response:
+    """Set the drive as it was before the last change."""
+    await press.send(RestoreDrive(tracker_id))
+    return go(press.request, f"/trackers/{tracker_id}/drive?done=restored")
+
+
+def _context(
+    request: Request, detail: SiteDetail, tracker: TrackerDetail, typed: Typed, done: str = ""
+) -> DrivePage:
+    state = tracker.state
+    return DrivePage(
+        frame=tracker_frame(request, state.config.tracker_id, "Drive"),
+        form=typed.form(DriveForm.model_fields),
+        choices=detail.choices,
+        profiles=profile_options(detail.choices, typed.texts.get("profile", "")),
+        ports=port_options(detail.choices, typed.texts.get("serial_port", "")),
+        kinds=KINDS,
+        check=tracker.check,
+        capabilities=tracker.capabilities,
+        can_undo=state.memory.former_drive is not None,
+        done=done,
+    )

@@ -1,0 +1,128 @@
+"""The drive is proven at the machine: direction, scale, limits, stopping, and losing contact."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Form
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.link.messages import AnswerDirection, AnswerScale, SetSoftLimit
+from app.tracker.axes import Axis
+from app.tracker.commands import MeasureLinkLoss, MeasureStop, ProveDirection, ProveScale
+from app.tracker.commissioning import StepStatus
+from app.tracker.proofs import AxisEnd, ProofKind, ProofMove, StopSpeed
+from app.web.deps import MachineDep
+from app.web.drive_contexts import ProofsPage
+from app.web.errors import NotAcceptable
+from app.web.ui.forms import Typed
+from app.web.ui.frame import tracker_frame
+from app.web.ui.orders import PressDep
+from app.web.ui.render import page
+from app.web.ui.wizard import tracker_of
+
+router = APIRouter(prefix="/trackers/{tracker_id}/proofs")
+SCALE_WAYS = {"10": 10.0, "30": 30.0, "90": 90.0}
+QUESTIONS = {
+    (Axis.AZIMUTH, True): "Did the panel turn to the right, clockwise as seen from above?",
+    (Axis.AZIMUTH, False): "Did the panel turn to the left, anticlockwise as seen from above?",
+    (Axis.ELEVATION, True): "Did the panel's face tilt up, towards the sky?",
+    (Axis.ELEVATION, False): "Did the panel's face tilt down, towards the horizon?",
+}
+AxisField = Annotated[Axis, Form()]
+
+
+@router.get("")
+async def proofs(request: Request, tracker_id: str, machine: MachineDep) -> Response:
+    """Show every proof, its state, its result and its keys."""
+    return await _answer(request, tracker_id, machine, Typed({"measured": ""}))
+
+
+@router.post("/direction")
+async def direction(tracker_id: str, press: PressDep, axis: AxisField) -> Response:
+    """Turn one axis a little."""
+    await press.send(ProveDirection(axis), tracker_id)
+    return press.answer("Watch the panel.")
+
+
+@router.post("/direction/answer")
+async def answer_direction(tracker_id: str, press: PressDep, answer: Annotated[str, Form()] = "") -> Response:
+    """Take what was seen; the wrong way turns the direction round in the settings."""
+    if answer not in ("right", "wrong"):
+        raise NotAcceptable("Say whether the panel turned as the question says, or the other way.")
+    await press.send(AnswerDirection(tracker_id, answer == "right"))
+    return press.answer("Noted." if answer == "right" else "The direction is turned round; prove it again.")
+
+
+@router.post("/scale")
+async def scale(
+    tracker_id: str, press: PressDep, axis: AxisField, way: Annotated[str, Form()] = "10"
+) -> Response:
+    """Turn one axis by 10, 30 or 90 degrees."""
+    if way not in SCALE_WAYS:
+        raise NotAcceptable("Choose 10, 30 or 90 degrees.")
+    await press.send(ProveScale(axis, SCALE_WAYS[way]), tracker_id)
+    return press.answer("Wait until it stands, then measure.")
+
+
+@router.post("/scale/answer")
+async def answer_scale(
+    tracker_id: str, press: PressDep, machine: MachineDep, measured: Annotated[str, Form()] = ""
+) -> Response:
+    """Take the measured angle; one that differs corrects the gear ratio."""
+    typed = Typed({"measured": measured})
+    measured_deg = typed.number("measured", "Measured angle", 0.1, 720)
+    if typed.errors:
+        return await _answer(press.request, tracker_id, machine, typed, status=422)
+    await press.send(AnswerScale(tracker_id, measured_deg))
+    return press.answer("Noted.")
+
+
+@router.post("/limit")
+async def limit(
+    tracker_id: str, press: PressDep, axis: AxisField, end: Annotated[AxisEnd, Form()]
+) -> Response:
+    """Take the place where the axis stands as a soft limit."""
+    await press.send(SetSoftLimit(tracker_id, axis, end))
+    return press.answer(f"The {end} limit is set.")
+
+
+@router.post("/stop")
+async def stop_test(
+    tracker_id: str, press: PressDep, axis: AxisField, speed: Annotated[StopSpeed, Form()]
+) -> Response:
+    """Start the stop test."""
+    await press.send(MeasureStop(axis, speed), tracker_id)
+    return press.answer("The stop test runs.")
+
+
+@router.post("/link-loss")
+async def link_loss_test(tracker_id: str, press: PressDep, axis: AxisField) -> Response:
+    """Start the link-loss test."""
+    await press.send(MeasureLinkLoss(axis), tracker_id)
+    return press.answer("The link-loss test runs.")
+
+
+async def _answer(
+    request: Request, tracker_id: str, machine: MachineDep, typed: Typed, *, status: int = 200
+) -> Response:
+    tracker = tracker_of(await machine.detail(), tracker_id)
+    memory = tracker.state.memory
+    states = {kind.value: tuple(one for one in tracker.proofs if one.kind is kind) for kind in ProofKind}
+    context = ProofsPage(
+        frame=tracker_frame(request, tracker_id, "Proofs of the drive"),
+        config=tracker.state.config,
+        memory=memory,
+        capabilities=tracker.capabilities,
+        states=states,
+        move=memory.proofs.move,
+        question=_question(memory.proofs.move),
+        form=typed.form(("measured",)),
+        left=sum(one.status is not StepStatus.DONE for one in tracker.proofs),
+    )
+    return page(request, context, block="proofs", status=status)
+
+
+def _question(move: ProofMove | None) -> str:
+    if move is None or move.to_deg is None or move.kind is not ProofKind.DIRECTION:
+        return ""
+    return QUESTIONS[move.axis, move.moved_deg > 0.0]

@@ -1,0 +1,25 @@
+// Keeps the proofs true: asks for them again when a move or a test has ended, or an answer was taken.
+
+import { live } from "./live.js";
+
+const BUSY = new Set(["moving", "measuring", "stopping", "zeroing", "homing"]);
+let known = null;
+
+function ask() {
+  window.htmx.ajax("GET", location.pathname, { target: "#proofs", swap: "outerHTML" });
+}
+
+function look() {
+  const { tracker } = live;
+  if (!tracker) return;
+  const now = JSON.stringify([BUSY.has(tracker.activity), tracker.home_trusted, tracker.fault?.code]);
+  const changed = known !== null && now !== known;
+  known = now;
+  if (changed) ask();
+}
+
+live.on("state", look);
+document.addEventListener("htmx:after:request", (event) => {
+  const { request, response } = event.detail?.ctx ?? {};
+  if (request?.method?.toUpperCase() === "POST" && response?.status < 400) ask();
+});
