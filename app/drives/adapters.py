@@ -12,14 +12,14 @@ from app.drives.drive import Drive
 from app.drives.gearing import Gearing, gearing_of
 from app.drives.plc import PlcDrive
 from app.drives.pr_axis import PrAxis
-from app.drives.profile import Adapter, Profile
+from app.drives.profile import Adapter, Profile, ProfileError
 from app.drives.profile_needs import check_needs
 from app.drives.register_axis import RegisterAxis
 from app.drives.sunspec import SunSpecDrive
 from app.drives.two_axes import TwoAxisDrive
 from app.drives.unit import Unit
 from app.tracker.axes import Axis
-from app.tracker.config import AxisDrive, TrackerConfig
+from app.tracker.config import DriveConfig, TrackerConfig
 
 MakeDialect = Callable[[Unit, Gearing, float], Dialect]
 
@@ -49,12 +49,15 @@ def drive_on(
             assert_never(never)
 
 
-def axis_units(config: TrackerConfig) -> dict[Axis, int]:
-    """Return the unit id of each axis's drive: its own, else the drive's and the next one."""
-    drive = config.drive
-    azimuth = drive.unit if drive.azimuth.unit is None else drive.azimuth.unit
-    elevation = azimuth + 1 if drive.elevation.unit is None else drive.elevation.unit
-    return {Axis.AZIMUTH: azimuth, Axis.ELEVATION: elevation}
+def axis_units(drive: DriveConfig) -> dict[Axis, int]:
+    """Return the unit id of each axis's drive, or raise `ProfileError` if both have the same."""
+    azimuth, *others = drive.units
+    if not others:
+        raise ProfileError(
+            f"Both axes have unit {azimuth}, but with profile {drive.profile} each axis has a drive of its own. "
+            "Give the elevation another unit id than the azimuth."
+        )
+    return {Axis.AZIMUTH: azimuth, Axis.ELEVATION: others[0]}
 
 
 def _two_axes(
@@ -64,15 +67,11 @@ def _two_axes(
     clock: Clock,
     make: MakeDialect,
 ) -> Drive:
-    drives: dict[Axis, AxisDrive] = {
-        Axis.AZIMUTH: config.drive.azimuth,
-        Axis.ELEVATION: config.drive.elevation,
-    }
     axes: dict[Axis, RegisterAxis] = {}
-    for axis, number in axis_units(config).items():
+    for axis, number in axis_units(config.drive).items():
         bus_unit = unit_of(number)
         unit = Unit(profile, bus_unit, f"{bus_unit} ({axis})")
-        gearing = gearing_of(profile, drives[axis])
+        gearing = gearing_of(profile, config.drive.axis(axis))
         dialect = make(unit, gearing, config.axis(axis).acceleration_dps2)
         axes[axis] = RegisterAxis(dialect, unit, gearing, config.axis(axis), clock)
     return TwoAxisDrive(config, profile, axes, clock, config.drive.line)

@@ -30,7 +30,8 @@ class Bench:
     @property
     def drive(self) -> DriveConfig:
         axis = AxisDrive(gear_ratio=self.gear_ratio, inverted=self.inverted)
-        return DriveConfig(DriveKind.MODBUS_TCP, self.profile, azimuth=axis, elevation=axis)
+        other = replace(axis, unit=2) if self.gear_ratio != 1.0 else axis
+        return DriveConfig(DriveKind.MODBUS_TCP, self.profile, azimuth=axis, elevation=other)
 
 
 BENCHES = {
