@@ -12,7 +12,7 @@ from app.tracker.mind import Mind
 from app.tracker.mode import Mode
 from app.tracker.motion import Feedback
 from app.tracker.mount import aim, sky
-from app.tracker.mounts.abilities import abilities
+from app.tracker.mounts.absent import mode_absent
 from app.tracker.mounts.kinematics import FIRST_FOLLOWS, SECOND_FOLLOWS, angles, direction
 from app.tracker.reason import Reason
 from app.tracker.runs import at_rest
@@ -32,18 +32,6 @@ def select_mode(mind: Mind, command: SelectMode) -> None:
     mind.say(EventKind.MODE_SELECTED, f"Mode {command.mode} selected.", mode=command.mode)
     if mind.feedback is not None and not mind.misses and at_orientation(mind, mind.feedback):
         confirm_mode(mind, mind.actor)
-
-
-def mode_absent(config: TrackerConfig, mode: Mode) -> Reason | None:
-    """Return that the mount does not have a mode."""
-    known = abilities(config.mount)
-    if mode in known.modes:
-        return None
-    return Reason(
-        "mode_not_possible",
-        f"{config.name} stands on a {known.title.lower()} and cannot do the mode {mode}.",
-        f"Choose one of these: {', '.join(known.modes)}.",
-    )
 
 
 def at_orientation(mind: Mind, feedback: Feedback) -> bool:

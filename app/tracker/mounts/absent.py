@@ -1,8 +1,9 @@
-"""The second axis of a mount that has none: it stands at its fixed angle, homed, and is not moved."""
+"""What a mount does not have: modes, and a second axis, which stands at its fixed angle and is not moved."""
 
 from dataclasses import replace
 
 from app.tracker.config import TrackerConfig
+from app.tracker.mode import Mode
 from app.tracker.motion import HALT, AxisFeedback, DriveCommand, Feedback, Position
 from app.tracker.mounts.abilities import abilities
 from app.tracker.mounts.kinematics import fixed_deg
@@ -22,8 +23,20 @@ def absent_axis(config: TrackerConfig) -> Reason:
     known = abilities(config.mount)
     return Reason(
         "no_second_axis",
-        f"{config.name} stands on a {known.title.lower()} and has no second axis.",
+        f"{config.name} stands on a {known.title.lower()} mount and has no second axis.",
         f"Use its first axis, {known.first.title.lower()}.",
+    )
+
+
+def mode_absent(config: TrackerConfig, mode: Mode) -> Reason | None:
+    """Return that the mount does not have a mode."""
+    known = abilities(config.mount)
+    if mode in known.modes:
+        return None
+    return Reason(
+        "mode_not_possible",
+        f"{config.name} stands on a {known.title.lower()} mount and cannot do the mode {mode}.",
+        f"Choose one of these: {', '.join(known.modes)}.",
     )
 
 

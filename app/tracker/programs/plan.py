@@ -43,7 +43,10 @@ class ShowPlan:
 
 @dataclass(frozen=True, slots=True)
 class ShowPath:
-    """The planned path as columns of equal length: sun time, sun and panel (axis degrees), sun up or not."""
+    """The planned path as columns of equal length: sun time, sun and panel, sun up or not.
+
+    The panel is in axis degrees on an azimuth-elevation mount, on others in degrees of the sky.
+    """
 
     sun_time_unix_s: NDArray[np.float64]
     sun_azimuth_deg: NDArray[np.float64]

@@ -7,10 +7,13 @@ from datetime import UTC, timedelta
 import numpy as np
 
 from app.sun.position import InstantRefused, sun_path, sun_position
-from app.tracker.axes import AxisConfig
-from app.tracker.config import TrackerConfig
+from app.tracker.axes import Axis, AxisConfig
+from app.tracker.config import MountConfig, MountKind, Orientation, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
+from app.tracker.mount import AxisTarget, second_axis, sky
+from app.tracker.mounts.abilities import axis_title
+from app.tracker.mounts.absent import mode_absent
 from app.tracker.programs.course import ShowCourse
 from app.tracker.programs.pace import (
     REPOSITIONING_SHARE,
@@ -23,6 +26,7 @@ from app.tracker.programs.path import Stretch, sun_up
 from app.tracker.programs.plan import ShowCheck, ShowPath, ShowPlan
 from app.tracker.reason import Reason
 
+UPRIGHT_KINDS = (MountKind.AZIMUTH_ELEVATION, MountKind.VERTICAL_SINGLE_AXIS)
 LONGEST_INTERVAL = timedelta(hours=48)
 SHORTEST_DURATION = timedelta(seconds=10)
 LONGEST_DURATION = timedelta(hours=24)
@@ -33,7 +37,8 @@ NO_PATH = ShowPath(EMPTY, EMPTY, EMPTY, EMPTY, EMPTY, np.empty(0, dtype=np.bool_
 
 def check_show(plan: ShowPlan, tracker: TrackerConfig, pointing: Pointing = Pointing()) -> ShowCheck:
     """Return what the plan needs of this tracker, every reason against it, and the shortest duration."""
-    wrong = tuple(_interval_reasons(plan))
+    impossible = mode_absent(tracker, plan.mode)
+    wrong = (*_interval_reasons(plan), *([impossible] if impossible else []))
     if wrong:
         return _unchecked(plan, wrong)
     duration = min(max(plan.duration, SHORTEST_DURATION), LONGEST_DURATION)
@@ -49,7 +54,7 @@ def check_show(plan: ShowPlan, tracker: TrackerConfig, pointing: Pointing = Poin
         peak_azimuth_dps=course.pace.peak_azimuth_dps,
         peak_elevation_dps=course.pace.peak_elevation_dps,
         start=course.start,
-        path=_path(course),
+        path=_path(course, tracker, pointing),
     )
 
 
@@ -93,13 +98,16 @@ def _pace_reasons(asked: Pace, tracker: TrackerConfig, shortest: timedelta | Non
         else "No simulation time up to 24 hours works: choose another interval."
     )
     for name, axis, peak_dps in (
-        ("azimuth", tracker.azimuth, asked.peak_azimuth_dps),
-        ("elevation", tracker.elevation, asked.peak_elevation_dps),
+        (Axis.AZIMUTH, tracker.azimuth, asked.peak_azimuth_dps),
+        (Axis.ELEVATION, second_axis(tracker), asked.peak_elevation_dps),
     ):
         if peak_dps > usable_dps(axis, asked.duration_s):
-            yield Reason(f"{name}_too_fast", _too_fast(name, axis, peak_dps, asked.duration_s), hint)
+            title = axis_title(tracker.mount, name)
+            yield Reason(f"{name}_too_fast", _too_fast(title, axis, peak_dps, asked.duration_s), hint)
     if not asked.repositions_in_time:
-        yield Reason("repositioning_too_long", _too_long(asked), hint)
+        yield Reason(
+            "repositioning_too_long", _too_long(asked, axis_title(tracker.mount, Axis.AZIMUTH)), hint
+        )
     if not all(night.long_enough for night in asked.nights):
         message = "The night is too short for the axes to reach the place of the next sunrise in time."
         yield Reason("night_too_short", message, hint)
@@ -113,9 +121,9 @@ def _too_fast(name: str, axis: AxisConfig, peak_dps: float, duration_s: float) -
     )
 
 
-def _too_long(asked: Pace) -> str:
+def _too_long(asked: Pace, title: str) -> str:
     return (
-        f"The azimuth axis needs {asked.repositioning_s:.0f} s to turn where it cannot follow the sun (end "
+        f"The {title} axis needs {asked.repositioning_s:.0f} s to turn where it cannot follow the sun (end "
         f"stop or zenith); it may be off the sun for at most {REPOSITIONING_SHARE:.0%} of the show, "
         f"{REPOSITIONING_SHARE * asked.duration_s:.0f} s, and must be done before the end."
     )
@@ -138,7 +146,7 @@ def _shortest(course: ShowCourse, tracker: TrackerConfig) -> timedelta | None:
 
 def _notices(course: ShowCourse, tracker: TrackerConfig) -> Iterator[Reason]:
     for span in course.pace.repositionings:
-        yield _repositioning_notice(course, span)
+        yield _repositioning_notice(course, span, tracker.mount)
     yield from _limit_notices(course.stretches, tracker)
     up = sum((end - begin for begin, end in sun_up(course.plan)), timedelta(0))
     down = course.plan.end_at - course.plan.begin_at - up
@@ -150,15 +158,17 @@ def _notices(course: ShowCourse, tracker: TrackerConfig) -> Iterator[Reason]:
         )
 
 
-def _repositioning_notice(course: ShowCourse, span: Repositioning) -> Reason:
+def _repositioning_notice(course: ShowCourse, span: Repositioning, mount: MountConfig) -> Reason:
     at = course.plan.sun_time(timedelta(seconds=span.begin_s)).astimezone(UTC)
     seconds = span.end_s - span.begin_s
     lost = spell(timedelta(seconds=seconds * course.plan.acceleration))
+    title = axis_title(mount, Axis.AZIMUTH)
     turn = f"turns from {span.from_deg:.0f} to {span.to_deg:.0f} degrees"
     if span.unwinding:
-        code, why = "unwinding", f"the azimuth axis meets its end stop and {turn} the other way round"
+        code, why = "unwinding", f"the {title} axis meets its end stop and {turn} the other way round"
     else:
-        code, why = "keyhole", f"the sun passes too near the zenith to follow and the azimuth axis {turn}"
+        where = "zenith" if mount.kind in UPRIGHT_KINDS else "direction of the axis"
+        code, why = "keyhole", f"the sun passes too near the {where} to follow and the {title} axis {turn}"
     return Reason(code, f"At {at:%H:%M} UTC {why}: {seconds:.1f} s of the show, {lost} of sun time.")
 
 
@@ -172,10 +182,10 @@ def _limit_notices(stretches: Sequence[Stretch], tracker: TrackerConfig) -> Iter
         )
 
 
-def _path(course: ShowCourse) -> ShowPath:
+def _path(course: ShowCourse, tracker: TrackerConfig, pointing: Pointing) -> ShowPath:
     plan = course.plan
     elapsed_s = np.linspace(0.0, plan.duration.total_seconds(), PATH_POINTS)
-    places = [course.planned(elapsed) for elapsed in elapsed_s.tolist()]
+    places = [_shown(tracker, pointing, course.planned(elapsed)) for elapsed in elapsed_s.tolist()]
     sun_time_unix_s = plan.begin_at.timestamp() + elapsed_s * plan.acceleration
     sun = sun_path(plan.algorithm, plan.location, sun_time_unix_s)
     return ShowPath(
@@ -186,6 +196,13 @@ def _path(course: ShowCourse) -> ShowPath:
         panel_elevation_deg=np.array([place.elevation_deg for place in places]),
         sun_is_up=sun.is_up,
     )
+
+
+def _shown(tracker: TrackerConfig, pointing: Pointing, place: AxisTarget) -> Orientation:
+    """Return the axis angles of an azimuth-elevation mount, of others the direction that the panel faces."""
+    if tracker.mount.kind is MountKind.AZIMUTH_ELEVATION:
+        return Orientation(place.azimuth_deg, place.elevation_deg)
+    return sky(tracker, pointing, place.azimuth_deg, place.elevation_deg)
 
 
 def _unchecked(plan: ShowPlan, reasons: tuple[Reason, ...]) -> ShowCheck:

@@ -1,0 +1,270 @@
+"""Trackers on every mount: they follow, wait, show and refuse as their mount allows."""
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from itertools import pairwise
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.angles import separation_deg
+from app.sun.position import Algorithm, Location, sun_position
+from app.sun.trigonometry import SCALAR
+from app.tracker.activities.tracking import TWILIGHT_DEG
+from app.tracker.axes import Axis, AxisConfig
+from app.tracker.commands import CommandRejected, Jog, Move, Park, SelectMode, SetZero, Step, Track
+from app.tracker.config import MountConfig, MountKind, Orientation, Rows, TrackerConfig
+from app.tracker.memory import Pointing
+from app.tracker.mode import Mode
+from app.tracker.motion import HALT
+from app.tracker.mount import aim, mode_direction, sky
+from app.tracker.mounts.abilities import default_mode
+from app.tracker.mounts.kinematics import angles
+from app.tracker.programs.show import ShowCourse, check_show
+from app.tracker.snapshot import EventKind
+from tests.tracker.plant import BLANK, CONFIG, MORNING, READY, SAMSUN, Plant
+from tests.tracker.shows import SYDNEY, daylight, show, utc
+
+FIRST = AxisConfig(-100.0, 100.0, 4.0, 6.0, 0.5, 2.0)
+EQUATORIAL = replace(
+    CONFIG,
+    azimuth=replace(FIRST, minimum_deg=-110.0, maximum_deg=110.0),
+    elevation=AxisConfig(-24.0, 24.0, 2.0, 6.0, 0.5, 1.0),
+    mount=MountConfig(MountKind.EQUATORIAL, 180.0, SAMSUN.latitude_deg),
+)
+LEVEL = replace(CONFIG, azimuth=FIRST, mount=MountConfig(MountKind.HORIZONTAL_SINGLE_AXIS))
+TILTED = replace(CONFIG, azimuth=FIRST, mount=MountConfig(MountKind.TILTED_SINGLE_AXIS, 180.0, 30.0))
+UPRIGHT = replace(
+    CONFIG,
+    azimuth=replace(FIRST, minimum_deg=-160.0, maximum_deg=160.0),
+    mount=MountConfig(MountKind.VERTICAL_SINGLE_AXIS, 180.0, panel_tilt_deg=50.0),
+)
+SINGLE = [LEVEL, TILTED, UPRIGHT]
+
+
+def tracking(config: TrackerConfig, at: datetime = MORNING, mode: Mode | None = None) -> Plant:
+    """Return a plant that has tracked for two minutes at one tick a second."""
+    memory = replace(READY, mode=mode or default_mode(config.mount))
+    plant = Plant(memory, config=config, at=at, watchdog=None)
+    plant.period = timedelta(seconds=1)
+    plant.tick()
+    plant.ask(Track())
+    return plant.forward(120.0)
+
+
+def jogged(axis: Axis) -> Jog:
+    return Jog("p1", axis, 1)
+
+
+def test_an_equatorial_mount_follows_by_hour_angle_and_declination() -> None:
+    plant = tracking(EQUATORIAL)
+    for _ in range(20):
+        plant.forward(60.0)
+        assert (plant.snapshot.off_sun_deg or 99.0) < CONFIG.deadband_deg
+    sun = plant.snapshot.sun
+    assert sun is not None
+    hour_angle_deg, declination_deg = angles_of(EQUATORIAL, sun.azimuth_deg, sun.apparent_elevation_deg)
+    assert plant.azimuth_deg == pytest.approx(hour_angle_deg, abs=0.6)
+    assert plant.elevation_deg == pytest.approx(declination_deg, abs=0.6)
+    assert declination_deg == pytest.approx(23.44, abs=0.1)
+
+
+def test_diurnal_tracking_leaves_the_declination_axis_alone() -> None:
+    plant = tracking(EQUATORIAL, mode=Mode.AZIMUTH)
+    stood_deg = plant.elevation_deg
+    plant.forward(1800.0)
+    assert plant.elevation_deg == stood_deg
+    assert plant.snapshot.target is not None
+
+
+@pytest.mark.parametrize("config", SINGLE, ids=lambda config: config.mount.kind.value)
+def test_a_single_axis_faces_the_sun_as_nearly_as_it_can(config: TrackerConfig) -> None:
+    plant = tracking(config)
+    rested_deg = plant.elevation_deg
+    for _ in range(30):
+        plant.forward(60.0)
+        shown = plant.snapshot
+        assert shown.target is not None
+        assert shown.measured is not None
+        off_deg = separation_deg(
+            shown.target.azimuth_deg,
+            shown.target.elevation_deg,
+            shown.measured.azimuth_deg,
+            shown.measured.elevation_deg,
+        )
+        assert off_deg < CONFIG.deadband_deg
+        assert shown.elevation is None
+        assert shown.azimuth is not None
+        assert shown.azimuth.position_deg == pytest.approx(plant.azimuth_deg)
+    assert plant.elevation_deg == rested_deg
+    assert not plant.happened(EventKind.FAULT_RAISED)
+
+
+def test_rows_turn_back_in_the_morning_and_face_the_sun_at_noon() -> None:
+    rows = replace(LEVEL, mount=replace(LEVEL.mount, rows=Rows(0.5)))
+    early, noon = datetime(2026, 6, 21, 3, 0, tzinfo=UTC), datetime(2026, 6, 21, 9, 0, tzinfo=UTC)
+    assert abs(tracking(rows, early).azimuth_deg) < abs(tracking(LEVEL, early).azimuth_deg) - 20.0
+    assert tracking(rows, noon).azimuth_deg == pytest.approx(tracking(LEVEL, noon).azimuth_deg, abs=0.2)
+
+
+def test_a_single_axis_is_homed_by_its_first_axis_alone() -> None:
+    plant = Plant(BLANK, config=LEVEL)
+    plant.tick()
+    plant.ask(SetZero())
+    plant.forward(2.0)
+    assert plant.snapshot.home_trusted
+    assert plant.snapshot.azimuth is not None
+    assert not plant.drive.observe().elevation.homed
+
+
+@pytest.mark.parametrize("command", [jogged(Axis.ELEVATION), Step(Axis.ELEVATION, 1.0)])
+def test_an_absent_axis_cannot_be_moved(command: Jog | Step) -> None:
+    plant = Plant(READY, config=LEVEL)
+    plant.tick()
+    with pytest.raises(CommandRejected, match="has no second axis"):
+        plant.ask(command)
+    with pytest.raises(CommandRejected, match="No axis of this mount"):
+        plant.ask(SetZero((Axis.ELEVATION,)))
+    assert EventKind.JOG_STARTED in plant.ask(jogged(Axis.AZIMUTH))
+    assert plant.snapshot.activity_text == "Jogging rotation to the right of the axis's direction, slow"
+
+
+@pytest.mark.parametrize(
+    ("config", "mode"), [(LEVEL, Mode.DUAL), (LEVEL, Mode.ELEVATION), (UPRIGHT, Mode.DUAL)]
+)
+def test_a_mode_that_the_mount_cannot_do_is_refused(config: TrackerConfig, mode: Mode) -> None:
+    plant = Plant(READY, config=config)
+    plant.tick()
+    with pytest.raises(CommandRejected, match="cannot do the mode"):
+        plant.ask(SelectMode(mode, Orientation(180.0, 45.0)))
+    checked = check_show(show(SAMSUN, utc(2026, 6, 21, 6), utc(2026, 6, 21, 9), 300.0, mode=mode), config)
+    assert [reason.code for reason in checked.reasons] == ["mode_not_possible"]
+
+
+def test_an_orientation_means_the_nearest_that_a_single_axis_can_face() -> None:
+    plant = Plant(READY, config=LEVEL)
+    plant.tick()
+    plant.ask(Move(Orientation(90.0, 60.0)))
+    plant.forward(60.0)
+    assert plant.azimuth_deg == pytest.approx(-30.0, abs=0.1)
+    plant.ask(Park())
+    plant.forward(60.0)
+    assert plant.azimuth_deg == pytest.approx(0.0, abs=0.1)
+
+
+@pytest.mark.parametrize("config", [EQUATORIAL, *SINGLE], ids=lambda config: config.mount.kind.value)
+def test_the_night_brings_every_mount_to_the_next_sunrise(config: TrackerConfig) -> None:
+    plant = tracking(config, datetime(2026, 6, 21, 21, 0, tzinfo=UTC))
+    assert plant.dawn is not None
+    wanted = mode_direction(
+        default_mode(config.mount), Orientation(180.0, 45.0), plant.dawn, refraction=True, mount=config.mount
+    )
+    target = aim(config, Pointing(), wanted, config.azimuth.minimum_deg)
+    assert plant.azimuth_deg == pytest.approx(target.azimuth_deg, abs=0.5)
+    assert plant.azimuth_deg < 0.0
+
+
+def test_least_incidence_goes_over_the_top_and_shows_where_the_panel_faces() -> None:
+    config = replace(
+        CONFIG,
+        elevation=replace(CONFIG.elevation, maximum_deg=150.0),
+        mount=MountConfig(least_incidence=True),
+    )
+    plant = tracking(config, datetime(2026, 6, 21, 3, 30, tzinfo=UTC), Mode.ELEVATION)
+    assert plant.elevation_deg > 95.0
+    target, measured = plant.snapshot.target, plant.snapshot.measured
+    assert target is not None
+    assert measured is not None
+    assert (target.azimuth_deg, measured.azimuth_deg) == pytest.approx((0.0, 0.0))
+    assert target.elevation_deg == pytest.approx(measured.elevation_deg, abs=0.5)
+
+
+@pytest.mark.parametrize("config", [EQUATORIAL, *SINGLE], ids=lambda config: config.mount.kind.value)
+def test_a_show_runs_on_every_mount(config: TrackerConfig) -> None:
+    plan = daylight(SAMSUN, utc(2026, 6, 21), 240.0)
+    plan = replace(plan, mode=default_mode(config.mount))
+    checked = check_show(plan, config)
+    assert checked.feasible
+    course = ShowCourse(plan, config)
+    for seconds in range(0, 240, 20):
+        seen = course.at(timedelta(seconds=seconds))
+        faced = sky(config, Pointing(), seen.axis_target.azimuth_deg, seen.axis_target.elevation_deg)
+        off_deg = separation_deg(
+            faced.azimuth_deg, faced.elevation_deg, seen.target.azimuth_deg, seen.target.elevation_deg
+        )
+        assert off_deg < (0.01 if not seen.axis_target.limited else 30.0)
+    first = (checked.path.panel_azimuth_deg[300], checked.path.panel_elevation_deg[300])
+    faced = course.planned(240.0 * 300 / 720)
+    direction = sky(config, Pointing(), faced.azimuth_deg, faced.elevation_deg)
+    assert first == pytest.approx((direction.azimuth_deg, direction.elevation_deg))
+
+
+RANGES = {
+    MountKind.AZIMUTH_ELEVATION: ((2.0, 358.0), (-178.0, 178.0)),
+    MountKind.VERTICAL_SINGLE_AXIS: ((-178.0, 178.0), (-178.0, 178.0)),
+    MountKind.EQUATORIAL: ((-178.0, 178.0), (-178.0, 178.0)),
+    MountKind.HORIZONTAL_SINGLE_AXIS: ((-90.0, 90.0), (-90.0, 90.0)),
+    MountKind.TILTED_SINGLE_AXIS: ((-120.0, 120.0), (-120.0, 120.0)),
+}
+
+
+@settings(max_examples=40)
+@given(
+    kind=st.sampled_from(MountKind),
+    latitude_deg=st.floats(-60.0, 60.0).filter(lambda degrees: abs(degrees) > 24.0),
+    day=st.integers(0, 364),
+)
+def test_below_a_full_turn_no_mount_unwinds_while_the_sun_is_up(
+    kind: MountKind, latitude_deg: float, day: int
+) -> None:
+    southern = latitude_deg < 0.0
+    equator_deg = 0.0 if southern else 180.0
+    mount = MountConfig(kind, equator_deg, abs(latitude_deg))
+    low_deg, high_deg = RANGES[kind][southern]
+    config = replace(CONFIG, azimuth=replace(FIRST, minimum_deg=low_deg, maximum_deg=high_deg), mount=mount)
+    days_deg = daylight_angles(config, Location(latitude_deg, 0.0), day)
+    assert any(days_deg) or abs(latitude_deg) > 45.0
+    for day_deg in days_deg:
+        assert max((abs(b - a) for a, b in pairwise(day_deg)), default=0.0) < 90.0
+
+
+def daylight_angles(config: TrackerConfig, location: Location, day: int) -> list[list[float]]:
+    """Return the first axis's angles every two minutes, from each sunrise to the sunset after it."""
+    at = datetime(2026, 1, 1, tzinfo=UTC) + timedelta(days=day)
+    near_deg, spans = config.azimuth.minimum_deg, [[]]
+    for _ in range(720):
+        at += timedelta(minutes=2)
+        sun = sun_position(Algorithm.PSA, location, at)
+        if sun.apparent_elevation_deg < TWILIGHT_DEG:
+            spans.append([])
+            continue
+        mode = default_mode(config.mount)
+        wanted = mode_direction(mode, config.park, sun, refraction=True, mount=config.mount)
+        near_deg = aim(config, Pointing(), wanted, near_deg).azimuth_deg
+        spans[-1].append(near_deg)
+    return spans
+
+
+def test_a_sun_in_the_gap_of_the_range_is_said_to_be_out_of_reach() -> None:
+    config = replace(CONFIG, azimuth=replace(FIRST, minimum_deg=20.0, maximum_deg=340.0))
+    at, location = datetime(2026, 6, 21, 2, 0, tzinfo=UTC), Location(SYDNEY.latitude_deg, 151.0)
+    sun = sun_position(Algorithm.PSA, location, at)
+    wanted = mode_direction(Mode.DUAL, config.park, sun, refraction=True, mount=config.mount)
+    target = aim(config, Pointing(), wanted, 30.0)
+    assert target.limited
+    assert target.azimuth_deg in (20.0, 340.0)
+
+
+def test_commands_of_a_single_axis_leave_the_drives_second_axis_alone() -> None:
+    plant = Plant(replace(READY, mode=Mode.AZIMUTH), config=TILTED)
+    plant.tick()
+    plant.ask(Track())
+    told = []
+    plant.forward(30.0, lambda: told.append(plant.told.elevation))
+    assert told
+    assert all(command == HALT for command in told)
+
+
+def angles_of(config: TrackerConfig, azimuth_deg: float, elevation_deg: float) -> tuple[float, float]:
+    return angles(config.mount, azimuth_deg, elevation_deg, SCALAR)
