@@ -98,10 +98,9 @@ class WorkOut:
 
 @dataclass(frozen=True, slots=True)
 class CheckWeather:
-    """Read a weather file and tell what it is; without a year the file's first."""
+    """Read a weather file and tell what it is."""
 
     path: str
-    year: int
     do: Literal["weather"] = "weather"
 
 

@@ -49,8 +49,8 @@ class WeatherYear:
     wind_mps: Array
 
 
-def read_weather(path: Path, year: int) -> WeatherYear:
-    """Return a weather file; of one with several years that year. Raises `WeatherRefused`."""
+def read_weather(path: Path, year: int | None = None) -> WeatherYear:
+    """Return a weather file; of one with several years that year, or the first. Raises `WeatherRefused`."""
     kind = _format_of(path)
     try:
         return READERS[kind](path, year)
@@ -78,25 +78,25 @@ def _format_of(path: Path) -> WeatherFormat:
     )
 
 
-def _tmy3(path: Path, _: int) -> WeatherYear:
+def _tmy3(path: Path, _: int | None) -> WeatherYear:
     data, head = read_tmy3(str(path))
     place = Location(head["latitude"], head["longitude"], head["altitude"])
     return _year(WeatherFormat.TMY3, place, head["TZ"], 0.5, data)
 
 
-def _epw(path: Path, _: int) -> WeatherYear:
+def _epw(path: Path, _: int | None) -> WeatherYear:
     data, head = read_epw(str(path))
     place = Location(head["latitude"], head["longitude"], head["altitude"])
     return _year(WeatherFormat.EPW, place, head["TZ"], 0.5, data)
 
 
-def _pvgis_tmy(path: Path, _: int) -> WeatherYear:
+def _pvgis_tmy(path: Path, _: int | None) -> WeatherYear:
     data, head = read_pvgis_tmy(str(path), pvgis_format="csv")
     centre_h = float(head["inputs"].get("irradiance time offset", 0.0))
     return _year(WeatherFormat.PVGIS_TMY, _pvgis_place(head), 0.0, centre_h, data)
 
 
-def _pvgis_hourly(path: Path, year: int) -> WeatherYear:
+def _pvgis_hourly(path: Path, year: int | None) -> WeatherYear:
     """Return one year of an hourly file of a level plane; the beam is turned from level to facing the sun."""
     data, head = read_pvgis_hourly(str(path), pvgis_format="csv")
     if not {"poa_direct", "poa_sky_diffuse"} <= set(data.columns):
@@ -104,6 +104,7 @@ def _pvgis_hourly(path: Path, year: int) -> WeatherYear:
     if not str(head["inputs"].get("Slope", "")).startswith("0"):
         raise WeatherRefused("Ask PVGIS for a level plane (slope 0): this file is for a tilted one.")
     years = sorted(set(data.index.year))
+    year = years[0] if year is None else year
     if year not in years:
         raise WeatherRefused(
             f"The file has the years {years[0]} to {years[-1]}, not {year}: choose one of them."

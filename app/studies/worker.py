@@ -44,8 +44,8 @@ def done(job: Job) -> Told:
     match job:
         case WorkOut():
             return _study(job)
-        case CheckWeather(path, year):
-            seen = read_weather(Path(path), year)
+        case CheckWeather(path):
+            seen = read_weather(Path(path))
             yearly_kwhm2 = float(seen.global_wm2.sum()) / 1000.0
             return WeatherSeen(seen.format, seen.location, seen.utc_offset_h, yearly_kwhm2)
         case FindPrograms(question):

@@ -44,8 +44,7 @@ LONGEST_LINE = 64 * 1024 * 1024
 TOO_MANY = f"{MOST_OPEN} studies are under way or waiting; try again when one of them has ended."
 TOO_BUSY = "Other calculations are under way; try again when one of them has ended."
 TOO_LONG = (
-    "The study took longer than ten minutes and was given up: take a longer "
-    "step, fewer days or fewer modes."
+    "The study took longer than ten minutes and was given up: take a longer step, fewer days or fewer modes."
 )
 DIED = "The process that worked the study out ended without a result; the panel's log says more."
 
@@ -101,11 +100,11 @@ class Studies:
             raise TypeError(f"The worker answered {type(found).__name__}.")
         return found.answer
 
-    async def add_weather(self, name: str, content: bytes, year: int) -> WeatherFile:
+    async def add_weather(self, name: str, content: bytes) -> WeatherFile:
         """Keep a weather file if it can be used; raise `ValueError` with a sentence if not."""
         new = await run_in_threadpool(self.folder.put_weather, name, content)
         try:
-            seen = await self._answer(CheckWeather(str(new), year))
+            seen = await self._answer(CheckWeather(str(new)))
             if not isinstance(seen, WeatherSeen):
                 raise TypeError(f"The worker answered {type(seen).__name__}.")
             return await run_in_threadpool(self.folder.accept_weather, name, new, seen)
