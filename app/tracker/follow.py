@@ -18,6 +18,8 @@ DELAY_S = 0.3
 WAY_SHARE = 0.1
 NEW_ANCHOR_DEG = 20.0
 WRONG_WAY_DEG = 0.3
+THERE_DEG = 0.05
+"""An axis so near to its position goes no particular way: what is left is the rounding of its encoder."""
 LONGEST_STEP_S = 0.1
 MOST_STEPS = 20
 
@@ -113,7 +115,8 @@ def _wanted_dps(
 def _direction(command: Velocity | Position, measured_deg: float) -> float:
     match command:
         case Position():
-            return copysign(1.0, command.position_deg - measured_deg)
+            away_deg = command.position_deg - measured_deg
+            return copysign(1.0, away_deg) if abs(away_deg) > THERE_DEG else 0.0
         case Velocity():
             return copysign(1.0, command.velocity_dps)
     assert_never(command)

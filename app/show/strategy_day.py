@@ -1,0 +1,102 @@
+"""What a strategy does with a day: moves, greatest error and travel, told by the real controller."""
+
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.angles import separation_deg
+from app.show.simulate import simulate
+from app.sun.position import Location, SunPosition, sun_path
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.memory import Pointing
+from app.tracker.mode import Mode
+from app.tracker.mount import sky
+from app.tracker.programs.schedule import Followed
+from app.tracker.recording import Frames
+
+SECOND = timedelta(seconds=1)
+STILL_DEG = 1e-9
+CURVE_S = 120
+
+
+@dataclass(frozen=True, slots=True)
+class StrategyDay:
+    """A day by one strategy, and its curves: one value for every 120 s, sky degrees.
+
+    `moves` counts motions from standstill to standstill. Errors are the angle between the panel and where it
+    would face without any strategy, following the mode all the time, while the sun is up; None if it is never.
+    """
+
+    moves: int
+    largest_error_deg: float | None
+    mean_error_deg: float | None
+    travel_azimuth_deg: float
+    travel_elevation_deg: float
+    elapsed_s: tuple[float, ...]
+    sun_azimuth_deg: tuple[float, ...]
+    sun_elevation_deg: tuple[float, ...]
+    panel_azimuth_deg: tuple[float, ...]
+    panel_elevation_deg: tuple[float, ...]
+
+
+def strategy_day(
+    config: TrackerConfig,
+    pointing: Pointing,
+    location: Location,
+    mode: Mode,
+    held: Orientation,
+    begin: datetime,
+    end: datetime,
+) -> StrategyDay:
+    """Return what a tracker with this configuration does from `begin` to `end`, in place at the beginning."""
+    _, frames = simulate(config, pointing, location, "UTC", mode, held, begin, end, step=SECOND)
+    setpoints = _columns(frames, "setpoint_azimuth_deg", "setpoint_elevation_deg")
+    measured = _columns(frames, "measured_azimuth_deg", "measured_elevation_deg")
+    followed = Followed(config, pointing, mode, held)
+    suns = _suns(config, location, begin, frames)
+    panels = [sky(config, pointing, *axes) for axes in measured.T.tolist()]
+    errors_deg = [
+        _off_deg(followed.direction(sun), panel)
+        for sun, panel in zip(suns, panels, strict=True)
+        if _height_deg(config, sun) > 0.0
+    ]
+    turns_deg = np.abs((np.diff(measured, axis=1) + 180.0) % 360.0 - 180.0).sum(axis=1)
+    picked = range(0, len(frames), CURVE_S)
+    return StrategyDay(
+        moves=_moves(setpoints),
+        largest_error_deg=max(errors_deg, default=None),
+        mean_error_deg=sum(errors_deg) / len(errors_deg) if errors_deg else None,
+        travel_azimuth_deg=float(turns_deg[0]),
+        travel_elevation_deg=float(turns_deg[1]),
+        elapsed_s=tuple(frames.column("elapsed_s")[picked].tolist()),
+        sun_azimuth_deg=tuple(suns[i].azimuth_deg for i in picked),
+        sun_elevation_deg=tuple(_height_deg(config, suns[i]) for i in picked),
+        panel_azimuth_deg=tuple(panels[i].azimuth_deg for i in picked),
+        panel_elevation_deg=tuple(panels[i].elevation_deg for i in picked),
+    )
+
+
+def _columns(frames: Frames, *names: str) -> NDArray[np.float64]:
+    return np.array([frames.column(name) for name in names])
+
+
+def _moves(setpoints: NDArray[np.float64]) -> int:
+    """Return how often set-points began to change after they had stood still."""
+    changing = (np.abs(np.diff(setpoints, axis=1)) > STILL_DEG).any(axis=0)
+    return int(changing[:1].sum() + (changing[1:] & ~changing[:-1]).sum())
+
+
+def _suns(config: TrackerConfig, location: Location, begin: datetime, frames: Frames) -> list[SunPosition]:
+    path = sun_path(config.algorithm, location, begin.timestamp() + frames.column("elapsed_s"))
+    columns = (path.azimuth_deg, path.elevation_deg, path.apparent_elevation_deg)
+    return [SunPosition(*sun) for sun in zip(*(column.tolist() for column in columns), strict=True)]
+
+
+def _height_deg(config: TrackerConfig, sun: SunPosition) -> float:
+    return sun.apparent_elevation_deg if config.refraction else sun.elevation_deg
+
+
+def _off_deg(one: Orientation, other: Orientation) -> float:
+    return separation_deg(one.azimuth_deg, one.elevation_deg, other.azimuth_deg, other.elevation_deg)
