@@ -57,6 +57,7 @@ from app.tracker.memory import (
     TrackerMemory,
     TrackerState,
 )
+from app.tracker.proof_states import proof_states
 from app.tracker.reason import Reason
 from app.tracker.snapshot import (
     ClockState,
@@ -228,7 +229,8 @@ class FakeMachine:
             status = StepStatus.DONE if given else StepStatus.TO_DO
             reasons = () if given else (Reason(f"{name}_open", f"Step {name} is not done yet.", "Do it."),)
             steps.append(WizardStep(name, status, reasons, given and given.at, given.by if given else ""))
-        return TrackerDetail(TrackerState(tracker.config, tracker.memory), tuple(steps), CAPABILITIES)
+        proofs = proof_states(tracker.config, tracker.memory, CAPABILITIES)
+        return TrackerDetail(TrackerState(tracker.config, tracker.memory), tuple(steps), CAPABILITIES, proofs)
 
     def latest(self) -> SiteSnapshot | None:
         """Return the newest snapshot, None while the link is cut."""
