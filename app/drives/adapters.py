@@ -54,7 +54,7 @@ def axis_units(drive: DriveConfig) -> dict[Axis, int]:
     azimuth, *others = drive.units
     if not others:
         raise ProfileError(
-            f"Both axes have unit {azimuth}, but with profile {drive.profile} each axis has a drive of its own. "
+            f"Both axes have unit {azimuth}, but with profile {drive.profile} each has a drive of its own. "
             "Give the elevation another unit id than the azimuth."
         )
     return {Axis.AZIMUTH: azimuth, Axis.ELEVATION: others[0]}

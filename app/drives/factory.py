@@ -11,7 +11,7 @@ from app.drives.bus import BusUnit
 from app.drives.buses import Buses
 from app.drives.corrected import corrected
 from app.drives.drive import Drive
-from app.drives.profile import load_profile
+from app.drives.profile_library import ProfileLibrary
 from app.drives.simulated import SimulatedDrive
 from app.drives.sunlight import Sunlight
 from app.drives.transmitted import TransmittedDrive, has_actuators, in_millimetres
@@ -34,6 +34,7 @@ class DriveFactory:
         sun: Callable[[], SunPosition | None] = lambda: None,
     ) -> None:
         self.buses = Buses(clock)
+        self.profiles = ProfileLibrary(data_dir / "profiles" if data_dir is not None else None)
         self._clock = clock
         self._data_dir = data_dir
         self._sun = sun
@@ -64,7 +65,7 @@ class DriveFactory:
         return self._data_dir / "drives" / f"{quote(tracker_id, safe='')}.json"
 
     def _modbus(self, config: TrackerConfig) -> Drive:
-        profile = load_profile(config.drive.profile)
+        profile = self.profiles.load(config.drive.profile)
 
         def unit_of(number: int) -> BusUnit:
             return self.buses.unit(config.drive, number, profile.timing)

@@ -1,13 +1,13 @@
 """Reads every register of a device with a profile, decodes it, and changes nothing."""
 
 from collections.abc import AsyncIterator, Sequence
-from functools import cache
 
 from app.drives.bus import BusUnit
 from app.drives.buses import Buses
 from app.drives.drive import DriveError, DriveRefused, DriveSilent
 from app.drives.line import list_ports
-from app.drives.profile import Profile, ProfileError, known_profiles, load_profile
+from app.drives.profile import Profile, ProfileError
+from app.drives.profile_library import ProfileLibrary
 from app.drives.register import Register
 from app.tracker.config import DriveConfig, DriveKind
 from app.tracker.drive_check import (
@@ -29,15 +29,16 @@ Words = tuple[int, Sequence[int]]
 class DriveProbe:
     """Looks at drives on the buses that the machine already has, beside what they are doing."""
 
-    def __init__(self, buses: Buses) -> None:
+    def __init__(self, buses: Buses, profiles: ProfileLibrary) -> None:
         self._buses = buses
+        self._profiles = profiles
 
     async def look(self, drive: DriveConfig) -> DriveReadings:
         """Return what a drive answers; whatever goes wrong is the answer, too."""
         if drive.kind is DriveKind.SIMULATED:
             return SIMULATED
         try:
-            profile = load_profile(drive.profile)
+            profile = self._profiles.load(drive.profile)
             registers = [one async for one in self._units(drive, profile)]
         except ProfileError as error:
             return DriveReadings(CheckOutcome.UNUSABLE, str(error))
@@ -50,7 +51,17 @@ class DriveProbe:
     def choices(self) -> DriveChoices:
         """Return the profiles and serial ports of this machine; may touch the disk."""
         ports = tuple(PortChoice(port, description) for port, description in list_ports())
-        return DriveChoices(tuple(_choice(name) for name in known_profiles()), ports)
+        return DriveChoices(tuple(map(self._choice, self._profiles.names())), ports)
+
+    def _choice(self, name: str) -> ProfileChoice:
+        try:
+            profile = self._profiles.load(name)
+        except ProfileError as error:
+            return ProfileChoice(name, name, False, "", (), "", str(error))
+        watchdog = "" if profile.watchdog is None else profile.watchdog.action
+        return ProfileChoice(
+            name, profile.title, profile.verified, profile.source, profile.unverified, watchdog
+        )
 
     async def _units(self, drive: DriveConfig, profile: Profile) -> AsyncIterator[RegisterReading]:
         for number in drive.units:
@@ -137,13 +148,3 @@ def _watchdog_s(profile: Profile, registers: list[RegisterReading]) -> float | N
     readback = profile.watchdog.readback if profile.watchdog is not None else None
     found = next((one.shown for one in registers if one.name == readback and not one.trouble), None)
     return float(found) / 1000.0 if found else None
-
-
-@cache
-def _choice(name: str) -> ProfileChoice:
-    try:
-        profile = load_profile(name)
-    except ProfileError as error:
-        return ProfileChoice(name, name, False, "", (), "", str(error))
-    watchdog = "" if profile.watchdog is None else profile.watchdog.action
-    return ProfileChoice(name, profile.title, profile.verified, profile.source, profile.unverified, watchdog)

@@ -144,7 +144,7 @@ def _site(
             recordings_keep=settings.recordings_keep,
             weather_stale_after=timedelta(seconds=settings.weather_stale_s),
         ),
-        tools=DriveProbe(factory.buses),
+        tools=DriveProbe(factory.buses, factory.profiles),
     )
     return site
 

@@ -98,13 +98,13 @@ async def simulated_rig() -> AsyncIterator[Rig]:
 
 @asynccontextmanager
 async def modbus_rig(name: str = "simulated-plc") -> AsyncIterator[Rig]:
-    """The drive behind a real socket: master, TCP, server, registers."""
+    """The drive behind a real socket: master, TCP, server, registers. One's own profiles lie beside."""
     clock = VirtualClock(START)
     machine = SimulatedDrive(CONFIG, clock)
-    profile = load_profile(name)
-    server, port = await serve("127.0.0.1", 0, profile, machine, clock)
+    factory = DriveFactory(clock, Path(__file__).parent)
+    server, port = await serve("127.0.0.1", 0, factory.profiles.load(name), machine, clock)
     config = replace(CONFIG, drive=DriveConfig(DriveKind.MODBUS_TCP, name, port=port))
-    drive = DriveFactory(clock).make(config)
+    drive = factory.make(config)
     try:
         yield Rig(drive, machine, clock)
     finally:
@@ -164,5 +164,5 @@ RIGS = {
     "modbus-tcp": modbus_rig,
     "modbus-rtu": rtu_rig,
     "modbus-rtu-over-tcp": gateway_rig,
-    "modbus-tcp, another map": partial(modbus_rig, str(Path(__file__).with_name("other-map.toml"))),
+    "modbus-tcp, another map": partial(modbus_rig, "other-map"),
 }

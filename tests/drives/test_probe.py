@@ -13,6 +13,7 @@ from app.drives.faults import Fault, FaultKind
 from app.drives.modbus_server import ModbusServer
 from app.drives.probe import DriveProbe
 from app.drives.profile import load_profile
+from app.drives.profile_library import ProfileLibrary
 from app.drives.sim_server import serve
 from app.drives.simulated import SimulatedDrive
 from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
@@ -34,12 +35,12 @@ class Bench:
 
 
 @pytest.fixture
-async def bench() -> AsyncIterator[Bench]:
+async def bench(tmp_path: Path) -> AsyncIterator[Bench]:
     clock = VirtualClock(START)
     machine = SimulatedDrive(TrackerConfig("T1", "Tracker 1"), clock, watchdog=timedelta(milliseconds=400))
     server, port = await serve("127.0.0.1", 0, load_profile("simulated-plc"), machine, clock)
     drive = DriveConfig(DriveKind.MODBUS_TCP, port=port)
-    yield Bench(machine, clock, server, drive, DriveProbe(Buses(clock)))
+    yield Bench(machine, clock, server, drive, DriveProbe(Buses(clock), ProfileLibrary(tmp_path)))
     await server.close()
 
 
@@ -72,7 +73,7 @@ async def test_another_device_is_told_by_its_identity(bench: Bench, tmp_path: Pa
     text = (Path(load_profile.__code__.co_filename).parent / "profiles" / "simulated-plc.toml").read_text()
     other = tmp_path / "other.toml"
     other.write_text(text.replace("expect = 18512", "expect = 4711").replace("count = 6", "count = 100"))
-    readings = await bench.probe.look(replace(bench.drive, profile=str(other)))
+    readings = await bench.probe.look(replace(bench.drive, profile="other"))
     assert readings.outcome is CheckOutcome.WRONG_DEVICE
     assert "18512 instead of 4711" in readings.message
     refused = [one for one in readings.registers if one.trouble]
@@ -101,7 +102,7 @@ async def test_a_missing_profile_and_a_simulated_drive_say_so(bench: Bench) -> N
 
 
 def test_the_choices_are_the_profiles_that_come_with_the_program() -> None:
-    choices = DriveProbe(Buses(VirtualClock(START))).choices()
+    choices = DriveProbe(Buses(VirtualClock(START)), ProfileLibrary()).choices()
     plc = next(one for one in choices.profiles if one.name == "simulated-plc")
     assert (plc.verified, plc.trouble, plc.unverified) == (True, "", ())
     assert plc.title

@@ -1,0 +1,40 @@
+"""The profiles that may be chosen by name: those that ship, and the engineer's own in the data folder."""
+
+import re
+from functools import lru_cache
+from pathlib import Path
+
+from app.drives.profile import PROFILES, SUFFIX, Profile, ProfileError, known_profiles, parse_profile
+
+NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
+
+
+class ProfileLibrary:
+    """Two folders. A name never leads out of them: a path to any other file is for the command line only."""
+
+    def __init__(self, own: Path | None = None) -> None:
+        self._own = own
+
+    def names(self) -> tuple[str, ...]:
+        """Return every name that can be loaded; a file whose name could not be asked for is left out."""
+        own = () if self._own is None else (path.stem for path in self._own.glob(f"*{SUFFIX}"))
+        return tuple(sorted({*known_profiles(), *filter(NAME.fullmatch, own)}))
+
+    def load(self, name: str) -> Profile:
+        """Return a profile by its name, a shipped one before one's own, or raise `ProfileError`."""
+        if NAME.fullmatch(name):
+            for folder in (PROFILES, self._own):
+                path = None if folder is None else folder / f"{name}{SUFFIX}"
+                if path is not None and path.is_file():
+                    return _read(path, path.stat().st_mtime_ns)
+        raise ProfileError(
+            f"There is no drive profile {name!r}. Choose one of {', '.join(self.names())}{self._advice()}."
+        )
+
+    def _advice(self) -> str:
+        return "" if self._own is None else f", or put your own as name{SUFFIX} into {self._own}"
+
+
+@lru_cache(maxsize=64)
+def _read(path: Path, changed_ns: int) -> Profile:  # the time of the last change belongs to the key
+    return parse_profile(path.read_text(encoding="utf-8"), path.name)
