@@ -2,8 +2,8 @@
 
 The mechanism of C. Alexandru, Mathematics 2024, 12, 1034, doi:10.3390/math12071034: one end of the actuator
 is held by the part that the axis turns against, the other by the part that turns. Between the ends of the
-stroke the formulas hold exactly; beyond them the angle goes on in a straight line, so that a reading of a
-drive that has lost its zero still means something.
+stroke the formulas hold exactly; beyond them the angle goes on in a straight line, as steep as the stroke is
+anywhere, so that a reading of a drive that has lost its zero still means something.
 """
 
 from dataclasses import dataclass
@@ -11,6 +11,7 @@ from math import acos, atan2, cos, degrees, hypot, radians, sin, sqrt
 
 LEAST_TRANSMISSION_DEG = 10.0
 MOST_TRANSMISSION_DEG = 170.0
+ROUNDING_DEG = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +76,7 @@ class LinearActuator:
         inside_deg = min(high_deg, max(low_deg, angle_deg))
         beyond_deg = angle_deg - inside_deg
         stroke_mm = self.length_mm(inside_deg) - self.retracted_mm
-        return stroke_mm + beyond_deg * self.mm_per_deg(inside_deg) if beyond_deg else stroke_mm
+        return stroke_mm + beyond_deg * _steepest_mm_per_deg(self) if beyond_deg else stroke_mm
 
     def angle_deg(self, stroke_mm: float) -> float:
         """Return the axis angle at a stroke: the inverse of `stroke_mm`."""
@@ -86,14 +87,14 @@ class LinearActuator:
         opening_deg = degrees(acos(min(1.0, max(-1.0, cosine))))
         angle_deg = self.at_deg + _side(self) * opening_deg - degrees(_phase(self))
         beyond_mm = stroke_mm - inside_mm
-        return angle_deg + beyond_mm / self.mm_per_deg(angle_deg) if beyond_mm else angle_deg
+        return angle_deg + beyond_mm / _steepest_mm_per_deg(self) if beyond_mm else angle_deg
 
     def mm_per_deg(self, angle_deg: float) -> float:
         """Return how far the actuator is driven out for a degree; negative where that turns the axis back."""
-        held, arm, _ = _triangle(self)
-        low_deg, high_deg = _open_range_deg(self)
-        opening = radians(min(high_deg, max(low_deg, angle_deg)) - self.at_deg) + _phase(self)
-        return radians(held * arm * sin(opening) / self.length_mm(angle_deg))
+        low_deg, high_deg = self.range_deg
+        if low_deg - ROUNDING_DEG <= angle_deg <= high_deg + ROUNDING_DEG:
+            return _slope(self, angle_deg)
+        return _steepest_mm_per_deg(self)
 
     def transmission_deg(self, angle_deg: float) -> float:
         """Return the angle at the joint between the actuator and the arm to the axis."""
@@ -101,11 +102,7 @@ class LinearActuator:
 
     def slowest_dps(self, low_deg: float, high_deg: float) -> float:
         """Return how fast the actuator turns the axis where it turns it slowest, between two axis angles."""
-        steepest_deg = self.at_deg - degrees(_phase(self)) + _side(self) * degrees(acos(_steepest(self)))
-        angles_deg = [low_deg, high_deg]
-        if low_deg < steepest_deg < high_deg:
-            angles_deg.append(steepest_deg)
-        return self.speed_mm_s / max(abs(self.mm_per_deg(angle_deg)) for angle_deg in angles_deg)
+        return self.speed_mm_s / abs(_steepest_between(self, low_deg, high_deg))
 
 
 def _triangle(actuator: LinearActuator) -> tuple[float, float, float]:
@@ -126,11 +123,23 @@ def _side(actuator: LinearActuator) -> float:
     return -1.0 if _phase(actuator) < 0.0 else 1.0
 
 
-def _open_range_deg(actuator: LinearActuator) -> tuple[float, float]:
-    """Return the axis angles between which a longer actuator always means a greater opening."""
+def _slope(actuator: LinearActuator, angle_deg: float) -> float:
+    """Return the derivative of the length, millimetres a degree."""
+    held, arm, _ = _triangle(actuator)
+    opening = radians(angle_deg - actuator.at_deg) + _phase(actuator)
+    return radians(held * arm * sin(opening) / actuator.length_mm(angle_deg))
+
+
+def _steepest_mm_per_deg(actuator: LinearActuator) -> float:
+    return _steepest_between(actuator, *actuator.range_deg)
+
+
+def _steepest_between(actuator: LinearActuator, low_deg: float, high_deg: float) -> float:
+    """Return the slope, with its sign, where a degree takes the longest stroke."""
     straight_deg = actuator.at_deg - degrees(_phase(actuator))
-    ends_deg = straight_deg, straight_deg + _side(actuator) * 180.0
-    return min(ends_deg), max(ends_deg)
+    steepest_deg = straight_deg + _side(actuator) * degrees(acos(_steepest(actuator)))
+    inside_deg = min(high_deg, max(low_deg, steepest_deg))
+    return max((_slope(actuator, angle) for angle in (low_deg, high_deg, inside_deg)), key=abs)
 
 
 def _steepest(actuator: LinearActuator) -> float:
