@@ -189,7 +189,7 @@ class Bus:
         for job in self._waiting:
             if job.unit is unit and job.ask.words and job.ticket is not None:
                 _fail(job, DriveError(f"A stop overtook this: {job.what} was not written."))
-        if self._flying is not None and self._flying.priority is not Priority.STOP:
+        if self._flying is not None:
             self._wire.hurry()
 
     async def submit(

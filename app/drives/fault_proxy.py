@@ -49,7 +49,7 @@ class FaultProxy:
         self._pending: dict[bytes, Step] = {}
         self._held = b""
         self._turn = 0
-        self._asked_at_s = 0.0
+        self._asked_at_s = self._free_at_s = 0.0
         self._tasks: set[asyncio.Task[None]] = set()
 
     async def start(self) -> None:
@@ -109,11 +109,22 @@ class FaultProxy:
                     self._near.cut(reset=step.fault is WireFault.RESET)
             case WireFault.DELAY:
                 late_s = (LATE_MS if step.amount is None else step.amount) / 1000.0
-                asyncio.get_running_loop().call_later(late_s, self._send, reply)
+                self._send(reply, late_s)
             case _:
                 self._send(spoiled(reply, step, self._framing, self._turn))
 
-    def _send(self, reply: bytes) -> None:
+    def _send(self, reply: bytes, late_s: float = 0.0) -> None:
+        """Send now or later. RTU replies keep their order, as one device cannot overtake itself."""
+        loop = asyncio.get_running_loop()
+        due_s = loop.time() + late_s
+        if self._framing is Framing.RTU:
+            due_s = self._free_at_s = max(self._free_at_s + 1e-6, due_s)
+        if due_s <= loop.time():
+            self._put(reply)
+        else:
+            loop.call_at(due_s, self._put, reply)
+
+    def _put(self, reply: bytes) -> None:
         held, self._held = self._held, b""
         if self._near.is_open:
             self._near.write(held + reply)

@@ -16,6 +16,8 @@ from app.drives.wire import Ask, Broken, GivenUp, Refused, Timing, Unanswered
 
 SILENT_CHARACTERS = 3.5
 SHORTEST_SILENCE_S, GATEWAY_SILENCE_S = 0.00175, 0.0005
+WARY_SILENCE_S = 0.025
+"""After damage a shorter silence proves nothing: USB adapters hand bytes over every 16 ms by default."""
 BROKEN_OFF_S = 0.05
 TURNAROUND_S = 0.04
 NEVER_SILENT_S, STOP_SPEAKS_AFTER_S = 0.1, 0.02
@@ -151,7 +153,9 @@ class RtuWire:
         begun_s = loop.time()
         while True:
             now_s = loop.time()
-            due_s = max(self._heard_at_s, self._sent_at_s) + max(self._silence_s, self._rest_s)
+            wary_s = WARY_SILENCE_S if self._unsettled and not urgent else 0.0
+            spoken_s = max(self._heard_at_s + wary_s, self._sent_at_s)
+            due_s = spoken_s + max(self._silence_s, self._rest_s)
             quiet_s = begun_s if urgent else max(begun_s, self._quiet_until_s)
             if now_s >= max(due_s, quiet_s):
                 return

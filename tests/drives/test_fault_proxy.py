@@ -1,0 +1,146 @@
+"""Every fault on every wire: no wrong value is believed, the next read is right, and a stop goes at once."""
+
+import asyncio
+import time
+from contextlib import suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+
+from app.clock import SystemClock
+from app.drives.bus import BusUnit
+from app.drives.buses import Buses
+from app.drives.drive import DriveError, DriveSilent
+from app.drives.pty_line import PtyLine
+from app.drives.rtu_server import RtuServer
+from app.drives.wire_faults import ONLY, Framing, WireFault, parse_script
+from app.tracker.config import DriveConfig, DriveKind, SerialConfig
+from tests.drives.proxied import BENCHES, STOP_REGISTER, TIMING, Bench, Registers
+
+RECOVERED_WITHIN_S = {"tcp": 0.3, "rtu": 1.0, "rtu-over-tcp": 1.0}
+STOP_WITHIN_S = 0.05
+LATE = ("delay=250", "delay=450", "delay=700")
+
+
+def faults(wire: str) -> list[str]:
+    framing = Framing.TCP if wire == "tcp" else Framing.RTU
+    plain = [fault for fault in WireFault if ONLY.get(fault, framing) is framing]
+    if wire == "rtu":
+        plain = [fault for fault in plain if fault not in (WireFault.RESET, WireFault.CLOSE)]
+    return [*(fault for fault in plain if fault is not WireFault.DELAY), *LATE]
+
+
+CASES = [(wire, fault) for wire in BENCHES for fault in faults(wire) if fault != WireFault.CLEAR]
+
+
+async def one_read(bench: Bench, device: BusUnit, address: int) -> bool:
+    """Read a block; return whether it was read. A wrong value fails the test."""
+    try:
+        found = await device.read(address, 4, what="four registers")
+    except DriveError:
+        return False
+    assert found == bench.right(device.unit, address, 4), "a wrong value was believed"
+    return True
+
+
+@pytest.mark.parametrize(("wire", "fault"), CASES)
+async def test_no_wrong_value_is_believed_and_the_next_read_is_right(wire: str, fault: str) -> None:
+    async with BENCHES[wire]() as bench:
+        devices = [bench.buses.unit(bench.config, unit, TIMING) for unit in bench.devices]
+        for device in devices:
+            assert await one_read(bench, device, 10)
+        bench.proxy.play(f"{fault} 1")
+        began = time.monotonic()
+        turn = 0
+        while not await one_read(bench, devices[turn % 2], 10 + turn):
+            turn += 1
+            assert turn < 6
+        assert time.monotonic() - began < RECOVERED_WITHIN_S[wire]
+        for place in range(8):
+            assert await one_read(bench, devices[place % 2], 20 + place), "the bus is in step again"
+        for device in devices:
+            await device.close()
+
+
+@pytest.mark.parametrize(
+    ("wire", "fault"), [(w, f) for w in BENCHES for f in ("clear", "drop", "black-hole")]
+)
+async def test_a_stop_goes_at_once_while_polls_are_in_flight(wire: str, fault: str) -> None:
+    async with BENCHES[wire]() as bench:
+        device, other = (bench.buses.unit(bench.config, unit, TIMING) for unit in bench.devices)
+        assert await one_read(bench, device, 10)
+        assert await one_read(bench, other, 10)
+        bench.proxy.play(fault)
+        polls = [asyncio.create_task(one_read(bench, one, 30)) for one in (device, other) * 3]
+        took_s = []
+        for _ in range(3):
+            await asyncio.sleep(0.01)
+            asked_s = time.monotonic()
+            stop = asyncio.create_task(device.stop(STOP_REGISTER, [1], what="stop"))
+            await asyncio.wait([stop], timeout=0.1)
+            took_s.append(bench.proxy.stop_at_s - asked_s)
+            stop.cancel()
+            await asyncio.gather(stop, return_exceptions=True)
+        assert min(took_s) > 0.0, "every stop was sent"
+        assert sorted(took_s)[1] < STOP_WITHIN_S
+        for poll in polls:
+            poll.cancel()
+        await asyncio.gather(*polls, return_exceptions=True)
+        await device.close()
+        await other.close()
+
+
+def test_a_script_says_when_what_happens() -> None:
+    script = parse_script("after 2 frames: drop 2; delay=50 1", Framing.TCP)
+    played = [script.next() for _ in range(6)]
+    assert [step.fault for step in played] == ["clear", "clear", "drop", "drop", "delay", "clear"]
+    assert played[4].amount == 50.0
+
+
+def test_a_fault_without_a_number_stays() -> None:
+    script = parse_script("noise", Framing.RTU)
+    assert {script.next().fault for _ in range(9)} == {"noise"}
+
+
+@pytest.mark.parametrize("text", ["nonsense", "drop x", "after: drop", "wrong-transaction"])
+def test_what_cannot_be_played_is_said(text: str) -> None:
+    with pytest.raises(ValueError, match=r"is no fault|not possible"):
+        parse_script(text, Framing.RTU)
+
+
+async def test_an_adapter_that_is_unplugged_is_found_again() -> None:
+    with TemporaryDirectory() as folder:
+        name = Path(folder) / "adapter"
+        config = DriveConfig(DriveKind.MODBUS_RTU, serial=SerialConfig(str(name), 115_200))
+        device = Buses(SystemClock()).unit(config, 7, TIMING)
+        registers = Registers(7)
+        for _ in range(2):
+            server = RtuServer({7: registers}, PtyLine(name))
+            await server.start()
+            ticket = device.ticket
+            async with asyncio.timeout(2.0):
+                while True:
+                    with suppress(DriveSilent):
+                        assert await device.read(10, 4, what="words") == registers.words(10, 4)
+                        break
+                    await asyncio.sleep(0.05)
+            assert device.ticket != ticket, "nothing from before is written"
+            await server.close()
+            with pytest.raises(DriveSilent, match="plugged in"):
+                await device.read(10, 4, what="words")
+        await device.close()
+
+
+async def test_a_line_in_use_with_other_settings_is_refused() -> None:
+    buses = Buses(SystemClock())
+    first, second = (
+        buses.unit(DriveConfig(DriveKind.MODBUS_RTU, serial=SerialConfig("/dev/none", rate)), unit, TIMING)
+        for unit, rate in ((1, 9600), (2, 19200))
+    )
+    with pytest.raises(DriveSilent):
+        await first.read(0, 1, what="a word")
+    with pytest.raises(DriveError, match="other settings"):
+        await second.read(0, 1, what="a word")
+    await first.close()
+    await second.close()
