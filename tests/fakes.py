@@ -40,6 +40,7 @@ from app.link.messages import (
     UnknownTracker,
     Update,
 )
+from app.link.metrics import GatewayMetrics, GatewayStatus, MachineMetrics
 from app.link.outlet import Outlet
 from app.settings import Settings
 from app.store.store import PlannedShow
@@ -78,6 +79,21 @@ KINDS = {
     "stop_all": EventKind.STOPPED,
     "set_location": EventKind.LOCATION_SET,
 }
+
+
+GATEWAYS = (
+    GatewayMetrics("SunSpec over Modbus TCP", GatewayStatus.LISTENING, "127.0.0.1:5021", 2),
+    GatewayMetrics(
+        "MQTT",
+        GatewayStatus.CONNECTING,
+        "broker.example:8883",
+        error="The broker at broker.example:8883 is not reached: Connection refused. It is tried again.",
+        waiting=128,
+    ),
+    GatewayMetrics(
+        "SunSpec over Modbus RTU", GatewayStatus.OFF, "set HELIOPANEL_SUNSPEC_SERIAL to open it"
+    ),
+)
 
 
 class FakeMachine:
@@ -214,6 +230,12 @@ class FakeMachine:
             trackers=tuple(tracker.snapshot(now, self.sequence) for tracker in self.trackers.values()),
             weather=self.weather,
         )
+
+    async def metrics(self) -> MachineMetrics:
+        """Return counters of a machine that has done nothing yet, with its doors in every state."""
+        if not self.reachable:
+            raise MachineUnreachable("The controller service does not answer.")
+        return MachineMetrics("fake-boot", 5.0, gateways=GATEWAYS)
 
     async def detail(self) -> SiteDetail:
         """Return stored settings, steps and capabilities."""

@@ -8,7 +8,14 @@ from prometheus_client import CollectorRegistry
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, HistogramMetricFamily, Metric
 from prometheus_client.exposition import generate_latest
 
-from app.link.metrics import LATENESS_BOUNDS_MS, MachineMetrics, TrackerMetrics
+from app.link.messages import MachineUnreachable
+from app.link.metrics import (
+    LATENESS_BOUNDS_MS,
+    GatewayMetrics,
+    GatewayStatus,
+    MachineMetrics,
+    TrackerMetrics,
+)
 
 GAUGES = {
     "uptime_s": "Seconds since the machine started.",
@@ -50,6 +57,16 @@ class _Given:
         yield from self._metrics
 
 
+async def counted(machine: object) -> MachineMetrics | None:
+    """Return what a machine counts, None if it does not answer or does not count."""
+    if not isinstance(machine, Counting):
+        return None
+    try:
+        return await machine.metrics()
+    except MachineUnreachable:
+        return None
+
+
 def exposition(machine: MachineMetrics | None, viewers: int) -> bytes:
     """Return everything in the text format; without a machine, `heliopanel_machine_up` is 0."""
     registry = CollectorRegistry(auto_describe=False)
@@ -73,6 +90,7 @@ def _machine(machine: MachineMetrics) -> Iterator[Metric]:
             family.add_metric([tracker_id], float(getattr(tracker, name)))
         yield family
     yield _lateness(machine.trackers)
+    yield from _gateways(machine.gateways)
 
 
 def _lateness(trackers: dict[str, TrackerMetrics]) -> Metric:
@@ -86,6 +104,22 @@ def _lateness(trackers: dict[str, TrackerMetrics]) -> Metric:
             [tracker_id], list(zip(bounds, counts, strict=False)), sum_value=tracker.lateness_sum_ms / 1000
         )
     return family
+
+
+def _gateways(gateways: Iterable[GatewayMetrics]) -> Iterator[Metric]:
+    """Yield the doors that are meant to be open."""
+    up = GaugeMetricFamily(
+        "heliopanel_gateway_up", "Whether an integration is at work.", labels=["gateway"]
+    )
+    waiting = GaugeMetricFamily(
+        "heliopanel_gateway_waiting", "Messages that an integration still has to send.", labels=["gateway"]
+    )
+    for one in gateways:
+        if one.status is not GatewayStatus.OFF:
+            works = one.status in (GatewayStatus.LISTENING, GatewayStatus.CONNECTED)
+            up.add_metric([one.name], float(works))
+            waiting.add_metric([one.name], float(one.waiting))
+    yield from (up, waiting)
 
 
 def _gauge(name: str, text: str, value: float) -> Metric:

@@ -30,6 +30,7 @@ PAGES = {
     "compare": "/recordings/show-1?with=day-1",
     "simulate": "/simulate",
     "journal": "/journal",
+    "site": "/site",
 }
 LEAST_TARGET_PX = 60
 MOST_BYTES = 150_000

@@ -18,13 +18,12 @@ from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
 from app.link.messages import MachineUnreachable
-from app.link.metrics import MachineMetrics
 from app.settings import Settings
 from app.store.backup import backup
 from app.store.store import JournalFilter
 from app.web.api.base import Output, Responses
-from app.web.deps import Panel, PanelDep
-from app.web.metrics import Counting, exposition
+from app.web.deps import PanelDep
+from app.web.metrics import counted, exposition
 
 log = structlog.get_logger()
 router = APIRouter(tags=["operations"])
@@ -89,7 +88,7 @@ def ready(panel: PanelDep) -> Readiness:
 @router.get("/metrics", summary="Metrics for Prometheus", response_class=Response, responses=TEXT)
 async def metrics(panel: PanelDep) -> Response:
     """Return counters of machine and panel in the text format."""
-    text = exposition(await _counted(panel), len(panel.hub))
+    text = exposition(await counted(panel.machine), len(panel.hub))
     return Response(text, media_type="text/plain; version=0.0.4")
 
 
@@ -103,7 +102,7 @@ async def diagnostics(panel: PanelDep) -> Response:
         "settings.json": _without_secrets(panel.settings),
         "site.json": detail,
         "snapshot.json": panel.machine.latest(),
-        "metrics.json": await _counted(panel),
+        "metrics.json": await counted(panel.machine),
         "journal.json": entries,
     }
     return _attached(await run_in_threadpool(_zipped, parts), "application/zip", "heliopanel-diagnostics.zip")
@@ -132,15 +131,6 @@ def write_backup(panel: PanelDep) -> Backup:
         events=info.events,
         recordings=info.recordings,
     )
-
-
-async def _counted(panel: Panel) -> MachineMetrics | None:
-    if not isinstance(panel.machine, Counting):
-        return None
-    try:
-        return await panel.machine.metrics()
-    except MachineUnreachable:
-        return None
 
 
 def _backup_name(now: datetime) -> str:

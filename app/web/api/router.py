@@ -5,6 +5,7 @@ from fastapi import APIRouter
 from app.web.api import (
     accuracy,
     commissioning,
+    integrations,
     journal,
     motion,
     operations,
@@ -25,6 +26,7 @@ from app.web.api.base import COMMON
 ROUTERS = (
     site.router,
     weather.router,
+    integrations.router,
     sun.router,
     accuracy.router,
     trackers.router,

@@ -30,6 +30,7 @@ SITE_TABS = (
     ("Simulate a day", "/simulate"),
     ("Accuracy", "/accuracy"),
     ("Journal", "/journal"),
+    ("Site", "/site"),
 )
 TRACKER_TABS = (
     ("Live", ""),

@@ -22,6 +22,7 @@ from app.web.ui import (
     settings,
     show,
     simulate,
+    site,
     sun_check,
     theme,
     tracker,
@@ -50,6 +51,7 @@ ROUTERS = (
     simulate.router,
     accuracy.router,
     journal.router,
+    site.router,
     wizard.router,
 )
 
