@@ -36,6 +36,7 @@ class PlcDrive:
         self._taken: dict[int, int] = {}
         self._seen: list[int] = []
         self._keep_alive = 0
+        self._urgency = Priority.POLL
         self._ticket: int | None = None
         self._stops = 0
         self._request_number = 0
@@ -78,6 +79,7 @@ class PlcDrive:
         words = self._map.command_words(command) | self._map.words("keep_alive", self._keep_alive)
         if command.request is not None:
             self._request_number = command.request.number
+        self._urgency = Priority.JOG if _turns(command) else Priority.POLL
         taken = self._taken
         self._taken = {}
         for address, values in self._frames(words, taken):
@@ -134,7 +136,7 @@ class PlcDrive:
     async def _poll(self) -> list[int]:
         block = self._block
         what = f"block {block.name} of profile {self._profile.name}"
-        words = await self._link.read(block.address, block.count, what=what)
+        words = await self._link.read(block.address, block.count, what=what, priority=self._urgency)
         self._ticket = self._link.ticket
         self._identify(words)
         self._watch_heartbeat(words)
@@ -226,6 +228,13 @@ class PlcDrive:
 
 def _with_request(feedback: Feedback, number: int) -> Feedback:
     return replace(feedback, request_done=number)
+
+
+def _turns(command: DriveCommand) -> bool:
+    """Return whether an axis is turned by hand; its readings must not wait for other drives' on the line."""
+    return any(
+        isinstance(axis, Velocity) and axis.velocity_dps for axis in (command.azimuth, command.elevation)
+    )
 
 
 def _priority(command: DriveCommand) -> Priority:

@@ -11,7 +11,7 @@ import structlog
 from app.clock import Clock
 from app.drives.drive import Drive, DriveError
 from app.site.lateness import TickCounter
-from app.tracker.config import TrackerConfig
+from app.tracker.config import DriveKind, TrackerConfig
 from app.tracker.controller import Controller
 from app.tracker.memory import TrackerMemory, TrackerState
 from app.tracker.motion import HALT, AxisCommand, DriveCommand, Feedback, Velocity
@@ -20,6 +20,8 @@ from app.tracker.reason import Reason
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
 
 READ_SHARE = 0.8
+LINE_WITHIN_S = 0.7
+ON_A_LINE = (DriveKind.MODBUS_RTU, DriveKind.MODBUS_RTU_OVER_TCP)
 STOP_WITHIN_S = 0.5
 STANDSTILL = Velocity(0.0)
 NEVER_FORBIDDEN = ("stop", "reset_fault")
@@ -200,9 +202,15 @@ class TrackerLoop:
             await self._write(_unmoved(tick.command) if unheard or self._ending else tick.command)
         self._on_tick(self, seen, tick.events)
 
+    @property
+    def _within_s(self) -> float:
+        """Return how long the drive may take: a serial line has its own pace, and others on it take turns."""
+        within_s = self._period.total_seconds() * READ_SHARE
+        return max(within_s, LINE_WITHIN_S) if self.config.drive.kind in ON_A_LINE else within_s
+
     async def _read(self) -> Feedback | None:
         try:
-            async with asyncio.timeout(self._period.total_seconds() * READ_SHARE):
+            async with asyncio.timeout(self._within_s):
                 feedback = await self.drive.read()
         except (DriveError, TimeoutError) as error:
             self.counter.read_failures += 1
@@ -215,7 +223,7 @@ class TrackerLoop:
 
     async def _write(self, command: DriveCommand) -> None:
         try:
-            async with asyncio.timeout(self._period.total_seconds() * READ_SHARE):
+            async with asyncio.timeout(self._within_s):
                 await self.drive.write(command)
             self._write_failed = False
         except (DriveError, TimeoutError) as error:
