@@ -90,9 +90,7 @@ GATEWAYS = (
         error="The broker at broker.example:8883 is not reached: Connection refused. It is tried again.",
         waiting=128,
     ),
-    GatewayMetrics(
-        "SunSpec over Modbus RTU", GatewayStatus.OFF, "set HELIOPANEL_SUNSPEC_SERIAL to open it"
-    ),
+    GatewayMetrics("SunSpec over Modbus RTU", GatewayStatus.OFF, "set HELIOPANEL_SUNSPEC_SERIAL to open it"),
 )
 
 

@@ -108,9 +108,7 @@ def _lateness(trackers: dict[str, TrackerMetrics]) -> Metric:
 
 def _gateways(gateways: Iterable[GatewayMetrics]) -> Iterator[Metric]:
     """Yield the doors that are meant to be open."""
-    up = GaugeMetricFamily(
-        "heliopanel_gateway_up", "Whether an integration is at work.", labels=["gateway"]
-    )
+    up = GaugeMetricFamily("heliopanel_gateway_up", "Whether an integration is at work.", labels=["gateway"])
     waiting = GaugeMetricFamily(
         "heliopanel_gateway_waiting", "Messages that an integration still has to send.", labels=["gateway"]
     )
