@@ -13,7 +13,9 @@ from typing import Annotated
 import typer
 
 from app.build import VERSION
-from app.cli_drives import drive, drive_sim, fault_proxy
+from app.cli_drives import drive_sim, fault_proxy
+from app.cli_profiles import drive
+from app.cli_sun import accuracy, reproduce
 from app.clock import SystemClock
 from app.drives.drive import DriveError
 from app.gateway.sunspec_map import map_table, sunspec_map
@@ -27,14 +29,11 @@ from app.store.engine import open_reader
 from app.store.exports import to_csv, to_parquet
 from app.store.restore import Restored, RestorePending, request_restore
 from app.store.store import StoreFailed
-from app.sun.accuracy import Question, survey
-from app.sun.accuracy_table import table
 from app.sun.position import Algorithm, Location, sun_position
 from app.tracker.commands import CommandRejected
 from app.tracker.config import TrackerConfig
 from app.tracker.mode import Mode
 from app.tracker.recording import Frames, RecordingInfo
-from app.web.api.accuracy import AccuracyReport
 from app.web.main import run as run_web
 
 FAILED = 2
@@ -51,6 +50,8 @@ cli = typer.Typer(
 cli.add_typer(drive)
 cli.command()(drive_sim)
 cli.command()(fault_proxy)
+cli.command()(accuracy)
+cli.command("papers")(reproduce)
 
 Supervised = Annotated[int | None, typer.Option(hidden=True, help="Process id of the supervisor.")]
 Latitude = Annotated[float, typer.Option("--lat", help="Latitude, degrees, north positive.")]
@@ -110,25 +111,6 @@ def sun(
         f"{instant:%Y-%m-%d %H:%M:%S %Z}  azimuth {found.azimuth_deg:.4f} deg  "
         f"elevation {found.elevation_deg:.4f} deg  apparent {found.apparent_elevation_deg:.4f} deg"
     )
-
-
-@cli.command()
-def accuracy(
-    lat: Annotated[float | None, typer.Option("--lat", help="Latitude of a site, north positive.")] = None,
-    lon: Annotated[float | None, typer.Option("--lon", help="Longitude of a site, east positive.")] = None,
-    from_year: Annotated[int, typer.Option("--from", help="First year.")] = 2000,
-    to_year: Annotated[int, typer.Option("--to", help="Last year.")] = 2049,
-    samples: Annotated[int, typer.Option(help="Instants to draw.")] = 100_000,
-    *,
-    globe: Annotated[bool, typer.Option("--globe", help="Latitude -65 to 65 instead of a site.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, with the curves.")] = False,
-) -> None:
-    """Measure every sun algorithm against NREL SPA."""
-    if (lat is None or lon is None) and not globe:
-        raise ValueError("Give --lat and --lon of a site, or --globe.")
-    place = None if globe or lat is None or lon is None else Location(lat, lon)
-    found = survey(Question(place, from_year, to_year, samples))
-    typer.echo(AccuracyReport.of(found).model_dump_json(indent=2) if as_json else table(found))
 
 
 @cli.command()

@@ -93,7 +93,7 @@ class Survey:
 
 
 @dataclass(frozen=True, slots=True)
-class _Sample:
+class Sample:
     """Instants with the sun up at one place, and the sun there by NREL SPA."""
 
     location: Location
@@ -122,7 +122,7 @@ def survey(question: Question, algorithms: Sequence[Algorithm] = MEASURED) -> Su
 
     Raises `AlgorithmMissing` where pvlib is not installed.
     """
-    samples = _samples(question)
+    samples = draw(question)
     bins = _bins(samples)
     return Survey(
         question=question,
@@ -133,14 +133,15 @@ def survey(question: Question, algorithms: Sequence[Algorithm] = MEASURED) -> Su
     )
 
 
-def _samples(question: Question) -> tuple[_Sample, ...]:
+def draw(question: Question) -> tuple[Sample, ...]:
+    """Return the sampled instants with the sun up, place by place."""
     random = np.random.default_rng(SEED)
     count = 1 if question.location else max(1, question.samples // INSTANTS_A_PLACE)
     drawn = (_sample(question, random, question.samples // count) for _ in range(count))
     return tuple(sample for sample in drawn if sample.unix_s.size)
 
 
-def _sample(question: Question, random: np.random.Generator, count: int) -> _Sample:
+def _sample(question: Question, random: np.random.Generator, count: int) -> Sample:
     location = question.location or Location(
         float(random.uniform(*question.latitudes)), float(random.uniform(-180.0, 180.0))
     )
@@ -150,10 +151,10 @@ def _sample(question: Question, random: np.random.Generator, count: int) -> _Sam
     path = sun_path(Algorithm.SPA, location, unix_s)
     up = path.elevation_deg > 0.0
     shown = SunPath(path.azimuth_deg[up], path.elevation_deg[up], path.apparent_elevation_deg[up])
-    return _Sample(location, unix_s[up], shown)
+    return Sample(location, unix_s[up], shown)
 
 
-def _bins(samples: Sequence[_Sample]) -> _Bins:
+def _bins(samples: Sequence[Sample]) -> _Bins:
     days = np.concatenate([sample.unix_s for sample in samples]) / 86400.0 % DAYS_A_YEAR
     heights = np.concatenate([sample.reference.elevation_deg for sample in samples])
     return _Bins(np.floor(days / YEAR_STEP_DAYS), np.floor(np.minimum(heights, 89.999) / ELEVATION_STEP_DEG))
@@ -163,19 +164,19 @@ def _centres(step: float, count: int) -> Array:
     return np.asarray((np.arange(count) + 0.5) * step, dtype=np.float64)
 
 
-def _errors(algorithm: Algorithm, samples: Sequence[_Sample], bins: _Bins) -> AlgorithmError:
+def _errors(algorithm: Algorithm, samples: Sequence[Sample], bins: _Bins) -> AlgorithmError:
     apart = [_apart(algorithm, sample) for sample in samples]
     by_sight = {sight: np.concatenate([one[sight] for one in apart]) for sight in Sight}
     true = by_sight[Sight.TRUE]
     return AlgorithmError(
         algorithm=algorithm,
-        spreads={sight: _spread(by_sight[sight]) for sight in Sight},
+        spreads={sight: spread_of(by_sight[sight]) for sight in Sight},
         over_year=_profile(true, bins.season, SEASONS),
         over_elevation=_profile(true, bins.height, HEIGHTS),
     )
 
 
-def _apart(algorithm: Algorithm, sample: _Sample) -> dict[Sight, Array]:
+def _apart(algorithm: Algorithm, sample: Sample) -> dict[Sight, Array]:
     found, sun = sun_path(algorithm, sample.location, sample.unix_s), sample.reference
     pairs = {
         Sight.TRUE: (found.elevation_deg, sun.elevation_deg),
@@ -188,7 +189,8 @@ def _apart(algorithm: Algorithm, sample: _Sample) -> dict[Sight, Array]:
     }
 
 
-def _spread(apart_deg: Array) -> Spread:
+def spread_of(apart_deg: Array) -> Spread:
+    """Return the greatest and the root mean square of separations."""
     return Spread(float(apart_deg.max()), float(np.sqrt(np.mean(apart_deg**2))))
 
 

@@ -13,6 +13,7 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from app.link.messages import MachineUnreachable, UnknownRecording, UnknownTracker
+from app.papers.library import UnknownPaper
 from app.store.store import StoreFailed
 from app.studies.folder import StudyUnknown, WeatherFileRefused
 from app.sun.position import InstantRefused
@@ -118,6 +119,7 @@ PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
     MachineUnreachable: _unreachable,
     StoreFailed: lambda error: Problem(503, str(error), headers=RETRY_LATER),
     InstantRefused: lambda error: Problem(422, str(error)),
+    UnknownPaper: lambda error: Problem(404, str(error)),
     AlgorithmMissing: lambda error: Problem(422, str(error)),
     NotAcceptable: lambda error: Problem(422, str(error)),
     Busy: lambda error: Problem(429, str(error), headers={"Retry-After": "5"}),

@@ -1,0 +1,86 @@
+"""The five papers by name, and as text."""
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
+from textwrap import fill
+from types import MappingProxyType
+from typing import Final
+
+from app.papers.alexandru import alexandru
+from app.papers.gezegin import gezegin
+from app.papers.nalini import nalini
+from app.papers.psa_rexroth import psa_rexroth
+from app.papers.result import Figure, Paper, Standing
+from app.papers.xia import xia
+
+LIBRARY: Final[Mapping[str, Callable[[], Paper]]] = MappingProxyType(
+    {
+        "gezegin-dirik": gezegin,
+        "nalini-hemavathi": nalini,
+        "xia": xia,
+        "psa-rexroth": psa_rexroth,
+        "alexandru": alexandru,
+    }
+)
+WIDE = 110
+MARKS = {Standing.AGREES: "", Standing.DIFFERS: "differs", Standing.MEASURED: ""}
+
+
+class UnknownPaper(ValueError):
+    """A paper that is not among the five."""
+
+
+@cache
+def paper(key: str) -> Paper:
+    """Return a paper, computed once; raises `UnknownPaper`."""
+    if key not in LIBRARY:
+        raise UnknownPaper(f"There is no paper {key}: choose one of {', '.join(LIBRARY)}.")
+    return LIBRARY[key]()
+
+
+def papers(keys: tuple[str, ...] = ()) -> tuple[Paper, ...]:
+    """Return papers by their keys, without any all five; raises `UnknownPaper`."""
+    return tuple(paper(key) for key in keys or LIBRARY)
+
+
+def text(found: tuple[Paper, ...]) -> str:
+    """Return the papers as text: the paper's value, ours, the difference; errata; what cannot be had."""
+    return "\n".join(line for one in found for line in _lines(one))
+
+
+def shown(figure: Figure) -> tuple[str, str, str]:
+    """Return the published value, ours and the difference, as they are printed; empty where there is none."""
+    told, apart = figure.published, figure.difference
+    return (
+        "" if told is None else f"{told:.{figure.digits}f}",
+        f"{figure.ours:.{figure.digits}f}",
+        "" if apart is None else f"{apart:+.{figure.digits}f}",
+    )
+
+
+def _lines(one: Paper) -> Iterator[str]:
+    yield from (f"{'=' * WIDE}", one.name, fill(one.citation, WIDE))
+    yield f"{one.agreeing} of {one.published} published figures come out."
+    for group in one.groups:
+        yield from ("", group.title, fill(group.note, WIDE, initial_indent="  ", subsequent_indent="  "))
+        yield f"  {'':<52}{'paper':>12}{'ours':>12}{'difference':>12}"
+        yield from (_figure(figure) for figure in group.figures)
+        yield from (f"  {remark}" for remark in dict.fromkeys(_remarks(group.figures)))
+    yield from ("", "Errata: printed -> right: measured effect")
+    for erratum in one.errata:
+        told = f"{erratum.where}: {erratum.printed} -> {erratum.right}: {erratum.effect}"
+        yield fill(told, WIDE, initial_indent="  ", subsequent_indent="      ")
+    yield from ("", "Not reproduced")
+    for gap in one.gaps:
+        yield fill(f"{gap.what}: {gap.why}", WIDE, initial_indent="  ", subsequent_indent="      ")
+    yield ""
+
+
+def _figure(figure: Figure) -> str:
+    told, ours, apart = shown(figure)
+    name = f"{figure.name} [{figure.unit}]" if figure.unit else figure.name
+    return f"  {name:<52}{told:>12}{ours:>12}{apart:>12}  {MARKS[figure.standing]}".rstrip()
+
+
+def _remarks(figures: tuple[Figure, ...]) -> Iterator[str]:
+    yield from (f"{figure.name}: {figure.remark}" for figure in figures if figure.remark)

@@ -1,0 +1,125 @@
+"""PSA as it is reprinted in a paper on a sun tracker with a Rexroth PLC."""
+
+import numpy as np
+
+from app.papers.koblick_printed import calendar
+from app.papers.result import Erratum, Figure, Gap, Group, Paper
+from app.papers.sampling import from_spa, worse
+from app.sun import psa
+from app.sun.algorithms import PUBLISHED, Algorithm
+from app.sun.trigonometry import ARRAY, PER_DEGREE, PER_RADIAN, Array
+
+
+def psa_rexroth() -> Paper:
+    """Return what the reprinted algorithm is worth, and what its misprints cost."""
+    return Paper(
+        key="psa-rexroth",
+        name="PSA on a Rexroth PLC",
+        citation="Automated sun tracking by PLC and the PSA algorithm on a Rexroth PLC; the algorithm is of "
+        "M. Blanco-Muriel et al., Solar Energy 70 (2001) 431-441, doi:10.1016/S0038-092X(00)00156-0.",
+        groups=(_constants(), _accuracy()),
+        errata=_errata(),
+        gaps=GAPS,
+    )
+
+
+def _constants() -> Group:
+    noon = psa.julian_day(2000, 1, 1, 12.0)
+    arc_seconds = psa.PARALLAX * PER_RADIAN * 3600.0
+    return Group(
+        "Eqs 2 and 15",
+        "What the printed constants must come to.",
+        (
+            Figure("eq 1 at noon of 1 January 2000, Julian day", "d", 2_451_545.0, noon, 1e-9, 1),
+            Figure("eq 15, the sun's parallax at the horizon", "″", None, arc_seconds, digits=3),
+        ),
+    )
+
+
+def _accuracy() -> Group:
+    old, new = (from_spa(PUBLISHED[one].many) for one in (Algorithm.PSA, Algorithm.PSA_PLUS))
+    return Group(
+        "The corrected equations against NREL SPA",
+        "All coefficients of the reprint are the original's. PSA+ has those of 2020.",
+        (
+            Figure("greatest separation", "°", None, old.max_deg, digits=4),
+            Figure("root mean square", "°", None, old.rms_deg, digits=4),
+            Figure("greatest separation of PSA+", "°", None, new.max_deg, digits=4),
+            Figure("root mean square of PSA+", "°", None, new.rms_deg, digits=4),
+        ),
+    )
+
+
+def _errata() -> tuple[Erratum, ...]:
+    right = from_spa(PUBLISHED[Algorithm.PSA].many)
+    return (
+        Erratum(
+            "eq 1", "integer divisions, not said which way", "divisions that truncate towards zero",
+            f"divisions that round down, as in Python: {worse(from_spa(_rounding_down), right)}",
+        ),
+        Erratum(
+            "eq 8", "tan⁻¹", "a four-quadrant arctangent",
+            worse(from_spa(_half_of_right_ascensions), right),
+        ),
+        Erratum("eq 14", "tan⁻¹", "a four-quadrant arctangent", worse(from_spa(_half_of_azimuths), right)),
+        Erratum(
+            "eq 11", "layout: π/180 beside Long", "π/180 times the whole bracket",
+            worse(from_spa(_factor_on_longitude), right),
+        ),
+        Erratum("numbering", "two series of 5 to 8", "one series", "none"),
+    )  # fmt: skip
+
+
+GAPS = (
+    Gap("Power gain of 35.75 %", "No power, irradiance, day or panel is printed from which it could follow."),
+    Gap("Sun angles on the PLC", "They are described; no date, place and result are printed together."),
+)
+
+
+def _chain(day: Array, sidereal_hour: Array, longitude_deg: float) -> tuple[Array, Array, Array]:
+    """Return right ascension, declination and local sidereal time, radians."""
+    node = psa.node_longitude(day)
+    longitude = psa.ecliptic_longitude(psa.mean_longitude(day), psa.mean_anomaly(day), node, ARRAY)
+    right_ascension, declination = psa.equatorial(longitude, psa.obliquity(day, node, ARRAY), ARRAY)
+    greenwich = psa.greenwich_sidereal_time(day, sidereal_hour)
+    return right_ascension, declination, psa.local_sidereal_time(greenwich, longitude_deg)
+
+
+def _seen(declination: Array, angle: Array, latitude_deg: float) -> tuple[Array, Array]:
+    zenith, azimuth = psa.horizontal(declination, angle, latitude_deg, ARRAY)
+    return azimuth * PER_RADIAN, 90.0 - (zenith + psa.parallax(zenith, ARRAY)) * PER_RADIAN
+
+
+def _rounding_down(unix_s: Array, latitude_deg: float, longitude_deg: float) -> tuple[Array, Array]:
+    """Return the sun by eq 1 with floor in place of truncation."""
+    year, month, day, hour = calendar(unix_s)
+    early = np.floor((month - 14.0) / 12.0)
+    years = np.floor(1461.0 * (year + 4800.0 + early) / 4.0)
+    months = np.floor(367.0 * (month - 2.0 - 12.0 * early) / 12.0)
+    centuries = np.floor(3.0 * np.floor((year + 4900.0 + early) / 100.0) / 4.0)
+    julian = years + months - centuries + day - 32075.0 - 0.5 + hour / 24.0
+    right_ascension, declination, sidereal = _chain(julian - 2_451_545.0, hour, longitude_deg)
+    return _seen(declination, sidereal - right_ascension, latitude_deg)
+
+
+def _half_of_right_ascensions(
+    unix_s: Array, latitude_deg: float, longitude_deg: float
+) -> tuple[Array, Array]:
+    """Return the sun with the right ascension of a two-quadrant arctangent."""
+    day, hour = psa.days_since_2000(unix_s), psa.hour_of_day(unix_s, ARRAY)
+    right_ascension, declination, sidereal = _chain(day, hour, longitude_deg)
+    return _seen(declination, sidereal - np.arctan(np.tan(right_ascension)), latitude_deg)
+
+
+def _half_of_azimuths(unix_s: Array, latitude_deg: float, longitude_deg: float) -> tuple[Array, Array]:
+    """Return the sun with the azimuth of a two-quadrant arctangent."""
+    azimuth_deg, elevation_deg = psa.position(unix_s, latitude_deg, longitude_deg, ARRAY)
+    return np.arctan(np.tan(azimuth_deg * PER_DEGREE)) * PER_RADIAN, elevation_deg
+
+
+def _factor_on_longitude(unix_s: Array, latitude_deg: float, longitude_deg: float) -> tuple[Array, Array]:
+    """Return the sun with pi/180 on the longitude alone."""
+    day, hour = psa.days_since_2000(unix_s), psa.hour_of_day(unix_s, ARRAY)
+    right_ascension, declination, _ = _chain(day, hour, longitude_deg)
+    sidereal = psa.greenwich_sidereal_time(day, hour) * 15.0 + longitude_deg * PER_DEGREE
+    return _seen(declination, sidereal - right_ascension, latitude_deg)

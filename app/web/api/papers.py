@@ -1,0 +1,88 @@
+"""What the five papers print, and what comes out when it is computed."""
+
+from typing import Annotated, Self
+
+from fastapi import APIRouter, Query
+
+from app.papers.library import papers
+from app.papers.result import Erratum, Figure, Gap, Group, Paper, Standing
+from app.web.api.base import TOO_MANY, Output
+from app.web.deps import PanelDep
+
+router = APIRouter(prefix="/papers", tags=["papers"])
+
+
+class FigureReport(Output):
+    """A published value, ours and the difference; null where nothing is published."""
+
+    name: str
+    unit: str
+    published: float | None
+    ours: float
+    difference: float | None
+    standing: Standing
+    remark: str
+
+    @classmethod
+    def of(cls, figure: Figure) -> Self:
+        """Return a figure as the API tells it."""
+        return cls(
+            name=figure.name,
+            unit=figure.unit,
+            published=figure.published,
+            ours=figure.ours,
+            difference=figure.difference,
+            standing=figure.standing,
+            remark=figure.remark,
+        )
+
+
+class GroupReport(Output):
+    """A table or figure of a paper."""
+
+    title: str
+    note: str
+    figures: list[FigureReport]
+
+    @classmethod
+    def of(cls, group: Group) -> Self:
+        """Return a group as the API tells it."""
+        figures = [FigureReport.of(figure) for figure in group.figures]
+        return cls(title=group.title, note=group.note, figures=figures)
+
+
+class PaperReport(Output):
+    """A paper: its figures, its errata with their measured effect, and what cannot be computed."""
+
+    key: str
+    name: str
+    citation: str
+    agreeing: int
+    published: int
+    groups: list[GroupReport]
+    errata: list[Erratum]
+    gaps: list[Gap]
+
+    @classmethod
+    def of(cls, paper: Paper) -> Self:
+        """Return a paper as the API tells it."""
+        return cls(
+            key=paper.key,
+            name=paper.name,
+            citation=paper.citation,
+            agreeing=paper.agreeing,
+            published=paper.published,
+            groups=[GroupReport.of(group) for group in paper.groups],
+            errata=list(paper.errata),
+            gaps=list(paper.gaps),
+        )
+
+
+@router.get("", summary="The papers beside our results", responses=TOO_MANY)
+async def read_papers(
+    panel: PanelDep,
+    paper: Annotated[list[str] | None, Query(description="Keys of papers; left out: all five.")] = None,
+) -> list[PaperReport]:
+    """Return every published figure that can be computed, errata, and what cannot be had."""
+    found = await panel.simulations.work_out(papers, tuple(paper or ()))
+    return [PaperReport.of(one) for one in found]
