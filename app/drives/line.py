@@ -2,6 +2,7 @@
 
 import asyncio
 import os
+import termios
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
@@ -14,6 +15,7 @@ from app.tracker.config import Parity, SerialConfig
 
 CONNECT_WITHIN_S = 0.3
 CHUNK = 4096
+PSEUDO_TERMINALS = "/dev/pts/"
 PARITIES = {
     Parity.NONE: serial.PARITY_NONE,
     Parity.EVEN: serial.PARITY_EVEN,
@@ -82,8 +84,9 @@ class SerialLine:
         except asyncio.CancelledError:
             opening.add_done_callback(_close_unwanted)
             raise
-        except (OSError, ValueError) as error:
-            self._why = f" ({os.strerror(error.errno)})" if isinstance(error, OSError) and error.errno else ""
+        except (OSError, ValueError, termios.error) as error:
+            number = error.args[0] if error.args else None
+            self._why = f" ({os.strerror(number)})" if isinstance(number, int) else ""
             return False
         self._port, self._received, self._lost = port, received, lost
         asyncio.get_running_loop().add_reader(port.fileno(), self._read)
@@ -107,10 +110,12 @@ class SerialLine:
         port.close()
 
     def _open(self) -> serial.Serial:
+        """Open the device; a pseudo-terminal knows no parity and refuses to be asked for one again."""
+        is_pseudo = os.path.realpath(self._config.port).startswith(PSEUDO_TERMINALS)
         return serial.Serial(
             self._config.port,
             baudrate=self._config.baud_rate,
-            parity=PARITIES[self._config.parity],
+            parity=PARITIES[Parity.NONE if is_pseudo else self._config.parity],
             stopbits=self._config.stop_bits,
             timeout=0,
             write_timeout=0,

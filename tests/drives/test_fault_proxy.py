@@ -132,6 +132,19 @@ async def test_an_adapter_that_is_unplugged_is_found_again() -> None:
         await device.close()
 
 
+async def test_a_pseudo_terminal_is_opened_again_and_again() -> None:
+    with TemporaryDirectory() as folder:
+        name, registers = Path(folder) / "line", Registers(7)
+        server = RtuServer({7: registers}, PtyLine(name))
+        await server.start()
+        config = DriveConfig(DriveKind.MODBUS_RTU, serial=SerialConfig(str(name)))
+        for _ in range(3):
+            device = Buses(SystemClock()).unit(config, 7, TIMING)
+            assert await device.read(10, 4, what="words") == registers.words(10, 4)
+            await device.close()
+        await server.close()
+
+
 async def test_a_line_in_use_with_other_settings_is_refused() -> None:
     buses = Buses(SystemClock())
     first, second = (
