@@ -1,5 +1,6 @@
 """Trackers: what is set, what is, what can be done."""
 
+from dataclasses import dataclass, fields
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter
@@ -10,9 +11,12 @@ from app.sun.position import Algorithm
 from app.tracker.axes import Axis
 from app.tracker.config import DriveKind, NightBehaviour, Parity, TrackerConfig
 from app.tracker.motion import DriveCapabilities
+from app.tracker.mounts.abilities import MountAbilities, abilities
+from app.tracker.mounts.usual import mounted
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Snapshot
 from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, Output, TrackerId
+from app.web.api.mount_inputs import ActuatorIn, MountChange
 from app.web.api.orders import SenderDep, tracker_of
 from app.web.deps import MachineDep, SnapshotDep
 from app.web.errors import NotAcceptable, NotFound
@@ -34,6 +38,7 @@ class AxisChange(Input):
     acceleration_dps2: Positive | None = None
     jog_slow_dps: Positive | None = None
     jog_fast_dps: Positive | None = None
+    actuator: ActuatorIn | None = Field(None, description="Linear actuator; null: none, degrees.")
 
 
 class SerialChange(Input):
@@ -90,6 +95,7 @@ class TrackerChange(Input):
     following_error_deg: float | None = Field(None, gt=0, le=90)
     night: NightBehaviour | None = Field(None, description="Where the panel waits for the morning.")
     park: OrientationIn | None = None
+    mount: MountChange | None = None
 
 
 class NewTracker(TrackerChange):
@@ -97,6 +103,13 @@ class NewTracker(TrackerChange):
 
     tracker_id: str = Field(min_length=1, max_length=64, description="Short and new.", examples=["T2"])
     name: str = Field(min_length=1, max_length=80, examples=["South field"])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Capabilities(DriveCapabilities):
+    """What the drive can do, and what the mount."""
+
+    mount: MountAbilities
 
 
 class ActionState(Output):
@@ -125,7 +138,7 @@ async def list_trackers(machine: MachineDep) -> list[TrackerConfig]:
 async def add_tracker(new: NewTracker, sender: SenderDep, machine: MachineDep) -> TrackerConfig:
     """Add a tracker and return its configuration with all defaults."""
     fresh = TrackerConfig(new.tracker_id, new.name)
-    await sender.send(AddTracker(_changed(fresh, new)))
+    await sender.send(AddTracker(_changed(fresh, new, await _latitude_deg(machine))))
     return (await detail_of(machine, new.tracker_id)).state.config
 
 
@@ -141,7 +154,7 @@ async def change_tracker(
 ) -> TrackerConfig:
     """Change what is given and keep the rest; refused while the tracker moves."""
     before = (await detail_of(machine, tracker_id)).state.config
-    await sender.send(ConfigureTracker(_changed(before, change)))
+    await sender.send(ConfigureTracker(_changed(before, change, await _latitude_deg(machine))))
     return (await detail_of(machine, tracker_id)).state.config
 
 
@@ -157,13 +170,14 @@ async def read_snapshot(tracker_id: TrackerId, site: SnapshotDep) -> Snapshot:
     return tracker_of(site, tracker_id)
 
 
-@router.get("/{tracker_id}/capabilities", summary="What the drive can do", responses=NOT_FOUND)
-async def read_capabilities(tracker_id: TrackerId, machine: MachineDep) -> DriveCapabilities:
-    """Return what this drive can do, so that nobody has to find out by trying."""
-    capabilities = (await detail_of(machine, tracker_id)).capabilities
-    if capabilities is None:
+@router.get("/{tracker_id}/capabilities", summary="What drive and mount can do", responses=NOT_FOUND)
+async def read_capabilities(tracker_id: TrackerId, machine: MachineDep) -> Capabilities:
+    """Return what drive and mount can do, so that nobody has to find out by trying."""
+    tracker = await detail_of(machine, tracker_id)
+    if tracker.capabilities is None:
         raise NotFound(f"The drive of {tracker_id} has not been reached yet; its abilities are not known.")
-    return capabilities
+    drive = {one.name: getattr(tracker.capabilities, one.name) for one in fields(DriveCapabilities)}
+    return Capabilities(**drive, mount=abilities(tracker.state.config.mount))
 
 
 @router.get("/{tracker_id}/actions", summary="What is allowed now", responses=NOT_FOUND)
@@ -176,17 +190,26 @@ async def read_actions(tracker_id: TrackerId, site: SnapshotDep) -> list[ActionS
     ]
 
 
-def _changed(config: TrackerConfig, change: TrackerChange) -> TrackerConfig:
-    given = _merged(change.model_dump(mode="json", exclude_none=True), _back_to_default(change))
+async def _latitude_deg(machine: MachineDep) -> float | None:
+    """Return the site's latitude, None while the location is not known."""
+    location = (await machine.detail()).site.location
+    return None if location is None else location.latitude_deg
+
+
+def _changed(config: TrackerConfig, change: TrackerChange, latitude_deg: float | None) -> TrackerConfig:
+    kind = change.mount.kind if change.mount else None
+    if kind is not None and kind is not config.mount.kind:
+        config = mounted(config, kind, latitude_deg)
+    given = merged(change.model_dump(mode="json", exclude_none=True), _back_to_default(change))
     try:
-        return _config.validate_python(_merged(_config.dump_python(config, mode="json"), given))
+        return _config.validate_python(merged(_config.dump_python(config, mode="json"), given))
     except ValidationError as error:
         sentences = (one["msg"].removeprefix("Value error, ") for one in error.errors())
         raise NotAcceptable(" ".join(sentences)) from error
 
 
 def _back_to_default(change: TrackerChange) -> dict[str, Any]:
-    """Return what was given as null on purpose: an axis's own unit and steps that shall count no more."""
+    """Return what was given as null on purpose, so that it shall count no more."""
     axes = {} if change.drive is None else {axis: getattr(change.drive, axis) for axis in Axis}
     nulls = {
         str(axis): {
@@ -195,11 +218,20 @@ def _back_to_default(change: TrackerChange) -> dict[str, Any]:
         for axis, one in axes.items()
         if one is not None
     }
-    return {"drive": nulls} if nulls else {}
+    found: dict[str, Any] = {"drive": nulls} if nulls else {}
+    for name, part, removed in (
+        ("mount", change.mount, "rows"),
+        ("azimuth", change.azimuth, "actuator"),
+        ("elevation", change.elevation, "actuator"),
+    ):
+        if part is not None and removed in part.model_fields_set and getattr(part, removed) is None:
+            found[name] = {removed: None}
+    return found
 
 
-def _merged(old: dict[str, Any], new: dict[str, Any]) -> dict[str, Any]:
+def merged(old: dict[str, Any], new: dict[str, Any]) -> dict[str, Any]:
+    """Return a document with the given values in it; what is left out stays."""
     return old | {
-        name: _merged(old.get(name, {}), value) if isinstance(value, dict) else value
+        name: merged(old.get(name) or {}, value) if isinstance(value, dict) else value
         for name, value in new.items()
     }

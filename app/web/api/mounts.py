@@ -1,0 +1,45 @@
+"""Mounts: what each kind can do, how a tracker is mounted, and what of the sun it can face."""
+
+from fastapi import APIRouter
+from starlette.concurrency import run_in_threadpool
+
+from app.tracker.config import MountKind
+from app.tracker.mechanisms import MECHANISMS
+from app.tracker.mounts.abilities import ABILITIES, MountAbilities, abilities
+from app.tracker.mounts.reach import Reach, reach
+from app.tracker.transmission import LinearActuator
+from app.web.api.base import NOT_FOUND, Output, TrackerId
+from app.web.api.trackers import detail_of
+from app.web.deps import MachineDep
+
+router = APIRouter(tags=["trackers"])
+
+
+class MountState(Output):
+    """How a tracker is mounted, what that can do, and what of this year's sun it can face."""
+
+    abilities: MountAbilities
+    reach: Reach | None
+
+
+@router.get("/mounts", summary="What each kind of mount can do")
+async def list_mounts() -> dict[MountKind, MountAbilities]:
+    """Return names, axes and modes of every kind of mount."""
+    return ABILITIES
+
+
+@router.get("/mechanisms", summary="Linear actuators by name")
+async def list_mechanisms() -> dict[str, LinearActuator]:
+    """Return examples of linear actuators, ready for `azimuth.actuator` or `elevation.actuator`."""
+    return {name: make() for name, make in MECHANISMS.items()}
+
+
+@router.get("/trackers/{tracker_id}/mount", summary="A tracker's mount and its reach", responses=NOT_FOUND)
+async def read_mount(tracker_id: TrackerId, machine: MachineDep) -> MountState:
+    """Return what the mount can do, and what of this year's sun; without location or time null."""
+    config = (await detail_of(machine, tracker_id)).state.config
+    site = machine.latest()
+    if site is None or site.location is None:
+        return MountState(abilities=abilities(config.mount), reach=None)
+    found = await run_in_threadpool(reach, config, site.location, site.at.year)
+    return MountState(abilities=abilities(config.mount), reach=found)
