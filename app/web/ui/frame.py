@@ -28,6 +28,7 @@ SITE_TABS = (
     ("Trackers", "/"),
     ("Recordings", "/recordings"),
     ("Simulate a day", "/simulate"),
+    ("Studies", "/studies"),
     ("Accuracy", "/accuracy"),
     ("Journal", "/journal"),
     ("Site", "/site"),

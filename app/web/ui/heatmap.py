@@ -1,0 +1,79 @@
+"""A heat map of hour and day: darker where more falls on the panel, in a few shades of one colour."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import date
+
+from app.web.ui.drawings import Tick
+
+LEFT, RIGHT, TOP, BOTTOM = 84.0, 1060.0, 44.0, 340.0
+HOURS = 24
+CLASSES = 7
+CLASS_WM2 = 150
+WEEK = 7
+
+
+@dataclass(frozen=True, slots=True)
+class HeatClass:
+    """One shade: its number from light to dark, what it stands for, SVG path data of its cells."""
+
+    number: int
+    label: str
+    path: str
+
+
+@dataclass(frozen=True, slots=True)
+class HeatMap:
+    """A heat map ready for its template: days across, hours upwards."""
+
+    title: str
+    across: str
+    columns: tuple[Tick, ...]
+    rows: tuple[Tick, ...]
+    classes: tuple[HeatClass, ...]
+
+
+def heat_map(title: str, days: Sequence[date], heat_wm2: Sequence[Sequence[int]]) -> HeatMap:
+    """Return the map of a year by weeks, or of twelve days by days."""
+    span = WEEK if len(days) > HOURS else 1
+    starts = range(0, len(days), span)
+    means = [_mean(heat_wm2[start : start + span]) for start in starts]
+    width, height = (RIGHT - LEFT) / len(means), (BOTTOM - TOP) / HOURS
+    paths = [""] * (CLASSES + 1)
+    for column, hours in enumerate(means):
+        for hour, mean in enumerate(hours):
+            x, y = LEFT + column * width, BOTTOM - (hour + 1) * height
+            paths[_class(mean)] += f"M{x:.1f} {y:.1f}h{width:.1f}v{height:.1f}h{-width:.1f}z"
+    return HeatMap(
+        title=title,
+        across="week of the year" if span == WEEK else "day",
+        columns=tuple(_months(days, starts, width)),
+        rows=tuple(Tick(round(BOTTOM - hour * height, 1), f"{hour}") for hour in range(0, HOURS + 1, 6)),
+        classes=tuple(
+            HeatClass(number, _label(number), path) for number, path in enumerate(paths) if number and path
+        ),
+    )
+
+
+def _class(mean_wm2: float) -> int:
+    """Return 0 for the dark, else 1 to 7."""
+    return 0 if mean_wm2 < 1.0 else min(CLASSES, 1 + int(mean_wm2 / CLASS_WM2))
+
+
+def _label(number: int) -> str:
+    low = (number - 1) * CLASS_WM2
+    return f"{low} W/m² and more" if number == CLASSES else f"{low} to {low + CLASS_WM2} W/m²"
+
+
+def _mean(rows: Sequence[Sequence[int]]) -> list[float]:
+    return [sum(column) / len(rows) for column in zip(*rows, strict=True)]
+
+
+def _months(days: Sequence[date], starts: range, width: float) -> list[Tick]:
+    """Return a tick in the column in which each month's first shown day lies."""
+    ticks, seen = [], 0
+    for column, start in enumerate(starts):
+        if days[start].month != seen:
+            seen = days[start].month
+            ticks.append(Tick(round(LEFT + (column + 0.5) * width, 1), f"{days[start]:%b}"))
+    return ticks

@@ -1,0 +1,220 @@
+"""The best step programs for a day: question, table, pictures, and giving one to a tracker."""
+
+from dataclasses import replace
+from typing import Annotated
+from urllib.parse import urlencode
+
+from fastapi import APIRouter, Form
+from pydantic import BaseModel
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.energy.equatorial import DEGREES_AN_HOUR, NOON_H
+from app.link.messages import ConfigureTracker, SiteDetail
+from app.studies.jobs import ProgramAnswer, ProgramLight, ProgramRow
+from app.tracker.strategy import Stepped
+from app.web.contexts import Link
+from app.web.deps import MachineDep, PanelDep
+from app.web.errors import NotAcceptable
+from app.web.study_contexts import Options, ProgramView, StepProgramPage
+from app.web.study_orders import NewProgram, chosen_program
+from app.web.ui.forms import Typed
+from app.web.ui.frame import site_frame
+from app.web.ui.orders import PressDep
+from app.web.ui.plot import Curve, Plot, line_plot
+from app.web.ui.render import page
+from app.web.ui.wizard import tracker_of
+
+router = APIRouter(prefix="/studies/program")
+LIGHTS: Options = (
+    (ProgramLight.MELISS, "Meliss's clear sky, as in Alexandru's paper"),
+    (ProgramLight.INEICHEN, "Ineichen and Perez's clear sky at the place"),
+    (ProgramLight.SOLIS, "Simplified Solis clear sky at the place"),
+)
+WINDOWS: Options = (("", "From sunrise to sunset"), ("yes", "From 6 h to 18 h solar time, as the paper"))
+NUMBERS = (
+    ("latitude", "latitude_deg", "Latitude", -90, 90),
+    ("longitude", "longitude_deg", "Longitude", -180, 180),
+    ("range", "range_deg", "Range", 5, 120),
+    ("step_s", "step_s", "Time of a step", 0, 3600),
+    ("turbidity", "turbidity", "Turbidity", 1, 10),
+    ("area", "area_m2", "Area", 0.01, 1e6),
+    ("efficiency", "efficiency", "Efficiency", 0.001, 1),
+    ("degree", "degree_wh", "Energy for a degree", 0, 1e4),
+    ("move", "move_wh", "Energy for a move", 0, 1e4),
+)
+
+
+class ProgramForm(BaseModel):
+    """The question as it was typed; all texts."""
+
+    date: str = ""
+    latitude: str = ""
+    longitude: str = ""
+    most: str = "12"
+    range: str = "60"
+    step_s: str = "0"
+    light: str = ProgramLight.MELISS
+    turbidity: str = "3"
+    window: str = ""
+    tilt: str = ""
+    area: str = "1.26"
+    efficiency: str = "0.15"
+    degree: str = "0.01"
+    move: str = "0.2"
+    chosen: str = ""
+
+
+NAMES = tuple(ProgramForm.model_fields)
+
+
+class UseForm(ProgramForm):
+    """A question with the tracker that is to run the chosen program."""
+
+    tracker: str = ""
+
+
+@router.get("")
+async def ask(request: Request, machine: MachineDep, built: PanelDep) -> Response:
+    """Show the question; once asked, the programs."""
+    detail = await machine.detail()
+    asked = {name: text for name, text in request.query_params.items() if name in NAMES}
+    latest = machine.latest()
+    today = (latest.at if latest else built.clock.now()).date()
+    form = ProgramForm(**{"date": today.isoformat(), **_site_values(detail), **asked})
+    typed = Typed(form.model_dump())
+    wanted = _read(typed)
+    answer = await _find(typed, wanted, detail, built) if wanted and asked else None
+    context = StepProgramPage(
+        frame=site_frame(request, "Step program", back=Link("Studies", "/studies")),
+        form=typed.form(NAMES),
+        lights=LIGHTS,
+        windows=WINDOWS,
+        trackers=tuple((name, f"{name} {one.state.config.name}") for name, one in detail.trackers.items()),
+        query=urlencode({name: text for name, text in form.model_dump().items() if name != "chosen"}),
+        view=_view(answer, form.chosen) if answer else None,
+        load="" if asked or typed.errors else f"/studies/program?{urlencode(form.model_dump())}",
+    )
+    return page(request, context, block="body", status=422 if typed.errors else 200)
+
+
+@router.post("/use")
+async def use(
+    press: PressDep, machine: MachineDep, built: PanelDep, form: Annotated[UseForm, Form()]
+) -> Response:
+    """Have a tracker run the chosen program."""
+    detail = await machine.detail()
+    typed = Typed(form.model_dump())
+    wanted = _read(typed)
+    if wanted is None:
+        raise NotAcceptable(" ".join(typed.errors.values()))
+    config = tracker_of(detail, form.tracker).state.config
+    try:
+        answer = await built.studies.find_programs(wanted.question(detail))
+        program = chosen_program(answer, _steps(answer, form.chosen))
+    except ValueError as error:
+        raise NotAcceptable(str(error)) from error
+    press.issued_at = None  # It took a while, and nothing moves by it: this order is never too old.
+    await press.send(ConfigureTracker(replace(config, strategy=Stepped(program))))
+    return press.answer(f"{form.tracker} now follows the program of {len(program.steps) - 1} steps.")
+
+
+async def _find(
+    typed: Typed, wanted: NewProgram, detail: SiteDetail, built: PanelDep
+) -> ProgramAnswer | None:
+    try:
+        return await built.studies.find_programs(wanted.question(detail))
+    except ValueError as error:
+        typed.errors["latitude"] = str(error)
+        return None
+
+
+def _site_values(detail: SiteDetail) -> dict[str, str]:
+    known = detail.site.location
+    if known is None:
+        return {"latitude": "45.65", "longitude": "25.6"}
+    return {"latitude": f"{known.latitude_deg:.6g}", "longitude": f"{known.longitude_deg:.6g}"}
+
+
+def _read(typed: Typed) -> NewProgram | None:
+    values: dict[str, object] = {
+        target: typed.number(name, label, least, most) for name, target, label, least, most in NUMBERS
+    }
+    values["date"] = typed.day("date", "Date")
+    values["most_steps"] = typed.whole("most", "Number of steps", 1, 48)
+    if typed.texts["tilt"].strip():
+        values["tilt_deg"] = typed.number("tilt", "Tilt", -90, 90)
+    if typed.errors:
+        return None
+    try:
+        return NewProgram.model_validate(
+            {**values, "light": typed.texts["light"], "window": typed.texts["window"] == "yes"}
+        )
+    except ValueError:
+        typed.errors["light"] = "Light: choose one from the list."
+        return None
+
+
+def _steps(answer: ProgramAnswer, text: str) -> int:
+    """Return which number of steps is chosen: the best one where none is, and never none at all."""
+    most = answer.rows[-1].steps
+    return min(most, max(1, int(text))) if text.isdecimal() else max(1, answer.best)
+
+
+def _view(answer: ProgramAnswer, text: str) -> ProgramView:
+    chosen = _steps(answer, text)
+    row = answer.rows[chosen]
+    return ProgramView(
+        answer=answer,
+        chosen=chosen,
+        energy=_energy(answer),
+        day=_day(answer, row),
+        times=tuple(
+            (_clock(start), _degrees(before), _degrees(after))
+            for start, before, after in zip(row.starts_h, row.angles_deg, row.angles_deg[1:], strict=False)
+        ),
+    )
+
+
+def _energy(answer: ProgramAnswer) -> Plot:
+    shown = answer.rows[1:]
+    counts = [float(row.steps) for row in shown]
+    curves: list[Curve] = [
+        ("electric energy", counts, [row.electric_wh for row in shown]),
+        ("after the drives are paid", counts, [row.net_wh for row in shown]),
+        ("continuous within the range", [counts[0], counts[-1]], [answer.continuous_wh] * 2),
+    ]
+    least = min(row.net_wh for row in shown)
+    marks = counts if len(counts) > 1 else [counts[0], counts[0] + 1]
+    most = max(answer.continuous_wh, *(row.electric_wh for row in shown))
+    return line_plot(
+        "Energy of the day", "number of steps", "Wh", marks, curves, low=least - 0.05 * (most - least)
+    )
+
+
+def _day(answer: ProgramAnswer, row: ProgramRow) -> Plot:
+    """Return the hour angles of panel and sun over solar time, and the beam in tens of W/m2."""
+    hours, angles = [answer.begin_h], [row.angles_deg[0]]
+    step_h = answer.question.step_s / 3600.0
+    for start, before, after in zip(row.starts_h, row.angles_deg, row.angles_deg[1:], strict=False):
+        hours += [start, start + step_h]
+        angles += [before, after]
+    ends = (answer.begin_h, answer.end_h)
+    curves: list[Curve] = [
+        ("panel", [*hours, answer.end_h], [*angles, row.angles_deg[-1]]),
+        ("sun", ends, [DEGREES_AN_HOUR * (NOON_H - at) for at in ends]),
+        ("beam, tens of W/m²", answer.hours, [value / 10.0 for value in answer.beam_wm2]),
+    ]
+    marks = [float(hour) for hour in range(int(min(ends[0], 6)), int(max(ends[1], 18)) + 2)]
+    return line_plot(
+        "Hour angle of panel and sun", "solar time, hours", "degrees, morning positive", marks, curves
+    )
+
+
+def _clock(hours: float) -> str:
+    minutes = round(hours * 60 * 60)
+    return f"{minutes // 3600:02}:{minutes // 60 % 60:02}:{minutes % 60:02}"
+
+
+def _degrees(angle_deg: float) -> str:
+    return f"{angle_deg + 0.0:.2f}°".replace("-", "−")

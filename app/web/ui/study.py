@@ -1,0 +1,147 @@
+"""One study: its progress, and once it is done its table, pictures and files."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+from fastapi.responses import StreamingResponse
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.studies.folder import StudyStatus
+from app.studies.request import Fidelity, LightModel, StudyRequest
+from app.studies.result import CaseResult, StudyResult, curves_csv, table_csv
+from app.web.contexts import Link
+from app.web.deps import PanelDep
+from app.web.study_contexts import StudyPage, StudyView
+from app.web.ui.formats import words
+from app.web.ui.frame import site_frame
+from app.web.ui.heatmap import heat_map
+from app.web.ui.plot import Curve, Plot, bar_plot, line_plot
+from app.web.ui.render import go, page
+
+router = APIRouter(prefix="/studies")
+MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
+HOUR_MARKS = tuple(float(hour) for hour in range(0, 25, 3))
+MOST_CURVES = 9
+CSV = {"Content-Disposition": 'attachment; filename="study.csv"'}
+
+
+@router.get("/{study_id}")
+def study(
+    request: Request,
+    study_id: str,
+    built: PanelDep,
+    case: Annotated[int, Query(ge=0, le=100)] = 0,
+    day: Annotated[int, Query(ge=0, le=366)] = 0,
+) -> Response:
+    """Show how far a study is, or what it found."""
+    folder, state = built.studies.folder, built.studies.state(study_id)
+    asked = folder.request(study_id)
+    result = folder.result(study_id) if state.status is StudyStatus.DONE else None
+    context = StudyPage(
+        frame=site_frame(request, state.title, back=Link("Studies", "/studies")),
+        state=state,
+        asked=asked,
+        settings=_settings(asked, result),
+        result=result,
+        view=_view(study_id, result, case, day) if result else None,
+    )
+    return page(request, context, block="body")
+
+
+@router.post("/{study_id}/remove")
+async def remove(request: Request, study_id: str, built: PanelDep) -> Response:
+    """Cancel a study that is under way, or delete one that has ended."""
+    cancelled = await built.studies.remove(study_id)
+    return go(request, f"/studies/{study_id}" if cancelled else "/studies")
+
+
+@router.get("/{study_id}/table.csv")
+def table(study_id: str, built: PanelDep) -> Response:
+    """Return the table of cases as a file."""
+    found = built.studies.folder.result(study_id)
+    return Response(table_csv(found), media_type="text/csv", headers=CSV)
+
+
+@router.get("/{study_id}/curves.csv")
+def curves(study_id: str, built: PanelDep) -> Response:
+    """Return the curves of the days as a file."""
+    found = built.studies.folder.result(study_id)
+    return StreamingResponse(curves_csv(found), media_type="text/csv", headers=CSV)
+
+
+def _settings(asked: StudyRequest, result: StudyResult | None) -> tuple[tuple[str, str], ...]:
+    """Return what the study was asked, in the words of the report."""
+    place = result.location if result else asked.location
+    module, costs = asked.module, asked.costs
+    light = asked.weather_file if asked.light is LightModel.WEATHER else asked.light
+    step = result.step_min if result else asked.step_min
+    fidelity = "ideal drives" if asked.fidelity is Fidelity.IDEAL else "as the controller does it"
+    return (
+        (
+            "Place",
+            f"{place.latitude_deg:.4f}° north, {place.longitude_deg:.4f}° east, {place.altitude_m:g} m",
+        ),
+        ("Days", f"{words(asked.span)}, {asked.on}, a value every {step} min, {fidelity}"),
+        ("Light", f"{light}, {asked.around.transposition}, albedo {asked.around.albedo:g}"),
+        ("Fixed panel", f"azimuth {asked.held.azimuth_deg:g}°, elevation {asked.held.elevation_deg:g}°"),
+        (
+            "Panels",
+            f"{module.power_w:g} W, losses {module.losses_percent:g} %, {100 * module.per_kelvin:g} %/K",
+        ),
+        ("Drives", f"{costs.degree_wh:g} Wh/°, {costs.start_wh:g} Wh a start, {costs.standby_w:g} W standby"),
+        ("Strategies", f"deadband {asked.deadband_deg:g}°, interval {asked.interval_min} min"),
+    )
+
+
+def _view(study_id: str, result: StudyResult, case: int, day: int) -> StudyView:
+    chosen = min(case, len(result.cases) - 1) or len(result.cases) - 1
+    shown = result.cases[chosen]
+    dates = [curve.on for curve in shown.curves]
+    at = min(day, len(dates) - 1)
+    root = f"/studies/{study_id}?case={chosen}"
+    days = tuple(Link(f"{on:%d %b}", f"{root}&day={index}", index == at) for index, on in enumerate(dates))
+    return StudyView(
+        chosen=chosen,
+        case=shown,
+        days=days if len(days) > 1 else (),
+        curves=_curves(result, shown, at),
+        panel=_panel(result, shown, at),
+        months=_months(result, shown) if shown.months_kwh else None,
+        heat=heat_map(f"In the plane of the panel, {shown.label}", result.days, shown.heat_wm2)
+        if shown.heat_wm2
+        else None,
+    )
+
+
+def _curves(result: StudyResult, shown: CaseResult, at: int) -> Plot:
+    """Return the light in the plane of every mode on one day; of several strategies the shown one's."""
+    drawn = [result.cases[0], *(one for one in result.cases[1:] if one.strategy is shown.strategy)]
+    lines: list[Curve] = [
+        (one.label, result.hours, [float(value) for value in one.curves[at].plane_wm2])
+        for one in drawn[:MOST_CURVES]
+    ]
+    title = f"Light in the plane of the panel, {shown.curves[at].on:%d %B %Y}"
+    return line_plot(title, _hour_axis(result), "W/m²", HOUR_MARKS, lines)
+
+
+def _panel(result: StudyResult, shown: CaseResult, at: int) -> Plot:
+    curve = shown.curves[at]
+    lines: list[Curve] = [
+        ("azimuth", result.hours, curve.azimuth_deg),
+        ("elevation", result.hours, curve.elevation_deg),
+    ]
+    title = f"Where the panel faces, {shown.label}, {curve.on:%d %B %Y}"
+    return line_plot(title, _hour_axis(result), "degrees", HOUR_MARKS, lines)
+
+
+def _months(result: StudyResult, shown: CaseResult) -> Plot:
+    kinds = [("Fixed", result.cases[0].months_kwh)]
+    if shown is not result.cases[0]:
+        kinds.append((shown.label, shown.months_kwh))
+    return bar_plot("Electric energy of each month", "month", "kWh", MONTHS, kinds)
+
+
+def _hour_axis(result: StudyResult) -> str:
+    offset = f"{result.utc_offset_h:+g}".replace("-", "−")
+    return f"hour of the day, standard time (UTC{offset})"
