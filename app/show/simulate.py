@@ -18,7 +18,7 @@ from app.tracker.commands import GoToStart, Move, RunShow, SelectMode, Track
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
-from app.tracker.programs.show import ShowPlan
+from app.tracker.programs.show import ShowPlan, schedule_of
 from app.tracker.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
 from app.tracker.snapshot import ActivityName, EventKind, ShowPhase, Snapshot
 
@@ -105,7 +105,15 @@ def simulate_show_of_date(
     sun = day_events(config.algorithm, location, begin, end)
     held = Orientation(180.0, 45.0)
     plan = ShowPlan(
-        "simulated", sun.rise or begin, sun.set or end, duration, location, mode, held, config.algorithm
+        show_id="simulated",
+        begin_at=sun.rise or begin,
+        end_at=sun.set or end,
+        duration=duration,
+        location=location,
+        mode=mode,
+        orientation=held,
+        algorithm=config.algorithm,
+        schedule=schedule_of(config.strategy),
     )
     return simulate_show(config, Pointing(), time_zone, plan)
 

@@ -26,7 +26,7 @@ class StrategyDay:
     """A day by one strategy, and its curves: one value for every 120 s, sky degrees.
 
     `moves` counts motions from standstill to standstill. Errors are the angle between the panel and where it
-    would face without any strategy, following the mode all the time, while the sun is up; None if it is never.
+    would face following its mode all the time, while the sun is up; None if it never is.
     """
 
     moves: int
@@ -84,8 +84,9 @@ def _columns(frames: Frames, *names: str) -> NDArray[np.float64]:
 
 def _moves(setpoints: NDArray[np.float64]) -> int:
     """Return how often set-points began to change after they had stood still."""
-    changing = (np.abs(np.diff(setpoints, axis=1)) > STILL_DEG).any(axis=0)
-    return int(changing[:1].sum() + (changing[1:] & ~changing[:-1]).sum())
+    changing = np.abs(np.diff(setpoints, axis=1)).max(axis=0) > STILL_DEG
+    begun = np.diff(changing.astype(np.int64), prepend=0) > 0
+    return int(begun.sum())
 
 
 def _suns(config: TrackerConfig, location: Location, begin: datetime, frames: Frames) -> list[SunPosition]:

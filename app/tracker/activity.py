@@ -7,7 +7,7 @@ from typing import Literal
 
 from app.tracker.axes import Axis, JogSpeed
 from app.tracker.motion import DriveCommand
-from app.tracker.programs.show import ShowCourse
+from app.tracker.programs.show import Course
 from app.tracker.proofs import StopSpeed
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ActivityName, ShowPhase
@@ -109,7 +109,7 @@ class Tracking:
 class Showing:
     """A show; `elapsed` of its own time has run when it was last looked at, at `at`."""
 
-    course: ShowCourse
+    course: Course
     phase: ShowPhase
     run: Run | None
     elapsed: timedelta

@@ -9,7 +9,7 @@ from app.tracker.commands import CommandRejected, GoToStart, RunShow
 from app.tracker.conditions import Action, demand, demand_drive, unmet
 from app.tracker.mind import HALTED, Mind, Turn
 from app.tracker.motion import DriveCommand, Feedback, Position
-from app.tracker.programs.show import ShowCourse, ShowPlan, check_show
+from app.tracker.programs.show import Course, ShowPlan, check_show, course_of
 from app.tracker.reason import Reason
 from app.tracker.runs import arrived, new_run
 from app.tracker.snapshot import EventKind, ShowPhase
@@ -104,15 +104,15 @@ def _running(mind: Mind, showing: Showing) -> Turn:
     return Turn(replace(showing, elapsed=elapsed, at=mind.now), command, seen.target, seen.sun)
 
 
-def _course(mind: Mind, plan: ShowPlan) -> ShowCourse:
+def _course(mind: Mind, plan: ShowPlan) -> Course:
     """Return the plan made ready for this tracker, or raise `CommandRejected` if it cannot be shown."""
     check = check_show(plan, mind.config, mind.memory.pointing)
     if check.reasons:
         raise CommandRejected(*check.reasons)
-    return ShowCourse(plan, mind.config, mind.memory.pointing)
+    return course_of(plan, mind.config, mind.memory.pointing)
 
 
-def _standing_course(mind: Mind, plan: ShowPlan) -> ShowCourse | None:
+def _standing_course(mind: Mind, plan: ShowPlan) -> Course | None:
     """Return the course of a plan at whose start the panel stands ready; None: it does not."""
     activity = mind.activity
     if isinstance(activity, Showing):
@@ -130,7 +130,7 @@ def _change_phase(mind: Mind, phase: ShowPhase, kind: EventKind, message: str) -
         mind.say(kind, message, show_id=mind.activity.course.plan.show_id)
 
 
-def _start(course: ShowCourse) -> AxisPair:
+def _start(course: Course) -> AxisPair:
     return AxisPair(course.start.azimuth_deg, course.start.elevation_deg)
 
 

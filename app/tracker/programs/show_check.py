@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from datetime import UTC, timedelta
+from typing import Protocol
 
 import numpy as np
 
@@ -35,17 +36,27 @@ EMPTY = np.empty(0)
 NO_PATH = ShowPath(EMPTY, EMPTY, EMPTY, EMPTY, EMPTY, np.empty(0, dtype=np.bool_))
 
 
+class PlannedCourse(Protocol):
+    """A course that knows beforehand where the axes will be."""
+
+    @property
+    def plan(self) -> ShowPlan:
+        """Return what is shown."""
+
+    def planned(self, elapsed_s: float) -> AxisTarget:
+        """Return the axis angles planned for an instant of the show."""
+
+
 def check_show(plan: ShowPlan, tracker: TrackerConfig, pointing: Pointing = Pointing()) -> ShowCheck:
     """Return what the plan needs of this tracker, every reason against it, and the shortest duration."""
-    impossible = mode_absent(tracker, plan.mode)
-    wrong = (*_interval_reasons(plan), *([impossible] if impossible else []))
+    wrong = tuple(impossible_reasons(plan, tracker))
     if wrong:
-        return _unchecked(plan, wrong)
+        return unchecked(plan, wrong)
     duration = min(max(plan.duration, SHORTEST_DURATION), LONGEST_DURATION)
     course = ShowCourse(replace(plan, duration=duration), tracker, pointing)
-    refused = tuple(_sun_reasons(course))
+    refused = tuple(sun_reasons(plan, lit=bool(course.stretches)))
     shortest = None if refused else _shortest(course, tracker)
-    reasons = [*_duration_reasons(plan), *refused, *_pace_reasons(course.pace, tracker, shortest)]
+    reasons = [*duration_reasons(plan), *refused, *_pace_reasons(course.pace, tracker, shortest)]
     return ShowCheck(
         reasons=tuple(reasons),
         notices=tuple(_notices(course, tracker)),
@@ -54,8 +65,16 @@ def check_show(plan: ShowPlan, tracker: TrackerConfig, pointing: Pointing = Poin
         peak_azimuth_dps=course.pace.peak_azimuth_dps,
         peak_elevation_dps=course.pace.peak_elevation_dps,
         start=course.start,
-        path=_path(course, tracker, pointing),
+        path=planned_path(course, tracker, pointing),
     )
+
+
+def impossible_reasons(plan: ShowPlan, tracker: TrackerConfig) -> Iterator[Reason]:
+    """Yield why there is nothing to check: an interval that makes no sense, a mode that the mount lacks."""
+    yield from _interval_reasons(plan)
+    impossible = mode_absent(tracker, plan.mode)
+    if impossible is not None:
+        yield impossible
 
 
 def _interval_reasons(plan: ShowPlan) -> Iterator[Reason]:
@@ -73,7 +92,8 @@ def _interval_reasons(plan: ShowPlan) -> Iterator[Reason]:
         yield Reason("year_out_of_range", str(refused), "Choose a date in the years 1901 to 2099.")
 
 
-def _duration_reasons(plan: ShowPlan) -> Iterator[Reason]:
+def duration_reasons(plan: ShowPlan) -> Iterator[Reason]:
+    """Yield that a show would be too short or too long."""
     if plan.duration < SHORTEST_DURATION or plan.duration > LONGEST_DURATION:
         yield Reason(
             "duration_out_of_range",
@@ -82,8 +102,9 @@ def _duration_reasons(plan: ShowPlan) -> Iterator[Reason]:
         )
 
 
-def _sun_reasons(course: ShowCourse) -> Iterator[Reason]:
-    if not course.stretches and course.plan.mode is not Mode.FIXED:
+def sun_reasons(plan: ShowPlan, *, lit: bool) -> Iterator[Reason]:
+    """Yield that there is no sun to follow; `lit` says whether it is up at any time."""
+    if not lit and plan.mode is not Mode.FIXED:
         yield Reason(
             "sun_never_up",
             "The sun is below the horizon for the whole of the show.",
@@ -182,7 +203,8 @@ def _limit_notices(stretches: Sequence[Stretch], tracker: TrackerConfig) -> Iter
         )
 
 
-def _path(course: ShowCourse, tracker: TrackerConfig, pointing: Pointing) -> ShowPath:
+def planned_path(course: PlannedCourse, tracker: TrackerConfig, pointing: Pointing) -> ShowPath:
+    """Return what is planned at equal steps of the show."""
     plan = course.plan
     elapsed_s = np.linspace(0.0, plan.duration.total_seconds(), PATH_POINTS)
     places = [_shown(tracker, pointing, course.planned(elapsed)) for elapsed in elapsed_s.tolist()]
@@ -205,7 +227,7 @@ def _shown(tracker: TrackerConfig, pointing: Pointing, place: AxisTarget) -> Ori
     return sky(tracker, pointing, place.azimuth_deg, place.elevation_deg)
 
 
-def _unchecked(plan: ShowPlan, reasons: tuple[Reason, ...]) -> ShowCheck:
+def unchecked(plan: ShowPlan, reasons: tuple[Reason, ...]) -> ShowCheck:
     """Return the check of a plan whose interval makes no sense: there is nothing to compute."""
     return ShowCheck(reasons, (), None, (), 0.0, 0.0, plan.orientation, NO_PATH)
 

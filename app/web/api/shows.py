@@ -25,7 +25,7 @@ from app.tracker.commands import (
 )
 from app.tracker.config import Orientation
 from app.tracker.mode import Mode
-from app.tracker.programs.show import ShowCheck, ShowPlan, check_show
+from app.tracker.programs.show import ShowCheck, ShowPlan, check_show, schedule_of
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ShowProgress, SiteSnapshot, Snapshot
 from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, Output, TrackerId
@@ -207,6 +207,7 @@ def _plan(new: NewShow, detail: TrackerDetail, site: SiteSnapshot) -> ShowPlan:
         ),
         algorithm=algorithm,
         refraction=config.refraction,
+        schedule=schedule_of(config.strategy),
     )
 
 

@@ -18,7 +18,7 @@ from app.sun.events import day_events
 from app.sun.position import Location
 from app.tracker.commands import CommandRejected, GoToStart, PauseShow, ResumeShow, RunShow, StopShow
 from app.tracker.mode import Mode
-from app.tracker.programs.show import ShowCheck, ShowPlan, check_show
+from app.tracker.programs.show import ShowCheck, ShowPlan, check_show, schedule_of
 from app.tracker.reason import Reason
 from app.web.contexts import Link, ShowPlanPage, ShowRunPage, Verdict
 from app.web.deps import MachineDep, Panel, PanelDep
@@ -166,6 +166,7 @@ def _read(typed: Typed, tracker: TrackerDetail, location: Location, zone: str) -
         orientation=memory.orientation,
         algorithm=config.algorithm,
         refraction=config.refraction,
+        schedule=schedule_of(config.strategy),
     )
 
 
