@@ -25,12 +25,16 @@ MOST_PROBES = 16
 
 
 class RtuWire:
-    """A line with devices that take turns. Requests in flight are never cancelled, only given up by time."""
+    """A line with devices that take turns. Requests in flight are never cancelled, only given up by time.
+
+    A gateway that did not answer is connected to anew, as nothing else shows that a connection is dead.
+    """
 
     def __init__(self, line: Line) -> None:
         self._line = line
         self._character_s = line.character_s
-        shortest_s = SHORTEST_SILENCE_S if line.character_s else GATEWAY_SILENCE_S
+        self._is_gateway = line.character_s == 0.0
+        shortest_s = GATEWAY_SILENCE_S if self._is_gateway else SHORTEST_SILENCE_S
         self._silence_s = max(SILENT_CHARACTERS * line.character_s, shortest_s)
         self._buffer = bytearray()
         self._flying: Ask | None = None
@@ -111,6 +115,8 @@ class RtuWire:
             if isinstance(missing, OSError):
                 self.close()
                 raise Broken("the line took no request") from missing
+            if self._is_gateway and not isinstance(missing, GivenUp):
+                self.close()
             raise
         except BadReply as bad:
             self._lose(ask)
