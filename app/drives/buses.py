@@ -1,5 +1,6 @@
 """The buses in use: drives on the same line or at the same gateway share one, with one owner."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import assert_never
 
@@ -14,10 +15,14 @@ from app.tracker.config import DriveConfig, DriveKind
 
 
 class Buses:
-    """Hands out devices and brings those together that hang on the same wire."""
+    """Hands out devices and brings those together that hang on the same wire.
 
-    def __init__(self, clock: Clock) -> None:
+    `make_wire` makes the wire of a new bus, for example one that also records what goes over it.
+    """
+
+    def __init__(self, clock: Clock, make_wire: Callable[[DriveConfig], Wire] | None = None) -> None:
         self._clock = clock
+        self._make_wire = make_wire or wire_of
         self._buses: dict[str, tuple[DriveConfig, Bus]] = {}
 
     def unit(self, drive: DriveConfig, unit: int, timing: Timing) -> BusUnit:
@@ -29,7 +34,7 @@ class Buses:
         wiring = _wiring(drive)
         used, bus = self._buses.get(drive.line, (None, None))
         if bus is None or bus.unit_count == 0:
-            bus = Bus(drive.line, _wire(drive), self._clock)
+            bus = Bus(drive.line, self._make_wire(drive), self._clock)
             self._buses[drive.line] = wiring, bus
         elif used != wiring:
             raise DriveError(
@@ -45,7 +50,8 @@ def _wiring(drive: DriveConfig) -> DriveConfig:
     return replace(plain, serial=drive.serial) if drive.kind is DriveKind.MODBUS_RTU else plain
 
 
-def _wire(drive: DriveConfig) -> Wire:
+def wire_of(drive: DriveConfig) -> Wire:
+    """Return the wire to a drive's line, not yet connected, or raise `DriveError` if it has none."""
     match drive.kind:
         case DriveKind.MODBUS_TCP:
             return TcpWire(drive.host, drive.port)

@@ -5,6 +5,8 @@ from struct import unpack_from
 
 EXCEPTION_BIT = 0x80
 EXCEPTION_LENGTH = 3
+ANY_REFUSAL = 0x81
+"""What some devices answer a failed request with, whatever was asked (Kinco FD5P manual, chapter 10)."""
 HEADER = 8
 READ_HOLDING, WRITE_ONE, WRITE_MANY = 3, 6, 16
 
@@ -58,6 +60,6 @@ def is_complete(frame: bytes, wanted: Wanted, transaction: int) -> bool:
 def _due_length(function: int, wanted: Wanted) -> int:
     if function == wanted.function:
         return wanted.length
-    if function == wanted.function | EXCEPTION_BIT:
+    if function in (wanted.function | EXCEPTION_BIT, ANY_REFUSAL):
         return EXCEPTION_LENGTH
     raise BadReply(f"the reply has function code {function} instead of {wanted.function}")

@@ -6,9 +6,10 @@ from app.drives.bus import BusUnit
 from app.drives.buses import Buses
 from app.drives.drive import DriveError, DriveRefused, DriveSilent
 from app.drives.line import list_ports
-from app.drives.profile import Profile, ProfileError
+from app.drives.profile import Adapter, Profile, ProfileError
 from app.drives.profile_library import ProfileLibrary
 from app.drives.register import Register
+from app.drives.sunspec_models import located
 from app.tracker.config import DriveConfig, DriveKind
 from app.tracker.drive_check import (
     CheckOutcome,
@@ -39,14 +40,9 @@ class DriveProbe:
             return SIMULATED
         try:
             profile = self._profiles.load(drive.profile)
-            registers = [one async for one in self._units(drive, profile)]
         except ProfileError as error:
             return DriveReadings(CheckOutcome.UNUSABLE, str(error))
-        except DriveSilent as error:
-            return DriveReadings(CheckOutcome.SILENT, str(error))
-        except DriveError as error:
-            return DriveReadings(CheckOutcome.WRONG_DEVICE, str(error))
-        return _judged(profile, registers)
+        return await probe(self._buses, drive, profile)
 
     def choices(self) -> DriveChoices:
         """Return the profiles and serial ports of this machine; may touch the disk."""
@@ -63,14 +59,28 @@ class DriveProbe:
             name, profile.title, profile.verified, profile.source, profile.unverified, watchdog
         )
 
-    async def _units(self, drive: DriveConfig, profile: Profile) -> AsyncIterator[RegisterReading]:
-        for number in drive.units:
-            unit = self._buses.unit(drive, number, profile.timing)
-            try:
-                async for reading in read_registers(unit, profile):
-                    yield reading
-            finally:
-                await unit.close()
+
+async def probe(buses: Buses, drive: DriveConfig, profile: Profile) -> DriveReadings:
+    """Return every register of a drive's devices, decoded; whatever goes wrong is the answer, too."""
+    try:
+        registers = [one async for one in _units(buses, drive, profile)]
+    except DriveSilent as error:
+        return DriveReadings(CheckOutcome.SILENT, str(error))
+    except DriveError as error:
+        return DriveReadings(CheckOutcome.WRONG_DEVICE, str(error))
+    return _judged(profile, registers)
+
+
+async def _units(buses: Buses, drive: DriveConfig, profile: Profile) -> AsyncIterator[RegisterReading]:
+    for number in drive.units:
+        unit = buses.unit(drive, number, profile.timing)
+        try:
+            if profile.adapter is Adapter.SUNSPEC:
+                profile = await located(profile, unit, str(unit))
+            async for reading in read_registers(unit, profile):
+                yield reading
+        finally:
+            await unit.close()
 
 
 async def read_registers(unit: BusUnit, profile: Profile) -> AsyncIterator[RegisterReading]:

@@ -169,10 +169,7 @@ def _memory_of(memory: Path | None, unit: int, units: Sequence[int]) -> Path | N
 async def _run(
     doors: Doors, profile: Profile, drives: Mapping[int, SimulatedDrive], clock: Clock, gear_ratio: float
 ) -> None:
-    ended = asyncio.Event()
-    loop = asyncio.get_running_loop()
-    for number in (signal.SIGTERM, signal.SIGINT):
-        loop.add_signal_handler(number, ended.set)
+    ended = ending()
     served = shelf(profile, drives, clock, gear_ratio)
     servers, places = await serve_doors(doors, served)
     units = ", ".join(str(unit) for unit in served)
@@ -189,6 +186,15 @@ async def _run(
         await server.close()
     for drive in drives.values():
         await drive.close()
+
+
+def ending() -> asyncio.Event:
+    """Return an event that SIGTERM or SIGINT sets."""
+    ended = asyncio.Event()
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        loop.add_signal_handler(number, ended.set)
+    return ended
 
 
 async def _watch(drives: Sequence[SimulatedMachine], clock: Clock) -> None:

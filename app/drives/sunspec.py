@@ -11,10 +11,11 @@ from datetime import datetime, timedelta
 from typing import assert_never
 
 from app.clock import Clock
-from app.drives.drive import DriveError, DriveRefused
+from app.drives.drive import DriveError
 from app.drives.plausibility import Plausibility
 from app.drives.profile import Profile
 from app.drives.register_axis import LEASE_S
+from app.drives.sunspec_models import located
 from app.drives.unit import Link, Unit
 from app.tracker.axes import Axis
 from app.tracker.config import TrackerConfig
@@ -31,14 +32,11 @@ from app.tracker.motion import (
     Velocity,
 )
 
-END_MODEL, MOST_MODELS = 0xFFFF, 40
-MODEL_HEADER = 2
 NOT_IMPLEMENTED = -0x8000_0000
 NOT_IMPLEMENTED_SCALE = -0x8000
 BOOT_COUNT = 1
 BEGINNING = timedelta(milliseconds=500)
 """How long after a new target the axes count as moving although no motion shows yet."""
-MARK = ("sunspec_id", "sunspec_id_end")
 READ = (
     "alarms", "scale", "elevation_position", "azimuth_position", "control", "tracker_alarms",
 )  # fmt: skip
@@ -94,7 +92,8 @@ class SunSpecDrive:
     async def read(self) -> Feedback:
         """Return one fresh reading, or raise `DriveError`."""
         if not self._is_found:
-            await self._find_model()
+            self._unit = Unit(await located(self._profile, self._link, self._where), self._link, self._where)
+            self._is_found = True
         feedback = await self._read()
         if self._plausibility.doubt(feedback) is not None:
             feedback = self._plausibility.settle(feedback, await self._read())
@@ -143,30 +142,6 @@ class SunSpecDrive:
             with suppress(DriveError):
                 await self.stop()
         await self._unit.close()
-
-    async def _find_model(self) -> None:
-        """Walk the models of the device to number 601, or raise `DriveRefused`; shift the profile to it."""
-        registers = self._profile.registers
-        await self._identify()
-        address = registers["first_model"].address
-        for _ in range(MOST_MODELS):
-            model, length = await self._unit.look(address, MODEL_HEADER, "model header")
-            if model == registers["model"].expect:
-                self._unit = Unit(_shifted(self._profile, address), self._link, self._where)
-                self._is_found = True
-                return
-            if model == END_MODEL:
-                break
-            address += MODEL_HEADER + length
-        raise DriveRefused(f"The device at {self._where} has no SunSpec model 601. Check unit and profile.")
-
-    async def _identify(self) -> None:
-        found = await self._unit.poll(*MARK)
-        if any(value != self._profile.registers[name].expect for name, value in found.items()):
-            raise DriveRefused(
-                f"The device at {self._where} is no SunSpec device: its map does not begin with SunS. "
-                "Check address, unit and profile."
-            )
 
     async def _read(self) -> Feedback:
         try:
@@ -299,20 +274,3 @@ class SunSpecDrive:
 
 def _is_stepped(command: DriveCommand) -> bool:
     return isinstance(command.azimuth, Velocity) or isinstance(command.elevation, Velocity)
-
-
-def _shifted(profile: Profile, model_address: int) -> Profile:
-    """Return the profile with everything from model 601 on where this device has it."""
-    first = profile.registers["model"].address
-    by = model_address - first
-    return replace(
-        profile,
-        registers={
-            name: replace(one, address=one.address + by) if one.address >= first else one
-            for name, one in profile.registers.items()
-        },
-        blocks={
-            name: replace(one, address=one.address + by) if one.address >= first else one
-            for name, one in profile.blocks.items()
-        },
-    )

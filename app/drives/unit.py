@@ -131,10 +131,6 @@ class Unit:
         for address, run in runs(words, words):
             await self._link.stop(address, run, what=self._what(f"stop, {self.profile.at(address)}"))
 
-    async def look(self, address: int, count: int, what: str) -> list[int]:
-        """Return registers that the profile does not place, to find out where something is."""
-        return await self._link.read(address, count, what=self._what(what))
-
     def forget(self) -> None:
         """Believe no longer that the device holds what was written."""
         self._taken.clear()

@@ -1,0 +1,31 @@
+"""The bytes that writing a register puts on a serial line, to be held against a device's manual."""
+
+from collections.abc import Mapping
+
+from app.drives.profile import Profile
+from app.drives.register import runs
+from app.drives.rtu_frame import request_frame
+from app.drives.wire import Ask
+
+
+def write_frame(profile: Profile, values: Mapping[str, float], unit: int) -> bytes:
+    """Return the RTU frame that writes neighbouring registers, or raise `ValueError` if that takes more."""
+    words: dict[int, int] = {}
+    for name, value in values.items():
+        register = profile.registers.get(name)
+        if register is None:
+            raise ValueError(f"Profile {profile.name} has no register {name!r}.")
+        words |= dict(zip(register.addresses, register.words(value), strict=True))
+    frames = runs(words, words)
+    if len(frames) != 1:
+        raise ValueError("These registers are no neighbours: each takes a frame of its own.")
+    address, run = frames[0]
+    return request_frame(Ask(unit, address, len(run), tuple(run)))
+
+
+def read_frame(profile: Profile, name: str, unit: int, count: int | None = None) -> bytes:
+    """Return the RTU frame that reads a register, or raise `ValueError` if there is none."""
+    register = profile.registers.get(name)
+    if register is None:
+        raise ValueError(f"Profile {profile.name} has no register {name!r}.")
+    return request_frame(Ask(unit, register.address, register.count if count is None else count))
