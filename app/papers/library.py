@@ -10,7 +10,7 @@ from app.papers.alexandru import alexandru
 from app.papers.gezegin import gezegin
 from app.papers.nalini import nalini
 from app.papers.psa_rexroth import psa_rexroth
-from app.papers.result import Figure, Paper, Standing
+from app.papers.result import Figure, Group, Paper, Standing
 from app.papers.xia import xia
 
 LIBRARY: Final[Mapping[str, Callable[[], Paper]]] = MappingProxyType(
@@ -58,6 +58,14 @@ def shown(figure: Figure) -> tuple[str, str, str]:
     )
 
 
+def remarks(group: Group) -> tuple[str, ...]:
+    """Return what is remarked on the figures of a group, each remark once, after the names it is about."""
+    about: dict[str, list[str]] = {}
+    for figure in group.figures:
+        about.setdefault(figure.remark, []).append(figure.name)
+    return tuple(f"{', '.join(names)}: {remark}" for remark, names in about.items() if remark)
+
+
 def _lines(one: Paper) -> Iterator[str]:
     yield from (f"{'=' * WIDE}", one.name, fill(one.citation, WIDE))
     yield f"{one.agreeing} of {one.published} published figures come out."
@@ -65,7 +73,7 @@ def _lines(one: Paper) -> Iterator[str]:
         yield from ("", group.title, fill(group.note, WIDE, initial_indent="  ", subsequent_indent="  "))
         yield f"  {'':<52}{'paper':>12}{'ours':>12}{'difference':>12}"
         yield from (_figure(figure) for figure in group.figures)
-        yield from (f"  {remark}" for remark in dict.fromkeys(_remarks(group.figures)))
+        yield from (f"  {remark}" for remark in remarks(group))
     yield from ("", "Errata: printed -> right: measured effect")
     for erratum in one.errata:
         told = f"{erratum.where}: {erratum.printed} -> {erratum.right}: {erratum.effect}"
@@ -80,7 +88,3 @@ def _figure(figure: Figure) -> str:
     told, ours, apart = shown(figure)
     name = f"{figure.name} [{figure.unit}]" if figure.unit else figure.name
     return f"  {name:<52}{told:>12}{ours:>12}{apart:>12}  {MARKS[figure.standing]}".rstrip()
-
-
-def _remarks(figures: tuple[Figure, ...]) -> Iterator[str]:
-    yield from (f"{figure.name}: {figure.remark}" for figure in figures if figure.remark)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+from app.papers.result import Erratum, Gap
 from app.web.contexts import Form, Frame
 from app.web.ui.logchart import LogChart
 
@@ -41,3 +42,51 @@ class AccuracyPage:
     places: tuple[tuple[str, str], ...]
     result: AccuracyResult | None
     load: str
+
+
+@dataclass(frozen=True, slots=True)
+class FigureRow:
+    """A figure of a paper as text; `published` and `difference` are empty where nothing is published."""
+
+    name: str
+    unit: str
+    published: str
+    ours: str
+    difference: str
+    standing: str
+
+
+@dataclass(frozen=True, slots=True)
+class GroupTable:
+    """A table of a paper; a long one is folded, and one with nothing published has one column of numbers."""
+
+    title: str
+    note: str
+    folded: bool
+    figures: tuple[FigureRow, ...]
+    remarks: tuple[str, ...]
+    compared: bool
+
+
+@dataclass(frozen=True, slots=True)
+class PaperSection:
+    """One paper on its page."""
+
+    key: str
+    name: str
+    citation: str
+    summary: str
+    groups: tuple[GroupTable, ...]
+    errata: tuple[Erratum, ...]
+    gaps: tuple[Gap, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PapersPage:
+    """The five papers; with `load` the page asks for them by itself."""
+
+    template: ClassVar[str] = "papers.html"
+
+    frame: Frame
+    papers: tuple[PaperSection, ...]
+    load: bool

@@ -46,7 +46,7 @@ APP = fake_app()
 schema = schemathesis.openapi.from_dict(APP.openapi(), config=CONFIG)
 
 
-@schema.exclude(path_regex="stream|simulations|backup|accuracy").parametrize()
+@schema.exclude(path_regex="stream|simulations|backup|accuracy|papers").parametrize()
 @settings(
     max_examples=EXAMPLES,
     deadline=timedelta(seconds=5),

@@ -1,0 +1,59 @@
+"""The five papers: published figures beside ours, errata with their effect, and what cannot be had."""
+
+from fastapi import APIRouter
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.papers.library import papers, remarks, shown
+from app.papers.result import Figure, Group, Paper, Standing
+from app.web.deps import PanelDep
+from app.web.science_contexts import FigureRow, GroupTable, PaperSection, PapersPage
+from app.web.ui.frame import site_frame
+from app.web.ui.render import page
+
+router = APIRouter(prefix="/papers")
+LONG = 14
+WORDS = {Standing.AGREES: "agrees", Standing.DIFFERS: "differs", Standing.MEASURED: ""}
+
+
+@router.get("")
+async def read_papers(request: Request, built: PanelDep, show: str = "") -> Response:
+    """Show the five papers once they have been computed; without `show` the page asks for that by itself."""
+    found = await built.simulations.work_out(papers, ()) if show else ()
+    context = PapersPage(
+        frame=site_frame(request, "Papers"), papers=tuple(_section(one) for one in found), load=not show
+    )
+    return page(request, context, block="body")
+
+
+def _section(paper: Paper) -> PaperSection:
+    return PaperSection(
+        key=paper.key,
+        name=paper.name,
+        citation=paper.citation,
+        summary=_summary(paper),
+        groups=tuple(_table(group) for group in paper.groups),
+        errata=paper.errata,
+        gaps=paper.gaps,
+    )
+
+
+def _summary(paper: Paper) -> str:
+    misprints = f"{len(paper.errata)} errata, with the measured effect of each."
+    return f"{paper.agreeing} of {paper.published} published figures come out. {misprints}"
+
+
+def _table(group: Group) -> GroupTable:
+    return GroupTable(
+        title=group.title,
+        note=group.note,
+        folded=len(group.figures) > LONG,
+        figures=tuple(_row(one) for one in group.figures),
+        remarks=remarks(group),
+        compared=group.published > 0,
+    )
+
+
+def _row(figure: Figure) -> FigureRow:
+    published, ours, difference = shown(figure)
+    return FigureRow(figure.name, figure.unit, published, ours, difference, WORDS[figure.standing])

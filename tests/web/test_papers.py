@@ -1,0 +1,50 @@
+"""The five papers as a page and over the API, computed in the worker process."""
+
+from collections.abc import AsyncIterator
+
+import httpx
+import pytest
+
+from app.papers.library import LIBRARY
+from tests.fakes import FakeMachine, FakeReader, fake_app, serving
+
+HTMX = {"HX-Request": "true", "HX-Request-Type": "partial"}
+
+
+@pytest.fixture
+async def client() -> AsyncIterator[httpx.AsyncClient]:
+    app = fake_app(FakeMachine(), FakeReader())
+    async with serving(app) as browser:
+        yield browser
+    app.state.panel.simulations.close()
+
+
+async def test_page_and_api_tell_the_same(client: httpx.AsyncClient) -> None:
+    told = (await client.get("/api/v1/papers")).json()
+    text = (await client.get("/papers?show=yes", headers=HTMX)).text
+    assert [paper["key"] for paper in told] == list(LIBRARY)
+    for paper in told:
+        assert f'id="{paper["key"]}"' in text
+        assert f"{paper['agreeing']} of {paper['published']} published figures come out." in text
+    differing = sum(
+        figure["standing"] == "differs"
+        for paper in told
+        for group in paper["groups"]
+        for figure in group["figures"]
+    )
+    assert text.count("<b>differs</b>") == differing > 10
+    assert "<html" not in text
+
+
+async def test_the_page_asks_for_the_papers_by_itself(client: httpx.AsyncClient) -> None:
+    text = (await client.get("/papers")).text
+    assert 'hx-get="/papers?show=yes" hx-trigger="load"' in text
+    assert '<a class="key" href="/papers?show=yes">' in text
+
+
+async def test_a_sixth_paper_is_not_found(client: httpx.AsyncClient) -> None:
+    answer = await client.get("/api/v1/papers", params={"paper": "a-sixth"})
+    assert answer.status_code == 404
+    assert "choose one of" in answer.json()["detail"]
+    one = await client.get("/api/v1/papers", params={"paper": "xia"})
+    assert [paper["key"] for paper in one.json()] == ["xia"]
