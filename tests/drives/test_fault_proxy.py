@@ -1,6 +1,7 @@
 """Every fault on every wire: no wrong value is believed, the next read is right, and a stop goes at once."""
 
 import asyncio
+import sys
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -12,11 +13,13 @@ from app.clock import SystemClock
 from app.drives.bus import BusUnit
 from app.drives.buses import Buses
 from app.drives.drive import DriveError, DriveSilent
+from app.drives.modbus_server import ModbusServer
 from app.drives.pty_line import PtyLine
 from app.drives.rtu_server import RtuServer
 from app.drives.wire_faults import ONLY, Framing, WireFault, parse_script
 from app.tracker.config import DriveConfig, DriveKind, SerialConfig
 from tests.drives.proxied import BENCHES, STOP_REGISTER, TIMING, Bench, Registers
+from tests.machine.service import free_port
 
 RECOVERED_WITHIN_S = {"tcp": 0.3, "rtu": 1.0, "rtu-over-tcp": 1.0}
 STOP_WITHIN_S = 0.05
@@ -157,3 +160,34 @@ async def test_a_line_in_use_with_other_settings_is_refused() -> None:
         await second.read(0, 1, what="a word")
     await first.close()
     await second.close()
+
+
+async def test_the_proxy_is_played_from_the_command_line() -> None:
+    server = ModbusServer(Registers(1))
+    port = await server.start("127.0.0.1", 0)
+    near = free_port()
+    process = await asyncio.create_subprocess_exec(
+        sys.executable, "-m", "app.cli", "fault-proxy", f"127.0.0.1:{near}", f"127.0.0.1:{port}",
+        stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE,
+    )  # fmt: skip
+    assert process.stdin is not None
+    assert process.stdout is not None
+    device = Buses(SystemClock()).unit(DriveConfig(DriveKind.MODBUS_TCP, port=near), 1, TIMING)
+    async with asyncio.timeout(20.0):
+        assert b"Type a fault" in await process.stdout.readline()
+        for line, told, works in (
+            (b"drop", b"drop", False),
+            (b"x", b"no fault", False),
+            (b"clear", b"clear", True),
+        ):
+            process.stdin.write(line + b"\n")
+            assert told in await process.stdout.readline()
+            try:
+                assert await device.read(10, 2, what="words") == [1030, 1033]
+                assert works
+            except DriveSilent:
+                assert not works
+        await device.close()
+        process.terminate()
+        assert await process.wait() == 0
+    await server.close()

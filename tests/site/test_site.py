@@ -32,7 +32,7 @@ from app.sun.position import Algorithm, Location
 from app.tracker.axes import Axis, JogSpeed
 from app.tracker.commands import Command, CommandRejected, Jog, Move, ResetFault, SelectMode, Stop, Track
 from app.tracker.commissioning import StepStatus
-from app.tracker.config import DriveConfig, DriveKind, Orientation, TrackerConfig
+from app.tracker.config import AxisDrive, DriveConfig, DriveKind, Orientation, SerialConfig, TrackerConfig
 from app.tracker.controller import Controller, Tick
 from app.tracker.memory import ClockSetting, SiteState, StepName, TrackerMemory, TrackerState
 from app.tracker.mode import Mode
@@ -141,6 +141,39 @@ async def test_two_trackers_cannot_share_one_drive() -> None:
         await plant.ask(AddTracker(TrackerConfig("T3", "Third", drive=drive)))
 
     await plant.close()
+
+
+def on_a_line(tracker_id: str, unit: int, baud_rate: int = 19200, **axes: AxisDrive) -> TrackerConfig:
+    serial = SerialConfig("/dev/ttyNone", baud_rate)
+    drive = DriveConfig(DriveKind.MODBUS_RTU, unit=unit, serial=serial, **axes)
+    return TrackerConfig(tracker_id, tracker_id, drive=drive)
+
+
+@pytest.mark.parametrize(
+    ("config", "message"),
+    [
+        (on_a_line("T3", 2), "T2 already uses the drive at /dev/ttyNone, unit 2"),
+        (on_a_line("T3", 4, elevation=AxisDrive(unit=2)), "already uses the drive"),
+        (on_a_line("T3", 4, 9600), "uses the line /dev/ttyNone with other settings"),
+    ],
+)
+async def test_trackers_on_one_line_have_own_units_and_one_setting(
+    config: TrackerConfig, message: str
+) -> None:
+    taken = TrackerState(on_a_line("T2", 2), TrackerMemory())
+    plant = await running(make_plant(trackers=(FIRST, taken)))
+
+    with pytest.raises(CommandRejected, match=message):
+        await plant.ask(AddTracker(config))
+    await plant.ask(AddTracker(on_a_line("T3", 4)))
+
+    await plant.close()
+
+
+@pytest.mark.parametrize("unit", [0, 248])
+async def test_nobody_is_broadcast_to(plant: Plant, unit: int) -> None:
+    with pytest.raises(ValueError, match="between 1 and 247"):
+        await plant.ask(AddTracker(on_a_line("T2", unit)))
 
 
 async def test_a_moving_tracker_is_neither_changed_nor_removed(plant: Plant) -> None:
