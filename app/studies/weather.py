@@ -15,6 +15,7 @@ from app.sun.trigonometry import PER_DEGREE, Array
 HOURS = 8760
 LARGEST_WM2 = 1600.0
 LOWEST_SUN_DEG = 3.0
+MOST_DIRECT_WM2 = 1367.0
 
 
 class WeatherFormat(StrEnum):
@@ -52,6 +53,7 @@ class WeatherYear:
 def read_weather(path: Path, year: int | None = None) -> WeatherYear:
     """Return a weather file; of one with several years that year, or the first. Raises `WeatherRefused`."""
     kind = _format_of(path)
+    _check_whole(path)
     try:
         return READERS[kind](path, year)
     except WeatherRefused:
@@ -76,6 +78,15 @@ def _format_of(path: Path) -> WeatherFormat:
     raise WeatherRefused(
         "This is no weather file that Heliopanel reads: give TMY3 or PVGIS as CSV, or EPW, as downloaded."
     )
+
+
+def _check_whole(path: Path) -> None:
+    with path.open("rb") as file:
+        lines = sum(1 for _ in file)
+    if lines <= HOURS:
+        raise WeatherRefused(
+            f"The file ends after {lines} lines, too few hours; a whole year has {HOURS}. Download it again."
+        )
 
 
 def _tmy3(path: Path, _: int | None) -> WeatherYear:
@@ -115,7 +126,9 @@ def _pvgis_hourly(path: Path, year: int | None) -> WeatherYear:
     elevation_deg = sun_path(Algorithm.PSA, place, at_s).apparent_elevation_deg
     steep = np.sin(np.maximum(elevation_deg, LOWEST_SUN_DEG) * PER_DEGREE)
     level_wm2, diffuse_wm2 = data["poa_direct"].to_numpy(), data["poa_sky_diffuse"].to_numpy()
-    data = data.assign(dni=level_wm2 / steep, dhi=diffuse_wm2, ghi=level_wm2 + diffuse_wm2)
+    data = data.assign(
+        dni=np.minimum(level_wm2 / steep, MOST_DIRECT_WM2), dhi=diffuse_wm2, ghi=level_wm2 + diffuse_wm2
+    )
     return _year(WeatherFormat.PVGIS_HOURLY, place, 0.0, centre_h, data)
 
 

@@ -94,7 +94,7 @@ class NewStudy(Place):
         location = self.location(site)
         tracker = _tracker(site, self.tracker_id)
         return StudyRequest(
-            title=self.title or f"{self.span.replace('-', ' ')} {self.date}",
+            title=self.title or self._title(),
             location=location,
             time_zone=self.time_zone or site.site.time_zone,
             span=self.span,
@@ -117,6 +117,15 @@ class NewStudy(Place):
             axis_tilt_deg=self.axis_tilt_deg,
             tracker=tracker,
         )
+
+    def _title(self) -> str:
+        match self.span:
+            case Span.DAY:
+                return f"{self.date}"
+            case Span.TWELVE_DAYS:
+                return f"12 days of {self.date:%Y}"
+            case Span.YEAR:
+                return f"Year {self.date:%Y}"
 
     def _held(self, location: Location) -> Orientation:
         towards_deg = 180.0 if location.latitude_deg >= 0.0 else 0.0

@@ -28,7 +28,7 @@ def clear_year(location: Location, minutes: int = 10, year: int = 2026) -> Clear
     )
     with warnings.catch_warnings():
         # pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.
-        warnings.filterwarnings("ignore", category=pd.errors.Pandas4Warning)
+        warnings.filterwarnings("ignore", "DatetimeIndex.dayofyear is deprecated")
         return _clear_year(location, times)
 
 

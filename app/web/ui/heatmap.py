@@ -39,11 +39,13 @@ def heat_map(title: str, days: Sequence[date], heat_wm2: Sequence[Sequence[int]]
     starts = range(0, len(days), span)
     means = [_mean(heat_wm2[start : start + span]) for start in starts]
     width, height = (RIGHT - LEFT) / len(means), (BOTTOM - TOP) / HOURS
+    edges_x = [round(LEFT + column * width, 1) for column in range(len(means) + 1)]
+    edges_y = [round(BOTTOM - hour * height, 1) for hour in range(HOURS + 1)]
     paths = [""] * (CLASSES + 1)
     for column, hours in enumerate(means):
         for hour, mean in enumerate(hours):
-            x, y = LEFT + column * width, BOTTOM - (hour + 1) * height
-            paths[_class(mean)] += f"M{x:.1f} {y:.1f}h{width:.1f}v{height:.1f}h{-width:.1f}z"
+            (left, right), (bottom, top) = edges_x[column : column + 2], edges_y[hour : hour + 2]
+            paths[_class(mean)] += f"M{left:g} {top:g}H{right:g}V{bottom:g}H{left:g}z"
     return HeatMap(
         title=title,
         across="week of the year" if span == WEEK else "day",

@@ -18,6 +18,7 @@ from app.web.deps import MachineDep, PanelDep
 from app.web.errors import NotAcceptable
 from app.web.study_contexts import Options, ProgramView, StepProgramPage
 from app.web.study_orders import NewProgram, chosen_program
+from app.web.ui.formats import angle
 from app.web.ui.forms import Typed
 from app.web.ui.frame import site_frame
 from app.web.ui.orders import PressDep
@@ -170,7 +171,7 @@ def _view(answer: ProgramAnswer, text: str) -> ProgramView:
         energy=_energy(answer),
         day=_day(answer, row),
         times=tuple(
-            (_clock(start), _degrees(before), _degrees(after))
+            (_clock(start), angle(before), angle(after))
             for start, before, after in zip(row.starts_h, row.angles_deg, row.angles_deg[1:], strict=False)
         ),
     )
@@ -214,7 +215,3 @@ def _day(answer: ProgramAnswer, row: ProgramRow) -> Plot:
 def _clock(hours: float) -> str:
     minutes = round(hours * 60 * 60)
     return f"{minutes // 3600:02}:{minutes // 60 % 60:02}:{minutes % 60:02}"
-
-
-def _degrees(angle_deg: float) -> str:
-    return f"{angle_deg + 0.0:.2f}°".replace("-", "−")

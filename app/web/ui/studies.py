@@ -46,7 +46,7 @@ WHOLE = (("step", "step_min", "Step", 1, 60), ("interval", "interval_min", "Inte
 FILE = "file:"
 SPANS: Options = (
     (Span.DAY, "One day"),
-    (Span.TWELVE_DAYS, "The 12 representative days, scaled up to a year"),
+    (Span.TWELVE_DAYS, "12 representative days"),
     (Span.YEAR, "The whole year"),
 )
 CLEAR: Options = (

@@ -32,7 +32,7 @@ def study(
     study_id: str,
     built: PanelDep,
     case: Annotated[int, Query(ge=0, le=100)] = 0,
-    day: Annotated[int, Query(ge=0, le=366)] = 0,
+    day: Annotated[int | None, Query(ge=0, le=366)] = None,
 ) -> Response:
     """Show how far a study is, or what it found."""
     folder, state = built.studies.folder, built.studies.state(study_id)
@@ -94,11 +94,12 @@ def _settings(asked: StudyRequest, result: StudyResult | None) -> tuple[tuple[st
     )
 
 
-def _view(study_id: str, result: StudyResult, case: int, day: int) -> StudyView:
+def _view(study_id: str, result: StudyResult, case: int, day: int | None) -> StudyView:
     chosen = min(case, len(result.cases) - 1) or len(result.cases) - 1
     shown = result.cases[chosen]
     dates = [curve.on for curve in shown.curves]
-    at = min(day, len(dates) - 1)
+    brightest = max(range(len(dates)), key=lambda index: sum(shown.curves[index].plane_wm2))
+    at = brightest if day is None else min(day, len(dates) - 1)
     root = f"/studies/{study_id}?case={chosen}"
     days = tuple(Link(f"{on:%d %b}", f"{root}&day={index}", index == at) for index, on in enumerate(dates))
     return StudyView(
@@ -127,8 +128,10 @@ def _curves(result: StudyResult, shown: CaseResult, at: int) -> Plot:
 
 def _panel(result: StudyResult, shown: CaseResult, at: int) -> Plot:
     curve = shown.curves[at]
+    south = result.location.latitude_deg < 0.0
+    azimuth_deg = [value - 360.0 if south and value > 180.0 else value for value in curve.azimuth_deg]
     lines: list[Curve] = [
-        ("azimuth", result.hours, curve.azimuth_deg),
+        ("azimuth", result.hours, azimuth_deg),
         ("elevation", result.hours, curve.elevation_deg),
     ]
     title = f"Where the panel faces, {shown.label}, {curve.on:%d %B %Y}"
