@@ -27,6 +27,7 @@ from app.tracker.commands import (
     Track,
 )
 from app.tracker.config import Orientation
+from app.tracker.drive_check import DriveCheck
 from app.tracker.memory import (
     HomeTrust,
     TrackerState,
@@ -68,6 +69,7 @@ class FakeTracker:
         self.press: str | None = None
         self.dead: set[str] = set()
         self.sequence = -1
+        self.check: DriveCheck | None = None
 
     def handle(self, command: Command, now: datetime, actor: str) -> None:  # noqa: C901 - one flat table of cases
         """Do what was asked, at once."""

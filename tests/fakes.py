@@ -250,7 +250,8 @@ class FakeMachine:
             reasons = () if given else (Reason(f"{name}_open", f"Step {name} is not done yet.", "Do it."),)
             steps.append(WizardStep(name, status, reasons, given and given.at, given.by if given else ""))
         proofs = proof_states(tracker.config, tracker.memory, CAPABILITIES)
-        return TrackerDetail(TrackerState(tracker.config, tracker.memory), tuple(steps), CAPABILITIES, proofs)
+        state = TrackerState(tracker.config, tracker.memory)
+        return TrackerDetail(state, tuple(steps), CAPABILITIES, proofs, tracker.check)
 
     def latest(self) -> SiteSnapshot | None:
         """Return the newest snapshot, None while the link is cut."""

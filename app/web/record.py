@@ -1,6 +1,6 @@
 """The commissioning record: who, when, as-left settings, and what was verified."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from importlib.metadata import version
 
@@ -11,9 +11,12 @@ from app.store.store import JournalEntry, JournalFilter, Reader
 from app.sun.position import Location
 from app.tracker.commissioning import Step
 from app.tracker.config import TrackerConfig
+from app.tracker.drive_check import DriveCheck
 from app.tracker.memory import HomeTrust, Pointing, Sighting, SiteState
 from app.tracker.mode import Mode
 from app.tracker.motion import DriveCapabilities
+from app.tracker.proof_states import ProofState
+from app.tracker.proofs import Proofs
 from app.tracker.snapshot import ClockState, EventKind, SiteSnapshot, Snapshot
 
 VERIFYING = (
@@ -30,6 +33,8 @@ VERIFYING = (
     EventKind.SHOW_ENDED,
     EventKind.TRACKING_STARTED,
     EventKind.FAULT_RAISED,
+    EventKind.PROOF_ENDED,
+    EventKind.DRIVE_CHECKED,
 )
 MOST_EVENTS = 200
 
@@ -54,6 +59,9 @@ class CommissioningRecord:
     off_sun_deg: float | None
     following_error_deg: float | None
     events: tuple[JournalEntry, ...]
+    proofs: tuple[ProofState, ...] = ()
+    measured: Proofs = field(default_factory=Proofs)
+    check: DriveCheck | None = None
 
 
 async def read_record(machine: Machine, reader: Reader, tracker_id: str) -> CommissioningRecord:
@@ -91,6 +99,9 @@ def _record(
         off_sun_deg=now.off_sun_deg if now else None,
         following_error_deg=now.following_error_deg if now else None,
         events=events,
+        proofs=tracker.proofs,
+        measured=memory.proofs,
+        check=tracker.check,
     )
 
 

@@ -11,6 +11,8 @@ from zoneinfo import ZoneInfo
 
 from fpdf import FPDF
 
+from app.tracker.drive_check import DriveCheck
+from app.tracker.proof_states import ProofState
 from app.web.record import CommissioningRecord
 
 FONT = "DejaVu"
@@ -93,6 +95,8 @@ def sections(record: CommissioningRecord) -> Iterator[Section]:
     yield "Homing", _fields("", record.home, zone) or [("zero", "not set")]
     yield "Settings as left", [("mode", record.mode or "not selected"), *_fields("", record.tracker, zone)]
     yield "Drive", _fields("", record.drive, zone) or [("drive", "not reached yet")]
+    yield "Drive, as it was read", _checked(record.check, zone)
+    yield "Drive, as it was proven", [_proof(proof, zone) for proof in record.proofs]
     yield "Pointing correction", _fields("", record.pointing, zone)
     yield (
         "Now",
@@ -115,6 +119,28 @@ def _step(step: Any, zone: ZoneInfo) -> tuple[str, str]:
     when = f", {_local(step.confirmed_at, zone)} by {step.confirmed_by}" if step.confirmed_at else ""
     why = "".join(f" {reason.message}" for reason in step.reasons)
     return step.name, f"{STATUS_WORDS[step.status]}{when}.{why}"
+
+
+def _proof(proof: ProofState, zone: ZoneInfo) -> tuple[str, str]:
+    """Return what was proven, how it stands now, when, by whom and with which result."""
+    name = " ".join(filter(None, (proof.axis or "drive", proof.kind.replace("_", " "), proof.speed)))
+    when = f", {_local(proof.at, zone)} by {proof.by}" if proof.at else ""
+    why = "".join(f" {reason.message}" for reason in proof.reasons)
+    return name, f"{STATUS_WORDS[proof.status]}{when}. {proof.result}{why}"
+
+
+def _checked(check: DriveCheck | None, zone: ZoneInfo) -> list[tuple[str, str]]:
+    if check is None:
+        return [("connection", "not tested since the controller was started")]
+    seen = check.readings
+    unsure = sorted({one.name for one in seen.registers if not one.verified})
+    watchdog = "not read back" if seen.watchdog_s is None else f"{seen.watchdog_s:g} s, read back"
+    return [
+        ("connection", f"{seen.message} {_local(check.at, zone)} by {check.by}"),
+        ("watchdog", watchdog),
+        ("without commands", seen.watchdog_action or "not described"),
+        ("unverified registers", ", ".join(unsure) or "none"),
+    ]
 
 
 def _fields(prefix: str, value: Any, zone: ZoneInfo) -> list[tuple[str, str]]:

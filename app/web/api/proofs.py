@@ -3,19 +3,22 @@
 from typing import Annotated
 
 from fastapi import APIRouter
-from pydantic import Field
+from pydantic import Field, TypeAdapter
 
-from app.link.messages import AnswerDirection, AnswerScale, RestoreDrive, SetSoftLimit
+from app.link.messages import AnswerDirection, AnswerScale, CheckConnection, RestoreDrive, SetSoftLimit
 from app.tracker.axes import Axis
-from app.tracker.config import TrackerConfig
+from app.tracker.config import DriveConfig, TrackerConfig
+from app.tracker.drive_check import DriveCheck, DriveChoices
 from app.tracker.proof_states import ProofState
 from app.tracker.proofs import AxisEnd, Proofs
 from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, TrackerId
 from app.web.api.orders import SenderDep
-from app.web.api.trackers import detail_of
+from app.web.api.trackers import DriveChange, detail_of, merged
 from app.web.deps import MachineDep
+from app.web.errors import NotFound
 
 router = APIRouter(prefix="/trackers/{tracker_id}", tags=["drive"])
+_drive: TypeAdapter[DriveConfig] = TypeAdapter(DriveConfig)
 
 
 class DriveProofs(Output):
@@ -80,8 +83,40 @@ async def take_limit(
     return await read_proofs(tracker_id, machine)
 
 
+@router.get("/drive/choices", summary="Profiles and serial ports", responses=NOT_FOUND)
+async def read_choices(tracker_id: TrackerId, machine: MachineDep) -> DriveChoices:
+    """Return the profiles that can be chosen, verified or not, and the machine's serial ports."""
+    await detail_of(machine, tracker_id)
+    return (await machine.detail()).choices
+
+
+@router.get("/drive/check", summary="The newest look at the drive", responses=NOT_FOUND)
+async def read_check(tracker_id: TrackerId, machine: MachineDep) -> DriveCheck:
+    """Return what the drive answered when its connection was tested last."""
+    check = (await detail_of(machine, tracker_id)).check
+    if check is None:
+        raise NotFound(f"The connection to the drive of {tracker_id} has not been tested yet.")
+    return check
+
+
+@router.post("/drive/check", summary="Test the connection", responses=NOT_FOUND | REFUSED)
+async def check_drive(
+    tracker_id: TrackerId, change: DriveChange, sender: SenderDep, machine: MachineDep
+) -> DriveCheck:
+    """Read every register of the drive with these settings (left out: as set); nothing is changed."""
+    config = (await detail_of(machine, tracker_id)).state.config
+    wanted = _changed(config.drive, change)
+    await sender.send(CheckConnection(tracker_id, wanted))
+    return await read_check(tracker_id, machine)
+
+
 @router.post("/drive/restore", summary="Undo the last change of the drive", responses=NOT_FOUND | REFUSED)
 async def restore_drive(tracker_id: TrackerId, sender: SenderDep, machine: MachineDep) -> TrackerConfig:
     """Set the drive as it was before its settings were changed last; once more goes forth again."""
     await sender.send(RestoreDrive(tracker_id))
     return (await detail_of(machine, tracker_id)).state.config
+
+
+def _changed(drive: DriveConfig, change: DriveChange) -> DriveConfig:
+    given = change.model_dump(mode="json", exclude_none=True)
+    return _drive.validate_python(merged(_drive.dump_python(drive, mode="json"), given))

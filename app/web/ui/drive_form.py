@@ -142,10 +142,11 @@ def _port(text: str) -> str:
 def _axis(typed: Typed, axis: Axis) -> AxisDrive:
     label = axis.value.capitalize()
     unit, steps = typed.texts.get(f"{axis}_unit", "").strip(), typed.texts.get(f"{axis}_steps", "").strip()
-    gear_ratio = typed.number(f"{axis}_gear", f"{label} gear ratio", 1e-6, 999_999)
-    return AxisDrive(
+    numbers = (
         typed.whole(f"{axis}_unit", f"{label} unit", 0, 255) if unit else None,
         typed.number(f"{axis}_steps", f"{label} steps per revolution", 1e-3, 999_999_999) if steps else None,
-        1.0 if f"{axis}_gear" in typed.errors else gear_ratio,
-        bool(typed.texts.get(f"{axis}_inverted")),
+        typed.number(f"{axis}_gear", f"{label} gear ratio", 1e-6, 999_999),
     )
+    if any(name.startswith(f"{axis}_") for name in typed.errors):
+        return AxisDrive()
+    return AxisDrive(*numbers, inverted=bool(typed.texts.get(f"{axis}_inverted")))
