@@ -15,6 +15,7 @@ from app.tracker.mounts.abilities import MountAbilities, abilities
 from app.tracker.mounts.usual import mounted
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Snapshot
+from app.tracker.strategy import Strategy
 from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, Output, TrackerId
 from app.web.api.mount_inputs import ActuatorIn, MountChange
 from app.web.api.orders import SenderDep, tracker_of
@@ -81,6 +82,25 @@ class OrientationIn(Input):
     elevation_deg: Elevation
 
 
+class SimulatedLightChange(Input):
+    """What a simulated drive plays to its photo-sensors."""
+
+    azimuth_deg: float | None = Field(None, ge=-10, le=10, description="Misalignment to be found.")
+    elevation_deg: float | None = Field(None, ge=-10, le=10)
+    cloud: float | None = Field(None, ge=0, le=1, description="Share of the direct light that it takes.")
+
+
+class HybridChange(Input):
+    """Correction by photo-sensor pairs; what is left out stays."""
+
+    enabled: bool | None = None
+    threshold_wm2: float | None = Field(None, ge=1, le=2000)
+    gain_dps: float | None = Field(None, ge=0.001, le=10)
+    bound_deg: float | None = Field(None, ge=0.01, le=10)
+    decay_s: float | None = Field(None, ge=0, le=86_400, description="0 holds the correction in the dark.")
+    simulated: SimulatedLightChange | None = None
+
+
 class TrackerChange(Input):
     """What shall be different; what is left out stays."""
 
@@ -96,6 +116,10 @@ class TrackerChange(Input):
     night: NightBehaviour | None = Field(None, description="Where the panel waits for the morning.")
     park: OrientationIn | None = None
     mount: MountChange | None = None
+    strategy: Annotated[Strategy, Field(discriminator="kind")] | None = Field(
+        None, description="When the tracker moves; given as a whole."
+    )
+    hybrid: HybridChange | None = Field(None, description="Correction by photo-sensor pairs.")
 
 
 class NewTracker(TrackerChange):

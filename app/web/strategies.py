@@ -1,0 +1,58 @@
+"""What pages and API ask about strategies alike: a day by any of them, and programs kept by a tracker."""
+
+from dataclasses import dataclass, replace
+from datetime import datetime
+
+from app.link.messages import TrackerDetail
+from app.show.strategy_day import StrategyDay, strategy_day
+from app.sun.position import Location
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.memory import Pointing
+from app.tracker.mode import Mode
+from app.tracker.programs.stepped import StepProgram
+from app.tracker.strategy import Stepped, Strategy
+from app.web.errors import NotFound
+
+
+@dataclass(frozen=True, slots=True)
+class DayQuestion:
+    """One day of one tracker by one strategy, from `begin` to `end`."""
+
+    config: TrackerConfig
+    pointing: Pointing
+    location: Location
+    mode: Mode
+    held: Orientation
+    begin: datetime
+    end: datetime
+
+
+def asked_day(
+    tracker: TrackerDetail, strategy: Strategy, location: Location, begin: datetime, end: datetime
+) -> DayQuestion:
+    """Return the question for a tracker with another strategy; a fixed panel is asked in dual mode."""
+    memory = tracker.state.memory
+    mode = Mode.DUAL if memory.mode in (None, Mode.FIXED) else memory.mode
+    config = replace(tracker.state.config, strategy=strategy)
+    return DayQuestion(config, memory.pointing, location, mode or Mode.DUAL, memory.orientation, begin, end)
+
+
+def day_of(question: DayQuestion) -> StrategyDay:
+    """Return what the tracker does that day, in the worker; raises `ValueError` for what cannot be."""
+    return strategy_day(
+        question.config,
+        question.pointing,
+        question.location,
+        question.mode,
+        question.held,
+        question.begin,
+        question.end,
+    )
+
+
+def kept_program(tracker: TrackerDetail) -> StepProgram:
+    """Return the step program that a tracker follows, or raise `NotFound`."""
+    config = tracker.state.config
+    if not isinstance(config.strategy, Stepped):
+        raise NotFound(f"{config.name} follows no step program.")
+    return config.strategy.program
