@@ -259,3 +259,16 @@ async def test_simulation_and_backups_against_the_real_store(tmp_path: Path) -> 
     assert (tmp_path / "backups" / backup.json()["file"]).stat().st_size == backup.json()["size_bytes"]
     assert backup.json()["recordings"] == 1
     assert download.content.startswith(b"SQLite format 3")
+
+
+async def test_an_axis_gets_a_unit_of_its_own_and_null_takes_it_back(api: httpx.AsyncClient) -> None:
+    path = "/trackers/T1"
+    line = {"kind": "modbus-rtu", "serial": {"port": "/dev/ttyNone", "parity": "none"}}
+    await api.patch(path, json={"drive": {**line, "azimuth": {"unit": 5, "gear_ratio": 40.0}}})
+    drive = (await api.get(path)).json()["drive"]
+    assert (drive["serial"]["parity"], drive["serial"]["baud_rate"]) == ("none", 19200)
+    assert (drive["azimuth"]["unit"], drive["azimuth"]["gear_ratio"]) == (5, 40.0)
+
+    await api.patch(path, json={"drive": {"azimuth": {"unit": None}}})
+    azimuth = (await api.get(path)).json()["drive"]["azimuth"]
+    assert (azimuth["unit"], azimuth["gear_ratio"]) == (None, 40.0)
