@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from app.sun.events import next_rise
 from app.sun.position import Location, SunPath, SunPosition, sun_path, sun_position
 from app.sun.trigonometry import Array
-from app.fast.law import TWILIGHT_DEG, night_direction, night_near_deg
-from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.activities.tracking import TWILIGHT_DEG, night_near_deg
+from app.tracker.config import NightBehaviour, Orientation, TrackerConfig
 from app.tracker.mode import Mode
+from app.tracker.mount import mode_direction
 
 NO_DAWN_FOR = timedelta(hours=1)
 
@@ -45,7 +46,7 @@ def directions(
     near_deg, meant = np.zeros(len(at_unix_s)), np.ones(len(at_unix_s), dtype=np.bool_)
     for begin, end in _spans(night):
         for span, dawn in _dawns(config, location, at_unix_s, begin, end):
-            found = night_direction(config, mode, held, dawn)
+            found = _by_night(config, mode, held, dawn)
             near_deg[span] = night_near_deg(config, location, dawn)
             meant[span] = found is not None
             if found is not None:
@@ -63,6 +64,21 @@ def _by_day(mode: Mode, held: Orientation, sun: SunPath, height_deg: Array) -> t
     if mode in (Mode.ELEVATION, Mode.DUAL):
         elevation_deg = height_deg.copy()
     return azimuth_deg, elevation_deg
+
+
+def _by_night(
+    config: TrackerConfig, mode: Mode, held: Orientation, dawn: SunPosition | None
+) -> Orientation | None:
+    """Return where the panel waits for the sun; None: wherever it is."""
+    match config.night:
+        case NightBehaviour.HOLD:
+            return None
+        case NightBehaviour.PARK:
+            return config.park
+        case NightBehaviour.SUNRISE if dawn is not None:
+            return mode_direction(mode, held, dawn, refraction=config.refraction)
+        case _:
+            return None
 
 
 def _spans(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:

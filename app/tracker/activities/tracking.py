@@ -135,7 +135,7 @@ def _corrected(mind: Mind, followed: Followed, moment: Moment, wanted: Aimed, fe
 
 def _night_place(strategy: Strategy, followed: Followed, moment: Moment, seen: Observation) -> Aimed | None:
     """Return where the panel waits for the sun; None: wherever it is."""
-    near_deg = _night_near_deg(followed.config, seen)
+    near_deg = night_near_deg(followed.config, seen.location, seen.dawn)
     match followed.config.night:
         case NightBehaviour.HOLD:
             return None
@@ -186,12 +186,13 @@ def _phase(config: TrackerConfig, mode: Mode, wanted: Aimed) -> TrackPhase:
     return TrackPhase.FOLLOWING
 
 
-def _night_near_deg(config: TrackerConfig, seen: Observation) -> float:
+def night_near_deg(config: TrackerConfig, location: Location | None, dawn: SunPosition | None) -> float:
     """Return the end of the first axis's range from which the coming day needs no unwinding."""
-    return config.azimuth.minimum_deg if _grows(config.mount, seen) else config.azimuth.maximum_deg
+    grows = _grows(config.mount, location, dawn)
+    return config.azimuth.minimum_deg if grows else config.azimuth.maximum_deg
 
 
-def _grows(mount: MountConfig, seen: Observation) -> bool:
+def _grows(mount: MountConfig, location: Location | None, dawn: SunPosition | None) -> bool:
     """Return whether the first axis's angle grows from dawn to dusk.
 
     An azimuth does where the sun passes south of the zenith, an hour angle always, and the rotation about a
@@ -203,7 +204,7 @@ def _grows(mount: MountConfig, seen: Observation) -> bool:
         case MountKind.HORIZONTAL_SINGLE_AXIS | MountKind.TILTED_SINGLE_AXIS:
             return cos(radians(mount.axis_azimuth_deg)) <= 0.0
         case MountKind.AZIMUTH_ELEVATION | MountKind.VERTICAL_SINGLE_AXIS:
-            return seen.dawn is None or seen.location is None or _passes_south(seen.location, seen.dawn)
+            return dawn is None or location is None or _passes_south(location, dawn)
     assert_never(mount.kind)
 
 
