@@ -1,0 +1,79 @@
+"""Every other door is shut until a setting opens it, and wrong settings are named in a sentence."""
+
+import asyncio
+from pathlib import Path
+
+import pytest
+
+from app.gateway.gateways import Gateways
+from app.link.metrics import GatewayStatus
+from app.settings import SettingsWrong, read_settings
+from tests.gateway.rigs import HurriedClock, kept_plant
+
+
+async def test_without_settings_every_door_is_shut_and_says_how_it_is_opened(tmp_path: Path) -> None:
+    async with kept_plant(tmp_path) as (plant, store):
+        gateways = Gateways(plant.site, HurriedClock(), read_settings(), store)
+        gateways.start()
+        told = (await gateways.metrics()).gateways
+        await gateways.close()
+    assert {one.status for one in told} == {GatewayStatus.OFF}
+    assert [one.where.split()[1] for one in told] == [
+        "HELIOPANEL_SUNSPEC_PORT",
+        "HELIOPANEL_SUNSPEC_SERIAL",
+        "HELIOPANEL_MQTT_HOST",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("SUNSPEC_HOST", "0.0.0.0", "Leave HELIOPANEL_SUNSPEC_HOST unset"),
+        ("SUNSPEC_WRITE_HOSTS", "10.0.0.0/24, plant", "names 'plant', which is no address"),
+        ("SUNSPEC_UNIT", "0", "HELIOPANEL_SUNSPEC_UNIT is wrong"),
+        ("MQTT_TOPIC", "plant/#", "HELIOPANEL_MQTT_TOPIC is wrong"),
+        ("MQTT_SNAPSHOT_S", "0", "HELIOPANEL_MQTT_SNAPSHOT_S is wrong"),
+    ],
+)
+def test_wrong_settings_are_named(monkeypatch: pytest.MonkeyPatch, name: str, value: str, words: str) -> None:
+    monkeypatch.setenv(f"HELIOPANEL_{name}", value)
+    with pytest.raises(SettingsWrong, match=words):
+        read_settings()
+
+
+def test_discovery_needs_one_message_a_tracker(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HELIOPANEL_MQTT_DISCOVERY", "true")
+    monkeypatch.setenv("HELIOPANEL_MQTT_SNAPSHOTS", "columns")
+    with pytest.raises(SettingsWrong, match="HELIOPANEL_MQTT_SNAPSHOTS=trackers"):
+        read_settings()
+
+
+def test_lists_are_read_and_the_password_is_never_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HELIOPANEL_SUNSPEC_WRITE_HOSTS", "127.0.0.1, 10.0.0.0/24,serial")
+    monkeypatch.setenv("HELIOPANEL_MQTT_PASSWORD", "open sesame")
+    found = read_settings()
+    assert found.sunspec_write_hosts == ("127.0.0.1", "10.0.0.0/24", "serial")
+    assert "sesame" not in found.model_dump_json()
+
+
+async def test_a_taken_port_is_told_and_the_machine_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    taken = await asyncio.start_server(lambda reader, writer: None, "127.0.0.1", 0)
+    monkeypatch.setenv("HELIOPANEL_SUNSPEC_PORT", str(taken.sockets[0].getsockname()[1]))
+    monkeypatch.setenv("HELIOPANEL_SUNSPEC_SERIAL", str(tmp_path / "not-there"))
+    async with kept_plant(tmp_path) as (plant, store):
+        gateways = Gateways(plant.site, HurriedClock(), read_settings(), store)
+        gateways.start()
+        for _ in range(200):
+            tcp, rtu, _ = (await gateways.metrics()).gateways
+            if tcp.error and rtu.error:
+                break
+            await asyncio.sleep(0.01)
+        await plant.forward(seconds=0.5)
+        assert plant.tracker().measured is not None
+        await gateways.close()
+    taken.close()
+    await taken.wait_closed()
+    assert "choose another with HELIOPANEL_SUNSPEC_PORT" in tcp.error
+    assert "Check that the adapter" in rtu.error
