@@ -3,7 +3,7 @@
 import subprocess
 import sys
 from collections.abc import Iterator
-from datetime import date as CivilDate
+from datetime import datetime
 from pathlib import Path
 from typing import Annotated
 
@@ -60,7 +60,7 @@ def study(
         location=place,
         time_zone=time_zone,
         span=span,
-        on=CivilDate.fromisoformat(date),
+        on=datetime.fromisoformat(date).date(),
         modes=tuple(mode or StudyMode),
         strategies=tuple(strategy or (StudyStrategy.CONTINUOUS,)),
         held=_held(place, azimuth, elevation),

@@ -29,6 +29,8 @@ PAGES = {
     "player": "/recordings/show-1",
     "compare": "/recordings/show-1?with=day-1",
     "simulate": "/simulate",
+    "studies": "/studies",
+    "step-program": "/studies/program?date=2026-06-21",
     "journal": "/journal",
     "site": "/site",
 }
