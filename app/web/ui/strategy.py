@@ -1,0 +1,207 @@
+"""The strategy page: when the tracker moves, its step program, and the correction by light sensors."""
+
+from dataclasses import replace
+from datetime import datetime, timedelta
+from typing import Annotated
+from zoneinfo import ZoneInfo
+
+from fastapi import APIRouter, Form
+from fastapi.responses import PlainTextResponse
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.link.messages import ConfigureTracker, TrackerDetail
+from app.show.strategy_day import StrategyDay
+from app.tracker.programs.examples import EXAMPLES
+from app.tracker.programs.step_table import TableWrong, from_table, to_table
+from app.tracker.programs.stepped import StepProgram
+from app.tracker.strategy import Deadband, Stepped
+from app.web.contexts import Link
+from app.web.deps import MachineDep, PanelDep
+from app.web.errors import NotAcceptable
+from app.web.strategies import asked_day, day_of, kept_program
+from app.web.strategy_contexts import ProgramTable, StrategyDayPart, StrategyPage
+from app.web.ui.forms import Typed
+from app.web.ui.frame import tracker_frame
+from app.web.ui.orders import PressDep
+from app.web.ui.plot import Plot, line_plot
+from app.web.ui.render import page
+from app.web.ui.strategy_forms import (
+    BASES,
+    CHOICES,
+    FRAMES,
+    LABELS,
+    HybridForm,
+    ProgramForm,
+    StrategyForm,
+    hybrid_texts,
+    read_hybrid,
+    read_program,
+    read_strategy,
+    shown_program,
+    strategy_texts,
+    typed_program,
+)
+from app.web.ui.wizard import tracker_of
+
+router = APIRouter(prefix="/trackers/{tracker_id}/strategy")
+SAVED = "The strategy is saved."
+HOURS = tuple(range(0, 25, 3))
+
+
+@router.get("")
+async def strategy(request: Request, tracker_id: str, machine: MachineDep) -> Response:
+    """Show strategy, program and correction as they are stored."""
+    return _answer(request, tracker_of(await machine.detail(), tracker_id))
+
+
+@router.post("")
+async def save(
+    tracker_id: str, press: PressDep, machine: MachineDep, form: Annotated[StrategyForm, Form()]
+) -> Response:
+    """Save strategy and deadband, or nothing."""
+    tracker = tracker_of(await machine.detail(), tracker_id)
+    typed = Typed(form.model_dump())
+    config = tracker.state.config
+    wanted = read_strategy(typed, config.strategy)
+    deadband_deg = config.deadband_deg
+    if isinstance(wanted, Deadband):
+        deadband_deg = typed.number("deadband", "Deadband", 0.02, 10)
+    if typed.errors:
+        return _answer(press.request, tracker, typed=typed, block="choice", status=422)
+    await press.send(ConfigureTracker(replace(config, strategy=wanted, deadband_deg=deadband_deg)))
+    return press.answer(SAVED)
+
+
+@router.get("/day")
+async def day(
+    request: Request,
+    tracker_id: str,
+    machine: MachineDep,
+    built: PanelDep,
+) -> Response:
+    """Draw today by the strategy that is typed, simulated with the real controller."""
+    detail = await machine.detail()
+    tracker = tracker_of(detail, tracker_id)
+    asked = StrategyForm.model_validate(strategy_texts(tracker.state.config) | dict(request.query_params))
+    typed = Typed(asked.model_dump())
+    wanted = read_strategy(typed, tracker.state.config.strategy)
+    if detail.site.location is None:
+        raise NotAcceptable("Save the location first: step 1 of commissioning.")
+    if typed.errors:
+        raise NotAcceptable(" ".join(typed.errors.values()))
+    latest = machine.latest()
+    begin, end = _today(latest.at if latest else built.clock.now(), detail.site.time_zone)
+    question = asked_day(tracker, wanted, detail.site.location, begin, end)
+    try:
+        found = await built.simulations.work_out(day_of, question)
+    except ValueError as error:
+        raise NotAcceptable(str(error)) from error
+    return page(request, _day_part(found, LABELS[wanted.kind]))
+
+
+@router.post("/program")
+async def program(
+    tracker_id: str, press: PressDep, machine: MachineDep, form: Annotated[ProgramForm, Form()]
+) -> Response:
+    """Save the table as the tracker's program; or fill it from a table, an example, or with more rows."""
+    tracker = tracker_of(await machine.detail(), tracker_id)
+    try:
+        filled = _filled(form)
+        if filled is not None:
+            return _answer(press.request, tracker, table=filled, block="program")
+        wanted = read_program(form)
+    except TableWrong as error:
+        table = typed_program(form, error.sentences, more=0)
+        return _answer(press.request, tracker, table=table, block="program", status=422)
+    await press.send(ConfigureTracker(replace(tracker.state.config, strategy=Stepped(wanted))))
+    return press.answer(f"{wanted.name} is saved; the tracker goes by it.")
+
+
+@router.get("/program.csv")
+async def export(tracker_id: str, machine: MachineDep) -> Response:
+    """Hand the kept program out as a table."""
+    kept = kept_program(tracker_of(await machine.detail(), tracker_id))
+    named = {"Content-Disposition": f'attachment; filename="{tracker_id}-program.csv"'}
+    return PlainTextResponse(to_table(kept), headers=named, media_type="text/csv; charset=utf-8")
+
+
+@router.post("/hybrid")
+async def hybrid(
+    tracker_id: str, press: PressDep, machine: MachineDep, form: Annotated[HybridForm, Form()]
+) -> Response:
+    """Save the correction by light sensors, or nothing."""
+    tracker = tracker_of(await machine.detail(), tracker_id)
+    typed = Typed(form.model_dump())
+    wanted = read_hybrid(typed)
+    if wanted is None:
+        return _answer(press.request, tracker, hybrid=typed, block="hybrid", status=422)
+    await press.send(ConfigureTracker(replace(tracker.state.config, hybrid=wanted)))
+    return press.answer("The correction is saved.")
+
+
+def _filled(form: ProgramForm) -> ProgramTable | None:
+    """Return the table filled as a key asks for it; None if it is to be saved. Raises `TableWrong`."""
+    match form.do:
+        case "rows":
+            return typed_program(form)
+        case "import":
+            return shown_program(from_table(form.table), note="Imported. Look it over, then save it.")
+        case "example" if form.example in EXAMPLES:
+            return shown_program(EXAMPLES[form.example], note="Look the example over, then save it.")
+        case _:
+            return None
+
+
+def _answer(
+    request: Request,
+    tracker: TrackerDetail,
+    *,
+    typed: Typed | None = None,
+    table: ProgramTable | None = None,
+    hybrid: Typed | None = None,
+    block: str | None = None,
+    status: int = 200,
+) -> Response:
+    config = tracker.state.config
+    kept: StepProgram | None = config.strategy.program if isinstance(config.strategy, Stepped) else None
+    root = f"/trackers/{config.tracker_id}"
+    shown = typed or Typed(strategy_texts(config))
+    light = hybrid or Typed(hybrid_texts(config.hybrid))
+    context = StrategyPage(
+        frame=tracker_frame(
+            request, config.tracker_id, "Strategy", back=Link("Settings", f"{root}/settings")
+        ),
+        form=shown.form(StrategyForm.model_fields),
+        choices=CHOICES,
+        program=table or shown_program(kept),
+        hybrid=light.form(HybridForm.model_fields),
+        keeps_program=kept is not None,
+        bases=BASES,
+        frames=FRAMES,
+        examples=tuple((name, one.name) for name, one in EXAMPLES.items()),
+    )
+    return page(request, context, block=block, status=status)
+
+
+def _today(at: datetime, zone: str) -> tuple[datetime, datetime]:
+    begin = at.astimezone(ZoneInfo(zone)).replace(hour=0, minute=0, second=0, microsecond=0)
+    return begin, begin + timedelta(days=1)
+
+
+def _day_part(found: StrategyDay, label: str) -> StrategyDayPart:
+    return StrategyDayPart(
+        label=label,
+        day=found,
+        azimuth=_plot("Azimuth today", found, found.panel_azimuth_deg, found.sun_azimuth_deg),
+        elevation=_plot("Elevation today", found, found.panel_elevation_deg, found.sun_elevation_deg),
+    )
+
+
+def _plot(title: str, found: StrategyDay, panel: tuple[float, ...], sun: tuple[float, ...]) -> Plot:
+    """Return panel and sun over the hours of the day; the sun only while it is up."""
+    hours = [seconds / 3600.0 for seconds in found.elapsed_s]
+    lit = [place for place, height in enumerate(found.sun_elevation_deg) if height > 0.0]
+    sun_curve = ("sun", [hours[i] for i in lit], [sun[i] for i in lit])
+    curves = [("panel", hours, panel), sun_curve]
+    return line_plot(title, "hour of the day at the site", "degrees", HOURS, curves)

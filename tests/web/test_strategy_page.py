@@ -1,0 +1,132 @@
+"""The strategy page: choose one, try it, make a program by hand or import it, set the correction."""
+
+from collections.abc import AsyncIterator
+
+import httpx
+import pytest
+
+from app.tracker.programs.examples import ALEXANDRU_TABLE_3
+from app.tracker.programs.step_table import to_table
+from app.tracker.programs.stepped import ProgramStep, StepFrame
+from app.tracker.strategy import Continuous, Interval, IntervalAim, Stepped
+from tests.fakes import FakeMachine, fake_app, serving
+
+PAGE = "/trackers/T1/strategy"
+
+
+@pytest.fixture
+def machine() -> FakeMachine:
+    return FakeMachine()
+
+
+@pytest.fixture
+async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
+    async with serving(fake_app(machine)) as browser:
+        yield browser
+
+
+def kept(machine: FakeMachine) -> object:
+    return machine.orders[-1].command.config.strategy
+
+
+async def test_the_page_is_reached_from_the_settings_and_explains_each_strategy(
+    client: httpx.AsyncClient,
+) -> None:
+    assert PAGE in (await client.get("/trackers/T1/settings")).text
+    page = (await client.get(PAGE)).text
+    for word in ("Deadband", "Deadband in encoder counts", "Continuous", "Interval", "Step program"):
+        assert f"<b>{word}</b>" in page
+
+
+async def test_a_strategy_is_saved_and_shown_again(client: httpx.AsyncClient, machine: FakeMachine) -> None:
+    await client.post(PAGE, data={"kind": "interval", "minutes": "20", "aim": "now"})
+    assert kept(machine) == Interval(20, IntervalAim.NOW)
+    assert 'value="interval" required checked' in (await client.get(PAGE)).text
+    await client.post(PAGE, data={"kind": "continuous"})
+    assert kept(machine) == Continuous()
+
+
+@pytest.mark.parametrize(
+    ("typed", "sentence"),
+    [
+        ({"kind": "interval", "minutes": "soon"}, "Minutes: type a number"),
+        ({"kind": "deadband", "deadband": "44"}, "Deadband must lie between 0.02 and 10"),
+        (
+            {"kind": "encoder-deadband", "counts": "10", "counts_per_turn": "36"},
+            "between 0.02 and 10 degrees",
+        ),
+        ({"kind": "stepped"}, "save a program in the table below first"),
+        ({"kind": "zigzag"}, "choose one from the list"),
+    ],
+)
+async def test_what_cannot_be_comes_back_as_it_was_typed(
+    client: httpx.AsyncClient, machine: FakeMachine, typed: dict[str, str], sentence: str
+) -> None:
+    before = len(machine.orders)
+    answer = await client.post(PAGE, data=typed)
+    assert answer.status_code == 422
+    assert sentence in answer.text
+    assert len(machine.orders) == before
+
+
+async def test_a_program_made_by_hand_is_saved(client: httpx.AsyncClient, machine: FakeMachine) -> None:
+    head = {"program_name": "Three places", "base": "clock", "offset": "3", "angles": "horizon"}
+    rows = {
+        "at": ["08:00", "12:30", "16:00", ""],
+        "first": ["110", "180", "250", ""],
+        "second": ["30", "", "30", ""],
+    }
+    await client.post(f"{PAGE}/program", data=head | rows)
+    strategy = kept(machine)
+    assert isinstance(strategy, Stepped)
+    assert strategy.program.steps[1] == ProgramStep(12.5, 180.0, None)
+    assert (strategy.program.frame, strategy.program.utc_offset_h) == (StepFrame.HORIZON, 3.0)
+    assert (await client.get(f"{PAGE}/program.csv")).text == to_table(strategy.program)
+
+
+async def test_a_wrong_row_is_named_and_what_was_typed_stays(
+    client: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    before = len(machine.orders)
+    rows = {"at": ["08:00", "07:00"], "first": ["110", "north"], "second": ["30", "30"]}
+    answer = await client.post(f"{PAGE}/program", data={"program_name": "P"} | rows)
+    assert answer.status_code == 422
+    assert "Row 2, azimuth_deg: &#39;north&#39; is not a number." in answer.text
+    assert 'value="north"' in answer.text
+    assert len(machine.orders) == before
+
+
+async def test_the_table_is_filled_from_csv_an_example_or_with_rows(client: httpx.AsyncClient) -> None:
+    table = to_table(ALEXANDRU_TABLE_3)
+    imported = (await client.post(f"{PAGE}/program", data={"do": "import", "table": table})).text
+    assert 'value="07:52:48"' in imported
+    example = (
+        await client.post(f"{PAGE}/program", data={"do": "example", "example": "alexandru-table-3"})
+    ).text
+    assert 'value="07:52:48"' in example
+    assert (await client.get(PAGE)).text.count('name="at"') == 3
+    more = (
+        await client.post(
+            f"{PAGE}/program", data={"do": "rows", "at": ["06:00"], "first": ["1"], "second": [""]}
+        )
+    ).text
+    assert more.count('name="at"') == 4
+    wrong = await client.post(f"{PAGE}/program", data={"do": "import", "table": "when,where"})
+    assert wrong.status_code == 422
+    assert "The first row must name three columns" in wrong.text
+
+
+async def test_the_correction_is_set(client: httpx.AsyncClient, machine: FakeMachine) -> None:
+    typed = {"enabled": "yes", "threshold": "200", "gain": "1", "bound": "1.5", "decay": "0", "cloud": "25"}
+    await client.post(f"{PAGE}/hybrid", data=typed)
+    hybrid = machine.orders[-1].command.config.hybrid
+    assert (hybrid.enabled, hybrid.threshold_wm2, hybrid.bound_deg) == (True, 200.0, 1.5)
+    assert hybrid.simulated.cloud == 0.25
+    assert (await client.post(f"{PAGE}/hybrid", data=typed | {"bound": "90"})).status_code == 422
+
+
+async def test_today_is_drawn_with_what_it_costs(client: httpx.AsyncClient) -> None:
+    part = (await client.get(f"{PAGE}/day", params={"kind": "interval", "minutes": "60"}, timeout=60)).text
+    assert "Greatest error" in part
+    assert part.count("<svg") >= 2
+    assert "hour of the day at the site" in part
