@@ -178,6 +178,10 @@ class Bus:
         """Count a device in."""
         self._units.append(unit)
 
+    @property
+    def _stop_waits(self) -> bool:
+        return bool(self._waiting) and self._waiting[0].priority is Priority.STOP
+
     def epoch(self, unit: int) -> int:
         """Return a number that grows whenever it is no longer certain what a device has taken."""
         return self._wire.epoch(unit)
@@ -271,17 +275,11 @@ class Bus:
             ) from broken
 
     async def _ask(self, job: _Job) -> list[int]:
+        await self._make_ready(job)
         urgent = job.priority is Priority.STOP
-        if not urgent and job.unit.resting(self._clock.now()):
-            raise DriveSilent(f"The drive at {job.unit} does not answer; it is asked again in a moment.")
-        if not self._wire.connected:
-            await self._connect(job.unit, urgent=urgent)
-        if job.ticket is not None and job.ticket != job.unit.ticket:
-            raise DriveError(
-                f"The connection to the drive at {job.unit} was renewed or stopped in between: "
-                f"{job.what} was not written; its state is read first."
-            )
         try:
+            if not urgent and self._stop_waits:
+                raise GivenUp
             found = await self._wire.exchange(job.ask, job.unit.timing, urgent=urgent)
         except Refused as refused:
             if refused.code in UNREACHABLE:
@@ -301,6 +299,19 @@ class Bus:
             ) from unanswered
         job.unit.heard()
         return found
+
+    async def _make_ready(self, job: _Job) -> None:
+        """Connect and check that the request may still be sent, or raise `DriveError`."""
+        urgent = job.priority is Priority.STOP
+        if not urgent and job.unit.resting(self._clock.now()):
+            raise DriveSilent(f"The drive at {job.unit} does not answer; it is asked again in a moment.")
+        if not self._wire.connected:
+            await self._connect(job.unit, urgent=urgent)
+        if job.ticket is not None and job.ticket != job.unit.ticket:
+            raise DriveError(
+                f"The connection to the drive at {job.unit} was renewed or stopped in between: "
+                f"{job.what} was not written; its state is read first."
+            )
 
     async def _connect(self, unit: BusUnit, *, urgent: bool) -> None:
         """Connect, or raise `DriveSilent`; after a failure not before some time has passed."""

@@ -45,6 +45,7 @@ class RtuWire:
         self._hurrying: asyncio.TimerHandle | None = None
         self._heard_at_s = self._sent_at_s = self._quiet_until_s = 0.0
         self._rest_s = 0.0
+        self._urgent = self._hurried = False
         self._last: Ask | None = None
         self._unsettled: dict[int, set[int]] = {}
         self._readable: dict[int, tuple[int, int]] = {}
@@ -75,20 +76,22 @@ class RtuWire:
 
     async def exchange(self, ask: Ask, timing: Timing, *, urgent: bool) -> list[int]:
         """Return the registers of the reply; raise `Broken`, `Unanswered` or `Refused`."""
+        self._urgent, self._hurried = urgent, False
         await self._silence(urgent=urgent)
         if ask.unit in self._unsettled and not urgent:
             await self._settle(ask, timing)
+            if self._hurried:
+                raise GivenUp
             await self._silence(urgent=False)
         return await self._send(ask, timing, urgent=urgent)
 
     def hurry(self) -> None:
         """End the wait for a silence at once, and for a reply if it does not begin soon."""
-        if self._waking is not None and not self._waking.done():
+        self._hurried = True
+        if self._waking is not None and not self._waking.done() and not self._urgent:
             self._waking.set_exception(GivenUp())
-            return
-        if self._reply is not None and self._hurrying is None:
-            loop = asyncio.get_running_loop()
-            self._hurrying = loop.call_at(self._sent_at_s + TURNAROUND_S, self._give_up)
+        elif self._reply is not None and self._hurrying is None:
+            self._wait_less()
 
     def close(self) -> None:
         """Close the line."""
@@ -106,6 +109,8 @@ class RtuWire:
         self._sent_at_s = loop.time() + len(frame) * self._character_s
         reply_s = (ask.wanted.length + CRC_BYTES) * self._character_s
         self._ending = loop.call_at(self._sent_at_s + timing.timeout_s + reply_s, self._time_out)
+        if self._hurried:
+            self._wait_less()
         try:
             self._line.write(frame)
             reply = await self._reply
@@ -216,6 +221,10 @@ class RtuWire:
 
     def _time_out(self) -> None:
         self._fail(Unanswered())
+
+    def _wait_less(self) -> None:
+        loop = asyncio.get_running_loop()
+        self._hurrying = loop.call_at(self._sent_at_s + TURNAROUND_S, self._give_up)
 
     def _give_up(self) -> None:
         if not self._buffer:

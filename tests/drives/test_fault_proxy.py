@@ -191,3 +191,15 @@ async def test_the_proxy_is_played_from_the_command_line() -> None:
         process.terminate()
         assert await process.wait() == 0
     await server.close()
+
+
+@pytest.mark.parametrize("wire", BENCHES)
+async def test_every_device_is_stopped_though_all_are_asked_to_at_once(wire: str) -> None:
+    async with BENCHES[wire]() as bench:
+        devices = [bench.buses.unit(bench.config, unit, TIMING) for unit in bench.devices]
+        for device in devices:
+            assert await one_read(bench, device, 10)
+        await asyncio.gather(*(device.stop(STOP_REGISTER, [1], what="stop") for device in devices))
+        assert [one.written for one in bench.devices.values()] == [[(STOP_REGISTER, [1])]] * 2
+        for device in devices:
+            await device.close()
