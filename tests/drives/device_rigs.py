@@ -27,6 +27,9 @@ class Bench:
     speed_step_dps: float = 1e-6
     inverted: bool = False
 
+    def turned_round(self) -> "Bench":
+        return replace(self, inverted=True)
+
     @property
     def drive(self) -> DriveConfig:
         axis = AxisDrive(gear_ratio=self.gear_ratio, inverted=self.inverted)
@@ -58,7 +61,7 @@ async def device_rig(bench: Bench) -> AsyncIterator[Rig]:
     port = await server.start("127.0.0.1", 0)
     drive = DriveFactory(clock).make(replace(CONFIG, drive=replace(bench.drive, port=port)))
     try:
-        yield Rig(drive, machine, clock, bench.traits, bench.speed_step_dps)
+        yield Rig(drive, machine, clock, bench.traits, bench.speed_step_dps, found)
     finally:
         await drive.close()
         await server.close()

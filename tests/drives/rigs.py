@@ -1,9 +1,9 @@
 """Drives on a virtual clock, each with the simulated machine behind it in reach of the test."""
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Mapping
 from contextlib import asynccontextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime, timedelta
 from enum import Enum, auto
 from functools import partial
@@ -14,6 +14,7 @@ from app.clock import VirtualClock
 from app.drives.drive import Drive
 from app.drives.factory import DriveFactory
 from app.drives.listening_line import ListeningLine
+from app.drives.modbus_server import Device
 from app.drives.profile import load_profile
 from app.drives.pty_line import PtyLine
 from app.drives.rtu_server import RtuServer
@@ -54,6 +55,7 @@ class Rig:
     clock: VirtualClock
     traits: frozenset[Trait] = FULL
     speed_step_dps: float = 1e-6
+    devices: Mapping[int, Device] = field(default_factory=dict)
 
     async def forward(
         self, seconds: float, command: DriveCommand | None = None, tick: timedelta = TICK
