@@ -11,13 +11,16 @@ SPA wants terrestrial time: UT plus delta T. Delta T is interpolated between mea
 
 import importlib.util
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
+from math import cos, sin
+from operator import mul
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
-from app.sun.trigonometry import Array
+from app.sun.psa import horizontal
+from app.sun.trigonometry import PER_DEGREE, PER_RADIAN, SCALAR, Array
 
 Many = Callable[..., tuple[Array, ...]]
 
@@ -50,6 +53,9 @@ DELTA_T = (
 YEAR_S: Final = 31_556_952.0
 """A mean Gregorian year."""
 
+SPAN_S: Final = 600.0
+TURN_DPS: Final = 360.0 / 86_400.0
+
 
 class AlgorithmMissing(ValueError):
     """An algorithm whose library is not installed."""
@@ -73,9 +79,46 @@ def position(unix_s: Array, latitude_deg: float, longitude_deg: float) -> tuple[
 
 
 def position_of_one(unix_s: float, latitude_deg: float, longitude_deg: float) -> tuple[float, float]:
-    """Return what `position` does, for one instant."""
-    azimuth_deg, elevation_deg = position(np.array([unix_s]), latitude_deg, longitude_deg)
-    return float(azimuth_deg[0]), float(elevation_deg[0])
+    """Return what `position` does, within 5e-7 degrees, for one instant; azimuth in (-180, 180].
+
+    Instants that follow each other cost microseconds: through four nodes, ten minutes apart, hour angle and
+    declination run on a cubic. What is interpolated is smooth: the Earth's even turn is taken out.
+    The difference is not the cubic's: a Julian day in double precision counts time in steps of 40 us.
+    """
+    span = unix_s // SPAN_S
+    begin_s = span * SPAN_S
+    lags_deg, declinations_deg = _nodes(begin_s, latitude_deg, longitude_deg)
+    weights = _cubic((unix_s - begin_s) / SPAN_S)
+    angle_deg = sum(map(mul, weights, lags_deg)) + (unix_s - begin_s) * TURN_DPS
+    declination_deg = sum(map(mul, weights, declinations_deg))
+    zenith, azimuth = horizontal(declination_deg * PER_DEGREE, angle_deg * PER_DEGREE, latitude_deg, SCALAR)
+    return azimuth * PER_RADIAN, 90.0 - zenith * PER_RADIAN
+
+
+@lru_cache(maxsize=256)
+def _nodes(begin_s: float, latitude_deg: float, longitude_deg: float) -> tuple[list[float], list[float]]:
+    """Return hour angle less the Earth's turn since `begin_s`, and declination, at four instants, degrees."""
+    after_s = np.array([-SPAN_S, 0.0, SPAN_S, 2.0 * SPAN_S])
+    azimuth_deg, elevation_deg = position(begin_s + after_s, latitude_deg, longitude_deg)
+    azimuth, elevation = azimuth_deg * PER_DEGREE, elevation_deg * PER_DEGREE
+    sin_lat, cos_lat = sin(latitude_deg * PER_DEGREE), cos(latitude_deg * PER_DEGREE)
+    north, up = np.cos(elevation) * np.cos(azimuth), np.sin(elevation)
+    equator, pole = up * cos_lat - north * sin_lat, north * cos_lat + up * sin_lat
+    west = -np.cos(elevation) * np.sin(azimuth)
+    lag_deg = np.arctan2(west, equator) * PER_RADIAN - after_s * TURN_DPS
+    lag_deg = lag_deg[1] + np.mod(lag_deg - lag_deg[1] + 180.0, 360.0) - 180.0
+    return lag_deg.tolist(), (np.arctan2(pole, np.hypot(west, equator)) * PER_RADIAN).tolist()
+
+
+def _cubic(u: float) -> tuple[float, float, float, float]:
+    """Return the weights of values at -1, 0, 1 and 2 in the cubic through them, at `u`."""
+    before, after, beyond = u + 1.0, u - 1.0, u - 2.0
+    return (
+        -u * after * beyond / 6.0,
+        before * after * beyond / 2.0,
+        -before * u * beyond / 2.0,
+        before * u * after / 6.0,
+    )
 
 
 @cache

@@ -52,6 +52,29 @@ def test_the_sun_as_json_has_full_precision(run: Run, algorithm: Algorithm) -> N
     assert datetime.fromisoformat(told["at"]) == datetime(2026, 6, 21, 9, tzinfo=UTC)
 
 
+def test_accuracy_as_a_table_and_as_json(run: Run) -> None:
+    years = ["--from", "2026", "--to", "2026", "--samples", "1000"]
+    code, out, _ = run("accuracy", *SAMSUN, *years)
+    assert code == 0
+    assert "psa-plus" in out
+    code, out, _ = run("accuracy", "--globe", *years, "--json")
+    assert code == 0
+    assert json.loads(out)["location"] is None
+    code, _, err = run("accuracy")
+    assert code == 2
+    assert "or --globe" in err
+
+
+def test_a_paper_as_text_and_as_json(run: Run) -> None:
+    code, out, _ = run("papers", "--paper", "xia")
+    assert code == 0
+    assert "3 of 4 published figures come out." in out
+    code, out, _ = run("papers", "--paper", "xia", "--json")
+    assert [paper["key"] for paper in json.loads(out)] == ["xia"]
+    code, _, err = run("papers", "--paper", "none")
+    assert (code, "choose one of" in err) == (2, True)
+
+
 def test_the_sun_now_in_words(run: Run) -> None:
     code, out, _ = run("sun", *SAMSUN)
 

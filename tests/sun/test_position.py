@@ -103,14 +103,15 @@ def test_golden_places_agree_with_spa_and_skyfield(algorithm: Algorithm, row: Go
 @algorithms
 @given(location=places, at=instants)
 def test_one_instant_and_many_agree(algorithm: Algorithm, location: Location, at: datetime) -> None:
+    within_deg = 5e-7 if algorithm is Algorithm.SPA else 1e-9
     one = sun_position(algorithm, location, at)
     many = sun_path(algorithm, location, np.array([at.timestamp()]))
     assert 0.0 <= one.azimuth_deg < 360.0
     assert 0.0 <= float(many.azimuth_deg[0]) < 360.0
     level = np.cos(np.radians(one.elevation_deg))
-    assert abs(wrap180(one.azimuth_deg - float(many.azimuth_deg[0]))) * level <= 1e-9
-    assert abs(one.elevation_deg - float(many.elevation_deg[0])) <= 1e-9
-    assert abs(one.apparent_elevation_deg - float(many.apparent_elevation_deg[0])) <= 1e-9
+    assert abs(wrap180(one.azimuth_deg - float(many.azimuth_deg[0]))) * level <= within_deg
+    assert abs(one.elevation_deg - float(many.elevation_deg[0])) <= within_deg
+    assert abs(one.apparent_elevation_deg - float(many.apparent_elevation_deg[0])) <= within_deg
 
 
 def test_a_path_longer_than_a_block_is_whole() -> None:
