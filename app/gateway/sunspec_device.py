@@ -11,7 +11,8 @@ from app.drives.modbus_server import ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_
 from app.gateway.door import Door, refused
 from app.gateway.sunspec_controls import ACTOR, BUSY, Controls
 from app.gateway.sunspec_map import BASE, END, MARKER, Block, Placed, SunSpecMap, sunspec_map
-from app.gateway.sunspec_values import View, block_words
+from app.gateway.sunspec_values import UNKNOWN_TYPE, View, block_words, tracker_type
+from app.tracker.snapshot import EventKind
 
 FAILURE = 4
 SERIAL = "serial"
@@ -21,6 +22,7 @@ READ_WRITE = 23
 SETTING = "HELIOPANEL_SUNSPEC_WRITE_HOSTS"
 TELL_AGAIN = timedelta(minutes=1)
 MOST_HOSTS = 256
+SETTING_UP = {EventKind.TRACKER_ADDED, EventKind.TRACKER_CHANGED, EventKind.TRACKER_REMOVED}
 FOLLOW_AGAIN = timedelta(seconds=1)
 
 log = structlog.get_logger(__name__)
@@ -39,6 +41,7 @@ class SunSpecDevice:
         self._write_hosts = tuple(write_hosts)
         self._map = sunspec_map((), weather=False)
         self._had_weather = False
+        self._type = UNKNOWN_TYPE
         self._written: list[Write] = []
         self._turned_away: dict[str, tuple[datetime, int]] = {}
 
@@ -69,9 +72,17 @@ class SunSpecDevice:
     async def follow(self) -> None:
         """Follow what happens on the site, until cancelled."""
         while True:
+            self._type = await self._tracker_type()
             async for update in self._door.updates():
+                if any(event.kind in SETTING_UP for event in update.events):
+                    self._type = await self._tracker_type()
                 await self.controls.follow(update)
             await self._clock.sleep_until(self._clock.now() + FOLLOW_AGAIN)
+
+    async def _tracker_type(self) -> int:
+        """Return the type that the mounts of the trackers make, which snapshots do not tell."""
+        detail = await self._door.detail()
+        return tracker_type(one.state.config.mount.kind for one in detail.trackers.values())
 
     def read_bits(self, function: int, address: int, count: int) -> list[bool]:
         """Refuse: the map has no bits."""
@@ -130,7 +141,7 @@ class SunSpecDevice:
         site = self._door.latest()
         if site is None:
             return None
-        return View(site, self._unit, self.controls.targets, self.controls.calibrations.trackers)
+        return View(site, self._unit, self.controls.targets, self.controls.calibrations.trackers, self._type)
 
     async def _carry_out(self, orders: Sequence[Write], host: str) -> None:
         for block, values in orders:

@@ -129,7 +129,7 @@ TRACKERS = Model(
     "Tracker controller",
     (
         _string("Nam", 8, "name of the site"),
-        Point("Typ", PointType.ENUM16, text="5 dual-axis"),
+        Point("Typ", PointType.ENUM16, text="2 horizontal, 3 tilted, 4 azimuth, 5 dual-axis, 99 other"),
         _string("DtLoc", 5, "local date, YYYYMMDD"),
         _string("TmLoc", 3, "local time, hhmmss"),
         Point("Day", PointType.UINT16, text="day of the year"),

@@ -1,6 +1,6 @@
 """What every point tells, taken from the newest snapshot; what is not known is told as not implemented."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
 from enum import IntEnum
@@ -10,10 +10,18 @@ from zoneinfo import ZoneInfo
 from app.build import VERSION
 from app.gateway.sunspec_map import Block
 from app.gateway.sunspec_points import COMMON, DEGREES_SF, LOCATION, TRACKERS, WEATHER, Value
+from app.tracker.config import MountKind
 from app.tracker.snapshot import ActivityName, Pair, SiteSnapshot, Snapshot
 from app.tracker.weather import Weather
 
-DUAL_AXIS = 5
+UNKNOWN_TYPE, OTHER_TYPE = 0, 99
+TYPES = {
+    MountKind.HORIZONTAL_SINGLE_AXIS: 2,
+    MountKind.TILTED_SINGLE_AXIS: 3,
+    MountKind.VERTICAL_SINGLE_AXIS: 4,
+    MountKind.AZIMUTH_ELEVATION: 5,
+    MountKind.EQUATORIAL: 5,
+}
 SET_POINT, ELEVATION_OBSTRUCTED, AZIMUTH_OBSTRUCTED = 1, 2, 4
 
 
@@ -41,6 +49,7 @@ class View:
     unit: int
     targets: Mapping[str | None, Targets] = field(default_factory=dict)
     calibrating: frozenset[str] = frozenset()
+    type: int = UNKNOWN_TYPE
 
     @property
     def local(self) -> datetime:
@@ -52,6 +61,14 @@ class View:
         if tracker.tracker_id in self.calibrating or tracker.activity is ActivityName.HOMING:
             return Control.CALIBRATE
         return Control.AUTOMATIC if tracker.tracking_on else Control.MANUAL
+
+
+def tracker_type(mounts: Iterable[MountKind]) -> int:
+    """Return SunSpec's type of a controller whose trackers have these mounts."""
+    types = {TYPES[mount] for mount in mounts}
+    if not types:
+        return UNKNOWN_TYPE
+    return types.pop() if len(types) == 1 else OTHER_TYPE
 
 
 def block_words(view: View, block: Block) -> list[int]:
@@ -86,7 +103,7 @@ def _controller(view: View) -> dict[str, Value]:
     controls = {view.control(one) for one in view.site.trackers}
     return {
         "Nam": view.site.site_name,
-        "Typ": DUAL_AXIS,
+        "Typ": view.type,
         "DtLoc": f"{local:%Y%m%d}",
         "TmLoc": f"{local:%H%M%S}",
         "Day": local.timetuple().tm_yday,

@@ -3,7 +3,7 @@
 import asyncio
 import contextlib
 from collections.abc import AsyncIterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from struct import pack, unpack
 from typing import Any
@@ -12,15 +12,19 @@ import pytest
 import sunspec2.modbus.client as sunspec
 from sunspec2.modbus.modbus import ModbusClientException
 
+from app.clock import SystemClock
+from app.drives.factory import DriveFactory
 from app.drives.faults import Fault, FaultKind
 from app.drives.simulated import SimulatedDrive
 from app.gateway.sunspec import SunSpecTcp
 from app.gateway.sunspec_device import SunSpecDevice
 from app.gateway.sunspec_map import BASE, END, map_table, sunspec_map
-from app.link.messages import ReportWeather
+from app.link.messages import ConfigureTracker, ReportWeather
 from app.settings import Settings
 from app.tracker.commands import SelectMode, Stop
+from app.tracker.config import DriveConfig, DriveKind, MountConfig, MountKind, TrackerConfig
 from app.tracker.mode import Mode
+from app.tracker.motion import DriveCommand, Position
 from app.tracker.snapshot import ActivityName, EventKind
 from app.tracker.weather import Weather
 from tests.gateway.rigs import HurriedClock, eventually, tracker
@@ -317,6 +321,35 @@ async def test_reading_and_writing_in_one_request_answers_what_is_there_after_th
     async with scada() as system:
         request = pack(">BHHHHB2H", 23, EL_CTL, 2, EL_CTL, 2, 4, *packed(12.5))
         assert await system.ask(request) == bytes((23, 4)) + pack(">2H", *packed(12.5))
+
+
+async def test_the_type_is_that_of_the_mounts() -> None:
+    async with scada("T1", "T2") as system:
+        wanted = [
+            ({"T1": MountKind.AZIMUTH_ELEVATION}, 5),
+            ({"T1": MountKind.VERTICAL_SINGLE_AXIS}, 99),
+            ({"T2": MountKind.VERTICAL_SINGLE_AXIS}, 4),
+        ]
+        for mounts, expected in wanted:
+            for tracker_id, kind in mounts.items():
+                config = system.plant.site.model.tracker(tracker_id).config
+                await system.plant.ask(ConfigureTracker(replace(config, mount=MountConfig(kind))))
+                await system.plant.forward(seconds=0.2)
+            assert await system.read(BASE + 70 + 10, 1) == [expected]
+
+
+async def test_our_own_sunspec_drive_moves_a_tracker_of_another_controller() -> None:
+    async with scada() as system:
+        await system.plant.commission()
+        wiring = DriveConfig(DriveKind.MODBUS_TCP, profile="sunspec-601", port=system.server.port)
+        drive = DriveFactory(SystemClock()).make(TrackerConfig("X", "Another controller", drive=wiring))
+        for azimuth_deg in (100.0, 120.0):
+            await drive.read()
+            await drive.write(DriveCommand(Position(azimuth_deg, 6.0), Position(30.0, 4.0)))
+            await system.plant.forward(seconds=40)
+            seen = await drive.read()
+            assert (seen.azimuth.position_deg, seen.elevation.position_deg) == (azimuth_deg, 30.0)
+        await drive.close()
 
 
 def test_the_document_has_the_map_of_the_code() -> None:
