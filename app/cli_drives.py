@@ -38,6 +38,10 @@ def drive_sim(
         Path | None, typer.Option(help="File in which the drive remembers its position.")
     ] = None,
     watchdog_ms: Annotated[int, typer.Option(min=50, help="Time-out of the drive's own watchdog.")] = 500,
+    gear: Annotated[
+        float,
+        typer.Option(min=0.001, help="Motor revolutions for one of the axis, for drives that count steps."),
+    ] = 1.0,
     lat: Annotated[float | None, typer.Option(help="With --lon: latitude, for photo-sensors.")] = None,
     lon: Annotated[float | None, typer.Option(help="With --lat: longitude, east positive.")] = None,
     *,
@@ -50,7 +54,15 @@ def drive_sim(
     if not all(1 <= one <= 247 for one in units) and (rtu or rtu_over_tcp):
         raise ValueError("A unit id on a serial line lies between 1 and 247.")
     location = None if lat is None or lon is None else Location(lat, lon)
-    run_drive_sim(doors, profile, units=units, memory=memory, watchdog_ms=watchdog_ms, location=location)
+    run_drive_sim(
+        doors,
+        profile,
+        units=units,
+        memory=memory,
+        watchdog_ms=watchdog_ms,
+        location=location,
+        gear_ratio=gear,
+    )
 
 
 def fault_proxy(

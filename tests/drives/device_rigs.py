@@ -1,15 +1,15 @@
 """Each shipped profile on the simulated device of its maker, behind a real socket."""
 
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, replace
 from datetime import timedelta
+from pathlib import Path
 
 from app.clock import VirtualClock
 from app.drives.devices.shelf import devices
 from app.drives.factory import DriveFactory
-from app.drives.modbus_server import Device, ModbusServer
-from app.drives.profile import load_profile
+from app.drives.modbus_server import ModbusServer
 from app.drives.simulated import SimulatedDrive
 from app.tracker.config import AxisDrive, DriveConfig, DriveKind
 from tests.drives.rigs import CONFIG, FULL, START, Rig, Trait, pending_tasks
@@ -46,20 +46,18 @@ BENCHES = {
 }
 
 
-def shelf(bench: Bench, machine: SimulatedDrive, clock: VirtualClock) -> Mapping[int, Device]:
-    return devices(load_profile(bench.profile), machine, clock, 1, bench.gear_ratio)
-
-
 @asynccontextmanager
-async def device_rig(bench: Bench) -> AsyncIterator[Rig]:
+async def device_rig(bench: Bench, folder: Path | None = None) -> AsyncIterator[Rig]:
+    """A drive made by its profile; `folder` is the data folder, for a profile of one's own."""
     clock = VirtualClock(START)
     has_watchdog = Trait.WATCHDOG in bench.traits
     watchdog = timedelta(milliseconds=500) if has_watchdog else None
     machine = SimulatedDrive(CONFIG, clock, watchdog=watchdog)
-    found = shelf(bench, machine, clock)
+    factory = DriveFactory(clock, folder)
+    found = devices(factory.profiles.load(bench.profile), machine, clock, 1, bench.gear_ratio)
     server = ModbusServer(found[1], 1, others=found)
     port = await server.start("127.0.0.1", 0)
-    drive = DriveFactory(clock).make(replace(CONFIG, drive=replace(bench.drive, port=port)))
+    drive = factory.make(replace(CONFIG, drive=replace(bench.drive, port=port)))
     try:
         yield Rig(drive, machine, clock, bench.traits, bench.speed_step_dps, found)
     finally:
