@@ -5,7 +5,7 @@ from typing import Any, ClassVar, Protocol
 
 from app.store.store import JournalEntry
 from app.sun.algorithms import PUBLISHED
-from app.tracker.config import TrackerConfig
+from app.tracker.config import MountConfig, TrackerConfig
 from app.tracker.memory import ClockSetting, HomeTrust, Pointing, Sighting, StepName, TrackerMemory
 from app.tracker.mode import Mode
 from app.tracker.motion import DriveCapabilities
@@ -369,6 +369,7 @@ class SettingsPage:
 
     frame: Frame
     form: Form
+    mount: MountConfig
     algorithms: tuple[tuple[str, str], ...] = ALGORITHMS
 
 

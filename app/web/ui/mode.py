@@ -9,9 +9,10 @@ from starlette.responses import Response
 
 from app.link.messages import TrackerDetail
 from app.tracker.commands import Move, SelectMode
-from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.config import MountKind, Orientation, TrackerConfig
 from app.tracker.memory import StepName
 from app.tracker.mode import Mode
+from app.tracker.mounts.abilities import abilities, axis_title
 from app.web.contexts import ModeChoice, ModePage, OrientationPage
 from app.web.deps import MachineDep
 from app.web.errors import NotAcceptable
@@ -28,6 +29,16 @@ CHOICES = (
     ModeChoice(Mode.ELEVATION, "Elevation tracking", "The panel tilts with the sun and keeps one azimuth."),
     ModeChoice(Mode.FIXED, "Fixed", "The panel goes to one orientation and stays there."),
 )
+LEAST_INCIDENCE = "The panel keeps one azimuth and tilts to the least angle to the sun."
+EQUATORIAL = {
+    Mode.AZIMUTH: "The panel turns with the hour angle and keeps one declination.",
+    Mode.ELEVATION: "The panel follows the declination through the year and keeps one hour angle.",
+}
+SINGLE_AXIS = "The axis turns the panel as near to the sun as it can."
+SINGLE_AXIS_ROWS = (
+    "The axis turns the panel to the sun, and back from a low one, so that no row shades the next."
+)
+SINGLE_AXIS_FIXED = "The axis turns the panel as near to one orientation as it can and stays there."
 HELD = {
     Mode.FIXED: ("azimuth", "elevation"),
     Mode.AZIMUTH: ("elevation",),
@@ -45,28 +56,34 @@ class OrientationForm(BaseModel):
 
 @router.get("")
 async def show(request: Request, tracker_id: str, machine: MachineDep) -> Response:
-    """Show the four modes."""
+    """Show the modes that the mount has."""
     tracker = tracker_of(await machine.detail(), tracker_id)
     frame = wizard_frame(request, tracker, StepName.MODE)
-    return page(request, ModePage(frame=frame, choices=CHOICES, chosen=tracker.state.memory.mode))
+    return page(
+        request,
+        ModePage(frame=frame, choices=choices(tracker.state.config), chosen=tracker.state.memory.mode),
+    )
 
 
 @router.post("")
-async def choose(tracker_id: str, press: PressDep, mode: Annotated[str, Form()] = "") -> Response:
+async def choose(
+    tracker_id: str, press: PressDep, machine: MachineDep, mode: Annotated[str, Form()] = ""
+) -> Response:
     """Save the mode; go on to its orientation, or to the last step."""
     if mode not in list(Mode):
-        raise NotAcceptable("Choose one of the four modes.")
+        raise NotAcceptable("Choose one of the modes in the list.")
     await press.send(SelectMode(Mode(mode)), tracker_id)
     root = f"/trackers/{tracker_id}/commissioning"
-    return go(press.request, f"{root}/run" if Mode(mode) is Mode.DUAL else f"{root}/mode/orientation")
+    config = tracker_of(await machine.detail(), tracker_id).state.config
+    return go(press.request, f"{root}/mode/orientation" if held(config, Mode(mode)) else f"{root}/run")
 
 
 @router.get("/orientation")
 async def orientation(request: Request, tracker_id: str, machine: MachineDep) -> Response:
     """Show the angles that the chosen mode holds."""
     tracker = tracker_of(await machine.detail(), tracker_id)
-    held = tracker.state.memory.orientation
-    texts = {"azimuth": f"{held.azimuth_deg:g}", "elevation": f"{held.elevation_deg:g}"}
+    stored = tracker.state.memory.orientation
+    texts = {"azimuth": f"{stored.azimuth_deg:g}", "elevation": f"{stored.elevation_deg:g}"}
     return _orientation(request, tracker, Typed(texts))
 
 
@@ -93,13 +110,14 @@ async def _save_and_move(press: Press, tracker_id: str, mode: Mode, wanted: Orie
 
 
 def _read(found: Typed, tracker: TrackerDetail, mode: Mode) -> Orientation:
-    config, held = tracker.state.config, tracker.state.memory.orientation
-    azimuth_deg, elevation_deg = held.azimuth_deg, held.elevation_deg
-    if "azimuth" in HELD[mode]:
+    config, stored = tracker.state.config, tracker.state.memory.orientation
+    azimuth_deg, elevation_deg = stored.azimuth_deg, stored.elevation_deg
+    asked = held(config, mode)
+    if "azimuth" in asked:
         azimuth_deg = found.number("azimuth", "Azimuth", 0, 360)
-    if "elevation" in HELD[mode]:
-        limits = config.elevation
-        elevation_deg = found.number("elevation", "Elevation", limits.minimum_deg, limits.maximum_deg)
+    if "elevation" in asked:
+        lowest_deg, highest_deg = _elevations(config)
+        elevation_deg = found.number("elevation", "Elevation", lowest_deg, highest_deg)
     return Orientation(azimuth_deg, elevation_deg)
 
 
@@ -109,23 +127,60 @@ def _orientation(request: Request, tracker: TrackerDetail, typed: Typed, *, stat
     context = OrientationPage(
         frame=frame,
         form=typed.form(("azimuth", "elevation")),
-        held=HELD[mode],
-        choice=choice(mode),
+        held=held(tracker.state.config, mode),
+        choice=choice(tracker.state.config, mode),
         limits=limits_text(tracker.state.config),
         arc=todays_arc(frame.site, tracker.state.config),
     )
     return page(request, context, block="form", status=status)
 
 
-def choice(mode: Mode) -> ModeChoice:
-    """Return a mode's label and what it does."""
-    return next(one for one in CHOICES if one.mode is mode)
+def choices(config: TrackerConfig) -> tuple[ModeChoice, ...]:
+    """Return the modes that a tracker's mount has, the one with the most energy first."""
+    titles = abilities(config.mount).modes
+    return tuple(
+        ModeChoice(one.mode, titles[one.mode], _text(config, one)) for one in CHOICES if one.mode in titles
+    )
+
+
+def choice(config: TrackerConfig, mode: Mode) -> ModeChoice:
+    """Return a mode's label and what it does on a tracker's mount."""
+    plain = next(one for one in CHOICES if one.mode is mode)
+    return ModeChoice(mode, abilities(config.mount).modes.get(mode, plain.label), _text(config, plain))
+
+
+def held(config: TrackerConfig, mode: Mode) -> tuple[str, ...]:
+    """Return which angles a mode holds; other mounts than azimuth and elevation hold a whole direction."""
+    if config.mount.kind is MountKind.AZIMUTH_ELEVATION:
+        return HELD[mode]
+    follows = mode is Mode.DUAL or (config.mount.single_axis and mode is not Mode.FIXED)
+    return () if follows else HELD[Mode.FIXED]
+
+
+def _text(config: TrackerConfig, plain: ModeChoice) -> str:
+    """Return what a mode does on a mount."""
+    mount = config.mount
+    if mount.single_axis:
+        if plain.mode is Mode.FIXED:
+            return SINGLE_AXIS_FIXED
+        return SINGLE_AXIS_ROWS if mount.rows else SINGLE_AXIS
+    if mount.kind is MountKind.EQUATORIAL:
+        return EQUATORIAL.get(plain.mode, plain.text)
+    return LEAST_INCIDENCE if plain.mode is Mode.ELEVATION and mount.least_incidence else plain.text
+
+
+def _elevations(config: TrackerConfig) -> tuple[float, float]:
+    """Return between which elevations a held orientation may lie."""
+    if config.mount.kind is MountKind.AZIMUTH_ELEVATION:
+        return config.elevation.minimum_deg, config.elevation.maximum_deg
+    return 0.0, 90.0
 
 
 def limits_text(config: TrackerConfig) -> str:
     """Return the soft limits as a sentence."""
-    azimuth, elevation = config.azimuth, config.elevation
-    return (
-        f"Soft limits: azimuth {azimuth.minimum_deg:g} to {azimuth.maximum_deg:g}°, "
-        f"elevation {elevation.minimum_deg:g} to {elevation.maximum_deg:g}°."
-    )
+    parts = [
+        f"{axis_title(config.mount, axis)} {config.axis(axis).minimum_deg:g} to "
+        f"{config.axis(axis).maximum_deg:g}°"
+        for axis in config.mount.axes
+    ]
+    return f"Soft limits: {', '.join(parts)}."

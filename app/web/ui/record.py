@@ -24,6 +24,6 @@ async def record(request: Request, tracker_id: str, built: PanelDep) -> Response
         frame=tracker_frame(request, tracker_id, "Commissioning record"),
         record=found,
         labels=labels,
-        choice=choice(found.mode) if found.mode else None,
+        choice=choice(found.tracker, found.mode) if found.mode else None,
     )
     return page(request, context)

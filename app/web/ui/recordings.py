@@ -19,10 +19,11 @@ from app.web.ui.formats import local
 from app.web.ui.frame import site_frame
 from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
-from app.web.ui.sunpath import arc, diagram_of
+from app.web.ui.sunpath import arc, diagram_of, sector
 
 router = APIRouter(prefix="/recordings")
 SHOWN = 200
+WHOLE_SKY = sector(AZIMUTH_DEFAULT, ELEVATION_DEFAULT)
 SHOW_SPEEDS = (1, 2, 5, 10)
 DAY_SPEEDS = (60, 300, 900, 3600)
 LONG_S = 3 * 3600
@@ -58,7 +59,7 @@ def player(
         info=info,
         other=_stored(reader, with_) if with_ else None,
         others=_others(reader, info),
-        diagram=diagram_of(info.location, info.time_zone, on, algorithm, AZIMUTH_DEFAULT, ELEVATION_DEFAULT),
+        diagram=diagram_of(info.location, info.time_zone, on, algorithm, WHOLE_SKY),
         arc=arc(algorithm, info.location, on),
         speeds=speeds,
         speed=speeds[0],

@@ -13,6 +13,7 @@ from markupsafe import Markup
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
+from app.tracker.mounts.abilities import abilities
 from app.web.contexts import Context
 from app.web.deps import panel
 from app.web.ui import formats
@@ -41,7 +42,7 @@ def environment() -> Environment:
         lstrip_blocks=True,
     )
     env.filters |= FILTERS
-    env.globals |= {"live": live, "world": world()}
+    env.globals |= {"live": live, "world": world(), "abilities": abilities}
     for shared in ("_icons.html", "_parts.html", "_sunpath.html", "_daychart.html"):
         env.globals |= _macros(env, shared)
     return env

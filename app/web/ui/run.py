@@ -23,7 +23,7 @@ async def show(request: Request, tracker_id: str, machine: MachineDep) -> Respon
     frame = wizard_frame(request, tracker, StepName.RUN)
     context = RunPage(
         frame=frame,
-        choice=choice(mode) if mode else None,
+        choice=choice(tracker.state.config, mode) if mode else None,
         arc=todays_arc(frame.site, tracker.state.config),
     )
     return page(request, context)

@@ -10,8 +10,9 @@ from starlette.responses import Response
 
 from app.link.messages import ConfigureTracker, RemoveTracker, TrackerDetail
 from app.sun.position import Algorithm
-from app.tracker.axes import AxisConfig
+from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import DriveConfig, DriveKind, NightBehaviour, Orientation, TrackerConfig
+from app.tracker.mounts.abilities import axis_title
 from app.web.contexts import SettingsPage
 from app.web.deps import MachineDep
 from app.web.errors import NotAcceptable
@@ -124,7 +125,10 @@ def _axis_texts(name: str, axis: AxisConfig) -> dict[str, str]:
 def _read(typed: Typed, config: TrackerConfig) -> TrackerConfig | None:
     """Return the typed configuration, None while anything in it is wrong."""
     name = typed.read("name", _name, "")
-    azimuth, elevation = _axis(typed, "azimuth", config.azimuth), _axis(typed, "elevation", config.elevation)
+    axes = {
+        axis: _axis(typed, axis, axis_title(config.mount, axis), config.axis(axis))
+        for axis in config.mount.axes
+    }
     drive = _drive(typed, config.drive)
     park = Orientation(
         typed.number("park_azimuth", "Park azimuth", 0, 360),
@@ -133,8 +137,8 @@ def _read(typed: Typed, config: TrackerConfig) -> TrackerConfig | None:
     wanted = replace(
         config,
         name=name,
-        azimuth=azimuth,
-        elevation=elevation,
+        azimuth=axes[Axis.AZIMUTH],
+        elevation=axes.get(Axis.ELEVATION, config.elevation),
         drive=drive,
         park=park,
         refraction=bool(typed.texts.get("refraction")),
@@ -165,8 +169,8 @@ def _night(text: str) -> NightBehaviour:
     return NightBehaviour(text)
 
 
-def _axis(typed: Typed, name: str, stored: AxisConfig) -> AxisConfig:
-    label = name.capitalize()
+def _axis(typed: Typed, name: str, title: str, stored: AxisConfig) -> AxisConfig:
+    label = title.capitalize()
     values = (
         typed.number(f"{name}_minimum", f"{label} lower limit", -360, 360),
         typed.number(f"{name}_maximum", f"{label} upper limit", -360, 720),
@@ -178,7 +182,7 @@ def _axis(typed: Typed, name: str, stored: AxisConfig) -> AxisConfig:
     if any(field.startswith(f"{name}_") for field in typed.errors):
         return stored
     try:
-        return AxisConfig(*values)
+        return AxisConfig(*values, stored.actuator)
     except ValueError as error:
         typed.errors[f"{name}_minimum"] = f"{label}: {error}"
         return stored
@@ -204,5 +208,6 @@ def _drive_kind(text: str) -> DriveKind:
 
 def _answer(request: Request, tracker: TrackerDetail, typed: Typed, *, status: int = 200) -> Response:
     frame = tracker_frame(request, tracker.state.config.tracker_id, "Settings")
-    context = SettingsPage(frame=frame, form=typed.form(SettingsForm.model_fields))
+    mount = tracker.state.config.mount
+    context = SettingsPage(frame=frame, form=typed.form(SettingsForm.model_fields), mount=mount)
     return page(request, context, block="form", status=status)

@@ -16,8 +16,11 @@ from starlette.responses import RedirectResponse, Response
 from app.link.messages import SavePlan, SiteDetail, TrackerDetail
 from app.sun.events import day_events
 from app.sun.position import Location
+from app.tracker.axes import Axis
 from app.tracker.commands import CommandRejected, GoToStart, PauseShow, ResumeShow, RunShow, StopShow
+from app.tracker.config import TrackerConfig
 from app.tracker.mode import Mode
+from app.tracker.mounts.abilities import axis_title
 from app.tracker.programs.show import ShowCheck, ShowPlan, check_show, schedule_of
 from app.tracker.reason import Reason
 from app.web.contexts import Link, ShowPlanPage, ShowRunPage, Verdict
@@ -30,7 +33,7 @@ from app.web.ui.frame import snapshot_of, tracker_frame
 from app.web.ui.mode import choice
 from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
-from app.web.ui.sunpath import arc, diagram_of
+from app.web.ui.sunpath import arc, diagram_of, outline
 from app.web.ui.wizard import tracker_of
 
 router = APIRouter(prefix="/trackers/{tracker_id}")
@@ -231,11 +234,26 @@ def _facts(
     config = tracker.state.config
     spans = ", ".join(f"{local(a, zone, '%H:%M')} to {local(b, zone, '%H:%M')}" for a, b in check.sun_up)
     return (
-        ("Mode", choice(wanted.mode).label),
+        ("Mode", choice(config, wanted.mode).label),
         ("Sun up", spans or "not in this interval"),
-        ("Azimuth speed", f"{check.peak_azimuth_dps:.2f} of {config.azimuth.speed_dps:g} °/s"),
-        ("Elevation speed", f"{check.peak_elevation_dps:.2f} of {config.elevation.speed_dps:g} °/s"),
-        ("Begins at", f"azimuth {check.start.azimuth_deg:.1f}°, elevation {check.start.elevation_deg:.1f}°"),
+        *_axis_facts(check, config),
+    )
+
+
+def _axis_facts(check: ShowCheck, config: TrackerConfig) -> tuple[tuple[str, str], ...]:
+    """Return what the show asks of each axis that the mount has, and where they begin."""
+    asked = (
+        (Axis.AZIMUTH, check.peak_azimuth_dps, check.start.azimuth_deg),
+        (Axis.ELEVATION, check.peak_elevation_dps, check.start.elevation_deg),
+    )
+    present = [(axis_title(config.mount, axis), axis, dps, deg) for axis, dps, deg in asked]
+    present = [one for one in present if one[1] in config.mount.axes]
+    return (
+        *(
+            (f"{title.capitalize()} speed", f"{dps:.2f} of {config.axis(axis).speed_dps:g} °/s")
+            for title, axis, dps, _ in present
+        ),
+        ("Begins at", ", ".join(f"{title} {deg:.1f}°" for title, _, _, deg in present)),
     )
 
 
@@ -259,7 +277,7 @@ def _run_page(request: Request, tracker: TrackerDetail, wanted: ShowPlan, built:
         plan=wanted,
         minutes=minutes,
         again=f"{root}?{urlencode(again)}",
-        diagram=diagram_of(wanted.location, zone, on, wanted.algorithm, config.azimuth, config.elevation),
+        diagram=diagram_of(wanted.location, zone, on, wanted.algorithm, outline(config)),
         arc=arc(wanted.algorithm, wanted.location, on),
     )
     return page(request, context)

@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.sun.position import Algorithm, Location, SunPath, sun_path
+from app.sun.trigonometry import ARRAY
 from app.tracker.axes import AxisConfig
-from app.tracker.config import TrackerConfig
+from app.tracker.config import MountKind, TrackerConfig
+from app.tracker.mounts.kinematics import direction
 from app.tracker.snapshot import SiteSnapshot
 from app.web.contexts import Arc
 from app.web.ui.drawings import Curve, HourLabel, SunDiagram
@@ -28,6 +30,7 @@ MONTHS = (
     (6, 21, True),
 )
 LABEL_GAP = 8.5
+OUTLINE_POINTS = 73
 
 
 def diagram(site: SiteSnapshot | None, config: TrackerConfig) -> SunDiagram | None:
@@ -35,9 +38,7 @@ def diagram(site: SiteSnapshot | None, config: TrackerConfig) -> SunDiagram | No
     if site is None or site.location is None:
         return None
     today = site.at.astimezone(ZoneInfo(site.time_zone)).date()
-    return diagram_of(
-        site.location, site.time_zone, today, config.algorithm, config.azimuth, config.elevation
-    )
+    return diagram_of(site.location, site.time_zone, today, config.algorithm, outline(config))
 
 
 def todays_arc(site: SiteSnapshot | None, config: TrackerConfig) -> Arc:
@@ -49,7 +50,7 @@ def todays_arc(site: SiteSnapshot | None, config: TrackerConfig) -> Arc:
 
 def arc(algorithm: Algorithm, location: Location, on: date) -> Arc:
     """Return azimuth and elevation of a day's sun above the horizon, every ten minutes."""
-    path = _day(algorithm, location, on)
+    path = day_path(algorithm, location, on)
     pairs = zip(path.azimuth_deg.tolist(), path.elevation_deg.tolist(), strict=True)
     return tuple((round(azimuth, 1), round(elevation, 1)) for azimuth, elevation in pairs if elevation > -4.0)
 
@@ -60,15 +61,16 @@ def diagram_of(
     zone: str,
     today: date,
     algorithm: Algorithm,
-    azimuth: AxisConfig,
-    elevation: AxisConfig,
+    reachable: str,
 ) -> SunDiagram:
-    """Return the diagram of a place for a day; the soft limits make the reachable part of the sky."""
-    now_path = _day(algorithm, location, today)
+    """Return the diagram of a place for a day; `reachable` is what `outline` returns for a tracker."""
+    now_path = day_path(algorithm, location, today)
     labels = hour_labels(algorithm, location, today, zone)
     return SunDiagram(
         months=tuple(
-            Curve(f"{month}-{day}", _drawn(_day(algorithm, location, date(today.year, month, day))), strong)
+            Curve(
+                f"{month}-{day}", _drawn(day_path(algorithm, location, date(today.year, month, day))), strong
+            )
             for month, day, strong in MONTHS
         ),
         hours=tuple(
@@ -76,7 +78,7 @@ def diagram_of(
         ),
         labels=labels,
         today=Curve(today.isoformat(), _drawn(now_path), strong=True),
-        reachable=sector(azimuth, elevation),
+        reachable=reachable,
         title=f"Sun path of {today.isoformat()}, seen from above, north up",
     )
 
@@ -87,7 +89,8 @@ def point(azimuth_deg: float, elevation_deg: float) -> tuple[float, float]:
     return radius * sin(radians(azimuth_deg)), -radius * cos(radians(azimuth_deg))
 
 
-def _day(algorithm: Algorithm, location: Location, on: date) -> SunPath:
+def day_path(algorithm: Algorithm, location: Location, on: date) -> SunPath:
+    """Return the sun every ten minutes of a day, by the mean solar time of the place."""
     midnight = datetime(on.year, on.month, on.day, tzinfo=UTC).timestamp() - location.longitude_deg * 240
     return sun_path(algorithm, location, np.arange(midnight, midnight + DAY_S + 1, FINE_S, dtype=np.float64))
 
@@ -103,10 +106,11 @@ def _drawn(path: SunPath) -> str:
     turn = np.radians(path.azimuth_deg)
     x, y = radius * np.sin(turn), -radius * np.cos(turn)
     up = path.elevation_deg >= -0.9
-    return _broken(x, y, up)
+    return broken(x, y, up)
 
 
-def _broken(x: NDArray[np.float64], y: NDArray[np.float64], up: NDArray[np.bool_]) -> str:
+def broken(x: NDArray[np.float64], y: NDArray[np.float64], up: NDArray[np.bool_]) -> str:
+    """Return the shown parts of a line as SVG path data."""
     drawn, pen_down = [], False
     for at_x, at_y, shown in zip(x.tolist(), y.tolist(), up.tolist(), strict=True):
         if shown:
@@ -128,6 +132,21 @@ def hour_labels(algorithm: Algorithm, location: Location, today: date, zone: str
             x, y = point(azimuth_deg, elevation_deg - LABEL_GAP * 0.9)
             labels.append(HourLabel(x, y, str(at.astimezone(ZoneInfo(zone)).hour)))
     return tuple(labels)
+
+
+def outline(config: TrackerConfig) -> str:
+    """Return the part of the sky that a tracker can face as SVG path data; a single axis faces a line."""
+    if config.mount.kind is MountKind.AZIMUTH_ELEVATION:
+        return sector(config.azimuth, config.elevation)
+    first_deg = np.linspace(config.azimuth.minimum_deg, config.azimuth.maximum_deg, OUTLINE_POINTS)
+    second = config.elevation
+    lower, upper = (np.full(OUTLINE_POINTS, end) for end in (second.minimum_deg, second.maximum_deg))
+    there = direction(config.mount, first_deg, lower, ARRAY)
+    back = direction(config.mount, first_deg[::-1], upper, ARRAY)
+    azimuth_deg, elevation_deg = (np.concatenate(pair) for pair in zip(there, back, strict=True))
+    radius = HORIZON * (90.0 - np.maximum(elevation_deg, 0.0)) / 90.0
+    turn = np.radians(azimuth_deg)
+    return broken(radius * np.sin(turn), -radius * np.cos(turn), np.ones(len(turn), dtype=np.bool_)) + "Z"
 
 
 def sector(azimuth: AxisConfig, elevation: AxisConfig) -> str:

@@ -90,7 +90,7 @@ def _answer(request: Request, tracker: TrackerDetail, typed: Typed, *, status: i
         frame=frame,
         config=config,
         memory=memory,
-        choice=choice(memory.mode) if memory.mode else None,
+        choice=choice(config, memory.mode) if memory.mode else None,
         form=typed.form(("azimuth", "elevation")),
         limits=limits_text(config),
         diagram=diagram(frame.site, config),
