@@ -257,7 +257,7 @@ def _still(axis: AxisCommand) -> AxisCommand:
 
 
 def _trouble(error: DriveError | TimeoutError) -> Reason:
-    text = str(error) or "The drive did not answer in time."
+    text = str(error) or "The drive did not answer in time: it is off, frozen or busy, or its cable is cut."
     return Reason("drive_trouble", text, "Check the drive's supply, cable and address.")
 
 

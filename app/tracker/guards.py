@@ -76,9 +76,19 @@ def came_back(name: str, before: Feedback | None, feedback: Feedback) -> Reason:
             f"{again} It had stopped by itself: its watchdog tripped, because no command reached it.",
             "Its zero is kept. Find out why the connection failed before you go on.",
         )
+    if before is not None and _moves(before) and not _moves(feedback):
+        return Reason(
+            "stopped_meanwhile",
+            f"{again} It was moving and stands still now: its watchdog stopped it, or a last command did.",
+            "Its zero is kept. Find out why the connection failed before you go on.",
+        )
     return Reason(
         "drive_back", f"{again} It was not restarted.", "Find out why the connection failed before you go on."
     )
+
+
+def _moves(feedback: Feedback) -> bool:
+    return feedback.azimuth.moving or feedback.elevation.moving
 
 
 def home_doubt(config: TrackerConfig, home: HomeTrust, feedback: Feedback) -> Reason | None:

@@ -58,11 +58,12 @@ class DriveSim:
     process: "subprocess.Popen[bytes]"
 
     @classmethod
-    def start(cls) -> "DriveSim":
-        """Return once it listens."""
-        port = free_port()
+    def start(cls, port: int | None = None, memory: Path | None = None) -> "DriveSim":
+        """Return once it listens; with a memory it knows its position after a power cut at rest."""
+        port = port or free_port()
+        kept = [] if memory is None else ["--memory", str(memory)]
         process = subprocess.Popen(
-            [COMMAND, "drive-sim", "--tcp", f"127.0.0.1:{port}"], stdout=subprocess.PIPE
+            [COMMAND, "drive-sim", "--tcp", f"127.0.0.1:{port}", *kept], stdout=subprocess.PIPE
         )
         assert process.stdout is not None
         assert process.stdout.readline(), "drive-sim did not start"
