@@ -67,9 +67,10 @@ class Sunlight:
         first_deg = axes.azimuth_deg - self._misalignment_deg[Axis.AZIMUTH]
         second_deg = axes.elevation_deg - self._misalignment_deg[Axis.ELEVATION]
         normal = self._normal(first_deg, second_deg)
-        on_first = axis is Axis.AZIMUTH
-        ahead = self._normal(first_deg + NUDGE_DEG * on_first, second_deg + NUDGE_DEG * (not on_first))
-        side = _side(normal, ahead)
+        first_nudge_deg, second_nudge_deg = (NUDGE_DEG, 0.0) if axis is Axis.AZIMUTH else (0.0, NUDGE_DEG)
+        behind = self._normal(first_deg - first_nudge_deg, second_deg - second_nudge_deg)
+        ahead = self._normal(first_deg + first_nudge_deg, second_deg + second_nudge_deg)
+        side = _side(behind, ahead)
         lower = self._light_wm2(tuple(n - s for n, s in zip(normal, side, strict=True)))
         higher = self._light_wm2(tuple(n + s for n, s in zip(normal, side, strict=True)))
         return LightPair(lower, self._stuck_wm2.get(axis, higher))
@@ -99,9 +100,9 @@ def _unit(azimuth_deg: float, elevation_deg: float) -> Vector:
     return cos(elevation) * cos(azimuth), cos(elevation) * sin(azimuth), sin(elevation)
 
 
-def _side(normal: Vector, ahead: Vector) -> Vector:
+def _side(behind: Vector, ahead: Vector) -> Vector:
     """Return the direction in which the normal turns, a unit vector; nothing where it does not turn."""
-    north, east, up = (a - n for a, n in zip(ahead, normal, strict=True))
+    north, east, up = (a - b for a, b in zip(ahead, behind, strict=True))
     length = sqrt(north * north + east * east + up * up)
     if isclose(length, 0.0, abs_tol=1e-7):
         return 0.0, 0.0, 0.0

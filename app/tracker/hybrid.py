@@ -111,7 +111,7 @@ def axis_correction(
     ratio = _ratio(pair, config.threshold_wm2)
     if ratio is None:
         return AxisCorrection(_decayed(before.degrees, config, elapsed_s), HybridPhase.DARK)
-    if abs(ratio) > LARGEST_RATIO or before.phase is HybridPhase.DOUBTED:
+    if before.phase is HybridPhase.DOUBTED or (on_place and abs(ratio) > LARGEST_RATIO):
         return AxisCorrection(_decayed(before.degrees, config, elapsed_s), HybridPhase.DOUBTED)
     if not on_place:
         return replace(before, phase=HybridPhase.WAITING)

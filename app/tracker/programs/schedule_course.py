@@ -78,8 +78,8 @@ class ScheduleCourse:
         """Return the least duration in which every move is done before the next begins, seconds."""
         whole_s = (self.plan.end_at - self.plan.begin_at).total_seconds()
         needed_s = 0.0
-        ends_s = [*self._from_s[2:], whole_s]
-        for (before, after), end_s in zip(pairwise(self.places), ends_s, strict=False):
+        moves = pairwise(self.places)
+        for (before, after), end_s in zip(moves, self._from_s[2:], strict=False):
             away_s = self._travel_s(before.aimed.target, after.aimed.target) + SETTLE_S
             needed_s = max(needed_s, away_s * whole_s / max(end_s - after.from_s, 1.0))
         return float(ceil(needed_s))

@@ -1,0 +1,147 @@
+"""Each strategy tells its day: how often it moves, and how far it is off at most, from pole to tropic."""
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+import pytest
+
+from app.angles import separation_deg
+from app.show.simulate import simulate, simulate_show
+from app.show.strategy_day import StrategyDay, strategy_day
+from app.sun.position import Location, sun_position
+from app.tracker.axes import AxisConfig
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.memory import Pointing
+from app.tracker.mode import Mode
+from app.tracker.programs.examples import ALEXANDRU_TABLE_3
+from app.tracker.programs.schedule import Moment, solar_hour
+from app.tracker.programs.show import ShowPlan, check_show, schedule_of
+from app.tracker.programs.stepped import ProgramStep, StepFrame, StepProgram, TimeBase
+from app.tracker.strategy import (
+    Continuous,
+    Deadband,
+    EncoderDeadband,
+    Interval,
+    IntervalAim,
+    Stepped,
+    Strategy,
+)
+
+HELD = Orientation(180.0, 45.0)
+BRASOV = Location(45.65, 25.6)
+TWO_TURNS = AxisConfig(-270.0, 450.0, 6.0, 6.0, 0.5, 3.0)
+TROMSO, ADELAIDE, NAIROBI = Location(69.65, 18.96), Location(-34.9, 138.6), Location(-1.3, 36.8)
+
+
+def day(strategy: Strategy, place: Location, begin: datetime, hours: float = 4.0) -> StrategyDay:
+    config = TrackerConfig("T1", "T1", azimuth=TWO_TURNS, strategy=strategy)
+    end = begin + timedelta(hours=hours)
+    return strategy_day(config, Pointing(), place, Mode.DUAL, HELD, begin, end)
+
+
+@pytest.mark.parametrize(
+    ("strategy", "bound_deg", "fewest", "most"),
+    [
+        (Continuous(), 0.06, 1, 1),
+        (Deadband(), 0.5, 90, 180),
+        (EncoderDeadband(), 1.45, 40, 170),
+        (Interval(10), 1.3, 24, 26),
+        (Interval(10, IntervalAim.NOW), 2.55, 24, 26),
+    ],
+)
+@pytest.mark.parametrize(
+    ("place", "begin"),
+    [
+        pytest.param(BRASOV, datetime(2026, 6, 21, 7, tzinfo=UTC), id="summer solstice, 46 north"),
+        pytest.param(ADELAIDE, datetime(2026, 12, 21, 22, tzinfo=UTC), id="summer solstice, 35 south"),
+    ],
+)
+def test_a_strategy_stays_within_its_bound(
+    strategy: Strategy, place: Location, begin: datetime, bound_deg: float, fewest: int, most: int
+) -> None:
+    told = day(strategy, place, begin)
+    assert told.largest_error_deg is not None
+    assert bound_deg / 4.0 < told.largest_error_deg < bound_deg or isinstance(strategy, Continuous)
+    assert told.largest_error_deg < bound_deg
+    assert fewest <= told.moves <= most
+
+
+def test_in_polar_day_intervals_go_on_all_night() -> None:
+    told = day(Interval(60), TROMSO, datetime(2026, 6, 20, 20, tzinfo=UTC), hours=6.0)
+    assert 6 <= told.moves <= 7
+    assert told.largest_error_deg is not None
+    assert told.largest_error_deg < 8.0
+
+
+def test_under_the_tropic_sun_the_axes_do_not_race_between_intervals() -> None:
+    told = day(Interval(30), NAIROBI, datetime(2026, 9, 23, 7, tzinfo=UTC), hours=4.0)
+    assert 7 <= told.moves <= 9
+    assert told.largest_error_deg is not None
+    assert told.mean_error_deg is not None
+    assert told.mean_error_deg < 1.95
+    assert told.largest_error_deg < 7.0, "the azimuth axis turns round once, for half a minute"
+
+
+def test_alexandrus_program_moves_at_its_times_and_stands_at_its_angles() -> None:
+    config = TrackerConfig("T1", "T1", strategy=Stepped(ALEXANDRU_TABLE_3))
+    begin = datetime(2026, 6, 21, 4, tzinfo=UTC)
+    _, frames = simulate(
+        config, Pointing(), BRASOV, "UTC", Mode.DUAL, HELD, begin, begin + timedelta(hours=12)
+    )
+    setpoints = frames.column("setpoint_azimuth_deg")
+    moved = np.flatnonzero(np.abs(np.diff(setpoints)) > 1e-6) + 1
+    hours = [
+        solar_hour(Moment(at, sun_position(config.algorithm, BRASOV, at), BRASOV))
+        for at in (begin + timedelta(seconds=float(frames.column("elapsed_s")[i])) for i in moved)
+    ]
+    assert hours == pytest.approx([step.from_h for step in ALEXANDRU_TABLE_3.steps[1:]], abs=2 / 3600)
+    noon = frames.values[int(np.abs(setpoints - 180.0).argmin()) + 60]
+    assert noon[8] == pytest.approx(180.0, abs=0.03)
+    assert noon[9] == pytest.approx(90.0 - (BRASOV.latitude_deg - 23.45), abs=0.03)
+
+
+def test_a_program_by_the_clock_holds_one_axis_and_follows_with_the_other() -> None:
+    steps = (ProgramStep(9.0, 120.0), ProgramStep(12.0, 180.0), ProgramStep(15.0, 240.0))
+    program = StepProgram("Three", steps, StepFrame.HORIZON, TimeBase.CLOCK, 2.0)
+    config = TrackerConfig("T1", "T1", strategy=Stepped(program))
+    begin = datetime(2026, 3, 21, 9, 58, tzinfo=UTC)
+    _, frames = simulate(
+        config, Pointing(), BRASOV, "UTC", Mode.DUAL, HELD, begin, begin + timedelta(minutes=10)
+    )
+    azimuth, elevation = frames.column("measured_azimuth_deg"), frames.column("measured_elevation_deg")
+    assert azimuth[115] == pytest.approx(120.0, abs=0.03)
+    assert azimuth[180] == pytest.approx(180.0, abs=0.03)
+    assert np.abs(elevation - frames.column("sun_elevation_deg"))[30:].max() < 0.5
+
+
+@pytest.mark.parametrize("strategy", [Stepped(ALEXANDRU_TABLE_3), Interval(30)], ids=["stepped", "interval"])
+def test_a_show_moves_to_the_same_places_as_the_day(strategy: Strategy) -> None:
+    config = TrackerConfig("T1", "T1", strategy=strategy)
+    begin, end = datetime(2026, 6, 21, 7, tzinfo=UTC), datetime(2026, 6, 21, 13, tzinfo=UTC)
+    plan = ShowPlan(
+        "show", begin, end, timedelta(minutes=6), BRASOV, Mode.DUAL, HELD, schedule=schedule_of(strategy)
+    )
+    _, show = simulate_show(config, Pointing(), "UTC", plan)
+    _, real = simulate(config, Pointing(), BRASOV, "UTC", Mode.DUAL, HELD, begin, end)
+    columns = ("setpoint_azimuth_deg", "setpoint_elevation_deg")
+    places = [
+        np.unique(np.round(np.array([one.column(name) for name in columns]), 3), axis=1)
+        for one in (show, real)
+    ]
+    assert places[0].shape[1] >= 9
+    for first_deg, second_deg in places[0].T:
+        off_deg = [separation_deg(first_deg, second_deg, *place) for place in places[1].T]
+        assert min(off_deg) < 0.06
+
+
+def test_a_show_too_fast_for_its_moves_is_refused_with_the_shortest_time_that_works() -> None:
+    config = TrackerConfig("T1", "T1", strategy=Stepped(ALEXANDRU_TABLE_3))
+    begin, end = datetime(2026, 6, 21, 5, tzinfo=UTC), datetime(2026, 6, 21, 15, tzinfo=UTC)
+    plan = ShowPlan("show", begin, end, timedelta(seconds=20), BRASOV, schedule=schedule_of(config.strategy))
+    check = check_show(plan, config)
+    assert [reason.code for reason in check.reasons] == ["moves_too_long"]
+    assert check.shortest is not None
+    again = replace(plan, duration=check.shortest)
+    assert check_show(again, config).feasible
+    assert not check_show(replace(again, duration=check.shortest - timedelta(seconds=2)), config).feasible

@@ -1,0 +1,151 @@
+"""Light sensors find a pointing error in sunlight, and do no harm when they are dark, stuck or clouded."""
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.drives.faults import Fault, FaultKind
+from app.drives.sunlight import Sunlight
+from app.show.rehearsal import Rehearsal
+from app.sun.position import Location, SunPosition
+from app.tracker.axes import Axis
+from app.tracker.commands import SelectMode, Track
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.hybrid import AxisCorrection, HybridPhase, axis_correction
+from app.tracker.memory import Pointing
+from app.tracker.mode import Mode
+from app.tracker.motion import LightPair
+from app.tracker.strategy import Continuous, Deadband, HybridConfig, SimulatedLight, Strategy
+
+PLACE = Location(41.2867, 36.33)
+MORNING = datetime(2026, 6, 21, 7, 0, tzinfo=UTC)
+MISALIGNED = HybridConfig(enabled=True, simulated=SimulatedLight(1.0, -0.6))
+SECOND = timedelta(seconds=1)
+EAGER = HybridConfig(enabled=True)
+CONTINUOUS = Continuous()
+
+
+class Sunny:
+    """A tracker with light sensors under the morning sun of Samsun, tracking."""
+
+    def __init__(self, hybrid: HybridConfig = MISALIGNED, strategy: Strategy = CONTINUOUS) -> None:
+        config = TrackerConfig("T1", "Tracker 1", strategy=strategy, hybrid=hybrid)
+        self.rehearsal = Rehearsal(config, Pointing(), PLACE, MORNING)
+        self.rehearsal.home()
+        self.rehearsal.ask(SelectMode(Mode.DUAL, Orientation(180.0, 45.0)))
+        self.rehearsal.ask(Track())
+        self.forward(timedelta(minutes=1))
+
+    def forward(self, length: timedelta) -> None:
+        for _ in range(int(length / SECOND)):
+            self.rehearsal.clock.advance(SECOND)
+            self.rehearsal.site_time += SECOND
+            self.rehearsal.tick()
+
+    def play(self, kind: FaultKind, amount: float, axis: Axis | None = None) -> None:
+        self.rehearsal.drive.inject(Fault(kind, axis, amount))
+
+    @property
+    def correction(self) -> tuple[float, float]:
+        shown = self.rehearsal.controller.snapshot(self.rehearsal.site_time).hybrid
+        assert shown is not None
+        assert shown.sum.azimuth_deg == pytest.approx(
+            shown.computed.azimuth_deg + shown.correction.azimuth_deg
+        )
+        return shown.correction.azimuth_deg, shown.correction.elevation_deg
+
+
+@pytest.mark.parametrize("strategy", [Continuous(), Deadband()], ids=["continuous", "deadband"])
+def test_a_misalignment_is_found_in_sunlight(strategy: Strategy) -> None:
+    sunny = Sunny(strategy=strategy)
+    sunny.forward(timedelta(minutes=30))
+    assert sunny.correction == pytest.approx((1.0, -0.6), abs=0.12)
+    shown = sunny.rehearsal.controller.snapshot(sunny.rehearsal.site_time)
+    assert shown.off_sun_deg is not None
+    assert shown.off_sun_deg < 0.5
+    frame = sunny.rehearsal.controller.frame()
+    assert frame[10:12] == pytest.approx(sunny.correction)
+
+
+def test_in_cloud_the_correction_decays_and_in_sunlight_it_is_found_again() -> None:
+    sunny = Sunny()
+    sunny.forward(timedelta(minutes=10))
+    before_deg = sunny.correction[0]
+    sunny.play(FaultKind.CLOUD, 1.0)
+    sunny.forward(timedelta(minutes=15))
+    assert sunny.correction[0] == pytest.approx(before_deg / 2.718, rel=0.05)
+    sunny.rehearsal.drive.clear_faults()
+    sunny.forward(timedelta(minutes=10))
+    assert sunny.correction[0] == pytest.approx(before_deg, abs=0.05)
+
+
+def test_without_decay_a_cloud_leaves_the_correction_as_it_is() -> None:
+    sunny = Sunny(replace(MISALIGNED, decay_s=0.0))
+    sunny.forward(timedelta(minutes=10))
+    before = sunny.correction
+    sunny.play(FaultKind.CLOUD, 1.0)
+    sunny.forward(timedelta(minutes=20))
+    assert sunny.correction == before
+
+
+@pytest.mark.parametrize("stuck_wm2", [0.0, 700.0, 1400.0, 60_000.0])
+def test_a_stuck_sensor_is_doubted_and_its_correction_fades(stuck_wm2: float) -> None:
+    sunny = Sunny(replace(EAGER, decay_s=60.0))
+    sunny.play(FaultKind.LIGHT_SENSOR_STUCK, stuck_wm2, Axis.AZIMUTH)
+    largest_deg = 0.0
+    for _ in range(20):
+        sunny.forward(timedelta(minutes=1))
+        largest_deg = max(largest_deg, abs(sunny.correction[0]))
+    assert largest_deg <= EAGER.bound_deg
+    assert abs(sunny.correction[0]) < 0.05
+    assert abs(sunny.correction[1]) < 0.1
+
+
+def test_without_the_correction_nothing_is_shown_and_nothing_added() -> None:
+    sunny = Sunny(HybridConfig())
+    assert sunny.rehearsal.controller.snapshot(sunny.rehearsal.site_time).hybrid is None
+    assert sunny.rehearsal.controller.frame()[10:12] == (0.0, 0.0)
+    assert sunny.rehearsal.drive.observe().light is None
+
+
+readings = st.one_of(st.floats(-1e9, 1e9), st.sampled_from([0.0, float("nan"), float("inf"), -float("inf")]))
+pairs = st.one_of(st.none(), st.builds(LightPair, readings, readings))
+
+
+@given(
+    st.lists(st.tuples(pairs, st.floats(-1.0, 100_000.0), st.booleans()), max_size=40),
+    st.floats(0.01, 10.0),
+    st.floats(0.001, 10.0),
+    st.floats(0.0, 1000.0),
+)
+def test_whatever_the_sensors_say_the_correction_keeps_its_bound(
+    story: list[tuple[LightPair | None, float, bool]], bound_deg: float, gain_dps: float, decay_s: float
+) -> None:
+    config = HybridConfig(enabled=True, bound_deg=bound_deg, gain_dps=gain_dps, decay_s=decay_s)
+    correction, now = AxisCorrection(), MORNING
+    for pair, elapsed_s, on_place in story:
+        now += timedelta(seconds=max(elapsed_s, 0.0))
+        before = correction
+        correction = axis_correction(before, config, pair, now, elapsed_s, on_place=on_place)
+        assert abs(correction.degrees) <= bound_deg
+        dark = pair is None or not min(pair.lower_wm2, pair.higher_wm2) >= config.threshold_wm2
+        if dark:
+            assert correction.phase is HybridPhase.DARK
+            assert abs(correction.degrees) <= abs(before.degrees)
+
+
+@given(st.floats(-60.0, 60.0), st.floats(5.0, 60.0), st.floats(-3.0, 3.0), st.floats(0.0, 1.0))
+def test_the_brighter_sensor_is_the_one_towards_the_sun(
+    off_noon_deg: float, height_deg: float, off_deg: float, cloud: float
+) -> None:
+    sun = SunPosition(180.0 + off_noon_deg, height_deg, height_deg)
+    light = Sunlight(
+        TrackerConfig("T1", "T1", hybrid=replace(EAGER, simulated=SimulatedLight(cloud=cloud))), lambda: sun
+    )
+    pair = light.reading(Orientation(sun.azimuth_deg - off_deg, height_deg)).azimuth
+    difference = pair.higher_wm2 - pair.lower_wm2
+    assert difference * off_deg >= -1e-6
+    assert min(pair.higher_wm2, pair.lower_wm2) > 0.0
