@@ -62,7 +62,7 @@ class TwoAxisDrive:
         watchdog = self._profile.watchdog
         has_switches = "inputs" in self._profile.bits
         return DriveCapabilities(
-            automatic_homing=has_switches or "home" in self._profile.enums.get("homing_method", {}),
+            automatic_homing=True,
             watchdog_s=watchdog.timeout_ms / 1000.0 if watchdog is not None else None,
             settable_clock=False,
             limit_switches=has_switches and all(axis.unit.has("inputs") for axis in self._axes.values()),

@@ -21,11 +21,3 @@ def write_frame(profile: Profile, values: Mapping[str, float], unit: int) -> byt
         raise ValueError("These registers are no neighbours: each takes a frame of its own.")
     address, run = frames[0]
     return request_frame(Ask(unit, address, len(run), tuple(run)))
-
-
-def read_frame(profile: Profile, name: str, unit: int, count: int | None = None) -> bytes:
-    """Return the RTU frame that reads a register, or raise `ValueError` if there is none."""
-    register = profile.registers.get(name)
-    if register is None:
-        raise ValueError(f"Profile {profile.name} has no register {name!r}.")
-    return request_frame(Ask(unit, register.address, register.count if count is None else count))

@@ -64,6 +64,12 @@ async def test_a_scan_finds_who_answers_and_who_only_refuses() -> None:
         assert "has no such register" in refused[0].said
 
 
+async def test_a_refusal_with_function_code_0x81_is_a_refusal() -> None:
+    async with on_the_bench("kinco-cia402") as bench:
+        refused = [one async for one in scan(bench.config.drive, (1, 2), SystemClock(), address=9)]
+    assert ["has no such register" in one.said for one in refused] == [True, True]
+
+
 async def test_a_scan_of_a_bus_that_is_not_there_says_so() -> None:
     async with on_the_bench("leadshine-rs") as bench:
         drive = bench.config.drive
