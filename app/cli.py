@@ -15,7 +15,7 @@ import typer
 from app.build import VERSION
 from app.cli_drives import drive_sim, fault_proxy
 from app.cli_profiles import drive
-from app.cli_study import study
+from app.cli_study import compare, study
 from app.cli_sun import accuracy, reproduce
 from app.clock import SystemClock
 from app.drives.drive import DriveError
@@ -54,6 +54,7 @@ cli.command()(fault_proxy)
 cli.command()(accuracy)
 cli.command("papers")(reproduce)
 cli.command()(study)
+cli.command()(compare)
 
 Supervised = Annotated[int | None, typer.Option(hidden=True, help="Process id of the supervisor.")]
 Latitude = Annotated[float, typer.Option("--lat", help="Latitude, degrees, north positive.")]

@@ -11,12 +11,13 @@ import typer
 
 from app.energy.motion import DriveCosts
 from app.energy.plane import Around, Transposition
+from app.fast.comparison import ClearSky, Comparison
 from app.studies.folder import RESULT
-from app.studies.jobs import JOB, TOLD, Began, Refused, Studied, Told, WorkOut
+from app.studies.jobs import JOB, TOLD, Began, CompareSite, Job, Refused, SiteCompared, Studied, Told, WorkOut
 from app.studies.request import LightModel, Module, Span, StudyMode, StudyRequest, StudyStrategy
 from app.studies.result import StudyResult, table_csv
 from app.sun.position import Location
-from app.tracker.config import Orientation
+from app.tracker.config import Orientation, TrackerConfig
 
 HEAD = ("case", "kWh/m2", "kWh", "gain %", "drives kWh", "net kWh", "net gain %", "moves", "travel deg")
 DIED = "The process that worked the study out ended without a result; what it printed above says more."
@@ -82,6 +83,44 @@ def study(
         typer.echo(_table(result))
 
 
+def compare(
+    lat: Annotated[float, typer.Option(help="Latitude, degrees, north positive.")],
+    lon: Annotated[float, typer.Option(help="Longitude, degrees, east positive.")],
+    year: Annotated[int, typer.Option(help="The year that is worked out.")],
+    altitude: Annotated[float, typer.Option(help="Metres above the sea.")] = 0.0,
+    turbidity: Annotated[float, typer.Option(min=1.0, max=10.0, help="Linke turbidity of the air.")] = 3.0,
+    *,
+    as_json: Annotated[bool, typer.Option("--json", help="Print what was found as JSON.")] = False,
+) -> None:
+    """Compare what each mode collects in a clear year, and what each deadband costs in motion and error."""
+    place = Location(lat, lon, altitude)
+    config = TrackerConfig("T1", "Tracker 1")
+    question = CompareSite(config, place, year, _held(place, None, None), ClearSky(altitude, turbidity))
+    for told in _told(question):
+        match told:
+            case SiteCompared(comparison):
+                line = TOLD.dump_json(told).decode() if as_json else "\n".join(_at_a_glance(comparison))
+                typer.echo(line)
+                return
+            case Refused(reason):
+                raise ValueError(reason)
+            case _:
+                pass
+    raise ValueError(DIED)
+
+
+def _at_a_glance(found: Comparison) -> Iterator[str]:
+    """Yield the comparison as lines of text."""
+    yield f"Clear year {found.year}, kWh/m2 and more than fixed"
+    for mode in found.modes:
+        yield f"{mode.mode:<12}{mode.collected_kwhm2:8.0f}{mode.gain_pct:8.1f} %"
+    yield f"Deadband, a day of {found.days}: moves, azimuth and elevation travel, greatest and rms error"
+    for row in found.deadbands:
+        travel = f"{row.azimuth_travel_deg:7.0f} deg{row.elevation_travel_deg:7.0f} deg"
+        error = f"{row.worst_off_deg:7.2f} deg{row.rms_off_deg:7.2f} deg"
+        yield f"{row.deadband_deg:<8g}{row.moves_a_day:8.0f}{travel}{error}"
+
+
 def _held(place: Location, azimuth: float | None, elevation: float | None) -> Orientation:
     towards_deg = 180.0 if place.latitude_deg >= 0.0 else 0.0
     return Orientation(
@@ -105,7 +144,7 @@ def _work_out(job: WorkOut) -> StudyResult:
     raise ValueError(DIED)
 
 
-def _told(job: WorkOut) -> Iterator[Told]:
+def _told(job: Job) -> Iterator[Told]:
     command = (sys.executable, "-m", "app.studies.worker")
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:  # noqa: S603 - ours
         if process.stdin is None or process.stdout is None:

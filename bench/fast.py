@@ -18,11 +18,11 @@ import pandas as pd
 import pvlib
 
 from app.fast.compare import year_whm2
+from app.fast.comparison import ClearSky
 from app.fast.directions import directions
 from app.fast.park import park_day
 from app.fast.spa_table import build
 from app.fast.sun import psa_plus_angles, spa_angles
-from app.fast.year import ClearSky
 from app.sun import fast
 from app.sun.position import Algorithm, Location, sun_path
 from app.sun.trigonometry import Array

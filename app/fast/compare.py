@@ -2,19 +2,20 @@
 
 The year goes minute by minute under a clear sky, with the sun of NREL SPA; the deadbands go tick by tick, a
 second each, through the closed loop of twelve representative days. In less than a second where the extra
-`fast` is installed; without it the same loops run as plain Python, for minutes.
+`fast` is installed; without it the same loops run as plain Python, for a minute, and on four days instead.
 """
 
-from dataclasses import dataclass
 from datetime import UTC, datetime
 
 import numpy as np
 
+from app.fast.comparison import ClearSky, Comparison, DeadbandWorth, ModeWorth
+from app.fast.compiled import COMPILED
 from app.fast.directions import directions
 from app.fast.park import park_day
 from app.fast.spa_table import build
 from app.fast.sun import spa_path
-from app.fast.year import ClearSky, collected_whm2
+from app.fast.year import collected_whm2
 from app.sun.position import Location
 from app.sun.trigonometry import Array
 from app.tracker.config import Orientation, TrackerConfig
@@ -23,39 +24,8 @@ from app.tracker.mode import Mode
 DEADBANDS_DEG = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0)
 REPRESENTATIVE_DAYS = (17, 47, 75, 105, 135, 162, 198, 228, 258, 288, 318, 344)
 """Day of the year whose declination is each month's mean (Klein 1977, doi:10.1016/0038-092X(77)90001-9)."""
+FOUR_SEASONS = (75, 162, 258, 344)
 MINUTE_S, DAY_S = 60.0, 86_400.0
-
-
-@dataclass(frozen=True, slots=True)
-class ModeWorth:
-    """What a mode collects in the year, and how much more than the fixed panel."""
-
-    mode: Mode
-    collected_kwhm2: float
-    gain_pct: float
-
-
-@dataclass(frozen=True, slots=True)
-class DeadbandWorth:
-    """What following with a deadband means on the average of the representative days."""
-
-    deadband_deg: float
-    moves_a_day: float
-    azimuth_travel_deg: float
-    elevation_travel_deg: float
-    worst_off_deg: float
-    rms_off_deg: float
-
-
-@dataclass(frozen=True, slots=True)
-class Comparison:
-    """A site at a glance."""
-
-    year: int
-    location: Location
-    held: Orientation
-    modes: tuple[ModeWorth, ...]
-    deadbands: tuple[DeadbandWorth, ...]
 
 
 def compare(
@@ -70,7 +40,8 @@ def compare(
     modes = tuple(
         ModeWorth(mode, found / 1000.0, 100.0 * (found / fixed - 1.0)) for mode, found in collected.items()
     )
-    return Comparison(year, location, held, modes, _deadbands(config, location, year))
+    days = REPRESENTATIVE_DAYS if COMPILED else FOUR_SEASONS
+    return Comparison(year, location, held, len(days), modes, _deadbands(config, location, year, days))
 
 
 def year_whm2(location: Location, year: int, held: Orientation, sky: ClearSky) -> dict[Mode, float]:
@@ -90,11 +61,13 @@ def extraterrestrial_wm2(day_of_year: Array) -> Array:
     return np.asarray(1366.1 * (once + 0.000719 * np.cos(2 * turn) + 7.7e-05 * np.sin(2 * turn)))
 
 
-def _deadbands(config: TrackerConfig, location: Location, year: int) -> tuple[DeadbandWorth, ...]:
+def _deadbands(
+    config: TrackerConfig, location: Location, year: int, days_of_year: tuple[int, ...]
+) -> tuple[DeadbandWorth, ...]:
     count = len(DEADBANDS_DEG)
     none = np.zeros(count)
     days = []
-    for day in REPRESENTATIVE_DAYS:
+    for day in days_of_year:
         noon_s = datetime(year, 1, 1, 12, tzinfo=UTC).timestamp() + (day - 1) * DAY_S
         midnight_s = noon_s - location.longitude_deg * 240.0 - DAY_S / 2.0
         aims = directions(

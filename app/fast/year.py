@@ -4,12 +4,12 @@ Clear sky: P. Ineichen and R. Perez, Solar Energy 73 (2002) 151-157, doi:10.1016
 pvlib has it, with a constant Linke turbidity; transposition: Hay and Davies (1980).
 """
 
-from dataclasses import dataclass
 from math import exp, pi
 from typing import Final
 
 import numpy as np
 
+from app.fast.comparison import ClearSky
 from app.fast.compiled import compiled, inlined
 from app.fast.trigonometry import sine_cosine
 from app.sun.position import SunPath
@@ -21,15 +21,6 @@ MODES: Final = (Mode.FIXED, Mode.AZIMUTH, Mode.ELEVATION, Mode.DUAL)
 DEGREE = pi / 180.0
 LEAST_COS_ZENITH = 0.01745
 SEA_LEVEL_PA = 101_325.0
-
-
-@dataclass(frozen=True, slots=True)
-class ClearSky:
-    """The air and the ground: altitude, Linke turbidity, the share of light that the ground gives back."""
-
-    altitude_m: float = 0.0
-    linke_turbidity: float = 3.0
-    albedo: float = 0.2
 
 
 def collected_whm2(

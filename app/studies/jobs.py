@@ -8,9 +8,11 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, TypeAdapter
 
 from app.energy.optimiser import MOST_STEPS
+from app.fast.comparison import ClearSky, Comparison
 from app.studies.request import FIRST_YEAR, LAST_YEAR, LightModel, StudyRequest
 from app.studies.result import StudyResult
 from app.sun.position import Location
+from app.tracker.config import Orientation, TrackerConfig
 
 
 class ProgramLight(StrEnum):
@@ -112,7 +114,23 @@ class FindPrograms:
     do: Literal["programs"] = "programs"
 
 
-Job = Annotated[WorkOut | CheckWeather | FindPrograms, Discriminator("do")]
+@dataclass(frozen=True, slots=True)
+class CompareSite:
+    """Compare the modes and deadbands of a site at a glance; `held` is what the fixed panel faces."""
+
+    config: TrackerConfig
+    location: Location
+    year: int
+    held: Orientation
+    sky: ClearSky
+    do: Literal["compare"] = "compare"
+
+    def __post_init__(self) -> None:
+        if not FIRST_YEAR <= self.year <= LAST_YEAR:
+            raise ValueError(f"The year lies between {FIRST_YEAR} and {LAST_YEAR}.")
+
+
+Job = Annotated[WorkOut | CheckWeather | FindPrograms | CompareSite, Discriminator("do")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,6 +171,14 @@ class ProgramsFound:
 
 
 @dataclass(frozen=True, slots=True)
+class SiteCompared:
+    """What modes and deadbands are worth at the site."""
+
+    comparison: Comparison
+    tell: Literal["compared"] = "compared"
+
+
+@dataclass(frozen=True, slots=True)
 class Refused:
     """It cannot be done; the sentence says why."""
 
@@ -160,7 +186,9 @@ class Refused:
     tell: Literal["refused"] = "refused"
 
 
-Told = Annotated[Began | Studied | WeatherSeen | ProgramsFound | Refused, Discriminator("tell")]
+Told = Annotated[
+    Began | Studied | WeatherSeen | ProgramsFound | SiteCompared | Refused, Discriminator("tell")
+]
 JOB: TypeAdapter[Job] = TypeAdapter(Job)
 TOLD: TypeAdapter[Told] = TypeAdapter(Told)
 

@@ -8,16 +8,19 @@ import sys
 from pathlib import Path
 from time import perf_counter
 
+from app.fast.compare import compare
 from app.studies.compute import finished, work_out
 from app.studies.jobs import (
     JOB,
     TOLD,
     Began,
     CheckWeather,
+    CompareSite,
     FindPrograms,
     Job,
     ProgramsFound,
     Refused,
+    SiteCompared,
     Studied,
     Told,
     WeatherSeen,
@@ -50,6 +53,8 @@ def done(job: Job) -> Told:
             return WeatherSeen(seen.format, seen.location, seen.utc_offset_h, yearly_kwhm2)
         case FindPrograms(question):
             return ProgramsFound(find_programs(question))
+        case CompareSite(config, location, year, held, sky):
+            return SiteCompared(compare(config, location, year, held, sky))
 
 
 def tell(told: Told) -> None:

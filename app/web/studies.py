@@ -13,18 +13,21 @@ import structlog
 from starlette.concurrency import run_in_threadpool
 
 from app.clock import Clock
+from app.fast.comparison import Comparison
 from app.studies.folder import StudyFolder, StudyState, StudyStatus, StudyUnknown, WeatherFile
 from app.studies.jobs import (
     JOB,
     TOLD,
     Began,
     CheckWeather,
+    CompareSite,
     FindPrograms,
     Job,
     ProgramAnswer,
     ProgramQuestion,
     ProgramsFound,
     Refused,
+    SiteCompared,
     Studied,
     Told,
     WeatherSeen,
@@ -99,6 +102,13 @@ class Studies:
         if not isinstance(found, ProgramsFound):
             raise TypeError(f"The worker answered {type(found).__name__}.")
         return found.answer
+
+    async def compare(self, question: CompareSite) -> Comparison:
+        """Return what modes and deadbands are worth at a site."""
+        found = await self._answer(question)
+        if not isinstance(found, SiteCompared):
+            raise TypeError(f"The worker answered {type(found).__name__}.")
+        return found.comparison
 
     async def add_weather(self, name: str, content: bytes) -> WeatherFile:
         """Keep a weather file if it can be used; raise `ValueError` with a sentence if not."""

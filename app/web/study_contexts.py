@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+from app.fast.comparison import Comparison
 from app.studies.folder import StudyState, WeatherFile
 from app.studies.jobs import ProgramAnswer
 from app.studies.request import StudyRequest
@@ -49,6 +50,17 @@ class StudiesPage:
     studies: tuple[StudyState, ...]
     files: tuple[WeatherFile, ...]
     any_open: bool
+
+
+@dataclass(frozen=True, slots=True)
+class GlancePage:
+    """A site at a glance; without a comparison it is being worked out, or the site has no location."""
+
+    template: ClassVar[str] = "glance.html"
+
+    frame: Frame
+    located: bool
+    comparison: Comparison | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,9 @@ from app.energy.motion import DriveCosts
 from app.energy.plane import Around, Transposition
 from app.energy.program import step_program
 from app.energy.stepping import Steps
+from app.fast.comparison import ClearSky
 from app.link.messages import SiteDetail, UnknownTracker
-from app.studies.jobs import ProgramAnswer, ProgramLight, ProgramQuestion
+from app.studies.jobs import CompareSite, ProgramAnswer, ProgramLight, ProgramQuestion
 from app.studies.request import (
     Fidelity,
     LightModel,
@@ -170,6 +171,15 @@ class NewProgram(Place):
             degree_wh=self.degree_wh,
             move_wh=self.move_wh,
         )
+
+
+def glance_question(detail: SiteDetail, location: Location, year: int) -> CompareSite:
+    """Return the comparison of a site: its first tracker's axes, a panel tilted by the latitude."""
+    trackers = tuple(detail.trackers.values())
+    config = trackers[0].state.config if trackers else TrackerConfig("T1", "Tracker 1")
+    towards_deg = 180.0 if location.latitude_deg >= 0.0 else 0.0
+    held = Orientation(towards_deg, 90.0 - abs(location.latitude_deg))
+    return CompareSite(config, location, year, held, ClearSky(location.altitude_m))
 
 
 def chosen_program(answer: ProgramAnswer, steps: int | None) -> StepProgram:

@@ -4,10 +4,11 @@ import pandas as pd
 import pvlib
 import pytest
 
-from app.fast.compare import Comparison, compare, extraterrestrial_wm2
+from app.fast.compare import compare, extraterrestrial_wm2
+from app.fast.comparison import ClearSky, Comparison
 from app.fast.spa_table import build
 from app.fast.sun import spa_path
-from app.fast.year import ClearSky, collected_whm2
+from app.fast.year import collected_whm2
 from app.sun.position import Location
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.mode import Mode

@@ -207,3 +207,17 @@ def test_a_heat_map_of_a_year_goes_by_weeks_and_leaves_the_night_out() -> None:
     assert [one.path.count("M") for one in shown.classes] == [53, 53]
     assert [tick.text for tick in shown.columns][:2] == ["Jan", "Feb"]
     assert shown.across == "week of the year"
+
+
+async def test_a_site_at_a_glance(client: httpx.AsyncClient, machine: FakeMachine) -> None:
+    waiting = await client.get("/studies/glance")
+    assert waiting.status_code == 200
+    assert 'hx-trigger="load"' in waiting.text
+    shown = await client.get("/studies/glance?ready=true", headers=HTMX)
+    assert shown.status_code == 200
+    for words in ("Modes in", "Deadbands, dual-axis", "Dual", "Greatest error"):
+        assert words in shown.text
+    told = (await client.get("/api/v1/studies-comparison?year=2026")).json()
+    assert [row["mode"] for row in told["modes"]] == ["fixed", "azimuth", "elevation", "dual"]
+    assert told["year"] == 2026
+    assert told["deadbands"][0]["moves_a_day"] > told["deadbands"][-1]["moves_a_day"]

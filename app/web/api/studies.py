@@ -9,10 +9,11 @@ from fastapi.responses import Response, StreamingResponse
 from pydantic import Field
 from starlette.concurrency import run_in_threadpool
 
+from app.fast.comparison import Comparison
 from app.link.messages import ConfigureTracker
 from app.studies.folder import StudyState, WeatherFile
 from app.studies.jobs import ProgramAnswer
-from app.studies.request import StudyRequest
+from app.studies.request import FIRST_YEAR, LAST_YEAR, StudyRequest
 from app.studies.result import StudyResult, curves_csv, table_csv
 from app.tracker.programs.stepped import StepProgram
 from app.tracker.strategy import Stepped
@@ -21,7 +22,7 @@ from app.web.api.orders import SenderDep
 from app.web.api.trackers import detail_of
 from app.web.deps import MachineDep, PanelDep
 from app.web.errors import NotAcceptable
-from app.web.study_orders import NewProgram, NewStudy, chosen_program
+from app.web.study_orders import NewProgram, NewStudy, chosen_program, glance_question
 
 router = APIRouter(tags=["studies"])
 
@@ -125,6 +126,23 @@ async def programs(new: NewProgram, panel: PanelDep, machine: MachineDep, sender
         config = (await detail_of(machine, new.use_on)).state.config
         await sender.send(ConfigureTracker(replace(config, strategy=Stepped(program))))
     return FoundPrograms(answer=answer, program=program, used_on=new.use_on)
+
+
+@router.get("/studies-comparison", summary="Modes and deadbands at a glance", responses=TOO_MANY | REFUSED)
+async def comparison(
+    panel: PanelDep,
+    machine: MachineDep,
+    year: Annotated[
+        int | None,
+        Query(ge=FIRST_YEAR, le=LAST_YEAR, description="Left out: this year."),
+    ] = None,
+) -> Comparison:
+    """Return what each mode collects in a clear year at the site, and what each deadband means."""
+    detail = await machine.detail()
+    if detail.site.location is None:
+        raise NotAcceptable("The site has no location yet: set it first.")
+    asked_year = panel.clock.now().year if year is None else year
+    return await panel.studies.compare(glance_question(detail, detail.site.location, asked_year))
 
 
 @router.get("/weather-files", summary="Weather files that studies can use")
