@@ -51,6 +51,7 @@ class StrategyPage:
     program: ProgramTable
     hybrid: Form
     keeps_program: bool
+    aims: Options
     bases: Options
     frames: Options
     examples: Options

@@ -27,6 +27,7 @@ from app.web.ui.orders import PressDep
 from app.web.ui.plot import Plot, line_plot
 from app.web.ui.render import page
 from app.web.ui.strategy_forms import (
+    AIMS,
     BASES,
     CHOICES,
     FRAMES,
@@ -177,6 +178,7 @@ def _answer(
         program=table or shown_program(kept),
         hybrid=light.form(HybridForm.model_fields),
         keeps_program=kept is not None,
+        aims=AIMS,
         bases=BASES,
         frames=FRAMES,
         examples=tuple((name, one.name) for name, one in EXAMPLES.items()),

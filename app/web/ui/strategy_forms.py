@@ -58,8 +58,8 @@ CHOICES = (
 )
 LABELS = {choice.kind: choice.label for choice in CHOICES}
 AIMS = (
-    (IntervalAim.MIDDLE.value, "where the sun will be in the middle"),
-    (IntervalAim.NOW.value, "where it is"),
+    (IntervalAim.MIDDLE.value, "half an interval ahead"),
+    (IntervalAim.NOW.value, "to where the sun is"),
 )
 BASES = (
     (TimeBase.SOLAR.value, "Solar time"),
