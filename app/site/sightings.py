@@ -8,7 +8,9 @@ from app.site.model import SiteModel
 from app.site.tracker_setup import refuse_while_busy
 from app.tracker.alignment import fit
 from app.tracker.commands import CommandRejected
+from app.tracker.config import TrackerConfig
 from app.tracker.memory import Pointing, Sighting
+from app.tracker.mounts.abilities import abilities
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind
 
@@ -47,6 +49,7 @@ def _sighting(model: SiteModel, loop: TrackerLoop) -> Sighting:
     if loop.memory.home is None:
         reasons.append(Reason("not_homed", "The zero is not known.", "Do step 3 first."))
     reasons.extend(model.timekeeper.reasons())
+    reasons.extend(_no_sightings(loop.config))
     if reasons or sun is None or feedback is None:
         raise CommandRejected(*reasons)
     elevation_deg = sun.apparent_elevation_deg if loop.config.refraction else sun.elevation_deg
@@ -59,10 +62,26 @@ def _sighting(model: SiteModel, loop: TrackerLoop) -> Sighting:
     )
 
 
+def _no_sightings(config: TrackerConfig) -> tuple[Reason, ...]:
+    """Return that views of the sun do not correct the pointing of this mount."""
+    known = abilities(config.mount)
+    if known.sightings:
+        return ()
+    return (
+        Reason(
+            "mount_without_sightings",
+            f"The pointing of a {known.title.lower()} mount cannot be corrected by views of the sun.",
+            "Align the axis, set its azimuth and tilt on the mount page, and set the zero with a level.",
+        ),
+    )
+
+
 async def apply(model: SiteModel, given: ApplySightings, actor: str) -> tuple[Event, ...]:
     """Correct with what the kept sightings fit to; none: forget the correction."""
     loop = model.tracker(given.tracker_id)
     refuse_while_busy(model, loop)
+    if given.keep and (reasons := _no_sightings(loop.config)):
+        raise CommandRejected(*reasons)
     pointing = fit(given.keep) if given.keep else Pointing()
     message = (
         f"The pointing correction was fitted to {len(given.keep)} sightings."

@@ -22,7 +22,7 @@ class AxisWords:
 class MountAbilities:
     """What a mount is and which modes it has, by the names that people read; `second` None: no such axis.
 
-    `backtracks`: it may stand in rows. `sightings`: a view of the sun can correct its pointing, and
+    `backtracks`: it may stand in rows. `sightings`: views of the sun can correct its pointing, and
     `leans`: also for a mast that is not upright.
     """
 
@@ -82,7 +82,7 @@ ABILITIES: dict[MountKind, MountAbilities] = {
             Mode.DUAL: "Dual-axis tracking",
         },
         backtracks=False,
-        sightings=True,
+        sightings=False,
         leans=False,
     ),
     MountKind.HORIZONTAL_SINGLE_AXIS: MountAbilities(
