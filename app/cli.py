@@ -15,6 +15,7 @@ import typer
 from app.build import VERSION
 from app.cli_drives import drive_sim, fault_proxy
 from app.cli_profiles import drive
+from app.cli_strategies import strategies
 from app.cli_study import compare, study
 from app.cli_sun import accuracy, reproduce
 from app.clock import SystemClock
@@ -50,6 +51,7 @@ cli = typer.Typer(
 
 cli.add_typer(drive)
 cli.command()(drive_sim)
+cli.command()(strategies)
 cli.command()(fault_proxy)
 cli.command()(accuracy)
 cli.command("papers")(reproduce)

@@ -208,7 +208,9 @@ def test_a_drive_that_reports_a_lost_zero_is_believed(axis: Axis) -> None:
     lost = AxisFeedback(0.0, 0.0, moving=False, homed=False)
     script.reading = replace(script.reading, **{axis.value: lost})
     script.tick()
-    assert f"the {axis} axis of Tracker 1 has lost its zero" in script.happened(EventKind.HOME_LOST)[0].message
+    assert (
+        f"the {axis} axis of Tracker 1 has lost its zero" in script.happened(EventKind.HOME_LOST)[0].message
+    )
 
 
 def test_an_encoder_jump_ends_the_trust_and_an_ordinary_stop_does_not() -> None:

@@ -22,8 +22,9 @@ HTMX = {"HX-Request": "true", "HX-Request-Type": "partial"}
 PAGES = (
     "/", T1, f"{T1}/commissioning/location", f"{T1}/commissioning/clock", f"{T1}/commissioning/homing",
     f"{T1}/commissioning/mode", f"{T1}/commissioning/mode/orientation", f"{T1}/commissioning/run",
-    f"{T1}/sun-check", f"{T1}/record", f"{T1}/settings", f"{T1}/drive", f"{T1}/proofs", f"{T1}/show", "/recordings", "/recordings/show-1",
-    "/recordings/show-1?with=day-1", "/simulate", "/studies", "/studies/program", "/accuracy", "/papers", "/journal", "/journal?tracker=T1",
+    f"{T1}/sun-check", f"{T1}/record", f"{T1}/settings", f"{T1}/drive", f"{T1}/proofs", f"{T1}/show",
+    "/recordings", "/recordings/show-1", "/recordings/show-1?with=day-1", "/simulate", "/studies",
+    "/studies/program", "/accuracy", "/papers", "/journal", "/journal?tracker=T1",
 )  # fmt: skip
 
 

@@ -111,6 +111,23 @@ async def test_what_cannot_be_studied_is_refused_with_a_sentence(
     assert (await client.get(f"{V1}/studies")).json() == []
 
 
+async def test_a_tracker_is_studied_as_its_controller_moves_it(client: httpx.AsyncClient) -> None:
+    asked = {
+        **DAY,
+        "tracker_id": "T1",
+        "fidelity": "controller",
+        "modes": ["azimuth"],
+        "strategies": ["interval"],
+    }
+    begun = await client.post(f"{V1}/studies", json=asked)
+    found = await ended(client, begun.json()["study_id"])
+    assert found["state"]["status"] == "done", found["state"]["message"]
+    case = found["result"]["cases"][1]
+    assert case["mode"] == "azimuth"
+    assert case["net_gain_percent"] > 20.0
+    assert 0.0 < case["largest_error_deg"] < 15.0
+
+
 async def test_unknown_things_are_404(client: httpx.AsyncClient) -> None:
     for path in ("studies/20260101T000000-abcdef", "studies/..%2f..", "studies/nonsense"):
         assert (await client.get(f"{V1}/{path}")).status_code == 404
