@@ -6,7 +6,7 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-ON_PROCESSES := tests/drives tests/machine tests/browser tests/e2e
+ON_PROCESSES := tests/drives/timed tests/machine tests/browser tests/e2e
 
 .DEFAULT_GOAL := help
 .PHONY: help setup fast run test check bench format lock browser system-packages clean
