@@ -6,6 +6,8 @@ from typing import assert_never
 
 from app.sun.position import Algorithm
 from app.tracker.axes import AZIMUTH_DEFAULT, ELEVATION_DEFAULT, Axis, AxisConfig
+from app.tracker.orientation import Orientation as Orientation
+from app.tracker.protections.config import ProtectionConfig
 from app.tracker.strategy import DEADBAND, NO_HYBRID, HybridConfig, Strategy
 
 
@@ -115,14 +117,6 @@ class DriveConfig:
                 assert_never(never)
 
 
-@dataclass(frozen=True, slots=True)
-class Orientation:
-    """A direction of the panel's normal: azimuth from north clockwise, elevation above the horizon."""
-
-    azimuth_deg: float
-    elevation_deg: float
-
-
 class MountKind(StrEnum):
     """How the panel hangs on its axes."""
 
@@ -217,6 +211,7 @@ class TrackerConfig:
     strategy: Strategy = DEADBAND
     hybrid: HybridConfig = NO_HYBRID
     mount: MountConfig = MountConfig()
+    protection: ProtectionConfig = ProtectionConfig()
 
     def axis(self, axis: Axis) -> AxisConfig:
         """Return the configuration of one axis."""

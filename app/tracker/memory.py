@@ -8,6 +8,8 @@ from app.sun.position import Location
 from app.tracker.config import DriveConfig, Orientation, TrackerConfig
 from app.tracker.mode import Mode
 from app.tracker.proofs import Proofs
+from app.tracker.protections.words import MaintenanceLock, Protection, StowName
+from app.tracker.weather import Quantity
 
 
 class StepName(StrEnum):
@@ -69,7 +71,9 @@ class TrackerMemory:
     """The latches of one tracker: on disk before the command that changes them is acknowledged.
 
     `home_lost` says why a zero that was set is no longer trusted; `former_drive` are the drive settings
-    before the last change, so that it can be undone.
+    before the last change, so that it can be undone. `stow` is the place it was sent to by command and stays
+    in until it is resumed or commanded otherwise; `protection` is the one that holds, which must be seen good
+    before tracking goes on; `sensors` are those that were ever seen, so that they can be missed.
     """
 
     mode: Mode | None = None
@@ -85,6 +89,10 @@ class TrackerMemory:
     pointing: Pointing = Pointing()
     proofs: Proofs = field(default_factory=Proofs)
     former_drive: DriveConfig | None = None
+    stow: StowName | None = None
+    protection: Protection | None = None
+    sensors: tuple[Quantity, ...] = ()
+    lock: MaintenanceLock | None = None
 
 
 @dataclass(frozen=True, slots=True)

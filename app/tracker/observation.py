@@ -5,6 +5,7 @@ from datetime import datetime
 
 from app.sun.position import Location, SunPosition
 from app.tracker.motion import Feedback
+from app.tracker.weather import NOTHING_SENSED, Sensed
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,3 +26,4 @@ class Observation:
     clock_trusted: bool
     location: Location | None
     location_revision: int = 0
+    weather: Sensed = NOTHING_SENSED

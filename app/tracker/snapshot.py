@@ -10,8 +10,9 @@ from app.tracker.config import Orientation
 from app.tracker.hybrid import HybridPhase
 from app.tracker.mode import Mode
 from app.tracker.motion import LightReading
+from app.tracker.protections.words import MaintenanceLock, ProtectionState, StowName, WarningState
 from app.tracker.reason import Reason
-from app.tracker.weather import WeatherNow
+from app.tracker.weather import Quality, Quantity, WeatherNow
 
 
 class ActivityName(StrEnum):
@@ -27,6 +28,8 @@ class ActivityName(StrEnum):
     STOPPING = "stopping"
     FAULTED = "faulted"
     MEASURING = "measuring"
+    STOWING = "stowing"
+    STOWED = "stowed"
 
 
 class ShowPhase(StrEnum):
@@ -105,6 +108,25 @@ class HybridState:
 
 
 @dataclass(frozen=True, slots=True)
+class SensorState:
+    """What one protection goes by: the value and the limit it is judged against, and what it means now.
+
+    `enabled` is the setting; `known` says that there is such a sensor, seen or required. Units are m/s, kg
+    and W/m2.
+    """
+
+    quantity: Quantity
+    enabled: bool
+    known: bool
+    value: float | None
+    limit: float
+    unit: str
+    quality: Quality
+    age_s: float | None
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Snapshot:
     """One tracker at one tick. Whatever is not known is None, never an old value.
 
@@ -113,7 +135,9 @@ class Snapshot:
     degrees; `position_age_s` is the age of the last good reading. `off_sun_deg` is the angle between
     the panel's normal and the sun (None while the sun is down), the correction of `hybrid` taken out.
     `waiting` says why a tracker that should move does not. `actions` maps every action to the reasons
-    that forbid it (none: allowed).
+    that forbid it (none: allowed). `protection` is what wind, snow or light demand now (None: nothing),
+    `stow` the place it is or goes to for that or by command, `not_stowed` why it does not stow although it
+    should (priority 1), `warning` counts down to a motion that nobody at the machine asked for.
     """
 
     tracker_id: str
@@ -145,6 +169,12 @@ class Snapshot:
     program: StepProgress | None = None
     hybrid: HybridState | None = None
     actions: dict[str, tuple[Reason, ...]] = field(default_factory=dict)
+    protection: ProtectionState | None = None
+    stow: StowName | None = None
+    not_stowed: Reason | None = None
+    warning: WarningState | None = None
+    lock: MaintenanceLock | None = None
+    sensors: tuple[SensorState, ...] = ()
 
 
 class EventKind(StrEnum):
@@ -190,6 +220,16 @@ class EventKind(StrEnum):
     RECORDING_DELETED = "recording_deleted"
     REMOTE_WRITTEN = "remote_written"
     REMOTE_REFUSED = "remote_refused"
+    PROTECTION_BEGAN = "protection_began"
+    PROTECTION_ENDED = "protection_ended"
+    STOW_STARTED = "stow_started"
+    STOW_ENDED = "stow_ended"
+    NOT_STOWED = "not_stowed"
+    SENSOR_DOUBTED = "sensor_doubted"
+    SENSOR_TRUSTED = "sensor_trusted"
+    MOTION_ANNOUNCED = "motion_announced"
+    LOCKED_OUT = "locked_out"
+    LOCK_RELEASED = "lock_released"
 
 
 @dataclass(frozen=True, slots=True)

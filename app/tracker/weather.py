@@ -1,8 +1,9 @@
 """What a weather station of the site measured, and how old that is."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from datetime import datetime
+from enum import StrEnum
 from math import isfinite
 
 RANGES = {
@@ -53,11 +54,71 @@ class Weather:
                 yield f"{title} must be a number from {low:g} to {high:g} {unit}, not {value:g}."
 
 
+class Quantity(StrEnum):
+    """What the protections judge."""
+
+    WIND = "wind"
+    SNOW = "snow"
+    LIGHT = "light"
+
+
+class Quality(StrEnum):
+    """Whether a reading may be relied on, and if not, why."""
+
+    GOOD = "good"
+    MISSING = "missing"
+    STALE = "stale"
+    FROZEN = "frozen"
+    IMPOSSIBLE = "impossible"
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """One quantity: its newest value, how old that is by the steady time, who sent it, and its quality."""
+
+    value: float | None = None
+    quality: Quality = Quality.MISSING
+    age_s: float | None = None
+    source: str = ""
+
+    @property
+    def good(self) -> float | None:
+        """Return the value if it may be relied on."""
+        return self.value if self.quality is Quality.GOOD else None
+
+
+NO_READING = Reading()
+
+
+@dataclass(frozen=True, slots=True)
+class Sensed:
+    """What one tick of a tracker is told of the weather.
+
+    `wind` is the gust, the fastest wind of the last 3 s; `wind_mean_mps` the mean of up to 10 minutes, None
+    without a sample; `wind_from_deg` where a good reading says that it comes from, clockwise from north.
+    """
+
+    wind: Reading = NO_READING
+    snow: Reading = NO_READING
+    light: Reading = NO_READING
+    wind_mean_mps: float | None = None
+    wind_from_deg: float | None = None
+
+    def reading(self, quantity: Quantity) -> Reading:
+        """Return one quantity."""
+        return {Quantity.WIND: self.wind, Quantity.SNOW: self.snow, Quantity.LIGHT: self.light}[quantity]
+
+
+NOTHING_SENSED = Sensed()
+
+
 @dataclass(frozen=True, slots=True)
 class WeatherNow:
-    """The newest report: what it holds, when it was measured, its age now, who sent it.
+    """The newest value of every quantity; age and source are those of the newest report.
 
-    A stale one is older than the site allows: it is shown with its age and must not be used.
+    A stale one is older than the site allows: it is shown with its age and must not be used. `quantities`
+    tells age, source and quality of each value; `gust_mps` is the fastest wind of the last 3 s, `mean_mps` the
+    mean of up to 10 minutes.
     """
 
     readings: Weather
@@ -65,6 +126,9 @@ class WeatherNow:
     age_s: float
     stale: bool
     source: str
+    quantities: dict[str, Reading] = field(default_factory=dict)
+    gust_mps: float | None = None
+    mean_mps: float | None = None
 
     @property
     def usable(self) -> Weather | None:

@@ -1,0 +1,77 @@
+"""The words of the protections: what may hold, where a panel is stowed, what a bad reading does."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+
+from app.tracker.reason import Reason
+
+
+class Protection(StrEnum):
+    """What may hold, the strongest first; the names are those of Xia et al., in small letters."""
+
+    TYPHOON = "typhoon"
+    SNOW = "snow"
+    NIGHT = "night"
+    WAIT = "wait"
+    HIBERNATE = "hibernate"
+    TRACK = "track"
+
+
+class StowName(StrEnum):
+    """The places that a panel is stowed in; `park` is the park position."""
+
+    WIND = "wind"
+    SNOW = "snow"
+    HAIL = "hail"
+    CLEANING = "cleaning"
+    MAINTENANCE = "maintenance"
+    PARK = "park"
+
+
+class Reaction(StrEnum):
+    """What a reading that is missing, stale, frozen or impossible does."""
+
+    IGNORE = "ignore"
+    WARN = "warn"
+    HOLD = "hold"
+    STOW = "stow"
+
+
+class Facing(StrEnum):
+    """What the panel turns towards the wind when it is stowed."""
+
+    ANYTHING = "anything"
+    EDGE = "edge"
+    BACK = "back"
+
+
+@dataclass(frozen=True, slots=True)
+class ProtectionState:
+    """The protection that holds: since when, until when at the earliest (None: not known), and why.
+
+    Both instants are by the site's clock, as a snapshot's `at`.
+    """
+
+    protection: Protection
+    since: datetime
+    earliest_end: datetime | None
+    reason: Reason
+
+
+@dataclass(frozen=True, slots=True)
+class WarningState:
+    """A motion that nobody at the machine asked for begins in `remaining_s` seconds; Stop prevents it."""
+
+    remaining_s: float
+    reason: Reason
+
+
+@dataclass(frozen=True, slots=True)
+class MaintenanceLock:
+    """Somebody works on the machine: nothing moves it automatically until the lock is released."""
+
+    name: str
+    by: str
+    since: datetime
+    reason: str
