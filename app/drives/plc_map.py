@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple
 
-from app.drives.profile import Profile, ProfileError
+from app.drives.profile import Profile
 from app.drives.register import Register
 from app.tracker.axes import Axis
 from app.tracker.motion import (
@@ -190,7 +190,7 @@ def _switch_flags(feedback: Feedback) -> dict[str, bool]:
 
 
 def _packed(bits: Mapping[str, int], flags: Mapping[str, bool]) -> int:
-    return sum(1 << bit for name, bit in bits.items() if flags[name])
+    return sum(1 << bit for name, bit in bits.items() if flags.get(name, False))
 
 
 def _flag(bits: Mapping[str, int], name: str, word: int) -> bool:
@@ -202,22 +202,22 @@ def _check(profile: Profile) -> None:
     """Raise `ProfileError` unless the profile names everything the adapter needs."""
     for name in NEEDED:
         if name not in profile.registers:
-            raise ProfileError(f"Profile {profile.name}: a plc needs a register named {name}.")
+            raise profile.text.error(f"registers.{name}", f"a plc needs a register named {name}")
     if "status" not in profile.blocks:
-        raise ProfileError(f"Profile {profile.name}: a plc needs a block named status.")
+        raise profile.text.error("blocks.status", "a plc needs a block named status")
     if "status" not in profile.bits:
-        raise ProfileError(f"Profile {profile.name}: a plc needs the bits of its status register.")
+        raise profile.text.error("bits.status", "a plc needs the bits of its status register")
     for enum, words in NEEDED_ENUMS.items():
         for word in words:
             if word not in profile.enums.get(enum, {}):
-                raise ProfileError(f"Profile {profile.name}: the enumeration {enum} needs the word {word}.")
+                raise profile.text.error(f"enums.{enum}", f"the enumeration {enum} needs the word {word}")
     _check_block(profile)
 
 
 def _check_block(profile: Profile) -> None:
-    block = profile.blocks["status"]
-    inside = range(block.address, block.address + block.count)
-    for name in (*NEEDED, *(light for light in LIGHT if light in profile.registers)):
+    inside = profile.blocks["status"].addresses
+    others = (*LIGHT, *(name for name in profile.bits if name == "switches"))
+    for name in (*NEEDED, *(other for other in others if other in profile.registers)):
         register: Register = profile.registers[name]
         if not all(address in inside for address in register.addresses):
-            raise ProfileError(f"Profile {profile.name}: register {name} lies outside the status block.")
+            raise profile.text.error(f"registers.{name}.address", f"{name} lies outside the status block")

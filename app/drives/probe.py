@@ -8,6 +8,7 @@ from app.drives.drive import DriveError, DriveRefused, DriveSilent
 from app.drives.line import list_ports
 from app.drives.profile import Adapter, Profile, ProfileError
 from app.drives.profile_library import ProfileLibrary
+from app.drives.profile_rules import has_words
 from app.drives.register import Register
 from app.drives.sunspec_models import located
 from app.tracker.config import DriveConfig, DriveKind
@@ -131,7 +132,7 @@ def _shown(profile: Profile, register: Register, words: Words) -> str:
         names = [name for name, bit in bits.items() if value >> bit & 1]
         return f"{value} ({', '.join(names) or 'none set'})"
     for name, numbers in profile.enums.items():
-        if register.name == name or register.name.endswith(f"_{name}"):
+        if has_words(register.name, name):
             value = register.integer(read, first)
             word = next((word for word, number in numbers.items() if number == value), "unknown")
             return f"{value} ({word})"

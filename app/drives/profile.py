@@ -6,6 +6,15 @@ from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
+from app.drives.profile_rules import (
+    LAST_ADDRESS,
+    check_bits,
+    check_blocks,
+    check_enums,
+    check_name,
+    check_registers,
+    check_step,
+)
 from app.drives.profile_text import ProfileError as ProfileError
 from app.drives.profile_text import Source, Table
 from app.drives.register import Access, Register, WordOrder, WordType
@@ -14,7 +23,8 @@ from app.drives.wire import Timing
 PROFILES = Path(__file__).parent / "profiles"
 SUFFIX = ".toml"
 MOST_REGISTERS = 125
-LAST_ADDRESS = 0xFFFF
+DEFAULT_TIMEOUT_MS = 300
+LAST_BIT = 31
 
 
 class Adapter(StrEnum):
@@ -44,6 +54,11 @@ class Block:
     name: str
     address: int
     count: int
+
+    @property
+    def addresses(self) -> range:
+        """Return the addresses that the block takes."""
+        return range(self.address, self.address + self.count)
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +103,7 @@ class Profile:
     enums: Mapping[str, Mapping[str, int]]
     sequences: Mapping[str, tuple[SequenceStep, ...]]
     steps_per_revolution: float
+    text: Source
 
     @property
     def unverified(self) -> tuple[str, ...]:
@@ -103,8 +119,7 @@ class Profile:
     def block_of(self, register: Register) -> Block | None:
         """Return the block that a register is read with, None if it is read alone."""
         for block in self.blocks.values():
-            inside = range(block.address, block.address + block.count)
-            if all(address in inside for address in register.addresses):
+            if all(address in block.addresses for address in register.addresses):
                 return block
         return None
 
@@ -125,12 +140,22 @@ def load_profile(name: str) -> Profile:
     """Return a profile by its name or by the path of its file, or raise `ProfileError`."""
     path = Path(name) if name.endswith(SUFFIX) else PROFILES / f"{name}{SUFFIX}"
     try:
-        text = path.read_text(encoding="utf-8")
+        return read_profile(path)
     except OSError as error:
         raise ProfileError(
             f"There is no drive profile {name!r}. Choose one of {', '.join(known_profiles())}, "
             "or give the path of a .toml file."
         ) from error
+
+
+def read_profile(path: Path) -> Profile:
+    """Return the profile in a file, or raise `ProfileError` or `OSError`."""
+    content = path.read_bytes()
+    try:
+        text = content.decode()
+    except UnicodeDecodeError as error:
+        line = content[: error.start].count(b"\n") + 1
+        raise ProfileError(f"{path.name}, line {line}: this is not UTF-8 text. Save it as UTF-8.") from error
     return parse_profile(text, path.name)
 
 
@@ -140,8 +165,14 @@ def parse_profile(text: str, file: str) -> Profile:
         content = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ProfileError(f"{file}: this is not TOML: {error}.") from error
-    profile = _profile(Table(content, Source(file, text)))
-    _check_overlaps(profile, Source(file, text))
+    source = Source(file, text)
+    profile = _profile(Table(content, source))
+    check_name(profile.name, source)
+    check_registers(profile.registers, source)
+    blocks = {name: block.addresses for name, block in profile.blocks.items()}
+    check_blocks(blocks, profile.registers, source)
+    check_bits(profile.bits, profile.registers, source)
+    check_enums(profile.enums, profile.registers, source)
     return profile
 
 
@@ -174,17 +205,18 @@ def _profile(top: Table) -> Profile:
         word_order=order,
         verified=verified and all(register.verified for register in registers.values()),
         source=source,
-        timeout_ms=timing.whole("timeout_ms", 20, 5000, 300),
+        timeout_ms=timing.whole("timeout_ms", 20, 5000, DEFAULT_TIMEOUT_MS),
         poll_ms=timing.whole("poll_ms", 20, 5000, 100),
         rest_ms=timing.whole("rest_ms", 0, 1000, 0),
-        longest_reply_ms=timing.whole("longest_reply_ms", 0, 5000, 0),
+        longest_reply_ms=_longest_reply_ms(timing),
         watchdog=_watchdog(top.table("watchdog"), registers),
         blocks={name: _block(name, top.table("blocks").table(name)) for name in top.table("blocks").content},
         registers=registers,
-        bits={name: _numbers(top.table("bits").table(name), 15) for name in top.table("bits").content},
+        bits={name: _numbers(top.table("bits").table(name), LAST_BIT) for name in top.table("bits").content},
         enums=enums,
         sequences=_sequences(top, registers, enums),
         steps_per_revolution=_steps(top.table("axis")),
+        text=top.source,
     )
 
 
@@ -213,6 +245,14 @@ def _register(name: str, row: Table, order: WordOrder, source: str, *, verified:
         verified=row.get("verified", bool, verified),
         optional=row.get("optional", bool, False),
     )
+
+
+def _longest_reply_ms(timing: Table) -> int:
+    timeout_ms = timing.whole("timeout_ms", 20, 5000, DEFAULT_TIMEOUT_MS)
+    longest_ms = timing.whole("longest_reply_ms", 0, 5000, 0)
+    if 0 < longest_ms < timeout_ms:
+        raise timing.error("longest_reply_ms", f"must not be shorter than timeout_ms, {timeout_ms}")
+    return longest_ms
 
 
 def _block(name: str, row: Table) -> Block:
@@ -261,16 +301,18 @@ def _step(
     enums: Mapping[str, Mapping[str, int]],
 ) -> SequenceStep:
     """Return the write that `register = word or number` says."""
-    register, _, value = (part.strip() for part in text.partition("="))
+    register, equals, value = (part.strip() for part in text.partition("="))
+    if not equals:
+        raise table.error(name, f"{text!r} must be written as 'register = word' or 'register = number'")
     if register not in registers:
         raise table.error(name, f"{text!r} names no register")
     words = enums.get(register, {})
-    if value in words:
-        return SequenceStep(register, words[value])
     try:
-        return SequenceStep(register, int(value, 0))
+        number = words[value] if value in words else int(value, 0)
     except ValueError as error:
         raise table.error(name, f"{text!r} needs a number or one of the words in enums.{register}") from error
+    check_step(registers[register], number, f"{table.path}{name}", table.source)
+    return SequenceStep(register, number)
 
 
 def _numbers(row: Table, highest: int) -> dict[str, int]:
@@ -279,15 +321,3 @@ def _numbers(row: Table, highest: int) -> dict[str, int]:
         if list(numbers.values()).count(number) > 1:
             raise row.error(name, f"has the number {number}, which is given twice")
     return numbers
-
-
-def _check_overlaps(profile: Profile, source: Source) -> None:
-    taken: dict[int, str] = {}
-    for register in profile.registers.values():
-        for address in register.addresses:
-            if address in taken:
-                raise source.error(
-                    f"registers.{register.name}.address",
-                    f"address {address} is taken by {taken[address]}",
-                )
-            taken[address] = register.name

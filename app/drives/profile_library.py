@@ -1,12 +1,10 @@
 """The profiles that may be chosen by name: those that ship, and the engineer's own in the data folder."""
 
-import re
 from functools import lru_cache
 from pathlib import Path
 
-from app.drives.profile import PROFILES, SUFFIX, Profile, ProfileError, known_profiles, parse_profile
-
-NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
+from app.drives.profile import PROFILES, SUFFIX, Profile, ProfileError, known_profiles, read_profile
+from app.drives.profile_rules import NAME
 
 
 class ProfileLibrary:
@@ -37,4 +35,4 @@ class ProfileLibrary:
 
 @lru_cache(maxsize=64)
 def _read(path: Path, changed_ns: int) -> Profile:  # the time of the last change belongs to the key
-    return parse_profile(path.read_text(encoding="utf-8"), path.name)
+    return read_profile(path)

@@ -83,11 +83,11 @@ def check_needs(profile: Profile) -> None:
     needs = NEEDS[profile.adapter]
     for name in needs.registers:
         if name not in profile.registers:
-            raise _error(profile, f"needs a register named {name}")
+            raise _error(profile, f"registers.{name}", f"needs a register named {name}")
     _check_words(profile, needs)
     for name in needs.sequences:
         if name not in profile.sequences:
-            raise _error(profile, f"needs a sequence named {name}")
+            raise _error(profile, f"sequences.{name}", f"needs a sequence named {name}")
     _check_units(profile, needs.speeds, SPEEDS)
     _check_units(profile, needs.ramps, RAMPS)
 
@@ -100,15 +100,16 @@ def _check_words(profile: Profile, needs: Needs) -> None:
         for name, words in wanted.items():
             for word in words:
                 if word not in given.get(name, {}):
-                    raise _error(profile, f"needs {word} in {table}.{name}")
+                    raise _error(profile, f"{table}.{name}.{word}", f"needs {word} in {table}.{name}")
 
 
 def _check_units(profile: Profile, names: tuple[str, ...], known: Mapping[str, object]) -> None:
     for name in names:
         register = profile.registers.get(name)
         if register is not None and register.unit not in known:
-            raise _error(profile, f"needs {' or '.join(known)} as the unit of {name}")
+            rule = f"needs {' or '.join(known)} as the unit of {name}, not {register.unit!r}"
+            raise _error(profile, f"registers.{name}.unit", rule)
 
 
-def _error(profile: Profile, rule: str) -> ProfileError:
-    return ProfileError(f"Profile {profile.name}: adapter {profile.adapter} {rule}.")
+def _error(profile: Profile, key: str, rule: str) -> ProfileError:
+    return profile.text.error(key, f"adapter {profile.adapter} {rule}")

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from math import isfinite
 from typing import Any, TypeVar
 
 from app.drives.drive import DriveError
@@ -32,7 +33,7 @@ class Source:
         for number, line in enumerate(self.text.splitlines(), start=1):
             bare = line.strip()
             if bare.startswith("["):
-                section = bare.strip("[]").strip() + "."
+                section = bare.partition("#")[0].strip().strip("[]").strip() + "."
                 here = section.rstrip(".")
             else:
                 here = section + bare.partition("=")[0].strip()
@@ -73,7 +74,7 @@ class Table:
             raise self.error(key, "is missing")
         if kind is float and type(value) is int:
             value = float(value)
-        if type(value) is not kind:
+        if type(value) is not kind or (isinstance(value, float) and not isfinite(value)):
             raise self.error(key, f"must be {_KINDS[kind]}, not {value!r}")
         return value
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from app.drives.profile import Profile
-from app.drives.register import runs
+from app.drives.register import Access, runs
 from app.drives.rtu_frame import request_frame
 from app.drives.wire import Ask
 
@@ -15,6 +15,8 @@ def write_frame(profile: Profile, values: Mapping[str, float], unit: int) -> byt
         register = profile.registers.get(name)
         if register is None:
             raise ValueError(f"Profile {profile.name} has no register {name!r}.")
+        if register.access is Access.READ:
+            raise ValueError(f"Register {name} of profile {profile.name} can only be read.")
         words |= dict(zip(register.addresses, register.words(value), strict=True))
     frames = runs(words, words)
     if len(frames) != 1:

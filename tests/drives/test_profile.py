@@ -54,6 +54,16 @@ WRONG = {
     "watchdog without register": ('register = "keep_alive"', 'register = "nothing"', "names no register"),
     "block too large": ("count = 40", "count = 126", "between 1 and 125"),
     "not TOML": ("[timing]", "[timing", "not TOML.*line"),
+    "name with a blank": ('"simulated-plc"', '"Simulated PLC"', r"line \d+, name: .*lower-case"),
+    "bits of nothing": ("[bits.switches]", "[bits.switch]", r"line \d+, bits.switch: .*no register switch"),
+    "words of nothing": ("[enums.motion]", "[enums.motions]", r"line \d+, enums.motions: .*no register"),
+    "block that cuts": ("count = 40", "count = 11", r"line \d+, blocks.status: cuts register elev"),
+    "empty block": ("address = 0, count = 40", "address = 900, count = 40", "blocks.status: holds no"),
+    "block past the end": ("address = 0, count = 40", "address = 65530, count = 40", "not at 65569"),
+    "wide at the end": ("position = { address = 8,", "position = { address = 0xFFFF,", "second word"),
+    "bounds turned": ("minimum = -1080,", "minimum = 2080,", r"line \d+, .*minimum: must not lie above"),
+    "scale not a number": ("scale = 0.001, unit = \"deg\"", "scale = nan, unit = \"deg\"", "not nan"),
+    "late before too late": ("poll_ms = 100", "longest_reply_ms = 20", r"line \d+, .*shorter than timeout"),
 }  # fmt: skip
 
 
@@ -69,9 +79,10 @@ def test_a_wrong_profile_is_refused_with_file_line_and_rule(name: str) -> None:
 LACKING = {
     "a register": ("keep_alive = {", "kept_alive = {", "needs a register named keep_alive"),
     "a block": ("status = { address = 0, count", "stat = { address = 0, count", "block named status"),
-    "status bits": ("[bits.status]", "[bits.state]", "needs the bits"),
+    "status bits": ("[bits.status]", "[bits.echo]", "needs the bits"),
     "a word": ("velocity = 1\n", "speed = 1\n", "needs the word velocity"),
     "room in the block": ("count = 40", "count = 20", "outside the status block"),
+    "switches in the block": ("switches = { address = 6,", "switches = { address = 99,", "switches lies out"),
 }  # fmt: skip
 
 
@@ -81,6 +92,26 @@ def test_a_profile_that_lacks_what_a_plc_needs_is_refused(name: str) -> None:
     text = TEXT.replace(right, wrong, 1).replace('register = "keep_alive"', 'register = "echo"')
     with pytest.raises(ProfileError, match=sentence):
         PlcMap(parse_profile(text, "own.toml"))
+
+
+def test_a_file_in_another_encoding_is_told_with_its_line(tmp_path: Path) -> None:
+    own = tmp_path / "own.toml"
+    own.write_bytes(TEXT.replace("Simulated PLC with", "Simulierte Antriebe für").encode("latin-1"))
+    with pytest.raises(ProfileError, match=r"own\.toml, line \d+: this is not UTF-8"):
+        load_profile(str(own))
+
+
+def test_a_table_is_found_in_spite_of_its_comment() -> None:
+    text = TEXT.replace("[bits.status]", "[bits.status]   # what moves").replace("homing = 4", "homing = 40")
+    line = next(number for number, one in enumerate(text.splitlines(), 1) if one.startswith("homing = 40"))
+    with pytest.raises(ProfileError, match=rf"line {line}, bits\.status\.homing: must lie between"):
+        parse_profile(text, "own.toml")
+
+
+def test_a_wide_register_has_32_bits() -> None:
+    text = (PROFILES / "kinco-cia402.toml").read_text(encoding="utf-8")
+    text = text.replace("origin = 2", "origin = 2\nbrake = 31")
+    assert parse_profile(text, "own.toml").bits["inputs"]["brake"] == 31
 
 
 def test_a_line_that_is_not_verified_makes_the_profile_unverified() -> None:

@@ -36,7 +36,7 @@ LACKING = {
     ),
     "a known ramp": ("leadshine-rs", '"ms/1000rpm"', '"s"', "needs steps/s2 or ms/1000rpm as the unit"),
     "a sequence": ("oriental-az", "set_zero = [", "zero = [", "needs a sequence named set_zero"),
-    "a model's point": ("sunspec-601", "control = {", "ctl = {", "needs a register named control"),
+    "a model's point": ("sunspec-601", "scale = {", "power = {", "needs a register named scale"),
 }
 
 
@@ -46,7 +46,7 @@ def test_a_profile_that_lacks_what_its_adapter_needs_is_refused(what: str) -> No
     text = text_of(name)
     assert right in text
     profile = parse_profile(text.replace(right, wrong, 1), "own.toml")
-    with pytest.raises(ProfileError, match=sentence):
+    with pytest.raises(ProfileError, match=rf"^own\.toml, line \d+, .*{sentence}"):
         check_needs(profile)
 
 
@@ -54,6 +54,9 @@ WRONG = {
     "a step without a register": ('"control = reset_alarm"', '"contrl = 1"', r"line \d+.*names no register"),
     "a step without a number": ('"control = reset_alarm"', '"control = sing"', "words in enums.control"),
     "a sequence that is a text": ('["enable = 1"]', '"enable = 1"', "a list of texts"),
+    "a step that is only read": ('"enable = 1"', '"status = 1"', r"line \d+, .*can only be read"),
+    "a step that does not fit": ('"enable = 1"', '"enable = 70000"', r"line \d+, .*does not fit into enable"),
+    "a step without =": ('"enable = 1"', '"enable 1"', "must be written as"),
     "no steps": ("steps_per_revolution = 10000 ", "steps_per_revolution = 0 ", "above zero"),
 }
 
