@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from app.papers.document import document
 from app.papers.library import LIBRARY, papers, text
 from app.sun.accuracy import Question, survey
 from app.sun.accuracy_table import table
@@ -35,6 +36,7 @@ def reproduce(
     paper: Annotated[list[str] | None, typer.Option(help=f"One of {', '.join(LIBRARY)}; or all.")] = None,
     *,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    markdown: Annotated[bool, typer.Option("--markdown", help="Print Markdown, as docs/papers.md.")] = False,
 ) -> None:
     """Print what the five papers publish, what comes out when it is computed, and the difference."""
     found = papers(tuple(paper or ()))
@@ -43,4 +45,4 @@ def reproduce(
             json.dumps([PaperReport.of(one).model_dump() for one in found], ensure_ascii=False, indent=2)
         )
         return
-    typer.echo(text(found))
+    typer.echo(document(found) if markdown else text(found))

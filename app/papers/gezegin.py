@@ -11,7 +11,7 @@ from app.papers.koblick_printed import (
     growing_eccentricity,
 )
 from app.papers.result import Erratum, Figure, Gap, Group, Paper
-from app.papers.sampling import from_spa, told, worse
+from app.papers.sampling import figures, from_spa, told, worse
 from app.sun import koblick
 from app.sun.algorithms import PUBLISHED, Algorithm
 from app.sun.trigonometry import ARRAY, Array
@@ -92,7 +92,8 @@ def _measured() -> tuple[Erratum, ...]:
         ),
         Erratum(
             "eq 20", "− Alt/149598000", "nothing: the term is no parallax",
-            f"sun moved by up to {_altitude_effect(4.0):.1g}° at 4 km; by {_altitude_effect(4000.0):.1g}° "
+            f"sun moved by up to {figures(_altitude_effect(4.0), 1)}° at 4 km; by "
+            f"{figures(_altitude_effect(4000.0), 1)}° "
             "where 4000 m are entered as if they were km",
         ),
         Erratum(
@@ -118,6 +119,7 @@ def _fatal() -> tuple[Erratum, ...]:
 
 
 GAPS = (
+    Gap("Figures 1 and 2", "They count publications by year and country, from a survey that it cites."),
     Gap("Power and energy of the modes", "The paper describes them and prints no measurement."),
     Gap("Tracking accuracy of the built tracker", "The paper prints neither encoder nor sensor readings."),
 )

@@ -54,7 +54,7 @@ def shown(figure: Figure) -> tuple[str, str, str]:
     return (
         "" if told is None else f"{told:.{figure.digits}f}",
         f"{figure.ours:.{figure.digits}f}",
-        "" if apart is None else f"{apart:+.{figure.digits}f}",
+        "" if apart is None else f"{apart:+z.{figure.digits}f}",
     )
 
 
@@ -63,12 +63,12 @@ def remarks(group: Group) -> tuple[str, ...]:
     about: dict[str, list[str]] = {}
     for figure in group.figures:
         about.setdefault(figure.remark, []).append(figure.name)
-    return tuple(f"{', '.join(names)}: {remark}" for remark, names in about.items() if remark)
+    return tuple(f"{'; '.join(names)}: {remark}" for remark, names in about.items() if remark)
 
 
 def _lines(one: Paper) -> Iterator[str]:
     yield from (f"{'=' * WIDE}", one.name, fill(one.citation, WIDE))
-    yield f"{one.agreeing} of {one.published} published figures come out."
+    yield one.summary
     for group in one.groups:
         yield from ("", group.title, fill(group.note, WIDE, initial_indent="  ", subsequent_indent="  "))
         yield f"  {'':<52}{'paper':>12}{'ours':>12}{'difference':>12}"

@@ -121,6 +121,7 @@ def _errata() -> tuple[Erratum, ...]:
 
 
 GAPS = (
+    Gap("The table of the cell's parameters", "It names them and prints no values."),
     Gap("Figure 16", "It draws Table 1 and prints no further numbers."),
     Gap(
         "Figures 12 to 15, Simulink models",

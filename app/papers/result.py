@@ -97,3 +97,12 @@ class Paper:
     def published(self) -> int:
         """Return how many figures are published."""
         return sum(group.published for group in self.groups)
+
+    @property
+    def summary(self) -> str:
+        """Return in a sentence how many of the published figures come out, and how many errata there are."""
+        errata = f"{len(self.errata)} errata, with the measured effect of each."
+        if self.published == 1:
+            comes_out = "comes out" if self.agreeing else "differs"
+            return f"The one published figure that can be computed {comes_out}. {errata}"
+        return f"{self.agreeing} of {self.published} published figures come out. {errata}"

@@ -1,6 +1,7 @@
 """One sample of instants and places, on which equations are measured against NREL SPA."""
 
 from functools import cache
+from math import floor, log10
 
 import numpy as np
 
@@ -36,7 +37,13 @@ def from_spa(position: Many) -> Spread:
 
 def told(spread: Spread) -> str:
     """Return a spread in words."""
-    return f"{spread.max_deg:.4g}° (rms {spread.rms_deg:.2g}°)"
+    return f"{figures(spread.max_deg, 4)}° (rms {figures(spread.rms_deg, 2)}°)"
+
+
+def figures(value: float, count: int) -> str:
+    """Return a number above zero with at least so many significant figures, never as a power of ten."""
+    before = floor(log10(value)) + 1
+    return f"{value:.{max(0, count - before)}f}"
 
 
 def worse(printed: Spread, right: Spread) -> str:

@@ -71,6 +71,8 @@ def test_a_paper_as_text_and_as_json(run: Run) -> None:
     assert "3 of 4 published figures come out." in out
     code, out, _ = run("papers", "--paper", "xia", "--json")
     assert [paper["key"] for paper in json.loads(out)] == ["xia"]
+    code, out, _ = run("papers", "--paper", "xia", "--markdown")
+    assert (code, "## Xia et al. (2015)\n" in out) == (0, True)
     code, _, err = run("papers", "--paper", "none")
     assert (code, "choose one of" in err) == (2, True)
 

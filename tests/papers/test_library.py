@@ -2,14 +2,21 @@
 
 import re
 from datetime import date
+from pathlib import Path
 
 import pytest
 
 from app.papers import alexandru_published
+from app.papers.document import document
 from app.papers.library import LIBRARY, UnknownPaper, paper, papers, shown, text
 from app.papers.nalini_table import TABLE_1
 from app.papers.result import Figure, Group, Standing
+from app.papers.sampling import figures as significant
 from tests.golden.table import numbers
+
+ROOT = Path(__file__).parents[2]
+NUMBER = re.compile(r"\d+(?:\.\d+)?")
+RENEW = "Renew it with: heliopanel papers --markdown > docs/papers.md"
 
 
 def figures(key: str, title: str) -> dict[str, Figure]:
@@ -93,6 +100,13 @@ def test_what_the_misprints_of_psa_cost() -> None:
     assert effect("psa-rexroth", "eq 11")[1] > 90.0
 
 
+def test_psa_in_32_bits_loses_the_sun_by_its_julian_day() -> None:
+    off = [figure.ours for figure in figures("psa-rexroth", "On a PLC").values()]
+    assert off[:2] == pytest.approx([0.053, 0.021], rel=0.03)
+    assert off[2] < 0.02
+    assert off[3] == pytest.approx(0.0036, rel=0.05)
+
+
 def test_alexandrus_energies_angles_and_lengths() -> None:
     energies = figures("alexandru", "Section 4, figure 26")
     assert energies["fixed panel"].ours == pytest.approx(1209.30, abs=0.005)
@@ -149,3 +163,25 @@ def test_figures_are_counted_and_written_with_their_digits() -> None:
     assert shown(near) == ("1.000", "1.001", "+0.001")
     assert shown(alone) == ("", "3.00", "")
     assert [figure.standing.value for figure in group.figures] == ["agrees", "differs", "measured"]
+
+
+def test_every_paper_is_summed_up_in_a_sentence() -> None:
+    sums = {key: paper(key).summary for key in LIBRARY}
+    assert sums["xia"].startswith("3 of 4 published figures come out. 7 errata")
+    assert sums["gezegin-dirik"].startswith("The one published figure that can be computed differs.")
+    assert sums["psa-rexroth"].startswith("The one published figure that can be computed comes out.")
+
+
+@pytest.mark.parametrize(
+    ("value", "count", "shown_as"), [(0.00000071, 1, "0.0000007"), (107.3, 2, "107"), (45.024, 4, "45.02")]
+)
+def test_measured_effects_are_never_powers_of_ten(value: float, count: int, shown_as: str) -> None:
+    assert significant(value, count) == shown_as
+
+
+def test_the_document_of_the_papers_is_what_is_computed() -> None:
+    """Words to the letter, numbers to a hundredth: their last digits may differ on another processor."""
+    kept, now = (ROOT / "docs" / "papers.md").read_text(), document(papers())
+    assert NUMBER.sub("#", kept).strip() == NUMBER.sub("#", now).strip(), RENEW
+    for told, found in zip(NUMBER.findall(kept), NUMBER.findall(now), strict=True):
+        assert float(told) == pytest.approx(float(found), rel=0.01, abs=0.001), RENEW

@@ -31,16 +31,11 @@ def _section(paper: Paper) -> PaperSection:
         key=paper.key,
         name=paper.name,
         citation=paper.citation,
-        summary=_summary(paper),
+        summary=paper.summary,
         groups=tuple(_table(group) for group in paper.groups),
         errata=paper.errata,
         gaps=paper.gaps,
     )
-
-
-def _summary(paper: Paper) -> str:
-    misprints = f"{len(paper.errata)} errata, with the measured effect of each."
-    return f"{paper.agreeing} of {paper.published} published figures come out. {misprints}"
 
 
 def _table(group: Group) -> GroupTable:
