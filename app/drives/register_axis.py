@@ -60,6 +60,7 @@ class RegisterAxis:
         self._last: AxisFeedback | None = None
         self._doing: AxisCommand | None = None
         self._was_enabled = False
+        self._may_turn = False
         self._is_disabled = False
         self._is_faulty = False
         self._task: _Task | None = None
@@ -68,7 +69,7 @@ class RegisterAxis:
     async def read(self) -> AxisReading:
         """Return one fresh reading, or raise `DriveError`."""
         await self._confirm()
-        values = await self.unit.poll("position", "velocity", "inputs", *self._dialect.polled)
+        values = await self.unit.look("position", "velocity", "inputs", *self._dialect.polled)
         status = self._dialect.status(values)
         position_deg = self._gearing.degrees(values["position"])
         velocity_dps = self._velocity_dps(values)
@@ -110,8 +111,7 @@ class RegisterAxis:
         self._doing = None
         self._task = _Task(kind, self._clock.now())
         if kind is RequestKind.RESET_FAULT:
-            self._is_disabled = False
-            await self._dialect.reset()
+            await self._reset()
             return
         if self._is_faulty or self._last is None or self._last.moving:
             self.abort()
@@ -127,6 +127,12 @@ class RegisterAxis:
         self.abort()
         self._doing = None
         await self._dialect.stop()
+        self._may_turn = False
+
+    async def stand(self) -> None:
+        """Ramp down if it was told to move, without a reading first; a search for the origin goes on."""
+        if self._may_turn and self._task is None:
+            await self.stop()
 
     def abort(self) -> None:
         """Call the request that is under way failed."""
@@ -154,10 +160,21 @@ class RegisterAxis:
         await self._dialect.enable()
         self._was_enabled = True
 
+    async def _reset(self) -> None:
+        """Clear a fault; a drive without one is left alone, as a reset may switch its motor off."""
+        if not self._is_faulty:
+            self._end(succeeded=True)
+            return
+        self._is_disabled = False
+        await self._dialect.reset()
+
     async def _halt(self) -> None:
-        if self._doing != Halt() and self._was_enabled:
+        """Ramp down, also from a motion that somebody else, or a life before this one, has begun."""
+        moves = self._last is not None and self._last.moving
+        if self._doing != Halt() and (self._was_enabled or moves):
             await self._dialect.halt()
             self._doing = Halt()
+            self._may_turn = False
 
     async def _move(self, command: Position, position_deg: float, speed_dps: float) -> None:
         if command == self._doing:
@@ -165,6 +182,7 @@ class RegisterAxis:
         if speed_dps <= 0.0:
             await self._halt()
             return
+        self._doing, self._may_turn = None, True
         await self._enable()
         confirmed = self._last is not None and not self._last.moving
         await self._dialect.move(self._gearing.steps(position_deg), speed_dps, confirmed=confirmed)
@@ -174,11 +192,14 @@ class RegisterAxis:
         if velocity_dps == 0.0:
             await self._halt()
             return
+        if self._has_watchdog and command == self._doing:
+            return
+        self._doing, self._may_turn = None, True
         await self._enable()
-        if not self._has_watchdog:
-            await self._step(velocity_dps)
-        elif command != self._doing:
+        if self._has_watchdog:
             await self._dialect.turn(velocity_dps)
+        else:
+            await self._step(velocity_dps)
         self._doing = command
 
     async def _step(self, velocity_dps: float) -> None:

@@ -149,7 +149,7 @@ class SunSpecDrive:
         except DriveError:
             self._doing = None
             raise
-        values = await self._unit.poll(*READ)
+        values = await self._unit.look(*READ)
         if values["scale"] == NOT_IMPLEMENTED_SCALE:
             raise DriveError(f"The tracker controller at {self._where} gives no scale for its degrees.")
         self._step_deg = 10.0 ** values["scale"]

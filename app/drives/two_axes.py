@@ -81,15 +81,19 @@ class TwoAxisDrive:
         return feedback
 
     async def write(self, command: DriveCommand) -> None:
-        """Send what changed, or raise `DriveError`; nothing is sent twice."""
+        """Send what changed, or raise `DriveError`; nothing is sent twice.
+
+        An axis that shall stand is told so even if the other one does not answer.
+        """
+        wanted = {Axis.AZIMUTH: command.azimuth, Axis.ELEVATION: command.elevation}
+        for axis, told in wanted.items():
+            self._axes[axis].unit.priority = _priority(told)
         if not all(axis.unit.is_fresh for axis in self._axes.values()):
+            await self._stand(wanted)
             await self._look_again()
-        for axis, wanted in ((Axis.AZIMUTH, command.azimuth), (Axis.ELEVATION, command.elevation)):
-            self._axes[axis].unit.priority = _priority(wanted)
         if command.request is not None and command.request.number != self._number:
             await self._begin(command.request)
-        await self._axes[Axis.AZIMUTH].write(command.azimuth)
-        await self._axes[Axis.ELEVATION].write(command.elevation)
+        await self._tell(wanted)
 
     async def stop(self) -> None:
         """Ramp both axes down ahead of everything that waits; raise `DriveError` after both were tried."""
@@ -141,6 +145,26 @@ class TwoAxisDrive:
     def _forget(self) -> None:
         for axis in self._axes.values():
             axis.forget()
+
+    async def _stand(self, wanted: Mapping[Axis, AxisCommand]) -> None:
+        """Stop what shall stand, before a reading that may fail."""
+        for axis, told in wanted.items():
+            if isinstance(told, Halt):
+                with suppress(DriveError):
+                    await self._axes[axis].stand()
+
+    async def _tell(self, wanted: Mapping[Axis, AxisCommand]) -> None:
+        """Command both axes, those that shall stand first; raise `DriveError` once all of these were told."""
+        failed: DriveError | None = None
+        for axis, told in sorted(wanted.items(), key=lambda one: not isinstance(one[1], Halt)):
+            if failed is not None and not isinstance(told, Halt):
+                break
+            try:
+                await self._axes[axis].write(told)
+            except DriveError as error:
+                failed = failed or error
+        if failed is not None:
+            raise failed
 
     async def _begin(self, request: DriveRequest) -> None:
         self._number = request.number

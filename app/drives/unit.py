@@ -79,6 +79,14 @@ class Unit:
                 continue
             for name in members:
                 values[name] = self.profile.registers[name].value(words, block.address)
+        return values
+
+    async def look(self, *names: str) -> dict[str, float]:
+        """Return values as `poll` does; what is decided in their light may be written.
+
+        A poll in the midst of a command does not renew that leave: a stop may have come since it was given.
+        """
+        values = await self.poll(*names)
         self._ticket = self._link.ticket
         return values
 
@@ -109,8 +117,11 @@ class Unit:
         changed = {at: word for at, word in words.items() if renewed or self._taken.get(at) != word}
         for address, run in runs(changed, words):
             what = self._what(self.profile.at(address))
+            places = range(address, address + len(run))
+            for place in places:
+                self._taken.pop(place, None)
             await self._link.write(address, run, what=what, ticket=self._ticket, priority=self.priority)
-            self._taken |= {address + place: word for place, word in enumerate(run)}
+            self._taken |= dict(zip(places, run, strict=True))
         if confirmed and changed:
             self.expect(values)
 
