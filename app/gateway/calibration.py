@@ -18,7 +18,9 @@ class _Phase(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class _Calibration:
+class Calibration:
+    """How far a calibration has come, and who ordered it."""
+
     phase: _Phase
     actor: str
 
@@ -28,7 +30,7 @@ class Calibrations:
 
     def __init__(self, door: Door) -> None:
         self._door = door
-        self._running: dict[str, _Calibration] = {}
+        self._running: dict[str, Calibration] = {}
 
     @property
     def trackers(self) -> frozenset[str]:
@@ -44,13 +46,18 @@ class Calibrations:
             raise rejected
         if tracker.actions["home"]:
             await send(self._door, Stop(), tracker.tracker_id, actor)
-            self._running[tracker.tracker_id] = _Calibration(_Phase.STOPPING, actor)
+            self._running[tracker.tracker_id] = Calibration(_Phase.STOPPING, actor)
         else:
             await self._home(tracker.tracker_id, actor)
 
-    def forget(self, tracker_id: str) -> None:
-        """End a calibration, because something else was ordered at this door."""
-        self._running.pop(tracker_id, None)
+    def forget(self, tracker_id: str) -> Calibration | None:
+        """End a calibration, because something else was ordered at this door, and return it."""
+        return self._running.pop(tracker_id, None)
+
+    def restore(self, tracker_id: str, calibration: Calibration | None) -> None:
+        """Go on with a calibration, because what was ordered instead was refused."""
+        if calibration is not None:
+            self._running.setdefault(tracker_id, calibration)
 
     async def follow(self, update: Update) -> None:
         """Take every calibration on as far as the update allows."""
@@ -66,7 +73,7 @@ class Calibrations:
             except CommandRejected:
                 self.forget(tracker_id)
 
-    async def _step(self, tracker: Snapshot, running: _Calibration, events: tuple[Event, ...]) -> None:
+    async def _step(self, tracker: Snapshot, running: Calibration, events: tuple[Event, ...]) -> None:
         if any(event.kind is EventKind.STOPPED and event.actor != running.actor for event in events):
             self._give_up(tracker, running, "the tracker was stopped.")
         elif running.phase is _Phase.HOMING:
@@ -76,7 +83,7 @@ class Calibrations:
         elif not tracker.actions["home"]:
             await self._home(tracker.tracker_id, running.actor)
 
-    async def _homing(self, tracker: Snapshot, running: _Calibration, events: tuple[Event, ...]) -> None:
+    async def _homing(self, tracker: Snapshot, running: Calibration, events: tuple[Event, ...]) -> None:
         ended = next((event for event in events if event.kind is EventKind.HOMING_ENDED), None)
         if ended is None:
             if tracker.activity is not ActivityName.HOMING:
@@ -88,9 +95,9 @@ class Calibrations:
 
     async def _home(self, tracker_id: str, actor: str) -> None:
         await send(self._door, Home(), tracker_id, actor)
-        self._running[tracker_id] = _Calibration(_Phase.HOMING, actor)
+        self._running[tracker_id] = Calibration(_Phase.HOMING, actor)
 
-    def _give_up(self, tracker: Snapshot, running: _Calibration, why: str) -> None:
+    def _give_up(self, tracker: Snapshot, running: Calibration, why: str) -> None:
         self.forget(tracker.tracker_id)
         message = f"The calibration was given up, and tracking was not started: {why}"
         refused(self._door, tracker.tracker_id, running.actor, message)

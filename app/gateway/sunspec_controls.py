@@ -54,23 +54,28 @@ class Controls:
     async def write(self, tracker_id: str | None, values: Written, actor: str) -> None:
         """Keep targets and act on the control register; None writes for all trackers.
 
-        Raises `Refusal` with exception 3 for a value that cannot be, 6 for what is not possible now.
+        Raises `Refusal` with exception 3 for a value that cannot be, 6 for what is not possible now; nothing
+        of what is refused is kept.
         """
+        told = ", ".join(f"{name} = {_said(value)}" for name, value in values.items())
         values = {name.removeprefix("Glbl"): value for name, value in values.items()}
         self._check(tracker_id, values, actor)
-        kept = self.targets.get(tracker_id, Targets())
+        before = self.targets.get(tracker_id, Targets())
         kept = replace(
-            kept,
-            elevation_deg=values.get("ElCtl", kept.elevation_deg),
-            azimuth_deg=values.get("AzCtl", kept.azimuth_deg),
+            before,
+            elevation_deg=values.get("ElCtl", before.elevation_deg),
+            azimuth_deg=values.get("AzCtl", before.azimuth_deg),
         )
         self.targets[tracker_id] = kept
-        told = ", ".join(f"{name} = {value:g}" for name, value in values.items())
         written(self._door, tracker_id, actor, f"{told} was written over SunSpec.")
-        if "Ctl" in values:
-            await self._act(tracker_id, Control(int(values["Ctl"] or 0)), kept, actor)
-        elif tracker_id in self._manual:
-            await self._act(tracker_id, Control.MANUAL, kept, actor)
+        try:
+            if "Ctl" in values:
+                await self._act(tracker_id, Control(int(values["Ctl"] or 0)), kept, actor)
+            elif tracker_id in self._manual:
+                await self._act(tracker_id, Control.MANUAL, kept, actor)
+        except Refusal:
+            self.targets[tracker_id] = before
+            raise
 
     async def follow(self, update: Update) -> None:
         """Let go of manual control where somebody else took it or a fault ended it; go on calibrating."""
@@ -83,9 +88,10 @@ class Controls:
         for name, value in values.items():
             low, high = TARGETS.get(name, (min(Control), max(Control)))
             if value is None or not low <= value <= high:
-                said = "Nothing" if value is None else f"{value:g}"
+                name = name if tracker_id else f"Glbl{name}"
                 message = (
-                    f"{said} was written to {name} over SunSpec; it must lie between {low:g} and {high:g}."
+                    f"{_said(value)} was written to {name} over SunSpec; "
+                    f"it must lie between {low:g} and {high:g}."
                 )
                 refused(self._door, tracker_id, actor, message)
                 raise Refusal(ILLEGAL_VALUE)
@@ -96,7 +102,7 @@ class Controls:
         trackers = _addressed(self._door.latest(), tracker_id)
         for tracker in trackers:
             try:
-                await self._act_on(tracker, control, targets, actor)
+                await self._act_on(tracker, control, targets, actor, for_all=tracker_id is None)
             except CommandRejected as rejected:
                 wrong = any(reason.code in WRONG_VALUE for reason in rejected.reasons)
                 failures.append(Refusal(ILLEGAL_VALUE if wrong else BUSY))
@@ -105,22 +111,34 @@ class Controls:
         if len(failures) == len(trackers):
             raise failures[0] if failures else Refusal(BUSY)
 
-    async def _act_on(self, tracker: Snapshot, control: Control, targets: Targets, actor: str) -> None:
+    async def _act_on(
+        self, tracker: Snapshot, control: Control, targets: Targets, actor: str, *, for_all: bool
+    ) -> None:
+        """Act on one tracker; an order that is refused leaves manual control and calibration as they were."""
         name = tracker.tracker_id
-        self.calibrations.forget(name)
+        was_manual, calibration = name in self._manual, self.calibrations.forget(name)
         self._manual.discard(name)
-        match control:
-            case Control.AUTOMATIC:
-                await send(self._door, Track(), name, actor)
-            case Control.MANUAL:
-                await self._move(tracker, targets, actor)
-            case Control.CALIBRATE:
-                await self.calibrations.begin(tracker, actor)
-            case _:
-                assert_never(control)
+        try:
+            match control:
+                case Control.AUTOMATIC:
+                    await send(self._door, Track(), name, actor)
+                case Control.MANUAL:
+                    gone_to = await self._move(tracker, targets, actor)
+                    self._manual.add(name)
+                    if for_all:
+                        self.targets[name] = gone_to
+                case Control.CALIBRATE:
+                    await self.calibrations.begin(tracker, actor)
+                case _:
+                    assert_never(control)
+        except CommandRejected:
+            self.calibrations.restore(name, calibration)
+            if was_manual:
+                self._manual.add(name)
+            raise
 
-    async def _move(self, tracker: Snapshot, targets: Targets, actor: str) -> None:
-        """Go to the targets; an angle that was never written stays as it is measured."""
+    async def _move(self, tracker: Snapshot, targets: Targets, actor: str) -> Targets:
+        """Go to the targets, and return them; an angle that was never written stays as it is measured."""
         azimuth_deg, elevation_deg = targets.azimuth_deg, targets.elevation_deg
         if tracker.measured is not None and (azimuth_deg is not None or elevation_deg is not None):
             azimuth_deg = tracker.measured.azimuth_deg if azimuth_deg is None else azimuth_deg
@@ -130,7 +148,11 @@ class Controls:
             raise CommandRejected(NO_TARGET)
         orientation = Orientation(azimuth_deg % 360.0, elevation_deg)
         await send(self._door, Move(orientation), tracker.tracker_id, actor)
-        self._manual.add(tracker.tracker_id)
+        return Targets(elevation_deg, azimuth_deg)
+
+
+def _said(value: float | None) -> str:
+    return "Nothing" if value is None else f"{value:g}"
 
 
 def _addressed(site: SiteSnapshot | None, tracker_id: str | None) -> tuple[Snapshot, ...]:

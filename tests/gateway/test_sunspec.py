@@ -155,7 +155,7 @@ async def test_pysunspec_writes_targets_and_control_and_is_refused_what_is_out_o
                     await asyncio.to_thread(lambda values=wrong: write(**values))
             await asyncio.to_thread(write, GlblElCtl=30.0, GlblAzCtl=120.0, GlblCtl=1)
             await asyncio.to_thread(controller.read)
-            assert controller.tracker[0].ElCtl.cvalue == 40.0
+            assert (controller.tracker[0].ElCtl.cvalue, controller.tracker[0].AzCtl.cvalue) == (30.0, 120.0)
             assert controller.GlblAzCtl.cvalue == 120.0
         finally:
             device.disconnect()
@@ -167,7 +167,49 @@ async def test_pysunspec_writes_targets_and_control_and_is_refused_what_is_out_o
         ) in told
         refused = [message for kind, _, message in told if kind is EventKind.REMOTE_REFUSED]
         assert "90.5 was written to ElCtl over SunSpec; it must lie between -90 and 90." in refused
+        assert "-91 was written to GlblElCtl over SunSpec; it must lie between -90 and 90." in refused
         assert len(refused) == 5
+
+
+async def test_a_refused_target_is_not_kept_and_manual_control_goes_on() -> None:
+    async with scada() as system:
+        plant = system.plant
+        await plant.commission()
+        await system.write(EL_CTL, *packed(30.0), *packed(140.0), 1)
+        assert await system.write(EL_CTL, *packed(-20.0)) == bytes((0x90, 3)), "beyond the soft limits"
+        assert two(await system.read(EL_CTL, 2)) == 30_000
+        assert plant.tracker().activity is ActivityName.MOVING, "the move before it goes on"
+        assert (await system.write(AZ_CTL, *packed(150.0)))[0] == 16
+        await plant.until(lambda seen: seen.in_position and seen.activity is ActivityName.HOLDING)
+        measured = plant.tracker().measured
+        assert measured is not None
+        assert (measured.azimuth_deg, measured.elevation_deg) == pytest.approx((150.0, 30.0), abs=0.05)
+
+
+async def test_after_a_target_for_all_a_tracker_keeps_the_angle_that_is_not_written_anew() -> None:
+    async with scada() as system:
+        await system.plant.commission()
+        await system.write(EL_CTL, *packed(40.0), *packed(170.0), 1)
+        await system.write(BASE + 70 + 20, *packed(30.0), *packed(120.0), 1)
+        await system.write(EL_CTL, *packed(35.0))
+        moves = [message for kind, _, message in system.journal() if kind is EventKind.MOVE_STARTED]
+        assert moves[-1] == "Going to azimuth 120.0, elevation 35.0 degrees."
+        assert any(
+            message == "GlblElCtl = 30, GlblAzCtl = 120, GlblCtl = 1 was written over SunSpec."
+            for _, _, message in system.journal()
+        )
+
+
+async def test_a_refused_order_does_not_end_a_calibration() -> None:
+    async with scada() as system:
+        plant = system.plant
+        await _tracking(system)
+        await system.write(CTL, 2)
+        await plant.until(lambda seen: seen.activity is ActivityName.HOMING)
+        await settle()
+        assert await system.write(EL_CTL, *packed(-20.0), *packed(140.0), 1) == bytes((0x90, 3))
+        assert await system.read(CTL, 1) == [2]
+        await plant.until(lambda seen: seen.activity is ActivityName.TRACKING)
 
 
 async def test_what_is_not_known_is_not_implemented_and_never_an_old_value() -> None:
