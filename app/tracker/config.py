@@ -7,8 +7,10 @@ from typing import assert_never
 from app.sun.position import Algorithm
 from app.tracker.axes import AZIMUTH_DEFAULT, ELEVATION_DEFAULT, Axis, AxisConfig
 from app.tracker.orientation import Orientation as Orientation
-from app.tracker.protections.config import ProtectionConfig
+from app.tracker.protections.config import PROTECTED, ProtectionConfig
 from app.tracker.strategy import DEADBAND, NO_HYBRID, HybridConfig, Strategy
+
+LEVEL = Orientation(180.0, 90.0)
 
 
 class NightBehaviour(StrEnum):
@@ -207,11 +209,11 @@ class TrackerConfig:
     in_position_deg: float = 0.05
     following_error_deg: float = 2.0
     night: NightBehaviour = NightBehaviour.SUNRISE
-    park: Orientation = Orientation(180.0, 90.0)
+    park: Orientation = LEVEL
     strategy: Strategy = DEADBAND
     hybrid: HybridConfig = NO_HYBRID
     mount: MountConfig = MountConfig()
-    protection: ProtectionConfig = ProtectionConfig()
+    protection: ProtectionConfig = PROTECTED
 
     def axis(self, axis: Axis) -> AxisConfig:
         """Return the configuration of one axis."""

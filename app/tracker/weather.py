@@ -117,8 +117,8 @@ class WeatherNow:
     """The newest value of every quantity; age and source are those of the newest report.
 
     A stale one is older than the site allows: it is shown with its age and must not be used. `quantities`
-    tells age, source and quality of each value; `gust_mps` is the fastest wind of the last 3 s, `mean_mps` the
-    mean of up to 10 minutes.
+    tells age, source and quality of each value; `gust_mps` is the fastest wind of the last 3 s, `mean_mps`
+    the mean of up to 10 minutes.
     """
 
     readings: Weather

@@ -131,3 +131,6 @@ class ProtectionConfig:
 
     def __post_init__(self) -> None:
         _check("The warning time", self.warning_s, 0.0, 60.0, "s")
+
+
+PROTECTED = ProtectionConfig()
