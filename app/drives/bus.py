@@ -295,7 +295,8 @@ class Bus:
             job.unit.unheard(self._clock.now())
             raise DriveSilent(
                 f"The drive at {job.unit} did not answer within {job.unit.timing.timeout_s:g} s "
-                f"({job.what}). Check its power, cable and address."
+                f"({job.what}). Check its power and cable, that its unit id is {job.unit.unit} and, on a "
+                "serial line, speed and parity."
             ) from unanswered
         job.unit.heard()
         return found
@@ -323,10 +324,7 @@ class Bus:
         if not too_soon:
             self._next_attempt_at = now + self._delay
             self._delay = min(LONGEST_DELAY, self._delay * 2)
-        raise DriveSilent(
-            f"There is no connection to the drive at {unit}. {self._wire.advice} "
-            "The connection is tried again by itself."
-        )
+        raise DriveSilent(f"There is no connection to the drive at {unit}. {self._wire.advice}")
 
 
 def _refusal(code: int, job: _Job) -> DriveError:

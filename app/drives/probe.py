@@ -24,6 +24,7 @@ from app.tracker.drive_check import (
 SIMULATED = DriveReadings(
     CheckOutcome.ANSWERED, "The simulated drive is in this program: there is no connection to test."
 )
+NAMES_TOLD = 4
 Words = tuple[int, Sequence[int]]
 """A first address, and the words from there on."""
 
@@ -145,13 +146,31 @@ def _judged(profile: Profile, registers: list[RegisterReading]) -> DriveReadings
     watchdog_s = _watchdog_s(profile, registers)
     action = "" if watchdog is None else watchdog.action
     if wrong:
-        names = ", ".join(f"{one.name} ({one.address}): {one.trouble}" for one in wrong)
-        message = f"The device answers, but it is no {profile.title}: {names} Check unit and profile."
+        names = "; ".join(f"{one.name} ({one.address}) {_wrong_words(one)}" for one in wrong)
+        message = f"The device answers, but it is no {profile.title}: {names}. Check unit and profile."
+        return DriveReadings(CheckOutcome.WRONG_DEVICE, message, tuple(registers), watchdog_s, action)
+    missing = [one.name for one in registers if one.trouble and not profile.registers[one.name].optional]
+    if missing:
+        message = (
+            f"The device answers, but has not what a drive of profile {profile.name} must have: "
+            f"{len(missing)} of {len(registers)} registers could not be read ({_listed(missing)}). "
+            "Check unit and profile."
+        )
         return DriveReadings(CheckOutcome.WRONG_DEVICE, message, tuple(registers), watchdog_s, action)
     refused = sum(1 for one in registers if one.trouble)
-    more = f" {refused} registers could not be read." if refused else ""
+    more = f" It refuses {refused} that it can do without." if refused else ""
     message = f"The device answers: {len(registers) - refused} registers were read.{more}"
     return DriveReadings(CheckOutcome.ANSWERED, message, tuple(registers), watchdog_s, action)
+
+
+def _wrong_words(reading: RegisterReading) -> str:
+    return f"is {reading.trouble.removesuffix('.')}" if reading.shown else "could not be read"
+
+
+def _listed(names: list[str]) -> str:
+    """Return the first few of many names."""
+    more = f" and {len(names) - NAMES_TOLD} more" if len(names) > NAMES_TOLD else ""
+    return ", ".join(names[:NAMES_TOLD]) + more
 
 
 def _watchdog_s(profile: Profile, registers: list[RegisterReading]) -> float | None:

@@ -75,9 +75,9 @@ def _wrong_numbers(config: TrackerConfig) -> Iterable[str]:
 def _wrong_park(config: TrackerConfig) -> Iterable[str]:
     """Yield what is wrong with a park position; other mounts park as near to it as they can."""
     if not _reachable(config.azimuth, config.park.azimuth_deg):
-        yield "The park position's azimuth lies outside the soft limits."
+        yield "The park position's azimuth lies outside the soft limits. Change it in the settings first."
     if not config.elevation.contains(config.park.elevation_deg):
-        yield "The park position's elevation lies outside the soft limits."
+        yield "The park position's elevation lies outside the soft limits. Change it in the settings first."
 
 
 def _numbers(axis: AxisConfig) -> tuple[float, ...]:

@@ -237,7 +237,7 @@ class TrackerLoop:
         self.broken = Reason(
             "internal_error",
             f"{name} was stopped: the controller met an unexpected error ({type(error).__name__}).",
-            "Keep the log for the maker, then reset the fault.",
+            "Keep the log for the maker, then clear the fault.",
         )
         memory = replace(self.memory, fault_code=self.broken.code, fault_text=self.broken.message)
         self.controller = Controller(self.config, memory, self.drive.capabilities)

@@ -137,7 +137,7 @@ def wrong_way(config: TrackerConfig, axis: Axis) -> Reason:
     return Reason(
         "wrong_direction",
         f"The {axis_of(config, axis)} moves opposite to its command.",
-        "Check the motor's phases and the direction set in the drive, reset the fault, set the zero again.",
+        "Check the motor's phases and the direction set in the drive, clear the fault, set the zero again.",
     )
 
 

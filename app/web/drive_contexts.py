@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from app.tracker.config import TrackerConfig
+from app.tracker.config import DriveConfig, TrackerConfig
 from app.tracker.drive_check import DriveCheck, DriveChoices
 from app.tracker.memory import TrackerMemory
 from app.tracker.motion import DriveCapabilities
@@ -17,7 +17,10 @@ Options = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True, slots=True)
 class DrivePage:
-    """How a tracker's drive is reached and what hangs on it; `check` is the newest look at it."""
+    """How a tracker's drive is reached and what hangs on it; `check` is the newest look at it.
+
+    `stored` are the saved settings; `tested` says that this is the answer to a test.
+    """
 
     template: ClassVar[str] = "drive.html"
 
@@ -28,9 +31,11 @@ class DrivePage:
     ports: Options
     kinds: Options
     check: DriveCheck | None
+    stored: DriveConfig
     capabilities: DriveCapabilities | None
     can_undo: bool
     done: str
+    tested: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,6 +18,16 @@ function look() {
   if (changed) ask();
 }
 
+let asked = document.querySelector("#proofs .ask") !== null;
+
+// A question that has just come up is brought where it is seen.
+function bring() {
+  const question = document.querySelector("#proofs .ask");
+  if (question && !asked) question.scrollIntoView({ block: "center" });
+  asked = question !== null;
+}
+
+document.addEventListener("htmx:after:swap", bring);
 live.on("state", look);
 document.addEventListener("htmx:after:request", (event) => {
   const { request, response } = event.detail?.ctx ?? {};

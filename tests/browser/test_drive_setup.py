@@ -95,8 +95,8 @@ def measure(page: Page, hands: Hands, picture: Picture, name: str) -> None:
 
 
 def set_limits(page: Page, hands: Hands) -> None:
-    expect(page.locator("#proof-limits [data-action]").first).to_be_disabled()
-    expect(page.locator('#proof-limits [data-reasons="set_limit"]')).to_contain_text("no trusted zero")
+    expect(page.locator("#limits [data-action]").first).to_be_disabled()
+    expect(page.locator('#limits [data-reasons="set_limit"]')).to_contain_text("no trusted zero")
     page.evaluate("window.scrollTo(0, document.body.scrollHeight)")
     reading = page.locator('.jog-panel [data-live="measured.elevation_deg"]')
     before = reading.inner_text()

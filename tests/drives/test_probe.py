@@ -81,6 +81,20 @@ async def test_another_device_is_told_by_its_identity(bench: Bench, tmp_path: Pa
     assert "has no such register" in next(one.trouble for one in refused if one.name == "year")
 
 
+@pytest.mark.parametrize("profile", ["kinco-cia402", "leadshine-rs", "oriental-az", "delta-dvp"])
+async def test_the_profile_of_another_device_is_not_called_an_answer(bench: Bench, profile: str) -> None:
+    readings = await bench.probe.look(replace(bench.drive, profile=profile))
+    assert readings.outcome is CheckOutcome.WRONG_DEVICE
+    assert "could not be read" in readings.message
+    assert readings.message.endswith("Check unit and profile.")
+
+
+async def test_a_unit_that_nobody_has_is_named(bench: Bench) -> None:
+    readings = await bench.probe.look(replace(bench.drive, unit=9))
+    assert readings.outcome is CheckOutcome.SILENT
+    assert "that its unit id is 9" in readings.message
+
+
 async def test_each_way_of_no_answer_has_its_sentence(bench: Bench) -> None:
     bench.machine.inject(Fault(FaultKind.SILENCE))
     silent = await bench.probe.look(bench.drive)

@@ -8,7 +8,10 @@ from typing import Any
 import httpx
 import pytest
 
+from app.drives.faults import Fault, FaultKind
+from app.drives.simulated import SimulatedDrive
 from app.link.messages import CheckConnection, ConfigureTracker
+from app.tracker.axes import Axis
 from app.tracker.config import DriveKind, Parity
 from app.tracker.drive_check import CheckOutcome, DriveCheck, DriveReadings, RegisterReading
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
@@ -150,6 +153,47 @@ async def test_a_measured_angle_that_is_no_number_stays_as_it_was_typed(desk: De
     good = await desk.ask("POST", f"{T1}/proofs/scale/answer", data={"measured": "10,1"}, headers=HTMX)
     assert good.status_code == 200
     assert (await proofs(desk))["scale", "elevation", None]["status"] == "done"
+
+
+async def test_an_angle_that_cannot_be_leaves_the_page_whole_with_a_sentence(desk: Desk) -> None:
+    await desk.ask("POST", f"{T1}/proofs/scale", data={"axis": "elevation", "way": "10"})
+    await rest(desk)
+    answer = await desk.ask("POST", f"{T1}/proofs/scale/answer", data={"measured": "300"}, headers=HTMX)
+    assert answer.status_code == 422
+    for words in ('id="proofs"', 'value="300"', "Enter the degrees that the panel turned"):
+        assert words in re.sub(r"\s+", " ", answer.text), words
+
+
+@pytest.mark.parametrize(
+    ("changed", "sentence"),
+    [
+        ({"kind": "simulated", "elevation_gear": "3"}, "A gear ratio of 3 does not fit this drive"),
+        ({"unit": "0"}, "Unit must lie between 1 and 247."),
+        ({"azimuth_unit": "248"}, "Azimuth unit must lie between 1 and 247."),
+    ],
+)
+async def test_settings_that_the_machine_refuses_come_back_in_the_form(
+    desk: Desk, changed: dict[str, str], sentence: str
+) -> None:
+    typed = TYPED | {"profile": "simulated-plc"} | changed
+    answer = await desk.ask("POST", f"{T1}/drive", data=typed, headers=HTMX)
+    assert answer.status_code == 422
+    for words in ('id="drive-form"', 'value="1,25"', sentence):
+        assert words in re.sub(r"\s+", " ", answer.text), words
+
+
+async def test_a_stopped_drive_is_cleared_where_it_is_proven(desk: Desk) -> None:
+    page = f"{T1}/proofs"
+    assert "Clear the fault" not in (await desk.ask("GET", page)).text
+    drive = desk.plant.drives["T1"]
+    assert isinstance(drive, SimulatedDrive)
+    drive.inject(Fault(FaultKind.WRONG_DIRECTION, Axis.ELEVATION))
+    await desk.ask("POST", f"{page}/direction", data={"axis": "elevation"})
+    for _ in range(12):
+        await desk.forward(0.5)
+    told = (await desk.ask("GET", page)).text
+    assert "moves opposite to its command" in told
+    assert "Clear the fault" in told
 
 
 async def test_drive_settings_are_saved_whole(machine: FakeMachine, client: httpx.AsyncClient) -> None:

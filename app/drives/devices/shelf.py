@@ -49,7 +49,7 @@ def shelf(
         if both:
             raise ValueError(
                 f"Unit {min(both)} is given twice: with profile {profile.name} each tracker takes "
-                f"{len(own)} unit ids, so give every {len(own)}th."
+                f"{len(own)} unit ids: give the first of each, such as {unit - 1} and {unit - 1 + len(own)}."
             )
         found |= own
     return found

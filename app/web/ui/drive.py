@@ -16,6 +16,7 @@ from app.link.messages import (
 )
 from app.web.deps import MachineDep
 from app.web.drive_contexts import DrivePage
+from app.web.errors import NotAcceptable
 from app.web.ui.drive_form import (
     KINDS,
     DriveForm,
@@ -57,7 +58,11 @@ async def save(
     wanted = read_drive(found, config.drive, detail.choices)
     if wanted is None:
         return page(press.request, _context(press.request, detail, tracker, found), block="form", status=422)
-    await press.send(ConfigureTracker(replace(config, drive=wanted)))
+    try:
+        await press.send(ConfigureTracker(replace(config, drive=wanted)))
+    except NotAcceptable as refusal:
+        found.errors["profile"] = str(refusal)
+        return page(press.request, _context(press.request, detail, tracker, found), block="form", status=422)
     return go(press.request, f"/trackers/{tracker_id}/drive?done=saved")
 
 
@@ -75,7 +80,7 @@ async def test(
     await press.send(CheckConnection(tracker_id, wanted))
     detail = await machine.detail()
     context = _context(press.request, detail, tracker_of(detail, tracker_id), found)
-    return page(press.request, context, block="check")
+    return page(press.request, replace(context, tested=True), block="work")
 
 
 @router.post("/restore")
@@ -97,6 +102,7 @@ def _context(
         ports=port_options(detail.choices, typed.texts.get("serial_port", "")),
         kinds=KINDS,
         check=tracker.check,
+        stored=state.config.drive,
         capabilities=tracker.capabilities,
         can_undo=state.memory.former_drive is not None,
         done=done,

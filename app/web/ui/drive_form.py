@@ -17,7 +17,9 @@ KINDS: Options = (
     (DriveKind.MODBUS_RTU.value, "Modbus RTU, on a serial port"),
     (DriveKind.MODBUS_RTU_OVER_TCP.value, "Modbus RTU through a gateway"),
 )
-BAUD_RATES = ("9600", "19200", "38400", "57600", "115200")
+UNITS = (0, 255)
+SERIAL_UNITS = (1, 247)
+"""On a serial line unit 0 is the broadcast, which nobody answers."""
 
 
 class DriveForm(BaseModel):
@@ -76,15 +78,16 @@ def read_drive(typed: Typed, stored: DriveConfig, choices: DriveChoices) -> Driv
     kind = typed.read("kind", lambda text: _word(text, DriveKind, "Connection"), stored.kind)
     profile = typed.read("profile", lambda text: _profile(text, stored, choices), stored.profile)
     by_network = kind in (DriveKind.MODBUS_TCP, DriveKind.MODBUS_RTU_OVER_TCP)
+    units = SERIAL_UNITS if kind in (DriveKind.MODBUS_RTU, DriveKind.MODBUS_RTU_OVER_TCP) else UNITS
     drive = DriveConfig(
         kind,
         profile,
         typed.read("host", _host, stored.host) if by_network else stored.host,
         typed.whole("port", "Port", 1, 65535) if by_network else stored.port,
-        stored.unit if kind is DriveKind.SIMULATED else typed.whole("unit", "Unit", 0, 255),
+        stored.unit if kind is DriveKind.SIMULATED else typed.whole("unit", "Unit", *units),
         _serial(typed) if kind is DriveKind.MODBUS_RTU else stored.serial,
-        _axis(typed, Axis.AZIMUTH),
-        _axis(typed, Axis.ELEVATION),
+        _axis(typed, Axis.AZIMUTH, units),
+        _axis(typed, Axis.ELEVATION, units),
     )
     return None if typed.errors else drive
 
@@ -139,11 +142,11 @@ def _port(text: str) -> str:
     return text
 
 
-def _axis(typed: Typed, axis: Axis) -> AxisDrive:
+def _axis(typed: Typed, axis: Axis, units: tuple[int, int]) -> AxisDrive:
     label = axis.value.capitalize()
     unit, steps = typed.texts.get(f"{axis}_unit", "").strip(), typed.texts.get(f"{axis}_steps", "").strip()
     numbers = (
-        typed.whole(f"{axis}_unit", f"{label} unit", 0, 255) if unit else None,
+        typed.whole(f"{axis}_unit", f"{label} unit", *units) if unit else None,
         typed.number(f"{axis}_steps", f"{label} steps per revolution", 1e-3, 999_999_999) if steps else None,
         typed.number(f"{axis}_gear", f"{label} gear ratio", 1e-6, 999_999),
     )

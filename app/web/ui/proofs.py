@@ -73,7 +73,11 @@ async def answer_scale(
     measured_deg = typed.number("measured", "Measured angle", 0.1, 720)
     if typed.errors:
         return await _answer(press.request, tracker_id, machine, typed, status=422)
-    await press.send(AnswerScale(tracker_id, measured_deg))
+    try:
+        await press.send(AnswerScale(tracker_id, measured_deg))
+    except NotAcceptable as refusal:
+        typed.errors["measured"] = str(refusal)
+        return await _answer(press.request, tracker_id, machine, typed, status=422)
     return press.answer("Noted.")
 
 
