@@ -3,14 +3,16 @@
 import asyncio
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
+from contextlib import suppress
 from dataclasses import replace
-from pathlib import Path
+from datetime import timedelta
 from threading import Thread
 
+from app.clock import Clock, SystemClock
 from app.drives.line import Line, SerialLine, TcpLine
 from app.drives.listening_line import ListeningLine
-from app.drives.pty_line import PtyLine
+from app.drives.pty_line import serial_end
 from app.drives.rtu_frame import reply_length, request_length
 from app.drives.sim_server import parse_address
 from app.drives.wire_faults import (
@@ -29,6 +31,7 @@ from app.tracker.config import SerialConfig
 SOUND = Step(WireFault.CLEAR)
 MOST_PENDING = 64
 FORGET_AFTER_S = 0.05
+TRY_AGAIN = timedelta(seconds=0.5)
 
 Length = Callable[[bytes], int | None]
 
@@ -36,25 +39,30 @@ Length = Callable[[bytes], int | None]
 class FaultProxy:
     """Passes requests from `near`, the master's side, to `far`, the device's, and replies back.
 
-    The script says with every request what happens to it. `requests` counts them.
+    The script says with every request what happens to it. `requests` counts them. A side that vanishes is
+    opened again when it is back.
     """
 
-    def __init__(self, near: Line, far: Line, framing: Framing, script: Script | None = None) -> None:
+    def __init__(
+        self, near: Line, far: Line, framing: Framing, clock: Clock, script: Script | None = None
+    ) -> None:
         self.requests = 0
         self._near = near
         self._far = far
         self._framing = framing
+        self._clock = clock
         self._script = script or Script()
         self._asked, self._answered = bytearray(), bytearray()
         self._pending: dict[bytes, Step] = {}
         self._held = b""
         self._turn = 0
-        self._asked_at_s = self._free_at_s = 0.0
+        self._asked_at_s = self._answered_at_s = self._free_at_s = 0.0
+        self._reaching = False
         self._tasks: set[asyncio.Task[None]] = set()
 
     async def start(self) -> None:
         """Open both sides, or raise `OSError`; a device that is not there yet is looked for again."""
-        if not await self._near.open(self._from_master, _nothing):
+        if not await self._near.open(self._from_master, self._near_lost):
             raise OSError(f"The proxy cannot listen. {self._near.advice}")
         await self._far.open(self._from_device, _nothing)
 
@@ -86,11 +94,16 @@ class FaultProxy:
                 self._pending.pop(next(iter(self._pending)))
             self._pending[self._key(request)] = step
             if self._far.is_open:
-                self._far.write(request)
-            else:
-                self._reopen(request)
+                self._ask(request)
+            elif not self._reaching:
+                self._reaching = True
+                self._spawn(self._reach(request))
 
     def _from_device(self, data: bytes) -> None:
+        now_s = asyncio.get_running_loop().time()
+        if now_s - self._answered_at_s > FORGET_AFTER_S:
+            self._answered.clear()
+        self._answered_at_s = now_s
         self._answered += data
         length = _tcp_length if self._framing is Framing.TCP else reply_length
         for reply in _frames(self._answered, length):
@@ -127,18 +140,38 @@ class FaultProxy:
     def _put(self, reply: bytes) -> None:
         held, self._held = self._held, b""
         if self._near.is_open:
-            self._near.write(held + reply)
+            with suppress(OSError):
+                self._near.write(held + reply)
 
     def _key(self, frame: bytes) -> bytes:
         """Return what a reply has in common with its request: transaction number, or unit with RTU."""
         return frame[:2] if self._framing is Framing.TCP else frame[:1]
 
-    def _reopen(self, request: bytes) -> None:
-        async def open_and_ask() -> None:
-            if await self._far.open(self._from_device, _nothing):
-                self._far.write(request)
+    def _ask(self, request: bytes) -> None:
+        """Send to the device; a request that a vanished line does not take is lost, as on a real one."""
+        with suppress(OSError):
+            self._far.write(request)
 
-        task = asyncio.create_task(open_and_ask())
+    async def _reach(self, request: bytes) -> None:
+        """Open the device's side and send what was asked; until then other requests are lost."""
+        try:
+            if await self._far.open(self._from_device, _nothing):
+                self._ask(request)
+        finally:
+            self._reaching = False
+
+    def _near_lost(self) -> None:
+        self._spawn(self._come_back())
+
+    async def _come_back(self) -> None:
+        """Open the master's side again as soon as it is there."""
+        opened = False
+        while not opened:
+            await self._clock.sleep_until(self._clock.now() + TRY_AGAIN)
+            opened = await self._near.open(self._from_master, self._near_lost)
+
+    def _spawn(self, doing: Coroutine[None, None, None]) -> None:
+        task = asyncio.create_task(doing)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
@@ -147,12 +180,15 @@ def make_proxy(
     near: str, far: str, framing: Framing, script: str, serial: SerialConfig, *, paced: bool
 ) -> FaultProxy:
     """Return a proxy between two places, each `HOST:PORT` or a serial port; raise `ValueError` if unclear."""
-    character_s = serial.bits / serial.baud_rate if paced else 0.0
-    near_line = ListeningLine(*parse_address(near)) if _is_address(near) else PtyLine(Path(near), character_s)
+    near_line = (
+        ListeningLine(*parse_address(near))
+        if _is_address(near)
+        else serial_end(replace(serial, port=near), paced=paced)
+    )
     far_line = TcpLine(*parse_address(far)) if _is_address(far) else SerialLine(replace(serial, port=far))
     if framing is Framing.TCP and not (_is_address(near) and _is_address(far)):
         raise ValueError("Modbus TCP needs HOST:PORT on both sides; on a serial line choose --frames rtu.")
-    return FaultProxy(near_line, far_line, framing, parse_script(script, framing))
+    return FaultProxy(near_line, far_line, framing, SystemClock(), parse_script(script, framing))
 
 
 def run_fault_proxy(proxy: FaultProxy, where: str) -> None:
@@ -212,4 +248,4 @@ def _is_address(text: str) -> bool:
 
 
 def _nothing() -> None:
-    """Do nothing when a side is lost: it is opened again with the next request."""
+    """Do nothing when the device's side is lost: it is opened again with the next request."""

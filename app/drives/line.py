@@ -105,9 +105,10 @@ class SerialLine:
         if port is None:
             return
         asyncio.get_running_loop().remove_reader(port.fileno())
-        with suppress(OSError):
+        with suppress(OSError, termios.error):
             port.reset_output_buffer()
-        port.close()
+        with suppress(OSError):
+            port.close()
 
     def _open(self) -> serial.Serial:
         """Open the device; a pseudo-terminal knows no parity and refuses to be asked for one again."""

@@ -6,7 +6,8 @@ import tty
 from contextlib import suppress
 from pathlib import Path
 
-from app.drives.line import CHUNK, Lost, Received
+from app.drives.line import CHUNK, Line, Lost, Received, SerialLine
+from app.tracker.config import SerialConfig
 
 PIECE = 8
 
@@ -37,17 +38,17 @@ class PtyLine:
     @property
     def advice(self) -> str:
         """Return what to check when it cannot be made."""
-        return f"Check that {self._path} can be written and is no other file."
+        return f"Check that {self._path} can be written and is no other file or device."
 
     async def open(self, received: Received, lost: Lost) -> bool:
-        """Make the pseudo-terminal and its name; `lost` is never called."""
+        """Make the pseudo-terminal and its name, and return whether that worked; `lost` is never called."""
         ends = os.openpty()
         tty.setraw(ends[1])
         os.set_blocking(ends[0], False)
+        if not self._name(os.ttyname(ends[1])):
+            _close(ends)
+            return False
         self._ends, self._received = ends, received
-        if self._path.is_symlink():
-            self._path.unlink()
-        self._path.symlink_to(os.ttyname(ends[1]))
         asyncio.get_running_loop().add_reader(ends[0], self._read)
         return True
 
@@ -69,10 +70,19 @@ class PtyLine:
         if ends is None:
             return
         asyncio.get_running_loop().remove_reader(ends[0])
-        for end in ends:
-            os.close(end)
+        _close(ends)
         with suppress(OSError):
             self._path.unlink()
+
+    def _name(self, device: str) -> bool:
+        """Let the name point at a device; one that a killed process left behind is taken over."""
+        try:
+            if self._path.is_symlink() and not self._path.exists():
+                self._path.unlink()
+            self._path.symlink_to(device)
+        except OSError:
+            return False
+        return True
 
     def _put(self, data: bytes) -> None:
         if self._ends is not None:
@@ -94,3 +104,16 @@ class PtyLine:
     def _take(self, data: bytes) -> None:
         if self._ends is not None and self._received is not None:
             self._received(data)
+
+
+def _close(ends: tuple[int, int]) -> None:
+    for end in ends:
+        os.close(end)
+
+
+def serial_end(serial: SerialConfig, *, paced: bool = False) -> Line:
+    """Return the serial device of a name, or a pseudo-terminal to be made where there is none."""
+    path = Path(serial.port)
+    if path.is_char_device():
+        return SerialLine(serial)
+    return PtyLine(path, serial.bits / serial.baud_rate if paced else 0.0)

@@ -2,13 +2,17 @@
 
 import asyncio
 from collections.abc import Mapping
+from contextlib import suppress
+from datetime import timedelta
 from struct import pack
 
+from app.clock import Clock
 from app.drives.line import Line
 from app.drives.modbus_server import Device, Respond, answer
 from app.drives.rtu_frame import LONGEST, is_sealed, request_length, sealed
 
 FORGET_AFTER_S = 0.02
+TRY_AGAIN = timedelta(seconds=0.5)
 MOST_WAITING = 16
 MASTER = "the serial line"
 
@@ -38,6 +42,15 @@ class RtuServer:
     async def until_lost(self) -> None:
         """Return when the line has vanished."""
         await self._lost.wait()
+
+    async def stay(self, clock: Clock) -> None:
+        """Open the line again whenever it has vanished and is back, until cancelled."""
+        while True:
+            await self._lost.wait()
+            await clock.sleep_until(clock.now() + TRY_AGAIN)
+            self._lost.clear()
+            if not await self._line.open(self._received, self._lost.set):
+                self._lost.set()
 
     async def close(self) -> None:
         """Stop answering and close the line."""
@@ -83,7 +96,8 @@ class RtuServer:
             request = await self._requests.get()
             reply = await self._answer(request)
             if reply is not None and self._line.is_open:
-                self._line.write(reply)
+                with suppress(OSError):
+                    self._line.write(reply)
 
     async def _answer(self, request: bytes) -> bytes | None:
         unit, body = request[0], request[1:-2]

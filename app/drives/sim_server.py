@@ -12,11 +12,11 @@ from typing import Protocol
 from app.clock import Clock, SystemClock
 from app.drives.devices.shelf import devices, shelf
 from app.drives.faults import Fault, FaultKind
-from app.drives.line import Line, SerialLine
+from app.drives.line import Line
 from app.drives.listening_line import ListeningLine
 from app.drives.modbus_server import Device, ModbusServer
 from app.drives.profile import Profile, load_profile
-from app.drives.pty_line import PtyLine
+from app.drives.pty_line import serial_end
 from app.drives.rtu_server import RtuServer
 from app.drives.simulated import SimulatedDrive
 from app.drives.simulated_machine import SimulatedMachine
@@ -69,7 +69,7 @@ async def serve_doors(doors: Doors, served: Mapping[int, Device]) -> tuple[list[
         places.append(f"Modbus TCP {host}:{await server.start(host, port)}")
         servers.append(server)
     if doors.serial is not None:
-        servers.append(await _rtu(_serial_line(doors.serial, paced=doors.paced), served))
+        servers.append(await _rtu(serial_end(doors.serial, paced=doors.paced), served))
         places.append(f"Modbus RTU {doors.serial.port}")
     if doors.rtu_over_tcp:
         gateway = ListeningLine(*parse_address(doors.rtu_over_tcp))
@@ -151,14 +151,6 @@ async def _rtu(line: Line, devices: Mapping[int, Device]) -> RtuServer:
     return server
 
 
-def _serial_line(serial: SerialConfig, *, paced: bool) -> Line:
-    """Return a serial device that exists, or a pseudo-terminal to be made under that name."""
-    path = Path(serial.port)
-    if path.exists() and not path.is_symlink():
-        return SerialLine(serial)
-    return PtyLine(path, serial.bits / serial.baud_rate if paced else 0.0)
-
-
 def _memory_of(memory: Path | None, unit: int, units: Sequence[int]) -> Path | None:
     """Return the file of one drive: the first has the given one, the others their unit id in the name."""
     if memory is None or unit == units[0]:
@@ -178,10 +170,12 @@ async def _run(
             f"Simulated drive on {place}, unit {units}, profile {profile.name}. Ctrl-C ends it.\n"
         )
     sys.stdout.flush()
-    watching = asyncio.create_task(_watch(tuple(drives.values()), clock))
+    tasks = [asyncio.create_task(_watch(tuple(drives.values()), clock))]
+    tasks += [asyncio.create_task(server.stay(clock)) for server in servers if isinstance(server, RtuServer)]
     await ended.wait()
-    watching.cancel()
-    await asyncio.gather(watching, return_exceptions=True)
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)
     for server in servers:
         await server.close()
     for drive in drives.values():

@@ -82,7 +82,7 @@ async def tcp_bench() -> AsyncIterator[Bench]:
     server = ModbusServer(devices[7], 7, others={8: devices[8]})
     port = await server.start("127.0.0.1", 0)
     near = ListeningLine("127.0.0.1", 0)
-    proxy = Noting(near, TcpLine("127.0.0.1", port), Framing.TCP)
+    proxy = Noting(near, TcpLine("127.0.0.1", port), Framing.TCP, SystemClock())
     await proxy.start()
     try:
         yield Bench(proxy, Buses(SystemClock()), DriveConfig(DriveKind.MODBUS_TCP, port=near.port), devices)
@@ -122,7 +122,7 @@ async def _rtu(
     if isinstance(behind, ListeningLine):
         far = TcpLine("127.0.0.1", behind.port)
     assert far is not None
-    proxy = Noting(near, far, Framing.RTU)
+    proxy = Noting(near, far, Framing.RTU, SystemClock())
     await proxy.start()
     try:
         yield proxy, devices

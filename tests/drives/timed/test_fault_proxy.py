@@ -3,9 +3,6 @@
 import asyncio
 import sys
 import time
-from contextlib import suppress
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import pytest
 
@@ -14,8 +11,6 @@ from app.drives.bus import BusUnit
 from app.drives.buses import Buses
 from app.drives.drive import DriveError, DriveSilent
 from app.drives.modbus_server import ModbusServer
-from app.drives.pty_line import PtyLine
-from app.drives.rtu_server import RtuServer
 from app.drives.wire import Timing
 from app.drives.wire_faults import ONLY, Framing, WireFault, parse_script
 from app.tracker.config import DriveConfig, DriveKind, SerialConfig
@@ -119,42 +114,6 @@ def test_a_fault_without_a_number_stays() -> None:
 def test_what_cannot_be_played_is_said(text: str) -> None:
     with pytest.raises(ValueError, match=r"is no fault|not possible"):
         parse_script(text, Framing.RTU)
-
-
-async def test_an_adapter_that_is_unplugged_is_found_again() -> None:
-    with TemporaryDirectory() as folder:
-        name = Path(folder) / "adapter"
-        config = DriveConfig(DriveKind.MODBUS_RTU, serial=SerialConfig(str(name), 115_200))
-        device = Buses(SystemClock()).unit(config, 7, TIMING)
-        registers = Registers(7)
-        for _ in range(2):
-            server = RtuServer({7: registers}, PtyLine(name))
-            await server.start()
-            ticket = device.ticket
-            async with asyncio.timeout(2.0):
-                while True:
-                    with suppress(DriveSilent):
-                        assert await device.read(10, 4, what="words") == registers.words(10, 4)
-                        break
-                    await asyncio.sleep(0.05)
-            assert device.ticket != ticket, "nothing from before is written"
-            await server.close()
-            with pytest.raises(DriveSilent, match="plugged in"):
-                await device.read(10, 4, what="words")
-        await device.close()
-
-
-async def test_a_pseudo_terminal_is_opened_again_and_again() -> None:
-    with TemporaryDirectory() as folder:
-        name, registers = Path(folder) / "line", Registers(7)
-        server = RtuServer({7: registers}, PtyLine(name))
-        await server.start()
-        config = DriveConfig(DriveKind.MODBUS_RTU, serial=SerialConfig(str(name)))
-        for _ in range(3):
-            device = Buses(SystemClock()).unit(config, 7, TIMING)
-            assert await device.read(10, 4, what="words") == registers.words(10, 4)
-            await device.close()
-        await server.close()
 
 
 async def test_a_line_in_use_with_other_settings_is_refused() -> None:

@@ -238,7 +238,7 @@ async def test_a_stop_is_sent_even_if_its_caller_gives_up() -> None:
 async def test_the_urgent_go_first() -> None:
     async with linked(good) as (link, server, _):
         await read(link)
-        waiting = [asyncio.create_task(read(link))]
+        waiting: list[asyncio.Task[object]] = [asyncio.create_task(read(link))]
         for place, priority in enumerate((Priority.POLL, Priority.COMMAND, Priority.JOG)):
             write = link.write(100 + place, [1], what="a word", ticket=None, priority=priority)
             waiting.append(asyncio.create_task(write))

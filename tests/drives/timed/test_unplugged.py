@@ -1,0 +1,151 @@
+"""Adapters that are pulled out and plugged in again, and the names of serial devices."""
+
+import asyncio
+import os
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.clock import SystemClock
+from app.drives.bus import BusUnit
+from app.drives.buses import Buses
+from app.drives.drive import DriveError, DriveSilent
+from app.drives.fault_proxy import FaultProxy
+from app.drives.line import SerialLine
+from app.drives.pty_line import PtyLine, serial_end
+from app.drives.rtu_server import RtuServer
+from app.drives.wire_faults import Framing
+from app.tracker.config import DriveConfig, DriveKind, SerialConfig
+from tests.drives.timed.proxied import TIMING, Registers
+from tests.peers.processes import cable
+
+FOUND_WITHIN_S = 10.0
+
+
+def on_line(port: str | Path) -> DriveConfig:
+    return DriveConfig(DriveKind.MODBUS_RTU, serial=SerialConfig(str(port), 115_200))
+
+
+async def found(device: BusUnit, registers: Registers) -> None:
+    """Read until the device answers, which it has to do by itself."""
+    async with asyncio.timeout(FOUND_WITHIN_S):
+        while True:
+            with suppress(DriveSilent):
+                assert await device.read(10, 4, what="words") == registers.words(10, 4)
+                return
+            await asyncio.sleep(0.05)
+
+
+async def missed(device: BusUnit) -> None:
+    with pytest.raises(DriveError):
+        await device.read(10, 4, what="words")
+
+
+@asynccontextmanager
+async def without_surprises() -> AsyncIterator[None]:
+    """Nothing may go wrong in a callback, where only the loop hears of it."""
+    surprises: list[dict[str, Any]] = []
+    asyncio.get_running_loop().set_exception_handler(lambda _, context: surprises.append(context))
+    yield
+    assert not surprises
+
+
+async def test_an_adapter_that_is_unplugged_is_found_again(tmp_path: Path) -> None:
+    name, registers = tmp_path / "adapter", Registers(7)
+    device = Buses(SystemClock()).unit(on_line(name), 7, TIMING)
+    async with without_surprises():
+        for _ in range(2):
+            server = RtuServer({7: registers}, PtyLine(name))
+            await server.start()
+            ticket = device.ticket
+            await found(device, registers)
+            assert device.ticket != ticket, "nothing from before is written"
+            await server.close()
+            with pytest.raises(DriveSilent, match="plugged in"):
+                await device.read(10, 4, what="words")
+        await device.close()
+
+
+async def test_an_unplugged_adapter_is_noticed_at_once_and_let_go(tmp_path: Path) -> None:
+    far, lost = PtyLine(tmp_path / "adapter"), asyncio.Event()
+    near = SerialLine(SerialConfig(str(tmp_path / "adapter")))
+    before = len(os.listdir("/dev/fd"))
+    async with without_surprises():
+        await far.open(print, print)
+        assert await near.open(print, lost.set)
+        far.close()
+        async with asyncio.timeout(2.0):
+            await lost.wait()
+    assert not near.is_open
+    assert len(os.listdir("/dev/fd")) == before, "the port is closed, so that it can be opened again"
+
+
+@pytest.mark.parametrize("proxied", [False, True], ids=["device", "behind a proxy"])
+async def test_both_ends_of_a_cable_come_back_after_it_was_cut(tmp_path: Path, *, proxied: bool) -> None:
+    registers, clock = Registers(7), SystemClock()
+    master, slave = tmp_path / "one-end", tmp_path / "other-end"
+    device = Buses(clock).unit(on_line(master), 7, TIMING)
+    behind = PtyLine(tmp_path / "behind") if proxied else SerialLine(SerialConfig(str(slave)))
+    server = RtuServer({7: registers}, behind)
+    far = SerialLine(SerialConfig(str(tmp_path / "behind")))
+    proxy = FaultProxy(SerialLine(SerialConfig(str(slave))), far, Framing.RTU, clock)
+    async with without_surprises():
+        async with cable(tmp_path):
+            await server.start()
+            if proxied:
+                await proxy.start()
+            staying = asyncio.create_task(server.stay(clock))
+            await found(device, registers)
+        await missed(device)
+        async with cable(tmp_path):
+            await found(device, registers)
+            staying.cancel()
+            await asyncio.gather(staying, return_exceptions=True)
+            await device.close()
+            await proxy.close()
+            await server.close()
+
+
+async def test_a_pseudo_terminal_is_opened_again_and_again(tmp_path: Path) -> None:
+    name, registers = tmp_path / "line", Registers(7)
+    server = RtuServer({7: registers}, PtyLine(name))
+    await server.start()
+    for _ in range(3):
+        device = Buses(SystemClock()).unit(on_line(name), 7, TIMING)
+        assert await device.read(10, 4, what="words") == registers.words(10, 4)
+        await device.close()
+    await server.close()
+
+
+async def test_a_lasting_name_stays_what_it_is(tmp_path: Path) -> None:
+    name, ends = tmp_path / "by-id", os.openpty()
+    name.symlink_to(os.ttyname(ends[1]))
+    line = serial_end(SerialConfig(str(name)))
+    assert isinstance(line, SerialLine)
+    assert await line.open(print, print)
+    assert name.readlink() == Path(os.ttyname(ends[1]))
+    assert not await PtyLine(name).open(print, print), "a device's name is not taken away"
+    line.close()
+    for end in ends:
+        os.close(end)
+
+
+async def test_a_name_that_a_killed_process_left_behind_is_taken_over(tmp_path: Path) -> None:
+    name = tmp_path / "line"
+    name.symlink_to(tmp_path / "gone")
+    line = serial_end(SerialConfig(str(name)))
+    assert await line.open(print, print)
+    assert name.is_char_device()
+    line.close()
+    assert not name.is_symlink()
+
+
+async def test_a_name_that_is_taken_by_a_file_is_refused(tmp_path: Path) -> None:
+    name = tmp_path / "notes"
+    name.write_text("mine")
+    with pytest.raises(OSError, match=r"cannot be opened.*no other file or device"):
+        await RtuServer({}, serial_end(SerialConfig(str(name)))).start()
+    assert name.read_text() == "mine"
