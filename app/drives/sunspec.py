@@ -37,6 +37,7 @@ NOT_IMPLEMENTED_SCALE = -0x8000
 BOOT_COUNT = 1
 BEGINNING = timedelta(milliseconds=500)
 """How long after a new target the axes count as moving although no motion shows yet."""
+LATELY = timedelta(milliseconds=500)
 READ = (
     "alarms", "scale", "elevation_position", "azimuth_position", "control", "tracker_alarms",
 )  # fmt: skip
@@ -112,7 +113,7 @@ class SunSpecDrive:
         command = replace(command, request=None)
         if command == self._doing and not _is_stepped(command):
             return
-        if self._doing is None and halted:
+        if self._doing is None and halted and self._control != self._controls["manual"]:
             self._doing = command
             return
         self._give_up()
@@ -123,12 +124,7 @@ class SunSpecDrive:
         self._stops += 1
         self._give_up()
         self._doing = None
-        seen = self._last
-        if seen is None:
-            raise DriveError(
-                f"The tracker controller at {self._where} cannot be stopped: its position was never read. "
-                "Use its own stop."
-            )
+        seen = await self._seen_lately()
         azimuth_deg = self._rest_deg(Axis.AZIMUTH, seen.azimuth_deg, seen.azimuth_dps)
         elevation_deg = self._rest_deg(Axis.ELEVATION, seen.elevation_deg, seen.elevation_dps)
         await self._unit.stop(self._targets(azimuth_deg, elevation_deg))
@@ -206,6 +202,17 @@ class SunSpecDrive:
         braking_deg = velocity_dps**2 / (2.0 * self._config.axis(axis).acceleration_dps2)
         return position_deg + (braking_deg if velocity_dps > 0.0 else -braking_deg)
 
+    async def _seen_lately(self) -> _Seen:
+        """Return where the axes are; an old reading is made anew, or a stop would turn them back there."""
+        if self._last is None or self._clock.now() - self._last.at > LATELY:
+            await self.read()
+        if self._last is None:
+            raise DriveError(
+                f"The tracker controller at {self._where} cannot be stopped: its position was never read. "
+                "Use its own stop."
+            )
+        return self._last
+
     async def _look_again(self) -> None:
         stops = self._stops
         self._unit.forget()
@@ -250,6 +257,7 @@ class SunSpecDrive:
         )
         stepped = _is_stepped(command)
         targets = self._targets(azimuth_deg, elevation_deg)
+        self._doing = None
         await self._unit.put(targets, renewed=True, confirmed=not stepped)
         self._doing, self._told_at = command, self._clock.now()
 

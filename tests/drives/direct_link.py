@@ -17,6 +17,7 @@ from app.drives.pr_axis import PrAxis
 from app.drives.profile import Adapter, load_profile
 from app.drives.register_axis import RegisterAxis
 from app.drives.simulated import SimulatedDrive
+from app.drives.sunspec import SunSpecDrive
 from app.drives.two_axes import TwoAxisDrive
 from app.drives.unit import Unit
 from app.tracker.axes import Axis
@@ -50,6 +51,10 @@ class DirectLink:
 
     def release(self) -> None:
         self._released.set()
+
+    def renew(self) -> None:
+        """Have a new connection: what was read over the old one does not count any more."""
+        self._lost += 1
 
     async def read(
         self, address: int, count: int, *, what: str, priority: Priority = Priority.POLL
@@ -129,3 +134,19 @@ def linked_rig(profile_name: str) -> LinkedRig:
     rig = LinkedRig(machine, machine, clock, devices=found, links=links)
     rig.drive = rig.another_drive(profile_name)
     return rig
+
+
+def linked_controller() -> LinkedRig:
+    """Return another tracker controller, which moves both axes, with a direct link to it."""
+    clock = VirtualClock(START)
+    machine = SimulatedDrive(CONFIG, clock, watchdog=None)
+    found = devices(load_profile("sunspec-601"), machine, clock, 1)
+    rig = LinkedRig(machine, machine, clock, devices=found, links={Axis.AZIMUTH: DirectLink(found[1])})
+    rig.drive = another_controller_drive(rig)
+    return rig
+
+
+def another_controller_drive(rig: LinkedRig) -> SunSpecDrive:
+    """Return a drive on that controller that knows nothing of what was commanded before."""
+    profile = load_profile("sunspec-601")
+    return SunSpecDrive(CONFIG, profile, rig.links[Axis.AZIMUTH], rig.clock, "here")

@@ -5,10 +5,17 @@ from datetime import timedelta
 
 import pytest
 
+from app.drives.devices.sunspec import AUTOMATIC, CONTROL
 from app.drives.drive import DriveError, DriveSilent
 from app.tracker.axes import Axis
 from app.tracker.motion import DriveCommand, DriveRequest, Position, RequestKind
-from tests.drives.direct_link import STATUSWORD_ENABLED, LinkedRig, linked_rig
+from tests.drives.direct_link import (
+    STATUSWORD_ENABLED,
+    LinkedRig,
+    another_controller_drive,
+    linked_controller,
+    linked_rig,
+)
 
 AXIS_DRIVES = ("kinco-cia402", "leadshine-rs", "oriental-az")
 FAR = DriveCommand(azimuth=Position(140.0, 6.0), elevation=Position(60.0, 2.0))
@@ -97,3 +104,44 @@ async def test_a_fault_reset_leaves_the_sound_axis_powered() -> None:
     feedback = await rig.forward(0.2, DriveCommand(request=DriveRequest(3, RequestKind.RESET_FAULT)))
     assert (feedback.request_done, feedback.request_failed, feedback.fault_code) == (3, False, 0)
     assert rig.statusword(Axis.ELEVATION) & 0x6F == STATUSWORD_ENABLED
+
+
+async def test_another_controller_is_halted_although_the_connection_was_renewed() -> None:
+    rig = linked_controller()
+    await rig.forward(1.0, FAR)
+    rig.links[Axis.AZIMUTH].renew()
+    await rig.drive.write(DriveCommand())
+    assert stands(rig)
+    assert rig.machine.observe().azimuth.position_deg < 130.0
+
+
+async def test_another_controller_that_obeys_a_former_life_is_halted() -> None:
+    rig = linked_controller()
+    await rig.forward(1.0, FAR)
+    rig.drive = another_controller_drive(rig)
+    await rig.forward(0.2)
+    assert stands(rig)
+    assert rig.machine.observe().azimuth.position_deg < 130.0
+
+
+async def test_a_controller_in_automatic_is_left_alone_until_it_is_commanded() -> None:
+    rig = linked_controller()
+    rig.machine.turn(Axis.AZIMUTH, FAR.azimuth)
+    await rig.forward(1.0)
+    rig.links[Axis.AZIMUTH].silent = True
+    with pytest.raises(DriveSilent):
+        await rig.drive.read()
+    rig.links[Axis.AZIMUTH].silent = False
+    await rig.forward(1.0)
+    assert rig.links[Axis.AZIMUTH].device.read_registers(3, CONTROL, 1) == [AUTOMATIC]
+    assert not stands(rig)
+
+
+async def test_a_stop_after_a_long_silence_does_not_turn_the_axes_back() -> None:
+    rig = linked_controller()
+    await rig.forward(1.0, FAR)
+    rig.clock.advance(timedelta(seconds=3))
+    stopped_at_deg = rig.machine.observe().azimuth.position_deg
+    await rig.drive.stop()
+    assert stands(rig)
+    assert stopped_at_deg <= rig.machine.observe().azimuth.position_deg < 140.0
