@@ -7,17 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.angles import separation_deg
+from app.show.axis_angles import axis_angles, faced
 from app.show.simulate import simulate
 from app.sun.position import Location, SunPosition, sun_path
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
-from app.tracker.mount import sky
 from app.tracker.programs.schedule import Followed
 from app.tracker.recording import Frames
 
 SECOND = timedelta(seconds=1)
-STILL_DEG = 1e-9
+STILL_DEG = 1e-6
 CURVE_S = 120
 
 
@@ -52,11 +52,11 @@ def strategy_day(
 ) -> StrategyDay:
     """Return what a tracker with this configuration does from `begin` to `end`, in place at the beginning."""
     _, frames = simulate(config, pointing, location, "UTC", mode, held, begin, end, step=SECOND)
-    setpoints = _columns(frames, "setpoint_azimuth_deg", "setpoint_elevation_deg")
-    measured = _columns(frames, "measured_azimuth_deg", "measured_elevation_deg")
+    setpoints = np.array(axis_angles(config, pointing, frames, "setpoint"))
+    measured = np.array(axis_angles(config, pointing, frames))
     followed = Followed(config, pointing, mode, held)
     suns = _suns(config, location, begin, frames)
-    panels = [sky(config, pointing, *axes) for axes in measured.T.tolist()]
+    panels = faced(config, pointing, frames)
     errors_deg = [
         _off_deg(followed.direction(sun), panel)
         for sun, panel in zip(suns, panels, strict=True)
@@ -76,10 +76,6 @@ def strategy_day(
         panel_azimuth_deg=tuple(panels[i].azimuth_deg for i in picked),
         panel_elevation_deg=tuple(panels[i].elevation_deg for i in picked),
     )
-
-
-def _columns(frames: Frames, *names: str) -> NDArray[np.float64]:
-    return np.array([frames.column(name) for name in names])
 
 
 def _moves(setpoints: NDArray[np.float64]) -> int:

@@ -6,6 +6,7 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 
 from app.energy.ideal import AxisPath
+from app.show.axis_angles import axis_angles
 from app.show.simulate import simulate
 from app.studies.light import Days
 from app.studies.request import StudyRequest, StudyStrategy
@@ -13,7 +14,6 @@ from app.sun.trigonometry import Array
 from app.tracker.config import MountKind, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
-from app.tracker.recording import COLUMNS
 from app.tracker.strategy import Continuous, Deadband, Interval, Stepped
 
 FRAME = timedelta(minutes=1)
@@ -30,14 +30,14 @@ def rehearsed_axes(asked: StudyRequest, days: Days, mode: Mode, strategy: StudyS
     _, frames = simulate(
         config, Pointing(), days.location, asked.time_zone, mode, asked.held, begin, end, step=FRAME
     )
-    seen = dict(zip(COLUMNS, frames.values.T, strict=True))
-    seen_s = begin.timestamp() + seen["elapsed_s"]
-    first_deg = _between(at_s, seen_s, np.unwrap(seen["measured_azimuth_deg"], period=360.0))
+    seen_s = begin.timestamp() + frames.column("elapsed_s")
+    stood_first_deg, stood_second_deg = axis_angles(config, Pointing(), frames)
+    first_deg = _between(at_s, seen_s, np.unwrap(stood_first_deg, period=360.0))
     if config.mount.kind is MountKind.AZIMUTH_ELEVATION:
         first_deg = np.mod(first_deg, 360.0)
     else:
         first_deg = np.mod(first_deg + 180.0, 360.0) - 180.0
-    second_deg = _between(at_s, seen_s, seen["measured_elevation_deg"])
+    second_deg = _between(at_s, seen_s, stood_second_deg)
     return AxisPath(first_deg[None, :], second_deg[None, :])
 
 

@@ -9,6 +9,7 @@ from app.sun.position import Location
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
+from app.tracker.mounts.abilities import default_mode
 from app.tracker.programs.stepped import StepProgram
 from app.tracker.strategy import Stepped, Strategy
 from app.web.errors import NotFound
@@ -30,11 +31,11 @@ class DayQuestion:
 def asked_day(
     tracker: TrackerDetail, strategy: Strategy, location: Location, begin: datetime, end: datetime
 ) -> DayQuestion:
-    """Return the question for a tracker with another strategy; a fixed panel is asked in dual mode."""
+    """Return the question for a tracker with another strategy; a fixed panel is asked with all axes free."""
     memory = tracker.state.memory
-    mode = Mode.DUAL if memory.mode in (None, Mode.FIXED) else memory.mode
     config = replace(tracker.state.config, strategy=strategy)
-    return DayQuestion(config, memory.pointing, location, mode or Mode.DUAL, memory.orientation, begin, end)
+    mode = default_mode(config.mount) if memory.mode in (None, Mode.FIXED) else memory.mode
+    return DayQuestion(config, memory.pointing, location, mode, memory.orientation, begin, end)
 
 
 def day_of(question: DayQuestion) -> StrategyDay:

@@ -10,10 +10,13 @@ from app.angles import separation_deg
 from app.show.simulate import simulate, simulate_show
 from app.show.strategy_day import StrategyDay, strategy_day
 from app.sun.position import Location, sun_position
+from app.sun.trigonometry import SCALAR
 from app.tracker.axes import AxisConfig
-from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.config import MountConfig, MountKind, Orientation, Rows, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
+from app.tracker.mounts.abilities import default_mode
+from app.tracker.mounts.kinematics import followed
 from app.tracker.programs.examples import ALEXANDRU_TABLE_3
 from app.tracker.programs.schedule import Moment, solar_hour
 from app.tracker.programs.show import ShowPlan, check_show, schedule_of
@@ -29,6 +32,20 @@ from app.tracker.strategy import (
 )
 
 HELD = Orientation(180.0, 45.0)
+TURNING = AxisConfig(-110.0, 110.0, 4.0, 6.0, 0.5, 2.0)
+LEVEL = TrackerConfig(
+    "T1", "level", azimuth=TURNING, mount=MountConfig(MountKind.HORIZONTAL_SINGLE_AXIS, 180.0)
+)
+ROWS = replace(LEVEL, name="rows", mount=replace(LEVEL.mount, rows=Rows(0.5)))
+TILTED = replace(LEVEL, name="tilted", mount=MountConfig(MountKind.TILTED_SINGLE_AXIS, 180.0, 30.0))
+UPRIGHT = replace(LEVEL, name="upright", mount=MountConfig(MountKind.VERTICAL_SINGLE_AXIS, panel_tilt_deg=40))
+SINGLE = (LEVEL, TILTED, UPRIGHT)
+EQUATORIAL = replace(
+    LEVEL,
+    name="equatorial",
+    elevation=AxisConfig(-24.0, 24.0, 2.0, 6.0, 0.5, 1.0),
+    mount=MountConfig(MountKind.EQUATORIAL, 180.0, 45.65),
+)
 BRASOV = Location(45.65, 25.6)
 TWO_TURNS = AxisConfig(-270.0, 450.0, 6.0, 6.0, 0.5, 3.0)
 TROMSO, ADELAIDE, NAIROBI = Location(69.65, 18.96), Location(-34.9, 138.6), Location(-1.3, 36.8)
@@ -65,6 +82,22 @@ def test_a_strategy_stays_within_its_bound(
     assert bound_deg / 4.0 < told.largest_error_deg < bound_deg or isinstance(strategy, Continuous)
     assert told.largest_error_deg < bound_deg
     assert fewest <= told.moves <= most
+
+
+@pytest.mark.parametrize("config", [EQUATORIAL, *SINGLE, ROWS], ids=lambda config: config.name)
+def test_a_day_is_told_in_the_axes_of_every_mount(config: TrackerConfig) -> None:
+    begin = datetime(2026, 6, 21, 8, tzinfo=UTC)
+    end = begin + timedelta(hours=1)
+    told = strategy_day(config, Pointing(), BRASOV, default_mode(config.mount), HELD, begin, end)
+    assert told.largest_error_deg is not None
+    assert 0.2 < told.largest_error_deg < config.deadband_deg
+    suns = [sun_position(config.algorithm, BRASOV, at) for at in (begin, end)]
+    turned = [
+        followed(config.mount, default_mode(config.mount), (180.0, 45.0), sun, SCALAR)[0]
+        for sun in ((sun.azimuth_deg, sun.apparent_elevation_deg) for sun in suns)
+    ]
+    assert told.travel_azimuth_deg == pytest.approx(turned[1] - turned[0], abs=1.0)
+    assert told.travel_elevation_deg < 0.5, "the declination hardly changes, and a single axis has no second"
 
 
 def test_in_polar_day_intervals_go_on_all_night() -> None:

@@ -21,7 +21,8 @@ from app.studies.request import Fidelity, LightModel, Span, StudyMode, StudyRequ
 from app.studies.result import CaseResult, curves_csv, table_csv
 from app.studies.weather import HOURS, WeatherFormat, WeatherRefused, read_weather
 from app.sun.position import Location
-from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.axes import AxisConfig
+from app.tracker.config import MountConfig, MountKind, Orientation, TrackerConfig
 from tests.studies import files
 
 # pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.
@@ -134,6 +135,27 @@ def test_the_controller_collects_what_ideal_drives_do_but_for_its_deadband() -> 
         assert real.moves > 50
     azimuth = found[Fidelity.CONTROLLER][StudyMode.AZIMUTH, StudyStrategy.DEADBAND]
     assert set(azimuth.curves[0].elevation_deg) == {48.7}
+
+
+@pytest.mark.parametrize(
+    ("mode", "asked_mode", "mount"),
+    [
+        (StudyMode.AZIMUTH, StudyMode.HORIZONTAL_AXIS, MountConfig(MountKind.HORIZONTAL_SINGLE_AXIS)),
+        (StudyMode.DUAL, StudyMode.EQUATORIAL, MountConfig(MountKind.EQUATORIAL, axis_tilt_deg=41.2867)),
+    ],
+)
+def test_the_controller_collects_on_its_own_mount_what_the_ideal_one_does(
+    mode: StudyMode, asked_mode: StudyMode, mount: MountConfig
+) -> None:
+    """Frames of these mounts tell where the panel faces, not where its axes stand."""
+    turning = AxisConfig(-60.0, 60.0, 4.0, 6.0, 0.5, 2.0)
+    second = AxisConfig(-24.0, 24.0, 4.0, 6.0, 0.5, 2.0)
+    tracker = TrackerConfig("T1", "T1", azimuth=turning, elevation=second, mount=mount)
+    ideal = worked(asked(modes=(asked_mode,), range_deg=60.0))[asked_mode, StudyStrategy.CONTINUOUS]
+    real = worked(asked(modes=(mode,), tracker=tracker, fidelity=Fidelity.CONTROLLER))
+    found = real[mode, StudyStrategy.CONTINUOUS]
+    assert found.insolation_kwhm2 == pytest.approx(ideal.insolation_kwhm2, rel=2e-3)
+    assert found.travel_deg == pytest.approx(ideal.travel_deg, rel=0.05)
 
 
 def test_a_program_of_eight_steps_is_nearly_as_good_as_following() -> None:
