@@ -41,7 +41,7 @@ class ProgramTable:
 
 @dataclass(frozen=True, slots=True)
 class StrategyPage:
-    """Strategy, step program and hybrid correction of one tracker."""
+    """Strategy, step program and hybrid correction of one tracker; `done`: what was just saved."""
 
     template: ClassVar[str] = "strategy.html"
 
@@ -55,6 +55,7 @@ class StrategyPage:
     bases: Options
     frames: Options
     examples: Options
+    done: str
 
 
 @dataclass(frozen=True, slots=True)

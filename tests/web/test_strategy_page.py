@@ -76,7 +76,11 @@ async def test_a_program_made_by_hand_is_saved(client: httpx.AsyncClient, machin
         "first": ["110", "180", "250", ""],
         "second": ["30", "", "30", ""],
     }
-    await client.post(f"{PAGE}/program", data=head | rows)
+    answer = await client.post(f"{PAGE}/program", data=head | rows, headers={"HX-Request": "true"})
+    assert (answer.status_code, answer.text) == (204, ""), "the form must not be swapped for a sentence"
+    again = (await client.get(answer.headers["HX-Redirect"])).text
+    assert "Three places is saved; the tracker goes by it." in again
+    assert 'value="stepped" required checked' in again
     strategy = kept(machine)
     assert isinstance(strategy, Stepped)
     assert strategy.program.steps[1] == ProgramStep(12.5, 180.0, None)

@@ -25,7 +25,7 @@ from app.web.ui.forms import Typed
 from app.web.ui.frame import tracker_frame
 from app.web.ui.orders import PressDep
 from app.web.ui.plot import Plot, line_plot
-from app.web.ui.render import page
+from app.web.ui.render import go, page
 from app.web.ui.strategy_forms import (
     AIMS,
     BASES,
@@ -51,9 +51,9 @@ HOURS = tuple(range(0, 25, 3))
 
 
 @router.get("")
-async def strategy(request: Request, tracker_id: str, machine: MachineDep) -> Response:
+async def strategy(request: Request, tracker_id: str, machine: MachineDep, done: str = "") -> Response:
     """Show strategy, program and correction as they are stored."""
-    return _answer(request, tracker_of(await machine.detail(), tracker_id))
+    return _answer(request, tracker_of(await machine.detail(), tracker_id), done=bool(done))
 
 
 @router.post("")
@@ -116,7 +116,7 @@ async def program(
         table = typed_program(form, error.sentences, more=0)
         return _answer(press.request, tracker, table=table, block="program", status=422)
     await press.send(ConfigureTracker(replace(tracker.state.config, strategy=Stepped(wanted))))
-    return press.answer(f"{wanted.name} is saved; the tracker goes by it.")
+    return go(press.request, f"/trackers/{tracker_id}/strategy?done=program")
 
 
 @router.get("/program.csv")
@@ -163,6 +163,7 @@ def _answer(
     hybrid: Typed | None = None,
     block: str | None = None,
     status: int = 200,
+    done: bool = False,
 ) -> Response:
     config = tracker.state.config
     kept: StepProgram | None = config.strategy.program if isinstance(config.strategy, Stepped) else None
@@ -178,6 +179,7 @@ def _answer(
         program=table or shown_program(kept),
         hybrid=light.form(HybridForm.model_fields),
         keeps_program=kept is not None,
+        done=f"{kept.name} is saved; the tracker goes by it." if done and kept else "",
         aims=AIMS,
         bases=BASES,
         frames=FRAMES,
