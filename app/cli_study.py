@@ -177,5 +177,6 @@ def _table(result: StudyResult) -> str:
         "  ".join(text.rjust(width) if column else text.ljust(width) for column, (text, width) in cells)
         for cells in (enumerate(zip(row, widths, strict=True)) for row in rows)
     ]
-    head = f"{result.source}, {len(result.days)} days, every {result.step_min} min, for 1 kW of panels"
+    days = "1 day" if len(result.days) == 1 else f"{len(result.days)} days"
+    head = f"{result.source}, {days}, every {result.step_min} min, for 1 kW of panels"
     return "\n".join([head, "", *lines])

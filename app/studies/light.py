@@ -10,7 +10,7 @@ from pvlib import atmosphere, clearsky, irradiance
 
 from app.energy.plane import Light
 from app.studies.days import days_of
-from app.studies.request import LightModel, StudyRequest
+from app.studies.request import CLEAR_SKIES, LightModel, StudyRequest
 from app.studies.weather import WeatherYear
 from app.sun.position import RISE_ELEVATION_DEG, Algorithm, Location, SunPath, sun_path
 from app.sun.trigonometry import Array
@@ -48,7 +48,7 @@ def clear_days(asked: StudyRequest) -> Days:
     at_s = midnights_s(days, offset_h)[:, None] + 60.0 * asked.step_min * (np.arange(steps) + 0.5)
     light = clear_light(asked.light, asked.location, at_s)
     air, wind = (np.full_like(at_s, value) for value in (asked.module.air_degc, asked.module.wind_mps))
-    source = f"clear sky, {asked.light}"
+    source = f"clear sky by {CLEAR_SKIES[asked.light]}"
     return Days(asked.location, offset_h, source, days, weights, asked.step_min, at_s, light, air, wind)
 
 

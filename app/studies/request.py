@@ -1,8 +1,11 @@
 """What a study is asked: the site, the days, the light, what follows the sun how, and what it is paid by."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import date
 from enum import StrEnum
+from types import MappingProxyType
+from typing import Final
 
 from app.energy.motion import DriveCosts
 from app.energy.plane import Around
@@ -34,6 +37,15 @@ class LightModel(StrEnum):
     SOLIS = "simplified-solis"
     HAURWITZ = "haurwitz"
     WEATHER = "weather-file"
+
+
+CLEAR_SKIES: Final[Mapping[LightModel, str]] = MappingProxyType(
+    {
+        LightModel.INEICHEN: "Ineichen and Perez, Linke turbidity of the place",
+        LightModel.SOLIS: "simplified Solis",
+        LightModel.HAURWITZ: "Haurwitz, split by Erbs",
+    }
+)
 
 
 class StudyMode(StrEnum):

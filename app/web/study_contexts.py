@@ -73,6 +73,8 @@ class StudyView:
     curves: Plot
     panel: Plot
     months: Plot | None
+    heads: tuple[str, ...]
+    gains: tuple[tuple[str, tuple[str, ...]], ...]
     heat: HeatMap | None
 
 

@@ -121,6 +121,9 @@ async def test_a_result_has_table_pictures_and_files(client: httpx.AsyncClient, 
     for unit in ("W/m²", "kWh", "degrees", "hour of the day, standard time (UTC+3)", "month"):
         assert unit in text
     assert not re.search(r"\sstyle=|<style|\son[a-z]+=", text)
+    assert "41.2800° north, 36.3300° east" in text
+    assert "Ineichen and Perez, Linke turbidity of the place; sky by Hay and Davies" in text
+    assert 'aria-current="true"><td><a href="/studies/20260621T120000-0a1b2c?case=2">Dual-axis' in text
     december = (await client.get(f"/studies/{STUDY_ID}?case=1&day=11")).text
     assert "10 December 2026" in december
     assert "Where the panel faces, Azimuth, continuous" in december
@@ -129,6 +132,20 @@ async def test_a_result_has_table_pictures_and_files(client: httpx.AsyncClient, 
     curves = await client.get(f"/studies/{STUDY_ID}/curves.csv")
     assert len(curves.text.splitlines()) == 1 + 3 * 12 * 24
     assert "Noon" in (await client.get("/studies")).text
+
+
+async def test_the_gain_of_every_day_stands_beside_its_date(
+    client: httpx.AsyncClient, kept: StudyFolder, found: StudyResult
+) -> None:
+    text = (await client.get(f"/studies/{STUDY_ID}")).text
+    table = text[text.index("Gain against the fixed panel, %") :].split("</table>")[0]
+    assert re.findall(r'<th class="number">(.*?)</th>', table)[5] == "10 Jun"
+    dual = table[table.index("Dual-axis") :].split("</tr>")[0]
+    shown = [float(text.replace("−", "-")) for text in re.findall(r'number">(.*?)</td>', dual)]
+    fixed, best = found.cases[0].months_kwh, found.cases[2].months_kwh
+    gains = [100.0 * (kwh / still - 1.0) for kwh, still in zip(best, fixed, strict=True)]
+    assert shown == pytest.approx(gains, abs=0.051)
+    assert max(shown) > 45.0 > 27.0 > min(shown)
 
 
 async def test_a_failed_study_says_why(client: httpx.AsyncClient, tmp_path: Path) -> None:

@@ -11,7 +11,15 @@ from starlette.responses import Response
 from app.energy.plane import Transposition
 from app.link.messages import SiteDetail
 from app.studies.folder import WeatherFile
-from app.studies.request import Fidelity, LightModel, Span, StudyMode, StudyRequest, StudyStrategy
+from app.studies.request import (
+    CLEAR_SKIES,
+    Fidelity,
+    LightModel,
+    Span,
+    StudyMode,
+    StudyRequest,
+    StudyStrategy,
+)
 from app.studies.result import MODE_NAMES, STRATEGY_NAMES
 from app.web.deps import MachineDep, PanelDep
 from app.web.errors import NotAcceptable
@@ -49,11 +57,7 @@ SPANS: Options = (
     (Span.TWELVE_DAYS, "12 representative days"),
     (Span.YEAR, "The whole year"),
 )
-CLEAR: Options = (
-    (LightModel.INEICHEN, "Clear sky: Ineichen and Perez, Linke turbidity of the place"),
-    (LightModel.SOLIS, "Clear sky: simplified Solis"),
-    (LightModel.HAURWITZ, "Clear sky: Haurwitz, split by Erbs"),
-)
+CLEAR: Options = tuple((model, f"Clear sky: {name}") for model, name in CLEAR_SKIES.items())
 TRANSPOSITIONS: Options = (
     (Transposition.HAY_DAVIES, "Hay and Davies"),
     (Transposition.PEREZ, "Perez 1990"),

@@ -8,16 +8,17 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.studies.folder import StudyStatus
-from app.studies.request import Fidelity, LightModel, StudyRequest
+from app.studies.request import CLEAR_SKIES, Fidelity, LightModel, StudyRequest
 from app.studies.result import CaseResult, StudyResult, curves_csv, table_csv
 from app.web.contexts import Link
 from app.web.deps import PanelDep
 from app.web.study_contexts import StudyPage, StudyView
-from app.web.ui.formats import words
+from app.web.ui.formats import UNKNOWN, decimals, words
 from app.web.ui.frame import site_frame
 from app.web.ui.heatmap import heat_map
 from app.web.ui.plot import Curve, Plot, bar_plot, line_plot
 from app.web.ui.render import go, page
+from app.web.ui.studies import TRANSPOSITIONS
 
 router = APIRouter(prefix="/studies")
 MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
@@ -74,16 +75,20 @@ def _settings(asked: StudyRequest, result: StudyResult | None) -> tuple[tuple[st
     """Return what the study was asked, in the words of the report."""
     place = result.location if result else asked.location
     module, costs = asked.module, asked.costs
-    light = asked.weather_file if asked.light is LightModel.WEATHER else asked.light
+    light = asked.weather_file if asked.light is LightModel.WEATHER else CLEAR_SKIES[asked.light]
+    north = "north" if place.latitude_deg >= 0.0 else "south"
+    east = "east" if place.longitude_deg >= 0.0 else "west"
+    sky = dict(TRANSPOSITIONS)[asked.around.transposition]
     step = result.step_min if result else asked.step_min
     fidelity = "ideal drives" if asked.fidelity is Fidelity.IDEAL else "as the controller does it"
     return (
         (
             "Place",
-            f"{place.latitude_deg:.4f}° north, {place.longitude_deg:.4f}° east, {place.altitude_m:g} m",
+            f"{abs(place.latitude_deg):.4f}° {north}, {abs(place.longitude_deg):.4f}° {east}, "
+            f"{place.altitude_m:g} m",
         ),
         ("Days", f"{words(asked.span)}, {asked.on}, a value every {step} min, {fidelity}"),
-        ("Light", f"{light}, {asked.around.transposition}, albedo {asked.around.albedo:g}"),
+        ("Light", f"{light}; sky by {sky}; albedo {asked.around.albedo:g}"),
         ("Fixed panel", f"azimuth {asked.held.azimuth_deg:g}°, elevation {asked.held.elevation_deg:g}°"),
         (
             "Panels",
@@ -95,7 +100,7 @@ def _settings(asked: StudyRequest, result: StudyResult | None) -> tuple[tuple[st
 
 
 def _view(study_id: str, result: StudyResult, case: int, day: int | None) -> StudyView:
-    chosen = min(case, len(result.cases) - 1) or len(result.cases) - 1
+    chosen = min(case, len(result.cases) - 1) or _best(result)
     shown = result.cases[chosen]
     dates = [curve.on for curve in shown.curves]
     brightest = max(range(len(dates)), key=lambda index: sum(shown.curves[index].plane_wm2))
@@ -109,9 +114,32 @@ def _view(study_id: str, result: StudyResult, case: int, day: int | None) -> Stu
         curves=_curves(result, shown, at),
         panel=_panel(result, shown, at),
         months=_months(result, shown) if shown.months_kwh else None,
+        heads=tuple(f"{on:%d %b}" for on in result.days) if len(result.days) == len(MONTHS) else MONTHS,
+        gains=_gains(result),
         heat=heat_map(f"In the plane of the panel, {shown.label}", result.days, shown.heat_wm2)
         if shown.heat_wm2
         else None,
+    )
+
+
+def _best(result: StudyResult) -> int:
+    """Return the case with the greatest net gain, which is shown until another is chosen."""
+    return max(range(len(result.cases)), key=lambda index: (index > 0, result.cases[index].net_gain_percent))
+
+
+def _gains(result: StudyResult) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """Return each case's gain against the fixed panel in every month, in percent."""
+    fixed = result.cases[0].months_kwh
+    return tuple(
+        (
+            case.label,
+            tuple(
+                decimals(100.0 * (kwh / still - 1.0), 1) if still > 0.0 else UNKNOWN
+                for kwh, still in zip(case.months_kwh, fixed, strict=True)
+            ),
+        )
+        for case in result.cases[1:]
+        if fixed
     )
 
 
