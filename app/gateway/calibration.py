@@ -9,6 +9,8 @@ from app.tracker.reason import Reason
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
 
 PASSING = ("busy_", "axes_moving")
+BY_HAND = {"busy_jogging", "busy_zeroing", "busy_measuring"}
+"""What somebody does who stands at the machine: that work is not taken over."""
 COMES_TO_REST = {ActivityName.STOPPING, ActivityName.HOLDING}
 
 
@@ -104,5 +106,9 @@ class Calibrations:
 
 
 def lasting(tracker: Snapshot) -> tuple[Reason, ...]:
-    """Return what forbids homing and would still forbid it after a stop."""
-    return tuple(reason for reason in tracker.actions["home"] if not reason.code.startswith(PASSING))
+    """Return what forbids homing and would still forbid it after a stop, or forbids to stop for it."""
+    return tuple(
+        reason
+        for reason in tracker.actions["home"]
+        if reason.code in BY_HAND or not reason.code.startswith(PASSING)
+    )

@@ -78,11 +78,15 @@ async def _rebuild(model: SiteModel, loop: TrackerLoop, config: TrackerConfig) -
 
 
 def _memory_for(memory: TrackerMemory, old: TrackerConfig, new: TrackerConfig) -> TrackerMemory:
-    """Return what stays true with other limits, another mount or drive; these two have no trusted zero."""
+    """Return what stays true with other limits, another mount or drive.
+
+    These two have no trusted zero, and a move that nobody has judged yet was made with the former settings.
+    """
+    if (old.mount.kind, old.drive) == (new.mount.kind, new.drive):
+        return replace(memory, tracking_on=False)
+    memory = replace(memory, proofs=replace(memory.proofs, move=None))
     if old.mount.kind != new.mount.kind:
         return _remounted(memory)
-    if old.drive == new.drive:
-        return replace(memory, tracking_on=False)
     return replace(
         memory,
         home=None,

@@ -21,7 +21,8 @@ from app.gateway.sunspec_device import SunSpecDevice
 from app.gateway.sunspec_map import BASE, END, map_table, sunspec_map
 from app.link.messages import ConfigureTracker, ReportWeather
 from app.settings import Settings
-from app.tracker.commands import SelectMode, Stop
+from app.tracker.axes import Axis
+from app.tracker.commands import Jog, SelectMode, Stop
 from app.tracker.config import DriveConfig, DriveKind, MountConfig, MountKind, TrackerConfig
 from app.tracker.mode import Mode
 from app.tracker.motion import DriveCommand, Position
@@ -271,6 +272,20 @@ async def test_a_new_target_is_gone_to_only_while_this_door_has_manual_control()
         await settle()
         await system.write(EL_CTL, *packed(36.0))
         assert plant.tracker().activity is ActivityName.HOLDING, "somebody else stopped it"
+
+
+async def test_calibrate_does_not_take_the_tracker_out_of_the_hands_that_move_it() -> None:
+    async with scada() as system:
+        plant = system.plant
+        await plant.commission()
+        await plant.ask(Jog("press", Axis.AZIMUTH, 1))
+        await plant.forward(seconds=0.1)
+        assert await system.write(CTL, 2) == bytes((0x90, 6))
+        assert plant.tracker().activity is ActivityName.JOGGING
+        assert "is being moved by hand" in system.journal()[-1][2]
+        await plant.forward(seconds=60)
+        assert plant.tracker().activity is ActivityName.HOLDING
+        assert plant.tracker().home_trusted, "it was not begun afterwards either"
 
 
 async def test_a_stop_by_somebody_else_ends_a_calibration_for_good() -> None:

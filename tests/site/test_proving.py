@@ -143,6 +143,17 @@ async def test_a_move_that_waits_to_be_judged_says_so_and_is_judged_once(plant: 
     assert told.message == "The elevation axis turns the right way."
 
 
+async def test_a_move_is_not_judged_under_other_settings_than_it_was_made_with(plant: Site1) -> None:
+    turned = await plant.turn(ProveScale(Axis.AZIMUTH), Axis.AZIMUTH)
+    geared = replace(BUILT.drive, azimuth=AxisDrive(gear_ratio=1.05))
+    await plant.ask(ConfigureTracker(replace(BUILT, drive=geared)))
+    await plant.rest()
+    assert plant.memory.proofs.move is None
+    with pytest.raises(CommandRejected, match="has not been turned for this proof"):
+        await plant.ask(AnswerScale("T1", abs(turned)))
+    assert plant.config.drive == geared
+
+
 async def test_nothing_is_judged_while_the_axis_moves(plant: Site1) -> None:
     await plant.ask(ProveDirection(Axis.ELEVATION))
     await plant.forward(seconds=0.3)
