@@ -50,6 +50,8 @@ PLAIN: dict[str, type[Track | Park | Stop | Home | ResetFault]] = {
     "home": Home,
     "reset_fault": ResetFault,
 }
+UNNAMED = "unnamed"
+"""Who stopped, where a message does not say it rightly."""
 RETAINED = Reason(
     "retained",
     "A retained command is not carried out: it would be repeated with every connection.",
@@ -59,11 +61,16 @@ _messages: TypeAdapter[_Plain | _Move] = TypeAdapter(Annotated[_Plain | _Move, F
 
 
 async def obey(door: Door, tracker_id: str, payload: bytes, *, retained: bool) -> bytes:
-    """Carry out one command and return the answer: its key, whether it was accepted, and if not why."""
+    """Carry out one command and return the answer: its key, whether it was accepted, and if not why.
+
+    What asks for a stop is a stop, whatever else is wrong with the message.
+    """
     try:
         message = _messages.validate_json(payload)
     except ValidationError as error:
-        return _answer(None, _malformed(error))
+        if not _is_stop(payload):
+            return _answer(None, _malformed(error))
+        message = _Plain(type="stop", client=UNNAMED)
     actor = f"mqtt {message.client}"
     reasons = (RETAINED,) if retained else await _carry_out(door, tracker_id, message, actor)
     if reasons:
@@ -82,6 +89,14 @@ async def _carry_out(door: Door, tracker_id: str, message: _Plain | _Move, actor
     except (UnknownTracker, MachineUnreachable, ValueError) as error:
         return (Reason(type(error).__name__, str(error)),)
     return ()
+
+
+def _is_stop(payload: bytes) -> bool:
+    try:
+        said = orjson.loads(payload)
+    except orjson.JSONDecodeError:
+        return False
+    return isinstance(said, dict) and said.get("type") == "stop"
 
 
 def _malformed(error: ValidationError) -> Reason:

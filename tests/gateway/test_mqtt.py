@@ -19,7 +19,9 @@ from app.link.messages import RenameSite
 from app.link.metrics import GatewayMetrics, GatewayStatus
 from app.settings import Settings
 from app.store.store import JournalEntry, JournalFilter, Writer
-from app.tracker.snapshot import ActivityName
+from app.tracker.commands import Move
+from app.tracker.config import Orientation
+from app.tracker.snapshot import ActivityName, EventKind
 from tests.gateway.rigs import eventually, free_port, gateway, kept_plant, opened
 from tests.site.plant import SAMSUN
 
@@ -225,6 +227,22 @@ async def test_commands_go_through_the_same_door_when_they_are_allowed(
         journal = [(entry.event.actor, entry.event.message) for entry in _journal(store)]
         assert ("mqtt scada", "Going to azimuth 90.0, elevation 40.0 degrees.") in journal
         assert any(actor == "mqtt scada" and "was refused" in message for actor, message in journal)
+
+
+@pytest.mark.parametrize("more", [{}, {"client": 7}, {"client": "scada", "urgent": True}])
+async def test_a_stop_stops_whatever_else_the_message_says(
+    tmp_path: Path, broker: Broker, more: dict[str, Any]
+) -> None:
+    wanted = settings(tmp_path, broker, mqtt_commands=True)
+    async with kept_plant(tmp_path) as (plant, store), opened(plant, wanted, store):
+        await plant.commission()
+        await plant.ask(Move(Orientation(200.0, 40.0)))
+        await eventually(lambda: ("plant/north/availability", b"online", False) in broker.heard)
+        await broker.send("plant/north/trackers/T1/command", {"type": "stop", **more})
+        await eventually(lambda: broker.told("plant/north/trackers/T1/result"))
+        assert broker.told("plant/north/trackers/T1/result")[0]["accepted"] is True
+        assert plant.happened(EventKind.STOPPED)[-1].actor == "mqtt unnamed"
+        await plant.until(lambda seen: seen.activity is ActivityName.HOLDING)
 
 
 async def test_a_command_that_was_retained_is_not_carried_out(tmp_path: Path, broker: Broker) -> None:
