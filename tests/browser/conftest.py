@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 import uvicorn
+from fastapi import FastAPI
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, sync_playwright
 
 from tests.fakes import FakeMachine, FakeReader, fake_app
@@ -46,13 +47,14 @@ class Plant:
 @dataclass
 class Served:
     machine: FakeMachine
+    app: FastAPI | None = None
     ready: threading.Event = field(default_factory=threading.Event)
     server: uvicorn.Server | None = None
     loop: asyncio.AbstractEventLoop | None = None
 
     async def run(self) -> None:
         self.loop = asyncio.get_running_loop()
-        app = fake_app(self.machine, FakeReader())
+        app = self.app or fake_app(self.machine, FakeReader())
         config = uvicorn.Config(app, host="127.0.0.1", port=0, log_level="error", timeout_graceful_shutdown=1)
         self.server = uvicorn.Server(config)
         moving = asyncio.create_task(self._move())
