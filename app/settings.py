@@ -147,6 +147,18 @@ class Settings(BaseSettings):
         return self.database_url or f"sqlite:///{self.data_dir.resolve() / 'heliopanel.db'}"
 
     @property
+    def access_url(self) -> str:
+        """Return the database of users: a file of its own, or beside everything else on PostgreSQL."""
+        if self.database_url is not None and not self.database_url.startswith("sqlite"):
+            return self.database_url
+        return f"sqlite:///{self.data_dir.resolve() / 'access.db'}"
+
+    @property
+    def is_loopback(self) -> bool:
+        """Return whether only this computer can reach the panel."""
+        return self.host in LOOPBACK
+
+    @property
     def link_path(self) -> Path:
         """Return the Unix socket between panel and machine; kept short, as the system limits its length."""
         path = self.data_dir.resolve() / "machine.sock"

@@ -32,6 +32,12 @@ WRITER_PRAGMAS = (
     "PRAGMA synchronous = FULL",
     "PRAGMA foreign_keys = ON",
 )
+SHARING_PRAGMAS = (
+    f"PRAGMA busy_timeout = {BUSY_MS}",
+    "PRAGMA journal_mode = DELETE",
+    "PRAGMA synchronous = FULL",
+    "PRAGMA foreign_keys = ON",
+)
 READER_PRAGMAS = (
     f"PRAGMA busy_timeout = {BUSY_MS}",
     "PRAGMA query_only = ON",
@@ -66,15 +72,15 @@ def sqlite_path(url: str) -> Path | None:
 
 def writing_engine(url: str) -> Engine:
     """Return an engine with exactly one connection, whose transactions take the write lock at once."""
-    if sqlite_path(url) is None:
-        return create_engine(
-            parse_url(url), pool_size=1, max_overflow=0, pool_pre_ping=True, connect_args=POSTGRES
-        )
-    engine = create_engine(
-        parse_url(url), pool_size=1, max_overflow=0, connect_args={"timeout": BUSY_MS / 1000}
-    )
-    _speak_sqlite(engine, WRITER_PRAGMAS, "BEGIN IMMEDIATE")
-    return engine
+    return _single(url, WRITER_PRAGMAS)
+
+
+def sharing_engine(url: str) -> Engine:
+    """Return an engine for a database that several processes write; on SQLite with a rollback journal.
+
+    A write-ahead log is not used: SQLite before 3.51.3 may damage it when two connections write.
+    """
+    return _single(url, SHARING_PRAGMAS)
 
 
 def reading_engine(url: str) -> Engine:
@@ -88,6 +94,19 @@ def reading_engine(url: str) -> Engine:
     readonly = URL.create("sqlite", database=f"file:{quote(str(path))}", query={"mode": "ro", "uri": "true"})
     engine = create_engine(readonly, poolclass=NullPool)
     _speak_sqlite(engine, READER_PRAGMAS, "BEGIN")
+    return engine
+
+
+def _single(url: str, pragmas: tuple[str, ...]) -> Engine:
+    """Return an engine with one connection; on SQLite it speaks these pragmas and locks when it begins."""
+    if sqlite_path(url) is None:
+        return create_engine(
+            parse_url(url), pool_size=1, max_overflow=0, pool_pre_ping=True, connect_args=POSTGRES
+        )
+    engine = create_engine(
+        parse_url(url), pool_size=1, max_overflow=0, connect_args={"timeout": BUSY_MS / 1000}
+    )
+    _speak_sqlite(engine, pragmas, "BEGIN IMMEDIATE")
     return engine
 
 

@@ -1,0 +1,127 @@
+"""Who is asking: one value for people, programs, cabinets' panels and bare stop tickets."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+
+from app.access.roles import DOES, NOBODY, ORDERS, RANKS, Permission, Role, permissions_of, who_may
+
+
+class Via(StrEnum):
+    """How somebody proved who they are."""
+
+    NOBODY = "nobody"
+    LOOPBACK = "loopback"
+    SESSION = "session"
+    TOKEN = "token"  # noqa: S105 - a kind of credential, not one
+    KIOSK = "kiosk"
+    STOP_TICKET = "stop_ticket"
+
+
+class NotAllowed(Exception):
+    """Who asks is known and may not do this; the text says who may."""
+
+
+class SignInNeeded(Exception):
+    """Nobody has signed in, or what they signed in with has ended; the text says what to do."""
+
+
+class ProofNeeded(Exception):
+    """The password is to be typed again; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Principal:
+    """Who asks, with what right, and from where.
+
+    `trackers` limits a token to some trackers (None: all). `credential` names the session (its digest) or the
+    token (its id) so that it can be seen to end. `proven_at` is when the password was typed last.
+    """
+
+    name: str
+    roles: frozenset[Role]
+    permissions: frozenset[Permission]
+    via: Via
+    address: str
+    credential: str = ""
+    trackers: frozenset[str] | None = None
+    proven_at: datetime | None = None
+    rests: bool = False
+
+    @property
+    def actor(self) -> str:
+        """Return the name for journals; programs and tickets are told apart from people."""
+        match self.via:
+            case Via.TOKEN:
+                return f"{self.name} (token)"
+            case Via.KIOSK:
+                return f"{self.name} (kiosk)"
+            case Via.STOP_TICKET:
+                return f"{self.name} (stop ticket)"
+            case _:
+                return self.name
+
+    @property
+    def rank(self) -> int:
+        """Return whose word counts more at a tracker: 2 engineer, 1 operator, 0 all others."""
+        return max((RANKS[role] for role in self.roles), default=0)
+
+    @property
+    def is_known(self) -> bool:
+        """Return whether somebody stands behind this."""
+        return self.via not in (Via.NOBODY, Via.STOP_TICKET)
+
+    def may(self, permission: Permission, tracker_id: str | None = None) -> bool:
+        """Return whether this is allowed, at one tracker where one is named."""
+        within = self.trackers is None or tracker_id is None or tracker_id in self.trackers
+        return permission in self.permissions and within
+
+    def may_order(self, kind: str, tracker_id: str | None = None) -> bool:
+        """Return whether an order of this kind is allowed; an unknown kind is not.
+
+        What concerns the whole site is not allowed to a token that is limited to some trackers; Stop is.
+        """
+        permission = ORDERS.get(kind)
+        if permission is None:
+            return False
+        everywhere = tracker_id is None and self.trackers is not None and permission is not Permission.STOP
+        return self.may(permission, tracker_id) and not everywhere
+
+    def require(self, permission: Permission, tracker_id: str | None = None) -> None:
+        """Raise the error that says why this is not allowed, if it is not."""
+        if self.may(permission, tracker_id):
+            return
+        if not self.is_known:
+            raise SignInNeeded(
+                "Sign in first: this panel shows and moves nothing for people it does not know."
+            )
+        if self.rests and permission in permissions_of(self.roles):
+            raise ProofNeeded("Nothing was done here for 30 minutes. Type your password to go on.")
+        raise NotAllowed(self.refusal(permission, tracker_id))
+
+    def require_order(self, kind: str, tracker_id: str | None = None) -> None:
+        """Raise the error that says why an order is not allowed, if it is not."""
+        if not self.may_order(kind, tracker_id):
+            self.require(ORDERS.get(kind, Permission.ADMINISTER), tracker_id)
+            raise NotAllowed(f"{self.name} may not order {kind} here.")
+
+    def refusal(self, permission: Permission, tracker_id: str | None = None) -> str:
+        """Return the sentence that says why this is not allowed and who may do it."""
+        if permission in self.permissions and tracker_id is not None:
+            return f"{self.name} may not reach tracker {tracker_id}; its token is for other trackers."
+        who = " and ".join(sorted(role.value for role in self.roles)) or self.via.value.replace("_", " ")
+        return (
+            f"{self.name} ({who}) may not {DOES[permission]}. Ask somebody whose role is "
+            f"{who_may(permission)}."
+        )
+
+
+def nobody(address: str) -> Principal:
+    """Return who asks where nothing is known but an address."""
+    return Principal("nobody", frozenset(), NOBODY, Via.NOBODY, address)
+
+
+def this_computer(address: str) -> Principal:
+    """Return whoever sits at the computer while there are no users."""
+    roles = frozenset({Role.ENGINEER, Role.ADMINISTRATOR})
+    return Principal("this computer", roles, permissions_of(roles), Via.LOOPBACK, address)

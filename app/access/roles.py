@@ -1,0 +1,107 @@
+"""The table of who may do what: roles, permissions, and the permission of every kind of order."""
+
+from enum import StrEnum
+
+
+class Permission(StrEnum):
+    """What a request needs; every route and every order has exactly one."""
+
+    OPEN = "open"
+    STOP = "stop"
+    OWN = "own"
+    READ = "read"
+    REPORT = "report"
+    SIMULATE = "simulate"
+    OPERATE = "operate"
+    CONFIGURE = "configure"
+    ADMINISTER = "administer"
+
+
+class Role(StrEnum):
+    """A bundle of permissions that a person is given; one person may have several."""
+
+    VIEWER = "viewer"
+    OPERATOR = "operator"
+    ENGINEER = "engineer"
+    ADMINISTRATOR = "administrator"
+
+
+NOBODY = frozenset({Permission.OPEN})
+SEEING = NOBODY | {Permission.READ, Permission.STOP, Permission.OWN}
+OPERATING = SEEING | {Permission.OPERATE, Permission.SIMULATE, Permission.REPORT}
+
+GRANTS: dict[Role, frozenset[Permission]] = {
+    Role.VIEWER: SEEING,
+    Role.OPERATOR: OPERATING,
+    Role.ENGINEER: OPERATING | {Permission.CONFIGURE},
+    Role.ADMINISTRATOR: SEEING | {Permission.ADMINISTER},
+}
+"""An administrator has no right to move anything; he may give himself a second role, which is recorded."""
+
+RANKS = {Role.VIEWER: 0, Role.ADMINISTRATOR: 0, Role.OPERATOR: 1, Role.ENGINEER: 2}
+"""Whose word counts more at a tracker."""
+
+DOES = {
+    Permission.OPEN: "open this",
+    Permission.STOP: "stop motion",
+    Permission.OWN: "change what is their own",
+    Permission.READ: "read this",
+    Permission.REPORT: "report weather",
+    Permission.SIMULATE: "simulate and study",
+    Permission.OPERATE: "move trackers",
+    Permission.CONFIGURE: "change how trackers and site are set up",
+    Permission.ADMINISTER: "manage users, tokens and backups",
+}
+
+ORDERS: dict[str, Permission] = {
+    "stop": Permission.STOP,
+    "stop_all": Permission.STOP,
+    "end_jog": Permission.STOP,
+    "jog": Permission.OPERATE,
+    "step": Permission.OPERATE,
+    "move": Permission.OPERATE,
+    "park": Permission.OPERATE,
+    "track": Permission.OPERATE,
+    "select_mode": Permission.OPERATE,
+    "go_to_start": Permission.OPERATE,
+    "run_show": Permission.OPERATE,
+    "pause_show": Permission.OPERATE,
+    "resume_show": Permission.OPERATE,
+    "stop_show": Permission.OPERATE,
+    "save_plan": Permission.OPERATE,
+    "reset_fault": Permission.OPERATE,
+    "report_weather": Permission.REPORT,
+    "save_recording": Permission.SIMULATE,
+    "delete_recording": Permission.CONFIGURE,
+    "set_zero": Permission.CONFIGURE,
+    "home": Permission.CONFIGURE,
+    "prove_direction": Permission.CONFIGURE,
+    "prove_scale": Permission.CONFIGURE,
+    "measure_stop": Permission.CONFIGURE,
+    "measure_link_loss": Permission.CONFIGURE,
+    "answer_direction": Permission.CONFIGURE,
+    "answer_scale": Permission.CONFIGURE,
+    "set_soft_limit": Permission.CONFIGURE,
+    "restore_drive": Permission.CONFIGURE,
+    "check_connection": Permission.CONFIGURE,
+    "set_location": Permission.CONFIGURE,
+    "set_clock": Permission.CONFIGURE,
+    "rename_site": Permission.CONFIGURE,
+    "add_tracker": Permission.CONFIGURE,
+    "configure_tracker": Permission.CONFIGURE,
+    "remove_tracker": Permission.CONFIGURE,
+    "confirm_step": Permission.CONFIGURE,
+    "take_sighting": Permission.CONFIGURE,
+    "apply_sightings": Permission.CONFIGURE,
+}
+"""What every kind of order needs; a kind that is not here is refused."""
+
+
+def permissions_of(roles: frozenset[Role]) -> frozenset[Permission]:
+    """Return everything that somebody with these roles may do."""
+    return NOBODY.union(*(GRANTS[role] for role in roles))
+
+
+def who_may(permission: Permission) -> str:
+    """Return the roles that may do this, in words, such as `operator or engineer`."""
+    return " or ".join(role.value for role, granted in GRANTS.items() if permission in granted)

@@ -1,0 +1,69 @@
+"""Sessions: a random id that only the browser knows, and when it stops being worth something."""
+
+import hashlib
+import secrets
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from enum import StrEnum
+
+IDLE = timedelta(minutes=30)
+ABSOLUTE = timedelta(hours=12)
+PROOF = timedelta(minutes=5)
+STEP_UP = timedelta(minutes=5)
+USE_WRITTEN_EVERY = timedelta(minutes=1)
+AGENT_KEPT = 120
+
+
+class SessionState(StrEnum):
+    """What a session is still good for."""
+
+    LIVE = "live"
+    RESTS = "rests"
+    ENDED = "ended"
+
+
+@dataclass(frozen=True, slots=True)
+class Session:
+    """A browser that somebody signed in with; `token_id` is set for a cabinet's panel instead of `user`."""
+
+    digest: str
+    user: str
+    token_id: str
+    address: str
+    agent: str
+    began_at: datetime
+    used_at: datetime
+    proven_at: datetime
+    stepped_until: datetime | None = None
+
+    @property
+    def is_kiosk(self) -> bool:
+        """Return whether this is a cabinet's panel."""
+        return self.token_id != ""
+
+
+def state(session: Session, now: datetime) -> SessionState:
+    """Return what a session is good for: after 30 idle minutes it only views, after 12 h it has ended.
+
+    A cabinet's panel lasts as long as its token, which is judged elsewhere.
+    """
+    if session.is_kiosk:
+        return SessionState.LIVE
+    if now - session.began_at >= ABSOLUTE:
+        return SessionState.ENDED
+    return SessionState.RESTS if now - session.used_at >= IDLE else SessionState.LIVE
+
+
+def is_proven(proven_at: datetime | None, now: datetime) -> bool:
+    """Return whether the password was typed within the last 5 minutes."""
+    return proven_at is not None and now - proven_at < PROOF
+
+
+def new_id() -> str:
+    """Return a session's id: 256 random bits."""
+    return secrets.token_urlsafe(32)
+
+
+def digest_of(session_id: str) -> str:
+    """Return what is stored of a session's id; it cannot be turned back."""
+    return hashlib.sha256(session_id.encode()).hexdigest()

@@ -1,0 +1,218 @@
+"""Users, sessions, tokens and wrong passwords on disk; the panel and the command line both write here."""
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import Connection, Engine, Table, delete, insert, inspect, select, update
+
+from app.access import tables
+from app.access.book import Book
+from app.access.events import FIRST, AccessEvent, chained
+from app.access.migrations import upgrade
+from app.access.roles import Role
+from app.access.sessions import Session
+from app.access.throttle import FORGOTTEN_AFTER, Failures
+from app.access.tokens import Scope, Token
+from app.access.users import User
+from app.store.connections import sharing_engine, sqlite_path, transaction
+from app.store.files import make_folder
+
+KEY, CHANGES = "key", "changes"
+PRIVATE = 0o600
+PEOPLE = (tables.users, tables.sessions, tables.tokens, tables.failures)
+
+
+class AccessStore:
+    """The database of access, made with the first thing that is written; `key` is then its secret."""
+
+    def __init__(self, url: str, key: bytes) -> None:
+        self._url = url
+        self._key = key
+        self._engine: Engine = sharing_engine(url)
+        self._made = False
+
+    def close(self) -> None:
+        """Close the connections."""
+        self._engine.dispose()
+
+    def exists(self) -> bool:
+        """Return whether anything was ever written."""
+        if not self._made:
+            path = sqlite_path(self._url)
+            if path is not None and not path.exists():
+                return False
+            with transaction(self._engine) as connection:
+                self._made = inspect(connection).has_table(tables.meta.name)
+        return self._made
+
+    def load(self) -> Book:
+        """Return everything that requests are judged by."""
+        if not self.exists():
+            return Book(self._key)
+        with transaction(self._engine) as connection:
+            return Book(
+                key=bytes.fromhex(_meta(connection, KEY)),
+                users={row["name"]: _user(row) for row in _rows(connection, tables.users)},
+                sessions={row["digest"]: Session(**row) for row in _rows(connection, tables.sessions)},
+                tokens={row["token_id"]: _token(row) for row in _rows(connection, tables.tokens)},
+                changes=int(_meta(connection, CHANGES)),
+            )
+
+    def changes(self) -> int:
+        """Return a number that grows with everything written."""
+        if not self.exists():
+            return 0
+        with transaction(self._engine) as connection:
+            return int(_meta(connection, CHANGES))
+
+    @contextmanager
+    def writing(self) -> Iterator["Change"]:
+        """Yield one change: all of it happens, or nothing."""
+        self._make()
+        with transaction(self._engine) as connection:
+            yield Change(connection)
+            number = int(_meta(connection, CHANGES)) + 1
+            connection.execute(
+                update(tables.meta).where(tables.meta.c.name == CHANGES).values(value=str(number))
+            )
+
+    def events(self) -> list[tuple[AccessEvent, str, str]]:
+        """Return every event with the hash of the one before and its own, oldest first."""
+        if not self.exists():
+            return []
+        with transaction(self._engine) as connection:
+            rows = connection.execute(select(tables.events).order_by(tables.events.c.number)).mappings()
+            return [_event(dict(row)) for row in rows]
+
+    def _make(self) -> None:
+        if self.exists():
+            return
+        path = sqlite_path(self._url)
+        if path is not None:
+            make_folder(path.parent)
+            path.touch(PRIVATE)
+        upgrade(self._engine)
+        with transaction(self._engine) as connection:
+            if not _rows(connection, tables.meta):
+                start = [{"name": KEY, "value": self._key.hex()}, {"name": CHANGES, "value": "0"}]
+                connection.execute(insert(tables.meta), start)
+        self._made = True
+
+
+class Change:
+    """What can be written, inside one transaction that nobody else writes in."""
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
+
+    def users(self) -> dict[str, User]:
+        """Return all users as they are now."""
+        return {row["name"]: _user(row) for row in _rows(self._connection, tables.users)}
+
+    def put_user(self, user: User) -> None:
+        """Add a user, or replace the one of that name."""
+        row = asdict(user) | {"roles": _listed(user.roles)}
+        self._put(tables.users, "name", row)
+
+    def remove_user(self, name: str) -> None:
+        """Remove a user with all sessions and tokens."""
+        self._connection.execute(delete(tables.users).where(tables.users.c.name == name))
+        self._connection.execute(delete(tables.tokens).where(tables.tokens.c.owner == name))
+        self.end_sessions(name)
+
+    def put_session(self, session: Session) -> None:
+        """Add a session, or replace the one of that digest."""
+        self._put(tables.sessions, "digest", asdict(session))
+
+    def end_session(self, digest: str) -> None:
+        """End one session."""
+        self._connection.execute(delete(tables.sessions).where(tables.sessions.c.digest == digest))
+
+    def end_sessions(self, user: str, *, but: str = "") -> None:
+        """End all sessions of a user, one excepted."""
+        mine = (tables.sessions.c.user == user) & (tables.sessions.c.digest != but)
+        self._connection.execute(delete(tables.sessions).where(mine))
+
+    def end_old_sessions(self, began_before: datetime) -> None:
+        """Forget the sessions of people that began too long ago."""
+        old = (tables.sessions.c.began_at < began_before) & (tables.sessions.c.token_id == "")
+        self._connection.execute(delete(tables.sessions).where(old))
+
+    def put_token(self, token: Token) -> None:
+        """Add a token, or replace the one of that id."""
+        trackers = None if token.trackers is None else _listed(token.trackers)
+        row = asdict(token) | {"scopes": _listed(token.scopes), "trackers": trackers}
+        self._put(tables.tokens, "token_id", row)
+
+    def remove_token(self, token_id: str) -> None:
+        """Remove a token and the sessions of the cabinet's panel that it was for."""
+        self._connection.execute(delete(tables.tokens).where(tables.tokens.c.token_id == token_id))
+        self._connection.execute(delete(tables.sessions).where(tables.sessions.c.token_id == token_id))
+
+    def failures(self, subjects: Iterable[str]) -> dict[str, Failures]:
+        """Return how often each of these was wrong."""
+        wanted = tables.failures.c.subject.in_(list(subjects))
+        rows = self._connection.execute(select(tables.failures).where(wanted)).mappings()
+        return {row["subject"]: Failures(row["count"], row["last_at"]) for row in rows}
+
+    def put_failures(self, subject: str, failures: Failures) -> None:
+        """Remember how often something was wrong; what is a day old is forgotten."""
+        row = {"subject": subject, "count": failures.count, "last_at": failures.last_at}
+        self._put(tables.failures, "subject", row)
+        old = tables.failures.c.last_at < failures.last_at - FORGOTTEN_AFTER
+        self._connection.execute(delete(tables.failures).where(old))
+
+    def forgive(self, subjects: Iterable[str]) -> None:
+        """Forget what was wrong."""
+        self._connection.execute(delete(tables.failures).where(tables.failures.c.subject.in_(list(subjects))))
+
+    def empty(self) -> None:
+        """Remove all users, sessions, tokens and wrong passwords; events stay."""
+        for table in PEOPLE:
+            self._connection.execute(delete(table))
+
+    def note(self, event: AccessEvent) -> None:
+        """Append an event, chained to the one before."""
+        last = select(tables.events.c.hash).order_by(tables.events.c.number.desc()).limit(1)
+        previous = self._connection.execute(last).scalar_one_or_none() or FIRST
+        row = asdict(event) | {"prev_hash": previous, "hash": chained(previous, event)}
+        self._connection.execute(insert(tables.events), row)
+
+    def _put(self, table: Table, key: str, row: dict[str, Any]) -> None:
+        self._connection.execute(delete(table).where(table.c[key] == row[key]))
+        self._connection.execute(insert(table), row)
+
+
+def _rows(connection: Connection, table: Table) -> list[dict[str, Any]]:
+    return [dict(row) for row in connection.execute(select(table)).mappings()]
+
+
+def _meta(connection: Connection, name: str) -> str:
+    found: str = connection.execute(
+        select(tables.meta.c.value).where(tables.meta.c.name == name)
+    ).scalar_one()
+    return found
+
+
+def _user(row: dict[str, Any]) -> User:
+    return User(**row | {"roles": frozenset(Role(word) for word in row["roles"].split())})
+
+
+def _token(row: dict[str, Any]) -> Token:
+    trackers = None if row["trackers"] is None else frozenset(row["trackers"].split())
+    return Token(
+        **row | {"scopes": frozenset(Scope(word) for word in row["scopes"].split()), "trackers": trackers}
+    )
+
+
+def _event(row: dict[str, Any]) -> tuple[AccessEvent, str, str]:
+    previous, own = row.pop("prev_hash"), row.pop("hash")
+    row.pop("number")
+    return AccessEvent(**row), previous, own
+
+
+def _listed(words: Iterable[str]) -> str:
+    return " ".join(sorted(words))
