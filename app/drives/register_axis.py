@@ -137,7 +137,11 @@ class RegisterAxis:
     def abort(self) -> None:
         """Call the request that is under way failed."""
         if self._task is not None:
-            self._task, self._outcome = None, False
+            self.give_up()
+
+    def give_up(self) -> None:
+        """Call a request failed, also one that never began; what an earlier one brought counts no more."""
+        self._end(succeeded=False)
 
     def forget(self) -> None:
         """Write the next command in full."""

@@ -167,10 +167,16 @@ class TwoAxisDrive:
             raise failed
 
     async def _begin(self, request: DriveRequest) -> None:
+        """Begin a request on its axes; it has failed if one of them was never told of it."""
         self._number = request.number
         self._pending = REQUESTED[request.kind]
-        for axis in self._pending:
-            await self._axes[axis].begin(request.kind)
+        untold = [self._axes[axis] for axis in self._pending]
+        try:
+            while untold:
+                await untold.pop(0).begin(request.kind)
+        finally:
+            for one in untold:
+                one.give_up()
 
     def _watch_request(self, readings: Mapping[Axis, AxisReading]) -> None:
         """Answer a request once every axis that it concerns has ended it."""

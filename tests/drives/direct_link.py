@@ -34,12 +34,13 @@ DIALECTS: Mapping[Adapter, Callable[[Unit, Gearing, float], Dialect]] = {
 
 
 class DirectLink:
-    """Carries requests out at once; `holds` says which reply is kept back until `release`."""
+    """Carries requests out at once; `holds` says whose reply waits for `release`, `loses` whose is lost."""
 
     def __init__(self, device: Device) -> None:
         self.device = device
         self.silent = False
         self.holds: Callable[[str], bool] = lambda request: False
+        self.loses: Callable[[str], bool] = lambda request: False
         self.held = asyncio.Event()
         self._released = asyncio.Event()
         self._stops = 0
@@ -93,6 +94,9 @@ class DirectLink:
             raise DriveSilent("There is no answer.")
 
     async def _reply(self, request: str) -> None:
+        if self.loses(request):
+            self._lost += 1
+            raise DriveSilent("The reply was lost.")
         if self.holds(request):
             self.held.set()
             await self._released.wait()

@@ -95,6 +95,22 @@ async def test_what_moves_when_the_machine_starts_again_is_halted(profile: str) 
     assert stands(rig)
 
 
+@pytest.mark.parametrize("profile", AXIS_DRIVES)
+async def test_a_search_that_only_one_axis_began_has_failed(profile: str) -> None:
+    rig = linked_rig(profile)
+    feedback = await rig.until_rest(DriveCommand(request=DriveRequest(1, RequestKind.HOME)))
+    assert (feedback.request_done, feedback.request_failed) == (1, False)
+    await rig.forward(1.0, FAR)
+    await rig.until_rest(FAR)
+    rig.links[Axis.AZIMUTH].loses = lambda request: request.startswith("write")
+    again = DriveCommand(request=DriveRequest(2, RequestKind.HOME))
+    with pytest.raises(DriveSilent):
+        await rig.drive.write(again)
+    rig.links[Axis.AZIMUTH].loses = lambda request: False
+    feedback = await rig.forward(60.0, again)
+    assert (feedback.request_done, feedback.request_failed) == (2, True)
+
+
 async def test_a_fault_reset_leaves_the_sound_axis_powered() -> None:
     rig = linked_rig("kinco-cia402")
     await rig.forward(1.0, FAR)
