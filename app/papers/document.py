@@ -25,7 +25,8 @@ leaves a value undefined.
 
 Each can be chosen for a tracker, and shows its error beside its name: greatest and rms separation from SPA, \
 2000 to 2049, latitude -65 to 65, without refraction; SPA's own is its stated uncertainty. `heliopanel \
-accuracy --globe` measures them anew.
+accuracy --globe` measures them anew. Beyond latitude 65 they hold too, but for `spencer-lamm`: its whole \
+days are farthest off at midnight, and under the midnight sun it reaches 0.96°.
 """
 
 
