@@ -1,17 +1,21 @@
 """Each shipped profile on the simulated device of its maker, behind a real socket."""
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, replace
 from datetime import timedelta
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from app.clock import VirtualClock
 from app.drives.devices.shelf import devices
+from app.drives.drive import Drive
 from app.drives.factory import DriveFactory
-from app.drives.modbus_server import ModbusServer
+from app.drives.modbus_server import Device, ModbusServer
+from app.drives.pty_line import PtyLine
+from app.drives.rtu_server import RtuServer
 from app.drives.simulated import SimulatedDrive
-from app.tracker.config import AxisDrive, DriveConfig, DriveKind
+from app.tracker.config import AxisDrive, DriveConfig, DriveKind, SerialConfig
 from tests.drives.rigs import CONFIG, FULL, START, Rig, Trait, pending_tasks
 
 STEPPED = FULL - {Trait.BOOT_COUNT, Trait.CLOCK, Trait.WATCHDOG} | {Trait.STEPS}
@@ -50,16 +54,45 @@ BENCHES = {
 async def device_rig(bench: Bench, folder: Path | None = None) -> AsyncIterator[Rig]:
     """A drive made by its profile; `folder` is the data folder, for a profile of one's own."""
     clock = VirtualClock(START)
-    has_watchdog = Trait.WATCHDOG in bench.traits
-    watchdog = timedelta(milliseconds=500) if has_watchdog else None
-    machine = SimulatedDrive(CONFIG, clock, watchdog=watchdog)
     factory = DriveFactory(clock, folder)
-    found = devices(factory.profiles.load(bench.profile), machine, clock, 1, bench.gear_ratio)
+    machine, found = _served(bench, factory, clock)
     server = ModbusServer(found[1], 1, others=found)
     port = await server.start("127.0.0.1", 0)
     drive = factory.make(replace(CONFIG, drive=replace(bench.drive, port=port)))
-    try:
+    async with _ended(drive, server):
         yield Rig(drive, machine, clock, bench.traits, bench.speed_step_dps, found)
+
+
+@asynccontextmanager
+async def serial_device_rig(bench: Bench) -> AsyncIterator[Rig]:
+    """The same on a serial line that is a pseudo-terminal."""
+    clock = VirtualClock(START)
+    factory = DriveFactory(clock)
+    machine, found = _served(bench, factory, clock)
+    with TemporaryDirectory() as name:
+        path = Path(name) / "line"
+        server = RtuServer(found, PtyLine(path))
+        await server.start()
+        wiring = replace(bench.drive, kind=DriveKind.MODBUS_RTU, serial=SerialConfig(str(path), 115_200))
+        drive = factory.make(replace(CONFIG, drive=wiring))
+        async with _ended(drive, server):
+            yield Rig(drive, machine, clock, bench.traits, bench.speed_step_dps, found)
+
+
+def _served(
+    bench: Bench, factory: DriveFactory, clock: VirtualClock
+) -> tuple[SimulatedDrive, Mapping[int, Device]]:
+    """Return the machine and the devices of its maker in front of it, by unit id."""
+    watchdog = timedelta(milliseconds=500) if Trait.WATCHDOG in bench.traits else None
+    machine = SimulatedDrive(CONFIG, clock, watchdog=watchdog)
+    return machine, devices(factory.profiles.load(bench.profile), machine, clock, 1, bench.gear_ratio)
+
+
+@asynccontextmanager
+async def _ended(drive: Drive, server: ModbusServer | RtuServer) -> AsyncIterator[None]:
+    """Close both at the end, and let nothing be left of them."""
+    try:
+        yield
     finally:
         await drive.close()
         await server.close()
