@@ -2,6 +2,7 @@
 
 from collections.abc import AsyncIterator, Sequence
 
+from app.drives.adapters import axis_units
 from app.drives.bus import BusUnit
 from app.drives.buses import Buses
 from app.drives.drive import DriveError, DriveRefused, DriveSilent
@@ -42,6 +43,8 @@ class DriveProbe:
             return SIMULATED
         try:
             profile = self._profiles.load(drive.profile)
+            if profile.adapter.has_unit_per_axis:
+                axis_units(drive)
         except ProfileError as error:
             return DriveReadings(CheckOutcome.UNUSABLE, str(error))
         return await probe(self._buses, drive, profile)

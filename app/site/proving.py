@@ -27,6 +27,8 @@ from app.tracker.snapshot import Event, EventKind
 
 LARGEST_CORRECTION = 20.0
 LIMIT_DECIMALS = 2
+RATIO_DIGITS = 6
+"""More than can be measured, and as many as people read and type."""
 NOTHING_TO_JUDGE = Reason(
     "nothing_to_judge",
     "The axis has not been turned for this proof.",
@@ -70,11 +72,11 @@ async def answer_scale(model: SiteModel, answer: AnswerScale, actor: str) -> tup
         text = f"The {move.axis} axis was measured: {measured_deg:.2f} of {moved_deg:.2f} degrees."
         return await _keep(model, loop, done.keep(proof), _event(model, loop, move, text, "proven", actor))
     own = config.drive.axis(move.axis)
-    gear_ratio = own.gear_ratio * moved_deg / measured_deg
+    gear_ratio = float(f"{own.gear_ratio * moved_deg / measured_deg:.{RATIO_DIGITS}g}")
     drive = _with_axis(config.drive, move.axis, replace(own, gear_ratio=gear_ratio))
     text = (
         f"The {move.axis} axis turned by {measured_deg:.2f} instead of {moved_deg:.2f} degrees; its gear "
-        f"ratio is {gear_ratio:.6g} now. Prove it again."
+        f"ratio is {gear_ratio:g} now. Prove it again."
     )
     event = _event(model, loop, move, text, "corrected", actor)
     return await _change(model, loop, replace(config, drive=drive), done, event, actor)

@@ -81,12 +81,23 @@ async def test_another_device_is_told_by_its_identity(bench: Bench, tmp_path: Pa
     assert "has no such register" in next(one.trouble for one in refused if one.name == "year")
 
 
-@pytest.mark.parametrize("profile", ["kinco-cia402", "leadshine-rs", "oriental-az", "delta-dvp"])
-async def test_the_profile_of_another_device_is_not_called_an_answer(bench: Bench, profile: str) -> None:
-    readings = await bench.probe.look(replace(bench.drive, profile=profile))
-    assert readings.outcome is CheckOutcome.WRONG_DEVICE
-    assert "could not be read" in readings.message
-    assert readings.message.endswith("Check unit and profile.")
+async def test_a_device_without_what_its_profile_needs_is_not_called_an_answer(
+    bench: Bench, tmp_path: Path
+) -> None:
+    other = await bench.probe.look(replace(bench.drive, profile="delta-dvp"))
+    assert other.outcome is CheckOutcome.WRONG_DEVICE
+    assert "it is no Delta DVP PLC, example layout: identity (4096) could not be read" in other.message
+    text = (Path(load_profile.__code__.co_filename).parent / "profiles" / "simulated-plc.toml").read_text()
+    (tmp_path / "other.toml").write_text(text.replace("count = 6", "count = 100"))
+    older = await bench.probe.look(replace(bench.drive, profile="other"))
+    assert older.outcome is CheckOutcome.WRONG_DEVICE
+    assert "registers could not be read (year, month, day, hour and 2 more). Check unit" in older.message
+
+
+async def test_two_axes_on_one_unit_are_refused_where_each_has_a_drive(bench: Bench) -> None:
+    readings = await bench.probe.look(replace(bench.drive, profile="kinco-cia402"))
+    assert readings.outcome is CheckOutcome.UNUSABLE
+    assert "Give the elevation another unit id" in readings.message
 
 
 async def test_a_unit_that_nobody_has_is_named(bench: Bench) -> None:

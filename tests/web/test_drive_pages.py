@@ -211,6 +211,25 @@ async def test_drive_settings_are_saved_whole(machine: FakeMachine, client: http
     assert 'value="1.25"' in page
 
 
+async def test_what_is_shown_and_saved_again_is_not_another_drive(desk: Desk) -> None:
+    geared = {"gear_ratio": 1.1494252873563218, "steps_per_revolution": 1234567.5}
+    answer = await desk.ask("PATCH", API, json={"drive": {"elevation": geared}})
+    assert answer.status_code == 200
+    before = (await desk.ask("GET", API)).json()["drive"]
+    page = (await desk.ask("GET", f"{T1}/drive")).text
+    typed = {
+        name: found[1]
+        for name in ("azimuth_gear", "azimuth_steps", "elevation_gear", "elevation_steps")
+        if (found := re.search(rf'name="{name}" [^>]*value="([^"]*)"', page))
+    }
+    assert set(typed) == {"azimuth_gear", "azimuth_steps", "elevation_gear", "elevation_steps"}
+    saved = await desk.ask(
+        "POST", f"{T1}/drive", data=typed | {"kind": "simulated", "profile": before["profile"]}
+    )
+    assert saved.status_code == 303
+    assert (await desk.ask("GET", API)).json()["drive"] == before
+
+
 @pytest.mark.parametrize(
     ("changed", "sentence"),
     [

@@ -1,5 +1,6 @@
 """The form of a drive's settings: what is stored as texts, and what was typed as settings."""
 
+from decimal import Decimal
 from typing import TypeVar
 
 from pydantic import BaseModel
@@ -67,10 +68,15 @@ def texts_of(drive: DriveConfig) -> dict[str, str]:
 def _axis_texts(axis: Axis, own: AxisDrive) -> dict[str, str]:
     return {
         f"{axis}_unit": "" if own.unit is None else str(own.unit),
-        f"{axis}_steps": "" if own.steps_per_revolution is None else f"{own.steps_per_revolution:g}",
-        f"{axis}_gear": f"{own.gear_ratio:.7g}",
+        f"{axis}_steps": "" if own.steps_per_revolution is None else _plain(own.steps_per_revolution),
+        f"{axis}_gear": _plain(own.gear_ratio),
         f"{axis}_inverted": "yes" if own.inverted else "",
     }
+
+
+def _plain(value: float) -> str:
+    """Return a number with every digit that it has, so that what is shown and saved again stays the same."""
+    return format(Decimal(str(value)), "f").removesuffix(".0")
 
 
 def read_drive(typed: Typed, stored: DriveConfig, choices: DriveChoices) -> DriveConfig | None:
