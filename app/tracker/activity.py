@@ -9,6 +9,7 @@ from app.tracker.axes import Axis, JogSpeed
 from app.tracker.motion import DriveCommand
 from app.tracker.programs.show import Course
 from app.tracker.proofs import StopSpeed
+from app.tracker.protections.words import StowName
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ActivityName, ShowPhase
 
@@ -32,6 +33,7 @@ class TrackPhase(StrEnum):
     FIXED = "fixed"
     NIGHT = "night"
     PAUSED = "paused"
+    RESTING = "resting"
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,6 +153,21 @@ class Measuring:
 
 
 @dataclass(frozen=True, slots=True)
+class Stowing:
+    """Going to a stow position; `run` is None until the motion was announced."""
+
+    stow: StowName
+    run: Run | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Stowed:
+    """At rest in a stow position, until what demanded it ends."""
+
+    stow: StowName
+
+
+@dataclass(frozen=True, slots=True)
 class Stopping:
     """Coming to rest after a stop."""
 
@@ -164,7 +181,19 @@ class Faulted:
     until: datetime | None = None
 
 
-Unfaulted = Holding | Jogging | Moving | Zeroing | Homing | Tracking | Showing | Measuring | Stopping
+Unfaulted = (
+    Holding
+    | Jogging
+    | Moving
+    | Zeroing
+    | Homing
+    | Tracking
+    | Showing
+    | Measuring
+    | Stopping
+    | Stowing
+    | Stowed
+)
 Activity = Unfaulted | Faulted
 
 NAMES: dict[type[Activity], ActivityName] = {
@@ -178,6 +207,8 @@ NAMES: dict[type[Activity], ActivityName] = {
     Measuring: ActivityName.MEASURING,
     Stopping: ActivityName.STOPPING,
     Faulted: ActivityName.FAULTED,
+    Stowing: ActivityName.STOWING,
+    Stowed: ActivityName.STOWED,
 }
 
 HOLDING = Holding()

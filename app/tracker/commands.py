@@ -9,6 +9,7 @@ from app.tracker.config import Orientation
 from app.tracker.mode import Mode
 from app.tracker.programs.show import ShowPlan
 from app.tracker.proofs import StopSpeed
+from app.tracker.protections.words import StowName
 from app.tracker.reason import Reason
 
 JOG_LEASE = timedelta(milliseconds=240)
@@ -93,6 +94,37 @@ class Park:
     """Go to the configured park position and stay there."""
 
     kind: Literal["park"] = "park"
+
+
+@dataclass(frozen=True, slots=True)
+class Stow:
+    """Go to a stow position and stay there until `Resume`; tracking that is on waits meanwhile."""
+
+    position: StowName
+    kind: Literal["stow"] = "stow"
+
+
+@dataclass(frozen=True, slots=True)
+class Resume:
+    """Leave the stow position that was commanded: tracking goes on if it was on."""
+
+    kind: Literal["resume"] = "resume"
+
+
+@dataclass(frozen=True, slots=True)
+class LockOut:
+    """Somebody works on the machine: forbid every automatic motion, a stow included, until released."""
+
+    name: str
+    reason: str = ""
+    kind: Literal["lock_out"] = "lock_out"
+
+
+@dataclass(frozen=True, slots=True)
+class ReleaseLock:
+    """Nobody works on the machine any more; nothing moves because of it."""
+
+    kind: Literal["release_lock"] = "release_lock"
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,4 +223,5 @@ Command = (
     Jog | EndJog | Step | SetZero | Home | SelectMode | Move | Park | Track
     | GoToStart | RunShow | PauseShow | ResumeShow | StopShow | Stop | ResetFault
     | ProveDirection | ProveScale | MeasureStop | MeasureLinkLoss
+    | Stow | Resume | LockOut | ReleaseLock
 )  # fmt: skip

@@ -9,6 +9,7 @@ from app.tracker.memory import StepName
 from app.tracker.mind import Mind
 from app.tracker.motion import Feedback
 from app.tracker.mounts.abilities import zero_words
+from app.tracker.protections.words import StowName
 from app.tracker.reason import Reason
 from app.tracker.runs import at_rest
 from app.tracker.snapshot import ActivityName, ShowPhase
@@ -39,6 +40,10 @@ class Action(StrEnum):
     MEASURE_STOP = "measure_stop"
     MEASURE_LINK_LOSS = "measure_link_loss"
     SET_LIMIT = "set_limit"
+    STOW = "stow"
+    RESUME = "resume"
+    LOCK_OUT = "lock_out"
+    RELEASE_LOCK = "release_lock"
 
 
 def unmet(mind: Mind, action: Action) -> tuple[Reason, ...]:
@@ -137,6 +142,46 @@ def watched(mind: Mind) -> Reason | None:
     )
 
 
+def unlocked(mind: Mind) -> Reason | None:
+    """Return that somebody works on the machine."""
+    lock = mind.memory.lock
+    if lock is None:
+        return None
+    why = f" ({lock.reason})" if lock.reason else ""
+    return Reason(
+        "locked_out",
+        f"{mind.config.name} is locked for maintenance by {lock.name}{why}.",
+        f"Ask {lock.name}; the lock is released on the tracker's page.",
+    )
+
+
+def locked(mind: Mind) -> Reason | None:
+    """Return that there is no lock to release."""
+    if mind.memory.lock is not None:
+        return None
+    return Reason("not_locked", f"{mind.config.name} is not locked.", "Nothing has to be done.")
+
+
+def stowed(mind: Mind) -> Reason | None:
+    """Return that no stow was commanded that could be left."""
+    if mind.memory.stow is not None:
+        return None
+    text = f"{mind.config.name} was not sent to a stow position by command."
+    return Reason("not_in_stow", text, "A stow that the weather demands ends by itself.")
+
+
+def sheltered(mind: Mind) -> Reason | None:
+    """Return that wind or snow demand a stow, so that the panel must go nowhere else."""
+    if mind.guarding is None or mind.guarding.stow is None:
+        return None
+    words = {StowName.WIND: "the wind", StowName.SNOW: "snow"}[mind.guarding.stow]
+    return Reason(
+        "stow_demanded",
+        f"{mind.config.name} must be stowed because of {words}.",
+        "Wait until that has ended; press Stow if it is not stowed yet.",
+    )
+
+
 def located(mind: Mind) -> Reason | None:
     """Return that the site's location is not known."""
     if mind.seen is not None and mind.seen.location is not None:
@@ -223,6 +268,8 @@ _DOING = {
     ActivityName.TRACKING: ("is tracking", _STOP_FIRST),
     ActivityName.SHOWING: ("is busy with a show", "Stop the show first."),
     ActivityName.STOPPING: ("is coming to rest", "Wait until both axes stand still."),
+    ActivityName.STOWING: ("is going to a stow position", "Wait until it has arrived, or press Stop."),
+    ActivityName.STOWED: ("is stowed", "Press Stop first; it is not stowed any more then."),
     ActivityName.MEASURING: ("is measuring how it stops", "Wait until it has finished, or press Stop."),
 }
 _SHOW_IS = {
@@ -241,17 +288,22 @@ _SHOW_HINT = {
 
 _HOLD, _JOG, _MOVE = ActivityName.HOLDING, ActivityName.JOGGING, ActivityName.MOVING
 _TRACK, _SHOW, _STOPPING = ActivityName.TRACKING, ActivityName.SHOWING, ActivityName.STOPPING
-_CAN_MOVE = (reachable, sound, homed)
+_STOW, _STOWED = ActivityName.STOWING, ActivityName.STOWED
+_CAN_MOVE = (reachable, sound, homed, unlocked)
 _CAN_PROVE = (reachable, sound, while_(_HOLD), resting)
 
 REQUIRED: dict[Action, tuple[Condition, ...]] = {
     Action.JOG: (reachable, sound, while_(_HOLD, _JOG)),
     Action.STEP: (reachable, sound, while_(_HOLD)),
     Action.ZERO: (reachable, sound, while_(_HOLD), resting),
-    Action.HOME: (reachable, sound, self_homing, while_(_HOLD), resting),
+    Action.HOME: (reachable, sound, unlocked, self_homing, while_(_HOLD), resting),
     Action.SET_MODE: (while_(_HOLD, _JOG, _MOVE, _STOPPING),),
-    Action.MOVE: (*_CAN_MOVE, while_(_HOLD, _MOVE, _TRACK)),
-    Action.PARK: (*_CAN_MOVE, while_(_HOLD, _MOVE, _TRACK)),
+    Action.MOVE: (*_CAN_MOVE, sheltered, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
+    Action.PARK: (*_CAN_MOVE, sheltered, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
+    Action.STOW: (*_CAN_MOVE, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
+    Action.RESUME: (unlocked, stowed),
+    Action.LOCK_OUT: (unlocked,),
+    Action.RELEASE_LOCK: (locked,),
     Action.TRACK: (
         *_CAN_MOVE,
         located,
@@ -259,12 +311,21 @@ REQUIRED: dict[Action, tuple[Condition, ...]] = {
         mode_selected,
         confirmed(StepName.HOMING, 3),
         confirmed(StepName.MODE, 4),
-        while_(_HOLD, _MOVE, _TRACK),
+        while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED),
     ),
-    Action.GO_TO_START: (*_CAN_MOVE, while_(_HOLD, _MOVE, _TRACK, _SHOW), not_in_a_show),
-    Action.RUN_SHOW: (*_CAN_MOVE, showing(ShowPhase.READY)),
+    Action.GO_TO_START: (
+        *_CAN_MOVE,
+        sheltered,
+        while_(_HOLD, _MOVE, _TRACK, _SHOW, _STOW, _STOWED),
+        not_in_a_show,
+    ),
+    Action.RUN_SHOW: (*_CAN_MOVE, sheltered, showing(ShowPhase.READY)),
     Action.PAUSE_SHOW: (showing(ShowPhase.RUNNING),),
-    Action.RESUME_SHOW: (showing(ShowPhase.PAUSED),),
+    Action.RESUME_SHOW: (
+        unlocked,
+        sheltered,
+        showing(ShowPhase.PAUSED),
+    ),
     Action.STOP_SHOW: (
         showing(ShowPhase.GOING_TO_START, ShowPhase.READY, ShowPhase.RUNNING, ShowPhase.PAUSED),
     ),

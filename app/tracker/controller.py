@@ -5,7 +5,16 @@ from datetime import datetime, timedelta
 from typing import NamedTuple, assert_never
 
 from app.tracker import report
-from app.tracker.activities import faulted, jogging, measuring, moving, showing, tracking, zeroing
+from app.tracker.activities import (
+    faulted,
+    jogging,
+    measuring,
+    moving,
+    showing,
+    stowing,
+    tracking,
+    zeroing,
+)
 from app.tracker.activity import (
     HOLDING,
     NAMES,
@@ -18,9 +27,12 @@ from app.tracker.activity import (
     Moving,
     Showing,
     Stopping,
+    Stowed,
+    Stowing,
     Tracking,
     Zeroing,
 )
+from app.tracker.announce import is_announced
 from app.tracker.commands import Command
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import Confirmation, Pointing, Sighting, StepName, TrackerMemory
@@ -42,6 +54,7 @@ from app.tracker.proofs import Proofs
 from app.tracker.protect import check_following, found, miss, obey_switches, protect
 from app.tracker.reason import Reason
 from app.tracker.runs import at_rest
+from app.tracker.shelter import look
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
 from app.tracker.transitions import leave, lose_home
 
@@ -69,6 +82,8 @@ class Controller:
     ) -> None:
         self._mind = Mind(config, memory, capabilities)
         self._resumes = resumes
+        if not resumes and memory.stow is not None:
+            self._mind.wait = _BEGUN_ANEW
         if memory.fault_code is not None:
             self._mind.activity = Faulted(Reason(memory.fault_code, memory.fault_text, _RESET_HINT))
 
@@ -113,10 +128,13 @@ class Controller:
         mind.ticks += 1
         if mind.started_at is None:
             self._start(seen.now)
+        look(mind, seen)
         command = self._blind(seen) if seen.feedback is None else self._see(seen, seen.feedback)
         command = for_drive(mind.config, command)
         mind.command = command
-        return Tick(command, mind.drain())
+        self._note_not_stowed()
+        horn = mind.warning is not None and mind.feedback is not None
+        return Tick(replace(command, horn=True) if horn else command, mind.drain())
 
     def snapshot(self, at: datetime) -> Snapshot:
         """Return everything known after the last tick, stamped `at`."""
@@ -182,7 +200,7 @@ class Controller:
         mind.sun = seen.sun
         if isinstance(mind.activity, Jogging) and seen.now >= mind.activity.until:
             jogging.end(mind, mind.activity, "it was not renewed in time.", "expired")
-        if mind.lost or isinstance(mind.activity, Holding | Stopping | Faulted):
+        if mind.lost or isinstance(mind.activity, Holding | Stopping | Faulted | Stowed):
             return STANDING if mind.command is STANDING or _may_search(mind) else HALTED
         return mind.command
 
@@ -198,6 +216,7 @@ class Controller:
             check_following(mind, feedback, seen.now)
         if before is None and mind.started_at is not None and seen.now - mind.started_at <= RESUME_WITHIN:
             self._first_reading()
+        stowing.guard(mind, feedback)
         turn = self._step(feedback, seen)
         mind.activity, mind.target = turn.activity, upright(turn.target)
         mind.sun = seen.sun if turn.sun is None else turn.sun
@@ -210,7 +229,23 @@ class Controller:
         if self._resumes and isinstance(self._mind.activity, Holding | Faulted):
             tracking.resume(self._mind)
 
+    def _note_not_stowed(self) -> None:
+        """Say once that the panel is not stowed though it should be, and remember why."""
+        mind = self._mind
+        before, mind.alarmed = mind.alarmed, stowing.not_stowed(mind)
+        if mind.alarmed is not None and before is None:
+            mind.say(EventKind.NOT_STOWED, mind.alarmed.message, hint=mind.alarmed.hint)
+
     def _step(self, feedback: Feedback, seen: Observation) -> Turn:
+        """Return the activity's turn; a motion that is being announced waits."""
+        mind = self._mind
+        if not isinstance(mind.activity, Tracking | Showing | Moving | Stowing):
+            mind.warning = None
+        elif is_announced(mind):
+            return Turn(mind.activity, HALTED, mind.target, seen.sun)
+        return self._act(feedback, seen)
+
+    def _act(self, feedback: Feedback, seen: Observation) -> Turn:
         mind = self._mind
         activity = mind.activity
         match activity:
@@ -220,7 +255,7 @@ class Controller:
                 return Turn(HOLDING if at_rest(feedback) else activity)
             case Showing():
                 return showing.step(mind, activity, feedback)
-            case Jogging() | Moving() | Measuring():
+            case Jogging() | Moving() | Measuring() | Stowing() | Stowed():
                 return _step_by_order(mind, activity, feedback)
             case Zeroing() | Homing():
                 return zeroing.step(mind, activity, feedback)
@@ -238,7 +273,9 @@ class Controller:
         return command
 
 
-def _step_by_order(mind: Mind, activity: Jogging | Moving | Measuring, feedback: Feedback) -> Turn:
+def _step_by_order(
+    mind: Mind, activity: Jogging | Moving | Measuring | Stowing | Stowed, feedback: Feedback
+) -> Turn:
     match activity:
         case Jogging():
             return jogging.step(mind, activity, feedback)
@@ -246,6 +283,8 @@ def _step_by_order(mind: Mind, activity: Jogging | Moving | Measuring, feedback:
             return moving.step(mind, activity, feedback)
         case Measuring():
             return measuring.step(mind, activity, feedback)
+        case Stowing() | Stowed():
+            return stowing.step(mind, activity, feedback)
     assert_never(activity)
 
 
@@ -266,4 +305,9 @@ def _setpoint_deg(command: AxisCommand, before_deg: float | None) -> float | Non
             return None
 
 
+_BEGUN_ANEW = Reason(
+    "operator_needed",
+    "The controller was begun anew after an unexpected error.",
+    "Press Stow, or Start tracking.",
+)
 _RESET_HINT = "Remove the cause, then press Reset fault."

@@ -14,6 +14,7 @@ from app.tracker.hybrid import Corrected
 from app.tracker.memory import TrackerMemory
 from app.tracker.motion import DriveCapabilities, DriveCommand, Feedback, Velocity
 from app.tracker.observation import Observation
+from app.tracker.protections.guarding import Guarding
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind
 
@@ -36,6 +37,13 @@ class Turn(NamedTuple):
     sun: SunPosition | None = None
 
 
+class Warned(NamedTuple):
+    """A motion that was announced: it begins at `until`, steady time."""
+
+    until: datetime
+    reason: Reason
+
+
 class Mind:
     """State of one tracker. Activities read it and change it by `say`, `remember` and `kill_press`."""
 
@@ -43,6 +51,7 @@ class Mind:
         "activity",
         "actor",
         "aftermath",
+        "alarmed",
         "capabilities",
         "command",
         "config",
@@ -51,6 +60,8 @@ class Mind:
         "events",
         "feedback",
         "feedback_at",
+        "guarding",
+        "hand_until",
         "lost",
         "memory",
         "misses",
@@ -64,6 +75,7 @@ class Mind:
         "target",
         "ticks",
         "wait",
+        "warning",
         "watches",
         "zeroed",
     )
@@ -84,6 +96,10 @@ class Mind:
         self.lost = False
         self.aftermath: Reason | None = None
         self.wait: Reason | None = None
+        self.warning: Warned | None = None
+        self.guarding: Guarding | None = None
+        self.hand_until: datetime | None = None
+        self.alarmed: Reason | None = None
         self.command = HALTED
         self.setpoint = NOWHERE
         self.target: Orientation | None = None

@@ -51,11 +51,15 @@ class DriveRequest:
 
 @dataclass(frozen=True, slots=True)
 class DriveCommand:
-    """What both axes shall do from now on. Written every tick: writing it feeds the drive's watchdog."""
+    """What both axes shall do from now on. Written every tick: writing it feeds the drive's watchdog.
+
+    `horn` sounds the horn, where there is one, to warn of a motion ahead.
+    """
 
     azimuth: AxisCommand = HALT
     elevation: AxisCommand = HALT
     request: DriveRequest | None = None
+    horn: bool = False
 
 
 @dataclass(frozen=True, slots=True)

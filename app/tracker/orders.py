@@ -2,7 +2,17 @@
 
 from typing import assert_never
 
-from app.tracker.activities import faulted, jogging, measuring, moving, proving, showing, tracking, zeroing
+from app.tracker.activities import (
+    faulted,
+    jogging,
+    measuring,
+    moving,
+    proving,
+    showing,
+    stowing,
+    tracking,
+    zeroing,
+)
 from app.tracker.activity import STOPPING, Faulted
 from app.tracker.commands import (
     Command,
@@ -11,6 +21,7 @@ from app.tracker.commands import (
     GoToStart,
     Home,
     Jog,
+    LockOut,
     MeasureLinkLoss,
     MeasureStop,
     Move,
@@ -18,7 +29,9 @@ from app.tracker.commands import (
     PauseShow,
     ProveDirection,
     ProveScale,
+    ReleaseLock,
     ResetFault,
+    Resume,
     ResumeShow,
     RunShow,
     SelectMode,
@@ -26,8 +39,10 @@ from app.tracker.commands import (
     Step,
     Stop,
     StopShow,
+    Stow,
     Track,
 )
+from app.tracker.lockout import lock_out, release_lock
 from app.tracker.mind import NOWHERE, Mind
 from app.tracker.mounts.absent import absent_axis
 from app.tracker.selection import select_mode
@@ -45,6 +60,8 @@ def obey(mind: Mind, command: Command) -> None:
             _obey_by_hand(mind, command)
         case Move() | Park() | Track() | ResetFault():
             _obey_automatic(mind, command)
+        case Stow() | Resume() | LockOut() | ReleaseLock():
+            _obey_guard(mind, command)
         case GoToStart() | RunShow() | PauseShow() | ResumeShow() | StopShow():
             _obey_show(mind, command)
         case ProveDirection() | ProveScale() | MeasureStop() | MeasureLinkLoss():
@@ -98,6 +115,20 @@ def _obey_automatic(mind: Mind, command: Move | Park | Track | ResetFault) -> No
             tracking.track(mind)
         case ResetFault():
             faulted.reset_fault(mind)
+        case _:
+            assert_never(command)
+
+
+def _obey_guard(mind: Mind, command: Stow | Resume | LockOut | ReleaseLock) -> None:
+    match command:
+        case Stow():
+            stowing.stow(mind, command)
+        case Resume():
+            stowing.resume(mind)
+        case LockOut():
+            lock_out(mind, command)
+        case ReleaseLock():
+            release_lock(mind)
         case _:
             assert_never(command)
 

@@ -14,6 +14,8 @@ from app.tracker.activity import (
     Moving,
     Showing,
     Stopping,
+    Stowed,
+    Stowing,
     Tracking,
     Zeroing,
 )
@@ -115,9 +117,9 @@ def _watchdog_tripped(mind: Mind) -> None:
         "Check the network and the load of the computer.",
     )
     match mind.activity:
-        case Holding() | Stopping() | Faulted():
+        case Holding() | Stopping() | Faulted() | Stowed():
             return
-        case Tracking():
+        case Tracking() | Stowing():
             pass
         case Jogging() | Moving() | Zeroing() | Homing() | Showing() | Measuring():
             interrupt(mind, reason)

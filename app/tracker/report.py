@@ -6,7 +6,7 @@ from math import nan
 from app.angles import separation_deg, wrap360
 from app.sun.position import SunPosition
 from app.tracker.activities.tracking import sun_height_deg
-from app.tracker.activity import NAMES, AxisPair, Faulted, Showing, Tracking, TrackPhase
+from app.tracker.activity import NAMES, AxisPair, Faulted, Showing, Stowed, Stowing, Tracking, TrackPhase
 from app.tracker.conditions import Action, unmet
 from app.tracker.config import MountKind, Orientation, TrackerConfig
 from app.tracker.hybrid import Corrected
@@ -15,8 +15,11 @@ from app.tracker.motion import AxisFeedback, Feedback, Position
 from app.tracker.mount import sky
 from app.tracker.mounts.abilities import default_mode
 from app.tracker.progress import step_progress
+from app.tracker.protections.words import WarningState
 from app.tracker.reason import Reason
 from app.tracker.runs import arrived, at_rest, close_to
+from app.tracker.sensors import sensors
+from app.tracker.shelter import doubts, hold_reason, protection_state, reason
 from app.tracker.snapshot import ActivityName, AxisState, HybridState, Pair, ShowProgress, Snapshot
 from app.tracker.words import activity_text
 
@@ -59,6 +62,12 @@ def snapshot(mind: Mind, at: datetime) -> Snapshot:
         program=step_progress(mind),
         hybrid=_hybrid(mind, fresh),
         actions={action.value: unmet(mind, action) for action in Action},
+        protection=protection_state(mind),
+        stow=mind.activity.stow if isinstance(mind.activity, Stowing | Stowed) else None,
+        not_stowed=mind.alarmed,
+        warning=_warning(mind),
+        lock=mind.memory.lock,
+        sensors=sensors(mind),
     )
 
 
@@ -197,13 +206,33 @@ def _axis_state(axis: AxisFeedback) -> AxisState:
 def _waiting(mind: Mind) -> tuple[Reason, ...]:
     """Return why a tracker that should track does not move."""
     if isinstance(mind.activity, Tracking):
-        return _HOLDS.get(mind.activity.phase, ())
+        rests = hold_reason(mind) if mind.activity.phase is TrackPhase.RESTING else None
+        return _HOLDS.get(mind.activity.phase, ()) if rests is None else (rests,)
+    if isinstance(mind.activity, Stowing | Stowed):
+        return _stowed(mind)
     if not mind.memory.tracking_on:
-        return ()
+        return () if mind.memory.stow is None or mind.wait is None else (mind.wait,)
     known = () if mind.wait is None else (mind.wait,)
     codes = {reason.code for reason in known}
     others = tuple(reason for reason in unmet(mind, Action.TRACK) if reason.code not in codes)
     return known + others or (_OPERATOR,)
+
+
+def _stowed(mind: Mind) -> tuple[Reason, ...]:
+    """Return why a stowed tracker that should track does not."""
+    if not mind.memory.tracking_on:
+        return ()
+    by_weather = mind.guarding is not None and mind.guarding.stow is not None
+    return (reason(mind) if by_weather else _STOWED,)
+
+
+def _warning(mind: Mind) -> WarningState | None:
+    """Return the countdown to a motion, or to the end of one by hand."""
+    if mind.hand_until is not None:
+        return WarningState(max(0.0, (mind.hand_until - mind.now).total_seconds()), _HAND_ENDS)
+    if mind.warning is None:
+        return None
+    return WarningState(max(0.0, (mind.warning.until - mind.now).total_seconds()), mind.warning.reason)
 
 
 def _notices(mind: Mind) -> tuple[Reason, ...]:
@@ -216,7 +245,7 @@ def _notices(mind: Mind) -> tuple[Reason, ...]:
         (not mind.capabilities.verified, _UNVERIFIED),
     )
     told = () if mind.aftermath is None else (mind.aftermath,)
-    return told + tuple(reason for present, reason in found if present)
+    return told + doubts(mind) + tuple(reason for present, reason in found if present)
 
 
 def _show(showing: Showing) -> ShowProgress:
@@ -241,6 +270,12 @@ _CLOCK_DOUBTED = Reason(
     "Confirm the clock in step 2, or wait until it has been stable for 60 s; then tracking goes on.",
 )
 _HOLDS = {TrackPhase.NIGHT: (_SUN_DOWN,), TrackPhase.PAUSED: (_CLOCK_DOUBTED,)}
+_STOWED = Reason("stowed", "The panel was stowed by command.", "Press Resume, or Start tracking.")
+_HAND_ENDS = Reason(
+    "hand_motion_ends",
+    "Wind or snow demand that the panel is stowed: this motion by hand ends.",
+    "Let the key go and leave the panel; or press again for a few more seconds.",
+)
 _OPERATOR = Reason(
     "operator_needed", "Tracking was interrupted and waits for the operator.", "Press Start tracking."
 )

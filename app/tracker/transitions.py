@@ -14,6 +14,8 @@ from app.tracker.activity import (
     Moving,
     Showing,
     Stopping,
+    Stowed,
+    Stowing,
     Tracking,
     Unfaulted,
     Zeroing,
@@ -41,6 +43,9 @@ def _say_what_ended(mind: Mind, activity: Unfaulted, why: str) -> None:
             _say_order_ended(mind, activity, why)
         case Zeroing() | Homing():
             _say_zero_ended(mind, activity, why)
+        case Stowing() | Stowed():
+            text = f"The stow position {activity.stow} was given up: {why}"
+            mind.say(EventKind.STOW_ENDED, text, stow=activity.stow, outcome="interrupted")
         case Tracking():
             mind.say(EventKind.TRACKING_WAITING, f"Tracking waits for the operator: {why}")
         case Showing():
@@ -82,10 +87,10 @@ def end_show(mind: Mind, showing: Showing, message: str, outcome: str) -> None:
 
 
 def interrupt(mind: Mind, reason: Reason) -> None:
-    """End what is going on for a reason; tracking that was on waits, visibly, for the operator."""
+    """End what is going on for a reason; what was automatic waits, visibly, for the operator."""
     leave(mind, reason.message)
     mind.setpoint = NOWHERE
-    if mind.memory.tracking_on:
+    if mind.memory.tracking_on or mind.memory.stow is not None:
         mind.wait = reason
 
 
@@ -107,9 +112,11 @@ def lose_home(mind: Mind, reason: Reason) -> None:
 
 
 def switch_tracking_off(mind: Mind, why: str) -> None:
-    """Switch tracking off and say so, because something else was commanded; a move ends for it too."""
-    mind.wait = None
-    end_move(mind, why)
+    """Switch tracking off and say so, because something else was commanded; moves and stows end too."""
+    mind.wait = mind.warning = None
+    if isinstance(mind.activity, Moving | Stowing | Stowed):
+        leave(mind, why)
+    mind.remember(stow=None)
     if isinstance(mind.activity, Tracking):
         mind.activity = HOLDING
     if mind.memory.tracking_on:

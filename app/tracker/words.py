@@ -15,6 +15,8 @@ from app.tracker.activity import (
     Moving,
     Showing,
     Stopping,
+    Stowed,
+    Stowing,
     Tracking,
     TrackPhase,
     Zeroing,
@@ -25,6 +27,7 @@ from app.tracker.mounts.abilities import axis_words
 from app.tracker.programs.stepped import clock_text
 from app.tracker.progress import step_progress
 from app.tracker.pursuit import trigger_deg
+from app.tracker.shelter import hold_reason
 from app.tracker.snapshot import ShowPhase
 from app.tracker.strategy import Continuous, Deadband, EncoderDeadband, Interval, Stepped
 
@@ -61,7 +64,7 @@ def _doing(mind: Mind, activity: Activity) -> str:
             return "Holding; tracking waits for the operator" if mind.memory.tracking_on else "Holding"
         case Jogging():
             return f"Jogging {_jog(mind, activity)}, {activity.speed}"
-        case Moving() | Measuring():
+        case Moving() | Measuring() | Stowing() | Stowed():
             return _by_order(activity)
         case Zeroing() | Homing() | Stopping():
             return _PLAIN[type(activity)]
@@ -74,7 +77,11 @@ def _doing(mind: Mind, activity: Activity) -> str:
     assert_never(activity)
 
 
-def _by_order(activity: Moving | Measuring) -> str:
+def _by_order(activity: Moving | Measuring | Stowing | Stowed) -> str:
+    if isinstance(activity, Stowing):
+        return f"Going to the stow position {activity.stow}"
+    if isinstance(activity, Stowed):
+        return f"Stowed: {activity.stow}"
     if isinstance(activity, Moving):
         return _MOVING[activity.kind]
     if activity.speed is not None:
@@ -93,11 +100,24 @@ def _tracking(mind: Mind, tracking: Tracking) -> str:
     night = tracking.phase is TrackPhase.NIGHT
     if tracking.run is not None:
         return "the sun is down, going to the night position" if night else "moving to the sun"
+    if tracking.phase is TrackPhase.RESTING or mind.warning is not None:
+        return _resting(mind)
+    return _standing(mind, tracking)
+
+
+def _resting(mind: Mind) -> str:
+    why = hold_reason(mind)
+    return "moves in a few seconds" if why is None else f"staying where it is. {why.message}"
+
+
+def _standing(mind: Mind, tracking: Tracking) -> str:
     match tracking.phase:
         case TrackPhase.NIGHT:
             return "waiting for the sun to rise"
         case TrackPhase.PAUSED:
             return "holding until the site's clock is trusted again"
+        case TrackPhase.RESTING:
+            return _resting(mind)
         case TrackPhase.FIXED:
             return "holding the fixed orientation"
         case TrackPhase.LIMITED:

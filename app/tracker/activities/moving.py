@@ -4,6 +4,7 @@ from math import isfinite
 
 from app.tracker.activities import proving
 from app.tracker.activity import HOLDING, AxisPair, MoveKind, Moving
+from app.tracker.announce import announce_if_remote, begins_at
 from app.tracker.axes import Axis
 from app.tracker.commands import Move, Step
 from app.tracker.conditions import Action, demand_drive
@@ -13,6 +14,7 @@ from app.tracker.mind import Mind, Turn
 from app.tracker.motion import Feedback
 from app.tracker.mount import aim, sky
 from app.tracker.mounts.abilities import axis_of, axis_title
+from app.tracker.protections.words import StowName
 from app.tracker.reason import Reason
 from app.tracker.runs import arrived, new_run
 from app.tracker.selection import at_orientation, confirm_mode, out_of_reach
@@ -33,6 +35,7 @@ def park(mind: Mind) -> None:
     """Go to the park position, or raise `CommandRejected`."""
     feedback = demand_drive(mind, Action.PARK)
     switch_tracking_off(mind, "the tracker is being parked.")
+    mind.remember(stow=StowName.PARK)
     _go(mind, feedback, mind.config.park, MoveKind.PARK)
 
 
@@ -87,7 +90,8 @@ def _go(mind: Mind, feedback: Feedback, orientation: Orientation, kind: MoveKind
 
 
 def _begin(mind: Mind, feedback: Feedback, target: AxisPair, kind: MoveKind, text: str) -> None:
-    run = new_run(mind.config, feedback, target, mind.now, by_hand=kind is MoveKind.STEP)
+    announce_if_remote(mind, text)
+    run = new_run(mind.config, feedback, target, begins_at(mind), by_hand=kind is MoveKind.STEP)
     mind.activity = Moving(kind, run, mind.actor)
     mind.say(EventKind.MOVE_STARTED, text, move=kind)
 

@@ -5,6 +5,7 @@ from datetime import timedelta
 
 from app.tracker.activities.moving import not_arrived
 from app.tracker.activity import HOLDING, AxisPair, Run, Showing
+from app.tracker.announce import announce_if_remote, begins_at
 from app.tracker.commands import CommandRejected, GoToStart, RunShow
 from app.tracker.conditions import Action, demand, demand_drive, unmet
 from app.tracker.mind import HALTED, Mind, Turn
@@ -24,7 +25,8 @@ def go_to_start(mind: Mind, command: GoToStart) -> None:
     feedback = demand_drive(mind, Action.GO_TO_START)
     course = _course(mind, command.plan)
     switch_tracking_off(mind, "a show was commanded.")
-    run = new_run(mind.config, feedback, _start(course), mind.now)
+    announce_if_remote(mind, "The panel goes to the start of a show.")
+    run = new_run(mind.config, feedback, _start(course), begins_at(mind))
     mind.activity = Showing(course, ShowPhase.GOING_TO_START, run, timedelta(0), mind.now, mind.actor)
     mind.say(EventKind.MOVE_STARTED, "Going to the start of the show.", show_id=command.plan.show_id)
 
@@ -36,7 +38,8 @@ def run_show(mind: Mind, command: RunShow) -> None:
         reasons = unmet(mind, Action.RUN_SHOW) or (_not_at_start(mind),)
         raise CommandRejected(*reasons)
     switch_tracking_off(mind, "a show was commanded.")
-    mind.activity = Showing(course, ShowPhase.RUNNING, None, timedelta(0), mind.now, mind.actor)
+    announce_if_remote(mind, "A show begins.")
+    mind.activity = Showing(course, ShowPhase.RUNNING, None, timedelta(0), begins_at(mind), mind.actor)
     mind.remember(showing=command.plan.show_id)
     mind.say(EventKind.SHOW_STARTED, "The show has begun.", show_id=command.plan.show_id)
 
@@ -44,12 +47,14 @@ def run_show(mind: Mind, command: RunShow) -> None:
 def pause_show(mind: Mind) -> None:
     """Hold the show where it is, or raise `CommandRejected`."""
     demand(mind, Action.PAUSE_SHOW)
+    mind.warning = None
     _change_phase(mind, ShowPhase.PAUSED, EventKind.SHOW_PAUSED, "The show is paused.")
 
 
 def resume_show(mind: Mind) -> None:
     """Go on with a paused show, or raise `CommandRejected`."""
     demand(mind, Action.RESUME_SHOW)
+    announce_if_remote(mind, "The show goes on.")
     _change_phase(mind, ShowPhase.RUNNING, EventKind.SHOW_RESUMED, "The show goes on.")
 
 
@@ -126,7 +131,7 @@ def _standing_course(mind: Mind, plan: ShowPlan) -> Course | None:
 
 def _change_phase(mind: Mind, phase: ShowPhase, kind: EventKind, message: str) -> None:
     if isinstance(mind.activity, Showing):
-        mind.activity = replace(mind.activity, phase=phase, at=mind.now)
+        mind.activity = replace(mind.activity, phase=phase, at=begins_at(mind))
         mind.say(kind, message, show_id=mind.activity.course.plan.show_id)
 
 

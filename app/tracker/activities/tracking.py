@@ -10,7 +10,8 @@ from typing import assert_never
 
 from app.sun.position import Location, SunPosition
 from app.tracker.activities.moving import not_arrived
-from app.tracker.activity import Tracking, TrackPhase
+from app.tracker.activity import Stowed, Stowing, Tracking, TrackPhase
+from app.tracker.announce import announce, announce_if_remote
 from app.tracker.conditions import Action, demand, unmet
 from app.tracker.config import MountConfig, MountKind, NightBehaviour, TrackerConfig
 from app.tracker.hybrid import correct
@@ -23,6 +24,7 @@ from app.tracker.programs.schedule import Aimed, Followed, Moment, aimed, schedu
 from app.tracker.pursuit import next_run, pursue, widened
 from app.tracker.reason import Reason
 from app.tracker.runs import arrived
+from app.tracker.shelter import TWILIGHT_DEG, guarding, hold_reason
 from app.tracker.snapshot import EventKind
 from app.tracker.strategy import (
     DEADBAND,
@@ -36,8 +38,6 @@ from app.tracker.strategy import (
 from app.tracker.transitions import end_move, fail, interrupt
 
 SUN_DPS = 15.0 / 3600.0
-TWILIGHT_DEG = -1.0
-"""The sun is followed along the horizon from here on, so that the panel faces it when it rises."""
 
 TRACKING = {phase: Tracking(phase) for phase in TrackPhase}
 
@@ -49,8 +49,11 @@ def track(mind: Mind) -> None:
     if isinstance(mind.activity, Tracking):
         return
     end_move(mind, "tracking was started.")
-    mind.activity = TRACKING[TrackPhase.FOLLOWING]
-    mind.remember(tracking_on=True)
+    if not (isinstance(mind.activity, Stowing | Stowed) and guarding(mind).stow is mind.activity.stow):
+        mind.activity = TRACKING[TrackPhase.FOLLOWING]
+        mind.warning = None
+        announce_if_remote(mind, f"{mind.config.name} begins to track.")
+    mind.remember(tracking_on=True, stow=None)
     mind.say(EventKind.TRACKING_STARTED, f"Tracking started, mode {mind.memory.mode}.", mode=mind.memory.mode)
 
 
@@ -62,6 +65,7 @@ def resume(mind: Mind) -> None:
     if not reasons:
         mind.activity = TRACKING[TrackPhase.FOLLOWING]
         mind.say(EventKind.TRACKING_RESUMED, "Tracking goes on after the restart.", mode=mind.memory.mode)
+        announce(mind, f"{mind.config.name} goes on tracking after the restart.")
         return
     mind.wait = reasons[0]
     why = " ".join(reason.message for reason in reasons)
@@ -76,6 +80,8 @@ def step(mind: Mind, tracking: Tracking, feedback: Feedback, seen: Observation) 
     if sun is None or mode is None or seen.location is None:
         interrupt(mind, _SUN_UNKNOWN)
         return Turn(mind.activity, HALTED, None, sun)
+    if hold_reason(mind) is not None:
+        return Turn(TRACKING[TrackPhase.RESTING], HALTED, None, sun)
     followed = Followed(mind.config, mind.memory.pointing, mode, mind.memory.orientation)
     moment = Moment(seen.site_time, sun, seen.location)
     strategy = DEADBAND if mode is Mode.FIXED else mind.config.strategy
@@ -92,19 +98,35 @@ def step(mind: Mind, tracking: Tracking, feedback: Feedback, seen: Observation) 
     if wanted is None:
         return Turn(TRACKING[TrackPhase.NIGHT], HALTED, None, sun)
     phase = TrackPhase.NIGHT if night else _phase(mind.config, mode, wanted)
-    return _begin(mind, strategy, phase, feedback, wanted, sun)
+    return _begin(mind, tracking, strategy, phase, feedback, wanted, sun)
 
 
 def _begin(
-    mind: Mind, strategy: Strategy, phase: TrackPhase, feedback: Feedback, wanted: Aimed, sun: SunPosition
+    mind: Mind,
+    tracking: Tracking,
+    strategy: Strategy,
+    phase: TrackPhase,
+    feedback: Feedback,
+    wanted: Aimed,
+    sun: SunPosition,
 ) -> Turn:
     """Return the motion that the strategy begins now, or stand."""
     if isinstance(strategy, Continuous) and phase is not TrackPhase.NIGHT:
+        if _was_waiting(mind, tracking, phase):
+            return Turn(TRACKING[phase], HALTED, wanted.direction, sun)
         return Turn(TRACKING[phase], pursue(mind.config, wanted.target), wanted.direction, sun)
     run = next_run(strategy, mind.config, feedback, wanted.target, mind.now)
-    if run is None:
+    if run is None or _was_waiting(mind, tracking, phase):
         return Turn(TRACKING[phase], HALTED, wanted.direction, sun)
     return Turn(Tracking(phase, run), run.command, wanted.direction, sun)
+
+
+def _was_waiting(mind: Mind, tracking: Tracking, phase: TrackPhase) -> bool:
+    """Announce the first motion after the night or a rest; return whether it must wait for that."""
+    if tracking.phase is phase or tracking.phase not in (TrackPhase.NIGHT, TrackPhase.RESTING):
+        return False
+    announce(mind, f"{mind.config.name} begins to follow the sun.")
+    return mind.warning is not None
 
 
 def _paused(mind: Mind, tracking: Tracking) -> Tracking:

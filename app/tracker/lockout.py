@@ -1,0 +1,49 @@
+"""The maintenance lock: while somebody works on the machine, nothing but their own hand moves it."""
+
+from app.tracker.activity import STOPPING, Faulted
+from app.tracker.commands import LockOut
+from app.tracker.conditions import Action, demand
+from app.tracker.mind import NOWHERE, Mind
+from app.tracker.protections.words import MaintenanceLock
+from app.tracker.reason import Reason
+from app.tracker.snapshot import EventKind
+from app.tracker.transitions import leave, switch_tracking_off
+
+LONGEST_NAME = 60
+LONGEST_REASON = 200
+
+
+def lock_out(mind: Mind, command: LockOut) -> None:
+    """Stop and forbid every automatic motion, or raise `CommandRejected`."""
+    demand(mind, Action.LOCK_OUT, _unnamed(command))
+    name, why = command.name.strip(), command.reason.strip()
+    switch_tracking_off(mind, "the tracker is locked for maintenance.")
+    leave(mind, "the tracker is locked for maintenance.")
+    mind.setpoint = NOWHERE
+    if not isinstance(mind.activity, Faulted):
+        mind.activity = STOPPING
+    mind.remember(lock=MaintenanceLock(name, mind.actor, mind.site_time, why))
+    mind.say(
+        EventKind.LOCKED_OUT, f"{name} locked {mind.config.name} for maintenance.", name=name, reason=why
+    )
+
+
+def release_lock(mind: Mind) -> None:
+    """Forget the lock, or raise `CommandRejected`; whoever wants a motion commands it."""
+    demand(mind, Action.RELEASE_LOCK)
+    lock = mind.memory.lock
+    mind.remember(lock=None)
+    name = "nobody" if lock is None else lock.name
+    mind.say(EventKind.LOCK_RELEASED, f"The maintenance lock of {name} was released.", name=name)
+
+
+def _unnamed(command: LockOut) -> Reason | None:
+    name, why = command.name.strip(), command.reason.strip()
+    if name.isprintable() and 1 <= len(name) <= LONGEST_NAME and len(why) <= LONGEST_REASON:
+        return None
+    return Reason(
+        "lock_unnamed",
+        f"A maintenance lock bears a name of 1 to {LONGEST_NAME} letters, and a reason of up to "
+        f"{LONGEST_REASON}.",
+        "Give the name of the person who works on the machine.",
+    )

@@ -1,0 +1,154 @@
+"""All protections of one tracker together: what is seen goes in, what is demanded comes out."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from typing import assert_never
+
+from app.tracker.protections import doubt, hibernation, snow, typhoon
+from app.tracker.protections.config import (
+    LightProtection,
+    ProtectionConfig,
+    SnowProtection,
+    WindProtection,
+)
+from app.tracker.protections.doubt import WELL, Doubt, demands
+from app.tracker.protections.hibernation import AWAKE, Hibernation
+from app.tracker.protections.priority import classify
+from app.tracker.protections.snow import CLEAR, Snow
+from app.tracker.protections.typhoon import CALM, Typhoon, Wind
+from app.tracker.protections.words import Protection, Reaction, StowName
+from app.tracker.weather import Quantity, Reading, Sensed
+
+Limits = WindProtection | SnowProtection | LightProtection
+STOWS = {Protection.TYPHOON: StowName.WIND, Protection.SNOW: StowName.SNOW}
+"""The protections that demand a motion, and where to."""
+HOLDS = (Protection.WAIT, Protection.HIBERNATE)
+"""The protections that demand that the panel stays where it is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Guarding:
+    """The state of all protections; `kind` is what holds, `since` when that began, steady time.
+
+    `held` says that a bad sensor demands that nothing moves.
+    """
+
+    typhoon: Typhoon = CALM
+    snow: Snow = CLEAR
+    hibernation: Hibernation = AWAKE
+    wind_doubt: Doubt = WELL
+    snow_doubt: Doubt = WELL
+    light_doubt: Doubt = WELL
+    kind: Protection | None = None
+    since: datetime | None = None
+    held: Quantity | None = None
+
+    def doubt(self, quantity: Quantity) -> Doubt:
+        """Return the doubt about one sensor."""
+        return {
+            Quantity.WIND: self.wind_doubt,
+            Quantity.SNOW: self.snow_doubt,
+            Quantity.LIGHT: self.light_doubt,
+        }[quantity]
+
+    @property
+    def stow(self) -> StowName | None:
+        """Return the stow position that is demanded."""
+        return None if self.kind is None else STOWS.get(self.kind)
+
+
+OFF_GUARD = Guarding()
+
+
+def latched(kind: Protection | None, now: datetime) -> Guarding:
+    """Return the state after a restart: what held still holds, and its time begins anew."""
+    match kind:
+        case Protection.TYPHOON:
+            return Guarding(typhoon=Typhoon(now, now), kind=kind, since=now)
+        case Protection.SNOW:
+            return Guarding(snow=Snow(now), kind=kind, since=now)
+        case _:
+            return OFF_GUARD
+
+
+def limits_of(config: ProtectionConfig, quantity: Quantity) -> Limits:
+    """Return what is set for one sensor."""
+    match quantity:
+        case Quantity.WIND:
+            return config.wind
+        case Quantity.SNOW:
+            return config.snow
+        case Quantity.LIGHT:
+            return config.light
+        case _ as never:
+            assert_never(never)
+
+
+def step(
+    state: Guarding,
+    config: ProtectionConfig,
+    seen: Sensed,
+    known: tuple[Quantity, ...],
+    now: datetime,
+    *,
+    night: bool,
+) -> Guarding:
+    """Return the state after one look at the weather. `known` are the sensors that were ever seen."""
+    doubts = {one: _doubted(state, config, seen.reading(one), known, now, one) for one in Quantity}
+    blown = _typhoon(state, config.wind, seen, doubts[Quantity.WIND], now)
+    loaded = _snow(state, config.snow, seen, doubts[Quantity.SNOW], now)
+    dark = _hibernation(state, config.light, seen, doubts[Quantity.LIGHT], now)
+    kind = classify(state.kind, blown, loaded, dark, night=night)
+    since = state.since if kind is state.kind and state.since is not None else now
+    held = _held(config, doubts)
+    wind, load, light = (doubts[one] for one in (Quantity.WIND, Quantity.SNOW, Quantity.LIGHT))
+    return Guarding(blown, loaded, dark, wind, load, light, kind, since, held)
+
+
+def _doubted(
+    state: Guarding,
+    config: ProtectionConfig,
+    reading: Reading,
+    known: tuple[Quantity, ...],
+    now: datetime,
+    quantity: Quantity,
+) -> Doubt:
+    limits = limits_of(config, quantity)
+    is_known = limits.enabled and (limits.required or quantity in known)
+    good = reading.good is not None
+    before = state.doubt(quantity)
+    return doubt.step(before, good=good, known=is_known, after_s=limits.bad_after_s, now=now)
+
+
+def _typhoon(state: Guarding, limits: WindProtection, seen: Sensed, doubted: Doubt, now: datetime) -> Typhoon:
+    if not limits.enabled:
+        return CALM
+    gust_mps = seen.wind.good
+    mean_mps = None if gust_mps is None else seen.wind_mean_mps
+    wind = Wind(gust_mps, mean_mps, demands(doubted, limits.bad, Reaction.STOW))
+    return typhoon.step(state.typhoon, limits, wind, now)
+
+
+def _snow(state: Guarding, limits: SnowProtection, seen: Sensed, doubted: Doubt, now: datetime) -> Snow:
+    if not limits.enabled:
+        return CLEAR
+    if demands(doubted, limits.bad, Reaction.STOW):
+        return Snow(state.snow.since or now, state.snow.clear_at)
+    return snow.step(state.snow, limits, seen.snow.good, now)
+
+
+def _hibernation(
+    state: Guarding, limits: LightProtection, seen: Sensed, doubted: Doubt, now: datetime
+) -> Hibernation:
+    """Return the light's state; a sensor that has failed for good counts as one that is not there."""
+    if not limits.enabled or demands(doubted, limits.bad, Reaction.IGNORE, Reaction.WARN):
+        return AWAKE
+    return hibernation.step(state.hibernation, limits, seen.light.good, now)
+
+
+def _held(config: ProtectionConfig, doubts: dict[Quantity, Doubt]) -> Quantity | None:
+    """Return the first bad sensor that demands that the panel stays where it is."""
+    for quantity, one in doubts.items():
+        if demands(one, limits_of(config, quantity).bad, Reaction.HOLD):
+            return quantity
+    return None

@@ -1,0 +1,59 @@
+"""What each protection goes by, as the pages and the API show it."""
+
+from app.tracker.mind import Mind
+from app.tracker.protections.config import ProtectionConfig
+from app.tracker.protections.guarding import limits_of
+from app.tracker.shelter import BAD, doubt_reason, guarding
+from app.tracker.snapshot import SensorState
+from app.tracker.weather import NO_READING, Quality, Quantity, Reading
+
+UNITS = {Quantity.WIND: "m/s", Quantity.SNOW: "kg", Quantity.LIGHT: "W/m2"}
+AGAINST = {Quantity.WIND: "wind", Quantity.SNOW: "snow", Quantity.LIGHT: "too little light"}
+
+
+def sensors(mind: Mind) -> tuple[SensorState, ...]:
+    """Return one state a protection, in the order of their priority."""
+    return tuple(_sensor(mind, quantity) for quantity in Quantity)
+
+
+def limit_of(config: ProtectionConfig, quantity: Quantity) -> float:
+    """Return the value that is judged against: m/s, kg or W/m2."""
+    match quantity:
+        case Quantity.WIND:
+            return config.wind.gust_mps
+        case Quantity.SNOW:
+            return config.snow.load_kg
+        case Quantity.LIGHT:
+            return config.light.threshold_wm2
+
+
+def _sensor(mind: Mind, quantity: Quantity) -> SensorState:
+    config = mind.config.protection
+    limits = limits_of(config, quantity)
+    reading = mind.seen.weather.reading(quantity) if mind.seen else NO_READING
+    known = limits.required or quantity in mind.memory.sensors
+    return SensorState(
+        quantity=quantity,
+        enabled=limits.enabled,
+        known=known,
+        value=reading.value,
+        limit=limit_of(config, quantity),
+        unit=UNITS[quantity],
+        quality=reading.quality,
+        age_s=reading.age_s,
+        text=_text(mind, quantity, reading, enabled=limits.enabled, known=known),
+    )
+
+
+def _text(mind: Mind, quantity: Quantity, reading: Reading, *, enabled: bool, known: bool) -> str:
+    """Return how far this protection protects, in one sentence."""
+    against = AGAINST[quantity]
+    if not enabled:
+        return f"The protection against {against} is switched off."
+    if not known:
+        return f"There is no protection against {against}: no sensor has ever reported."
+    if guarding(mind).doubt(quantity).ripe:
+        return doubt_reason(mind, quantity).message
+    if reading.quality is not Quality.GOOD:
+        return f"The sensor {BAD[reading.quality]}."
+    return f"Protects against {against}."

@@ -1,0 +1,195 @@
+"""What wind, snow and light demand of this tracker now, in the words of the person who reads it."""
+
+from datetime import datetime
+
+from app.tracker.mind import Mind
+from app.tracker.observation import Observation
+from app.tracker.protections.guarding import HOLDS, OFF_GUARD, Guarding, latched, limits_of, step
+from app.tracker.protections.words import Protection, ProtectionState, Reaction, StowName
+from app.tracker.reason import Reason
+from app.tracker.snapshot import EventKind
+from app.tracker.weather import NOTHING_SENSED, Quality, Quantity, Sensed
+
+TWILIGHT_DEG = -1.0
+"""The sun is followed along the horizon from here on, so that the panel faces it when it rises."""
+LATCHED = (Protection.TYPHOON, Protection.SNOW)
+"""What must be seen good before tracking goes on, also after a restart."""
+DEMANDS = (Protection.TYPHOON, Protection.SNOW, Protection.WAIT, Protection.HIBERNATE)
+TITLES = {Quantity.WIND: "wind sensor", Quantity.SNOW: "snow sensor", Quantity.LIGHT: "light sensor"}
+BAD = {
+    Quality.MISSING: "reports nothing",
+    Quality.STALE: "has not reported in time",
+    Quality.FROZEN: "reports the same value all the time",
+    Quality.IMPOSSIBLE: "reports what cannot be",
+}
+REACTS = {
+    Reaction.IGNORE: "that is ignored",
+    Reaction.WARN: "nothing moves because of it",
+    Reaction.HOLD: "the panel stays where it is",
+    Reaction.STOW: "the panel is stowed as a precaution",
+}
+
+
+def look(mind: Mind, seen: Observation) -> None:
+    """Take in the weather: run every timer, latch what holds, and say what begins and ends."""
+    sensed = seen.weather
+    _learn(mind, sensed)
+    before = guarding(mind)
+    if before is OFF_GUARD and sensed is NOTHING_SENSED and not _expected(mind):
+        return
+    config, known = mind.config.protection, mind.memory.sensors
+    after = step(before, config, sensed, known, seen.now, night=_is_night(mind, seen))
+    mind.guarding = after
+    latch = after.kind if after.kind in LATCHED else None
+    if latch is not mind.memory.protection:
+        mind.remember(protection=latch)
+    _say_doubts(mind, before, after, sensed)
+    if after.kind is not before.kind:
+        _say_change(mind, before, after)
+
+
+def guarding(mind: Mind) -> Guarding:
+    """Return the state of the protections; the first time what was latched before the restart."""
+    if mind.guarding is None:
+        mind.guarding = latched(mind.memory.protection, mind.now)
+    return mind.guarding
+
+
+def demanded_stow(mind: Mind) -> StowName | None:
+    """Return where the panel belongs: wind wins over a command, a command over snow, snow over park."""
+    by_weather, by_command = guarding(mind).stow, mind.memory.stow
+    parked = by_command in (None, StowName.PARK)
+    if by_weather is StowName.WIND or (by_weather is not None and parked):
+        return by_weather
+    return by_command
+
+
+def hold_reason(mind: Mind) -> Reason | None:
+    """Return why tracking stays where it is: too little light, or a sensor that must be seen well."""
+    state = guarding(mind)
+    if state.held is not None:
+        return doubt_reason(mind, state.held)
+    return reason(mind) if state.kind in HOLDS else None
+
+
+def protection_state(mind: Mind) -> ProtectionState | None:
+    """Return what the weather demands now, None where it demands nothing; instants by the site's clock."""
+    state = guarding(mind)
+    if state.held is not None and state.stow is None:
+        since = state.doubt(state.held).since or mind.now
+        why = doubt_reason(mind, state.held)
+        return ProtectionState(Protection.WAIT, _at_site(mind, since), None, why)
+    if state.kind not in DEMANDS or state.since is None:
+        return None
+    end = None
+    if state.kind is Protection.TYPHOON:
+        end = state.typhoon.earliest_end(mind.config.protection.wind)
+    return ProtectionState(
+        state.kind, _at_site(mind, state.since), None if end is None else _at_site(mind, end), reason(mind)
+    )
+
+
+def reason(mind: Mind) -> Reason:
+    """Return the sentence for what holds."""
+    state, config, name = guarding(mind), mind.config.protection, mind.config.name
+    match state.kind:
+        case Protection.TYPHOON:
+            return _typhoon_reason(mind, state)
+        case Protection.SNOW:
+            load = (
+                f"{config.snow.load_kg:g} kg of snow lay on the panel of {name} for {config.snow.hold_s:g} s."
+            )
+            return Reason("snow", load, "It goes on by itself once the load is off.")
+        case Protection.WAIT:
+            text = f"{name} waits for light: there is less than {config.light.threshold_wm2:g} W/m2."
+            return Reason("too_dark", text, "It goes on by itself once there is enough light.")
+        case _:
+            text = (
+                f"{name} rests: for {config.light.hold_s / 60.0:g} minutes there was less light than "
+                f"{config.light.threshold_wm2:g} W/m2."
+            )
+            return Reason("hibernation", text, "It goes on by itself once there is enough light.")
+
+
+def doubt_reason(mind: Mind, quantity: Quantity) -> Reason:
+    """Return what is wrong with a sensor, and what that does."""
+    quality = mind.seen.weather.reading(quantity).quality if mind.seen else Quality.MISSING
+    bad = BAD.get(quality, "was bad and is watched until it has been good for long enough")
+    reacts = REACTS[limits_of(mind.config.protection, quantity).bad]
+    return Reason(
+        f"{quantity}_sensor_bad",
+        f"The {TITLES[quantity]} {bad}; {reacts}.",
+        "Check the sensor, its cable and its address; what a bad one does is in the tracker's settings.",
+    )
+
+
+def doubts(mind: Mind) -> tuple[Reason, ...]:
+    """Return the sensors that have been bad for too long and are not ignored."""
+    state, config = guarding(mind), mind.config.protection
+    return tuple(
+        doubt_reason(mind, quantity)
+        for quantity in Quantity
+        if state.doubt(quantity).ripe and limits_of(config, quantity).bad is not Reaction.IGNORE
+    )
+
+
+def _learn(mind: Mind, sensed: Sensed) -> None:
+    """Remember that a sensor is there: from now on it can be missed."""
+    if sensed is NOTHING_SENSED:
+        return
+    known = mind.memory.sensors
+    fresh = tuple(one for one in Quantity if one not in known and sensed.reading(one).good is not None)
+    if fresh:
+        mind.remember(sensors=known + fresh)
+
+
+def _expected(mind: Mind) -> bool:
+    """Return whether there should be a sensor."""
+    config = mind.config.protection
+    return bool(mind.memory.sensors) or any(limits_of(config, one).required for one in Quantity)
+
+
+def _is_night(mind: Mind, seen: Observation) -> bool:
+    if seen.sun is None:
+        return False
+    height_deg = seen.sun.apparent_elevation_deg if mind.config.refraction else seen.sun.elevation_deg
+    return height_deg < TWILIGHT_DEG
+
+
+def _typhoon_reason(mind: Mind, state: Guarding) -> Reason:
+    name, limits = mind.config.name, mind.config.protection.wind
+    minutes = f"{limits.resume_after_s / 60.0:g}"
+    hint = f"Once it has been calm for {minutes} minutes, tracking goes on if it was on."
+    wind = mind.seen.weather.wind if mind.seen else None
+    if state.wind_doubt.ripe and limits.bad is Reaction.STOW:
+        return Reason(
+            "wind_sensor_bad", doubt_reason(mind, Quantity.WIND).message, f"Check the sensor. {hint}"
+        )
+    if wind is None or wind.good is None:
+        return Reason("wind", f"The wind at {name} was too strong and is not known to be calm.", hint)
+    return Reason("wind", f"The wind at {name} is, or was, too strong: now {wind.good:.1f} m/s.", hint)
+
+
+def _say_change(mind: Mind, before: Guarding, after: Guarding) -> None:
+    if before.kind in DEMANDS:
+        text = f"{str(before.kind).capitalize()} has ended for {mind.config.name}."
+        mind.say(EventKind.PROTECTION_ENDED, text, protection=before.kind)
+    if after.kind in DEMANDS:
+        why = reason(mind)
+        mind.say(EventKind.PROTECTION_BEGAN, why.message, protection=after.kind, code=why.code)
+
+
+def _say_doubts(mind: Mind, before: Guarding, after: Guarding, sensed: Sensed) -> None:
+    for quantity in Quantity:
+        was, ripe = before.doubt(quantity).ripe, after.doubt(quantity).ripe
+        if ripe and not was:
+            quality = sensed.reading(quantity).quality
+            text = doubt_reason(mind, quantity).message
+            mind.say(EventKind.SENSOR_DOUBTED, text, quantity=quantity, quality=quality)
+        elif was and not ripe:
+            text = f"The {TITLES[quantity]} reports well again."
+            mind.say(EventKind.SENSOR_TRUSTED, text, quantity=quantity)
+
+
+def _at_site(mind: Mind, steady: datetime) -> datetime:
+    return mind.site_time + (steady - mind.now)
