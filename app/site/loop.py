@@ -126,6 +126,9 @@ class TrackerLoop:
         except (DriveError, TimeoutError) as error:
             log.error("stop_not_taken", tracker=self.config.tracker_id, reason=str(error))
             return False
+        except Exception:
+            log.exception("stop_failed", tracker=self.config.tracker_id)
+            return False
         return True
 
     async def stop_for_good(self) -> None:

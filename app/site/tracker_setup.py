@@ -78,15 +78,17 @@ async def _rebuild(model: SiteModel, loop: TrackerLoop, config: TrackerConfig) -
 
 
 def _memory_for(memory: TrackerMemory, old: TrackerConfig, new: TrackerConfig) -> TrackerMemory:
-    """Return what stays true with other limits, another mount or drive.
+    """Return what stays true with other limits, another mount, actuator or drive.
 
-    These two have no trusted zero, and a move that nobody has judged yet was made with the former settings.
+    The last three have no trusted zero, and a move that nobody has judged yet was made with the former one.
     """
-    if (old.mount.kind, old.drive) == (new.mount.kind, new.drive):
+    if _zeroed(old) == _zeroed(new):
         return replace(memory, tracking_on=False)
     memory = replace(memory, proofs=replace(memory.proofs, move=None))
     if old.mount.kind != new.mount.kind:
         return _remounted(memory)
+    if old.drive == new.drive:
+        return replace(memory, home=None, home_lost="another actuator was configured.", tracking_on=False)
     return replace(
         memory,
         home=None,
@@ -110,6 +112,11 @@ def _remounted(memory: TrackerMemory) -> TrackerMemory:
         sightings=(),
         pointing=Pointing(),
     )
+
+
+def _zeroed(config: TrackerConfig) -> tuple[object, ...]:
+    """Return what a trusted zero, and the limits counted from it, were found with."""
+    return config.mount.kind, config.drive, config.azimuth.actuator, config.elevation.actuator
 
 
 def _machine(config: TrackerConfig) -> tuple[object, ...]:

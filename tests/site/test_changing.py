@@ -21,6 +21,7 @@ from app.tracker.commands import CommandRejected, SelectMode
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import StepName, TrackerMemory, TrackerState
 from app.tracker.mode import Mode
+from app.tracker.transmission import LinearActuator, Point
 from tests.site.plant import FIRST, SUMMER_NOON, Plant, make_plant, settle
 from tests.site.wrapped_drive import WrappedDrive, wrapped
 
@@ -138,4 +139,18 @@ async def test_a_drive_that_hangs_keeps_no_other_from_its_clock() -> None:
     assert drive.wall_clock == shown
     setting.cancel()
     await asyncio.gather(setting, return_exceptions=True)
+    await plant.close()
+
+
+async def test_another_actuator_is_another_zero() -> None:
+    plant = make_plant()
+    await plant.start()
+    await plant.commission()
+    config = plant.site.model.tracker("T1").config
+    lift = LinearActuator(Point(900.0, 0.0, 15.0), Point(132.5, 200.1), 0.0, 745.0, 385.0, 25.0)
+    elevation = replace(config.elevation, actuator=lift)
+    await plant.ask(ConfigureTracker(replace(config, elevation=elevation)))
+    memory = plant.site.model.tracker("T1").memory
+    assert (memory.home, memory.home_lost) == (None, "another actuator was configured.")
+    assert memory.former_drive is None, "the drive is still the same"
     await plant.close()

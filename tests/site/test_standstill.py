@@ -66,6 +66,17 @@ async def test_once_the_drives_are_stopped_for_the_end_no_tick_moves_them_again(
     await plant.close()
 
 
+async def test_a_stop_that_meets_a_programming_error_still_ends_the_motion() -> None:
+    plant = await on_its_way()
+    wrapped(plant, "T1").cannot_stop = True
+    await plant.ask(Stop())
+    await plant.forward(seconds=3)
+    assert plant.tracker().activity is ActivityName.HOLDING
+    assert not plant.site.model.tracker("T1").moving
+    await plant.site.stop_drives()
+    await plant.close()
+
+
 async def tracking_and_broken() -> Plant:
     plant = make_plant(wrap=WrappedDrive)
     await plant.start()

@@ -18,6 +18,7 @@ class WrappedDrive:
     nonsense: bool = False
     refuses: bool = False
     deaf: bool = False
+    cannot_stop: bool = False
     stops: int = 0
     written: list[DriveCommand] = field(default_factory=list)
 
@@ -42,6 +43,8 @@ class WrappedDrive:
         self.stops += 1
         if self.deaf:
             await asyncio.Event().wait()
+        if self.cannot_stop:
+            raise RuntimeError("a programming error")
         await self.inner.stop()
 
     async def set_clock(self, at: datetime) -> None:
