@@ -19,6 +19,7 @@ from app.settings import Settings
 from app.store.store import Reader
 from app.tracker.snapshot import SiteSnapshot
 
+TELL_AGAIN_S = 1.0
 OUTBOX_NAME = "mqtt-outbox.json"
 
 log = structlog.get_logger(__name__)
@@ -81,10 +82,11 @@ class Gateways:
         self._tasks.append(task)
 
     async def close(self) -> None:
-        """Close the doors."""
-        for task in self._tasks:
-            task.cancel()
-        await asyncio.gather(*self._tasks, return_exceptions=True)
+        """Close the doors; one that goes on, because an error came together with its end, is told again."""
+        while pending := [task for task in self._tasks if not task.done()]:
+            for task in pending:
+                task.cancel()
+            await asyncio.wait(pending, timeout=TELL_AGAIN_S)
 
     async def execute(self, order: Order) -> SiteSnapshot:
         """Carry out one order."""

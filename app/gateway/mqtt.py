@@ -5,10 +5,11 @@ journal on disk, and both by tasks of their own.
 """
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Coroutine
 from contextlib import asynccontextmanager, suppress
 from datetime import timedelta
 from pathlib import Path
+from typing import TypeVar
 
 import structlog
 from aiomqtt import Client, MqttError, TLSParameters, Will
@@ -42,6 +43,8 @@ ANSWER_WITHIN_S = 5.0
 KEEPALIVE_S = 15
 MOST_COMMANDS_WAITING = 100
 AT_LEAST_ONCE = 1
+
+T = TypeVar("T")
 
 log = structlog.get_logger(__name__)
 
@@ -159,12 +162,13 @@ class MqttGateway:
             await self._clock.sleep_until(due)
 
     async def _tell_site(self, client: Client, site: SiteSnapshot) -> None:
-        await client.publish(self._topics.site, site_payload(site))
+        await heeding(client.publish(self._topics.site, site_payload(site)))
         if self._settings.mqtt_snapshots == "columns":
-            await client.publish(self._topics.columns, columns_payload(site))
+            await heeding(client.publish(self._topics.columns, columns_payload(site)))
             return
         for tracker in site.trackers:
-            await client.publish(self._topics.snapshot(tracker.tracker_id), tracker_payload(site, tracker))
+            topic = self._topics.snapshot(tracker.tracker_id)
+            await heeding(client.publish(topic, tracker_payload(site, tracker)))
 
     async def _announce(self, client: Client, site: SiteSnapshot) -> None:
         """Announce trackers that are new or changed to Home Assistant, and take back those that are gone."""
@@ -174,7 +178,7 @@ class MqttGateway:
         gone = dict.fromkeys(self._announced.keys() - wanted.keys(), b"")
         for topic, payload in (wanted | gone).items():
             if self._announced.get(topic) != payload:
-                await client.publish(topic, payload, AT_LEAST_ONCE, retain=True)
+                await heeding(client.publish(topic, payload, AT_LEAST_ONCE, retain=True))
         self._announced = wanted
 
     async def _tell_events(self, client: Client) -> None:
@@ -195,7 +199,8 @@ class MqttGateway:
     async def _tell_recordings(self, client: Client) -> None:
         while True:
             for recording in await asyncio.to_thread(self._outbox.recordings):
-                await client.publish(self._topics.recordings, recording_payload(recording), AT_LEAST_ONCE)
+                payload = recording_payload(recording)
+                await heeding(client.publish(self._topics.recordings, payload, AT_LEAST_ONCE))
                 await asyncio.to_thread(self._outbox.announced, recording)
             await self._clock.sleep_until(self._clock.now() + LOOK_FOR_RECORDINGS)
 
@@ -205,11 +210,24 @@ class MqttGateway:
             payload = message.payload if isinstance(message.payload, bytes) else b""
             if payload:
                 answer = await obey(self._door, tracker_id, payload, retained=message.retain)
-                await client.publish(self._topics.result(tracker_id), answer, AT_LEAST_ONCE)
+                await heeding(client.publish(self._topics.result(tracker_id), answer, AT_LEAST_ONCE))
 
     async def _count_waiting(self) -> None:
         with suppress(StoreFailed):
             self._waiting = await asyncio.to_thread(self._outbox.waiting)
+
+
+async def heeding(work: Coroutine[None, None, T]) -> T:
+    """Return what it returns; a cancellation that it swallowed is raised after all.
+
+    The client waits with `asyncio.wait_for`, which before Python 3.12 drops a cancellation that comes
+    together with the result. A loop would then go on for ever, and the controller service would not end.
+    """
+    result = await work
+    task = asyncio.current_task()
+    if task is not None and task.cancelling():
+        raise asyncio.CancelledError
+    return result
 
 
 def _path(file: Path | None) -> str | None:

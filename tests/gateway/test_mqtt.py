@@ -15,6 +15,7 @@ from aiomqtt import Client, MqttError
 from pydantic import SecretStr
 
 from app.gateway.gateways import Gateways
+from app.gateway.mqtt import heeding
 from app.link.messages import RenameSite
 from app.link.metrics import GatewayMetrics, GatewayStatus
 from app.settings import Settings
@@ -167,6 +168,17 @@ async def test_a_killed_broker_loses_no_event_and_the_site_does_not_wait(
         told = _all_once(broker.told("plant/north/events"))
         assert told == [entry.number for entry in _journal(store)][-len(told) :], "none is missing in between"
         assert len(told) > 120
+
+
+async def test_a_cancellation_that_comes_with_the_brokers_answer_is_heeded() -> None:
+    answer: asyncio.Future[str] = asyncio.get_running_loop().create_future()
+    telling = asyncio.create_task(heeding(asyncio.wait_for(answer, 5.0)))
+    await asyncio.sleep(0)
+    answer.set_result("acknowledged")
+    await asyncio.sleep(0)
+    telling.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await telling
 
 
 async def test_a_restarted_machine_tells_what_it_had_not(tmp_path: Path, broker: Broker) -> None:
