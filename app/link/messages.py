@@ -194,7 +194,7 @@ class DeleteRecording:
 
 @dataclass(frozen=True, slots=True)
 class ReportWeather:
-    """What a weather station measured, at `measured_at` (None: now). Nothing moves because of it."""
+    """What a weather station measured, at `measured_at` (None: now); trackers stow by it."""
 
     readings: Weather
     measured_at: datetime | None = None

@@ -66,9 +66,9 @@ class SiteModel:
 
     def observe(self, config: TrackerConfig, feedback: Feedback | None) -> Observation:
         """Return everything one tick of one tracker may depend on."""
-        site_time, location = self.now(), self.state.location
+        now, site_time, location = self.clock.now(), self.now(), self.state.location
         return Observation(
-            now=self.clock.now(),
+            now=now,
             site_time=site_time,
             sun=self.sky.sun(location, config.algorithm, site_time),
             dawn=self.sky.dawn(location, config.algorithm, site_time),
@@ -76,6 +76,7 @@ class SiteModel:
             clock_trusted=not self.timekeeper.reasons(),
             location=location,
             location_revision=self.state.location_revision,
+            weather=self.weather.sensed(now),
         )
 
     def check_drive(self, config: TrackerConfig) -> None:

@@ -1,35 +1,95 @@
-"""The site's weather: the newest report and its age. Nothing moves because of it."""
+"""The site's weather: what its stations measured, how old and how good each value is."""
 
-from dataclasses import dataclass
+from dataclasses import fields
 from datetime import datetime, timedelta
 
-from app.tracker.weather import Weather, WeatherNow
+from app.site.weather_series import FROZEN_AFTER, Sample, Series
+from app.tracker.weather import NOTHING_SENSED, Quality, Reading, Sensed, Weather, WeatherNow
 
 MOST_AHEAD = timedelta(seconds=10)
 STALE_AFTER = timedelta(minutes=5)
-
-
-@dataclass(frozen=True, slots=True)
-class _Report:
-    readings: Weather
-    measured_at: datetime
-    source: str
-    age_when_received: timedelta
-    received: datetime
+NAMES = tuple(field.name for field in fields(Weather))
+MOVES_WITH = {"wind_mps": "wind_direction_deg"}
+"""A vane that turns while the anemometer shows no wind says that the anemometer is stuck."""
 
 
 class WeatherStation:
-    """Keeps the newest report; its age grows with the machine's own clock, whatever the site's clock does."""
+    """Keeps every quantity's samples; ages grow with the machine's own clock, whatever the site's does."""
 
     def __init__(self, stale_after: timedelta = STALE_AFTER) -> None:
         self._stale_after = stale_after
-        self._report: _Report | None = None
+        self._series = {name: Series(name, stale_after) for name in NAMES}
+        self._reported_at: datetime | None = None
+        self._measured_at: datetime | None = None
+        self._source = ""
 
     def receive(
-        self, readings: Weather, measured_at: datetime | None, source: str, site_time: datetime, now: datetime
+        self,
+        readings: Weather,
+        measured_at: datetime | None,
+        source: str,
+        site_time: datetime,
+        now: datetime,
+        impossible: tuple[str, ...] = (),
     ) -> None:
-        """Take a report, or raise `ValueError` if it is of the future or already stale."""
+        """Take a report, or raise `ValueError` if it is of the future or already stale.
+
+        `impossible` names what the station sent that was no number or out of range.
+        """
         measured_at = measured_at or site_time
+        age = self._checked_age(measured_at, site_time)
+        at = now - age
+        for name in NAMES:
+            value = getattr(readings, name)
+            if value is not None:
+                self._series[name].take(Sample(at, value, source))
+        for name in impossible:
+            last = self._series[name].newest
+            value = 0.0 if last is None else last.value
+            self._series[name].take(Sample(at, value, source), impossible=True)
+        self._reported_at, self._measured_at, self._source = at, measured_at, source
+
+    def now(self, now: datetime) -> WeatherNow | None:
+        """Return the newest values with their ages, None if there never was one since the start."""
+        if self._reported_at is None or self._measured_at is None:
+            return None
+        quantities = {name: self._reading(name, now) for name in NAMES if self._series[name].newest}
+        age = now - self._reported_at
+        wind = self._series["wind_mps"]
+        return WeatherNow(
+            _newest(quantities),
+            self._measured_at,
+            age.total_seconds(),
+            age > self._stale_after,
+            self._source,
+            quantities,
+            wind.gust(now),
+            wind.mean(),
+        )
+
+    def sensed(self, now: datetime) -> Sensed:
+        """Return what one tick of a tracker is told."""
+        if self._reported_at is None:
+            return NOTHING_SENSED
+        wind, series = self._reading("wind_mps", now), self._series["wind_mps"]
+        gust_mps = series.gust(now)
+        if wind.quality is Quality.GOOD and gust_mps is not None:
+            wind = Reading(gust_mps, wind.quality, wind.age_s, wind.source)
+        return Sensed(
+            wind,
+            self._reading("snow_kg", now),
+            self._reading("light_wm2", now),
+            series.mean(),
+            self._reading("wind_direction_deg", now).good,
+        )
+
+    def _reading(self, name: str, now: datetime) -> Reading:
+        with_it = self._series.get(MOVES_WITH.get(name, ""))
+        changed_at = None if with_it is None else with_it.changed_at
+        varies = changed_at is not None and now - changed_at < FROZEN_AFTER
+        return self._series[name].reading(now, others_vary=varies)
+
+    def _checked_age(self, measured_at: datetime, site_time: datetime) -> timedelta:
         age = site_time - measured_at
         if age < -MOST_AHEAD:
             raise ValueError(
@@ -42,14 +102,10 @@ class WeatherStation:
                 f"The weather is {age.total_seconds():.0f} s old; older than {limit_s:.0f} s is not taken. "
                 "Send it sooner, or leave the time out."
             )
-        self._report = _Report(readings, measured_at, source, max(age, timedelta(0)), now)
+        return max(age, timedelta(0))
 
-    def now(self, now: datetime) -> WeatherNow | None:
-        """Return the newest report with its age, None if there never was one in this life of the machine."""
-        report = self._report
-        if report is None:
-            return None
-        age = report.age_when_received + (now - report.received)
-        return WeatherNow(
-            report.readings, report.measured_at, age.total_seconds(), age > self._stale_after, report.source
-        )
+
+def _newest(quantities: dict[str, Reading]) -> Weather:
+    """Return the values that are not stale; where all are, the last ones, which are shown with their age."""
+    fresh = {name: one.value for name, one in quantities.items() if one.quality is not Quality.STALE}
+    return Weather(**(fresh or {name: one.value for name, one in quantities.items()}))
