@@ -2,7 +2,7 @@
 
 The paper on a PLC of Bosch Rexroth with the PSA algorithm has u = computed + correction and gives neither
 thresholds nor gains. Here the correction of an axis changes, while both sensors of its pair see enough light
-and the axis stands where it was sent, at the rate gain (R1 - R2) / (R1 + R2): R1 looks towards larger axis
+and both axes stand where they were sent, at the rate gain (R1 - R2) / (R1 + R2): R1 looks towards larger axis
 angles. It never exceeds its bound, in less light it decays or is held, and a pair that keeps pulling at the
 bound, or differs by more than a panel near the sun can see, is not believed.
 """
@@ -10,7 +10,7 @@ bound, or differs by more than a panel near the sun can see, is not believed.
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from enum import StrEnum
-from math import exp, isfinite
+from math import exp, inf, isfinite
 
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import TrackerConfig
@@ -21,6 +21,8 @@ from app.tracker.strategy import HybridConfig, Stepped
 
 ON_PLACE_DEG = 0.1
 """So near to its computed and corrected place an axis has to be for its pair to tell a pointing error."""
+NEAR_DEG = 2.0
+"""And so near the other one, so that it does not turn the pair aside."""
 LARGEST_RATIO = 0.5
 LONGEST_STEP_S = 2.0
 PATIENCE = timedelta(seconds=60)
@@ -80,6 +82,7 @@ def correct(
     where the strategy wants the axes. A step program is never corrected: its panel need not face the sun.
     """
     elapsed_s = 0.0 if before is None else (now - before.at).total_seconds()
+    off_deg = _off_place(before, config, sun_target, feedback)
     used = config.hybrid.enabled and not isinstance(config.strategy, Stepped)
     axes = []
     for axis, follows in zip(Axis, FOLLOWING[mode], strict=True):
@@ -87,7 +90,7 @@ def correct(
         if not (used and follows):
             axes.append(NO_CORRECTION)
             continue
-        pair, on_place = _pair(feedback.light, axis), _on_place(was, feedback, sun_target, axis)
+        pair, on_place = _pair(feedback.light, axis), _on_place(off_deg, sun_target, axis)
         axes.append(axis_correction(was, config.hybrid, pair, now, elapsed_s, on_place=on_place))
     azimuth, elevation = axes
     summed = replace(
@@ -140,12 +143,31 @@ def _decayed(degrees: float, config: HybridConfig, elapsed_s: float) -> float:
     return degrees if config.decay_s == 0.0 else degrees * exp(-max(elapsed_s, 0.0) / config.decay_s)
 
 
-def _on_place(was: AxisCorrection, feedback: Feedback, sun_target: AxisTarget, axis: Axis) -> bool:
-    """Return whether the pair of an axis sees the pointing error and little else."""
-    on_azimuth = axis is Axis.AZIMUTH
-    measured_deg = (feedback.azimuth if on_azimuth else feedback.elevation).position_deg
-    computed_deg = sun_target.azimuth_deg if on_azimuth else sun_target.elevation_deg
-    return not sun_target.limited and abs(computed_deg + was.degrees - measured_deg) <= ON_PLACE_DEG
+def _on_place(off_deg: dict[Axis, float], sun_target: AxisTarget, axis: Axis) -> bool:
+    """Return whether the pair of an axis sees the pointing error and little else.
+
+    Another axis on its way turns the pair aside from the sun, which looks like an error of this one.
+    """
+    near = off_deg.get(axis, inf) <= ON_PLACE_DEG and max(off_deg.values()) <= NEAR_DEG
+    return near and not sun_target.limited
+
+
+def _off_place(
+    before: Corrected | None, config: TrackerConfig, sun_target: AxisTarget, feedback: Feedback
+) -> dict[Axis, float]:
+    """Return how far each axis that the mount has stands from its computed and corrected place, degrees."""
+    return {
+        axis: abs(
+            _computed_deg(sun_target, axis)
+            + (0.0 if before is None else _of(before, axis).degrees)
+            - (feedback.azimuth if axis is Axis.AZIMUTH else feedback.elevation).position_deg
+        )
+        for axis in config.mount.axes
+    }
+
+
+def _computed_deg(target: AxisTarget, axis: Axis) -> float:
+    return target.azimuth_deg if axis is Axis.AZIMUTH else target.elevation_deg
 
 
 def _sum_deg(axis: AxisConfig, computed_deg: float, correction: AxisCorrection) -> float:

@@ -70,6 +70,12 @@ def test_a_misalignment_is_found_in_sunlight(strategy: Strategy) -> None:
     assert frame[10:12] == pytest.approx(sunny.correction)
 
 
+def test_an_axis_that_arrives_first_does_not_take_the_way_of_the_other_for_an_error() -> None:
+    """While azimuth is still on its way, the elevation's pair sees the sun from aside, and too high."""
+    sunny = Sunny(EAGER)
+    assert sunny.correction == pytest.approx((0.0, 0.0), abs=0.02)
+
+
 def test_in_cloud_the_correction_decays_and_in_sunlight_it_is_found_again() -> None:
     sunny = Sunny()
     sunny.forward(timedelta(minutes=10))
