@@ -45,7 +45,7 @@ class PtyLine:
         ends = os.openpty()
         tty.setraw(ends[1])
         os.set_blocking(ends[0], False)
-        if not self._name(os.ttyname(ends[1])):
+        if not self._name(_device(ends[1])):
             _close(ends)
             return False
         self._ends, self._received = ends, received
@@ -74,7 +74,7 @@ class PtyLine:
         with suppress(OSError):
             self._path.unlink()
 
-    def _name(self, device: str) -> bool:
+    def _name(self, device: Path) -> bool:
         """Let the name point at a device; one that a killed process left behind is taken over."""
         try:
             if self._path.is_symlink() and not self._path.exists():
@@ -104,6 +104,12 @@ class PtyLine:
     def _take(self, data: bytes) -> None:
         if self._ends is not None and self._received is not None:
             self._received(data)
+
+
+def _device(end: int) -> Path:
+    """Return a path that vanishes with this process; the device's number is soon somebody else's."""
+    own = Path(f"/proc/{os.getpid()}/fd/{end}")
+    return own if own.exists() else Path(os.ttyname(end))
 
 
 def _close(ends: tuple[int, int]) -> None:

@@ -2,6 +2,7 @@
 
 import asyncio
 import os
+import sys
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
@@ -23,6 +24,18 @@ from tests.drives.timed.proxied import TIMING, Registers
 from tests.peers.processes import cable
 
 FOUND_WITHIN_S = 10.0
+OPENED = """
+import asyncio, sys
+from pathlib import Path
+from app.drives.pty_line import PtyLine
+
+async def stay() -> None:
+    await PtyLine(Path(sys.argv[1])).open(print, print)
+    print(Path(sys.argv[1]).resolve(), flush=True)
+    await asyncio.Event().wait()
+
+asyncio.run(stay())
+"""
 
 
 def on_line(port: str | Path) -> DriveConfig:
@@ -135,12 +148,24 @@ async def test_a_lasting_name_stays_what_it_is(tmp_path: Path) -> None:
 
 async def test_a_name_that_a_killed_process_left_behind_is_taken_over(tmp_path: Path) -> None:
     name = tmp_path / "line"
-    name.symlink_to(tmp_path / "gone")
+    process = await asyncio.create_subprocess_exec(
+        sys.executable, "-c", OPENED, str(name), stdout=asyncio.subprocess.PIPE
+    )
+    assert process.stdout is not None
+    async with asyncio.timeout(20.0):
+        device = Path((await process.stdout.readline()).decode().strip())
+        assert name.resolve() == device
+        process.kill()
+        await process.wait()
+    others = [os.openpty() for _ in range(3)]
+    assert not name.exists(), "whoever has the device's number now is left alone"
     line = serial_end(SerialConfig(str(name)))
     assert await line.open(print, print)
     assert name.is_char_device()
     line.close()
     assert not name.is_symlink()
+    for end in (end for ends in others for end in ends):
+        os.close(end)
 
 
 async def test_a_name_that_is_taken_by_a_file_is_refused(tmp_path: Path) -> None:
