@@ -12,6 +12,7 @@ from app.tracker.strategy import Continuous, Interval, IntervalAim, Stepped
 from tests.fakes import FakeMachine, fake_app, serving
 
 PAGE = "/trackers/T1/strategy"
+HYBRID = {"threshold": "200", "gain": "1", "bound": "1.5", "decay": "0"}
 
 
 @pytest.fixture
@@ -121,12 +122,28 @@ async def test_the_table_is_filled_from_csv_an_example_or_with_rows(client: http
 
 
 async def test_the_correction_is_set(client: httpx.AsyncClient, machine: FakeMachine) -> None:
-    typed = {"enabled": "yes", "threshold": "200", "gain": "1", "bound": "1.5", "decay": "0", "cloud": "25"}
+    typed = {"enabled": "yes", "cloud": "25"} | HYBRID
     await client.post(f"{PAGE}/hybrid", data=typed)
     hybrid = machine.orders[-1].command.config.hybrid
     assert (hybrid.enabled, hybrid.threshold_wm2, hybrid.bound_deg) == (True, 200.0, 1.5)
     assert hybrid.simulated.cloud == 0.25
     assert (await client.post(f"{PAGE}/hybrid", data=typed | {"bound": "90"})).status_code == 422
+
+
+async def test_the_live_page_shows_program_and_correction_of_the_tracker_that_has_them(
+    client: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    plain = (await client.get("/trackers/T1")).text
+    assert "hybrid.computed" not in plain
+    assert "program.step" not in plain
+    await client.post(f"{PAGE}/hybrid", data={"enabled": "yes"} | HYBRID)
+    rows = {"program_name": "Noon", "at": ["06:00", "12:00"], "first": ["120", "180"], "second": ["30", "60"]}
+    await client.post(f"{PAGE}/program", data=rows)
+    live = (await client.get("/trackers/T1")).text
+    for part in ("computed", "correction", "sum"):
+        assert f'data-live="hybrid.{part}.azimuth_deg"' in live
+        assert f'data-live="hybrid.{part}.elevation_deg"' in live
+    assert 'Noon: step <span class="value-live" data-live="program.step"' in live
 
 
 async def test_today_is_drawn_with_what_it_costs(client: httpx.AsyncClient) -> None:
