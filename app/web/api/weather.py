@@ -47,7 +47,7 @@ async def read_weather(snapshot: SnapshotDep) -> WeatherNow:
 
 @router.put("", summary="Report the weather", responses=REFUSED)
 async def report_weather(report: WeatherReport, sender: SenderDep) -> WeatherNow:
-    """Take the values in the place of those before; wind, snow and light act on every tracker as it is set."""
+    """Take the values in the place of those before; wind, snow and light act on trackers as set."""
     try:
         readings = Weather(**report.model_dump(exclude={"measured_at"}))
     except ValueError as error:
