@@ -25,6 +25,7 @@ SUFFIX = ".toml"
 MOST_REGISTERS = 125
 DEFAULT_TIMEOUT_MS = 300
 LAST_BIT = 31
+MOST_TRACKERS = 100
 
 
 class Adapter(StrEnum):
@@ -84,7 +85,10 @@ class Watchdog:
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """Everything that is known about one kind of device."""
+    """Everything that is known about one kind of device.
+
+    `tracker` counts from 1: which tracker of a SunSpec controller that has several.
+    """
 
     name: str
     title: str
@@ -103,6 +107,7 @@ class Profile:
     enums: Mapping[str, Mapping[str, int]]
     sequences: Mapping[str, tuple[SequenceStep, ...]]
     steps_per_revolution: float
+    tracker: int
     text: Source
 
     @property
@@ -178,7 +183,7 @@ def parse_profile(text: str, file: str) -> Profile:
 
 _TOP = (
     "name", "title", "adapter", "word_order", "verified", "source", "timing", "watchdog", "blocks",
-    "registers", "bits", "enums", "axis", "sequences",
+    "registers", "bits", "enums", "axis", "sequences", "tracker",
 )  # fmt: skip
 _REGISTER = (
     "address", "type", "word_order", "scale", "sign", "unit", "access", "minimum", "maximum", "expect",
@@ -216,6 +221,7 @@ def _profile(top: Table) -> Profile:
         enums=enums,
         sequences=_sequences(top, registers, enums),
         steps_per_revolution=_steps(top.table("axis")),
+        tracker=top.whole("tracker", 1, MOST_TRACKERS, 1),
         text=top.source,
     )
 

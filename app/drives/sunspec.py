@@ -1,4 +1,4 @@
-"""Another tracker controller as a drive: SunSpec model 601, of which the first tracker is moved.
+"""Another tracker controller as a drive: SunSpec model 601, of which one tracker is moved.
 
 Source: SunSpec Information Model 601 (Tracker Controller, draft 2): control unit and repeating tracker
 block; targets and positions in degrees times ten to the power of `Dgr_SF`.

@@ -13,8 +13,10 @@ import sunspec2.modbus.client as sunspec
 from sunspec2.modbus.modbus import ModbusClientException
 
 from app.clock import SystemClock
+from app.drives.drive import DriveRefused
 from app.drives.factory import DriveFactory
 from app.drives.faults import Fault, FaultKind
+from app.drives.profile import PROFILES
 from app.drives.simulated import SimulatedDrive
 from app.gateway.sunspec import SunSpecTcp
 from app.gateway.sunspec_device import SunSpecDevice
@@ -406,6 +408,42 @@ async def test_our_own_sunspec_drive_moves_a_tracker_of_another_controller() -> 
             await system.plant.forward(seconds=40)
             seen = await drive.read()
             assert (seen.azimuth.position_deg, seen.elevation.position_deg) == (azimuth_deg, 30.0)
+        await drive.close()
+
+
+def second_tracker(folder: Path, number: int = 2) -> DriveFactory:
+    """Drives whose profile `second` is the shipped one for another tracker of the controller."""
+    (folder / "profiles").mkdir()
+    text = (PROFILES / "sunspec-601.toml").read_text(encoding="utf-8")
+    own = text.replace('name = "sunspec-601"', 'name = "second"').replace(
+        "tracker = 1", f"tracker = {number}"
+    )
+    (folder / "profiles" / "second.toml").write_text(own, encoding="utf-8")
+    return DriveFactory(SystemClock(), folder)
+
+
+async def test_our_own_sunspec_drive_moves_the_tracker_that_its_profile_says(tmp_path: Path) -> None:
+    async with scada("T1", "T2") as system:
+        await system.plant.commission("T1")
+        await system.plant.commission("T2")
+        before = system.plant.tracker("T1").measured
+        wiring = DriveConfig(DriveKind.MODBUS_TCP, profile="second", port=system.server.port)
+        drive = second_tracker(tmp_path).make(TrackerConfig("X", "Another controller", drive=wiring))
+        await drive.read()
+        await drive.write(DriveCommand(Position(100.0, 6.0), Position(30.0, 4.0)))
+        await system.plant.forward(seconds=40)
+        seen = await drive.read()
+        await drive.close()
+        assert (seen.azimuth.position_deg, seen.elevation.position_deg) == (100.0, 30.0)
+        assert system.plant.tracker("T1").measured == before, "the first was not touched"
+
+
+async def test_a_tracker_that_the_controller_does_not_have_is_told(tmp_path: Path) -> None:
+    async with scada("T1", "T2") as system:
+        wiring = DriveConfig(DriveKind.MODBUS_TCP, profile="second", port=system.server.port)
+        drive = second_tracker(tmp_path, 3).make(TrackerConfig("X", "Another controller", drive=wiring))
+        with pytest.raises(DriveRefused, match="has 2 trackers, but profile second wants number 3"):
+            await drive.read()
         await drive.close()
 
 
