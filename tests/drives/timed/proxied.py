@@ -1,7 +1,7 @@
 """Devices behind a fault proxy, on every kind of wire, and what arrives there."""
 
 import time
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Mapping, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,7 +12,7 @@ from app.drives.buses import Buses
 from app.drives.fault_proxy import FaultProxy
 from app.drives.line import Line, SerialLine, TcpLine
 from app.drives.listening_line import ListeningLine
-from app.drives.modbus_server import ModbusServer
+from app.drives.modbus_server import Device, ModbusServer
 from app.drives.pty_line import PtyLine
 from app.drives.rtu_server import RtuServer
 from app.drives.wire import Timing
@@ -24,6 +24,7 @@ BAUD_RATE = 19_200
 TIMING = Timing(0.2)
 STOP_REGISTER = 33
 UNITS = (7, 8)
+NOBODY: Mapping[int, Device] = {}
 
 
 @dataclass
@@ -65,7 +66,7 @@ class Noting(FaultProxy):
 
 @dataclass
 class Bench:
-    """Two devices on one bus behind a proxy."""
+    """Two devices, and others that a test brings along, on one bus behind a proxy."""
 
     proxy: Noting
     buses: Buses
@@ -77,9 +78,9 @@ class Bench:
 
 
 @asynccontextmanager
-async def tcp_bench() -> AsyncIterator[Bench]:
+async def tcp_bench(others: Mapping[int, Device] = NOBODY) -> AsyncIterator[Bench]:
     devices = {unit: Registers(unit) for unit in UNITS}
-    server = ModbusServer(devices[7], 7, others={8: devices[8]})
+    server = ModbusServer(devices[7], 7, others={8: devices[8], **others})
     port = await server.start("127.0.0.1", 0)
     near = ListeningLine("127.0.0.1", 0)
     proxy = Noting(near, TcpLine("127.0.0.1", port), Framing.TCP, SystemClock())
@@ -92,32 +93,32 @@ async def tcp_bench() -> AsyncIterator[Bench]:
 
 
 @asynccontextmanager
-async def rtu_bench() -> AsyncIterator[Bench]:
+async def rtu_bench(others: Mapping[int, Device] = NOBODY) -> AsyncIterator[Bench]:
     """A serial line that keeps the pace of 19200 baud."""
     with TemporaryDirectory() as folder:
         serial = SerialConfig(str(Path(folder) / "near"), BAUD_RATE)
         near = PtyLine(Path(serial.port), serial.bits / serial.baud_rate)
         far_name = str(Path(folder) / "far")
-        async with _rtu(near, SerialLine(SerialConfig(far_name)), PtyLine(Path(far_name))) as found:
+        async with _rtu(near, SerialLine(SerialConfig(far_name)), PtyLine(Path(far_name)), others) as found:
             proxy, devices = found
             config = DriveConfig(DriveKind.MODBUS_RTU, serial=serial)
             yield Bench(proxy, Buses(SystemClock()), config, devices)
 
 
 @asynccontextmanager
-async def gateway_bench() -> AsyncIterator[Bench]:
+async def gateway_bench(others: Mapping[int, Device] = NOBODY) -> AsyncIterator[Bench]:
     near, behind = ListeningLine("127.0.0.1", 0), ListeningLine("127.0.0.1", 0)
-    async with _rtu(near, None, behind) as (proxy, devices):
+    async with _rtu(near, None, behind, others) as (proxy, devices):
         config = DriveConfig(DriveKind.MODBUS_RTU_OVER_TCP, port=near.port)
         yield Bench(proxy, Buses(SystemClock()), config, devices)
 
 
 @asynccontextmanager
 async def _rtu(
-    near: Line, far: Line | None, behind: PtyLine | ListeningLine
+    near: Line, far: Line | None, behind: PtyLine | ListeningLine, others: Mapping[int, Device]
 ) -> AsyncIterator[tuple[Noting, dict[int, Registers]]]:
     devices = {unit: Registers(unit) for unit in UNITS}
-    server = RtuServer(devices, behind)
+    server = RtuServer({**devices, **others}, behind)
     await server.start()
     if isinstance(behind, ListeningLine):
         far = TcpLine("127.0.0.1", behind.port)

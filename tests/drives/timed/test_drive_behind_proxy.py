@@ -1,0 +1,86 @@
+"""A whole drive behind a proxy: every fault, one after the other, while the axes turn."""
+
+import time
+from dataclasses import replace
+
+import pytest
+
+from app.clock import VirtualClock
+from app.drives.drive import Drive, DriveError
+from app.drives.factory import DriveFactory
+from app.drives.profile import load_profile
+from app.drives.sim_plc import SimulatedPlc
+from app.drives.simulated import SimulatedDrive
+from app.tracker.motion import DriveCommand, Feedback, Velocity
+from tests.drives.conformance import is_moving
+from tests.drives.rigs import CONFIG, START, TICK
+from tests.drives.timed.proxied import BENCHES
+from tests.drives.timed.test_fault_proxy import faults
+
+UNIT = 9
+MOST_TICKS = 12
+FOUND_WITHIN_S = 3.0
+CREEPING = DriveCommand(Velocity(0.5), Velocity(-0.5))
+
+
+class Tracked:
+    """A drive that is ticked, and every reading of it held to the machine behind it."""
+
+    def __init__(self, drive: Drive, machine: SimulatedDrive, clock: VirtualClock) -> None:
+        self._drive = drive
+        self._machine = machine
+        self._clock = clock
+
+    async def tick(self, command: DriveCommand) -> Feedback | None:
+        """Read and command once; None if the drive could not be read."""
+        self._clock.advance(TICK)
+        try:
+            feedback = await self._drive.read()
+        except DriveError:
+            return None
+        truth = await self._machine.read()
+        for axis, true in ((feedback.azimuth, truth.azimuth), (feedback.elevation, truth.elevation)):
+            assert axis.position_deg == pytest.approx(true.position_deg, abs=1e-6), (
+                "an old value was believed"
+            )
+            assert axis.moving == true.moving
+        try:
+            await self._drive.write(command)
+        except DriveError:
+            return None
+        return feedback
+
+    async def recover(self) -> float:
+        """Tick until the drive is read and commanded again, and return how long that took."""
+        began = time.monotonic()
+        for _ in range(MOST_TICKS):
+            if await self.tick(CREEPING) is not None:
+                return time.monotonic() - began
+        raise AssertionError(f"not found again within {MOST_TICKS} ticks")
+
+
+@pytest.mark.parametrize("wire", BENCHES)
+async def test_a_turning_drive_is_never_misread_and_is_found_again(wire: str) -> None:
+    clock = VirtualClock(START)
+    machine = SimulatedDrive(CONFIG, clock)
+    others = {UNIT: SimulatedPlc(load_profile("simulated-plc"), machine, clock)}
+    async with BENCHES[wire](others) as bench:
+        drive = DriveFactory(clock).make(replace(CONFIG, drive=replace(bench.config, unit=UNIT)))
+        tracked = Tracked(drive, machine, clock)
+        await tracked.recover()
+        for fault in faults(wire):
+            bench.proxy.play(f"{fault} 1")
+            asked = bench.proxy.requests
+            took_s = [await tracked.recover() for _ in range(2)]
+            assert bench.proxy.requests > asked
+            assert max(took_s) < FOUND_WITHIN_S, fault
+        feedback = await tracked.tick(CREEPING)
+        assert feedback is not None
+        assert is_moving(feedback), "the drive obeys again"
+        bench.proxy.play("clear")
+        await drive.stop()
+        clock.advance(TICK * 20)
+        feedback = await tracked.tick(DriveCommand())
+        assert feedback is not None
+        assert not is_moving(feedback)
+        await drive.close()
