@@ -24,9 +24,9 @@ def accuracy(
     globe: Annotated[bool, typer.Option("--globe", help="Latitude -65 to 65 instead of a site.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, with the curves.")] = False,
 ) -> None:
-    """Measure every sun algorithm against NREL SPA."""
-    if (lat is None or lon is None) and not globe:
-        raise ValueError("Give --lat and --lon of a site, or --globe.")
+    """Measure every sun algorithm against NREL SPA, for a site or, without one, for the globe."""
+    if (lat is None) != (lon is None) and not globe:
+        raise ValueError("Give both --lat and --lon of a site, or neither for the globe.")
     place = None if globe or lat is None or lon is None else Location(lat, lon)
     found = survey(Question(place, from_year, to_year, samples))
     typer.echo(AccuracyReport.of(found).model_dump_json(indent=2) if as_json else table(found))

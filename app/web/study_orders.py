@@ -1,5 +1,6 @@
 """From what is asked to a study, with the site's own values where none is given."""
 
+from dataclasses import replace
 from datetime import date
 
 from pydantic import Field
@@ -28,6 +29,7 @@ from app.web.api.base import Azimuth, Elevation, Input
 
 CivilDate = date
 NO_PLACE = "Give latitude and longitude, or save the site's location first: step 1 of commissioning."
+HALF_A_PLACE = "Give latitude and longitude together, or leave both out for the site's location."
 
 
 class Place(Input):
@@ -42,9 +44,11 @@ class Place(Input):
         known = site.site.location
         if self.latitude_deg is not None and self.longitude_deg is not None:
             return Location(self.latitude_deg, self.longitude_deg, self.altitude_m or 0.0)
+        if self.latitude_deg is not None or self.longitude_deg is not None:
+            raise ValueError(HALF_A_PLACE)
         if known is None:
             raise ValueError(NO_PLACE)
-        return known
+        return known if self.altitude_m is None else replace(known, altitude_m=self.altitude_m)
 
 
 class NewStudy(Place):

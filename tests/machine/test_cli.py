@@ -60,9 +60,10 @@ def test_accuracy_as_a_table_and_as_json(run: Run) -> None:
     code, out, _ = run("accuracy", "--globe", *years, "--json")
     assert code == 0
     assert json.loads(out)["location"] is None
-    code, _, err = run("accuracy")
-    assert code == 2
-    assert "or --globe" in err
+    code, out, _ = run("accuracy", *years)
+    assert (code, "latitude -65 to 65" in out) == (0, True)
+    code, _, err = run("accuracy", "--lat", "41.28")
+    assert (code, "both --lat and --lon" in err) == (2, True)
 
 
 def test_a_paper_as_text_and_as_json(run: Run) -> None:

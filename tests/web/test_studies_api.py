@@ -100,6 +100,7 @@ async def test_no_more_than_five_are_under_way(client: httpx.AsyncClient) -> Non
         ({"span": "year", "step_min": 1, "modes": ["azimuth", "elevation", "dual"],
           "strategies": ["continuous", "deadband", "interval", "program"]}, "too many"),
         ({"date": "1890-01-01"}, "Choose a year"),
+        ({"latitude_deg": 45.65, "longitude_deg": None}, "together"),
     ],
 )  # fmt: skip
 async def test_what_cannot_be_studied_is_refused_with_a_sentence(
