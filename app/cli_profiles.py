@@ -36,6 +36,9 @@ ElevationUnit = Annotated[
 ]
 
 
+SWITCHES = ("lower_limit", "upper_limit", "origin")
+
+
 @dataclass(frozen=True, slots=True)
 class Way:
     """How a drive is reached, as the options of a command say."""
@@ -71,7 +74,7 @@ def check(file: ProfileName) -> None:
     check_needs(found)
     typer.echo(
         f"{file} is a right profile for adapter {found.adapter}: {len(found.registers)} registers, "
-        f"{_watchdog(found)}. {_verified(found)}"
+        f"{_watchdog(found)}, {_switches(found)}. {_verified(found)}"
     )
 
 
@@ -228,6 +231,13 @@ def _verified(profile: Profile) -> str:
 
 def _watchdog(profile: Profile) -> str:
     return f"watchdog {profile.watchdog.timeout_ms} ms" if profile.watchdog is not None else "no watchdog"
+
+
+def _switches(profile: Profile) -> str:
+    """Return the switches that the profile shows, by the names that the adapters look for."""
+    bits = {**profile.bits.get("inputs", {}), **profile.bits.get("switches", {})}
+    seen = [name for name in bits if name.endswith(SWITCHES)]
+    return f"switches {', '.join(seen)}" if seen else "no limit switches"
 
 
 def _told(one: RegisterReading) -> str:

@@ -52,7 +52,9 @@ def test_the_profiles_are_listed_with_what_is_not_verified() -> None:
 
 
 def test_a_right_profile_is_called_right_and_a_wrong_one_names_its_line(tmp_path: Path) -> None:
-    assert "13 registers, no watchdog" in run("check", "kinco-cia402")[1]
+    said = run("check", "kinco-cia402")[1]
+    assert "13 registers, no watchdog, switches lower_limit, upper_limit, origin." in said
+    assert "no limit switches" in run("check", "oriental-az")[1]
     own = tmp_path / "own.toml"
     text = (PROFILES / "kinco-cia402.toml").read_text(encoding="utf-8")
     own.write_text(text.replace('"uint16", access', '"uint15", access', 1), encoding="utf-8")
