@@ -310,4 +310,4 @@ _BEGUN_ANEW = Reason(
     "The controller was begun anew after an unexpected error.",
     "Press Stow, or Start tracking.",
 )
-_RESET_HINT = "Remove the cause, then press Reset fault."
+_RESET_HINT = "Remove the cause, then clear the fault."

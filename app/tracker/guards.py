@@ -33,7 +33,7 @@ def drive_fault(name: str, feedback: Feedback) -> Reason | None:
     return Reason(
         "drive_fault",
         f"The drive of {name} reports fault code {feedback.fault_code}.",
-        "Look the code up in the drive's manual, remove the cause, then press Reset fault.",
+        "Look the code up in the drive's manual, remove the cause, then clear the fault.",
     )
 
 
@@ -45,7 +45,7 @@ def wiring_fault(config: TrackerConfig, feedback: Feedback) -> Reason | None:
             return Reason(
                 "limit_switch_wiring",
                 f"Both limit switches of the {axis_of(config, axis)} are pressed at once, which cannot be.",
-                "Check the wiring of the switches, then press Reset fault.",
+                "Check the wiring of the switches, then clear the fault.",
             )
     return None
 
@@ -64,9 +64,9 @@ def restart(name: str, before: Feedback, feedback: Feedback) -> Reason | None:
 def came_back(name: str, before: Feedback | None, feedback: Feedback) -> Reason:
     """Return what a drive that did not answer for a while did meanwhile, as far as it tells."""
     again = f"The drive of {name} answers again."
-    if before is not None and before.boot_count != feedback.boot_count:
-        homed = feedback.azimuth.homed and feedback.elevation.homed
-        lost = "" if homed else " and has lost its zero"
+    lost_zero = before is not None and _homed(before) and not _homed(feedback)
+    if before is not None and (before.boot_count != feedback.boot_count or lost_zero):
+        lost = "" if _homed(feedback) else " and has lost its zero"
         return Reason(
             "drive_restarted", f"{again} It has restarted meanwhile{lost}.", "Set the zero again in step 3."
         )
@@ -82,8 +82,28 @@ def came_back(name: str, before: Feedback | None, feedback: Feedback) -> Reason:
             f"{again} It was moving and stands still now: its watchdog stopped it, or a last command did.",
             "Its zero is kept. Find out why the connection failed before you go on.",
         )
+    if before is not None and not _moves(before) and _apart_deg(before, feedback) > JUMP_NOISE_DEG:
+        return Reason(
+            "drive_elsewhere",
+            f"{again} It stands elsewhere than before: it has restarted, or was turned meanwhile.",
+            "Compare its angles with the panel, and set the zero again in step 3 if they differ.",
+        )
     return Reason(
-        "drive_back", f"{again} It was not restarted.", "Find out why the connection failed before you go on."
+        "drive_back",
+        f"{again} It tells of no restart.",
+        "Find out why the connection failed before you go on.",
+    )
+
+
+def _homed(feedback: Feedback) -> bool:
+    return feedback.azimuth.homed and feedback.elevation.homed
+
+
+def _apart_deg(before: Feedback, feedback: Feedback) -> float:
+    """Return by how much the positions of two readings differ, the axis that differs more, degrees."""
+    return max(
+        abs(axis_feedback(before, axis).position_deg - axis_feedback(feedback, axis).position_deg)
+        for axis in Axis
     )
 
 
@@ -128,7 +148,7 @@ def not_following(config: TrackerConfig, axis: Axis, watch: AxisWatch) -> Reason
         "following_error",
         f"The {axis_of(config, axis)} does not follow its command: it is "
         f"{abs(watch.error_deg):.1f} degrees behind.",
-        "Look for something that blocks the axis, check motor and coupling, then press Reset fault.",
+        "Look for something that blocks the axis, check motor and coupling, then clear the fault.",
     )
 
 

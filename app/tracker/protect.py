@@ -41,6 +41,7 @@ def miss(mind: Mind, now: datetime) -> None:
     if mind.lost or now - since <= SILENCE:
         return
     mind.lost = True
+    mind.aftermath = None
     reason = Reason(
         "drive_lost",
         f"The drive of {mind.config.name} did not answer.",

@@ -119,7 +119,7 @@ def test_a_killed_drive_loses_its_zero_exactly_when_it_lost_its_place(
     integrator.commission(drive.port)
     time.sleep(SETTLED_S)
     drive = killed(integrator, drive, memory)
-    seen = back(integrator, "answers again. It was not restarted")
+    seen = back(integrator, "answers again. It tells of no restart")
     assert seen["home_trusted"] is True
     assert_still(integrator, seen)
 

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import pytest
+
 from app.tracker.commands import Command, Home, Move, Park, SelectMode, Track
 from app.tracker.config import Orientation
 from app.tracker.memory import StepName
@@ -25,6 +27,37 @@ def test_a_drive_that_is_lost_while_it_searches_is_told_to_end_the_search() -> N
     script.forward(1.0)
     assert script.happened(EventKind.DRIVE_LOST)
     assert script.told == STANDSTILL, "a halt alone lets the search go on"
+
+
+@pytest.mark.parametrize(
+    ("homed", "moved_deg", "boots", "code", "words"),
+    [
+        (True, 0.0, 0, "drive_back", "tells of no restart"),
+        (True, 3.0, 0, "drive_elsewhere", "stands elsewhere than before"),
+        (False, 0.0, 0, "drive_restarted", "has restarted meanwhile and has lost its zero"),
+        (True, 0.0, 1, "drive_restarted", "has restarted meanwhile."),
+    ],
+)
+def test_a_drive_that_answers_again_tells_what_can_be_known_and_no_more(
+    homed: bool, moved_deg: float, boots: int, code: str, words: str
+) -> None:
+    script = Scripted(READY)
+    script.tick()
+    seen = script.reading
+    assert seen is not None
+    both = {axis: replace(getattr(seen, axis), homed=True) for axis in ("azimuth", "elevation")}
+    script.reading = seen = replace(seen, **both)
+    script.forward(0.5)
+    script.reading = None
+    script.forward(1.0)
+    azimuth = replace(seen.azimuth, homed=homed, position_deg=seen.azimuth.position_deg + moved_deg)
+    script.reading = replace(seen, azimuth=azimuth, boot_count=seen.boot_count + boots)
+    script.forward(0.5)
+    told = {notice.code: notice.message for notice in script.snapshot.notices}
+    assert words in told[code]
+    script.reading = None
+    script.forward(1.0)
+    assert code not in {notice.code for notice in script.snapshot.notices}, "it is gone again"
 
 
 def test_an_old_reading_confirms_no_orientation() -> None:

@@ -71,7 +71,7 @@ def not_arrived(mind: Mind) -> Reason:
     return Reason(
         "move_overdue",
         f"{mind.config.name} has not arrived in twice the time that its way takes.",
-        "Look for something that blocks the axes, check the drive, then press Reset fault.",
+        "Look for something that blocks the axes, check the drive, then clear the fault.",
     )
 
 
