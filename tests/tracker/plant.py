@@ -15,6 +15,7 @@ from app.tracker.mode import Mode
 from app.tracker.motion import DriveCommand, DriveRequest, RequestKind
 from app.tracker.observation import Observation
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
+from app.tracker.weather import NOTHING_SENSED, Quality, Reading, Sensed
 
 SAMSUN = Location(41.2867, 36.33, 4.0)
 MORNING = datetime(2026, 6, 21, 6, 0, tzinfo=UTC)
@@ -47,6 +48,7 @@ class Plant:
         self.dawn: SunPosition | None = None
         self._dawn_at: datetime | None = None
         self.told = DriveCommand()
+        self.weather = NOTHING_SENSED
         if memory.home is not None:
             self._be_homed(at)
         self.clock.move_to(at)
@@ -73,6 +75,7 @@ class Plant:
             clock_trusted=self.clock_trusted,
             location=self.location,
             location_revision=self.revision,
+            weather=self.weather,
         )
         done = self.controller.tick(seen)
         self.told = done.command
@@ -80,6 +83,22 @@ class Plant:
             self.drive.obey(done.command)
         self.events += done.events
         return list(done.events)
+
+    def blow(
+        self,
+        wind_mps: float | None = 3.0,
+        *,
+        snow_kg: float | None = 0.0,
+        light_wm2: float | None = 600.0,
+        wind_from_deg: float | None = None,
+    ) -> "Plant":
+        """Have a station report this from now on; None is a sensor that reports nothing."""
+        wind, snow, light = (
+            Reading() if value is None else Reading(value, Quality.GOOD, 0.0, "station")
+            for value in (wind_mps, snow_kg, light_wm2)
+        )
+        self.weather = Sensed(wind, snow, light, wind_mps, wind_from_deg)
+        return self
 
     def forward(self, seconds: float, each: Callable[[], None] | None = None) -> "Plant":
         """Let time pass, with a tick every period."""
