@@ -158,10 +158,16 @@ def record_command(
 
 @drive.command(name="replay")
 def replay_command(
-    file: Annotated[Path, typer.Argument(help="Trace that `drive record` wrote.")],
+    file: Annotated[
+        Path, typer.Argument(help="Trace that `drive record` wrote.", exists=True, dir_okay=False)
+    ],
     profile: OptionalProfile = "",
     unit: UnitId = 1,
     elevation_unit: ElevationUnit = None,
+    gear: Annotated[
+        float,
+        typer.Option(min=1e-6, help="Revolutions of a motor for one of its axis, where drives count steps."),
+    ] = 1.0,
     tcp: Annotated[
         str, typer.Option(help="Instead, serve the recorded answers on this HOST:PORT over Modbus TCP.")
     ] = "",
@@ -174,7 +180,7 @@ def replay_command(
     if not profile:
         raise ValueError("Give --profile NAME to decode the trace, or --tcp HOST:PORT to serve it.")
     found = load_profile(profile)
-    config = _with_axes(DriveConfig(DriveKind.MODBUS_TCP, profile, unit=unit), found, elevation_unit)
+    config = _with_axes(DriveConfig(DriveKind.MODBUS_TCP, profile, unit=unit), found, elevation_unit, gear)
     played = asyncio.run(replay(_tracker(config), found, exchanges))
     for one in played:
         typer.echo(_played(one))
@@ -201,8 +207,10 @@ async def _scan(config: DriveConfig, units: range, address: int) -> int:
     return found
 
 
-def _with_axes(config: DriveConfig, profile: Profile, elevation_unit: int | None) -> DriveConfig:
-    """Return the settings with a unit for the elevation where each axis has a drive of its own."""
+def _with_axes(
+    config: DriveConfig, profile: Profile, elevation_unit: int | None, gear_ratio: float = 1.0
+) -> DriveConfig:
+    """Return the settings with the elevation's unit and the gear, where each axis has a drive of its own."""
     if not profile.adapter.has_unit_per_axis:
         return config
     other = config.unit + 1 if elevation_unit is None else elevation_unit
@@ -213,7 +221,8 @@ def _with_axes(config: DriveConfig, profile: Profile, elevation_unit: int | None
         config.port,
         config.unit,
         config.serial,
-        elevation=AxisDrive(unit=other),
+        azimuth=AxisDrive(gear_ratio=gear_ratio),
+        elevation=AxisDrive(unit=other, gear_ratio=gear_ratio),
     )
 
 

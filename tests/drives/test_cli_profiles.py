@@ -99,3 +99,18 @@ def test_what_is_recorded_can_be_replayed(address: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("options", [(), ("--tcp", "127.0.0.1:1", "--rtu", "/dev/null")])
 def test_exactly_one_way_to_the_device_is_taken(options: tuple[str, ...]) -> None:
     assert "Give one of --tcp" in run("probe", "--profile", "leadshine-rs", *options)[1]
+
+
+def test_a_replay_tells_angles_behind_the_gear_and_wants_a_file_that_is_there(
+    address: str, tmp_path: Path
+) -> None:
+    trace = tmp_path / "bus.jsonl"
+    run("record", str(trace), "--profile", "leadshine-rs", "--tcp", address, "--seconds", "0.3")
+    angles = []
+    for gear in ("1", "2"):
+        told = run("replay", str(trace), "--profile", "leadshine-rs", "--gear", gear)[1].splitlines()[-1]
+        angles.append(float(told.partition("azimuth ")[2].partition(" deg")[0]))
+    assert angles[0] == pytest.approx(2.0 * angles[1], abs=2e-3)
+    assert angles[1] > 1.0
+    code, said = run("replay", str(tmp_path / "none.jsonl"), "--profile", "leadshine-rs")
+    assert (code, "does not exist" in said) == (2, True)
