@@ -1,6 +1,7 @@
 """The real controller on a simulated drive and a virtual clock, driven tick by tick."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 from app.clock import VirtualClock
@@ -25,7 +26,8 @@ class RehearsalFailed(ValueError):
 
 
 class Rehearsal:
-    """One simulated tracker whose sun stands still until it is homed and in place.
+    """One simulated tracker whose sun stands still until it is homed and in place; it warns nobody.
+
 
     The machine's time starts at `begin` and always goes on; `site_time` moves only when told to.
     """
@@ -40,7 +42,8 @@ class Rehearsal:
         self._lit: SunPosition | None = None
         light = Sunlight(config, lambda: self._lit) if config.hybrid.enabled else None
         self.drive = SimulatedDrive(config, self.clock, watchdog=None, light=light)
-        self.controller = Controller(config, TrackerMemory(pointing=pointing), self.drive.capabilities)
+        unwarned = replace(config, protection=replace(config.protection, warning_s=0.0))
+        self.controller = Controller(unwarned, TrackerMemory(pointing=pointing), self.drive.capabilities)
         self._sky = Sky()
 
     def home(self) -> None:

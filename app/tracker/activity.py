@@ -101,10 +101,14 @@ class Homing:
 
 @dataclass(frozen=True, slots=True)
 class Tracking:
-    """Following the selected mode; `run` is a motion under way, None while within the deadband."""
+    """Following the selected mode; `run` is a motion under way, None while within the deadband.
+
+    `rested` says that the panel has not moved since the night or a rest: its first motion is announced.
+    """
 
     phase: TrackPhase = TrackPhase.FOLLOWING
     run: Run | None = None
+    rested: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,6 +40,7 @@ from app.tracker.transitions import end_move, fail, interrupt
 SUN_DPS = 15.0 / 3600.0
 
 TRACKING = {phase: Tracking(phase) for phase in TrackPhase}
+RESTED = {phase: Tracking(phase, rested=True) for phase in TrackPhase}
 
 
 def track(mind: Mind) -> None:
@@ -112,18 +113,27 @@ def _begin(
 ) -> Turn:
     """Return the motion that the strategy begins now, or stand."""
     if isinstance(strategy, Continuous) and phase is not TrackPhase.NIGHT:
-        if _was_waiting(mind, tracking, phase):
+        if _must_wait(mind, tracking, phase):
             return Turn(TRACKING[phase], HALTED, wanted.direction, sun)
         return Turn(TRACKING[phase], pursue(mind.config, wanted.target), wanted.direction, sun)
     run = next_run(strategy, mind.config, feedback, wanted.target, mind.now)
-    if run is None or _was_waiting(mind, tracking, phase):
+    if run is None:
+        return Turn(
+            RESTED[phase] if _has_rested(tracking) else TRACKING[phase], HALTED, wanted.direction, sun
+        )
+    if _must_wait(mind, tracking, phase):
         return Turn(TRACKING[phase], HALTED, wanted.direction, sun)
     return Turn(Tracking(phase, run), run.command, wanted.direction, sun)
 
 
-def _was_waiting(mind: Mind, tracking: Tracking, phase: TrackPhase) -> bool:
+def _has_rested(tracking: Tracking) -> bool:
+    """Return whether the panel has not moved since the night or a rest."""
+    return tracking.rested or tracking.phase in (TrackPhase.NIGHT, TrackPhase.RESTING)
+
+
+def _must_wait(mind: Mind, tracking: Tracking, phase: TrackPhase) -> bool:
     """Announce the first motion after the night or a rest; return whether it must wait for that."""
-    if tracking.phase is phase or tracking.phase not in (TrackPhase.NIGHT, TrackPhase.RESTING):
+    if phase is TrackPhase.NIGHT or not _has_rested(tracking):
         return False
     announce(mind, f"{mind.config.name} begins to follow the sun.")
     return mind.warning is not None

@@ -1,0 +1,452 @@
+"""Stories of a tracker in bad weather: it stows, stays, goes on, and never moves unasked."""
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from app.sun.position import Location
+from app.tracker.axes import Axis
+from app.tracker.commands import (
+    CommandRejected,
+    EndJog,
+    GoToStart,
+    Jog,
+    LockOut,
+    Move,
+    Park,
+    PauseShow,
+    ReleaseLock,
+    Resume,
+    RunShow,
+    Stop,
+    Stow,
+    Track,
+)
+from app.tracker.config import MountConfig, MountKind, Orientation, TrackerConfig
+from app.tracker.memory import TrackerMemory
+from app.tracker.protections.config import ProtectionConfig, StowPlace, Stows, WindProtection
+from app.tracker.protections.words import Facing, Protection, Reaction, StowName
+from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.weather import Quantity
+from tests.tracker.plant import CONFIG, READY, Plant
+from tests.tracker.shows import SOLSTICE
+
+CALM_S = 601.0
+STORM = 24.0
+
+
+def doing(plant: Plant) -> ActivityName:
+    """Return what the tracker does now; the type checker would take an attribute for unchanged."""
+    return plant.activity
+
+
+def protected(protection: ProtectionConfig) -> TrackerConfig:
+    return replace(CONFIG, protection=protection)
+
+
+def tracking(config: TrackerConfig = CONFIG) -> Plant:
+    """Return a tracker that follows the sun in calm weather."""
+    plant = Plant(READY, config=config).blow().forward(1)
+    plant.ask(Track())
+    plant.forward(60)
+    assert doing(plant) is ActivityName.TRACKING
+    return plant
+
+
+def restarted(plant: Plant) -> Plant:
+    """Return the machine after a restart of the controller: only the memory is left."""
+    fresh = Plant(plant.controller.memory, at=plant.clock.now())
+    fresh.weather = plant.weather
+    return fresh
+
+
+def test_a_storm_stows_a_tracking_panel_and_calm_minutes_bring_it_back() -> None:
+    plant = tracking()
+    azimuth_deg = plant.azimuth_deg
+    plant.blow(STORM).forward(1)
+    seen = plant.snapshot
+    assert doing(plant) is ActivityName.STOWING
+    assert seen.warning is not None
+    assert seen.protection is not None
+    assert (seen.protection.protection, seen.stow) == (Protection.TYPHOON, StowName.WIND)
+    assert plant.told.horn
+    plant.forward(40)
+    assert doing(plant) is ActivityName.STOWED
+    assert plant.elevation_deg == pytest.approx(90.0, abs=0.1)
+    assert plant.azimuth_deg == pytest.approx(azimuth_deg, abs=0.1)
+    assert plant.snapshot.tracking_on
+    plant.blow(5.0).forward(CALM_S - 2)
+    assert doing(plant) is ActivityName.STOWED
+    seen = plant.snapshot
+    assert seen.protection is not None
+    assert seen.protection.earliest_end == pytest.approx(plant.clock.now(), abs=timedelta(seconds=3))
+    plant.forward(60)
+    assert doing(plant) is ActivityName.TRACKING
+    assert plant.snapshot.protection is None
+    assert plant.elevation_deg < 80.0
+    assert plant.happened(EventKind.TRACKING_RESUMED)
+
+
+def test_nothing_moves_while_the_motion_is_announced_and_stop_prevents_it() -> None:
+    plant = tracking()
+    before = plant.elevation_deg
+    plant.blow(STORM).forward(4.8)
+    assert plant.elevation_deg == before
+    plant.ask(Stop())
+    plant.forward(30)
+    assert plant.elevation_deg == pytest.approx(before, abs=0.01)
+    assert plant.snapshot.warning is None
+    assert not plant.told.horn
+    assert plant.snapshot.not_stowed is not None
+    assert doing(plant) is ActivityName.HOLDING
+
+
+def test_after_stop_the_panel_is_not_stowed_and_says_so() -> None:
+    plant = tracking()
+    plant.ask(Stop())
+    plant.forward(2)
+    before = plant.elevation_deg
+    plant.blow(STORM).forward(30)
+    seen = plant.snapshot
+    assert plant.elevation_deg == before
+    assert seen.not_stowed is not None
+    assert seen.not_stowed.code == "not_stowed"
+    assert len(plant.happened(EventKind.NOT_STOWED)) == 1
+    plant.ask(Stow(StowName.WIND))
+    plant.forward(40)
+    assert plant.snapshot.not_stowed is None
+    assert doing(plant) is ActivityName.STOWED
+
+
+def test_a_panel_that_stands_level_already_is_not_missed() -> None:
+    plant = tracking()
+    plant.blow(STORM).forward(60)
+    plant.ask(Stop())
+    plant.forward(5)
+    assert plant.snapshot.not_stowed is None
+
+
+def test_without_a_zero_or_with_a_fault_the_panel_is_not_stowed() -> None:
+    plant = Plant().blow(STORM).forward(5)
+    reason = plant.snapshot.not_stowed
+    assert reason is not None
+    assert "no trusted zero" in reason.message
+    assert doing(plant) is ActivityName.HOLDING
+
+
+def test_a_lost_drive_in_a_storm_raises_the_condition() -> None:
+    plant = tracking()
+    plant.blow(STORM).forward(60)
+    plant.cut = True
+    plant.forward(3)
+    reason = plant.snapshot.not_stowed
+    assert reason is not None
+    assert "does not answer" in reason.message
+    plant.cut = False
+    plant.forward(30)
+    assert doing(plant) is ActivityName.HOLDING
+
+
+def test_a_jog_goes_on_for_five_seconds_while_the_wind_comes() -> None:
+    plant = Plant(READY).blow().forward(1)
+    sequence = 1
+    plant.ask(Jog("a", Axis.AZIMUTH, 1, sequence=sequence))
+    plant.blow(STORM)
+    for _ in range(48):
+        sequence += 1
+        plant.ask(Jog("a", Axis.AZIMUTH, 1, sequence=sequence))
+        plant.forward(0.1)
+    assert doing(plant) is ActivityName.JOGGING
+    warning = plant.snapshot.warning
+    assert warning is not None
+    assert warning.reason.code == "hand_motion_ends"
+    assert warning.remaining_s < 1.0
+    for _ in range(3):
+        plant.forward(0.1)
+    assert doing(plant) is ActivityName.HOLDING
+    with pytest.raises(CommandRejected):
+        plant.ask(Jog("a", Axis.AZIMUTH, 1, sequence=sequence + 1))
+    plant.ask(Jog("b", Axis.AZIMUTH, 1))
+    assert doing(plant) is ActivityName.JOGGING
+    plant.ask(EndJog("b"))
+
+
+def test_a_running_show_ends_and_the_panel_stays_stowed_until_it_is_resumed() -> None:
+    plant = Plant(READY).blow().forward(1)
+    plant.ask(GoToStart(SOLSTICE))
+    plant.forward(120)
+    plant.ask(RunShow(SOLSTICE))
+    plant.forward(2)
+    plant.blow(STORM).forward(60)
+    ended = plant.happened(EventKind.SHOW_ENDED)
+    assert [event.data["outcome"] for event in ended] == ["interrupted"]
+    assert doing(plant) is ActivityName.STOWED
+    plant.blow(2.0).forward(CALM_S + 5)
+    assert doing(plant) is ActivityName.STOWED
+    plant.ask(Resume())
+    assert doing(plant) is ActivityName.HOLDING
+
+
+def test_a_show_that_stands_ends_and_nothing_moves() -> None:
+    plant = Plant(READY).blow().forward(1)
+    plant.ask(GoToStart(SOLSTICE))
+    plant.forward(120)
+    plant.ask(RunShow(SOLSTICE))
+    plant.forward(2)
+    plant.ask(PauseShow())
+    plant.forward(3)
+    before = plant.elevation_deg
+    plant.blow(STORM).forward(30)
+    assert doing(plant) is ActivityName.HOLDING
+    assert plant.elevation_deg == pytest.approx(before, abs=0.01)
+    assert plant.snapshot.not_stowed is not None
+
+
+def test_a_parked_panel_is_stowed_and_parked_again() -> None:
+    config = replace(CONFIG, park=Orientation(180.0, 30.0))
+    plant = Plant(READY, config=config).blow().forward(1)
+    plant.ask(Park())
+    plant.forward(60)
+    assert doing(plant) is ActivityName.HOLDING
+    plant.blow(STORM).forward(60)
+    assert doing(plant) is ActivityName.STOWED
+    plant.blow(2.0).forward(CALM_S + 60)
+    assert doing(plant) is ActivityName.HOLDING
+    assert plant.elevation_deg == pytest.approx(30.0, abs=0.1)
+
+
+def test_a_stow_by_command_waits_for_resume_and_wind_wins_over_it() -> None:
+    plant = tracking()
+    plant.ask(Stow(StowName.HAIL))
+    plant.forward(60)
+    assert plant.elevation_deg == pytest.approx(15.0, abs=0.1)
+    plant.blow(STORM).forward(60)
+    assert plant.elevation_deg == pytest.approx(90.0, abs=0.1)
+    plant.blow(2.0, snow_kg=9.0).forward(CALM_S + 90)
+    assert plant.snapshot.stow is StowName.HAIL
+    assert plant.elevation_deg == pytest.approx(15.0, abs=0.1)
+    plant.blow(2.0).forward(5)
+    plant.ask(Resume())
+    assert doing(plant) is ActivityName.TRACKING
+    with pytest.raises(CommandRejected):
+        plant.ask(Resume())
+
+
+def test_snow_tips_the_panel_and_its_end_brings_it_back() -> None:
+    plant = tracking()
+    plant.blow(2.0, snow_kg=4.0).forward(59)
+    assert doing(plant) is ActivityName.TRACKING
+    plant.forward(60)
+    assert doing(plant) is ActivityName.STOWED
+    assert plant.elevation_deg == pytest.approx(0.0, abs=0.1)
+    plant.blow(2.0, snow_kg=1.0).forward(60)
+    assert doing(plant) is ActivityName.TRACKING
+
+
+def test_in_too_little_light_the_panel_stays_where_it_is() -> None:
+    plant = tracking()
+    plant.blow(2.0, light_wm2=10.0).forward(620)
+    before = plant.azimuth_deg
+    plant.forward(900)
+    seen = plant.snapshot
+    assert plant.azimuth_deg == before
+    assert seen.protection is not None
+    assert seen.protection.protection is Protection.HIBERNATE
+    assert "less light" in seen.activity_text
+    assert [reason.code for reason in seen.waiting] == ["hibernation"]
+    plant.blow(2.0, light_wm2=700.0).forward(2)
+    assert plant.snapshot.warning is not None
+    plant.forward(20)
+    assert plant.azimuth_deg > before + 1.0
+
+
+def test_what_needs_calm_is_refused_in_a_storm_and_tracking_may_be_switched_on() -> None:
+    plant = Plant(READY).blow(STORM).forward(1)
+    for command in (Move(Orientation(90.0, 30.0)), Park(), GoToStart(SOLSTICE)):
+        with pytest.raises(CommandRejected) as refused:
+            plant.ask(command)
+        assert "stow_demanded" in {reason.code for reason in refused.value.reasons}
+    plant.ask(Track())
+    plant.forward(60)
+    assert doing(plant) is ActivityName.STOWED
+
+
+def test_a_latched_storm_survives_a_restart_and_its_calm_time_begins_anew() -> None:
+    plant = tracking()
+    plant.blow(STORM).forward(60)
+    plant.blow(2.0).forward(500)
+    fresh = restarted(plant)
+    fresh.forward(550)
+    assert doing(fresh) is ActivityName.STOWED
+    fresh.forward(120)
+    assert doing(fresh) is ActivityName.TRACKING
+
+
+def test_after_a_restart_a_storm_that_was_not_seen_over_still_holds() -> None:
+    plant = tracking()
+    plant.blow(STORM).forward(60)
+    fresh = restarted(plant)
+    fresh.blow(None, snow_kg=None, light_wm2=None).forward(3600)
+    assert doing(fresh) is ActivityName.STOWED
+    assert fresh.controller.memory.protection is Protection.TYPHOON
+
+
+def test_a_wind_sensor_that_fails_stows_after_a_minute() -> None:
+    plant = tracking()
+    plant.blow(None).forward(55)
+    assert doing(plant) is ActivityName.TRACKING
+    plant.forward(60)
+    seen = plant.snapshot
+    assert doing(plant) is ActivityName.STOWED
+    assert seen.protection is not None
+    assert seen.protection.reason.code == "wind_sensor_bad"
+    assert "wind_sensor_bad" in {reason.code for reason in seen.notices}
+    assert [event.data["quantity"] for event in plant.happened(EventKind.SENSOR_DOUBTED)] == [Quantity.WIND]
+
+
+def test_a_bad_wind_sensor_may_also_hold_the_panel() -> None:
+    plant = tracking(protected(ProtectionConfig(wind=WindProtection(bad=Reaction.HOLD, bad_after_s=5.0))))
+    plant.blow(None).forward(900)
+    seen = plant.snapshot
+    assert seen.protection is not None
+    assert (seen.protection.protection, seen.protection.reason.code) == (Protection.WAIT, "wind_sensor_bad")
+    assert doing(plant) is ActivityName.TRACKING
+    assert not plant.drive.observe().azimuth.moving
+
+
+def test_without_any_sensor_nothing_changes() -> None:
+    plant = Plant(READY).forward(1)
+    plant.ask(Track())
+    plant.forward(60)
+    seen = plant.snapshot
+    assert seen.protection is None
+    assert [sensor.known for sensor in seen.sensors] == [False, False, False]
+    assert "no protection against wind" in seen.sensors[0].text
+    assert seen.warning is None
+
+
+@pytest.mark.parametrize(
+    ("facing", "wind_from_deg", "azimuth_deg"),
+    [(Facing.BACK, 20.0, 200.0), (Facing.EDGE, 0.0, 90.0), (Facing.EDGE, 180.0, 90.0)],
+)
+def test_the_panel_turns_its_back_or_edge_into_the_wind(
+    facing: Facing, wind_from_deg: float, azimuth_deg: float
+) -> None:
+    protection = ProtectionConfig(wind=WindProtection(facing=facing), stows=Stows(wind=StowPlace(60.0)))
+    plant = tracking(protected(protection))
+    plant.blow(STORM, wind_from_deg=wind_from_deg).forward(90)
+    assert doing(plant) is ActivityName.STOWED
+    assert plant.azimuth_deg == pytest.approx(azimuth_deg, abs=0.1)
+    assert plant.elevation_deg == pytest.approx(60.0, abs=0.1)
+
+
+def test_a_single_axis_panel_stows_as_level_as_it_can() -> None:
+    mount = MountConfig(MountKind.HORIZONTAL_SINGLE_AXIS)
+    axis = replace(CONFIG.azimuth, minimum_deg=-60.0, maximum_deg=60.0)
+    config = replace(CONFIG, mount=mount, azimuth=axis)
+    plant = tracking(config)
+    plant.blow(STORM).forward(120)
+    assert doing(plant) is ActivityName.STOWED
+    assert plant.azimuth_deg == pytest.approx(0.0, abs=0.1)
+
+
+def test_a_maintenance_lock_forbids_the_stow_too_and_outlives_a_restart() -> None:
+    plant = tracking()
+    plant.ask(LockOut("Ada", "new bearing"))
+    plant.forward(5)
+    before = plant.elevation_deg
+    plant.blow(STORM).forward(60)
+    assert plant.elevation_deg == before
+    reason = plant.snapshot.not_stowed
+    assert reason is not None
+    assert "Ada (new bearing)" in reason.message
+    for command in (Track(), Stow(StowName.WIND), Park(), Move(Orientation(90.0, 30.0)), LockOut("Bob")):
+        with pytest.raises(CommandRejected) as refused:
+            plant.ask(command)
+        assert "locked_out" in {one.code for one in refused.value.reasons}
+    fresh = restarted(plant)
+    fresh.forward(30)
+    assert fresh.snapshot.lock is not None
+    fresh.ask(Jog("a", Axis.AZIMUTH, 1))
+    assert doing(fresh) is ActivityName.JOGGING
+    fresh.ask(EndJog("a"))
+    fresh.ask(ReleaseLock())
+    fresh.forward(60)
+    assert doing(fresh) is ActivityName.HOLDING
+    with pytest.raises(CommandRejected):
+        fresh.ask(ReleaseLock())
+
+
+@pytest.mark.parametrize("name", ["", "   ", "x" * 61, "a\nb"])
+def test_a_lock_bears_a_name(name: str) -> None:
+    plant = Plant(READY).forward(1)
+    with pytest.raises(CommandRejected, match="bears a name"):
+        plant.ask(LockOut(name))
+
+
+@pytest.mark.parametrize("actor", ["mqtt broker", "sunspec 10.0.0.5", "api scada"])
+def test_what_another_machine_starts_is_announced(actor: str) -> None:
+    plant = Plant(READY).blow().forward(1)
+    plant.ask(Move(Orientation(90.0, 30.0)), actor)
+    before = plant.azimuth_deg
+    plant.forward(4.7)
+    assert plant.azimuth_deg == before
+    assert plant.told.horn
+    plant.forward(60)
+    assert plant.azimuth_deg == pytest.approx(90.0, abs=0.1)
+    assert doing(plant) is ActivityName.HOLDING
+
+
+def test_what_somebody_at_the_machine_starts_begins_at_once() -> None:
+    plant = Plant(READY).blow().forward(1)
+    before = plant.azimuth_deg
+    plant.ask(Move(Orientation(90.0, 30.0)))
+    plant.forward(1)
+    assert plant.azimuth_deg > before
+    assert not plant.happened(EventKind.MOTION_ANNOUNCED)
+
+
+def test_the_first_motion_of_the_morning_is_announced() -> None:
+    plant = Plant(READY, at=datetime(2026, 6, 21, 1, 30, tzinfo=UTC)).blow(1.0).forward(1)
+    plant.ask(Track())
+    plant.forward(60)
+    assert plant.snapshot.warning is None
+    plant.period = timedelta(seconds=1)
+    plant.forward(7200)
+    announced = plant.happened(EventKind.MOTION_ANNOUNCED)
+    assert [event.message for event in announced] == ["Tracker 1 begins to follow the sun. It moves in 5 s."]
+    assert plant.snapshot.in_position
+
+
+def test_the_warning_time_can_be_switched_off() -> None:
+    plant = tracking(protected(ProtectionConfig(warning_s=0.0)))
+    plant.blow(STORM).forward(1)
+    assert plant.drive.observe().elevation.moving
+
+
+def test_in_the_polar_night_a_storm_stows_and_calm_brings_the_night_back() -> None:
+    plant = (
+        Plant(
+            TrackerMemory(mode=READY.mode, home=READY.home),
+            at=datetime(2026, 12, 21, 12, tzinfo=UTC),
+            location=Location(78.2, 15.6, 10.0),
+        )
+        .blow(2.0, light_wm2=0.0)
+        .forward(1)
+    )
+    plant.ask(Track())
+    plant.forward(900)
+    assert plant.snapshot.protection is None
+    plant.blow(STORM, light_wm2=0.0).forward(60)
+    assert doing(plant) is ActivityName.STOWED
+    plant.blow(2.0, light_wm2=0.0).forward(CALM_S + 30)
+    assert doing(plant) is ActivityName.TRACKING
+
+
+def test_a_clock_that_jumps_does_not_shorten_the_calm_time() -> None:
+    plant = tracking()
+    plant.blow(STORM).forward(60)
+    plant.clock_trusted = False
+    plant.blow(2.0).forward(300)
+    assert doing(plant) is ActivityName.STOWED
