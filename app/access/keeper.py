@@ -120,6 +120,16 @@ class Keeper:
         allowed = NOBODY | {Permission.STOP}
         return Principal(found.name, frozenset(), allowed, Via.STOP_TICKET, given.address)
 
+    def current(self, principal: Principal) -> Principal:
+        """Return what somebody who was let in may do by now; nobody if they must leave."""
+        now = self._clock.now()
+        match principal.via:
+            case Via.SESSION | Via.KIOSK:
+                found = self.book.by_session(principal.credential, now, principal.address)
+                return found or nobody(principal.address)
+            case _:
+                return principal if self.book.still(principal, now) else nobody(principal.address)
+
     async def until_gone(self, principal: Principal) -> None:
         """Wait until somebody who was let in must leave."""
         while self.book.still(principal, self._clock.now()):

@@ -105,6 +105,8 @@ class LinkClient:
             order.key,
             order.issued_at,
             asyncio.get_running_loop().time() + good_for_s,
+            order.via,
+            order.address,
         )
         answer = await self._ask(request, patience_s)
         if not isinstance(answer, Done):

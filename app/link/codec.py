@@ -46,6 +46,8 @@ class Execute:
     key: str | None
     issued_at: datetime | None
     good_until_s: float
+    via: str = ""
+    address: str = ""
     do: Literal["execute"] = "execute"
 
     def order(self, at_s: float) -> Order:
@@ -53,7 +55,9 @@ class Execute:
         command = self.command
         if isinstance(command, Jog):
             command = replace(command, lease=min(command.lease, timedelta(seconds=self.good_until_s - at_s)))
-        return Order(command, self.actor, self.tracker_id, self.key, self.issued_at)
+        return Order(
+            command, self.actor, self.tracker_id, self.key, self.issued_at, self.via, self.address
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -214,7 +214,8 @@ class Order:
     """One call into the machine. `tracker_id` addresses a `Command`; a `SiteCommand` leaves it None.
 
     `key` makes a repeated order a no-op that answers as the first did. `issued_at` (the machine's
-    own clock, as told by snapshots) makes an order that is older than 2 s refused.
+    own clock, as told by snapshots) makes an order that is older than 2 s refused. `via` and `address` say
+    how whoever ordered was known, and from where.
     """
 
     command: Command | SiteCommand
@@ -222,6 +223,8 @@ class Order:
     tracker_id: str | None = None
     key: str | None = None
     issued_at: datetime | None = None
+    via: str = ""
+    address: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,11 +1,14 @@
 """What `create_app` built, with its types, for the routes."""
 
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Annotated
 
 from fastapi import Depends
 from starlette.requests import HTTPConnection
 
+from app.access.keeper import Keeper
+from app.access.principal import Principal, nobody
 from app.clock import Clock
 from app.link.messages import Machine, MachineUnreachable, Order, SiteCommand
 from app.settings import Settings
@@ -13,12 +16,9 @@ from app.store.store import Reader
 from app.tracker.commands import Command
 from app.tracker.snapshot import SiteSnapshot
 from app.web.assets import Assets
-from app.web.errors import NotAcceptable
 from app.web.hub import Hub
 from app.web.simulations import Simulations
 from app.web.studies import Studies
-
-OPERATOR = "operator"
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +33,7 @@ class Panel:
     hub: Hub
     simulations: Simulations
     studies: Studies
+    keeper: Keeper
 
 
 def panel(connection: HTTPConnection) -> Panel:
@@ -66,11 +67,23 @@ def _snapshot(built: PanelDep) -> SiteSnapshot:
 SnapshotDep = Annotated[SiteSnapshot, Depends(_snapshot)]
 
 
-async def order(
-    machine: Machine, command: Command | SiteCommand, tracker_id: str | None = None, *, key: str | None = None
-) -> SiteSnapshot:
-    """Send one order of the operator's to the machine; what it calls impossible becomes a 422."""
-    try:
-        return await machine.execute(Order(command, OPERATOR, tracker_id, key))
-    except ValueError as error:
-        raise NotAcceptable(str(error)) from error
+def principal(connection: HTTPConnection) -> Principal:
+    """Return who asks, as the gate found out; nobody where no gate stood."""
+    found: Principal | None = connection.scope.get("state", {}).get("principal")
+    return found or nobody("")
+
+
+PrincipalDep = Annotated[Principal, Depends(principal)]
+
+
+def order_of(
+    who: Principal,
+    command: Command | SiteCommand,
+    tracker_id: str | None = None,
+    key: str | None = None,
+    issued_at: datetime | None = None,
+) -> Order:
+    """Return somebody's order, or raise the error that says why they may not give it."""
+    about = tracker_id or getattr(command, "tracker_id", None)
+    who.require_order(command.kind, about)
+    return Order(command, who.actor, tracker_id, key, issued_at, who.via.value, who.address)

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from http import HTTPStatus
+from math import ceil
 from typing import Any
 
 import orjson
@@ -12,6 +13,9 @@ from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
+from app.access.keeper import Throttled, TooManyAtOnce, WrongPassword
+from app.access.principal import NotAllowed, ProofNeeded, SignInNeeded
+from app.access.users import AccessRefused
 from app.link.messages import MachineUnreachable, UnknownRecording, UnknownTracker
 from app.papers.library import UnknownPaper
 from app.store.store import StoreFailed
@@ -28,6 +32,8 @@ UNREACHABLE_CODES = frozenset({"drive_lost", "drive_unreachable", "drive_silent"
 OWN_MISTAKE = "The panel made a mistake; its log has the details. The machine goes on as it was."
 FOR_PROGRAMS = ("/api/", "/health", "/ready", "/metrics", "/stream", "/diagnostics.zip", "/backup")
 RETRY_LATER = {"Retry-After": "1"}
+SIGN_IN = {"WWW-Authenticate": "Bearer"}
+PROVE = "Type the password again, then repeat what you did."
 
 
 class NotAcceptable(Exception):
@@ -100,6 +106,10 @@ def _unreachable(error: Exception) -> Problem:
     return Problem(503, text, headers=RETRY_LATER)
 
 
+def _wait(error: Throttled) -> dict[str, str]:
+    return {"Retry-After": str(ceil(error.wait.total_seconds()))}
+
+
 def _no_tracker(error: Exception) -> Problem:
     return Problem(404, _sentence(error, f"There is no tracker {error}."))
 
@@ -114,6 +124,13 @@ def _sentence(error: Exception, otherwise: str) -> str:
 
 PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
     CommandRejected: rejected,
+    SignInNeeded: lambda error: Problem(401, str(error), headers=SIGN_IN),
+    ProofNeeded: lambda error: Problem(403, str(error), (Reason("proof_needed", str(error), PROVE),)),
+    NotAllowed: lambda error: Problem(403, str(error)),
+    WrongPassword: lambda error: Problem(401, str(error), headers=SIGN_IN),
+    Throttled: lambda error: Problem(429, str(error), headers=_wait(error)),
+    TooManyAtOnce: lambda error: Problem(429, str(error), headers=RETRY_LATER),
+    AccessRefused: lambda error: Problem(422, str(error)),
     UnknownTracker: _no_tracker,
     UnknownRecording: _no_recording,
     MachineUnreachable: _unreachable,
@@ -169,16 +186,21 @@ def _respond(request: Request, problem: Problem) -> Response:
     return error_page(request, problem)
 
 
+def answer_to(request: Request, error: Exception) -> Response:
+    """Return the answer that tells about an error, in the form that the address asks for."""
+    problem = problem_of(error)
+    if problem.status >= 500:
+        log.error("request failed", path=request.url.path, status=problem.status, error=repr(error))
+    response = _respond(request, problem)
+    add_headers(response.headers)
+    return response
+
+
 def install(app: FastAPI) -> None:
     """Answer every error with problem+json, on pages with `app.state.error_page` where that is set."""
 
     async def answer(request: Request, error: Exception) -> Response:
-        problem = problem_of(error)
-        if problem.status >= 500:
-            log.error("request failed", path=request.url.path, status=problem.status, error=repr(error))
-        response = _respond(request, problem)
-        add_headers(response.headers)
-        return response
+        return answer_to(request, error)
 
     for kind in PROBLEMS:
         app.add_exception_handler(kind, answer)

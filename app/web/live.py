@@ -11,14 +11,15 @@ from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, TypeAdapter, ValidationError
 from starlette.websockets import WebSocket
 
-from app.clock import Clock
-from app.link.messages import Machine, MachineUnreachable, Order, StopAll, UnknownTracker
+from app.access.principal import NotAllowed, Principal, ProofNeeded, SignInNeeded
+from app.access.roles import Permission
+from app.link.messages import MachineUnreachable, StopAll, UnknownTracker
 from app.tracker.axes import Axis, JogSpeed
 from app.tracker.commands import CommandRejected, EndJog, Jog, Stop
 from app.tracker.reason import Reason
-from app.web.deps import OPERATOR, Panel
+from app.web.deps import Panel, order_of, principal
 from app.web.errors import machine_problem
-from app.web.hub import Hub, TooManyViewers
+from app.web.hub import TooManyViewers
 from app.web.presses import Heartbeat, LinkDelay, Presses, Verdict
 from app.web.viewers import Message, TooSlow, Viewer, Wanted, pump
 
@@ -33,6 +34,8 @@ SLOW_LINK = Reason(
     "Go nearer to the access point, or use the small steps.",
 )
 STATUS_OF_CODE = {"press_dead": "dead", "busy": "busy"}
+FORBIDDEN = (NotAllowed, ProofNeeded, SignInNeeded)
+SIGNED_OUT = Message("signed_out", '{"type":"signed_out"}')
 
 
 class _Incoming(BaseModel):
@@ -92,13 +95,15 @@ _incoming: TypeAdapter[Incoming] = TypeAdapter(Incoming)
 class Session:
     """What one page asks for over its WebSocket."""
 
-    def __init__(self, machine: Machine, clock: Clock, hub: Hub, viewer: Viewer) -> None:
-        self._machine = machine
-        self._clock = clock
-        self._hub = hub
+    def __init__(self, panel: Panel, viewer: Viewer, who: Principal) -> None:
+        self._machine = panel.machine
+        self._clock = panel.clock
+        self._hub = panel.hub
+        self._keeper = panel.keeper
         self._viewer = viewer
+        self._who = who
         self._delay = LinkDelay()
-        self._presses = Presses(self._delay, hub.dead)
+        self._presses = Presses(self._delay, panel.hub.dead)
         self._in_flight = 0
 
     def hear(self, text: str) -> None:
@@ -116,9 +121,9 @@ class Session:
                 self._presses.end(message.press_id)
                 self._hub.spawn(self._end(message.tracker_id, message.press_id))
             case StopOne(tracker_id=tracker_id):
-                self._hub.spawn(self._stop(Order(Stop(), OPERATOR, tracker_id)))
+                self._hub.spawn(self._stop(Stop(), tracker_id))
             case StopEverything():
-                self._hub.spawn(self._stop(Order(StopAll(), OPERATOR)))
+                self._hub.spawn(self._stop(StopAll()))
             case Ping(tc=tc):
                 self._delay.beyond_best(tc, self._clock.now())
                 self._tell("pong", tc=tc)
@@ -159,9 +164,13 @@ class Session:
     async def _renew(self, beat: JogBeat, lease: timedelta) -> None:
         jog = Jog(beat.press_id, beat.axis, beat.direction, beat.speed, beat.sequence, lease)
         try:
-            await self._machine.execute(Order(jog, OPERATOR, beat.tracker_id))
+            who = self._keeper.current(self._who)
+            await self._machine.execute(order_of(who, jog, beat.tracker_id))
+            await self._keeper.used(who)
         except CommandRejected as error:
             self._refuse(beat.press_id, *error.reasons)
+        except FORBIDDEN as error:
+            self._refuse(beat.press_id, Reason("not_allowed", str(error), ""))
         except (MachineUnreachable, UnknownTracker, ValueError) as error:
             detail = machine_problem(error).detail
             self._refuse(beat.press_id, Reason("not_done", detail, "Wait, then press the key again."))
@@ -176,37 +185,47 @@ class Session:
         self._answer(press_id, statuses[0] if statuses else "refused", *reasons)
 
     async def _end(self, tracker_id: str, press_id: str) -> None:
-        with suppress(CommandRejected, MachineUnreachable, UnknownTracker, ValueError):
-            await self._machine.execute(Order(EndJog(press_id), OPERATOR, tracker_id))
+        with suppress(CommandRejected, MachineUnreachable, UnknownTracker, ValueError, *FORBIDDEN):
+            await self._machine.execute(order_of(self._who, EndJog(press_id), tracker_id))
         self._answer(press_id, "ended")
 
-    async def _stop(self, order: Order) -> None:
+    async def _stop(self, stop: Stop | StopAll, tracker_id: str | None = None) -> None:
         try:
-            await self._machine.execute(order)
-        except (CommandRejected, MachineUnreachable, UnknownTracker, ValueError) as error:
-            log.error("stop failed", tracker_id=order.tracker_id, error=str(error))
+            await self._machine.execute(order_of(self._who, stop, tracker_id))
+        except (CommandRejected, MachineUnreachable, UnknownTracker, ValueError, *FORBIDDEN) as error:
+            log.error("stop failed", tracker_id=tracker_id, error=str(error))
             problem = machine_problem(error)
             self._tell("problem", status=problem.status, detail=problem.detail, reasons=problem.reasons)
         else:
-            self._tell("stopped", tracker_id=order.tracker_id)
+            self._tell("stopped", tracker_id=tracker_id)
 
 
 @router.websocket("/live")
 async def live(websocket: WebSocket, tracker: str | None = None) -> None:
     """Serve one page until it goes, or until it does not take what it is sent."""
     panel: Panel = websocket.app.state.panel
+    who = principal(websocket)
     try:
-        viewer = panel.hub.join(Wanted(tracker))
+        viewer = _viewer(panel, who, Wanted(tracker))
     except TooManyViewers:
         await websocket.close(1013, "too many viewers")
         return
-    session = Session(panel.machine, panel.clock, panel.hub, viewer)
+    session = Session(panel, viewer, who)
     try:
         await websocket.accept()
         await _serve(websocket, session, viewer, panel.hub.patience)
     finally:
         session.close()
         panel.hub.leave(viewer)
+
+
+def _viewer(panel: Panel, who: Principal, wanted: Wanted) -> Viewer:
+    """Return a viewer of the machine; for who may only stop, one that is shown nothing."""
+    if who.may(Permission.READ, wanted.tracker_id):
+        return panel.hub.join(wanted)
+    blind = Viewer(wanted)
+    blind.tell(SIGNED_OUT)
+    return blind
 
 
 async def _serve(websocket: WebSocket, session: Session, viewer: Viewer, patience: timedelta) -> None:

@@ -12,6 +12,7 @@ from fastapi import FastAPI
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 from starlette.middleware.gzip import GZipMiddleware
 
+from app.access.opening import open_keeper
 from app.clock import Clock, SystemClock
 from app.link.client import LinkClient
 from app.link.messages import Machine
@@ -26,6 +27,7 @@ from app.web.api.router import api_router
 from app.web.assets import Assets
 from app.web.deps import Panel
 from app.web.documented import DocumentedApp
+from app.web.gate import Gate, guarded_routes
 from app.web.hub import Hub
 from app.web.security import LARGEST_BODY, Guard, SecurityHeaders, Uploads
 from app.web.server import (
@@ -68,13 +70,15 @@ def create_app(
     )
     assets, hub = Assets(STATIC), Hub(machine, clock)
     studies = Studies(settings.data_dir, clock)
-    panel = Panel(settings, machine, reader, clock, assets, hub, Simulations(), studies)
+    keeper = open_keeper(settings, clock)
+    panel = Panel(settings, machine, reader, clock, assets, hub, Simulations(), studies, keeper)
     app.state.panel = panel
     _add_doors(app, panel)
     errors.install(app)
     app.add_middleware(Uploads)
     app.add_middleware(RequestBodyLimitMiddleware, max_body_size=LARGEST_BODY)
     app.add_middleware(GZipMiddleware, minimum_size=SMALLEST_COMPRESSED)
+    app.add_middleware(Gate, panel_app=app, keeper=keeper, clock=clock, routes=guarded_routes(app))
     app.add_middleware(Guard)
     app.add_middleware(SecurityHeaders)
     return app
@@ -106,7 +110,8 @@ async def _living(app: FastAPI) -> AsyncIterator[None]:
             await stack.enter_async_context(panel.machine)
         if isinstance(panel.reader, DatabaseReader):
             stack.callback(panel.reader.close)
-        following = asyncio.create_task(panel.hub.run())
+        stack.callback(panel.keeper.close)
+        following = asyncio.gather(panel.hub.run(), panel.keeper.run())
         try:
             yield
         finally:

@@ -57,6 +57,8 @@ async def connected(
         "query_string": query.encode(),
         "headers": [(name.encode(), value.encode()) for name, value in sent.items()],
         "scheme": "ws",
+        "client": ("127.0.0.1", 50001),
+        "server": ("127.0.0.1", 8010),
         "subprotocols": [],
         "extensions": {},
     }

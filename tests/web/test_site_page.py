@@ -28,7 +28,7 @@ async def test_a_report_of_the_weather_is_shown_with_its_age(
     assert "No weather station has reported" in (await panel.get("/site")).text
     answer = await panel.put(f"{API}/weather", json={"wind_mps": 7.25, "temperature_degc": -3.4})
     assert answer.status_code == 200
-    assert answer.json()["source"] == "operator"
+    assert answer.json()["source"] == "this computer"
     assert (await panel.get(API)).json()["weather"]["readings"]["wind_mps"] == 7.25
     for page in ("/", "/site"):
         text = (await panel.get(page)).text

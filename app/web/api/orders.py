@@ -5,11 +5,11 @@ from typing import Annotated
 from fastapi import Depends, Header
 from pydantic import AwareDatetime
 
-from app.link.messages import Machine, Order, SiteCommand, UnknownTracker
+from app.link.messages import Machine, SiteCommand, UnknownTracker
 from app.tracker.commands import Command
 from app.tracker.snapshot import SiteSnapshot, Snapshot
 from app.web.api.base import IssuedAt
-from app.web.deps import OPERATOR, MachineDep
+from app.web.deps import MachineDep, PrincipalDep, order_of
 from app.web.errors import NotAcceptable
 
 Key = Annotated[
@@ -26,8 +26,11 @@ Key = Annotated[
 class Sender:
     """Gives the machine one order, with what the request says about repeats and age."""
 
-    def __init__(self, machine: MachineDep, key: Key = None, issued_at: IssuedAt = None) -> None:
+    def __init__(
+        self, machine: MachineDep, who: PrincipalDep, key: Key = None, issued_at: IssuedAt = None
+    ) -> None:
         self._machine: Machine = machine
+        self._who = who
         self._key = key
         self._issued_at = issued_at
 
@@ -40,7 +43,7 @@ class Sender:
         """Carry out a command and return the site after it; what cannot be is a 422."""
         try:
             return await self._machine.execute(
-                Order(command, OPERATOR, tracker_id, self._key, issued_at or self._issued_at)
+                order_of(self._who, command, tracker_id, self._key, issued_at or self._issued_at)
             )
         except ValueError as error:
             raise NotAcceptable(str(error)) from error

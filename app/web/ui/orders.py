@@ -7,11 +7,12 @@ from fastapi import Depends, Form
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
-from app.link.messages import Order, SiteCommand
+from app.link.messages import SiteCommand
 from app.tracker.commands import Command
 from app.web.contexts import Outcome
-from app.web.deps import OPERATOR, panel
+from app.web.deps import order_of, panel, principal
 from app.web.errors import NotAcceptable
+from app.web.ui.paths import own_path
 from app.web.ui.render import page, wants_block
 
 
@@ -32,7 +33,7 @@ class Press:
 
     async def send(self, command: Command | SiteCommand, tracker_id: str | None = None) -> None:
         """Send one order to the machine; every refusal is raised."""
-        order = Order(command, OPERATOR, tracker_id, self.key, self.issued_at)
+        order = order_of(principal(self.request), command, tracker_id, self.key, self.issued_at)
         try:
             await panel(self.request).machine.execute(order)
         except ValueError as error:
@@ -46,11 +47,6 @@ class Press:
 
 
 PressDep = Annotated[Press, Depends()]
-
-
-def own_path(path: str) -> str:
-    """Return the path if it belongs to this panel, else the overview."""
-    return path if path.startswith("/") and not path.startswith(("//", "/\\")) else "/"
 
 
 def _instant(text: str) -> datetime | None:

@@ -7,7 +7,7 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from app.web.ui.frame import THEMES
-from app.web.ui.orders import own_path
+from app.web.ui.paths import own_path
 
 router = APIRouter()
 A_YEAR_S = 31_536_000

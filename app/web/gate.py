@@ -1,0 +1,283 @@
+"""The gate: every request is somebody's, and gets through only if the table says that they may."""
+
+import asyncio
+from collections import OrderedDict, deque
+from datetime import datetime, timedelta
+from hmac import compare_digest
+from http.cookies import CookieError, SimpleCookie
+from urllib.parse import parse_qs
+
+from fastapi import FastAPI
+from fastapi.routing import RouteContext, iter_route_contexts
+from starlette.datastructures import Headers
+from starlette.requests import Request
+from starlette.responses import RedirectResponse, Response
+from starlette.routing import Match, Mount
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from app.access.keeper import Credentials, Keeper
+from app.access.principal import NotAllowed, Principal, ProofNeeded, SignInNeeded, Via
+from app.access.roles import Permission
+from app.access.sessions import is_proven
+from app.clock import Clock
+from app.web.errors import FOR_PROGRAMS, Busy, answer_to
+from app.web.route_permissions import PROVEN, ROUTES, STREAMS, TICKETED
+from app.web.security import SAFE_METHODS
+from app.web.ui.paths import login_path, proof_path
+
+STATIC = "STATIC"
+WHILE_CLOSED = frozenset({STATIC, "GET /setup", "POST /setup", "GET /health", "GET /ready", "POST /theme"})
+STOPS_WINDOW, MOST_STOPS = timedelta(seconds=1), 10
+MOST_ADDRESSES = 1000
+OLD_PAGE = "This page is too old to change anything. Load it again, then repeat what you did."
+
+
+Guarded = tuple[tuple[str, RouteContext], ...]
+"""Every route with the path that the table knows it by."""
+
+
+class RouteUnguarded(Exception):
+    """A route has no entry in the table of permissions; the panel does not start."""
+
+
+class Gate:
+    """Finds out who asks, turns away who may not, and lets lasting answers end when somebody must leave."""
+
+    def __init__(
+        self, app: ASGIApp, *, panel_app: FastAPI, keeper: Keeper, clock: Clock, routes: Guarded
+    ) -> None:
+        self._app = app
+        self._panel_app = panel_app
+        self._keeper = keeper
+        self._clock = clock
+        self._routes = routes
+        self._stops = StopLimit()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass the request on as somebody's, or answer why not."""
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        scope["app"] = self._panel_app
+        try:
+            route, path_parameters = self._match(scope)
+            who = self._admit(scope, route, path_parameters)
+        except (NotAllowed, ProofNeeded, SignInNeeded, Busy) as error:
+            await _turn_away(scope, receive, send, error)
+            return
+        if self._keeper.is_closed and route not in WHILE_CLOSED:
+            await _answer(scope, receive, send, RedirectResponse("/setup", 303))
+            return
+        if is_activity(scope, route):
+            await self._keeper.used(who)
+        await (self._while_allowed if route in STREAMS else self._pass)(scope, receive, send, who)
+
+    def _admit(self, scope: Scope, route: str, path_parameters: dict[str, str]) -> Principal:
+        given = credentials(scope, route)
+        who = self._keeper.identify(given)
+        scope.setdefault("state", {})["principal"] = who
+        scope["state"]["session_id"] = given.session_id
+        if route == STATIC:
+            return who
+        query = _query(scope)
+        tracker_id = path_parameters.get("tracker_id") or query.get("tracker") or None
+        if self._keeper.is_closed:
+            return who
+        who.require(ROUTES.get(route, Permission.READ), tracker_id)
+        if who.via in (Via.SESSION, Via.KIOSK):
+            self._check_session(scope, route, who, given)
+        if who.via is Via.STOP_TICKET and not self._stops.admit(who.address, self._clock.now()):
+            raise Busy("This address stops more than ten times a second; the first of these were obeyed.")
+        return who
+
+    def _check_session(self, scope: Scope, route: str, who: Principal, given: Credentials) -> None:
+        permission = ROUTES.get(route)
+        if permission in (Permission.OPEN, Permission.STOP) and scope["type"] == "http":
+            return
+        check_origin(scope, self._keeper.csrf(given.session_id))
+        if route in PROVEN and who.via is Via.SESSION and not is_proven(who.proven_at, self._clock.now()):
+            raise ProofNeeded("This is of weight: type your password again, then repeat what you did.")
+
+    def _match(self, scope: Scope) -> tuple[str, dict[str, str]]:
+        """Return the key in the table and the path's parameters; for what no route takes an unlisted key."""
+        for key, route in self._routes:
+            match, child = _matches(route, scope)
+            if match is Match.FULL:
+                wanted = STATIC if key == STATIC else f"{_method(scope)} {key}"
+                return wanted, child.get("path_params", {})
+        return "", {}
+
+    async def _pass(self, scope: Scope, receive: Receive, send: Send, who: Principal) -> None:
+        await self._app(scope, receive, send)
+
+    async def _while_allowed(self, scope: Scope, receive: Receive, send: Send, who: Principal) -> None:
+        serving = asyncio.ensure_future(_run(self._app, scope, receive, send))
+        leaving = asyncio.create_task(self._keeper.until_gone(who))
+        try:
+            await asyncio.wait({serving, leaving}, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            ended_by_itself = serving.done()
+            serving.cancel()
+            leaving.cancel()
+            await asyncio.gather(serving, leaving, return_exceptions=True)
+        if ended_by_itself:
+            serving.result()
+        elif scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 1008, "reason": "signed out"})
+        else:
+            await send({"type": "http.response.body", "body": b"", "more_body": False})
+
+
+class StopLimit:
+    """At most ten stops a second of an address that has nothing but a stop ticket."""
+
+    def __init__(self) -> None:
+        self._recent: OrderedDict[str, deque[datetime]] = OrderedDict()
+
+    def admit(self, address: str, now: datetime) -> bool:
+        """Count one more stop, unless that would be too many."""
+        recent = self._recent.setdefault(address, deque())
+        self._recent.move_to_end(address)
+        if len(self._recent) > MOST_ADDRESSES:
+            self._recent.popitem(last=False)
+        while recent and now - recent[0] >= STOPS_WINDOW:
+            recent.popleft()
+        if len(recent) >= MOST_STOPS:
+            return False
+        recent.append(now)
+        return True
+
+
+def guarded_routes(app: FastAPI) -> Guarded:
+    """Return every route with its path, or raise `RouteUnguarded` for one that the table does not have."""
+    routes = tuple((_key(route), route) for route in iter_route_contexts(app.routes))
+    missing = sorted(
+        f"{method} {key}"
+        for key, route in routes
+        if key != STATIC
+        for method in _methods(route)
+        if f"{method} {key}" not in ROUTES
+    )
+    if missing:
+        raise RouteUnguarded(
+            f"app/web/route_permissions.py has no entry for {', '.join(missing)}: write each below the "
+            "permission that it needs."
+        )
+    return routes
+
+
+def _key(route: RouteContext) -> str:
+    return STATIC if isinstance(route.original_route, Mount) and route.path == "/s" else str(route.path)
+
+
+def _methods(route: RouteContext) -> set[str]:
+    return {method for method in route.methods or {"WS"} if method != "HEAD"}
+
+
+def _matches(route: RouteContext, scope: Scope) -> tuple[Match, Scope]:
+    found: tuple[Match, Scope] = route.matches(scope)
+    return found
+
+
+def _method(scope: Scope) -> str:
+    if scope["type"] == "websocket":
+        return "WS"
+    return "GET" if scope["method"] == "HEAD" else str(scope["method"])
+
+
+def credentials(scope: Scope, route: str) -> Credentials:
+    """Return what a request brings along; one with a bearer token is judged by nothing else."""
+    client, headers, query = scope.get("client"), Headers(scope=scope), _query(scope)
+    address = client[0] if client else ""
+    scheme, _, bearer = headers.get("authorization", "").partition(" ")
+    if scheme.lower() == "bearer":
+        return Credentials(address, bearer=bearer.strip() or "none")
+    return Credentials(
+        address,
+        session_id=_cookie(headers, cookie_name(scope)),
+        ticket=query.get("ticket", "") if route in TICKETED else "",
+        stop_ticket=query.get("stop_ticket", ""),
+    )
+
+
+def cookie_name(scope: Scope) -> str:
+    """Return the name of the session's cookie: bound to this host with TLS, to this port without."""
+    if scope.get("scheme") in ("https", "wss"):
+        return "__Host-heliopanel"
+    server = scope.get("server")
+    return f"heliopanel-{server[1] if server else 0}"
+
+
+def _cookie(headers: Headers, name: str) -> str:
+    try:
+        found = SimpleCookie(headers.get("cookie", "")).get(name)
+    except CookieError:
+        return ""
+    return found.value if found else ""
+
+
+def _query(scope: Scope) -> dict[str, str]:
+    found = parse_qs(scope.get("query_string", b"").decode("latin-1"), max_num_fields=50) if scope else {}
+    return {name: values[0] for name, values in found.items()}
+
+
+def check_origin(scope: Scope, csrf: str) -> None:
+    """Raise `NotAllowed` unless a change comes from a page of this panel.
+
+    Foreign origins are turned away before; one's own is told by the browser or by the page's token.
+    """
+    headers = Headers(scope=scope)
+    if scope["type"] == "http" and scope["method"] in SAFE_METHODS:
+        return
+    token = headers.get("x-csrf-token")
+    told = "origin" in headers or "sec-fetch-site" in headers
+    by_script = headers.get("hx-request") == "true"
+    if token is None and told and not by_script:
+        return
+    if not compare_digest((token or "").encode(), csrf.encode()):
+        raise NotAllowed(OLD_PAGE)
+
+
+def is_activity(scope: Scope, route: str) -> bool:
+    """Return whether a request shows that a person is there: a change, or a page that was opened."""
+    if scope["type"] != "http" or route == STATIC:
+        return False
+    return scope["method"] not in SAFE_METHODS or "hx-request" not in Headers(scope=scope)
+
+
+async def _run(app: ASGIApp, scope: Scope, receive: Receive, send: Send) -> None:
+    await app(scope, receive, send)
+
+
+async def _turn_away(scope: Scope, receive: Receive, send: Send, error: Exception) -> None:
+    if scope["type"] == "websocket":
+        await send({"type": "websocket.close", "code": 1008, "reason": "not allowed"})
+        return
+    request = Request(scope, receive)
+    await _answer(scope, receive, send, way_in(request, error) or answer_to(request, error))
+
+
+def way_in(request: Request, error: Exception) -> Response | None:
+    """Return the way to the page where one signs in or types the password again; None for programs."""
+    if request.url.path.startswith(FOR_PROGRAMS) or isinstance(error, NotAllowed | Busy):
+        return None
+    is_form = request.method not in SAFE_METHODS
+    back = "/" if is_form else str(request.url.path)
+    path = login_path(back) if isinstance(error, SignInNeeded) else proof_path(_page_of(request, back))
+    if "hx-request" in request.headers:
+        return Response(status_code=204, headers={"HX-Redirect": path})
+    return RedirectResponse(path, 303)
+
+
+def _page_of(request: Request, otherwise: str) -> str:
+    """Return the page that a form was on, by the address that the browser tells."""
+    current = request.headers.get("hx-current-url") or request.headers.get("referer") or ""
+    at = current.find("/", current.find("//") + 2)
+    return current[at:] if at > 0 else otherwise
+
+
+async def _answer(scope: Scope, receive: Receive, send: Send, response: Response) -> None:
+    if scope["type"] == "websocket":
+        await send({"type": "websocket.close", "code": 1008, "reason": "not set up"})
+        return
+    await response(scope, receive, send)

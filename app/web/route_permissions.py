@@ -1,0 +1,278 @@
+"""What every route needs, by method and path; a route that is not here keeps the panel from starting.
+
+To add a route: write it below the permission that it needs, and into `PROVEN` if it changes users, tokens,
+drives or network settings, for which the password is asked for again.
+"""
+
+from app.access.roles import Permission
+
+_TABLE: dict[Permission, str] = {
+    Permission.OPEN: """
+        GET /login
+        POST /login
+        GET /setup
+        POST /setup
+        GET /kiosk
+        POST /kiosk
+        POST /theme
+        GET /health
+        GET /ready
+        GET /api/v1/health
+        GET /api/v1/ready
+        POST /api/v1/session
+    """,
+    Permission.STOP: """
+        POST /stop
+        POST /trackers/{tracker_id}/stop
+        POST /trackers/{tracker_id}/end-jog
+        POST /api/v1/stop
+        POST /api/v1/trackers/{tracker_id}/stop
+        DELETE /api/v1/trackers/{tracker_id}/jog/{press_id}
+        WS /live
+    """,
+    Permission.OWN: """
+        GET /account
+        POST /account/password
+        POST /account/sessions/{digest}/end
+        GET /prove
+        POST /prove
+        POST /logout
+        POST /kiosk/pin
+        PUT /api/v1/me/password
+        DELETE /api/v1/session
+        POST /api/v1/session/proof
+    """,
+    Permission.READ: """
+        GET /
+        GET /accuracy
+        GET /journal
+        GET /metrics
+        GET /papers
+        GET /recordings
+        GET /recordings/{recording_id}
+        GET /simulate
+        GET /site
+        GET /studies
+        GET /studies/glance
+        GET /studies/list
+        GET /studies/program
+        GET /studies/{study_id}
+        GET /studies/{study_id}/curves.csv
+        GET /studies/{study_id}/table.csv
+        GET /trackers/{tracker_id}
+        GET /trackers/{tracker_id}/commissioning
+        GET /trackers/{tracker_id}/commissioning/clock
+        GET /trackers/{tracker_id}/commissioning/homing
+        GET /trackers/{tracker_id}/commissioning/location
+        GET /trackers/{tracker_id}/commissioning/location/preview
+        GET /trackers/{tracker_id}/commissioning/mode
+        GET /trackers/{tracker_id}/commissioning/mode/orientation
+        POST /trackers/{tracker_id}/commissioning/mode/orientation
+        GET /trackers/{tracker_id}/commissioning/progress/{step}
+        GET /trackers/{tracker_id}/commissioning/run
+        GET /trackers/{tracker_id}/drive
+        GET /trackers/{tracker_id}/mount
+        POST /trackers/{tracker_id}/mount/kind
+        GET /trackers/{tracker_id}/proofs
+        GET /trackers/{tracker_id}/record
+        GET /trackers/{tracker_id}/settings
+        GET /trackers/{tracker_id}/show
+        GET /trackers/{tracker_id}/shows/{show_id}
+        GET /trackers/{tracker_id}/strategy
+        GET /trackers/{tracker_id}/strategy/day
+        GET /trackers/{tracker_id}/strategy/program.csv
+        GET /trackers/{tracker_id}/sun-check
+        GET /api/v1/openapi.json
+        GET /api/v1/me
+        POST /api/v1/tickets
+        GET /api/v1/journal
+        GET /api/v1/mechanisms
+        GET /api/v1/metrics
+        GET /api/v1/mounts
+        GET /api/v1/papers
+        GET /api/v1/recordings
+        GET /api/v1/recordings/{recording_id}
+        GET /api/v1/recordings/{recording_id}/frames
+        GET /api/v1/site
+        GET /api/v1/site/clock
+        GET /api/v1/site/integrations
+        GET /api/v1/site/weather
+        GET /api/v1/stream
+        GET /api/v1/studies
+        GET /api/v1/studies-comparison
+        GET /api/v1/studies/{study_id}
+        GET /api/v1/sun
+        GET /api/v1/sun/accuracy
+        GET /api/v1/sun/algorithms
+        GET /api/v1/sun/day
+        GET /api/v1/telemetry
+        GET /api/v1/trackers
+        GET /api/v1/trackers/{tracker_id}
+        GET /api/v1/trackers/{tracker_id}/actions
+        GET /api/v1/trackers/{tracker_id}/capabilities
+        GET /api/v1/trackers/{tracker_id}/commissioning
+        GET /api/v1/trackers/{tracker_id}/drive/check
+        GET /api/v1/trackers/{tracker_id}/drive/choices
+        GET /api/v1/trackers/{tracker_id}/mount
+        GET /api/v1/trackers/{tracker_id}/program
+        GET /api/v1/trackers/{tracker_id}/program/examples
+        GET /api/v1/trackers/{tracker_id}/proofs
+        GET /api/v1/trackers/{tracker_id}/record
+        GET /api/v1/trackers/{tracker_id}/shows/{show_id}
+        GET /api/v1/trackers/{tracker_id}/sightings
+        GET /api/v1/trackers/{tracker_id}/snapshot
+        POST /api/v1/trackers/{tracker_id}/strategy/day
+        GET /api/v1/weather-files
+    """,
+    Permission.REPORT: """
+        PUT /api/v1/site/weather
+    """,
+    Permission.SIMULATE: """
+        POST /simulate
+        POST /studies
+        POST /studies/weather
+        POST /studies/weather/{name}/delete
+        POST /studies/{study_id}/remove
+        POST /api/v1/recordings/{recording_id}/rerun
+        POST /api/v1/simulations
+        POST /api/v1/studies
+        POST /api/v1/studies/programs
+        DELETE /api/v1/studies/{study_id}
+        POST /api/v1/weather-files
+        DELETE /api/v1/weather-files/{name}
+    """,
+    Permission.OPERATE: """
+        POST /trackers/{tracker_id}/move
+        POST /trackers/{tracker_id}/park
+        POST /trackers/{tracker_id}/reset-fault
+        POST /trackers/{tracker_id}/step
+        POST /trackers/{tracker_id}/track
+        POST /trackers/{tracker_id}/commissioning/mode
+        POST /trackers/{tracker_id}/show/go-to-start
+        POST /trackers/{tracker_id}/show/pause
+        POST /trackers/{tracker_id}/show/resume
+        POST /trackers/{tracker_id}/show/run
+        POST /trackers/{tracker_id}/show/stop
+        POST /api/v1/trackers/{tracker_id}/commands
+        POST /api/v1/trackers/{tracker_id}/jog
+        POST /api/v1/trackers/{tracker_id}/shows
+        POST /api/v1/trackers/{tracker_id}/shows/{show_id}/{action}
+    """,
+    Permission.CONFIGURE: """
+        POST /recordings/{recording_id}/delete
+        POST /site/name
+        POST /studies/program/use
+        POST /trackers
+        POST /trackers/{tracker_id}/commissioning/clock
+        POST /trackers/{tracker_id}/commissioning/clock/device
+        POST /trackers/{tracker_id}/commissioning/clock/system
+        POST /trackers/{tracker_id}/commissioning/location
+        POST /trackers/{tracker_id}/commissioning/{step}/confirm
+        POST /trackers/{tracker_id}/drive
+        POST /trackers/{tracker_id}/drive/restore
+        POST /trackers/{tracker_id}/drive/test
+        POST /trackers/{tracker_id}/home
+        POST /trackers/{tracker_id}/mount
+        POST /trackers/{tracker_id}/proofs/direction
+        POST /trackers/{tracker_id}/proofs/direction/answer
+        POST /trackers/{tracker_id}/proofs/limit
+        POST /trackers/{tracker_id}/proofs/link-loss
+        POST /trackers/{tracker_id}/proofs/scale
+        POST /trackers/{tracker_id}/proofs/scale/answer
+        POST /trackers/{tracker_id}/proofs/stop
+        POST /trackers/{tracker_id}/settings
+        POST /trackers/{tracker_id}/settings/remove
+        POST /trackers/{tracker_id}/strategy
+        POST /trackers/{tracker_id}/strategy/hybrid
+        POST /trackers/{tracker_id}/strategy/program
+        POST /trackers/{tracker_id}/sun-check/apply
+        POST /trackers/{tracker_id}/sun-check/forget
+        POST /trackers/{tracker_id}/sun-check/take
+        POST /trackers/{tracker_id}/zero
+        DELETE /api/v1/recordings/{recording_id}
+        PATCH /api/v1/site
+        PUT /api/v1/site/clock
+        PUT /api/v1/site/location
+        POST /api/v1/trackers
+        DELETE /api/v1/trackers/{tracker_id}
+        PATCH /api/v1/trackers/{tracker_id}
+        POST /api/v1/trackers/{tracker_id}/commissioning/{step}/confirm
+        POST /api/v1/trackers/{tracker_id}/drive/check
+        POST /api/v1/trackers/{tracker_id}/drive/restore
+        PUT /api/v1/trackers/{tracker_id}/program
+        PUT /api/v1/trackers/{tracker_id}/program.csv
+        POST /api/v1/trackers/{tracker_id}/proofs/direction
+        POST /api/v1/trackers/{tracker_id}/proofs/limits
+        POST /api/v1/trackers/{tracker_id}/proofs/scale
+        POST /api/v1/trackers/{tracker_id}/sightings
+        PUT /api/v1/trackers/{tracker_id}/sightings
+    """,
+    Permission.ADMINISTER: """
+        GET /backup
+        POST /backup
+        GET /diagnostics.zip
+        GET /users
+        POST /users
+        POST /users/{name}/roles
+        POST /users/{name}/password
+        POST /users/{name}/remove
+        POST /users/sessions/{digest}/end
+        GET /tokens
+        POST /tokens
+        POST /tokens/{token_id}/revoke
+        GET /api/v1/backup
+        POST /api/v1/backup
+        GET /api/v1/diagnostics.zip
+        GET /api/v1/users
+        POST /api/v1/users
+        PATCH /api/v1/users/{name}
+        DELETE /api/v1/users/{name}
+        GET /api/v1/sessions
+        DELETE /api/v1/sessions/{digest}
+        GET /api/v1/tokens
+        POST /api/v1/tokens
+        DELETE /api/v1/tokens/{token_id}
+    """,
+}
+
+ROUTES: dict[str, Permission] = {
+    line.strip(): permission
+    for permission, lines in _TABLE.items()
+    for line in lines.split("\n")
+    if line.strip()
+}
+"""Permission by method and path, such as `POST /stop`; `WS` stands for a WebSocket."""
+
+PROVEN = frozenset(
+    """
+    POST /users
+    POST /users/{name}/roles
+    POST /users/{name}/password
+    POST /users/{name}/remove
+    POST /tokens
+    POST /trackers/{tracker_id}/drive
+    POST /trackers/{tracker_id}/drive/restore
+    POST /backup
+    POST /api/v1/users
+    PATCH /api/v1/users/{name}
+    DELETE /api/v1/users/{name}
+    POST /api/v1/tokens
+    POST /api/v1/trackers/{tracker_id}/drive/restore
+    POST /api/v1/backup
+    """.strip()
+    .replace("    ", "")
+    .split("\n")
+)
+"""What a session may do only within 5 minutes of typing the password."""
+
+STREAMS = frozenset({"WS /live", "GET /api/v1/stream"})
+"""What lasts: it ends within a second when who asked for it must leave."""
+
+TICKETED = STREAMS | {
+    "GET /diagnostics.zip",
+    "GET /api/v1/diagnostics.zip",
+    "GET /api/v1/recordings/{recording_id}/frames",
+    "GET /studies/{study_id}/curves.csv",
+    "GET /studies/{study_id}/table.csv",
+}
+"""What a one-shot ticket opens: streams and downloads, for which a program cannot send a header."""
