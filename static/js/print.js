@@ -1,5 +1,11 @@
-// The key that prints, where there is JavaScript; without it the browser's own menu does.
+// The keys that print, where there is JavaScript; without it the browser's own menu does.
 
-const key = document.querySelector("[data-print]");
-key.hidden = false;
-key.addEventListener("click", () => print());
+const offer = () => {
+  for (const key of document.querySelectorAll("[data-print]")) key.hidden = false;
+};
+
+document.addEventListener("click", (event) => {
+  if (event.target.closest("[data-print]")) print();
+});
+document.addEventListener("htmx:after:swap", offer);
+offer();

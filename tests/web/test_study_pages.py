@@ -94,6 +94,9 @@ async def test_what_cannot_be_studied_is_said_in_the_form(client: httpx.AsyncCli
     assert answer.status_code == 422
     assert "needs a tracker: choose one" in answer.text
     assert "one of 1, 2, 3" in answer.text
+    step = await client.post("/studies", data={**TYPED, **PLACE, "step": "7"}, headers=HTMX)
+    field = step.text[step.text.index('id="step-error"') :]
+    assert "The step is one of 1, 2, 3" in field[: field.index("</p>")]
 
 
 async def test_a_begun_study_opens_its_page_and_can_be_cancelled(client: httpx.AsyncClient) -> None:
@@ -102,6 +105,8 @@ async def test_a_begun_study_opens_its_page_and_can_be_cancelled(client: httpx.A
     address = begun.headers["hx-redirect"]
     page = (await client.get(address)).text
     assert "<progress" in page
+    assert "data-print" not in page
+    assert '<button class="key">Cancel</button>' in (await client.get(address, headers=HTMX)).text
     assert 'hx-trigger="every 1s"' in page
     assert 'hx-trigger="every 2s"' in (await client.get("/studies")).text
     assert "<form" not in (await client.get("/studies/list", headers=HTMX)).text

@@ -201,7 +201,8 @@ def _read(typed: Typed, form: StudyForm, detail: SiteDetail) -> StudyRequest | N
     try:
         return NewStudy.model_validate(values).request(detail)
     except ValueError as error:
-        typed.errors["span"] = str(error)
+        sentence = str(error)
+        typed.errors["step" if sentence.startswith("The step is") else "span"] = sentence
         return None
 
 
