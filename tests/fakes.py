@@ -97,7 +97,8 @@ GATEWAYS = (
 class FakeMachine:
     """A machine with T1 holding and T2 tracking; it keeps every order it got.
 
-    `rejects` maps a command's kind to the reasons with which it is refused; `cut()` cuts the link.
+    `rejects` maps a command's kind to the reasons with which it is refused; with a `refusal` every order is
+    refused for being wrong; `cut()` cuts the link.
     """
 
     def __init__(self, clock: Clock | None = None) -> None:
@@ -114,6 +115,7 @@ class FakeMachine:
         }
         self.orders: list[Order] = []
         self.rejects: dict[str, tuple[Reason, ...]] = {}
+        self.refusal = ""
         self.reachable = True
         self.weather: WeatherNow | None = None
         self.sequence = 0
@@ -124,6 +126,8 @@ class FakeMachine:
         """Carry out one order and tell every reader."""
         if not self.reachable:
             raise MachineUnreachable("The controller service does not answer.")
+        if self.refusal:
+            raise ValueError(self.refusal)
         self.orders.append(order)
         if reasons := self.rejects.get(order.command.kind):
             raise CommandRejected(*reasons)

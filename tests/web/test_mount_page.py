@@ -9,6 +9,10 @@ from tests.fakes import FakeMachine, fake_app, serving
 
 MOUNT = "/trackers/T1/mount"
 OWN = {"base_x": "900", "base_y": "0", "base_z": "15", "joint_x": "132.5", "joint_y": "200.1", "joint_z": "0"}
+LOW = {
+    **{"base_x": "800", "base_y": "-300", "base_z": "0", "joint_x": "250", "joint_y": "100", "joint_z": "0"},
+    **{"at": "0", "retracted": "600", "travel": "300", "speed": "8"},
+}
 SIZES = {"at": "0", "retracted": "745", "travel": "385", "speed": "25"}
 
 
@@ -48,7 +52,7 @@ async def test_rows_are_drawn_once_they_are_saved(browser: httpx.AsyncClient, ma
 async def test_a_wrong_ratio_is_told_and_what_was_typed_stays(browser: httpx.AsyncClient) -> None:
     await chosen(browser, "tilted-single-axis")
     typed = {"axis_azimuth": "180", "axis_tilt": "25", "rows": "yes", "ratio": "4.5", "slope": "0"}
-    answer = await browser.post(MOUNT, data=typed)
+    answer = await browser.post(MOUNT, data=typed, headers={"HX-Request": "true"})
     assert answer.status_code == 422
     assert "Ground coverage ratio must lie between 0.01 and 1." in answer.text
     assert 'value="4.5"' in answer.text
@@ -75,6 +79,28 @@ async def test_an_actuator_by_its_points_and_one_that_cannot_be_built(
     answer = await browser.post(MOUNT, data=points | {"second_travel": "900"})
     assert answer.status_code == 422
     assert "it cannot go" in answer.text
+
+
+async def test_an_actuator_of_the_elevation_axis_takes_the_park_position_along(
+    browser: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    typed = {f"second_{name}": value for name, value in LOW.items()} | {"second_actuator": "own"}
+    await browser.post(MOUNT, data=typed)
+    config = machine.orders[-1].command.config
+    assert config.elevation.maximum_deg < 90.0
+    assert config.park.elevation_deg == config.elevation.maximum_deg
+
+
+async def test_what_the_machine_refuses_comes_back_in_the_form(
+    browser: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    machine.refusal = "The park position lies outside the soft limits."
+    typed = {f"second_{name}": value for name, value in (OWN | SIZES).items()} | {"second_actuator": "own"}
+    answer = await browser.post(MOUNT, data=typed, headers={"HX-Request": "true"})
+    assert answer.status_code == 422
+    assert answer.text.lstrip().startswith("<form")
+    assert "The park position lies outside the soft limits." in answer.text
+    assert 'value="132.5"' in answer.text
 
 
 async def test_the_wizard_and_the_settings_follow_the_mount(browser: httpx.AsyncClient) -> None:

@@ -101,6 +101,28 @@ async def test_a_wrong_row_is_named_and_what_was_typed_stays(
     assert len(machine.orders) == before
 
 
+@pytest.mark.parametrize(
+    ("path", "typed"),
+    [
+        (PAGE, {"kind": "deadband", "deadband": "0.03"}),
+        (f"{PAGE}/program", {"program_name": "P", "at": "08:00", "first": "110", "second": "0.03"}),
+        (f"{PAGE}/hybrid", {"bound": "0.03", "threshold": "200", "gain": "1", "decay": "0"}),
+    ],
+)
+async def test_what_the_machine_refuses_comes_back_in_the_form(
+    client: httpx.AsyncClient,
+    machine: FakeMachine,
+    path: str,
+    typed: dict[str, str],
+) -> None:
+    machine.refusal = "The tolerance must not exceed the deadband."
+    answer = await client.post(path, data=typed, headers={"HX-Request": "true"})
+    assert answer.status_code == 422
+    assert answer.text.lstrip().startswith("<form")
+    assert "The tolerance must not exceed the deadband." in answer.text
+    assert 'value="0.03"' in answer.text
+
+
 async def test_the_table_is_filled_from_csv_an_example_or_with_rows(client: httpx.AsyncClient) -> None:
     table = to_table(ALEXANDRU_TABLE_3)
     imported = (await client.post(f"{PAGE}/program", data={"do": "import", "table": table})).text

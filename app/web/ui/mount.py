@@ -66,7 +66,11 @@ async def save(tracker_id: str, press: PressDep, machine: MachineDep) -> Respons
     wanted = mount_form.read(typed, tracker.state.config)
     if wanted is None:
         return await run_in_threadpool(_answer, press.request, tracker, typed, "", status=422)
-    await press.send(ConfigureTracker(wanted))
+    try:
+        await press.send(ConfigureTracker(wanted))
+    except NotAcceptable as refusal:
+        typed.errors["first_actuator"] = str(refusal)
+        return await run_in_threadpool(_answer, press.request, tracker, typed, "", status=422)
     return go(press.request, f"/trackers/{tracker_id}/mount?done=1")
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import ceil, floor
 
 from app.tracker.axes import Axis, AxisConfig
-from app.tracker.config import MountConfig, MountKind, Rows, TrackerConfig
+from app.tracker.config import MountConfig, MountKind, Orientation, Rows, TrackerConfig
 from app.tracker.mechanisms import MECHANISMS
 from app.tracker.transmission import LinearActuator, Point
 from app.web.ui.forms import Typed, Unreadable
@@ -51,7 +51,15 @@ def read(typed: Typed, config: TrackerConfig) -> TrackerConfig | None:
     axes = {axis: _axis(typed, prefix, config.axis(axis)) for prefix, axis in AXES.items()}
     if typed.errors or mount is None:
         return None
-    return replace(config, mount=mount, azimuth=axes[Axis.AZIMUTH], elevation=axes[Axis.ELEVATION])
+    wanted = replace(config, mount=mount, azimuth=axes[Axis.AZIMUTH], elevation=axes[Axis.ELEVATION])
+    return replace(wanted, park=_park(wanted))
+
+
+def _park(config: TrackerConfig) -> Orientation:
+    """Return the park position, its elevation within what an actuator leaves of the elevation axis."""
+    if config.mount.kind is not MountKind.AZIMUTH_ELEVATION or config.elevation.actuator is None:
+        return config.park
+    return replace(config.park, elevation_deg=config.elevation.clamp(config.park.elevation_deg))
 
 
 def _mount(typed: Typed, mount: MountConfig) -> MountConfig | None:

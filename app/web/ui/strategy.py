@@ -70,7 +70,11 @@ async def save(
         deadband_deg = typed.number("deadband", "Deadband", 0.02, 10)
     if typed.errors:
         return _answer(press.request, tracker, typed=typed, block="choice", status=422)
-    await press.send(ConfigureTracker(replace(config, strategy=wanted, deadband_deg=deadband_deg)))
+    try:
+        await press.send(ConfigureTracker(replace(config, strategy=wanted, deadband_deg=deadband_deg)))
+    except NotAcceptable as refusal:
+        typed.errors["kind"] = str(refusal)
+        return _answer(press.request, tracker, typed=typed, block="choice", status=422)
     return press.answer(SAVED)
 
 
@@ -115,7 +119,11 @@ async def program(
     except TableWrong as error:
         table = typed_program(form, error.sentences, more=0)
         return _answer(press.request, tracker, table=table, block="program", status=422)
-    await press.send(ConfigureTracker(replace(tracker.state.config, strategy=Stepped(wanted))))
+    try:
+        await press.send(ConfigureTracker(replace(tracker.state.config, strategy=Stepped(wanted))))
+    except NotAcceptable as refusal:
+        table = typed_program(form, (str(refusal),), more=0)
+        return _answer(press.request, tracker, table=table, block="program", status=422)
     return go(press.request, f"/trackers/{tracker_id}/strategy?done=program")
 
 
@@ -137,7 +145,11 @@ async def hybrid(
     wanted = read_hybrid(typed)
     if wanted is None:
         return _answer(press.request, tracker, hybrid=typed, block="hybrid", status=422)
-    await press.send(ConfigureTracker(replace(tracker.state.config, hybrid=wanted)))
+    try:
+        await press.send(ConfigureTracker(replace(tracker.state.config, hybrid=wanted)))
+    except NotAcceptable as refusal:
+        typed.errors["enabled"] = str(refusal)
+        return _answer(press.request, tracker, hybrid=typed, block="hybrid", status=422)
     return press.answer("The correction is saved.")
 
 
