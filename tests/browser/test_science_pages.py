@@ -132,15 +132,16 @@ def test_every_picture_has_a_title_axes_with_units_and_a_legend(shown: tuple[str
 
 def test_on_paper_curves_are_black_and_told_apart_by_their_dashes(shown: tuple[str, Page]) -> None:
     name, page = shown
+    assert page.locator("[data-print]:visible").count() == (1 if name == "study" else 0)
     page.emulate_media(media="print")
     pictures = page.evaluate(TOLD)
     seen = page.evaluate(
         "[...document.querySelectorAll('.footer, .tabs, .key')].filter(e => e.offsetHeight).length"
     )
+    page.pdf(path=SCREENS / f"science-{name}.pdf", format="A4")
     page.emulate_media(media="screen")
     assert seen == 0
     for picture in pictures:
         if picture["lines"]:
             assert picture["strokes"] == ["rgb(0, 0, 0)"]
             assert picture["looks"] == len(picture["key"])
-    page.pdf(path=SCREENS / f"science-{name}.pdf", format="A4")
