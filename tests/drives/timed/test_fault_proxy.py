@@ -19,6 +19,7 @@ from tests.machine.service import free_port
 
 RECOVERED_WITHIN_S = {"tcp": 0.3, "rtu": 1.0, "rtu-over-tcp": 1.0}
 STOP_WITHIN_S = 0.05
+COMMAND = "import typer; from app.cli_drives import fault_proxy; typer.run(fault_proxy)"
 LATE = ("delay=250", "delay=450", "delay=700")
 
 
@@ -135,7 +136,7 @@ async def test_the_proxy_is_played_from_the_command_line() -> None:
     port = await server.start("127.0.0.1", 0)
     near = free_port()
     process = await asyncio.create_subprocess_exec(
-        sys.executable, "-m", "app.cli", "fault-proxy", f"127.0.0.1:{near}", f"127.0.0.1:{port}",
+        sys.executable, "-c", COMMAND, f"127.0.0.1:{near}", f"127.0.0.1:{port}",
         stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE,
     )  # fmt: skip
     assert process.stdin is not None
