@@ -28,7 +28,6 @@ class RehearsalFailed(ValueError):
 class Rehearsal:
     """One simulated tracker whose sun stands still until it is homed and in place; it warns nobody.
 
-
     The machine's time starts at `begin` and always goes on; `site_time` moves only when told to.
     """
 
