@@ -10,8 +10,16 @@ from tests.fakes import FakeMachine, fake_app, serving
 MOUNT = "/trackers/T1/mount"
 OWN = {"base_x": "900", "base_y": "0", "base_z": "15", "joint_x": "132.5", "joint_y": "200.1", "joint_z": "0"}
 LOW = {
-    **{"base_x": "800", "base_y": "-300", "base_z": "0", "joint_x": "250", "joint_y": "100", "joint_z": "0"},
-    **{"at": "0", "retracted": "600", "travel": "300", "speed": "8"},
+    "base_x": "800",
+    "base_y": "-300",
+    "base_z": "0",
+    "joint_x": "250",
+    "joint_y": "100",
+    "joint_z": "0",
+    "at": "0",
+    "retracted": "600",
+    "travel": "300",
+    "speed": "8",
 }
 SIZES = {"at": "0", "retracted": "745", "travel": "385", "speed": "25"}
 
