@@ -133,7 +133,7 @@ def test_a_killed_drive_loses_its_zero_exactly_when_it_lost_its_place(
 
     integrator.zero()
     drive = killed(integrator, drive, None)
-    assert back(integrator, "answers again")["home_trusted"] is False
+    assert back(integrator, "It has restarted meanwhile and has lost its zero")["home_trusted"] is False
     drive.stop()
 
 
