@@ -6,8 +6,9 @@ from app.tracker.mind import Mind, Warned
 from app.tracker.reason import Reason
 from app.tracker.snapshot import EventKind
 
-REMOTE = ("api ", "mqtt ", "sunspec ")
-"""What the actor of an order begins with that came from another machine."""
+REMOTE = ("mqtt ", "sunspec ")
+BY_TOKEN = "(token)"
+"""What the actor of an order begins or ends with that came from another machine."""
 
 
 def announce(mind: Mind, why: str) -> None:
@@ -22,7 +23,7 @@ def announce(mind: Mind, why: str) -> None:
 
 def announce_if_remote(mind: Mind, why: str) -> None:
     """Warn of a motion that another machine asked for."""
-    if mind.actor.startswith(REMOTE):
+    if mind.actor.startswith(REMOTE) or mind.actor.endswith(BY_TOKEN):
         announce(mind, why)
 
 

@@ -385,7 +385,7 @@ def test_a_lock_bears_a_name(name: str) -> None:
         plant.ask(LockOut(name))
 
 
-@pytest.mark.parametrize("actor", ["mqtt broker", "sunspec 10.0.0.5", "api scada"])
+@pytest.mark.parametrize("actor", ["mqtt broker", "sunspec 10.0.0.5", "scada (token)"])
 def test_what_another_machine_starts_is_announced(actor: str) -> None:
     plant = Plant(READY).blow().forward(1)
     plant.ask(Move(Orientation(90.0, 30.0)), actor)

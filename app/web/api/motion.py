@@ -12,22 +12,27 @@ from app.tracker.commands import (
     EndJog,
     Home,
     Jog,
+    LockOut,
     MeasureLinkLoss,
     MeasureStop,
     Move,
     Park,
     ProveDirection,
     ProveScale,
+    ReleaseLock,
     ResetFault,
+    Resume,
     SelectMode,
     SetZero,
     Step,
     Stop,
+    Stow,
     Track,
 )
 from app.tracker.config import Orientation
 from app.tracker.mode import Mode
 from app.tracker.proofs import StopSpeed
+from app.tracker.protections.words import StowName
 from app.tracker.snapshot import SiteSnapshot, Snapshot
 from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, TrackerId
 from app.web.api.orders import SenderDep, tracker_of
@@ -126,6 +131,49 @@ class ParkCommand(_Command):
         return Park()
 
 
+class StowCommand(_Command):
+    """Go to a stow position and stay there until `resume`; tracking that is on waits meanwhile."""
+
+    type: Literal["stow"]
+    position: StowName
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return Stow(self.position)
+
+
+class ResumeCommand(_Command):
+    """Leave the stow position that was commanded; tracking goes on if it was on."""
+
+    type: Literal["resume"]
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return Resume()
+
+
+class LockOutCommand(_Command):
+    """Somebody works on the machine: forbid every automatic motion, stows included."""
+
+    type: Literal["lock_out"]
+    name: str = Field(min_length=1, max_length=60, description="Who works there.", examples=["Ada"])
+    reason: str = Field("", max_length=200)
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return LockOut(self.name, self.reason)
+
+
+class ReleaseLockCommand(_Command):
+    """Nobody works on the machine any more; nothing moves because of it."""
+
+    type: Literal["release_lock"]
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return ReleaseLock()
+
+
 class ResetFaultCommand(_Command):
     """The cause is removed: clear the fault and hold."""
 
@@ -190,6 +238,10 @@ AnyCommand = Annotated[
     | ModeCommand
     | TrackCommand
     | ParkCommand
+    | StowCommand
+    | ResumeCommand
+    | LockOutCommand
+    | ReleaseLockCommand
     | ResetFaultCommand
     | ProveDirectionCommand
     | ProveScaleCommand

@@ -19,6 +19,7 @@ from app.tracker.strategy import Strategy
 from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, Output, TrackerId
 from app.web.api.mount_inputs import ActuatorIn, MountChange
 from app.web.api.orders import SenderDep, tracker_of
+from app.web.api.protection_inputs import ProtectionChange, kept_azimuths
 from app.web.deps import MachineDep, SnapshotDep
 from app.web.errors import NotAcceptable, NotFound
 
@@ -120,6 +121,7 @@ class TrackerChange(Input):
         None, description="When the tracker moves; given as a whole."
     )
     hybrid: HybridChange | None = Field(None, description="Correction by photo-sensor pairs.")
+    protection: ProtectionChange | None = Field(None, description="Wind, snow, light, stow positions.")
 
 
 class NewTracker(TrackerChange):
@@ -243,6 +245,8 @@ def _back_to_default(change: TrackerChange) -> dict[str, Any]:
         if one is not None
     }
     found: dict[str, Any] = {"drive": nulls} if nulls else {}
+    if kept := kept_azimuths(change.protection):
+        found["protection"] = kept
     for name, part, removed in (
         ("mount", change.mount, "rows"),
         ("azimuth", change.azimuth, "actuator"),
