@@ -14,7 +14,8 @@ from app.link.messages import CheckConnection, ConfigureTracker
 from app.tracker.axes import Axis
 from app.tracker.config import DriveKind, Parity
 from app.tracker.drive_check import CheckOutcome, DriveCheck, DriveReadings, RegisterReading
-from tests.fakes import FakeMachine, FakeReader, fake_app, serving
+from tests.fake_store import FakeReader
+from tests.fakes import FakeMachine, fake_app, serving
 from tests.web.desk import Desk
 
 T1 = "/trackers/T1"
