@@ -7,7 +7,7 @@ from app.tracker.reason import Reason
 from app.tracker.snapshot import EventKind
 
 REMOTE = ("mqtt ", "sunspec ")
-BY_TOKEN = "(token)"
+PROGRAM = "(token)"
 """What the actor of an order begins or ends with that came from another machine."""
 
 
@@ -23,7 +23,7 @@ def announce(mind: Mind, why: str) -> None:
 
 def announce_if_remote(mind: Mind, why: str) -> None:
     """Warn of a motion that another machine asked for."""
-    if mind.actor.startswith(REMOTE) or mind.actor.endswith(BY_TOKEN):
+    if mind.actor.startswith(REMOTE) or mind.actor.endswith(PROGRAM):
         announce(mind, why)
 
 
