@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from app.sun.events import next_rise
 from app.sun.position import Location, SunPath, SunPosition, sun_path, sun_position
 from app.sun.trigonometry import Array
-from app.tracker.activities.tracking import TWILIGHT_DEG, night_near_deg
+from app.tracker.activities.tracking import night_near_deg
 from app.tracker.config import NightBehaviour, Orientation, TrackerConfig
 from app.tracker.mode import Mode
 from app.tracker.mount import mode_direction
+from app.tracker.shelter import TWILIGHT_DEG
 
 NO_DAWN_FOR = timedelta(hours=1)
 

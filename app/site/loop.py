@@ -147,7 +147,7 @@ class TrackerLoop:
         """Return the tracker as everyone sees it; a broken one shows its fault."""
         if self.broken is not None and self._last_snapshot is not None:
             return _broken_snapshot(self._last_snapshot, at, self.broken)
-        shown = self.controller.snapshot(at)
+        shown = self.controller.snapshot(at, self._clock.now())
         if self._trouble is not None:
             shown = replace(shown, notices=(*shown.notices, self._trouble))
         self._last_snapshot = shown

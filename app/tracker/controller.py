@@ -136,9 +136,12 @@ class Controller:
         horn = mind.warning is not None and mind.feedback is not None
         return Tick(replace(command, horn=True) if horn else command, mind.drain())
 
-    def snapshot(self, at: datetime) -> Snapshot:
-        """Return everything known after the last tick, stamped `at`."""
-        return report.snapshot(self._mind, at)
+    def snapshot(self, at: datetime, now: datetime | None = None) -> Snapshot:
+        """Return everything known after the last tick, stamped `at`.
+
+        `now` is the machine's steady time, to which ages are counted; without it, that of the last tick.
+        """
+        return report.snapshot(self._mind, at, now or self._mind.now)
 
     def frame(self) -> tuple[float, ...]:
         """Return the last tick as one row of `recording.COLUMNS`; the first two columns are NaN."""

@@ -27,8 +27,8 @@ _INDEX = {kind: float(list(ActivityName).index(name)) for kind, name in NAMES.it
 _NO_ORIENTATION = (nan, nan)
 
 
-def snapshot(mind: Mind, at: datetime) -> Snapshot:
-    """Return everything known after the last tick, stamped `at`."""
+def snapshot(mind: Mind, at: datetime, now: datetime) -> Snapshot:
+    """Return everything known after the last tick, stamped `at`; ages are counted to `now`, steady time."""
     fresh = mind.seen.feedback if mind.seen else None
     faced = _faced(mind, fresh)
     sun_is_up = mind.sun is not None and sun_height_deg(mind.config, mind.sun) > 0.0
@@ -48,7 +48,7 @@ def snapshot(mind: Mind, at: datetime) -> Snapshot:
         setpoint=_setpoint(mind),
         measured=_pair(faced),
         last_measured=_pair(_faced(mind, mind.feedback)),
-        position_age_s=(mind.now - mind.feedback_at).total_seconds() if mind.feedback_at else None,
+        position_age_s=(now - mind.feedback_at).total_seconds() if mind.feedback_at else None,
         following_error_deg=_following_error_deg(mind),
         off_sun_deg=_off_deg(mind.config, _uncorrected(mind, fresh), mind.sun) if sun_is_up else None,
         in_position=_in_position(mind, fresh),

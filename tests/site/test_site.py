@@ -237,6 +237,14 @@ async def test_a_drive_that_hangs_holds_up_nobody_else() -> None:
     await plant.close()
 
 
+async def test_the_age_of_a_reading_grows_while_the_next_one_is_waited_for(plant: Plant) -> None:
+    await plant.forward(seconds=1.0)
+    before = plant.tracker().position_age_s
+    assert before is not None
+    plant.clock.advance(timedelta(seconds=0.7))
+    assert plant.tracker().position_age_s == pytest.approx(before + 0.7)
+
+
 async def test_a_command_that_is_not_taken_counts_as_no_contact() -> None:
     plant = await running(make_plant(wrap=WrappedDrive))
     await plant.forward(seconds=0.2)
