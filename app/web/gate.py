@@ -8,11 +8,9 @@ from http.cookies import CookieError, SimpleCookie
 from urllib.parse import parse_qs
 
 from fastapi import FastAPI
-from fastapi.routing import RouteContext, iter_route_contexts
 from starlette.datastructures import Headers
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
-from starlette.routing import Match, Mount
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.access.keeper import Credentials, Keeper
@@ -22,29 +20,21 @@ from app.access.sessions import is_proven
 from app.clock import Clock
 from app.web.errors import FOR_PROGRAMS, Busy, answer_to
 from app.web.route_permissions import PROVEN, ROUTES, STREAMS, TICKETED
+from app.web.routes import STATIC, Guarded, key_of
 from app.web.security import SAFE_METHODS
 from app.web.ui.paths import login_path, proof_path
 
-STATIC = "STATIC"
 WHILE_CLOSED = frozenset({STATIC, "GET /setup", "POST /setup", "GET /health", "GET /ready", "POST /theme"})
 STOPS_WINDOW, MOST_STOPS = timedelta(seconds=1), 10
 MOST_ADDRESSES = 1000
 OLD_PAGE = "This page is too old to change anything. Load it again, then repeat what you did."
 
 
-Guarded = tuple[tuple[str, RouteContext], ...]
-"""Every route with the path that the table knows it by."""
-
-
-class RouteUnguarded(Exception):
-    """A route has no entry in the table of permissions; the panel does not start."""
-
-
 class Gate:
     """Finds out who asks, turns away who may not, and lets lasting answers end when somebody must leave."""
 
     def __init__(
-        self, app: ASGIApp, *, panel_app: FastAPI, keeper: Keeper, clock: Clock, routes: Guarded
+        self, app: ASGIApp, *, panel_app: FastAPI, keeper: Keeper, clock: Clock, routes: tuple[Guarded, ...]
     ) -> None:
         self._app = app
         self._panel_app = panel_app
@@ -60,7 +50,7 @@ class Gate:
             return
         scope["app"] = self._panel_app
         try:
-            route, path_parameters = self._match(scope)
+            route, path_parameters = key_of(self._routes, scope)
             who = self._admit(scope, route, path_parameters)
         except (NotAllowed, ProofNeeded, SignInNeeded, Busy) as error:
             await _turn_away(scope, receive, send, error)
@@ -97,15 +87,6 @@ class Gate:
         check_origin(scope, self._keeper.csrf(given.session_id))
         if route in PROVEN and who.via is Via.SESSION and not is_proven(who.proven_at, self._clock.now()):
             raise ProofNeeded("This is of weight: type your password again, then repeat what you did.")
-
-    def _match(self, scope: Scope) -> tuple[str, dict[str, str]]:
-        """Return the key in the table and the path's parameters; for what no route takes an unlisted key."""
-        for key, route in self._routes:
-            match, child = _matches(route, scope)
-            if match is Match.FULL:
-                wanted = STATIC if key == STATIC else f"{_method(scope)} {key}"
-                return wanted, child.get("path_params", {})
-        return "", {}
 
     async def _pass(self, scope: Scope, receive: Receive, send: Send, who: Principal) -> None:
         await self._app(scope, receive, send)
@@ -146,43 +127,6 @@ class StopLimit:
             return False
         recent.append(now)
         return True
-
-
-def guarded_routes(app: FastAPI) -> Guarded:
-    """Return every route with its path, or raise `RouteUnguarded` for one that the table does not have."""
-    routes = tuple((_key(route), route) for route in iter_route_contexts(app.routes))
-    missing = sorted(
-        f"{method} {key}"
-        for key, route in routes
-        if key != STATIC
-        for method in _methods(route)
-        if f"{method} {key}" not in ROUTES
-    )
-    if missing:
-        raise RouteUnguarded(
-            f"app/web/route_permissions.py has no entry for {', '.join(missing)}: write each below the "
-            "permission that it needs."
-        )
-    return routes
-
-
-def _key(route: RouteContext) -> str:
-    return STATIC if isinstance(route.original_route, Mount) and route.path == "/s" else str(route.path)
-
-
-def _methods(route: RouteContext) -> set[str]:
-    return {method for method in route.methods or {"WS"} if method != "HEAD"}
-
-
-def _matches(route: RouteContext, scope: Scope) -> tuple[Match, Scope]:
-    found: tuple[Match, Scope] = route.matches(scope)
-    return found
-
-
-def _method(scope: Scope) -> str:
-    if scope["type"] == "websocket":
-        return "WS"
-    return "GET" if scope["method"] == "HEAD" else str(scope["method"])
 
 
 def credentials(scope: Scope, route: str) -> Credentials:

@@ -27,8 +27,9 @@ from app.web.api.router import api_router
 from app.web.assets import Assets
 from app.web.deps import Panel
 from app.web.documented import DocumentedApp
-from app.web.gate import Gate, guarded_routes
+from app.web.gate import Gate
 from app.web.hub import Hub
+from app.web.routes import guarded_routes
 from app.web.security import LARGEST_BODY, Guard, SecurityHeaders, Uploads
 from app.web.server import (
     FAREWELL_S,
@@ -78,7 +79,7 @@ def create_app(
     app.add_middleware(Uploads)
     app.add_middleware(RequestBodyLimitMiddleware, max_body_size=LARGEST_BODY)
     app.add_middleware(GZipMiddleware, minimum_size=SMALLEST_COMPRESSED)
-    app.add_middleware(Gate, panel_app=app, keeper=keeper, clock=clock, routes=guarded_routes(app))
+    app.add_middleware(Gate, panel_app=app, keeper=keeper, clock=clock, routes=guarded_routes(app.routes))
     app.add_middleware(Guard)
     app.add_middleware(SecurityHeaders)
     return app

@@ -197,7 +197,7 @@ async def test_frames_come_as_columns_csv_and_parquet(api: httpx.AsyncClient) ->
 
 async def test_commissioning_record_comes_as_json_page_and_pdf(api: httpx.AsyncClient) -> None:
     record = (await api.get("/trackers/T1/record")).json()
-    assert record["home"]["by"] == "this computer"
+    assert record["home"]["by"] == "operator"
     assert [step["name"] for step in record["steps"]] == ["location", "clock", "homing", "mode", "run"]
     page = (await api.get("/trackers/T1/record", params={"format": "html"})).text
     assert "North field" in page
