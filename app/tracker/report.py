@@ -245,7 +245,17 @@ def _notices(mind: Mind) -> tuple[Reason, ...]:
         (not mind.capabilities.verified, _UNVERIFIED),
     )
     told = () if mind.aftermath is None else (mind.aftermath,)
+    if mind.memory.home is None and mind.memory.home_lost:
+        told = (*told, _zero_lost(mind))
     return told + doubts(mind) + tuple(reason for present, reason in found if present)
+
+
+def _zero_lost(mind: Mind) -> Reason:
+    return Reason(
+        "home_lost",
+        f"{mind.config.name} has no trusted zero any more: {mind.memory.home_lost}",
+        "Compare the panel with the angles shown, then set the zero again in step 3, Homing.",
+    )
 
 
 def _show(showing: Showing) -> ShowProgress:

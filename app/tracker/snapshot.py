@@ -6,6 +6,7 @@ from enum import StrEnum
 from typing import Any
 
 from app.sun.position import Location, SunPosition
+from app.tracker.alarm_words import AlarmCounts, AlarmNow
 from app.tracker.config import Orientation
 from app.tracker.hybrid import HybridPhase
 from app.tracker.mode import Mode
@@ -230,6 +231,14 @@ class EventKind(StrEnum):
     MOTION_ANNOUNCED = "motion_announced"
     LOCKED_OUT = "locked_out"
     LOCK_RELEASED = "lock_released"
+    ALARM_RAISED = "alarm_raised"
+    ALARM_RETURNED = "alarm_returned"
+    ALARM_ACKNOWLEDGED = "alarm_acknowledged"
+    ALARM_SHELVED = "alarm_shelved"
+    ALARM_UNSHELVED = "alarm_unshelved"
+    NOTIFICATIONS_SET = "notifications_set"
+    NOTIFICATION_TESTED = "notification_tested"
+    JOURNAL_PRUNED = "journal_pruned"
 
 
 @dataclass(frozen=True, slots=True)
@@ -260,7 +269,8 @@ class ClockState:
 class SiteSnapshot:
     """The whole site at one instant, full every time.
 
-    `boot_id` changes when the machine restarts; `sequence` grows by one with every snapshot.
+    `boot_id` changes when the machine restarts; `sequence` grows by one with every snapshot. `alarms` are at
+    most 50, the most urgent first; `alarm_counts` tells of all.
     """
 
     boot_id: str
@@ -273,3 +283,5 @@ class SiteSnapshot:
     sun: SunPosition | None
     trackers: tuple[Snapshot, ...]
     weather: WeatherNow | None = None
+    alarms: tuple[AlarmNow, ...] = ()
+    alarm_counts: AlarmCounts = AlarmCounts()
