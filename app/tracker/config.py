@@ -8,6 +8,7 @@ from app.sun.position import Algorithm
 from app.tracker.axes import AZIMUTH_DEFAULT, ELEVATION_DEFAULT, Axis, AxisConfig
 from app.tracker.orientation import Orientation as Orientation
 from app.tracker.protections.config import PROTECTED, ProtectionConfig
+from app.tracker.protections.machine_config import GUARDED, MachineProtection
 from app.tracker.strategy import DEADBAND, NO_HYBRID, HybridConfig, Strategy
 
 LEVEL = Orientation(180.0, 90.0)
@@ -214,6 +215,7 @@ class TrackerConfig:
     hybrid: HybridConfig = NO_HYBRID
     mount: MountConfig = MountConfig()
     protection: ProtectionConfig = PROTECTED
+    machine: MachineProtection = GUARDED
 
     def axis(self, axis: Axis) -> AxisConfig:
         """Return the configuration of one axis."""

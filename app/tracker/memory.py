@@ -8,7 +8,7 @@ from app.sun.position import Location
 from app.tracker.config import DriveConfig, Orientation, TrackerConfig
 from app.tracker.mode import Mode
 from app.tracker.proofs import Proofs
-from app.tracker.protections.words import MaintenanceLock, Protection, StowName
+from app.tracker.protections.words import MaintenanceLock, Protection, ServiceMode, StowName
 from app.tracker.weather import Quantity
 
 
@@ -93,6 +93,7 @@ class TrackerMemory:
     protection: Protection | None = None
     sensors: tuple[Quantity, ...] = ()
     lock: MaintenanceLock | None = None
+    service: ServiceMode | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -100,7 +100,8 @@ class Feedback:
 
     `boot_count` changes when the drive has restarted; `fault_code` is zero without a fault;
     `request_done` is the number of the last request that the drive completed, and `request_failed`
-    says that it could not do it. `light` is None where the drive has no photo-sensors.
+    says that it could not do it. `light` is None where the drive has no photo-sensors, `supply_v` where it
+    does not tell its voltage; `local` says that the switch at the cabinet is on local.
     """
 
     azimuth: AxisFeedback
@@ -112,6 +113,8 @@ class Feedback:
     request_done: int = 0
     request_failed: bool = False
     light: LightReading | None = None
+    local: bool = False
+    supply_v: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

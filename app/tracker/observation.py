@@ -5,6 +5,7 @@ from datetime import datetime
 
 from app.sun.position import Location, SunPosition
 from app.tracker.motion import Feedback
+from app.tracker.protections.words import LinkQuality
 from app.tracker.weather import NOTHING_SENSED, Sensed
 
 
@@ -15,7 +16,8 @@ class Observation:
     `now` is the machine's steady time: leases, time-outs and speeds are judged on it. `site_time` is what
     the site's clock shows: it stamps events. `sun` is None while location or clock are unknown; `dawn`
     is the direction of the next sunrise (None: no sunrise ahead). `feedback` is None if this read failed.
-    `location_revision` is `SiteState.location_revision`: confirmations carry it.
+    `location_revision` is `SiteState.location_revision`: confirmations carry it. `link` is how the
+    drive's replies came of late, None while too few were counted.
     """
 
     now: datetime
@@ -27,3 +29,4 @@ class Observation:
     location: Location | None
     location_revision: int = 0
     weather: Sensed = NOTHING_SENSED
+    link: LinkQuality | None = None

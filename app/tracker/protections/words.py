@@ -75,3 +75,30 @@ class MaintenanceLock:
     by: str
     since: datetime
     reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceMode:
+    """Somebody serves the machine: it moves slowly, and only while the area was said to be clear.
+
+    Instants are by the site's clock; the word that the area is clear counts until `clear_until` (None: it was
+    not given, or a restart has ended it).
+    """
+
+    name: str
+    by: str
+    since: datetime
+    clear_until: datetime | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class LinkQuality:
+    """How the drive's replies come: 99 of 100 within `p99_s`, where `allowed_s` are granted."""
+
+    p99_s: float
+    allowed_s: float
+
+    @property
+    def slow(self) -> bool:
+        """Return whether replies take more than half of the time that they may."""
+        return self.p99_s > self.allowed_s / 2.0
