@@ -169,10 +169,12 @@ class Controller:
             lose_home(mind, Reason("drive_changed", "another drive was configured."))
         mind.config, mind.capabilities = config, capabilities
         mind.setpoint, mind.target, mind.watches = NOWHERE, None, {}
+        mind.corrected = None
 
     def set_pointing(self, pointing: Pointing) -> None:
-        """Take over a correction from sightings."""
+        """Take over a correction from sightings; what the light sensors found goes with the old one."""
         self._mind.remember(pointing=pointing)
+        self._mind.corrected = None
 
     def confirm(self, step: StepName, confirmation: Confirmation) -> None:
         """Remember that the operator said a step is right."""

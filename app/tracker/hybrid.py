@@ -25,6 +25,8 @@ NEAR_DEG = 2.0
 """And so near the other one, so that it does not turn the pair aside."""
 LARGEST_RATIO = 0.5
 LONGEST_STEP_S = 2.0
+LONGEST_GAP_S = 5.0
+"""After a longer time without tracking a correction has decayed as it does in the dark."""
 PATIENCE = timedelta(seconds=60)
 FOLLOWING = {
     Mode.FIXED: (False, False),
@@ -80,8 +82,11 @@ def correct(
 
     `sun_target` are the computed axis angles of the sun, which the sensors are compared with; `target` is
     where the strategy wants the axes. A step program is never corrected: its panel need not face the sun.
+    While nothing was tracked, after a Stop or over night, `before` has decayed as in the dark.
     """
     elapsed_s = 0.0 if before is None else (now - before.at).total_seconds()
+    if before is not None and elapsed_s > LONGEST_GAP_S:
+        before, elapsed_s = _after_pause(before, config.hybrid, elapsed_s), 0.0
     off_deg = _off_place(before, config, sun_target, feedback)
     used = config.hybrid.enabled and not isinstance(config.strategy, Stepped)
     axes = []
@@ -125,6 +130,15 @@ def axis_correction(
     since = before.at_bound_since or now
     phase = HybridPhase.DOUBTED if now - since >= PATIENCE else HybridPhase.CORRECTING
     return AxisCorrection(degrees, phase, since)
+
+
+def _after_pause(before: Corrected, config: HybridConfig, elapsed_s: float) -> Corrected:
+    """Return corrections that nobody looked after for a time; patience at the bound begins anew."""
+    azimuth, elevation = (
+        replace(axis, degrees=_decayed(axis.degrees, config, elapsed_s), at_bound_since=None)
+        for axis in (before.azimuth, before.elevation)
+    )
+    return replace(before, azimuth=azimuth, elevation=elevation)
 
 
 def _ratio(pair: LightPair | None, threshold_wm2: float) -> float | None:

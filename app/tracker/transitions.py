@@ -104,7 +104,7 @@ def fail(mind: Mind, reason: Reason) -> None:
 
 def lose_home(mind: Mind, reason: Reason) -> None:
     """Stop believing the zero, and whatever needed it."""
-    mind.zeroed = frozenset()
+    mind.zeroed, mind.corrected = frozenset(), None
     if mind.memory.home is None:
         return
     mind.remember(home=None, home_lost=reason.message)

@@ -12,7 +12,7 @@ from app.drives.sunlight import Sunlight
 from app.show.rehearsal import Rehearsal
 from app.sun.position import Location, SunPosition
 from app.tracker.axes import Axis
-from app.tracker.commands import SelectMode, Track
+from app.tracker.commands import SelectMode, Stop, Track
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.hybrid import AxisCorrection, HybridPhase, axis_correction
 from app.tracker.memory import Pointing
@@ -115,6 +115,52 @@ def test_without_the_correction_nothing_is_shown_and_nothing_added() -> None:
     assert sunny.rehearsal.controller.snapshot(sunny.rehearsal.site_time).hybrid is None
     assert sunny.rehearsal.controller.frame()[10:12] == (0.0, 0.0)
     assert sunny.rehearsal.drive.observe().light is None
+
+
+def test_after_a_stop_the_correction_has_decayed_by_the_time_that_nothing_was_tracked() -> None:
+    sunny = Sunny()
+    sunny.forward(timedelta(minutes=10))
+    found_deg = sunny.correction[0]
+    assert found_deg > 0.8
+    sunny.rehearsal.ask(Stop())
+    sunny.forward(timedelta(minutes=15))
+    sunny.rehearsal.ask(Track())
+    sunny.forward(SECOND)
+    assert sunny.correction[0] == pytest.approx(found_deg / 2.718, rel=0.1)
+    sunny.forward(timedelta(minutes=10))
+    assert sunny.correction[0] == pytest.approx(found_deg, abs=0.05)
+
+
+def test_without_decay_a_stop_leaves_the_correction_as_it_is() -> None:
+    sunny = Sunny(replace(MISALIGNED, decay_s=0.0))
+    sunny.forward(timedelta(minutes=10))
+    found = sunny.correction
+    sunny.rehearsal.ask(Stop())
+    sunny.forward(timedelta(minutes=15))
+    sunny.rehearsal.ask(Track())
+    sunny.forward(SECOND)
+    assert sunny.correction == found
+
+
+@pytest.mark.parametrize("decay_s", [0.0, 900.0])
+def test_a_new_zero_forgets_the_correction_that_was_found_from_the_old_one(decay_s: float) -> None:
+    sunny = Sunny(replace(MISALIGNED, decay_s=decay_s))
+    sunny.forward(timedelta(minutes=10))
+    assert sunny.correction[0] > 0.8
+    sunny.rehearsal.ask(Stop())
+    sunny.forward(timedelta(seconds=5))
+    sunny.rehearsal.home()
+    sunny.rehearsal.ask(Track())
+    sunny.forward(SECOND)
+    assert sunny.correction == (0.0, 0.0)
+
+
+def test_a_new_view_of_the_sun_forgets_what_the_sensors_found_before_it() -> None:
+    sunny = Sunny()
+    sunny.forward(timedelta(minutes=10))
+    sunny.rehearsal.controller.set_pointing(Pointing(1.0, -0.6))
+    sunny.forward(SECOND)
+    assert sunny.correction == (0.0, 0.0)
 
 
 readings = st.one_of(st.floats(-1e9, 1e9), st.sampled_from([0.0, float("nan"), float("inf"), -float("inf")]))

@@ -39,7 +39,7 @@ def set_zero(mind: Mind, command: SetZero) -> None:
                 f"Name one or more of these: {', '.join(mind.config.mount.axes)}.",
             )
         )
-    mind.setpoint = NOWHERE
+    mind.setpoint, mind.corrected = NOWHERE, None
     until = mind.now + ZERO_PATIENCE
     mind.activity = Zeroing(axes, axes, mind.next_request(), until, mind.actor)
 
@@ -47,7 +47,7 @@ def set_zero(mind: Mind, command: SetZero) -> None:
 def home(mind: Mind) -> None:
     """Begin the search for the origin switches, or raise `CommandRejected`. The old zero is given up."""
     demand(mind, Action.HOME)
-    mind.setpoint = NOWHERE
+    mind.setpoint, mind.corrected = NOWHERE, None
     mind.zeroed = frozenset()
     mind.remember(home=None, home_lost="the search for the origin switches was not finished.")
     mind.activity = Homing(mind.next_request(), mind.now + _homing_time(mind), mind.actor)
