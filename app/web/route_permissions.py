@@ -75,6 +75,7 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/mount/kind
         GET /trackers/{tracker_id}/proofs
         GET /trackers/{tracker_id}/record
+        GET /trackers/{tracker_id}/protections
         GET /trackers/{tracker_id}/settings
         GET /trackers/{tracker_id}/show
         GET /trackers/{tracker_id}/shows/{show_id}
@@ -143,7 +144,11 @@ _TABLE: dict[Permission, str] = {
     """,
     Permission.OPERATE: """
         POST /trackers/{tracker_id}/move
+        POST /trackers/{tracker_id}/lock
         POST /trackers/{tracker_id}/park
+        POST /trackers/{tracker_id}/release-lock
+        POST /trackers/{tracker_id}/resume
+        POST /trackers/{tracker_id}/stow
         POST /trackers/{tracker_id}/reset-fault
         POST /trackers/{tracker_id}/step
         POST /trackers/{tracker_id}/track
@@ -180,6 +185,7 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/proofs/scale
         POST /trackers/{tracker_id}/proofs/scale/answer
         POST /trackers/{tracker_id}/proofs/stop
+        POST /trackers/{tracker_id}/protections
         POST /trackers/{tracker_id}/settings
         POST /trackers/{tracker_id}/settings/remove
         POST /trackers/{tracker_id}/strategy

@@ -34,7 +34,7 @@ async def test_a_report_of_the_weather_is_shown_with_its_age(
         text = (await panel.get(page)).text
         assert "7.2 m/s" in text
         assert "−3.4 °C" in text
-        assert "Nothing moves because of the weather yet" in text
+        assert "Wind, snow and light act on each tracker" in text
         assert "Humidity" not in text, "what the station does not measure is not shown"
 
 

@@ -85,7 +85,7 @@ FORMATS: dict[str, Callable[[Any, str], str]] = {
     "percent": lambda value, _: f"{decimals(value, 0)} %",
     "hpa": lambda value, _: f"{decimals(value, 0)} hPa",
     "mm": lambda value, _: f"{decimals(value, 1)} mm",
-    "kg": lambda value, _: f"{decimals(value, 0)} kg",
+    "kg": lambda value, _: f"{decimals(value, 1)} kg",
     "freshness": lambda value, _: "Stale, not used" if value else "Current",
     "factor": lambda value, _: f"{value:,.0f} ×".replace(",", " "),
     "clock": lambda value, zone: local(value, zone, "%H:%M:%S"),

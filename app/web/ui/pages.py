@@ -7,6 +7,7 @@ from starlette.responses import Response
 from app.web.contexts import Outcome, ProblemPage
 from app.web.errors import Problem
 from app.web.ui import (
+    account,
     accuracy,
     clock,
     drive,
@@ -18,12 +19,15 @@ from app.web.ui import (
     mount,
     overview,
     papers,
+    people,
     proofs,
+    protections,
     record,
     recordings,
     run,
     settings,
     show,
+    sign_in,
     simulate,
     site,
     step_programs,
@@ -32,6 +36,7 @@ from app.web.ui import (
     study,
     sun_check,
     theme,
+    token_page,
     tracker,
     wizard,
 )
@@ -41,6 +46,10 @@ from app.web.ui.render import environment, page, wants_block
 ROUTERS = (
     overview.router,
     theme.router,
+    sign_in.router,
+    account.router,
+    people.router,
+    token_page.router,
     tracker.router,
     location.router,
     clock.router,
@@ -53,6 +62,7 @@ ROUTERS = (
     record.router,
     settings.router,
     strategy.router,
+    protections.router,
     mount.router,
     drive.router,
     proofs.router,

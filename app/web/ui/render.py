@@ -15,8 +15,9 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from app.tracker.mounts.abilities import abilities
 from app.web.contexts import Context
-from app.web.deps import panel
+from app.web.deps import panel, principal
 from app.web.ui import formats
+from app.web.ui.allowed import shut
 
 TEMPLATES = Path(__file__).resolve().parents[3] / "templates"
 FILTERS = {
@@ -62,12 +63,12 @@ def world() -> Markup:
 
 
 def reach(root: object, path: str) -> Any:
-    """Return what lies at a dotted path, None where something on the way is not known."""
+    """Return what lies at a dotted path, None where something there is not known; a number is a place."""
     value: Any = root
     for name in path.split("."):
         if value is None:
             return None
-        value = getattr(value, name)
+        value = value[int(name)] if isinstance(value, tuple) else getattr(value, name)
     return value
 
 
@@ -101,6 +102,7 @@ def page(request: Request, context: Context, *, block: str | None = None, status
         text = render_block(env, context.template, block, given)
     else:
         text = env.get_template(context.template).render(given)
+    text = shut(text, principal(request), request.app.state.routes)
     return HTMLResponse(text, status, VARY)
 
 

@@ -1,0 +1,90 @@
+"""The protections page: what holds now, stows, the maintenance lock, and what an engineer sets."""
+
+from dataclasses import replace
+from typing import Annotated
+
+from fastapi import APIRouter, Form
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.link.messages import ConfigureTracker, TrackerDetail
+from app.tracker.commands import LockOut, ReleaseLock, Resume, Stow
+from app.tracker.protections.words import StowName
+from app.web.deps import MachineDep
+from app.web.errors import NotAcceptable
+from app.web.protection_contexts import ProtectionsPage
+from app.web.ui import protection_forms as forms
+from app.web.ui.forms import Typed
+from app.web.ui.frame import tracker_frame
+from app.web.ui.orders import PressDep
+from app.web.ui.render import page
+from app.web.ui.wizard import tracker_of
+
+router = APIRouter(prefix="/trackers/{tracker_id}")
+
+
+@router.get("/protections")
+async def protections(request: Request, tracker_id: str, machine: MachineDep) -> Response:
+    """Show what holds and what is set."""
+    tracker = tracker_of(await machine.detail(), tracker_id)
+    return _answer(request, tracker, Typed(forms.texts(tracker.state.config.protection)))
+
+
+@router.post("/protections")
+async def save(request: Request, tracker_id: str, press: PressDep, machine: MachineDep) -> Response:
+    """Save all settings, or none of them."""
+    tracker = tracker_of(await machine.detail(), tracker_id)
+    form = await request.form()
+    typed = Typed({name: str(form.get(name, "")) for name in forms.names()})
+    wanted = forms.read(typed)
+    if wanted is None:
+        return _answer(press.request, tracker, typed, status=422)
+    await press.send(ConfigureTracker(replace(tracker.state.config, protection=wanted)))
+    return press.answer("The protections are saved.")
+
+
+@router.post("/stow")
+async def stow(tracker_id: str, press: PressDep, position: Annotated[str, Form(max_length=20)]) -> Response:
+    """Go to a stow position and stay there."""
+    if position not in list(StowName):
+        raise NotAcceptable("Choose one of the stow positions.")
+    await press.send(Stow(StowName(position)), tracker_id)
+    return press.answer("The panel goes to the stow position and stays there until you resume.")
+
+
+@router.post("/resume")
+async def resume(tracker_id: str, press: PressDep) -> Response:
+    """Leave the stow position that was commanded."""
+    await press.send(Resume(), tracker_id)
+    return press.answer("The stow is over.")
+
+
+@router.post("/lock")
+async def lock(
+    tracker_id: str,
+    press: PressDep,
+    name: Annotated[str, Form(max_length=60)] = "",
+    reason: Annotated[str, Form(max_length=200)] = "",
+) -> Response:
+    """Forbid every automatic motion."""
+    await press.send(LockOut(name, reason), tracker_id)
+    return press.answer("Locked: nothing moves automatically, whatever the weather.")
+
+
+@router.post("/release-lock")
+async def release_lock(tracker_id: str, press: PressDep) -> Response:
+    """Forget the lock."""
+    await press.send(ReleaseLock(), tracker_id)
+    return press.answer("The lock is released; nothing moves until it is commanded.")
+
+
+def _answer(request: Request, tracker: TrackerDetail, typed: Typed, *, status: int = 200) -> Response:
+    context = ProtectionsPage(
+        frame=tracker_frame(request, tracker.state.config.tracker_id, "Protections"),
+        form=typed.form(forms.names()),
+        groups=forms.groups(),
+        facings=forms.FACINGS,
+        stows=forms.STOW_TITLES,
+        fixed=forms.fixed(),
+    )
+    return page(request, context, block="form", status=status)

@@ -1,0 +1,119 @@
+"""The protections page: what is set, what is refused with what was typed, stows and the maintenance lock."""
+
+from collections.abc import AsyncIterator
+
+import httpx
+import pytest
+
+from app.tracker.commands import LockOut, ReleaseLock, Resume, Stow
+from app.tracker.protections.config import PROTECTED, ProtectionConfig, StowPlace
+from app.tracker.protections.words import Facing, Reaction, StowName
+from app.web.ui.protection_forms import texts
+from tests.fakes import FakeMachine, fake_app, serving
+
+ROOT = "/trackers/T1"
+PAGE = f"{ROOT}/protections"
+API = "/api/v1/trackers/T1"
+
+
+@pytest.fixture
+def machine() -> FakeMachine:
+    return FakeMachine()
+
+
+@pytest.fixture
+async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
+    async with serving(fake_app(machine)) as browser:
+        yield browser
+
+
+def kept(machine: FakeMachine) -> ProtectionConfig:
+    found = machine.trackers["T1"].config.protection
+    assert isinstance(found, ProtectionConfig)
+    return found
+
+
+async def test_the_page_is_reached_from_the_settings_and_tells_range_and_default(
+    client: httpx.AsyncClient,
+) -> None:
+    assert PAGE in (await client.get(f"{ROOT}/settings")).text
+    page = (await client.get(PAGE)).text
+    assert "The fastest wind of 3 s. 1 to 60, usual 17." in page
+    assert "Without a break. 1 to 86400, usual 600." in page
+
+
+async def test_what_the_page_shows_is_what_it_saves(client: httpx.AsyncClient, machine: FakeMachine) -> None:
+    await client.post(PAGE, data=texts(PROTECTED))
+    assert kept(machine) == PROTECTED
+    changed = {
+        "wind_gust_mps": "14,5",
+        "wind_bad": "hold",
+        "wind_facing": "back",
+        "snow_enabled": "",
+        "hail_stow_elevation": "20",
+        "hail_stow_azimuth": "270",
+        "warning_s": "8",
+    }
+    await client.post(PAGE, data=texts(PROTECTED) | changed)
+    saved = kept(machine)
+    assert saved.wind.gust_mps == 14.5
+    assert (saved.wind.bad, saved.wind.facing) == (Reaction.HOLD, Facing.BACK)
+    assert not saved.snow.enabled
+    assert saved.stows.hail == StowPlace(20.0, 270.0)
+    assert saved.stows.wind == StowPlace(90.0)
+    assert saved.warning_s == 8.0
+
+
+@pytest.mark.parametrize(
+    ("typed", "sentence"),
+    [
+        ({"wind_gust_mps": "fast"}, "Wind: stow at a gust of: type a number"),
+        ({"wind_gust_mps": "99"}, "must lie between 1 and 60"),
+        ({"wind_hysteresis_mps": "18"}, "must be smaller than both wind limits"),
+        ({"snow_hysteresis_kg": "5"}, "must be smaller than the load"),
+        ({"light_bad": "stow"}, "stows nothing: choose ignore, warn or hold"),
+        ({"wind_bad": "pray"}, "what a bad sensor does"),
+        ({"wind_facing": "nose"}, "what is turned into the wind"),
+        ({"snow_stow_azimuth": "400"}, "Snow, azimuth must lie between 0 and 360"),
+    ],
+)
+async def test_what_cannot_be_is_refused_and_stays_in_the_form(
+    client: httpx.AsyncClient, machine: FakeMachine, typed: dict[str, str], sentence: str
+) -> None:
+    answer = await client.post(PAGE, data=texts(PROTECTED) | {"wind_resume_after_s": "777"} | typed)
+    assert answer.status_code == 422
+    assert sentence in answer.text
+    assert 'value="777"' in answer.text
+    assert not machine.orders
+
+
+async def test_the_keys_give_the_commands(client: httpx.AsyncClient, machine: FakeMachine) -> None:
+    await client.post(f"{ROOT}/stow", data={"position": "hail"})
+    await client.post(f"{ROOT}/resume")
+    await client.post(f"{ROOT}/lock", data={"name": "Ada", "reason": "new bearing"})
+    await client.post(f"{ROOT}/release-lock")
+    given = [order.command for order in machine.orders]
+    assert given == [Stow(StowName.HAIL), Resume(), LockOut("Ada", "new bearing"), ReleaseLock()]
+    assert (await client.post(f"{ROOT}/stow", data={"position": "moon"})).status_code == 422
+
+
+async def test_the_api_does_what_the_page_does(client: httpx.AsyncClient, machine: FakeMachine) -> None:
+    for body in (
+        {"type": "stow", "position": "cleaning"},
+        {"type": "resume"},
+        {"type": "lock_out", "name": "Ada"},
+        {"type": "release_lock"},
+    ):
+        assert (await client.post(f"{API}/commands", json=body)).status_code == 202
+    given = [order.command for order in machine.orders]
+    assert given == [Stow(StowName.CLEANING), Resume(), LockOut("Ada"), ReleaseLock()]
+    change = {"protection": {"wind": {"gust_mps": 12.0}, "stows": {"snow": {"azimuth_deg": 90.0}}}}
+    answer = await client.patch(API, json=change)
+    assert answer.status_code == 200
+    assert kept(machine).wind.gust_mps == 12.0
+    assert kept(machine).stows.snow == StowPlace(0.0, 90.0)
+    await client.patch(API, json={"protection": {"stows": {"snow": {"azimuth_deg": None}}}})
+    assert kept(machine).stows.snow == StowPlace(0.0)
+    wrong = await client.patch(API, json={"protection": {"light": {"bad": "stow"}}})
+    assert wrong.status_code == 422
+    assert "stows nothing" in wrong.text
