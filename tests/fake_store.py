@@ -1,6 +1,8 @@
 """A store that lives in memory."""
 
-from app.store.store import JournalEntry, JournalFilter, PlannedShow
+from app.audit.chain import FIRST
+from app.audit.entry import Entry, Sealed, seal
+from app.store.store import AuditFilter, JournalEntry, JournalFilter, PlannedShow
 from app.tracker.memory import (
     SiteState,
     TrackerState,
@@ -22,6 +24,24 @@ class FakeReader:
             recording("day-1", RecordingKind.SIMULATION, "A simulated day", 24.0, 86400.0),
         )
         self.heads = {head.recording_id: head for head in heads}
+        self.sealed = [
+            seal(
+                Entry(
+                    heads[0].began_at,
+                    1000,
+                    "fake-boot",
+                    "trusted",
+                    "ada",
+                    "session",
+                    "127.0.0.1",
+                    "stop",
+                    "T1",
+                    "{}",
+                ),
+                1,
+                FIRST,
+            )
+        ]
         self.shows: dict[str, PlannedShow] = {}
         self.entries = [
             JournalEntry(
@@ -45,6 +65,13 @@ class FakeReader:
         """Return entries, newest first."""
         found = [entry for entry in reversed(self.entries) if _matches(entry, wanted)]
         return found[: wanted.limit]
+
+    def audit(self, wanted: AuditFilter) -> list[Sealed]:
+        """Return audit entries, newest first; with `after` oldest first."""
+        found = [one for one in self.sealed if wanted.after is None or one.seq > wanted.after]
+        ordered = found if wanted.after is not None else [*reversed(found)]
+        kept = [one for one in ordered if wanted.before is None or one.seq < wanted.before]
+        return kept[: wanted.limit]
 
     def show(self, show_id: str) -> PlannedShow | None:
         """Return the plan of a show."""

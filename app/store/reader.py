@@ -7,11 +7,21 @@ from typing import Any
 
 from sqlalchemy import Connection, Engine, Row, Select, select
 
-from app.store import tables
+from app.alarms.alarm import Alarm
+from app.audit.entry import Sealed
+from app.store import alarming, auditing, tables
 from app.store.chunks import ChunkDamaged, decode_all
 from app.store.connections import require_revision, transaction
 from app.store.documents import EVENT_DATA, PLAN, RECORDING, SITE, TRACKER
-from app.store.store import JournalEntry, JournalFilter, PlannedShow, StoreFailed
+from app.store.store import (
+    AlarmFilter,
+    AuditFilter,
+    JournalEntry,
+    JournalFilter,
+    KeptAlarm,
+    PlannedShow,
+    StoreFailed,
+)
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.recording import Frames, RecordingInfo, RecordingKind
 from app.tracker.snapshot import Event, EventKind
@@ -60,6 +70,24 @@ class DatabaseReader:
         with self._read() as connection:
             rows = connection.execute(_journal_query(wanted)).all()
         return [_entry(row) for row in rows]
+
+    def audit(self, wanted: AuditFilter) -> list[Sealed]:
+        """Return audit entries, newest first; with `after` oldest first."""
+        with self._read() as connection:
+            rows = connection.execute(auditing.query(wanted)).mappings().all()
+        return [auditing.sealed(row) for row in rows]
+
+    def standing_alarms(self) -> list[Alarm]:
+        """Return the alarms that stood when they were last stored."""
+        with self._read() as connection:
+            rows = connection.execute(alarming.standing()).all()
+        return [alarming.kept(row).alarm for row in rows]
+
+    def alarm_history(self, wanted: AlarmFilter) -> list[KeptAlarm]:
+        """Return alarms, those that stand and those that ended, newest first."""
+        with self._read() as connection:
+            rows = connection.execute(alarming.history(wanted)).all()
+        return [alarming.kept(row) for row in rows]
 
     def show(self, show_id: str) -> PlannedShow | None:
         """Return the plan of a show."""
@@ -132,6 +160,15 @@ def _journal_query(wanted: JournalFilter) -> Select[Any]:
         query = query.where(columns.tracker_id == wanted.tracker_id)
     if wanted.kinds:
         query = query.where(columns.kind.in_(wanted.kinds))
+    if wanted.actor is not None:
+        query = query.where(columns.actor == wanted.actor)
+    if wanted.text is not None:
+        query = query.where(columns.message.icontains(wanted.text, autoescape=True))
+    return _within(query, wanted)
+
+
+def _within(query: Select[Any], wanted: JournalFilter) -> Select[Any]:
+    columns = tables.events.c
     if wanted.since is not None:
         query = query.where(columns.at >= wanted.since)
     if wanted.until is not None:

@@ -1,10 +1,13 @@
 """What the machine and the panel ask of the store, whichever database is behind it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Protocol
 
+from app.alarms.alarm import Alarm
+from app.audit.entry import Entry, Sealed
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.programs.show import ShowPlan
 from app.tracker.recording import Frames, RecordingInfo, RecordingKind
@@ -36,6 +39,7 @@ class JournalFilter:
     """Which entries: newest first, `before` is the cursor (a number), all others narrow.
 
     `after` is the cursor the other way: with it the oldest entries behind that number, oldest first.
+    `actor` is who did it; `text` stands anywhere in the message, in capitals or small letters.
     """
 
     before: int | None = None
@@ -45,6 +49,43 @@ class JournalFilter:
     since: datetime | None = None
     until: datetime | None = None
     after: int | None = None
+    actor: str | None = None
+    text: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class KeptAlarm:
+    """One alarm from its raising to its end (None: it stands), with its place in the history (0: new)."""
+
+    alarm: Alarm
+    ended_at: datetime | None
+    number: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class AlarmFilter:
+    """Which alarms of the history: the newest first, `before` is the cursor (a number), all others narrow."""
+
+    before: int | None = None
+    limit: int = 100
+    tracker_id: str | None = None
+    priorities: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class AuditFilter:
+    """Which entries: newest first, `before` is the cursor (a number), all others narrow.
+
+    `after` is the cursor the other way: with it the oldest entries behind that number, oldest first.
+    """
+
+    before: int | None = None
+    after: int | None = None
+    limit: int = 100
+    actor: str | None = None
+    object: str | None = None
+    since: datetime | None = None
+    until: datetime | None = None
 
 
 class Reader(Protocol):
@@ -58,6 +99,15 @@ class Reader(Protocol):
 
     def journal(self, wanted: JournalFilter) -> list[JournalEntry]:
         """Return entries, newest first; with `after` oldest first."""
+
+    def audit(self, wanted: AuditFilter) -> list[Sealed]:
+        """Return audit entries, newest first; with `after` oldest first."""
+
+    def standing_alarms(self) -> list[Alarm]:
+        """Return the alarms that stood when they were last stored."""
+
+    def alarm_history(self, wanted: AlarmFilter) -> list[KeptAlarm]:
+        """Return alarms, those that stand and those that ended, newest first."""
 
     def show(self, show_id: str) -> PlannedShow | None:
         """Return the plan of a show."""
@@ -77,6 +127,12 @@ class Reader(Protocol):
 class Writer(Reader, Protocol):
     """The machine's side: the only writer. Every call is one transaction, on disk when it returns."""
 
+    def audited(self, entry: Entry, *, only_changes: bool = False) -> AbstractContextManager[None]:
+        """Have what is written inside happen in one transaction, together with the audit entry of it.
+
+        The entry gets the changed values; with `only_changes` it is left out where none changed.
+        """
+
     def save_site(self, site: SiteState, events: Sequence[Event] = ()) -> None:
         """Store the site and the events that belong to the change, together."""
 
@@ -91,6 +147,15 @@ class Writer(Reader, Protocol):
 
     def append_events(self, events: Sequence[Event]) -> None:
         """Append to the journal."""
+
+    def save_alarms(self, alarms: Sequence[KeptAlarm], events: Sequence[Event] = ()) -> None:
+        """Store alarms and the events that belong to the change, together."""
+
+    def prune_history(self, before: datetime, note: Callable[[int], Event]) -> int:
+        """Remove ended alarms and journal entries from before an instant; return how many entries.
+
+        This is the only way by which entries leave the journal; `note` makes the event that says so.
+        """
 
     def begin_recording(self, info: RecordingInfo) -> None:
         """Open a recording."""

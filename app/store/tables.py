@@ -18,9 +18,10 @@ from sqlalchemy import (
     Table,
     Text,
     TypeDecorator,
+    UniqueConstraint,
 )
 
-REVISION = "0001"
+REVISION = "0003"
 """The newest migration: what the tables of a database must be for this software to use them."""
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
@@ -84,6 +85,28 @@ events = Table(
     sqlite_autoincrement=True,
 )
 
+journal_retention = Table(
+    "journal_retention",
+    metadata,
+    Column("number", Integer, primary_key=True, autoincrement=False),
+    Column("before_number", BigInteger, nullable=False),
+)
+
+alarms = Table(
+    "alarms",
+    metadata,
+    Column("number", Number, Identity(), primary_key=True),
+    Column("alarm_id", String(200), nullable=False),
+    Column("tracker_id", String(200)),
+    Column("priority", Integer, nullable=False),
+    Column("raised_at", Instant, nullable=False),
+    Column("ended_at", Instant),
+    Column("document", Text, nullable=False),
+    UniqueConstraint("alarm_id", "raised_at"),
+    Index(None, "ended_at"),
+    sqlite_autoincrement=True,
+)
+
 shows = Table(
     "shows",
     metadata,
@@ -118,4 +141,26 @@ chunks = Table(
     Column("last_elapsed_s", Double, nullable=False),
     Column("frame_count", Integer, nullable=False),
     Column("frames", LargeBinary, nullable=False),
+)
+
+audit = Table(
+    "audit",
+    metadata,
+    Column("seq", Number, primary_key=True, autoincrement=False),
+    Column("utc", Instant, nullable=False),
+    Column("mono_ms", BigInteger, nullable=False),
+    Column("boot_id", String(64), nullable=False),
+    Column("clock_quality", String(20), nullable=False),
+    Column("actor", Text, nullable=False),
+    Column("via", String(50), nullable=False),
+    Column("address", Text, nullable=False),
+    Column("action", String(50), nullable=False),
+    Column("object", Text, nullable=False),
+    Column("given", Text, nullable=False),
+    Column("before", Text, nullable=False),
+    Column("after", Text, nullable=False),
+    Column("result", Text, nullable=False),
+    Column("prev_hash", String(64), nullable=False),
+    Column("hash", String(64), nullable=False),
+    Index(None, "utc"),
 )

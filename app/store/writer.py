@@ -1,19 +1,20 @@
 """Writing: the machine's side. Every call is one transaction that is on disk when the call returns."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import datetime, timedelta
 
-from sqlalchemy import Connection, Engine, Table, delete, insert, select, update
+from sqlalchemy import ColumnElement, Connection, Engine, Table, delete, insert, select, update
 from sqlalchemy.exc import SQLAlchemyError
 
-from app.store import tables
+from app.audit.entry import Entry
+from app.store import alarming, auditing, tables
 from app.store.chunks import CHUNK_FRAMES, ChunkDamaged, decode, encode_all, join
 from app.store.connections import require_revision
 from app.store.documents import EVENT_DATA, PLAN, RECORDING, SITE, TRACKER, plain
 from app.store.failures import explained, is_lasting
 from app.store.reader import HEAD, DatabaseReader, head
-from app.store.store import PlannedShow, StoreFailed
+from app.store.store import KeptAlarm, PlannedShow, StoreFailed
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.recording import Frames, RecordingInfo, RecordingKind
 from app.tracker.snapshot import Event
@@ -29,6 +30,8 @@ class DatabaseWriter(DatabaseReader):
         super().__init__(reading)
         self._writing = writing
         self._broken: StoreFailed | None = None
+        self._open: Connection | None = None
+        self._auditing: auditing.Change | None = None
         try:
             with self._write() as connection:
                 require_revision(connection)
@@ -37,7 +40,27 @@ class DatabaseWriter(DatabaseReader):
             raise
 
     @contextmanager
+    def audited(self, entry: Entry, *, only_changes: bool = False) -> Iterator[None]:
+        """Have what is written inside happen in one transaction, together with the audit entry of it.
+
+        The entry gets the changed values; with `only_changes` it is left out where none changed.
+        """
+        with self._write() as connection:
+            self._open = connection
+            self._auditing = auditing.Change(entry, only_changes)
+            try:
+                yield
+                finished = self._auditing.finished()
+            finally:
+                self._open = self._auditing = None
+            if finished is not None:
+                auditing.append(connection, finished)
+
+    @contextmanager
     def _write(self) -> Iterator[Connection]:
+        if self._open is not None:
+            yield self._open
+            return
         if self._broken is not None:
             raise StoreFailed(str(self._broken))
         try:
@@ -52,20 +75,27 @@ class DatabaseWriter(DatabaseReader):
     def save_site(self, site: SiteState, events: Sequence[Event] = ()) -> None:
         """Store the site and the events that belong to the change, together."""
         with self._write() as connection:
-            _put(connection, tables.site, {"number": SITE_NUMBER}, {"document": SITE.write(site)})
+            document = SITE.write(site)
+            self._note(connection, tables.site, tables.site.c.number == SITE_NUMBER, document)
+            _put(connection, tables.site, {"number": SITE_NUMBER}, {"document": document})
             _append(connection, events)
 
     def save_tracker(self, tracker: TrackerState, events: Sequence[Event] = ()) -> None:
         """Store a tracker and the events that belong to the change, together."""
         key = {"tracker_id": tracker.config.tracker_id}
+        mine = tables.trackers.c.tracker_id == key["tracker_id"]
         with self._write() as connection:
-            _put(connection, tables.trackers, key, {"document": TRACKER.write(tracker)})
+            document = TRACKER.write(tracker)
+            self._note(connection, tables.trackers, mine, document)
+            _put(connection, tables.trackers, key, {"document": document})
             _append(connection, events)
 
     def remove_tracker(self, tracker_id: str, events: Sequence[Event] = ()) -> None:
         """Forget a tracker; its journal and recordings stay."""
+        mine = tables.trackers.c.tracker_id == tracker_id
         with self._write() as connection:
-            connection.execute(delete(tables.trackers).where(tables.trackers.c.tracker_id == tracker_id))
+            self._note(connection, tables.trackers, mine, None)
+            connection.execute(delete(tables.trackers).where(mine))
             _append(connection, events)
 
     def save_show(self, planned: PlannedShow) -> None:
@@ -81,6 +111,21 @@ class DatabaseWriter(DatabaseReader):
         """Append to the journal."""
         with self._write() as connection:
             _append(connection, events)
+
+    def save_alarms(self, alarms: Sequence[KeptAlarm], events: Sequence[Event] = ()) -> None:
+        """Store alarms and the events that belong to the change, together."""
+        with self._write() as connection:
+            for one in alarms:
+                alarming.put(connection, one)
+            _append(connection, events)
+
+    def prune_history(self, before: datetime, note: Callable[[int], Event]) -> int:
+        """Remove ended alarms and journal entries from before an instant; return how many entries."""
+        with self._write() as connection:
+            removed = alarming.prune(connection, before)
+            if removed:
+                _append(connection, (note(removed),))
+        return removed
 
     def begin_recording(self, info: RecordingInfo) -> None:
         """Open a recording."""
@@ -159,6 +204,14 @@ class DatabaseWriter(DatabaseReader):
             for recording_id in ids:
                 connection.execute(delete(tables.recordings).where(columns.recording_id == recording_id))
         return len(ids)
+
+    def _note(
+        self, connection: Connection, table: Table, mine: ColumnElement[bool], becomes: str | None
+    ) -> None:
+        """Let the entry that is being made tell what a document was and what it becomes."""
+        if self._auditing is not None:
+            was = connection.execute(select(table.c.document).where(mine)).scalar_one_or_none()
+            self._auditing.note(was, becomes)
 
     def close(self) -> None:
         """Let go of the connections; the last one folds the log into the file."""

@@ -153,13 +153,13 @@ def test_a_server_that_is_not_there_is_told(tmp_path: Path) -> None:
     reader.close()
 
 
-SECOND = """
+LATER = """
 import os, signal
 import sqlalchemy as sa
 from alembic import op
 
-revision = "0002"
-down_revision = "0001"
+revision = "later"
+down_revision = "{newest}"
 
 
 def upgrade() -> None:
@@ -170,10 +170,10 @@ def upgrade() -> None:
 
 
 def later_software(folder: Path, then: str) -> Path:
-    """Return the migrations of a later version, whose second one empties the site and then does something."""
+    """Return the migrations of a later version, whose last one empties the site and then does something."""
     scripts = folder / "later"
     shutil.copytree(SCRIPTS, scripts, ignore=shutil.ignore_patterns("__pycache__"))
-    (scripts / "versions" / "0002_later.py").write_text(SECOND.format(then=then))
+    (scripts / "versions" / "later.py").write_text(LATER.format(then=then, newest=REVISION))
     return scripts
 
 
@@ -195,17 +195,17 @@ def still_usable(url: str) -> bool:
 def test_a_database_is_copied_before_a_migration_changes_it(sqlite_url: str, tmp_path: Path) -> None:
     upgrade(sqlite_url)
     with_a_site(sqlite_url)
-    assert upgrade(sqlite_url, scripts=later_software(tmp_path, "pass")) == "0001"
+    assert upgrade(sqlite_url, scripts=later_software(tmp_path, "pass")) == REVISION
     with pytest.raises(StoreFailed, match="newer version"):
         upgrade(sqlite_url)
-    assert still_usable(f"{sqlite_url}.before-0002")
+    assert still_usable(f"{sqlite_url}.before-later")
 
 
 def test_a_migration_that_fails_midway_leaves_the_old_database(url: str, tmp_path: Path) -> None:
     with_a_site(url)
     with pytest.raises(StoreFailed, match="refused"):
         upgrade(url, scripts=later_software(tmp_path, "op.execute('nonsense')"))
-    assert upgrade(url) == "0001"
+    assert upgrade(url) == REVISION
     assert still_usable(url)
 
 
@@ -218,5 +218,5 @@ def test_a_migration_that_is_killed_midway_leaves_the_old_database(url: str, tmp
     child.start()
     child.join(20)
     assert child.exitcode == -signal.SIGKILL
-    assert upgrade(url) == "0001"
+    assert upgrade(url) == REVISION
     assert still_usable(url)
