@@ -91,7 +91,7 @@ class CorrectedDrive:
         """Make the axes do this from now on and feed the watchdog, or raise `DriveError`."""
         azimuth = self._azimuth.command(command.azimuth)
         elevation = self._elevation.command(command.elevation)
-        await self._inner.write(DriveCommand(azimuth, elevation, command.request))
+        await self._inner.write(DriveCommand(azimuth, elevation, command.request, command.horn))
 
     async def stop(self) -> None:
         """Ramp both axes down at once, or raise `DriveError`."""

@@ -40,6 +40,7 @@ class PlcDrive:
         self._ticket: int | None = None
         self._stops = 0
         self._request_number = 0
+        self._sounds = False
         self._boot_count: int | None = None
         self._unchanged: dict[str, tuple[int, int]] = {}
         self._watchdog_s = profile.watchdog.timeout_ms / 1000.0 if profile.watchdog is not None else None
@@ -77,6 +78,8 @@ class PlcDrive:
         ticket = self._ticket
         self._keep_alive = self._keep_alive % 0xFFFF + 1
         words = self._map.command_words(command) | self._map.words("keep_alive", self._keep_alive)
+        if self._sounds and not command.horn:
+            words |= self._map.words("horn", 0)
         if command.request is not None:
             self._request_number = command.request.number
         self._urgency = Priority.JOG if _turns(command) else Priority.POLL
@@ -90,6 +93,7 @@ class PlcDrive:
                 ticket=ticket,
                 priority=_priority(command),
             )
+        self._sounds = command.horn
         if ticket == self._link.ticket:
             self._taken = taken | words
 

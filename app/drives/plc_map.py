@@ -37,6 +37,7 @@ class PlcMap:
     def __init__(self, profile: Profile) -> None:
         _check(profile)
         self._registers = profile.registers
+        self._horn = profile.registers.get("horn")
         self.positions = {axis: profile.registers[f"{axis}_position"] for axis in Axis}
         self._status = profile.bits["status"]
         self._switches = profile.bits.get("switches", NO_SWITCHES)
@@ -45,13 +46,15 @@ class PlcMap:
         self._kinds = {number: kind for kind, number in self._requests.items()}
 
     def command_words(self, command: DriveCommand) -> dict[int, int]:
-        """Return address and word of everything a command says; without a request, nothing about requests."""
+        """Return address and word of everything a command says; nothing about a request or horn it lacks."""
         words: dict[int, int] = {}
         for axis, wanted in ((Axis.AZIMUTH, command.azimuth), (Axis.ELEVATION, command.elevation)):
             motion, setpoint, speed = self._numbers(wanted)
             words |= self.words(f"{axis}_motion", motion)
             words |= self.words(f"{axis}_setpoint", setpoint)
             words |= self.words(f"{axis}_speed", speed)
+        if command.horn:
+            words |= self.words("horn", 1)
         if command.request is not None:
             words |= self.words("request_number", command.request.number & 0xFFFF)
             words |= self.words("request_kind", self._requests[command.request.kind])
@@ -77,6 +80,7 @@ class PlcMap:
             azimuth=self._axis_command(Axis.AZIMUTH, words, first_address),
             elevation=self._axis_command(Axis.ELEVATION, words, first_address),
             request=request,
+            horn=bool(self._horn is not None and self._integer("horn", words, first_address)),
         )
 
     def feedback_words(self, feedback: Feedback) -> dict[int, int]:

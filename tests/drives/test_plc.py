@@ -54,6 +54,18 @@ def test_a_command_in_words() -> None:
     }  # fmt: skip
 
 
+async def test_the_horn_sounds_while_it_is_told_to_and_costs_no_frame_otherwise() -> None:
+    async with on_the_bench() as bench:
+        horn = PROFILE.registers["horn"].address
+        for sounds in (False, True, True, False, False):
+            await bench.drive.read()
+            await bench.drive.write(DriveCommand(Velocity(0.0), Velocity(0.0), horn=sounds))
+            assert bench.machine.command.horn is sounds
+        await bench.drive.read()
+        written = [words for address, words in bench.wire.writes if address == horn]
+        assert written == [[1], [0]]
+
+
 def test_a_reading_in_words() -> None:
     words = [0] * 40
     words[4:8] = [3, 0b0110001, 0b100001, 12]
