@@ -1,4 +1,4 @@
-"""The site's weather: what is taken, how it ages, and that nothing moves because of it."""
+"""The site's weather: what is taken, how it ages, and that it moves nothing that is not automatic."""
 
 from datetime import timedelta
 from math import nan
@@ -52,7 +52,7 @@ async def test_reports_of_the_future_and_of_the_past_are_refused(
     assert seen.weather is None
 
 
-async def test_a_storm_moves_nothing_yet(plant: Plant) -> None:
+async def test_a_storm_moves_nothing_that_is_not_automatic(plant: Plant) -> None:
     await plant.commission()
     before = plant.tracker().measured
     await plant.ask(ReportWeather(Weather(wind_mps=45.0, snow_kg=500.0)))
