@@ -32,8 +32,9 @@ class Group(StrEnum):
 class Entry:
     """One kind of alarm.
 
-    It is raised once its condition has lasted `on_delay`, and has returned once that was gone for `off_delay`.
-    While one of the codes in `suppressed_by` is active at the same place it is suppressed by design.
+    It is raised once its condition has lasted `on_delay`, and has returned once that was gone for
+    `off_delay`. While one of the codes in `suppressed_by` is active at the same place it is suppressed by
+    design.
     Raises `ValueError` for a priority other than 1 to 4.
     """
 

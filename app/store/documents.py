@@ -5,6 +5,7 @@ from typing import Any, Generic, TypeVar
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import PydanticSerializationError
 
+from app.alarms.alarm import Alarm
 from app.store.store import StoreFailed
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.programs.show import ShowPlan
@@ -44,6 +45,7 @@ SITE = Documents(SiteState, "site")
 TRACKER = Documents(TrackerState, "tracker")
 PLAN = Documents(ShowPlan, "show")
 RECORDING = Documents(RecordingInfo, "recording")
+ALARM = Documents(Alarm, "alarm")
 EVENT_DATA: Documents[dict[str, Any]] = Documents(dict[str, Any], "event data")
 
 

@@ -27,7 +27,7 @@ LOCK_NAME = "machine.lock"
 PENDING_NAME = "restore.pending"
 REFUSED_NAME = "restore.refused"
 KEPT_NAME = "heliopanel.db"
-NUMBERED = (tables.trackers, tables.events, tables.shows)
+NUMBERED = (tables.trackers, tables.events, tables.shows, tables.alarms)
 
 
 @dataclass(frozen=True, slots=True)
