@@ -182,6 +182,22 @@ class Keeper:
 
         await self.do(work)
 
+    async def change_own_password(self, principal: Principal, old: str, new: str) -> None:
+        """Change the password of whoever is signed in, who must know the old one."""
+
+        def work() -> None:
+            self._check(self._session(principal).user, old, principal.address)
+            now = self._clock.now()
+            self.accounts.set_password(principal, principal.name, new, now, keep=principal.credential)
+
+        await self.do(work)
+
+    async def end_own_session(self, principal: Principal, digest: str) -> None:
+        """End a session of whoever is signed in; one that is not theirs stays."""
+        session = self.book.sessions.get(digest)
+        if session is not None and session.user == principal.name and principal.via is Via.SESSION:
+            await self.do(lambda: self.accounts.end_session(principal, digest, self._clock.now()))
+
     async def step_up(self, principal: Principal, pin: str) -> None:
         """Let a cabinet's panel operate for 5 minutes."""
 

@@ -1,19 +1,69 @@
-"""What the pages about access are given, and what every page says of who looks at it."""
+"""What the templates about access are given."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from datetime import datetime
+from typing import ClassVar
+
+from app.access.sessions import Session
+from app.access.tokens import Token
+from app.access.users import User
+from app.web.contexts import Form, Frame
 
 
 @dataclass(frozen=True, slots=True)
-class Who:
-    """Who looks at a page: the words in the header, and what the page's scripts send along."""
+class SignInPage:
+    """The form to sign in, to type the password again, to set up, or to bind a cabinet's panel."""
 
-    name: str = ""
-    roles: str = ""
-    signed_in: bool = False
-    is_kiosk: bool = False
-    this_computer: bool = False
-    may: frozenset[str] = field(default_factory=frozenset)
-    csrf: str = ""
-    stop_ticket: str = ""
-    stepped_until: datetime | None = None
+    template: ClassVar[str] = "sign_in.html"
+
+    frame: Frame
+    purpose: str
+    form: Form
+    back: str
+    problem: str
+
+
+@dataclass(frozen=True, slots=True)
+class AccountPage:
+    """Who is signed in, with what they can change about themselves."""
+
+    template: ClassVar[str] = "account.html"
+
+    frame: Frame
+    form: Form
+    problem: str
+    done: str
+    sessions: tuple[Session, ...]
+    mine: str
+    now: datetime
+
+
+@dataclass(frozen=True, slots=True)
+class UsersPage:
+    """All users and sessions, and the form for a new user."""
+
+    template: ClassVar[str] = "users.html"
+
+    frame: Frame
+    users: tuple[User, ...]
+    sessions: tuple[Session, ...]
+    form: Form
+    chosen: frozenset[str]
+    problem: str
+    done: str
+    mine: str
+
+
+@dataclass(frozen=True, slots=True)
+class TokensPage:
+    """All tokens, the form for a new one, and the new one itself, once."""
+
+    template: ClassVar[str] = "tokens.html"
+
+    frame: Frame
+    tokens: tuple[Token, ...]
+    form: Form
+    chosen: frozenset[str]
+    problem: str
+    made: str
+    now: datetime

@@ -1,6 +1,6 @@
 """What every template is given: one frozen dataclass each."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, Protocol
 
 from app.store.store import JournalEntry
@@ -15,6 +15,7 @@ from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import SiteSnapshot, Snapshot
 from app.web.record import CommissioningRecord
 from app.web.ui.drawings import DayChart, SunDiagram
+from app.web.who import Who
 
 Arc = tuple[tuple[float, float], ...]
 """Azimuth and elevation of the sun through a day, degrees."""
@@ -79,6 +80,7 @@ class Frame:
     steps: tuple[StepMark, ...]
     back: Link | None
     forward: Forward | None
+    who: Who = field(default_factory=Who)
 
     @property
     def name(self) -> str:

@@ -79,7 +79,8 @@ def create_app(
     app.add_middleware(Uploads)
     app.add_middleware(RequestBodyLimitMiddleware, max_body_size=LARGEST_BODY)
     app.add_middleware(GZipMiddleware, minimum_size=SMALLEST_COMPRESSED)
-    app.add_middleware(Gate, panel_app=app, keeper=keeper, clock=clock, routes=guarded_routes(app.routes))
+    app.state.routes = guarded_routes(app.routes)
+    app.add_middleware(Gate, panel_app=app, keeper=keeper, clock=clock, routes=app.state.routes)
     app.add_middleware(Guard)
     app.add_middleware(SecurityHeaders)
     return app

@@ -46,9 +46,11 @@ const tell = (kind, detail) => listeners[kind].forEach((listener) => listener(de
 
 function connect() {
   if (leaving) return;
-  const wanted = live.trackerId ? `?tracker=${encodeURIComponent(live.trackerId)}` : "";
+  const asked = new URLSearchParams();
+  if (live.trackerId) asked.set("tracker", live.trackerId);
+  if (root.dataset.stopTicket) asked.set("stop_ticket", root.dataset.stopTicket);
   const scheme = location.protocol === "https:" ? "wss" : "ws";
-  const mine = new WebSocket(`${scheme}://${location.host}/live${wanted}`);
+  const mine = new WebSocket(`${scheme}://${location.host}/live?${asked}`);
   socket = mine;
   openedAt = performance.now();
   mine.onmessage = (message) => mine === socket && hear(JSON.parse(message.data));
@@ -67,6 +69,11 @@ const HEARD = {
     live.tracker = live.trackerOf(live.trackerId);
     setLink("live");
     tell("state", live);
+  },
+  // The session has ended: this page stops, and that is all it can do.
+  signed_out() {
+    heardAt = performance.now();
+    setLink("signed-out");
   },
   machine_lost() {
     heardAt = performance.now();
@@ -97,8 +104,8 @@ const ageSeconds = () => (stateAt ? (performance.now() - stateAt) / 1000 : null)
 function judge(why) {
   const silent = performance.now() - Math.max(stateAt, openedAt);
   if (why === "closed" && live.link === "live") setLink("stale");
-  if (live.link !== "lost" && silent > OLD_MS) setLink("stale");
-  if (socket && performance.now() - Math.max(heardAt, openedAt) > DEAD_MS) socket.close();
+  if (live.link !== "lost" && live.link !== "signed-out" && silent > OLD_MS) setLink("stale");
+  if (socket && live.link !== "signed-out" && performance.now() - Math.max(heardAt, openedAt) > DEAD_MS) socket.close();
   if (live.link !== "live") tell("link", live);
 }
 
@@ -176,21 +183,26 @@ function lastSeen(one) {
   return `Last reading ${shown(one.position_age_s, "age")} ago: azimuth ${shown(azimuth, "angle2")}, elevation ${shown(elevation, "angle2")}.`;
 }
 
-const LINK_WORDS = { live: "live", stale: "no connection", lost: "no controller", starting: "connecting" };
+const LINK_WORDS = { "signed-out": "signed out", live: "live", stale: "no connection", lost: "no controller", starting: "connecting" };
 
 function paintLink() {
   const words = document.getElementById("link-words");
   if (words.textContent !== LINK_WORDS[live.link]) words.textContent = LINK_WORDS[live.link];
-  const off = live.link === "stale" || live.link === "lost";
+  const off = live.link === "stale" || live.link === "lost" || live.link === "signed-out";
   document.getElementById("link-banner").hidden = !off;
   if (off) {
     const age = ageSeconds();
     const since = age === null ? "" : ` Values are ${Math.round(age)} s old.`;
-    document.getElementById("link-banner-words").textContent = live.link === "lost"
-      ? `The controller service does not answer.${since}` : `No connection to the panel.${since}`;
+    document.getElementById("link-banner-words").textContent = `${OFF_WORDS[live.link]}${since}`;
   }
   if (live.link !== "live") paintActions();
 }
+
+const OFF_WORDS = {
+  lost: "The controller service does not answer.",
+  stale: "No connection to the panel.",
+  "signed-out": "Your session has ended: load the page again to sign in. STOP still works.",
+};
 
 export function paint() {
   if (!live.site) return;

@@ -15,6 +15,7 @@ function prepare(event) {
     event.preventDefault();
     return;
   }
+  if (document.documentElement.dataset.csrf) ctx.request.headers["X-CSRF-Token"] = document.documentElement.dataset.csrf;
   const body = ctx.request.body;
   if (body?.has?.("issued_at")) body.set("issued_at", live.machineNow() ?? "");
   if (body?.has?.("key")) body.set("key", randomId());

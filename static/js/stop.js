@@ -16,6 +16,7 @@ export function stop(form) {
 export function start() {
   const form = document.getElementById("stop-form");
   const key = document.getElementById("stop-key");
+  if (!form) return;
   let sentAt = -Infinity;
   const press = (event) => {
     event.preventDefault();

@@ -11,6 +11,7 @@ from schemathesis.specs.openapi.checks import (
     response_schema_conformance,
     status_code_conformance,
 )
+from starlette.types import Receive, Scope, Send
 
 from app.web.documented import written
 from app.web.openapi import DOCUMENT
@@ -43,6 +44,13 @@ def test_every_operation_is_described() -> None:
 OFF = {"enabled": False}
 CONFIG = SchemathesisConfig.from_dict({"phases": {"coverage": OFF, "examples": OFF, "stateful": OFF}})
 APP = fake_app()
+
+
+async def from_here(scope: Scope, receive: Receive, send: Send) -> None:
+    """Ask as somebody at the panel's own computer."""
+    await APP(scope | {"client": ("127.0.0.1", 50000)}, receive, send)
+
+
 schema = schemathesis.openapi.from_dict(APP.openapi(), config=CONFIG)
 
 
@@ -56,4 +64,4 @@ schema = schemathesis.openapi.from_dict(APP.openapi(), config=CONFIG)
     phases=(Phase.generate,),
 )
 def test_the_api_does_what_its_document_says(case: schemathesis.Case) -> None:
-    case.call_and_validate(app=APP, checks=CHECKS, base_url="http://127.0.0.1:8010")
+    case.call_and_validate(app=from_here, checks=CHECKS, base_url="http://127.0.0.1:8010")

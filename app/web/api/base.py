@@ -60,8 +60,9 @@ REFUSED: Responses = {409: _problem("The state forbids it; `reasons` has every u
 TOO_MANY: Responses = {429: _problem("Too much of this is under way; try again later.")}
 COMMON: Responses = {
     400: _problem("The body cannot be read as text."),
+    401: _problem("Nobody has signed in, or the token is unknown, revoked or has expired."),
     413: _problem("The body is larger than one megabyte."),
-    403: _problem("The request comes from a foreign page or to a foreign host name."),
+    403: _problem("Who asks may not do this, or asks from a foreign page or for a foreign host name."),
     422: _problem("Values are missing or wrong."),
     500: _problem("The panel made a mistake."),
     503: _problem("The machine, its drive or the database cannot be reached; nothing was done."),

@@ -4,12 +4,15 @@ from collections.abc import Iterable
 
 from starlette.requests import Request
 
+from app.access.principal import Via
+from app.access.roles import Permission, Role
 from app.link.messages import TrackerDetail, UnknownTracker
 from app.tracker.commissioning import Step, StepStatus
 from app.tracker.memory import StepName
 from app.tracker.snapshot import SiteSnapshot, Snapshot
 from app.web.contexts import Forward, Frame, Link, StepMark
-from app.web.deps import panel
+from app.web.deps import panel, principal
+from app.web.who import Who
 
 THEMES = ("day", "sun", "night")
 STEP_LABELS = {
@@ -47,9 +50,9 @@ def site_frame(
     request: Request, title: str, *, back: Link | None = None, forward: Forward | None = None
 ) -> Frame:
     """Return the frame of a page about the whole site."""
-    site = panel(request).machine.latest()
-    here = request.url.path
-    tabs = tuple(Link(label, href, _is_current(here, href)) for label, href in SITE_TABS)
+    site, here = shown_site(request), request.url.path
+    known = principal(request).is_known
+    tabs = tuple(Link(label, href, _is_current(here, href)) for label, href in SITE_TABS if known)
     return _frame(request, title, site, tabs=tabs, back=back, forward=forward)
 
 
@@ -63,7 +66,7 @@ def tracker_frame(
     forward: Forward | None = None,
 ) -> Frame:
     """Return the frame of a page about one tracker; with steps there are no tabs."""
-    site = panel(request).machine.latest()
+    site = shown_site(request)
     root, here = f"/trackers/{tracker_id}", request.url.path
     tabs = () if steps else tuple(Link(name, root + end, here == root + end) for name, end in TRACKER_TABS)
     overview = Link("Trackers", "/")
@@ -77,6 +80,12 @@ def tracker_frame(
         back=back or overview,
         forward=forward or _elsewhere(root, here),
     )
+
+
+def shown_site(request: Request) -> SiteSnapshot | None:
+    """Return the machine now for those who may see it."""
+    may = principal(request).may(Permission.READ)
+    return panel(request).machine.latest() if may else None
 
 
 def _elsewhere(root: str, here: str) -> Forward:
@@ -119,6 +128,25 @@ def _frame(
         steps=steps,
         back=back,
         forward=forward,
+        who=who_looks(request),
+    )
+
+
+def who_looks(request: Request) -> Who:
+    """Return what a page says of who looks at it."""
+    who, keeper = principal(request), panel(request).keeper
+    session_id = request.scope.get("state", {}).get("session_id", "")
+    session = keeper.book.sessions.get(who.credential)
+    return Who(
+        name=who.name if who.is_known else "",
+        roles=" and ".join(sorted(role.value for role in who.roles)),
+        signed_in=who.via in (Via.SESSION, Via.KIOSK),
+        is_kiosk=who.via is Via.KIOSK,
+        this_computer=who.via is Via.LOOPBACK,
+        may=frozenset(permission.value for permission in who.permissions),
+        csrf=keeper.csrf(session_id) if session else "",
+        stop_ticket=keeper.stop_ticket(who) if who.may(Permission.STOP) else "",
+        stepped_until=session.stepped_until if session and Role.OPERATOR in who.roles else None,
     )
 
 

@@ -1,0 +1,75 @@
+"""Who is signed in: own password, own sessions, the PIN of a cabinet's panel."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Form
+from starlette.requests import Request
+from starlette.responses import RedirectResponse, Response
+
+from app.access.keeper import Throttled, TooManyAtOnce, WrongPassword
+from app.access.principal import NotAllowed, Via
+from app.access.users import AccessRefused
+from app.web.access_contexts import AccountPage
+from app.web.contexts import Field
+from app.web.deps import PanelDep, PrincipalDep, panel, principal
+from app.web.errors import problem_of
+from app.web.ui.frame import site_frame
+from app.web.ui.render import page
+
+router = APIRouter()
+
+Secret = Annotated[str, Form(max_length=300)]
+REFUSALS = (WrongPassword, Throttled, TooManyAtOnce, AccessRefused)
+
+
+@router.get("/account")
+def account(request: Request) -> Response:
+    """Show who is signed in."""
+    return _answer(request)
+
+
+@router.post("/account/password")
+async def change_password(
+    request: Request, built: PanelDep, who: PrincipalDep, old: Secret = "", new: Secret = ""
+) -> Response:
+    """Change one's own password, which takes the old one; all other sessions of this user end."""
+    if who.via is not Via.SESSION:
+        raise NotAllowed("Only somebody who is signed in has a password to change.")
+    try:
+        await built.keeper.change_own_password(who, old, new)
+    except REFUSALS as error:
+        return _answer(request, error=error)
+    return _answer(request, done="The password is changed. All other sessions of yours have ended.")
+
+
+@router.post("/account/sessions/{digest}/end")
+async def end_session(digest: str, built: PanelDep, who: PrincipalDep) -> Response:
+    """End one of one's own sessions."""
+    await built.keeper.end_own_session(who, digest)
+    return RedirectResponse("/account", 303)
+
+
+@router.post("/kiosk/pin")
+async def step_up(request: Request, built: PanelDep, who: PrincipalDep, pin: Secret = "") -> Response:
+    """Let a cabinet's panel operate for 5 minutes."""
+    try:
+        await built.keeper.step_up(who, pin)
+    except REFUSALS as error:
+        return _answer(request, error=error)
+    return RedirectResponse("/", 303)
+
+
+def _answer(request: Request, *, error: Exception | None = None, done: str = "") -> Response:
+    built, who = panel(request), principal(request)
+    problem = problem_of(error) if error else None
+    sessions = [one for one in built.keeper.book.sessions.values() if one.user and one.user == who.name]
+    context = AccountPage(
+        frame=site_frame(request, "Account"),
+        form={name: Field(name, "") for name in ("old", "new", "pin")},
+        problem=problem.detail if problem else "",
+        done=done,
+        sessions=tuple(sorted(sessions, key=lambda one: one.began_at, reverse=True)),
+        mine=who.credential,
+        now=built.clock.now(),
+    )
+    return page(request, context, status=problem.status if problem else 200)
