@@ -13,6 +13,8 @@ need mbpoll mbpoll
 need socat socat
 need openssl openssl
 need gcc gcc
+need strace strace
+need faketime faketime
 [ -e /usr/include/modbus/modbus.h ] || missing="$missing libmodbus-dev libc6-dev"
 ls /usr/lib/postgresql/*/bin/initdb >/dev/null 2>&1 || missing="$missing postgresql"
 if [ -n "$missing" ]; then

@@ -1,0 +1,90 @@
+"""The power fails at any instant: what was acknowledged is on the disk, and the database opens."""
+
+import shutil
+import sys
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from app.store.engine import open_writer
+from app.store.migrations import upgrade
+from tests.soak import amount
+from tests.store.committing import ACKNOWLEDGED, check
+from tests.store.power_cut import Call, Disk, Recording, record
+from tests.store.tracked_day import day_info
+
+CUTS = amount(20, 300)
+COMMITS = 60
+PAGE = 4096
+AS_SHIPPED, OFTEN = 1000, 6
+"""Pages after which the log is folded into the file: SQLite's own rule, and often enough to be cut in it."""
+
+pytestmark = pytest.mark.skipif(shutil.which("strace") is None, reason="Install strace to record file calls.")
+
+
+def recorded(folder: Path, *, checkpoint_pages: int, synchronous: str = "as_shipped") -> Recording:
+    data = folder / "data"
+    data.mkdir()
+    url = f"sqlite:///{data / 'heliopanel.db'}"
+    upgrade(url)
+    writer = open_writer(url)
+    writer.begin_recording(day_info())
+    writer.close()
+    words = [url, str(COMMITS), str(checkpoint_pages), synchronous]
+    return record([sys.executable, "-m", "tests.store.committing", *words], data, folder / "strace.log")
+
+
+def lost_after_cuts(recording: Recording, folder: Path, cuts: int) -> list[int]:
+    """Return for each cut how many acknowledged commits were lost."""
+    chance = Random(20261121)
+    instants = sorted(chance.randrange(len(recording.calls) + 1) for _ in range(cuts))
+    disk, done, acknowledged, lost = Disk(recording.before), 0, 0, []
+    for number, instant in enumerate(instants):
+        for call in recording.calls[done:instant]:
+            acknowledged += call.file == ACKNOWLEDGED and call.name == "write"
+            disk.do(call)
+        done = instant
+        lost.append(_lost(disk.cut(chance), folder / f"cut-{number}", acknowledged))
+    return lost
+
+
+def _lost(files: dict[str, bytes], folder: Path, acknowledged: int) -> int:
+    folder.mkdir()
+    for name, data in files.items():
+        (folder / name).write_bytes(data)
+    missing = check(f"sqlite:///{folder / 'heliopanel.db'}", acknowledged)
+    shutil.rmtree(folder)
+    return missing
+
+
+@pytest.mark.fault(54)
+@pytest.mark.parametrize("checkpoint_pages", [AS_SHIPPED, OFTEN])
+def test_no_power_cut_loses_what_was_acknowledged(tmp_path: Path, checkpoint_pages: int) -> None:
+    recording = recorded(tmp_path, checkpoint_pages=checkpoint_pages)
+    assert sum(call.file == ACKNOWLEDGED and call.name == "write" for call in recording.calls) == COMMITS
+    assert lost_after_cuts(recording, tmp_path, CUTS) == [0] * CUTS
+
+
+def test_the_same_cuts_find_the_loss_of_a_database_that_does_not_sync_every_commit(tmp_path: Path) -> None:
+    recording = recorded(tmp_path, checkpoint_pages=AS_SHIPPED, synchronous="NORMAL")
+    lost = lost_after_cuts(recording, tmp_path, CUTS)
+    assert sum(count > 0 for count in lost) > CUTS // 3
+    print(f"{sum(count > 0 for count in lost)} of {CUTS} cuts lost up to {max(lost)} commits")
+
+
+def test_a_disk_keeps_what_was_synced_and_any_part_of_the_rest() -> None:
+    disk = Disk({"a": b""})
+    disk.do(Call("write", "a", 0, b"1" * PAGE))
+    disk.do(Call("sync", "a"))
+    disk.do(Call("write", "a", 0, b"2" * PAGE))
+    disk.do(Call("create", "b"))
+    chance = Random(1)
+    seen = [disk.cut(chance) for _ in range(200)]
+    assert {"b" in files for files in seen} == {True, False}
+    assert {len(files["a"]) for files in seen} == {PAGE}
+    assert {files["a"][0:1] + files["a"][-1:] for files in seen} == {b"11", b"12", b"21", b"22"}
+    disk.do(Call("sync_folder", ""))
+    disk.do(Call("truncate", "a", 1))
+    disk.do(Call("sync", "a"))
+    assert disk.cut(chance) == {"a": b"2", "b": b""}
