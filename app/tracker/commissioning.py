@@ -94,7 +94,8 @@ def _run(earlier: Sequence[Step], snapshot: Snapshot | None) -> Step:
 
 
 def _is_running(snapshot: Snapshot) -> bool:
-    if snapshot.activity is ActivityName.TRACKING:
+    stowed = snapshot.tracking_on and snapshot.stow is not None
+    if snapshot.activity is ActivityName.TRACKING or stowed:
         return True
     return snapshot.show is not None and snapshot.show.phase in (ShowPhase.RUNNING, ShowPhase.PAUSED)
 

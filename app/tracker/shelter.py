@@ -167,7 +167,9 @@ def _typhoon_reason(mind: Mind, state: Guarding) -> Reason:
         )
     if wind is None or wind.good is None:
         return Reason("wind", f"The wind at {name} was too strong and is not known to be calm.", hint)
-    return Reason("wind", f"The wind at {name} is, or was, too strong: now {wind.good:.1f} m/s.", hint)
+    if state.typhoon.unsafe_at == mind.now:
+        return Reason("wind", f"The wind at {name} is too strong: {wind.good:.1f} m/s.", hint)
+    return Reason("wind", f"The wind at {name} was too strong; it is {wind.good:.1f} m/s now.", hint)
 
 
 def _say_change(mind: Mind, before: Guarding, after: Guarding) -> None:

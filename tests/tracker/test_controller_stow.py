@@ -76,7 +76,11 @@ def test_a_storm_stows_a_tracking_panel_and_calm_minutes_bring_it_back() -> None
     assert plant.elevation_deg == pytest.approx(90.0, abs=0.1)
     assert plant.azimuth_deg == pytest.approx(azimuth_deg, abs=0.1)
     assert plant.snapshot.tracking_on
+    assert [reason.message for reason in plant.snapshot.waiting] == [
+        "The wind at Tracker 1 is too strong: 24.0 m/s."
+    ]
     plant.blow(5.0).forward(CALM_S - 2)
+    assert "was too strong; it is 5.0 m/s now" in plant.snapshot.waiting[0].message
     assert doing(plant) is ActivityName.STOWED
     seen = plant.snapshot
     assert seen.protection is not None

@@ -29,6 +29,7 @@ from app.tracker.config import MountKind, Orientation
 from app.tracker.mind import NOWHERE, Mind, Turn
 from app.tracker.motion import Feedback
 from app.tracker.mount import aim, sky
+from app.tracker.pace import paced
 from app.tracker.protections.words import Facing, StowName
 from app.tracker.reason import Reason
 from app.tracker.runs import arrived, at_rest, new_run
@@ -86,7 +87,7 @@ def step(mind: Mind, activity: Stowing | Stowed, feedback: Feedback) -> Turn:
     if isinstance(activity, Stowed):
         return Turn(activity)
     if activity.run is None:
-        run = new_run(mind.config, feedback, place(mind, feedback, activity.stow), mind.now)
+        run = new_run(paced(mind), feedback, place(mind, feedback, activity.stow), mind.now)
         activity = replace(activity, run=run)
     else:
         run = activity.run
@@ -185,7 +186,7 @@ def _begin_by_itself(mind: Mind, feedback: Feedback, wanted: StowName) -> None:
 
 def _begin(mind: Mind, feedback: Feedback, name: StowName) -> None:
     """Be on the way to a stow position, or there at once."""
-    mind.warning = None
+    mind.warning, mind.setpoint = None, NOWHERE
     if at_rest(feedback) and arrived(place(mind, feedback, name), feedback, mind.config.in_position_deg):
         mind.activity = _arrived(mind, name)
         return
