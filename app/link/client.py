@@ -107,6 +107,8 @@ class LinkClient:
             asyncio.get_running_loop().time() + good_for_s,
             order.via,
             order.address,
+            order.epoch,
+            order.rank,
         )
         answer = await self._ask(request, patience_s)
         if not isinstance(answer, Done):

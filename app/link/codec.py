@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, TypeAdapter
 
+from app.alarms.book import UnknownAlarm
 from app.link.messages import (
     MachineUnreachable,
     Order,
@@ -21,6 +22,7 @@ from app.link.messages import (
 )
 from app.link.metrics import MachineMetrics
 from app.tracker.commands import Command, CommandRejected, EndJog, Jog, Stop
+from app.tracker.control import refusal
 from app.tracker.reason import Reason
 from app.tracker.snapshot import SiteSnapshot
 
@@ -48,6 +50,8 @@ class Execute:
     good_until_s: float
     via: str = ""
     address: str = ""
+    epoch: int | None = None
+    rank: int = 0
     do: Literal["execute"] = "execute"
 
     def order(self, at_s: float) -> Order:
@@ -56,8 +60,9 @@ class Execute:
         if isinstance(command, Jog):
             command = replace(command, lease=min(command.lease, timedelta(seconds=self.good_until_s - at_s)))
         return Order(
-            command, self.actor, self.tracker_id, self.key, self.issued_at, self.via, self.address
-        )
+            command, self.actor, self.tracker_id, self.key, self.issued_at, self.via, self.address,
+            self.epoch, self.rank,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +79,7 @@ class ProblemKind(StrEnum):
     REJECTED = "rejected"
     UNKNOWN_TRACKER = "unknown_tracker"
     UNKNOWN_RECORDING = "unknown_recording"
+    UNKNOWN_ALARM = "unknown_alarm"
     INVALID = "invalid"
     FAILED = "failed"
 
@@ -90,11 +96,13 @@ class Problem:
         """Return the exception that the machine raised, or one that says it could not answer."""
         match self.kind:
             case ProblemKind.REJECTED:
-                return CommandRejected(*self.reasons)
+                return refusal(*self.reasons)
             case ProblemKind.UNKNOWN_TRACKER:
                 return UnknownTracker(self.message)
             case ProblemKind.UNKNOWN_RECORDING:
                 return UnknownRecording(self.message)
+            case ProblemKind.UNKNOWN_ALARM:
+                return UnknownAlarm(self.message)
             case ProblemKind.INVALID:
                 return ValueError(self.message)
             case ProblemKind.FAILED:
@@ -175,6 +183,8 @@ def problem_of(error: Exception) -> Problem:
             return Problem(ProblemKind.UNKNOWN_TRACKER, str(error))
         case UnknownRecording():
             return Problem(ProblemKind.UNKNOWN_RECORDING, str(error))
+        case UnknownAlarm():
+            return Problem(ProblemKind.UNKNOWN_ALARM, str(error))
         case MachineUnreachable():
             return Problem(ProblemKind.FAILED, str(error))
         case ValueError():

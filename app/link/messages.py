@@ -13,6 +13,7 @@ from app.tracker.config import DriveConfig, TrackerConfig
 from app.tracker.drive_check import DriveCheck, DriveChoices
 from app.tracker.memory import Sighting, SiteState, StepName, TrackerState
 from app.tracker.motion import DriveCapabilities
+from app.tracker.notifications import Channel, Notifications
 from app.tracker.programs.show import ShowPlan
 from app.tracker.proof_states import ProofState
 from app.tracker.proofs import AxisEnd
@@ -160,6 +161,66 @@ DriveOrder = AnswerDirection | AnswerScale | SetSoftLimit | RestoreDrive | Check
 
 
 @dataclass(frozen=True, slots=True)
+class RequestControl:
+    """Ask for control of these trackers, or with `takes` take it over from whoever has it; all or none."""
+
+    tracker_ids: tuple[str, ...]
+    takes: bool = False
+    reason: str = ""
+    kind: Literal["request_control"] = "request_control"
+
+
+@dataclass(frozen=True, slots=True)
+class AnswerControl:
+    """Whoever has control hands it over to who wants it, or keeps it."""
+
+    tracker_id: str
+    grants: bool
+    kind: Literal["answer_control"] = "answer_control"
+
+
+@dataclass(frozen=True, slots=True)
+class ReleaseControl:
+    """Whoever has control lets go of it."""
+
+    tracker_id: str
+    kind: Literal["release_control"] = "release_control"
+
+
+@dataclass(frozen=True, slots=True)
+class RenewControl:
+    """Whoever has control of these trackers is still there; of the others nothing changes."""
+
+    tracker_ids: tuple[str, ...]
+    kind: Literal["renew_control"] = "renew_control"
+
+
+ControlOrder = RequestControl | AnswerControl | ReleaseControl | RenewControl
+"""What somebody says about control."""
+
+
+@dataclass(frozen=True, slots=True)
+class LockSettings:
+    """Keep what was commissioned as it is: settings, drive, mount, strategy, zero and location."""
+
+    tracker_id: str
+    kind: Literal["lock_settings"] = "lock_settings"
+
+
+@dataclass(frozen=True, slots=True)
+class UnlockSettings:
+    """Let what was commissioned be changed again, for a reason."""
+
+    tracker_id: str
+    reason: str
+    kind: Literal["unlock_settings"] = "unlock_settings"
+
+
+LockOrder = LockSettings | UnlockSettings
+"""What concerns the lock on a tracker's settings."""
+
+
+@dataclass(frozen=True, slots=True)
 class SavePlan:
     """Keep the plan of a show so that it can be found by its id."""
 
@@ -201,11 +262,65 @@ class ReportWeather:
     kind: Literal["report_weather"] = "report_weather"
 
 
+@dataclass(frozen=True, slots=True)
+class AcknowledgeAlarm:
+    """Somebody has seen an alarm."""
+
+    alarm_id: str
+    kind: Literal["acknowledge_alarm"] = "acknowledge_alarm"
+
+
+@dataclass(frozen=True, slots=True)
+class ShelveAlarm:
+    """Put an alarm aside for some minutes, 24 hours at most, with a reason; never one of priority 1."""
+
+    alarm_id: str
+    minutes: int
+    reason: str
+    kind: Literal["shelve_alarm"] = "shelve_alarm"
+
+
+@dataclass(frozen=True, slots=True)
+class UnshelveAlarm:
+    """Take an alarm back from the shelf."""
+
+    alarm_id: str
+    kind: Literal["unshelve_alarm"] = "unshelve_alarm"
+
+
+AlarmOrder = AcknowledgeAlarm | ShelveAlarm | UnshelveAlarm
+"""What an operator does about one alarm."""
+
+
+@dataclass(frozen=True, slots=True)
+class SetNotifications:
+    """Say where alarms are sent."""
+
+    notifications: Notifications
+    kind: Literal["set_notifications"] = "set_notifications"
+
+
+@dataclass(frozen=True, slots=True)
+class TestNotification:
+    """Send a test message by one channel."""
+
+    __test__ = False
+    channel: Channel
+    kind: Literal["test_notification"] = "test_notification"
+
+
+NotificationOrder = SetNotifications | TestNotification
+"""What concerns where alarms are sent."""
+
+
 SiteCommand = (
     SetLocation | SetClock | RenameSite | AddTracker | ConfigureTracker | RemoveTracker | ConfirmStep
     | SavePlan | TakeSighting | ApplySightings | StopAll | SaveRecording | DeleteRecording
     | AnswerDirection | AnswerScale | SetSoftLimit | RestoreDrive | CheckConnection
     | ReportWeather
+    | AcknowledgeAlarm | ShelveAlarm | UnshelveAlarm | SetNotifications | TestNotification
+    | RequestControl | AnswerControl | ReleaseControl | RenewControl
+    | LockSettings | UnlockSettings
 )  # fmt: skip
 
 
@@ -215,7 +330,8 @@ class Order:
 
     `key` makes a repeated order a no-op that answers as the first did. `issued_at` (the machine's
     own clock, as told by snapshots) makes an order that is older than 2 s refused. `via` and `address` say
-    how whoever ordered was known, and from where.
+    how whoever ordered was known, and from where. `epoch` is the one of control that the order was given
+    under (None: whichever holds on arrival), `rank` whose word counts more: 2 engineer, 1 operator.
     """
 
     command: Command | SiteCommand
@@ -225,6 +341,8 @@ class Order:
     issued_at: datetime | None = None
     via: str = ""
     address: str = ""
+    epoch: int | None = None
+    rank: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,13 +1,15 @@
 """What a site consists of: its stored state, its clock and sky, its trackers, and what is kept of them."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
 
 from app.clock import Clock
 from app.drives.drive import Drive, DriveError
 from app.link.messages import UnknownTracker
+from app.site.authority import control_state
 from app.site.checking import Checks
+from app.site.controls import Controls
 from app.site.ledger import Ledger
 from app.site.loop import TrackerLoop
 from app.site.recorder import Recorder
@@ -41,6 +43,7 @@ class SiteModel:
     sky: Sky = field(default_factory=Sky)
     checks: Checks = field(default_factory=Checks)
     weather: WeatherStation = field(default_factory=WeatherStation)
+    control: Controls = field(default_factory=Controls)
 
     def now(self) -> datetime:
         """Return the site's time."""
@@ -58,7 +61,12 @@ class SiteModel:
 
     def snapshots(self, at: datetime) -> tuple[Snapshot, ...]:
         """Return every tracker, in the order they were added."""
-        return tuple(loop.snapshot(at) for loop in self.loops.values())
+        return tuple(self.snapshot(loop, at) for loop in self.loops.values())
+
+    def snapshot(self, loop: TrackerLoop, at: datetime) -> Snapshot:
+        """Return one tracker as everyone sees it, with who has control of it."""
+        authority = self.control.of(loop.config.tracker_id, loop.memory.control_epoch)
+        return replace(loop.snapshot(at), control=control_state(authority, self.clock.now(), at))
 
     def rests(self, loop: TrackerLoop) -> bool:
         """Return whether a tracker neither moves nor means to."""

@@ -11,10 +11,20 @@ import structlog
 
 from app.clock import Clock
 from app.drives.drive import Drive
-from app.link.messages import CheckConnection, Order, SiteCommand, SiteDetail, StopAll, TrackerDetail, Update
+from app.link.messages import (
+    CheckConnection,
+    ControlOrder,
+    LockOrder,
+    Order,
+    SiteCommand,
+    SiteDetail,
+    StopAll,
+    TrackerDetail,
+    Update,
+)
 from app.link.metrics import MachineMetrics
 from app.link.outlet import Outlet
-from app.site import site_orders, tracker_orders
+from app.site import control, settings_lock, site_orders, tracker_orders
 from app.site.checking import Checks, DriveTools
 from app.site.ledger import BackgroundWriter, Ledger
 from app.site.loop import TrackerLoop
@@ -35,6 +45,7 @@ from app.tracker.snapshot import Event, EventKind, SiteSnapshot
 PULSE = timedelta(milliseconds=500)
 WHILE_MOVING = timedelta(milliseconds=95)
 AT_REST = timedelta(milliseconds=495)
+CONTROL_EVERY = timedelta(milliseconds=250)
 FLUSH_EVERY = timedelta(seconds=2)
 PRUNE_EVERY = timedelta(days=1)
 
@@ -91,6 +102,7 @@ class Site:
         self._started_at = self._published_at = self._flushed_at = self._pruned_at = clock.now()
         self._orders = self._refused = 0
         self._pulse: asyncio.Task[None] | None = None
+        self._watching: asyncio.Task[None] | None = None
 
     async def start(self, *events: Event) -> None:
         """Begin to tick, and journal how this life began."""
@@ -99,13 +111,14 @@ class Site:
         for loop in self.model.loops.values():
             loop.start()
         self._pulse = asyncio.create_task(self._beat(), name="site pulse")
+        self._watching = asyncio.create_task(self._watch_control(), name="control authority")
         self._publish(events)
 
     async def close(self, *events: Event) -> None:
         """Stop every drive, end every recording and tell nobody any more."""
-        if self._pulse is not None:
-            self._pulse.cancel()
-            await asyncio.gather(self._pulse, return_exceptions=True)
+        for task in filter(None, (self._pulse, self._watching)):
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
         await asyncio.gather(*(loop.close() for loop in self.model.loops.values()))
         now = self.model.now()
         for tracker_id in self.model.loops:
@@ -185,6 +198,9 @@ class Site:
             events = await self._carry_out_for_site(order, command)
         else:
             loop = self.model.tracker(order.tracker_id)
+            command, taken = await control.admit(self.model, loop, order, command)
+            if taken:
+                self._publish(taken)
             events = await tracker_orders.command(self.model, loop, command, order.actor)
             newest = self._outlet.latest
             if isinstance(command, Jog) and not events and newest is not None:
@@ -194,8 +210,13 @@ class Site:
     async def _carry_out_for_site(self, order: Order, command: SiteCommand) -> tuple[Event, ...]:
         if isinstance(command, StopAll | CheckConnection):
             return await site_orders.carry_out(self.model, command, order.actor)
+        if isinstance(command, ControlOrder):
+            return await control.carry_out(self.model, command, order)
         async with self._changing:
             refuse_old(order, self.model.now())
+            settings_lock.refuse_locked(self.model, command)
+            if isinstance(command, LockOrder):
+                return await settings_lock.carry_out(self.model, command, order.actor)
             return await site_orders.carry_out(self.model, command, order.actor)
 
     def _on_tick(self, loop: TrackerLoop, seen: Observation, events: tuple[Event, ...]) -> None:
@@ -249,6 +270,15 @@ class Site:
                 self._publish()
             due = max(due + PULSE, now)
             await self._clock.sleep_until(due)
+
+    async def _watch_control(self) -> None:
+        """Four times a second: let control pass whose countdown has run out, and end what nobody renews."""
+        while True:
+            for loop in tuple(self.model.loops.values()):
+                events = await control.settle(self.model, loop)
+                if events:
+                    self._publish(events)
+            await self._clock.sleep_until(self._clock.now() + CONTROL_EVERY)
 
     def _flush(self) -> None:
         """Hand frames to the store, and what it could not take before: a latch must outlive a power cut."""

@@ -27,7 +27,6 @@ from app.link.messages import (
     SetClock,
     SetLocation,
     SetSoftLimit,
-    SiteCommand,
     StopAll,
     TakeSighting,
     UnknownRecording,
@@ -51,7 +50,14 @@ KEEPS_NOTHING = Reason("no_store", "This machine runs without a store and keeps 
 log = structlog.get_logger(__name__)
 
 
-async def carry_out(model: SiteModel, command: SiteCommand, actor: str) -> tuple[Event, ...]:
+SiteOrder = (
+    SetLocation | SetClock | RenameSite | ConfirmStep | AddTracker | ConfigureTracker | RemoveTracker
+    | TakeSighting | ApplySightings | SavePlan | SaveRecording | DeleteRecording | DriveOrder | StopAll
+    | ReportWeather
+)  # fmt: skip
+
+
+async def carry_out(model: SiteModel, command: SiteOrder, actor: str) -> tuple[Event, ...]:
     """Carry out one order to the site, stored before this returns, and return what happened."""
     match command:
         case SetLocation() | SetClock() | RenameSite() | ConfirmStep():

@@ -5,7 +5,8 @@ from enum import StrEnum
 
 from app.tracker.activity import NAMES, Faulted, Showing
 from app.tracker.commands import CommandRejected
-from app.tracker.memory import StepName
+from app.tracker.config import TrackerConfig
+from app.tracker.memory import StepName, TrackerMemory
 from app.tracker.mind import Mind
 from app.tracker.motion import Feedback
 from app.tracker.mounts.abilities import zero_words
@@ -155,6 +156,23 @@ def unlocked(mind: Mind) -> Reason | None:
     )
 
 
+def settings_open(mind: Mind) -> Reason | None:
+    """Return that the settings are locked as they were commissioned."""
+    return locked_settings(mind.config, mind.memory)
+
+
+def locked_settings(config: TrackerConfig, memory: TrackerMemory) -> Reason | None:
+    """Return that a tracker's settings are locked, by whom, and who may unlock them."""
+    lock = memory.settings_lock
+    if lock is None:
+        return None
+    return Reason(
+        "settings_locked",
+        f"The settings of {config.name} were locked by {lock.by} on {lock.at:%Y-%m-%d}.",
+        "An engineer unlocks them on the tracker's settings page, with a reason.",
+    )
+
+
 def locked(mind: Mind) -> Reason | None:
     """Return that there is no lock to release."""
     if mind.memory.lock is not None:
@@ -295,7 +313,7 @@ _CAN_PROVE = (reachable, sound, while_(_HOLD), resting)
 REQUIRED: dict[Action, tuple[Condition, ...]] = {
     Action.JOG: (reachable, sound, while_(_HOLD, _JOG)),
     Action.STEP: (reachable, sound, while_(_HOLD)),
-    Action.ZERO: (reachable, sound, while_(_HOLD), resting),
+    Action.ZERO: (reachable, sound, settings_open, while_(_HOLD), resting),
     Action.HOME: (reachable, sound, unlocked, self_homing, while_(_HOLD), resting),
     Action.SET_MODE: (while_(_HOLD, _JOG, _MOVE, _STOPPING),),
     Action.MOVE: (*_CAN_MOVE, sheltered, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),

@@ -35,7 +35,7 @@ from app.tracker.activity import (
 from app.tracker.announce import is_announced
 from app.tracker.commands import Command
 from app.tracker.config import TrackerConfig
-from app.tracker.memory import Confirmation, Pointing, Sighting, StepName, TrackerMemory
+from app.tracker.memory import CommissioningLock, Confirmation, Pointing, Sighting, StepName, TrackerMemory
 from app.tracker.mind import HALTED, NOWHERE, STANDING, Mind, Turn
 from app.tracker.motion import (
     AxisCommand,
@@ -184,6 +184,14 @@ class Controller:
     def set_proofs(self, proofs: Proofs) -> None:
         """Take over what somebody said about the drive."""
         self._mind.remember(proofs=proofs)
+
+    def set_control_epoch(self, epoch: int) -> None:
+        """Remember the newest epoch of control, so that no later life gives it again."""
+        self._mind.remember(control_epoch=epoch)
+
+    def set_settings_lock(self, lock: CommissioningLock | None) -> None:
+        """Take over who locked the settings, None where nobody did."""
+        self._mind.remember(settings_lock=lock)
 
     def set_sightings(self, sightings: tuple[Sighting, ...]) -> None:
         """Keep these sightings and forget all others."""

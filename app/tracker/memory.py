@@ -7,6 +7,7 @@ from enum import StrEnum
 from app.sun.position import Location
 from app.tracker.config import DriveConfig, Orientation, TrackerConfig
 from app.tracker.mode import Mode
+from app.tracker.notifications import Notifications
 from app.tracker.proofs import Proofs
 from app.tracker.protections.words import MaintenanceLock, Protection, ServiceMode, StowName
 from app.tracker.weather import Quantity
@@ -67,6 +68,14 @@ class Pointing:
 
 
 @dataclass(frozen=True, slots=True)
+class CommissioningLock:
+    """Settings that were commissioned are not to be changed: who said so, and when."""
+
+    by: str
+    at: datetime
+
+
+@dataclass(frozen=True, slots=True)
 class TrackerMemory:
     """The latches of one tracker: on disk before the command that changes them is acknowledged.
 
@@ -74,6 +83,7 @@ class TrackerMemory:
     before the last change, so that it can be undone. `stow` is the place it was sent to by command and stays
     in until it is resumed or commanded otherwise; `protection` is the one that holds, which must be seen good
     before tracking goes on; `sensors` are those that were ever seen, so that they can be missed.
+    `control_epoch` is the newest number that orders were fenced with.
     """
 
     mode: Mode | None = None
@@ -94,6 +104,8 @@ class TrackerMemory:
     sensors: tuple[Quantity, ...] = ()
     lock: MaintenanceLock | None = None
     service: ServiceMode | None = None
+    control_epoch: int = 0
+    settings_lock: CommissioningLock | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,3 +136,4 @@ class SiteState:
     time_zone: str = "UTC"
     clock: ClockSetting = ClockSetting()
     confirmations: dict[StepName, Confirmation] = field(default_factory=dict)
+    notifications: Notifications = field(default_factory=Notifications)

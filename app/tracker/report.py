@@ -67,6 +67,7 @@ def snapshot(mind: Mind, at: datetime, now: datetime) -> Snapshot:
         not_stowed=mind.alarmed,
         warning=_warning(mind),
         lock=mind.memory.lock,
+        settings_lock=mind.memory.settings_lock,
         sensors=sensors(mind),
     )
 

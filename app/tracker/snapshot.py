@@ -8,7 +8,9 @@ from typing import Any
 from app.sun.position import Location, SunPosition
 from app.tracker.alarm_words import AlarmCounts, AlarmNow
 from app.tracker.config import Orientation
+from app.tracker.control import ControlState
 from app.tracker.hybrid import HybridPhase
+from app.tracker.memory import CommissioningLock
 from app.tracker.mode import Mode
 from app.tracker.motion import LightReading
 from app.tracker.protections.words import MaintenanceLock, ProtectionState, StowName, WarningState
@@ -175,6 +177,8 @@ class Snapshot:
     not_stowed: Reason | None = None
     warning: WarningState | None = None
     lock: MaintenanceLock | None = None
+    control: ControlState = ControlState(0)
+    settings_lock: CommissioningLock | None = None
     sensors: tuple[SensorState, ...] = ()
 
 
@@ -231,6 +235,12 @@ class EventKind(StrEnum):
     MOTION_ANNOUNCED = "motion_announced"
     LOCKED_OUT = "locked_out"
     LOCK_RELEASED = "lock_released"
+    CONTROL_TAKEN = "control_taken"
+    CONTROL_ASKED = "control_asked"
+    CONTROL_REFUSED = "control_refused"
+    CONTROL_RELEASED = "control_released"
+    SETTINGS_LOCKED = "settings_locked"
+    SETTINGS_UNLOCKED = "settings_unlocked"
     ALARM_RAISED = "alarm_raised"
     ALARM_RETURNED = "alarm_returned"
     ALARM_ACKNOWLEDGED = "alarm_acknowledged"

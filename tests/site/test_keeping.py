@@ -14,6 +14,7 @@ from app.link.messages import (
     AddTracker,
     DeleteRecording,
     RemoveTracker,
+    RequestControl,
     SavePlan,
     SaveRecording,
     SetLocation,
@@ -137,6 +138,7 @@ async def test_a_jog_that_cannot_be_recorded_ends_with_its_lease_and_the_next_on
     kept: tuple[Plant, ImmediateWriter],
 ) -> None:
     plant, writer = kept
+    await plant.ask(RequestControl(("T1",)))
     writer.full = True
     await plant.ask(Jog("p1", Axis.AZIMUTH, 1))
 
