@@ -28,13 +28,16 @@ FULL_CLOUD = 1.0
 class Sunlight:
     """The light on a simulated tracker's sensors; `sun` returns where the sun stands now, None if unknown.
 
-    The panel really faces what its axes say less the misalignment that the configuration plays, so the
-    misalignment is the correction to be found.
+    The panel really faces what its axes say, `pointing` known, less the misalignment that the configuration
+    plays, so the misalignment is the correction to be found.
     """
 
-    def __init__(self, config: TrackerConfig, sun: Callable[[], SunPosition | None]) -> None:
+    def __init__(
+        self, config: TrackerConfig, sun: Callable[[], SunPosition | None], pointing: Pointing = PLAIN
+    ) -> None:
         played = config.hybrid.simulated
         self._config = config
+        self._pointing = pointing
         self._sun = sun
         self._misalignment_deg = {Axis.AZIMUTH: played.azimuth_deg, Axis.ELEVATION: played.elevation_deg}
         self._cloud = played.cloud
@@ -86,7 +89,7 @@ class Sunlight:
         return beam_wm2 * (DIFFUSE_SHARE + (1.0 - self._cloud) * max(0.0, cosine))
 
     def _normal(self, first_deg: float, second_deg: float) -> Vector:
-        faced = sky(self._config, PLAIN, first_deg, second_deg)
+        faced = sky(self._config, self._pointing, first_deg, second_deg)
         return _unit(faced.azimuth_deg, faced.elevation_deg)
 
 

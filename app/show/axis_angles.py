@@ -5,6 +5,7 @@ from app.tracker.config import MountKind, Orientation, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mount import sky, to_axes
 from app.tracker.recording import Frames
+from app.tracker.strategy import CLEAR
 
 
 def axis_angles(
@@ -21,11 +22,15 @@ def axis_angles(
 
 
 def faced(config: TrackerConfig, pointing: Pointing, frames: Frames) -> list[Orientation]:
-    """Return the direction of the sky that the panel faced in every frame."""
-    azimuth_deg, elevation_deg = (
-        frames.column(name).tolist() for name in ("measured_azimuth_deg", "measured_elevation_deg")
-    )
-    stood = zip(azimuth_deg, elevation_deg, strict=True)
-    if config.mount.kind is MountKind.AZIMUTH_ELEVATION:
+    """Return the direction of the sky that the panel really faced in every frame of a simulation.
+
+    Where light sensors correct, that is what they see: the axis angles less the misalignment that is played.
+    """
+    if config.mount.kind is MountKind.AZIMUTH_ELEVATION or config.hybrid.enabled:
+        played = config.hybrid.simulated if config.hybrid.enabled else CLEAR
+        first_deg, second_deg = axis_angles(config, pointing, frames)
+        first_deg, second_deg = first_deg - played.azimuth_deg, second_deg - played.elevation_deg
+        stood = zip(first_deg.tolist(), second_deg.tolist(), strict=True)
         return [sky(config, pointing, *axes) for axes in stood]
-    return [Orientation(*direction) for direction in stood]
+    columns = (frames.column(f"measured_{name}_deg").tolist() for name in ("azimuth", "elevation"))
+    return [Orientation(*direction) for direction in zip(*columns, strict=True)]

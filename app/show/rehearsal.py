@@ -13,6 +13,7 @@ from app.tracker.commands import Command, Home
 from app.tracker.config import TrackerConfig
 from app.tracker.controller import Controller
 from app.tracker.memory import Pointing, TrackerMemory
+from app.tracker.motion import Halt
 from app.tracker.observation import Observation
 from app.tracker.snapshot import ActivityName, Event, Snapshot
 
@@ -28,7 +29,8 @@ class RehearsalFailed(ValueError):
 class Rehearsal:
     """One simulated tracker whose sun stands still until it is homed and in place; it warns nobody.
 
-    The machine's time starts at `begin` and always goes on; `site_time` moves only when told to.
+    The machine's time starts at `begin` and always goes on; `site_time` moves only when told to. `stands`
+    says that the last tick halted both axes.
     """
 
     def __init__(
@@ -39,11 +41,12 @@ class Rehearsal:
         self.site_time = begin.astimezone(UTC)
         self.clock = VirtualClock(self.site_time)
         self._lit: SunPosition | None = None
-        light = Sunlight(config, lambda: self._lit) if config.hybrid.enabled else None
+        light = Sunlight(config, lambda: self._lit, pointing) if config.hybrid.enabled else None
         self.drive = SimulatedDrive(config, self.clock, watchdog=None, light=light)
         unwarned = replace(config, protection=replace(config.protection, warning_s=0.0))
         self.controller = Controller(unwarned, TrackerMemory(pointing=pointing), self.drive.capabilities)
         self._sky = Sky()
+        self.stands = True
 
     def home(self) -> None:
         """Search the origin switches until the zero is trusted."""
@@ -83,6 +86,7 @@ class Rehearsal:
         )
         command, events = self.controller.tick(observation)
         self.drive.obey(command)
+        self.stands = isinstance(command.azimuth, Halt) and isinstance(command.elevation, Halt)
         return events
 
     def _rests(self, seen: Snapshot) -> bool:

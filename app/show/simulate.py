@@ -40,8 +40,12 @@ def simulate(
     *,
     step: timedelta = SECOND,
     title: str = "",
+    sparing: bool = False,
 ) -> tuple[RecordingInfo, Frames]:
-    """Return what the tracker would do from `begin` to `end`; it is homed and in place at the beginning."""
+    """Return what the tracker would do from `begin` to `end`; it is homed and in place at the beginning.
+
+    It ticks at least once a second; `sparing` once a `step` while both axes are halted, which is quicker.
+    """
     _check_span(begin, end, step)
     begin, end = begin.astimezone(UTC), end.astimezone(UTC)
     rehearsal = Rehearsal(config, pointing, location, begin)
@@ -49,7 +53,7 @@ def simulate(
     rehearsal.ask(SelectMode(mode, orientation))
     rehearsal.ask(Move(orientation) if mode is Mode.FIXED else Track())
     rehearsal.prepare_until(_settled, "it was in place")
-    elapsed_s, rows = _run(rehearsal, begin, end, step)
+    elapsed_s, rows = _run(rehearsal, begin, end, step, sparing=sparing)
     info = _info(config, location, time_zone, mode, orientation, begin, end)
     frames = _frames(rows, elapsed_s)
     return _finished(info, title or _day_title(config, time_zone, begin), frames), frames
@@ -150,9 +154,9 @@ def _ready_for_show(seen: Snapshot) -> bool:
 
 
 def _run(
-    rehearsal: Rehearsal, begin: datetime, end: datetime, step: timedelta
+    rehearsal: Rehearsal, begin: datetime, end: datetime, step: timedelta, *, sparing: bool
 ) -> tuple[NDArray[np.float64], list[tuple[float, ...]]]:
-    """Tick through the span, at least once a second, and return when and what the frames are."""
+    """Tick through the span and return when and what the frames are."""
     ticks_a_frame = ceil(step / SECOND)
     tick_step = step / ticks_a_frame
     count = int((end - begin) / step) * ticks_a_frame + 1
@@ -163,8 +167,10 @@ def _run(
     rows = []
     for number, sun in enumerate(zip(*(column.tolist() for column in columns), strict=True)):
         advance(tick_step)
-        tick(SunPosition(*sun))
-        if number % ticks_a_frame == 0:
+        framed = number % ticks_a_frame == 0
+        if framed or not (sparing and rehearsal.stands):
+            tick(SunPosition(*sun))
+        if framed:
             rows.append(frame())
         rehearsal.site_time += tick_step
     return elapsed_s[::ticks_a_frame], rows

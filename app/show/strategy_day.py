@@ -16,7 +16,7 @@ from app.tracker.mode import Mode
 from app.tracker.programs.schedule import Followed
 from app.tracker.recording import Frames
 
-SECOND = timedelta(seconds=1)
+FRAME_S = 5
 STILL_DEG = 1e-6
 CURVE_S = 120
 
@@ -26,7 +26,8 @@ class StrategyDay:
     """A day by one strategy, and its curves: one value for every 120 s, sky degrees.
 
     `moves` counts motions from standstill to standstill. Errors are the angle between the panel and where it
-    would face following its mode all the time, while the sun is up; None if it never is.
+    would face following its mode all the time, while the sun is up; None if it never is. Where light sensors
+    correct, panel means where it really faces: the axis angles less the misalignment that is simulated.
     """
 
     moves: int
@@ -51,7 +52,10 @@ def strategy_day(
     end: datetime,
 ) -> StrategyDay:
     """Return what a tracker with this configuration does from `begin` to `end`, in place at the beginning."""
-    _, frames = simulate(config, pointing, location, "UTC", mode, held, begin, end, step=SECOND)
+    step, sparing = timedelta(seconds=FRAME_S), not config.hybrid.enabled
+    _, frames = simulate(
+        config, pointing, location, "UTC", mode, held, begin, end, step=step, sparing=sparing
+    )
     setpoints = np.array(axis_angles(config, pointing, frames, "setpoint"))
     measured = np.array(axis_angles(config, pointing, frames))
     followed = Followed(config, pointing, mode, held)
@@ -63,7 +67,7 @@ def strategy_day(
         if _height_deg(config, sun) > 0.0
     ]
     turns_deg = np.abs((np.diff(measured, axis=1) + 180.0) % 360.0 - 180.0).sum(axis=1)
-    picked = range(0, len(frames), CURVE_S)
+    picked = range(0, len(frames), CURVE_S // FRAME_S)
     return StrategyDay(
         moves=_moves(setpoints),
         largest_error_deg=max(errors_deg, default=None),

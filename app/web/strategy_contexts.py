@@ -60,11 +60,12 @@ class StrategyPage:
 
 @dataclass(frozen=True, slots=True)
 class StrategyDayPart:
-    """Today by one strategy: pictures and what it costs."""
+    """Today by one strategy: pictures and what it costs; `played` tells of simulated light sensors."""
 
     template: ClassVar[str] = "_strategy_day.html"
 
     label: str
+    played: str
     day: StrategyDay
     azimuth: Plot
     elevation: Plot

@@ -25,8 +25,10 @@ from app.tracker.strategy import (
     Continuous,
     Deadband,
     EncoderDeadband,
+    HybridConfig,
     Interval,
     IntervalAim,
+    SimulatedLight,
     Stepped,
     Strategy,
 )
@@ -84,6 +86,33 @@ def test_a_strategy_stays_within_its_bound(
     assert fewest <= told.moves <= most
 
 
+@pytest.mark.parametrize("mount", [MountConfig(), EQUATORIAL.mount], ids=["azimuth-elevation", "equatorial"])
+def test_a_corrected_day_is_judged_by_the_sun_that_its_sensors_see(mount: MountConfig) -> None:
+    """What remains while the correction stands is small; uncorrected it would be the misalignment."""
+    axes = TrackerConfig("T1", "T1") if mount.kind is MountKind.AZIMUTH_ELEVATION else EQUATORIAL
+    config = replace(
+        axes,
+        mount=mount,
+        strategy=Continuous(),
+        hybrid=HybridConfig(enabled=True, simulated=SimulatedLight(1.0, -0.6)),
+    )
+    begin = datetime(2026, 6, 21, 8, tzinfo=UTC)
+    told = strategy_day(
+        config, Pointing(0.7, 0.4), BRASOV, Mode.DUAL, HELD, begin, begin + timedelta(hours=1)
+    )
+    assert told.largest_error_deg is not None
+    assert told.mean_error_deg is not None
+    assert 0.6 < told.largest_error_deg < 1.2, "at the beginning the sensors have found nothing yet"
+    assert told.mean_error_deg < 0.15
+    last = separation_deg(
+        told.panel_azimuth_deg[-1],
+        told.panel_elevation_deg[-1],
+        told.sun_azimuth_deg[-1],
+        told.sun_elevation_deg[-1],
+    )
+    assert last < 0.15
+
+
 @pytest.mark.parametrize("config", [EQUATORIAL, *SINGLE, ROWS], ids=lambda config: config.name)
 def test_a_day_is_told_in_the_axes_of_every_mount(config: TrackerConfig) -> None:
     begin = datetime(2026, 6, 21, 8, tzinfo=UTC)
@@ -98,6 +127,25 @@ def test_a_day_is_told_in_the_axes_of_every_mount(config: TrackerConfig) -> None
     ]
     assert told.travel_azimuth_deg == pytest.approx(turned[1] - turned[0], abs=1.0)
     assert told.travel_elevation_deg < 0.5, "the declination hardly changes, and a single axis has no second"
+
+
+@pytest.mark.parametrize("strategy", [Deadband(), Interval(10)], ids=["deadband", "interval"])
+def test_a_sparing_simulation_tells_the_same_day(strategy: Strategy) -> None:
+    config = TrackerConfig("T1", "T1", strategy=strategy)
+    begin, end = datetime(2026, 6, 21, 7, tzinfo=UTC), datetime(2026, 6, 21, 8, 30, tzinfo=UTC)
+    measured, runs = [], []
+    for sparing in (False, True):
+        _, frames = simulate(
+            config, Pointing(), BRASOV, "UTC", Mode.DUAL, HELD, begin, end,
+            step=timedelta(seconds=5), sparing=sparing,
+        )  # fmt: skip
+        measured.append([frames.column("measured_azimuth_deg"), frames.column("measured_elevation_deg")])
+        runs.append(np.count_nonzero(np.diff(frames.column("setpoint_azimuth_deg"))))
+    apart_deg = np.abs(np.array(measured[0]) - np.array(measured[1])).max(axis=0)
+    assert apart_deg.max() < (0.8 if isinstance(strategy, Deadband) else 3.0), "at most one run apart"
+    assert np.median(apart_deg) < (0.5 if isinstance(strategy, Deadband) else 0.01)
+    assert runs[1] == pytest.approx(runs[0], rel=0.03)
+    assert runs[0] > 8
 
 
 def test_in_polar_day_intervals_go_on_all_night() -> None:

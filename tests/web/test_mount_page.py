@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator
 import httpx
 import pytest
 
+from app.site.checks import check_config
 from tests.fakes import FakeMachine, fake_app, serving
 
 MOUNT = "/trackers/T1/mount"
@@ -97,6 +98,17 @@ async def test_an_actuator_of_the_elevation_axis_takes_the_park_position_along(
     config = machine.orders[-1].command.config
     assert config.elevation.maximum_deg < 90.0
     assert config.park.elevation_deg == config.elevation.maximum_deg
+
+
+async def test_an_actuator_of_the_azimuth_axis_takes_the_park_position_along(
+    browser: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    typed = {f"first_{name}": value for name, value in LOW.items()} | {"first_actuator": "own"}
+    assert (await browser.post(MOUNT, data=typed | {"first_at": "150"})).status_code == 303
+    config = machine.orders[-1].command.config
+    assert 0.0 < config.azimuth.minimum_deg < 150.0 < config.azimuth.maximum_deg < 360.0
+    assert config.park.azimuth_deg == config.azimuth.minimum_deg, "the nearest to north that is left"
+    check_config(config)
 
 
 async def test_what_the_machine_refuses_comes_back_in_the_form(

@@ -3,9 +3,12 @@
 from dataclasses import replace
 from math import ceil, floor
 
+from app.angles import wrap360
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import MountConfig, MountKind, Orientation, Rows, TrackerConfig
 from app.tracker.mechanisms import MECHANISMS
+from app.tracker.memory import Pointing
+from app.tracker.mount import aim
 from app.tracker.transmission import LinearActuator, Point
 from app.web.ui.forms import Typed, Unreadable
 
@@ -56,10 +59,13 @@ def read(typed: Typed, config: TrackerConfig) -> TrackerConfig | None:
 
 
 def _park(config: TrackerConfig) -> Orientation:
-    """Return the park position, its elevation within what an actuator leaves of the elevation axis."""
-    if config.mount.kind is not MountKind.AZIMUTH_ELEVATION or config.elevation.actuator is None:
+    """Return the park position, as near to the old one as what the actuators leave of the axes."""
+    if config.mount.kind is not MountKind.AZIMUTH_ELEVATION:
         return config.park
-    return replace(config.park, elevation_deg=config.elevation.clamp(config.park.elevation_deg))
+    reached = aim(config, Pointing(), config.park, config.azimuth.minimum_deg)
+    if not reached.limited:
+        return config.park
+    return Orientation(wrap360(reached.azimuth_deg), reached.elevation_deg)
 
 
 def _mount(typed: Typed, mount: MountConfig) -> MountConfig | None:

@@ -30,8 +30,16 @@ class PlotBars:
 
 
 @dataclass(frozen=True, slots=True)
+class Scale:
+    """A second axis upwards, at the right: its name with unit, and its numbers."""
+
+    upwards: str
+    rows: tuple[Tick, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Plot:
-    """A chart ready for its template: title, names of both axes with units, grid, curves and bars."""
+    """A chart ready for its template: title, names of its axes with units, grid, curves and bars."""
 
     title: str
     across: str
@@ -40,6 +48,7 @@ class Plot:
     rows: tuple[Tick, ...]
     lines: tuple[PlotLine, ...]
     bars: tuple[PlotBars, ...] = ()
+    right: Scale | None = None
 
 
 Curve = tuple[str, Sequence[float], Sequence[float]]
@@ -54,27 +63,22 @@ def line_plot(
     curves: Sequence[Curve],
     *,
     low: float = 0.0,
+    right: tuple[str, Sequence[Curve]] | None = None,
 ) -> Plot:
     """Return curves over one axis; `marks` number the axis across from its first to its last.
 
-    The axis upwards goes from `low`, or from below the least value where that is lower.
+    The axis upwards goes from `low`, or from below the least value where that is lower. `right` names a
+    second axis upwards, from zero, and gives its curves.
     """
-    values = [value for _, _, column in curves for value in column]
-    rows = nice_ticks(min([low, *values]), max([low + 1.0, *values]))
-    first, last = marks[0], marks[-1]
-
-    def place(x: float, y: float) -> str:
-        return f"{LEFT + (RIGHT - LEFT) * (x - first) / (last - first):.1f} {_height(y, rows):.1f}"
-
-    lines = tuple(
-        PlotLine(label, number, "M" + "L".join(place(x, y) for x, y in zip(xs, ys, strict=True)))
-        for number, (label, xs, ys) in enumerate(curves, start=1)
-        if len(xs)
-    )
-    columns = tuple(
-        Tick(round(LEFT + (RIGHT - LEFT) * (mark - first) / (last - first), 1), f"{mark:g}") for mark in marks
-    )
-    return Plot(title, across, upwards, columns, _numbered(rows), lines)
+    rows = _rows(curves, low)
+    lines = _lines(curves, rows, marks, 1)
+    second = None
+    if right is not None:
+        second_rows = _rows(right[1], 0.0)
+        second = Scale(right[0], _numbered(second_rows))
+        lines += _lines(right[1], second_rows, marks, len(curves) + 1)
+    columns = tuple(Tick(round(_across(mark, marks), 1), f"{mark:g}") for mark in marks)
+    return Plot(title, across, upwards, columns, _numbered(rows), lines, right=second)
 
 
 def bar_plot(
@@ -108,6 +112,30 @@ def nice_ticks(least: float, most: float) -> tuple[float, ...]:
     step = next(nice * power for nice in NICE if nice * power >= rough * (1 - 1e-9))
     first, last = floor(least / step + 1e-9), ceil(most / step - 1e-9)
     return tuple(number * step for number in range(first, max(first + 1, last) + 1))
+
+
+def _rows(curves: Sequence[Curve], low: float) -> tuple[float, ...]:
+    values = [value for _, _, column in curves for value in column]
+    return nice_ticks(min([low, *values]), max([low + 1.0, *values]))
+
+
+def _lines(
+    curves: Sequence[Curve], rows: Sequence[float], marks: Sequence[float], dashes: int
+) -> tuple[PlotLine, ...]:
+    """Return the curves that have any points, numbered by their dashes from a first number on."""
+
+    def place(x: float, y: float) -> str:
+        return f"{_across(x, marks):.1f} {_height(y, rows):.1f}"
+
+    return tuple(
+        PlotLine(label, number, "M" + "L".join(place(x, y) for x, y in zip(xs, ys, strict=True)))
+        for number, (label, xs, ys) in enumerate(curves, start=dashes)
+        if len(xs)
+    )
+
+
+def _across(place: float, marks: Sequence[float]) -> float:
+    return LEFT + (RIGHT - LEFT) * (place - marks[0]) / (marks[-1] - marks[0])
 
 
 def _height(value: float, rows: Sequence[float]) -> float:

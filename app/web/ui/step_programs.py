@@ -194,7 +194,7 @@ def _energy(answer: ProgramAnswer) -> Plot:
 
 
 def _day(answer: ProgramAnswer, row: ProgramRow) -> Plot:
-    """Return the hour angles of panel and sun over solar time, and the beam in tens of W/m2."""
+    """Return the hour angles of panel and sun over solar time, and the beam on an axis of its own."""
     hours, angles = [answer.begin_h], [row.angles_deg[0]]
     step_h = answer.question.step_s / 3600.0
     for start, before, after in zip(row.starts_h, row.angles_deg, row.angles_deg[1:], strict=False):
@@ -204,11 +204,16 @@ def _day(answer: ProgramAnswer, row: ProgramRow) -> Plot:
     curves: list[Curve] = [
         ("panel", [*hours, answer.end_h], [*angles, row.angles_deg[-1]]),
         ("sun", ends, [DEGREES_AN_HOUR * (NOON_H - at) for at in ends]),
-        ("beam, tens of W/m²", answer.hours, [value / 10.0 for value in answer.beam_wm2]),
     ]
+    beam: Curve = ("beam, right axis", answer.hours, answer.beam_wm2)
     marks = [float(hour) for hour in range(int(min(ends[0], 6)), int(max(ends[1], 18)) + 2)]
     return line_plot(
-        "Hour angle of panel and sun", "solar time, hours", "degrees, morning positive", marks, curves
+        "Hour angle of panel and sun, and the beam",
+        "solar time, hours",
+        "degrees, morning positive",
+        marks,
+        curves,
+        right=("beam, W/m²", [beam]),
     )
 
 

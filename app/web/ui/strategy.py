@@ -15,12 +15,13 @@ from app.show.strategy_day import StrategyDay
 from app.tracker.programs.examples import EXAMPLES
 from app.tracker.programs.step_table import TableWrong, from_table, to_table
 from app.tracker.programs.stepped import StepProgram
-from app.tracker.strategy import Deadband, Stepped
+from app.tracker.strategy import Deadband, HybridConfig, Stepped
 from app.web.contexts import Link
 from app.web.deps import MachineDep, PanelDep
 from app.web.errors import NotAcceptable
 from app.web.strategies import asked_day, day_of, kept_program
 from app.web.strategy_contexts import ProgramTable, StrategyDayPart, StrategyPage
+from app.web.ui.formats import angle
 from app.web.ui.forms import Typed
 from app.web.ui.frame import tracker_frame
 from app.web.ui.orders import PressDep
@@ -102,7 +103,7 @@ async def day(
         found = await built.simulations.work_out(day_of, question)
     except ValueError as error:
         raise NotAcceptable(str(error)) from error
-    return page(request, _day_part(found, LABELS[wanted.kind]))
+    return page(request, _day_part(found, LABELS[wanted.kind], _played(tracker.state.config.hybrid)))
 
 
 @router.post("/program")
@@ -205,9 +206,23 @@ def _today(at: datetime, zone: str) -> tuple[datetime, datetime]:
     return begin, begin + timedelta(days=1)
 
 
-def _day_part(found: StrategyDay, label: str) -> StrategyDayPart:
+def _played(hybrid: HybridConfig) -> str:
+    """Return by which light sensors the day was corrected, nothing where it was not."""
+    if not hybrid.enabled:
+        return ""
+    light = hybrid.simulated
+    cloud = f" and a cloud that takes {light.cloud * 100.0:.0f} % of the direct light" if light.cloud else ""
+    return (
+        "Corrected by simulated light sensors on a panel that is misaligned by "
+        f"{angle(light.azimuth_deg)} and {angle(light.elevation_deg)}{cloud}. Errors and curves tell where "
+        "the panel really faces."
+    )
+
+
+def _day_part(found: StrategyDay, label: str, played: str) -> StrategyDayPart:
     return StrategyDayPart(
         label=label,
+        played=played,
         day=found,
         azimuth=_plot("Azimuth today", found, found.panel_azimuth_deg, found.sun_azimuth_deg),
         elevation=_plot("Elevation today", found, found.panel_elevation_deg, found.sun_elevation_deg),
