@@ -1,8 +1,11 @@
 """What the site writes down: settings before they are acknowledged, events and frames behind the loop."""
 
+from collections import deque
 from collections.abc import Callable, Sequence
 from typing import Protocol, TypeVar
 
+from app.audit.entry import Entry
+from app.site.auditing import IN_HAND, log_head
 from app.store.store import PlannedShow, StoreFailed, Writer
 from app.tracker.commands import CommandRejected
 from app.tracker.memory import SiteState, TrackerState
@@ -10,6 +13,9 @@ from app.tracker.reason import Reason
 from app.tracker.snapshot import Event
 
 T = TypeVar("T")
+
+MOST_UNRECORDED = 1000
+"""How many orders, most of them stops, are kept in memory until the disk takes them."""
 
 
 class BackgroundWriter(Protocol):
@@ -29,6 +35,7 @@ class Ledger:
         self._writer = writer
         self.event_count = 0
         self._behind = False
+        self._unrecorded: deque[Entry] = deque(maxlen=MOST_UNRECORDED)
 
     @property
     def behind(self) -> bool:
@@ -67,7 +74,7 @@ class Ledger:
         if self._writer is None:
             return
         try:
-            await self._writer.call(work)
+            await self._writer.call(self._audited(work))
         except StoreFailed as error:
             raise CommandRejected(
                 Reason("not_stored", str(error), "Nothing was changed; free the disk and try again.")
@@ -86,6 +93,18 @@ class Ledger:
         if events:
             self._post(lambda writer: writer.append_events(events), len(events))
 
+    def post_entry(self, entry: Entry) -> None:
+        """Have an audit entry stored soon that belongs to no change."""
+        if self._writer is None:
+            return
+        if not self._writer.post(lambda writer: self._noted(writer, _record(entry), entry)):
+            self._fall_behind(entry)
+
+    def post_head(self) -> None:
+        """Have the audit's last number and hash logged soon."""
+        if self._writer is not None:
+            self._writer.post(log_head)
+
     def catch_up(self, site: SiteState, trackers: Sequence[TrackerState]) -> None:
         """Have the whole state stored anew; once it is on disk, nothing is behind any more."""
 
@@ -93,6 +112,9 @@ class Ledger:
             writer.save_site(site)
             for state in trackers:
                 writer.save_tracker(state)
+            while self._unrecorded:
+                _record(self._unrecorded[0])(writer)
+                self._unrecorded.popleft()
             self._behind = False
 
         self._post(store, 0)
@@ -103,12 +125,49 @@ class Ledger:
         if self._writer is None:
             return
 
-        def noted(writer: Writer) -> None:
-            try:
-                work(writer)
-            except Exception:
-                self._behind = True
-                raise
+        entry, audited = self._entry_in_hand(), self._audited(work)
+        if not self._writer.post(lambda writer: self._noted(writer, audited, entry)):
+            self._fall_behind(entry)
 
-        if not self._writer.post(noted):
-            self._behind = True
+    def _noted(self, writer: Writer, work: Callable[[Writer], object], entry: Entry | None) -> None:
+        try:
+            work(writer)
+        except Exception:
+            self._fall_behind(entry)
+            raise
+
+    def _fall_behind(self, entry: Entry | None) -> None:
+        self._behind = True
+        if entry is not None:
+            self._unrecorded.append(entry)
+
+    def _entry_in_hand(self) -> Entry | None:
+        """Return the entry that the next thing stored takes along."""
+        in_hand = IN_HAND.get()
+        return None if in_hand is None or in_hand.over or in_hand.written else in_hand.entry
+
+    def _audited(self, work: Callable[[Writer], T]) -> Callable[[Writer], T]:
+        """Return the work with the audit entry of the order that this task carries out, if it does.
+
+        The first thing that an order stores takes its entry along, others only if they change something.
+        """
+        in_hand = IN_HAND.get()
+        if in_hand is None or in_hand.over:
+            return work
+        only_changes, in_hand.written = in_hand.written, True
+
+        def recorded(writer: Writer) -> T:
+            with writer.audited(in_hand.entry, only_changes=only_changes):
+                return work(writer)
+
+        return recorded
+
+
+def _record(entry: Entry) -> Callable[[Writer], None]:
+    """Return the work of writing an entry that belongs to no change."""
+
+    def record(writer: Writer) -> None:
+        with writer.audited(entry):
+            pass
+
+    return record

@@ -25,6 +25,7 @@ from app.link.messages import (
 from app.link.metrics import MachineMetrics
 from app.link.outlet import Outlet
 from app.site import control, settings_lock, site_orders, tracker_orders
+from app.site.auditing import Auditor
 from app.site.checking import Checks, DriveTools
 from app.site.ledger import BackgroundWriter, Ledger
 from app.site.loop import TrackerLoop
@@ -95,6 +96,7 @@ class Site:
         )
         for tracker in trackers:
             self.model.add(tracker)
+        self._auditor = Auditor(self._options.boot_id, self.model.timekeeper, ledger.post_entry)
         self._outlet = Outlet()
         self._repeats = Repeats()
         self._changing = asyncio.Lock()
@@ -140,7 +142,7 @@ class Site:
         """Carry out one order and return the snapshot after it."""
         self._orders += 1
         try:
-            return await self._repeats.once(order, self._carry_out)
+            return await self._repeats.once(order, self._record)
         except Exception:
             self._refused += 1
             raise
@@ -190,6 +192,9 @@ class Site:
         """Return whether every loop that was started still runs."""
         pulse_runs = self._pulse is not None and not self._pulse.done()
         return pulse_runs and not any(loop.died for loop in self.model.loops.values())
+
+    async def _record(self, order: Order) -> SiteSnapshot:
+        return await self._auditor.record(order, self._carry_out)
 
     async def _carry_out(self, order: Order) -> SiteSnapshot:
         refuse_old(order, self.model.now())
@@ -286,6 +291,8 @@ class Site:
         if model.ledger.behind:
             model.ledger.catch_up(model.state, tuple(loop.state for loop in model.loops.values()))
         model.recorder.flush()
+        if self._auditor.head_is_due(self._clock.now()):
+            model.ledger.post_head()
 
     def _watch_clock(self) -> None:
         jump = self.model.timekeeper.watch()

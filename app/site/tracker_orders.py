@@ -14,7 +14,7 @@ from app.tracker.snapshot import Event, EventKind
 STORED_WITHIN_S = 0.5
 NOT_RECORDED = Reason(
     "not_stored",
-    "The axis is not moved by hand, because that cannot be recorded: the store fails.",
+    "Nothing is moved, because that cannot be recorded: the store fails.",
     "Free the disk or check it; it is tried again every two seconds.",
 )
 
@@ -24,7 +24,7 @@ log = structlog.get_logger(__name__)
 async def command(model: SiteModel, loop: TrackerLoop, given: Command, actor: str) -> tuple[Event, ...]:
     """Have the controller obey, and return once what changed is on disk; a jog does not wait for that.
 
-    Without a store that works a jog is refused, and one that lasts ends with its lease.
+    Without a store that works everything but a stop is refused, and a jog that lasts ends with its lease.
     A renewed jog changes only when its lease ends: no tick is needed before the next one.
     """
     if isinstance(given, Stop):
@@ -33,7 +33,7 @@ async def command(model: SiteModel, loop: TrackerLoop, given: Command, actor: st
         return events
     if loop.broken is not None:
         return _repair(model, loop, given, actor)
-    if isinstance(given, Jog) and model.ledger.behind:
+    if model.ledger.behind and not isinstance(given, EndJog):
         raise CommandRejected(NOT_RECORDED)
     events = loop.controller.handle(given, model.clock.now(), actor)
     if isinstance(given, RunShow):

@@ -1,37 +1,20 @@
 """A client of the whole panel with the real site behind it, on a virtual clock and a database in a folder."""
 
 import asyncio
-from collections.abc import Callable
 from contextlib import AsyncExitStack
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self, TypeVar
+from typing import Any, Self
 
 import httpx
 
 from app.settings import Settings
 from app.store.engine import open_reader, open_writer
 from app.store.migrations import upgrade
-from app.store.store import Writer
 from app.web.main import create_app
 from tests.fakes import serving
+from tests.site.direct_writer import DirectWriter
 from tests.site.plant import make_plant
-
-T = TypeVar("T")
-
-
-class DirectWriter:
-    """Does every write at once and in order."""
-
-    def __init__(self, writer: Writer) -> None:
-        self.writer = writer
-
-    async def call(self, work: Callable[[Writer], T]) -> T:
-        return work(self.writer)
-
-    def post(self, work: Callable[[Writer], object]) -> bool:
-        work(self.writer)
-        return True
 
 
 class Desk:

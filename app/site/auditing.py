@@ -1,0 +1,145 @@
+"""Who ordered what, and what came of it: one audit entry an order, in the transaction of what it changes."""
+
+import asyncio
+from collections import OrderedDict
+from collections.abc import Awaitable, Callable
+from contextvars import ContextVar
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+from typing import Any, TypeVar
+
+import structlog
+from pydantic_core import to_jsonable_python
+
+from app.audit.entry import Entry, told
+from app.link.messages import Order
+from app.site.timekeeping import Timekeeper
+from app.store.store import AuditFilter, Reader
+from app.tracker.commands import EndJog, Jog
+
+T = TypeVar("T")
+
+UNRECORDED = frozenset({"report_weather", "check_connection", "renew_control"})
+"""Measurements, readings and signs of life: nobody decided anything."""
+
+WHEN_IT_CHANGES = Jog | EndJog
+"""A press is recorded when it begins and when it ends, not with each of its twenty renewals a second."""
+
+LEFT_OUT = {"kind", "chunks"}
+SAME_WITHIN = timedelta(seconds=2)
+MOST_REMEMBERED = 100
+HEAD_EVERY = timedelta(minutes=10)
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(slots=True)
+class InHand:
+    """The order that is being carried out: its entry, and whether that is on its way to the disk."""
+
+    entry: Entry
+    written: bool = False
+    over: bool = False
+
+
+IN_HAND: ContextVar[InHand | None] = ContextVar("order_in_hand", default=None)
+"""The order that the running task carries out; what it stores is recorded as that order's."""
+
+
+class Auditor:
+    """Makes the entry of each order; the ledger writes it with what the order changes.
+
+    `post` has an entry written that nothing was changed for: a refusal, or an order that changes nothing.
+    """
+
+    def __init__(self, boot_id: str, timekeeper: Timekeeper, post: Callable[[Entry], None]) -> None:
+        self._boot_id = boot_id
+        self._timekeeper = timekeeper
+        self._post = post
+        self._refused: OrderedDict[tuple[object, ...], datetime] = OrderedDict()
+        self._head_at: datetime | None = None
+
+    async def record(self, order: Order, carry_out: Callable[[Order], Awaitable[T]]) -> T:
+        """Carry out an order and have it recorded, whether it was obeyed or refused."""
+        if order.command.kind in UNRECORDED:
+            return await carry_out(order)
+        in_hand = InHand(self._entry(order))
+        before = IN_HAND.set(in_hand)
+        try:
+            done = await carry_out(order)
+        except Exception as error:
+            self._refuse(order, in_hand.entry, error)
+            raise
+        finally:
+            in_hand.over = True
+            IN_HAND.reset(before)
+        if not in_hand.written and not isinstance(order.command, WHEN_IT_CHANGES):
+            self._post(in_hand.entry)
+        return done
+
+    def head_is_due(self, now: datetime) -> bool:
+        """Return whether the last entry's hash is to be logged again, which is so every ten minutes."""
+        if self._head_at is not None and now - self._head_at < HEAD_EVERY:
+            return False
+        self._head_at = now
+        return True
+
+    def _entry(self, order: Order) -> Entry:
+        now = self._timekeeper.now()
+        return Entry(
+            utc=now,
+            mono_ms=int(asyncio.get_running_loop().time() * 1000),
+            boot_id=self._boot_id,
+            clock_quality=self._quality(),
+            actor=order.actor,
+            via=order.via,
+            address=order.address,
+            action=order.command.kind,
+            object=addressed(order),
+            given=told(given(order)),
+        )
+
+    def _quality(self) -> str:
+        state = self._timekeeper.state()
+        if state.reasons:
+            return state.reasons[0].code
+        return "synchronised" if state.ntp_synchronised else "trusted"
+
+    def _refuse(self, order: Order, entry: Entry, error: Exception) -> None:
+        refused = replace(
+            entry, result=f"refused: {error}" if str(error) else f"failed: {type(error).__name__}"
+        )
+        if isinstance(order.command, WHEN_IT_CHANGES) and self._is_repeated(refused):
+            return
+        self._post(refused)
+
+    def _is_repeated(self, refused: Entry) -> bool:
+        """Return whether the same was refused to the same person just now, as happens while a key is held."""
+        key = (refused.actor, refused.address, refused.object, refused.result)
+        last = self._refused.get(key)
+        self._refused[key] = refused.utc
+        self._refused.move_to_end(key)
+        if len(self._refused) > MOST_REMEMBERED:
+            self._refused.popitem(last=False)
+        return last is not None and refused.utc - last < SAME_WITHIN
+
+
+def given(order: Order) -> dict[str, Any]:
+    """Return an order's arguments as plain data."""
+    values = to_jsonable_python(order.command)
+    return {name: value for name, value in values.items() if name not in LEFT_OUT}
+
+
+def addressed(order: Order) -> str:
+    """Return what an order is about: a tracker, a recording, or the site."""
+    if order.tracker_id is not None:
+        return order.tracker_id
+    command: Any = order.command
+    about = getattr(command, "config", None) or getattr(command, "info", None) or command
+    return str(getattr(about, "tracker_id", None) or getattr(about, "recording_id", None) or "site")
+
+
+def log_head(store: Reader) -> None:
+    """Log the last entry's number and hash: who can write the database cannot change them there."""
+    for last in store.audit(AuditFilter(limit=1)):
+        log.info("audit_head", seq=last.seq, hash=last.hash)
