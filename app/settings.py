@@ -49,6 +49,9 @@ class Settings(BaseSettings):
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     tick_ms: int = Field(100, ge=20, le=1000, description="Period of the control loop.")
     telemetry_retention_days: int = Field(400, ge=1, description="Recorded days older than this are removed.")
+    journal_retention_days: int = Field(
+        1825, ge=30, description="Journal entries and ended alarms older than this are removed."
+    )
     recordings_keep: int = Field(
         500, ge=1, description="Shows and simulations beyond this number are removed, oldest first."
     )

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from datetime import datetime
 
-from app.alarms.catalogue import CATALOGUE, Entry
+from app.alarms.catalogue import Entry, entry_of
 from app.tracker.alarm_words import AlarmState
 
 
@@ -51,7 +51,7 @@ class Alarm:
     @property
     def entry(self) -> Entry:
         """Return its entry in the catalogue."""
-        return CATALOGUE[self.code]
+        return entry_of(self.code)
 
     @property
     def silent(self) -> bool:

@@ -237,3 +237,12 @@ CATALOGUE: dict[str, Entry] = {entry.code: entry for entry in ENTRIES}
 FLOOD = "alarm_flood"
 ANY_FAULT = "fault"
 """The entry of a fault whose code has none of its own."""
+
+
+def entry_of(code: str) -> Entry:
+    """Return the entry of a code; a code of another version has the least priority."""
+    known = CATALOGUE.get(code)
+    if known is not None:
+        return known
+    title = code.replace("_", " ").capitalize()
+    return Entry(code, 4, Group.ALARMS, title, "Not known any more.", "Nothing: this alarm is history.")

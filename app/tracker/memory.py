@@ -127,6 +127,28 @@ class ClockSetting:
 
 
 @dataclass(frozen=True, slots=True)
+class MetStation:
+    """A weather station that is read over Modbus TCP: SunSpec model 307."""
+
+    host: str
+    port: int = 502
+    unit: int = 1
+
+    def __post_init__(self) -> None:
+        if not self.host.strip() or len(self.host) > 253:
+            raise ValueError("Give the host name or address of the weather station.")
+        if not 1 <= self.port <= 65535:
+            raise ValueError("The port of the weather station must lie between 1 and 65535.")
+        if not 0 <= self.unit <= 255:
+            raise ValueError("The unit of the weather station must lie between 0 and 255.")
+
+    @property
+    def name(self) -> str:
+        """Return what it is called where its readings are shown."""
+        return f"SunSpec {self.host}:{self.port} unit {self.unit}"
+
+
+@dataclass(frozen=True, slots=True)
 class SiteState:
     """Everything stored about the site that its trackers share."""
 
@@ -136,4 +158,5 @@ class SiteState:
     time_zone: str = "UTC"
     clock: ClockSetting = ClockSetting()
     confirmations: dict[StepName, Confirmation] = field(default_factory=dict)
+    met_station: MetStation | None = None
     notifications: Notifications = field(default_factory=Notifications)

@@ -16,6 +16,7 @@ from starlette.responses import Response
 from app.access.keeper import Throttled, TooManyAtOnce, WrongPassword
 from app.access.principal import NotAllowed, ProofNeeded, SignInNeeded
 from app.access.users import AccessRefused
+from app.alarms.book import UnknownAlarm
 from app.link.messages import MachineUnreachable, UnknownRecording, UnknownTracker
 from app.papers.library import UnknownPaper
 from app.store.store import StoreFailed
@@ -133,6 +134,7 @@ PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
     AccessRefused: lambda error: Problem(422, str(error)),
     UnknownTracker: _no_tracker,
     UnknownRecording: _no_recording,
+    UnknownAlarm: lambda error: Problem(404, str(error)),
     MachineUnreachable: _unreachable,
     StoreFailed: lambda error: Problem(503, str(error), headers=RETRY_LATER),
     InstantRefused: lambda error: Problem(422, str(error)),
