@@ -42,6 +42,7 @@ class Plant:
         self.location = location
         self.revision = 1
         self.clock_trusted = True
+        self.clock_error = timedelta(0)
         self.cut = False
         self.period = timedelta(seconds=0.1)
         self.events: list[Event] = []
@@ -64,11 +65,12 @@ class Plant:
     def tick(self) -> list[Event]:
         """Read, decide, write."""
         now = self.clock.now()
+        site_time = now + self.clock_error
         feedback = None if self.cut else self.drive.observe()
-        sun = self._sun(now)
+        sun = self._sun(site_time)
         seen = Observation(
             now=now,
-            site_time=now,
+            site_time=site_time,
             sun=sun,
             dawn=self.dawn,
             feedback=feedback,
@@ -109,6 +111,12 @@ class Plant:
             if each is not None:
                 each()
         return self
+
+    def jump(self, by: timedelta) -> None:
+        """Have the site's clock jump, as if somebody set the computer's; nobody trusts it from now on."""
+        self.clock_error += by
+        self.clock_trusted = False
+        self._dawn_at = None
 
     def leap(self, to: datetime) -> None:
         """Be later at once, with no tick in between."""
