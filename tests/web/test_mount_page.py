@@ -6,6 +6,7 @@ import httpx
 import pytest
 
 from app.site.checks import check_config
+from app.tracker.config import Orientation
 from tests.fakes import FakeMachine, fake_app, serving
 
 MOUNT = "/trackers/T1/mount"
@@ -104,10 +105,12 @@ async def test_an_actuator_of_the_azimuth_axis_takes_the_park_position_along(
     browser: httpx.AsyncClient, machine: FakeMachine
 ) -> None:
     typed = {f"first_{name}": value for name, value in LOW.items()} | {"first_actuator": "own"}
-    assert (await browser.post(MOUNT, data=typed | {"first_at": "150"})).status_code == 303
+    park = {"park": {"azimuth_deg": 150.0, "elevation_deg": 60.0}}
+    assert (await browser.patch("/api/v1/trackers/T1", json=park)).status_code == 200
+    assert (await browser.post(MOUNT, data=typed)).status_code == 303
     config = machine.orders[-1].command.config
-    assert 0.0 < config.azimuth.minimum_deg < 150.0 < config.azimuth.maximum_deg < 360.0
-    assert config.park.azimuth_deg == config.azimuth.minimum_deg, "the nearest to north that is left"
+    assert 20.0 < config.azimuth.maximum_deg < 90.0
+    assert config.park == Orientation(config.azimuth.maximum_deg, 60.0), "the nearest that is left"
     check_config(config)
 
 
