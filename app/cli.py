@@ -18,6 +18,7 @@ from app.cli_profiles import drive
 from app.cli_strategies import strategies
 from app.cli_study import compare, study
 from app.cli_sun import accuracy, reproduce
+from app.cli_users import users
 from app.clock import SystemClock
 from app.drives.drive import DriveError
 from app.gateway.sunspec_map import map_table, sunspec_map
@@ -50,6 +51,7 @@ cli = typer.Typer(
 )
 
 cli.add_typer(drive)
+cli.add_typer(users)
 cli.command()(drive_sim)
 cli.command()(strategies)
 cli.command()(fault_proxy)

@@ -3,6 +3,7 @@
 from fastapi import APIRouter
 
 from app.web.api import (
+    access,
     accuracy,
     commissioning,
     integrations,
@@ -22,11 +23,14 @@ from app.web.api import (
     sun,
     telemetry,
     trackers,
+    users,
     weather,
 )
 from app.web.api.base import COMMON
 
 ROUTERS = (
+    access.router,
+    users.router,
     site.router,
     weather.router,
     integrations.router,
