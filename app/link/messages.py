@@ -11,7 +11,7 @@ from app.tracker.commands import Command
 from app.tracker.commissioning import Step
 from app.tracker.config import DriveConfig, TrackerConfig
 from app.tracker.drive_check import DriveCheck, DriveChoices
-from app.tracker.memory import Sighting, SiteState, StepName, TrackerState
+from app.tracker.memory import MetStation, Sighting, SiteState, StepName, TrackerState
 from app.tracker.motion import DriveCapabilities
 from app.tracker.notifications import Channel, Notifications
 from app.tracker.programs.show import ShowPlan
@@ -313,11 +313,19 @@ NotificationOrder = SetNotifications | TestNotification
 """What concerns where alarms are sent."""
 
 
+@dataclass(frozen=True, slots=True)
+class SetMetStation:
+    """Read this weather station from now on; None: none."""
+
+    station: MetStation | None
+    kind: Literal["set_met_station"] = "set_met_station"
+
+
 SiteCommand = (
     SetLocation | SetClock | RenameSite | AddTracker | ConfigureTracker | RemoveTracker | ConfirmStep
     | SavePlan | TakeSighting | ApplySightings | StopAll | SaveRecording | DeleteRecording
     | AnswerDirection | AnswerScale | SetSoftLimit | RestoreDrive | CheckConnection
-    | ReportWeather
+    | ReportWeather | SetMetStation
     | AcknowledgeAlarm | ShelveAlarm | UnshelveAlarm | SetNotifications | TestNotification
     | RequestControl | AnswerControl | ReleaseControl | RenewControl
     | LockSettings | UnlockSettings

@@ -6,6 +6,7 @@ import os
 import signal
 import sqlite3
 from datetime import datetime, timedelta
+from functools import partial
 from uuid import uuid4
 
 import structlog
@@ -13,6 +14,7 @@ import structlog
 from app.build import BUILT_AT, VERSION
 from app.clock import SystemClock
 from app.drives.factory import DriveFactory
+from app.drives.met_station import met_reader
 from app.drives.probe import DriveProbe
 from app.gateway.gateways import Gateways
 from app.link.server import LinkServer
@@ -143,6 +145,7 @@ def _site(
             retention=timedelta(days=settings.telemetry_retention_days),
             recordings_keep=settings.recordings_keep,
             weather_stale_after=timedelta(seconds=settings.weather_stale_s),
+            make_station=partial(met_reader, factory.buses),
         ),
         tools=DriveProbe(factory.buses, factory.profiles),
     )

@@ -12,6 +12,7 @@ from app.site.checking import Checks
 from app.site.controls import Controls
 from app.site.ledger import Ledger
 from app.site.loop import TrackerLoop
+from app.site.met_poll import MetPoll, StationReader
 from app.site.recorder import Recorder
 from app.site.sky import Sky
 from app.site.timekeeping import Timekeeper
@@ -19,10 +20,11 @@ from app.site.unusable import UnusableDrive
 from app.site.weather import WeatherStation
 from app.sun.position import Algorithm, SunPosition
 from app.tracker.config import DriveKind, TrackerConfig
-from app.tracker.memory import SiteState, TrackerState
+from app.tracker.memory import MetStation, SiteState, TrackerState
 from app.tracker.motion import Feedback
 from app.tracker.observation import Observation
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
+from app.tracker.weather import Weather
 
 AT_REST = {ActivityName.HOLDING, ActivityName.FAULTED}
 
@@ -43,6 +45,12 @@ class SiteModel:
     sky: Sky = field(default_factory=Sky)
     checks: Checks = field(default_factory=Checks)
     weather: WeatherStation = field(default_factory=WeatherStation)
+    make_station: Callable[[MetStation], StationReader] | None = None
+    met: MetPoll = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.met = MetPoll(self.clock, self.make_station, self._take_weather)
+
     control: Controls = field(default_factory=Controls)
 
     def now(self) -> datetime:
@@ -114,6 +122,9 @@ class SiteModel:
             return self.make_drive(config)
         except (DriveError, ValueError) as error:
             return UnusableDrive(str(error))
+
+    def _take_weather(self, readings: Weather | None, impossible: tuple[str, ...], source: str) -> None:
+        self.weather.receive(readings, None, source, self.now(), self.clock.now(), impossible)
 
     def event(
         self, kind: EventKind, message: str, actor: str, tracker_id: str | None = None, **data: object

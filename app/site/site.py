@@ -29,6 +29,7 @@ from app.site.auditing import Auditor
 from app.site.checking import Checks, DriveTools
 from app.site.ledger import BackgroundWriter, Ledger
 from app.site.loop import TrackerLoop
+from app.site.met_poll import StationReader
 from app.site.model import SiteModel
 from app.site.recorder import Recorder
 from app.site.repeats import Repeats, refuse_old
@@ -38,7 +39,7 @@ from app.sun.position import Algorithm
 from app.tracker.commands import Jog
 from app.tracker.commissioning import steps
 from app.tracker.config import TrackerConfig
-from app.tracker.memory import SiteState, TrackerState
+from app.tracker.memory import MetStation, SiteState, TrackerState
 from app.tracker.observation import Observation
 from app.tracker.proof_states import proof_states
 from app.tracker.snapshot import Event, EventKind, SiteSnapshot
@@ -62,6 +63,7 @@ class SiteOptions:
     retention: timedelta = timedelta(days=400)
     recordings_keep: int = 500
     weather_stale_after: timedelta = STALE_AFTER
+    make_station: Callable[[MetStation], StationReader] | None = None
 
 
 class Site:
@@ -93,6 +95,7 @@ class Site:
             self._on_tick,
             checks=Checks(tools),
             weather=WeatherStation(self._options.weather_stale_after),
+            make_station=self._options.make_station,
         )
         for tracker in trackers:
             self.model.add(tracker)
@@ -112,6 +115,7 @@ class Site:
         self._prune()
         for loop in self.model.loops.values():
             loop.start()
+        await self.model.met.follow(self.model.state.met_station)
         self._pulse = asyncio.create_task(self._beat(), name="site pulse")
         self._watching = asyncio.create_task(self._watch_control(), name="control authority")
         self._publish(events)
@@ -121,6 +125,7 @@ class Site:
         for task in filter(None, (self._pulse, self._watching)):
             task.cancel()
             await asyncio.gather(task, return_exceptions=True)
+        await self.model.met.close()
         await asyncio.gather(*(loop.close() for loop in self.model.loops.values()))
         now = self.model.now()
         for tracker_id in self.model.loops:

@@ -26,6 +26,7 @@ from app.link.messages import (
     SaveRecording,
     SetClock,
     SetLocation,
+    SetMetStation,
     SetSoftLimit,
     StopAll,
     TakeSighting,
@@ -53,7 +54,7 @@ log = structlog.get_logger(__name__)
 SiteOrder = (
     SetLocation | SetClock | RenameSite | ConfirmStep | AddTracker | ConfigureTracker | RemoveTracker
     | TakeSighting | ApplySightings | SavePlan | SaveRecording | DeleteRecording | DriveOrder | StopAll
-    | ReportWeather
+    | ReportWeather | SetMetStation
 )  # fmt: skip
 
 
@@ -72,12 +73,27 @@ async def carry_out(model: SiteModel, command: SiteOrder, actor: str) -> tuple[E
             return await _set_up_drive(model, command, actor)
         case StopAll():
             return await _stop_all(model, actor)
-        case ReportWeather():
-            at, now = model.now(), model.clock.now()
-            model.weather.receive(command.readings, command.measured_at, actor, at, now)
-            return ()
+        case ReportWeather() | SetMetStation():
+            return await _take_weather(model, command, actor)
         case _:
             assert_never(command)
+
+
+async def _take_weather(
+    model: SiteModel, command: ReportWeather | SetMetStation, actor: str
+) -> tuple[Event, ...]:
+    if isinstance(command, ReportWeather):
+        at, now = model.now(), model.clock.now()
+        model.weather.receive(command.readings, command.measured_at, actor, at, now)
+        return ()
+    station = command.station
+    told = "No weather station is read any more."
+    if station is not None:
+        told = f"The weather station {station.name} is read from now on."
+    event = model.event(EventKind.WEATHER_STATION_SET, told, actor)
+    events = await _keep(model, replace(model.state, met_station=station), event)
+    await model.met.follow(station)
+    return events
 
 
 async def _change_site(

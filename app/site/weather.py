@@ -25,7 +25,7 @@ class WeatherStation:
 
     def receive(
         self,
-        readings: Weather,
+        readings: Weather | None,
         measured_at: datetime | None,
         source: str,
         site_time: datetime,
@@ -40,7 +40,7 @@ class WeatherStation:
         age = self._checked_age(measured_at, site_time)
         at = now - age
         for name in NAMES:
-            value = getattr(readings, name)
+            value = None if readings is None else getattr(readings, name)
             if value is not None:
                 self._series[name].take(Sample(at, value, source))
         for name in impossible:

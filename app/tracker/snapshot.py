@@ -234,6 +234,7 @@ class EventKind(StrEnum):
     SENSOR_TRUSTED = "sensor_trusted"
     MOTION_ANNOUNCED = "motion_announced"
     LOCKED_OUT = "locked_out"
+    WEATHER_STATION_SET = "weather_station_set"
     LOCK_RELEASED = "lock_released"
     CONTROL_TAKEN = "control_taken"
     CONTROL_ASKED = "control_asked"

@@ -1,0 +1,78 @@
+"""Reads the site's weather station every second, for as long as one is set."""
+
+import asyncio
+from collections.abc import Callable
+from datetime import timedelta
+from typing import Protocol
+
+import structlog
+
+from app.clock import Clock
+from app.drives.drive import DriveError
+from app.tracker.memory import MetStation
+from app.tracker.weather import Weather
+
+EVERY = timedelta(seconds=1)
+
+log = structlog.get_logger(__name__)
+
+
+class StationReader(Protocol):
+    """A weather station that can be read."""
+
+    async def read(self) -> tuple[Weather | None, tuple[str, ...]]:
+        """Return what it measures and the names of what is impossible, or raise `DriveError`."""
+
+    async def close(self) -> None:
+        """Let go of the connection."""
+
+
+class MetPoll:
+    """One task that reads one station; what it reads goes to `on_reading` with the station's name."""
+
+    def __init__(
+        self,
+        clock: Clock,
+        make_reader: Callable[[MetStation], StationReader] | None,
+        on_reading: Callable[[Weather | None, tuple[str, ...], str], None],
+    ) -> None:
+        self.trouble = ""
+        self._clock = clock
+        self._make_reader = make_reader
+        self._on_reading = on_reading
+        self._task: asyncio.Task[None] | None = None
+
+    async def follow(self, station: MetStation | None) -> None:
+        """Read this station from now on, None: no station."""
+        await self.close()
+        if station is not None and self._make_reader is not None:
+            reader = self._make_reader(station)
+            self._task = asyncio.create_task(self._run(station, reader), name="weather station")
+
+    async def close(self) -> None:
+        """Read no station any more."""
+        task, self._task = self._task, None
+        self.trouble = ""
+        if task is not None:
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+
+    async def _run(self, station: MetStation, reader: StationReader) -> None:
+        try:
+            while True:
+                await self._read(station, reader)
+                await self._clock.sleep_until(self._clock.now() + EVERY)
+        finally:
+            await reader.close()
+
+    async def _read(self, station: MetStation, reader: StationReader) -> None:
+        """Read once; a station that does not answer says nothing, and its values grow old."""
+        try:
+            readings, impossible = await reader.read()
+        except DriveError as error:
+            if not self.trouble:
+                log.warning("weather_station_not_read", station=station.name, reason=str(error))
+            self.trouble = str(error)
+            return
+        self.trouble = ""
+        self._on_reading(readings, impossible, station.name)
