@@ -25,7 +25,7 @@ from app.link.messages import (
 from app.link.metrics import MachineMetrics
 from app.link.outlet import Outlet
 from app.site import control, settings_lock, site_orders, tracker_orders
-from app.site.auditing import Auditor
+from app.site.auditing import Auditor, as_action
 from app.site.checking import Checks, DriveTools
 from app.site.ledger import BackgroundWriter, Ledger
 from app.site.loop import TrackerLoop
@@ -208,7 +208,8 @@ class Site:
             events = await self._carry_out_for_site(order, command)
         else:
             loop = self.model.tracker(order.tracker_id)
-            command, taken = await control.admit(self.model, loop, order, command)
+            with as_action("take_control"):
+                command, taken = await control.admit(self.model, loop, order, command)
             if taken:
                 self._publish(taken)
             events = await tracker_orders.command(self.model, loop, command, order.actor)
