@@ -2,7 +2,8 @@
 
 import asyncio
 from collections import OrderedDict
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
@@ -44,6 +45,22 @@ class InHand:
 
 IN_HAND: ContextVar[InHand | None] = ContextVar("order_in_hand", default=None)
 """The order that the running task carries out; what it stores is recorded as that order's."""
+
+
+@contextmanager
+def as_action(action: str) -> Iterator[None]:
+    """Have what the order in hand stores inside recorded as an action of its own, if it changes anything."""
+    in_hand = IN_HAND.get()
+    if in_hand is None:
+        yield
+        return
+    inner = InHand(replace(in_hand.entry, action=action, given="{}"), written=True)
+    before = IN_HAND.set(inner)
+    try:
+        yield
+    finally:
+        inner.over = True
+        IN_HAND.reset(before)
 
 
 class Auditor:
