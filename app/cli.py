@@ -13,6 +13,7 @@ from typing import Annotated
 import typer
 
 from app.build import VERSION
+from app.cli_audit import audit
 from app.cli_drives import drive_sim, fault_proxy
 from app.cli_profiles import drive
 from app.cli_strategies import strategies
@@ -52,6 +53,7 @@ cli = typer.Typer(
 
 cli.add_typer(drive)
 cli.add_typer(users)
+cli.add_typer(audit)
 cli.command()(drive_sim)
 cli.command()(strategies)
 cli.command()(fault_proxy)

@@ -1,11 +1,10 @@
 """What happened to users, sessions and tokens: each entry is chained to the one before by its hash."""
 
-import hashlib
-import json
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from datetime import datetime
 
-FIRST = "0" * 64
+from app.audit.chain import link
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,8 +20,11 @@ class AccessEvent:
     result: str = "done"
 
 
+def covered(event: AccessEvent) -> Mapping[str, str]:
+    """Return what the hash of an event covers."""
+    return asdict(event) | {"at": event.at.isoformat()}
+
+
 def chained(previous: str, event: AccessEvent) -> str:
-    """Return the hash of an event after the one with the hash `previous`: SHA-256 over canonical JSON."""
-    fields = asdict(event) | {"at": event.at.isoformat(), "prev_hash": previous}
-    text = json.dumps(fields, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
-    return hashlib.sha256(text.encode()).hexdigest()
+    """Return the hash of an event after the one with the hash `previous`."""
+    return link(previous, covered(event))

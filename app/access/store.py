@@ -10,13 +10,14 @@ from sqlalchemy import Connection, Engine, Table, delete, insert, inspect, selec
 
 from app.access import tables
 from app.access.book import Book
-from app.access.events import FIRST, AccessEvent, chained
+from app.access.events import AccessEvent, chained, covered
 from app.access.migrations import upgrade
 from app.access.roles import Role
 from app.access.sessions import Session
 from app.access.throttle import FORGOTTEN_AFTER, Failures
 from app.access.tokens import Scope, Token
 from app.access.users import User
+from app.audit.chain import FIRST, Link
 from app.store.connections import sharing_engine, sqlite_path, transaction
 from app.store.files import make_folder
 
@@ -86,6 +87,11 @@ class AccessStore:
         with transaction(self._engine) as connection:
             rows = connection.execute(select(tables.events).order_by(tables.events.c.number)).mappings()
             return [_event(dict(row)) for row in rows]
+
+    def links(self) -> list[Link]:
+        """Return every event as the chain of hashes sees it, oldest first."""
+        found = enumerate(self.events(), start=1)
+        return [Link(number, covered(event), previous, own) for number, (event, previous, own) in found]
 
     def _make(self) -> None:
         if self.exists():

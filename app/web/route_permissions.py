@@ -214,6 +214,8 @@ _TABLE: dict[Permission, str] = {
         PUT /api/v1/trackers/{tracker_id}/sightings
     """,
     Permission.ADMINISTER: """
+        GET /audit
+        GET /api/v1/audit
         GET /backup
         POST /backup
         GET /diagnostics.zip

@@ -5,6 +5,7 @@ from fastapi import APIRouter
 from app.web.api import (
     access,
     accuracy,
+    audit,
     commissioning,
     integrations,
     journal,
@@ -48,6 +49,7 @@ ROUTERS = (
     simulations.router,
     studies.router,
     journal.router,
+    audit.router,
     telemetry.router,
     stream.router,
     operations.router,

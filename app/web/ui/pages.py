@@ -9,6 +9,7 @@ from app.web.errors import Problem
 from app.web.ui import (
     account,
     accuracy,
+    audit,
     clock,
     drive,
     glance,
@@ -75,6 +76,7 @@ ROUTERS = (
     accuracy.router,
     papers.router,
     journal.router,
+    audit.router,
     site.router,
     wizard.router,
 )

@@ -1,0 +1,32 @@
+"""The audit: who ordered what, newest first, for administrators."""
+
+from urllib.parse import urlencode
+
+from fastapi import APIRouter
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.store.store import AuditFilter
+from app.web.audit_contexts import AuditPage
+from app.web.deps import ReaderDep
+from app.web.ui.frame import site_frame
+from app.web.ui.render import page
+
+router = APIRouter(prefix="/audit")
+A_PAGE = 60
+
+
+@router.get("")
+def audit(request: Request, reader: ReaderDep, actor: str = "", before: int | None = None) -> Response:
+    """Show one page of the audit; `before` is the number of the oldest entry of the page before."""
+    cursor = before if before is not None and 0 < before < 2**63 else None
+    found = reader.audit(AuditFilter(before=cursor, limit=A_PAGE, actor=actor[:64] or None))
+    older = {"before": str(found[-1].seq)} | ({"actor": actor} if actor else {}) if found else {}
+    context = AuditPage(
+        frame=site_frame(request, "Audit"),
+        entries=tuple(found),
+        head=next(iter(reader.audit(AuditFilter(limit=1))), None),
+        actor=actor,
+        older=f"/audit?{urlencode(older)}" if len(found) == A_PAGE else None,
+    )
+    return page(request, context)
