@@ -32,6 +32,7 @@ from app.link.messages import (
     SaveRecording,
     SetClock,
     SetLocation,
+    SetMetStation,
     SiteDetail,
     StopAll,
     TakeSighting,
@@ -159,6 +160,8 @@ class FakeMachine:
                 offset_s = (at - now).total_seconds() if at else 0.0
                 setting = ClockSetting(source, offset_s, now, order.actor)
                 self.site = replace(self.site, clock=setting, time_zone=zone or self.site.time_zone)
+            case SetMetStation(station=station):
+                self.site = replace(self.site, met_station=station)
             case RenameSite(name=name):
                 self.site = replace(self.site, name=name)
             case AddTracker(config=config):

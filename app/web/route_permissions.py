@@ -98,6 +98,7 @@ _TABLE: dict[Permission, str] = {
         GET /api/v1/site/clock
         GET /api/v1/site/integrations
         GET /api/v1/site/weather
+        GET /api/v1/site/weather/station
         GET /api/v1/stream
         GET /api/v1/studies
         GET /api/v1/studies-comparison
@@ -166,6 +167,9 @@ _TABLE: dict[Permission, str] = {
     Permission.CONFIGURE: """
         POST /recordings/{recording_id}/delete
         POST /site/name
+        POST /site/weather-station
+        PUT /api/v1/site/weather/station
+        DELETE /api/v1/site/weather/station
         POST /studies/program/use
         POST /trackers
         POST /trackers/{tracker_id}/commissioning/clock

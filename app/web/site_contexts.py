@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from app.link.metrics import GatewayMetrics
-from app.web.contexts import Frame
+from app.web.contexts import Form, Frame
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,3 +15,4 @@ class SitePage:
 
     frame: Frame
     gateways: tuple[GatewayMetrics, ...] | None
+    form: Form

@@ -6,6 +6,7 @@ import httpx
 import pytest
 
 from app.tracker.commands import LockOut, ReleaseLock, Resume, Stow
+from app.tracker.memory import MetStation
 from app.tracker.protections.config import PROTECTED, ProtectionConfig, StowPlace
 from app.tracker.protections.words import Facing, Reaction, StowName
 from app.web.ui.protection_forms import texts
@@ -117,3 +118,21 @@ async def test_the_api_does_what_the_page_does(client: httpx.AsyncClient, machin
     wrong = await client.patch(API, json={"protection": {"light": {"bad": "stow"}}})
     assert wrong.status_code == 422
     assert "stows nothing" in wrong.text
+
+
+async def test_a_weather_station_is_set_on_the_site_page_and_over_the_api(
+    client: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    await client.post("/site/weather-station", data={"host": "10.0.0.9", "port": "1502", "unit": "7"})
+    assert machine.site.met_station == MetStation("10.0.0.9", 1502, 7)
+    assert 'value="1502"' in (await client.get("/site")).text
+    api = "/api/v1/site/weather/station"
+    assert (await client.get(api)).json() == {"host": "10.0.0.9", "port": 1502, "unit": 7}
+    wrong = await client.post("/site/weather-station", data={"host": "mast", "port": "none", "unit": "1"})
+    assert wrong.status_code == 422
+    assert 'value="mast"' in wrong.text
+    await client.post("/site/weather-station", data={"host": "", "port": "502", "unit": "1"})
+    assert machine.site.met_station is None
+    assert (await client.put(api, json={"host": "mast"})).json() == {"host": "mast", "port": 502, "unit": 1}
+    assert (await client.delete(api)).status_code == 204
+    assert (await client.get(api)).json() is None

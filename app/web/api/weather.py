@@ -5,11 +5,12 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import AwareDatetime, Field
 
-from app.link.messages import ReportWeather
+from app.link.messages import ReportWeather, SetMetStation
+from app.tracker.memory import MetStation
 from app.tracker.weather import RANGES, Weather, WeatherNow
 from app.web.api.base import NOT_FOUND, REFUSED, Input
 from app.web.api.orders import SenderDep
-from app.web.deps import SnapshotDep
+from app.web.deps import MachineDep, SnapshotDep
 from app.web.errors import NotAcceptable, NotFound
 
 router = APIRouter(prefix="/site/weather", tags=["site"])
@@ -43,6 +44,33 @@ async def read_weather(snapshot: SnapshotDep) -> WeatherNow:
     if snapshot.weather is None:
         raise NotFound("No weather has been reported since the controller service started.")
     return snapshot.weather
+
+
+class MetStationIn(Input):
+    """A weather station that is read over Modbus TCP: SunSpec model 307."""
+
+    host: str = Field(min_length=1, max_length=253, examples=["192.168.0.30"])
+    port: int = Field(502, ge=1, le=65535)
+    unit: int = Field(1, ge=0, le=255)
+
+
+@router.get("/station", summary="The weather station that is read")
+async def read_station(machine: MachineDep) -> MetStation | None:
+    """Return the SunSpec station that is read every second, null for none."""
+    return (await machine.detail()).site.met_station
+
+
+@router.put("/station", summary="Read a weather station", responses=REFUSED)
+async def set_station(station: MetStationIn, sender: SenderDep, machine: MachineDep) -> MetStation | None:
+    """Read SunSpec model 307 at this address every second from now on."""
+    await sender.send(SetMetStation(MetStation(station.host, station.port, station.unit)))
+    return await read_station(machine)
+
+
+@router.delete("/station", status_code=204, summary="Read no weather station", responses=REFUSED)
+async def remove_station(sender: SenderDep) -> None:
+    """Read no weather station any more; reports are taken as before."""
+    await sender.send(SetMetStation(None))
 
 
 @router.put("", summary="Report the weather", responses=REFUSED)
