@@ -219,9 +219,32 @@ class ResetFault:
     kind: Literal["reset_fault"] = "reset_fault"
 
 
+@dataclass(frozen=True, slots=True)
+class BeginService:
+    """Serve the machine: it moves at the slow hand speed, and only while the area was said to be clear."""
+
+    name: str
+    kind: Literal["begin_service"] = "begin_service"
+
+
+@dataclass(frozen=True, slots=True)
+class ConfirmClear:
+    """Nobody stands where the panel moves; in service mode motion is allowed for a while."""
+
+    kind: Literal["confirm_clear"] = "confirm_clear"
+
+
+@dataclass(frozen=True, slots=True)
+class EndService:
+    """Leave service mode."""
+
+    kind: Literal["end_service"] = "end_service"
+
+
 Command = (
     Jog | EndJog | Step | SetZero | Home | SelectMode | Move | Park | Track
     | GoToStart | RunShow | PauseShow | ResumeShow | StopShow | Stop | ResetFault
     | ProveDirection | ProveScale | MeasureStop | MeasureLinkLoss
     | Stow | Resume | LockOut | ReleaseLock
+    | BeginService | ConfirmClear | EndService
 )  # fmt: skip

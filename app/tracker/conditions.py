@@ -10,6 +10,8 @@ from app.tracker.memory import StepName, TrackerMemory
 from app.tracker.mind import Mind
 from app.tracker.motion import Feedback
 from app.tracker.mounts.abilities import zero_words
+from app.tracker.protections.fault_classes import CLASSES
+from app.tracker.protections.machine_config import Recovery
 from app.tracker.protections.words import StowName
 from app.tracker.reason import Reason
 from app.tracker.runs import at_rest
@@ -45,6 +47,9 @@ class Action(StrEnum):
     RESUME = "resume"
     LOCK_OUT = "lock_out"
     RELEASE_LOCK = "release_lock"
+    BEGIN_SERVICE = "begin_service"
+    CONFIRM_CLEAR = "confirm_clear"
+    END_SERVICE = "end_service"
 
 
 def unmet(mind: Mind, action: Action) -> tuple[Reason, ...]:
@@ -180,6 +185,77 @@ def locked(mind: Mind) -> Reason | None:
     return Reason("not_locked", f"{mind.config.name} is not locked.", "Nothing has to be done.")
 
 
+def remote(mind: Mind) -> Reason | None:
+    """Return that the switch at the cabinet is on local: nothing here moves the machine."""
+    if mind.feedback is None or not mind.feedback.local:
+        return None
+    return Reason(
+        "local",
+        f"The switch at the cabinet of {mind.config.name} is on local.",
+        "Turn the switch at the cabinet to remote; until then the machine is moved from there.",
+    )
+
+
+def served(mind: Mind) -> Reason | None:
+    """Return that nobody serves the machine, so that service mode cannot be left or confirmed."""
+    if mind.memory.service is not None:
+        return None
+    return Reason(
+        "not_in_service", f"{mind.config.name} is not in service mode.", "Begin service mode first."
+    )
+
+
+def unserved(mind: Mind) -> Reason | None:
+    """Return that somebody serves the machine: nothing else than slow hand motion."""
+    service = mind.memory.service
+    if service is None:
+        return None
+    return Reason(
+        "in_service",
+        f"{mind.config.name} is in service mode by {service.name}.",
+        "End service mode on the tracker's page first.",
+    )
+
+
+def cleared(mind: Mind) -> Reason | None:
+    """Return that in service mode nobody has said of late that the area is clear."""
+    confirmed_now = mind.clear_until is not None and mind.now < mind.clear_until
+    if mind.memory.service is None or confirmed_now:
+        return None
+    return Reason(
+        "area_not_clear",
+        f"{mind.config.name} is in service mode, and nobody has said that the area is clear.",
+        "Look whether anybody stands where the panel moves, then press Area is clear.",
+    )
+
+
+def prompt(mind: Mind) -> Reason | None:
+    """Return that the drive's replies are too slow for motion by a held key."""
+    link = None if mind.seen is None else mind.seen.link
+    if link is None or not link.slow:
+        return None
+    return Reason(
+        "link_slow",
+        f"The drive of {mind.config.name} answers slowly: 1 reply in 100 takes more than "
+        f"{link.p99_s * 1000.0:.0f} ms, and {link.allowed_s * 1000.0:.0f} ms are all it is given.",
+        "Move by steps, or look for what slows the connection down.",
+    )
+
+
+def recoverable(mind: Mind) -> Reason | None:
+    """Return that a fault of this class is cleared in service mode only."""
+    if not isinstance(mind.activity, Faulted) or mind.memory.service is not None:
+        return None
+    fault = CLASSES.get(mind.activity.reason.code)
+    if fault is None or mind.config.machine.recovery.of(fault).kind is not Recovery.SERVICE:
+        return None
+    return Reason(
+        "service_needed",
+        "A fault of this class is cleared at the machine, in service mode.",
+        "Begin service mode on the tracker's page, remove the cause, then clear the fault.",
+    )
+
+
 def stowed(mind: Mind) -> Reason | None:
     """Return that no stow was commanded that could be left."""
     if mind.memory.stow is not None:
@@ -307,23 +383,27 @@ _SHOW_HINT = {
 _HOLD, _JOG, _MOVE = ActivityName.HOLDING, ActivityName.JOGGING, ActivityName.MOVING
 _TRACK, _SHOW, _STOPPING = ActivityName.TRACKING, ActivityName.SHOWING, ActivityName.STOPPING
 _STOW, _STOWED = ActivityName.STOWING, ActivityName.STOWED
-_CAN_MOVE = (reachable, sound, homed, unlocked)
-_CAN_PROVE = (reachable, sound, while_(_HOLD), resting)
+_CAN_MOVE = (reachable, sound, remote, homed, unlocked)
+_BY_ITSELF = (*_CAN_MOVE, unserved)
+_CAN_PROVE = (reachable, sound, remote, cleared, while_(_HOLD), resting)
 
 REQUIRED: dict[Action, tuple[Condition, ...]] = {
-    Action.JOG: (reachable, sound, while_(_HOLD, _JOG)),
-    Action.STEP: (reachable, sound, while_(_HOLD)),
+    Action.JOG: (reachable, sound, remote, cleared, prompt, while_(_HOLD, _JOG)),
+    Action.STEP: (reachable, sound, remote, cleared, while_(_HOLD)),
     Action.ZERO: (reachable, sound, settings_open, while_(_HOLD), resting),
-    Action.HOME: (reachable, sound, unlocked, self_homing, while_(_HOLD), resting),
+    Action.HOME: (reachable, sound, remote, cleared, unlocked, self_homing, while_(_HOLD), resting),
     Action.SET_MODE: (while_(_HOLD, _JOG, _MOVE, _STOPPING),),
-    Action.MOVE: (*_CAN_MOVE, sheltered, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
-    Action.PARK: (*_CAN_MOVE, sheltered, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
-    Action.STOW: (*_CAN_MOVE, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
-    Action.RESUME: (unlocked, stowed),
+    Action.MOVE: (*_CAN_MOVE, cleared, sheltered, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
+    Action.PARK: (*_BY_ITSELF, sheltered, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
+    Action.STOW: (*_BY_ITSELF, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
+    Action.RESUME: (unlocked, unserved, stowed),
     Action.LOCK_OUT: (unlocked,),
     Action.RELEASE_LOCK: (locked,),
+    Action.BEGIN_SERVICE: (unserved,),
+    Action.CONFIRM_CLEAR: (served,),
+    Action.END_SERVICE: (served,),
     Action.TRACK: (
-        *_CAN_MOVE,
+        *_BY_ITSELF,
         located,
         on_time,
         mode_selected,
@@ -332,14 +412,16 @@ REQUIRED: dict[Action, tuple[Condition, ...]] = {
         while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED),
     ),
     Action.GO_TO_START: (
-        *_CAN_MOVE,
+        *_BY_ITSELF,
         sheltered,
         while_(_HOLD, _MOVE, _TRACK, _SHOW, _STOW, _STOWED),
         not_in_a_show,
     ),
-    Action.RUN_SHOW: (*_CAN_MOVE, sheltered, showing(ShowPhase.READY)),
+    Action.RUN_SHOW: (*_BY_ITSELF, sheltered, showing(ShowPhase.READY)),
     Action.PAUSE_SHOW: (showing(ShowPhase.RUNNING),),
     Action.RESUME_SHOW: (
+        remote,
+        unserved,
         unlocked,
         sheltered,
         showing(ShowPhase.PAUSED),
@@ -348,10 +430,10 @@ REQUIRED: dict[Action, tuple[Condition, ...]] = {
         showing(ShowPhase.GOING_TO_START, ShowPhase.READY, ShowPhase.RUNNING, ShowPhase.PAUSED),
     ),
     Action.STOP: (),
-    Action.RESET_FAULT: (reachable, faulted),
+    Action.RESET_FAULT: (reachable, faulted, recoverable),
     Action.PROVE_DIRECTION: _CAN_PROVE,
     Action.PROVE_SCALE: _CAN_PROVE,
-    Action.MEASURE_STOP: _CAN_PROVE,
-    Action.MEASURE_LINK_LOSS: (*_CAN_PROVE, watched),
+    Action.MEASURE_STOP: (*_CAN_PROVE, unserved),
+    Action.MEASURE_LINK_LOSS: (*_CAN_PROVE, unserved, watched),
     Action.SET_LIMIT: (*_CAN_PROVE, homed),
 }

@@ -33,8 +33,10 @@ from app.tracker.activity import (
     Zeroing,
 )
 from app.tracker.announce import is_announced
+from app.tracker.authority import watch_local, watch_service
 from app.tracker.commands import Command
 from app.tracker.config import TrackerConfig
+from app.tracker.machine_guard import watch_machine
 from app.tracker.memory import CommissioningLock, Confirmation, Pointing, Sighting, StepName, TrackerMemory
 from app.tracker.mind import HALTED, NOWHERE, STANDING, Mind, Turn
 from app.tracker.motion import (
@@ -53,6 +55,7 @@ from app.tracker.orders import obey
 from app.tracker.proofs import Proofs
 from app.tracker.protect import check_following, found, miss, obey_switches, protect
 from app.tracker.reason import Reason
+from app.tracker.recovery import recover
 from app.tracker.runs import at_rest
 from app.tracker.shelter import look
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
@@ -224,11 +227,15 @@ class Controller:
             found(mind, feedback)
         mind.feedback, mind.feedback_at = feedback, seen.now
         elapsed_s = (seen.now - before_at).total_seconds() if before_at else 0.0
+        watch_local(mind, before, feedback)
         protect(mind, before, feedback, elapsed_s)
+        watch_service(mind)
+        watch_machine(mind, before, feedback)
         if mind.watches or mind.command is not HALTED:
             check_following(mind, feedback, seen.now)
         if before is None and mind.started_at is not None and seen.now - mind.started_at <= RESUME_WITHIN:
             self._first_reading()
+        recover(mind, feedback)
         stowing.guard(mind, feedback)
         turn = self._step(feedback, seen)
         mind.activity, mind.target = turn.activity, upright(turn.target)

@@ -15,7 +15,7 @@ LONGEST_REASON = 200
 
 def lock_out(mind: Mind, command: LockOut) -> None:
     """Stop and forbid every automatic motion, or raise `CommandRejected`."""
-    demand(mind, Action.LOCK_OUT, _unnamed(command))
+    demand(mind, Action.LOCK_OUT, named(command.name, "A maintenance lock"), _too_long(command))
     name, why = command.name.strip(), command.reason.strip()
     switch_tracking_off(mind, "the tracker is locked for maintenance.")
     leave(mind, "the tracker is locked for maintenance.")
@@ -37,13 +37,22 @@ def release_lock(mind: Mind) -> None:
     mind.say(EventKind.LOCK_RELEASED, f"The maintenance lock of {name} was released.", name=name)
 
 
-def _unnamed(command: LockOut) -> Reason | None:
-    name, why = command.name.strip(), command.reason.strip()
-    if name.isprintable() and 1 <= len(name) <= LONGEST_NAME and len(why) <= LONGEST_REASON:
+def named(name: str, what: str) -> Reason | None:
+    """Return that a name is missing or no name, None where it is one."""
+    if name.isprintable() and 1 <= len(name.strip()) <= LONGEST_NAME:
         return None
     return Reason(
         "lock_unnamed",
-        f"A maintenance lock bears a name of 1 to {LONGEST_NAME} letters, and a reason of up to "
-        f"{LONGEST_REASON}.",
+        f"{what} bears a name of 1 to {LONGEST_NAME} letters.",
         "Give the name of the person who works on the machine.",
+    )
+
+
+def _too_long(command: LockOut) -> Reason | None:
+    if len(command.reason.strip()) <= LONGEST_REASON:
+        return None
+    return Reason(
+        "lock_unnamed",
+        f"The reason of a maintenance lock has up to {LONGEST_REASON} letters.",
+        "Say it in fewer words.",
     )

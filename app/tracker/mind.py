@@ -11,6 +11,7 @@ from app.tracker.axes import Axis
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.follow import AxisWatch
 from app.tracker.hybrid import Corrected
+from app.tracker.machine_watch import AxisGuard
 from app.tracker.memory import TrackerMemory
 from app.tracker.motion import DriveCapabilities, DriveCommand, Feedback, Velocity
 from app.tracker.observation import Observation
@@ -51,8 +52,11 @@ class Mind:
         "activity",
         "actor",
         "aftermath",
+        "ailing",
+        "ailing_since",
         "alarmed",
         "capabilities",
+        "clear_until",
         "command",
         "config",
         "corrected",
@@ -61,19 +65,24 @@ class Mind:
         "feedback",
         "feedback_at",
         "guarding",
+        "guards",
         "hand_until",
         "lost",
         "memory",
         "misses",
         "now",
+        "recovered_at",
+        "recovering",
         "request_number",
         "seen",
         "setpoint",
         "site_time",
         "started_at",
         "sun",
+        "supply_since",
         "target",
         "ticks",
+        "told_before",
         "wait",
         "warning",
         "watches",
@@ -111,6 +120,14 @@ class Mind:
         self.zeroed: frozenset[Axis] = frozenset(Axis) if memory.home else frozenset()
         self.watches: Mapping[Axis, AxisWatch] = {}
         self.ticks = 0
+        self.guards: Mapping[Axis, AxisGuard] = {}
+        self.told_before = HALTED
+        self.supply_since: datetime | None = None
+        self.clear_until: datetime | None = None
+        self.ailing: str | None = None
+        self.ailing_since = LONG_AGO
+        self.recovered_at: tuple[datetime, ...] = ()
+        self.recovering = False
 
     def say(self, kind: EventKind, message: str, **data: Any) -> None:
         """Note that something happened; it leaves with the present call's events."""

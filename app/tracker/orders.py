@@ -14,10 +14,14 @@ from app.tracker.activities import (
     zeroing,
 )
 from app.tracker.activity import STOPPING, Faulted
+from app.tracker.authority import begin_service, confirm_clear, end_service
 from app.tracker.commands import (
+    BeginService,
     Command,
     CommandRejected,
+    ConfirmClear,
     EndJog,
+    EndService,
     GoToStart,
     Home,
     Jog,
@@ -62,6 +66,8 @@ def obey(mind: Mind, command: Command) -> None:
             _obey_automatic(mind, command)
         case Stow() | Resume() | LockOut() | ReleaseLock():
             _obey_guard(mind, command)
+        case BeginService() | ConfirmClear() | EndService():
+            _obey_service(mind, command)
         case GoToStart() | RunShow() | PauseShow() | ResumeShow() | StopShow():
             _obey_show(mind, command)
         case ProveDirection() | ProveScale() | MeasureStop() | MeasureLinkLoss():
@@ -129,6 +135,18 @@ def _obey_guard(mind: Mind, command: Stow | Resume | LockOut | ReleaseLock) -> N
             lock_out(mind, command)
         case ReleaseLock():
             release_lock(mind)
+        case _:
+            assert_never(command)
+
+
+def _obey_service(mind: Mind, command: BeginService | ConfirmClear | EndService) -> None:
+    match command:
+        case BeginService():
+            begin_service(mind, command)
+        case ConfirmClear():
+            confirm_clear(mind)
+        case EndService():
+            end_service(mind)
         case _:
             assert_never(command)
 

@@ -106,6 +106,7 @@ def _compare(mind: Mind, before: Feedback, feedback: Feedback, elapsed_s: float)
 
 
 def _doubt_home(mind: Mind, reason: Reason) -> None:
+    mind.guards = {}
     lose_home(mind, reason)
     interrupt(mind, reason)
 

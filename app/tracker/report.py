@@ -5,8 +5,10 @@ from math import nan
 
 from app.angles import separation_deg, wrap360
 from app.sun.position import SunPosition
+from app.tracker import machine_guard
 from app.tracker.activities.tracking import sun_height_deg
 from app.tracker.activity import NAMES, AxisPair, Faulted, Showing, Stowed, Stowing, Tracking, TrackPhase
+from app.tracker.authority import service_state
 from app.tracker.conditions import Action, unmet
 from app.tracker.config import MountKind, Orientation, TrackerConfig
 from app.tracker.hybrid import Corrected
@@ -69,6 +71,9 @@ def snapshot(mind: Mind, at: datetime, now: datetime) -> Snapshot:
         lock=mind.memory.lock,
         settings_lock=mind.memory.settings_lock,
         sensors=sensors(mind),
+        local=fresh is not None and fresh.local,
+        service=service_state(mind),
+        link=mind.seen.link if mind.seen else None,
     )
 
 
@@ -248,7 +253,12 @@ def _notices(mind: Mind) -> tuple[Reason, ...]:
     told = () if mind.aftermath is None else (mind.aftermath,)
     if mind.memory.home is None and mind.memory.home_lost:
         told = (*told, _zero_lost(mind))
-    return told + doubts(mind) + tuple(reason for present, reason in found if present)
+    return (
+        told
+        + machine_guard.notices(mind)
+        + doubts(mind)
+        + tuple(reason for present, reason in found if present)
+    )
 
 
 def _zero_lost(mind: Mind) -> Reason:

@@ -13,7 +13,14 @@ from app.tracker.hybrid import HybridPhase
 from app.tracker.memory import CommissioningLock
 from app.tracker.mode import Mode
 from app.tracker.motion import LightReading
-from app.tracker.protections.words import MaintenanceLock, ProtectionState, StowName, WarningState
+from app.tracker.protections.words import (
+    LinkQuality,
+    MaintenanceLock,
+    ProtectionState,
+    ServiceState,
+    StowName,
+    WarningState,
+)
 from app.tracker.reason import Reason
 from app.tracker.weather import Quality, Quantity, WeatherNow
 
@@ -140,7 +147,9 @@ class Snapshot:
     `waiting` says why a tracker that should move does not. `actions` maps every action to the reasons
     that forbid it (none: allowed). `protection` is what wind, snow or light demand now (None: nothing),
     `stow` the place it is or goes to for that or by command, `not_stowed` why it does not stow although it
-    should (priority 1), `warning` counts down to a motion that nobody at the machine asked for.
+    should (priority 1), `local` that the switch at the cabinet is on local, `service` who serves the machine,
+    `link` how the drive's replies come. `warning` counts down to a motion that nobody at the machine asked
+    for.
     """
 
     tracker_id: str
@@ -180,6 +189,9 @@ class Snapshot:
     control: ControlState = ControlState(0)
     settings_lock: CommissioningLock | None = None
     sensors: tuple[SensorState, ...] = ()
+    local: bool = False
+    service: ServiceState | None = None
+    link: LinkQuality | None = None
 
 
 class EventKind(StrEnum):
@@ -242,6 +254,17 @@ class EventKind(StrEnum):
     CONTROL_RELEASED = "control_released"
     SETTINGS_LOCKED = "settings_locked"
     SETTINGS_UNLOCKED = "settings_unlocked"
+    CREPT = "crept"
+    OVERRAN = "overran"
+    LOCAL_TAKEN = "local_taken"
+    LOCAL_GIVEN_BACK = "local_given_back"
+    SERVICE_BEGAN = "service_began"
+    SERVICE_ENDED = "service_ended"
+    AREA_CLEARED = "area_cleared"
+    AREA_DOUBTED = "area_doubted"
+    FAULT_RECOVERED = "fault_recovered"
+    FAULT_INJECTED = "fault_injected"
+    FAULTS_CLEARED = "faults_cleared"
     ALARM_RAISED = "alarm_raised"
     ALARM_RETURNED = "alarm_returned"
     ALARM_ACKNOWLEDGED = "alarm_acknowledged"

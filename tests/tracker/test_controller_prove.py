@@ -186,7 +186,7 @@ def test_the_rated_speed_needs_a_trusted_zero_and_the_hand_speed_does_not() -> N
 
 def test_an_axis_that_does_not_move_proves_nothing() -> None:
     plant = standing(READY, config=replace(CONFIG, following_error_deg=20.0))
-    plant.drive.inject(Fault(FaultKind.FROZEN_POSITION, Axis.AZIMUTH))
+    plant.drive.inject(Fault(FaultKind.STALL, Axis.AZIMUTH))
     plant.ask(MeasureStop(Axis.AZIMUTH, StopSpeed.JOG))
     plant.forward(3.0)
     assert plant.controller.memory.proofs.stops == ()

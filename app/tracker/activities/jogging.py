@@ -8,6 +8,7 @@ from app.tracker.guards import axis_feedback, room_deg
 from app.tracker.mind import Mind, Turn
 from app.tracker.motion import HALT, AxisCommand, AxisFeedback, DriveCommand, Feedback, Position, Velocity
 from app.tracker.mounts.abilities import axis_of, axis_title
+from app.tracker.pace import paced
 from app.tracker.reason import Reason
 from app.tracker.snapshot import EventKind
 from app.tracker.transitions import leave, switch_tracking_off
@@ -152,7 +153,7 @@ def _in_the_way(mind: Mind, feedback: Feedback, command: Jog) -> tuple[Reason, .
 
 def _turn(mind: Mind, jogging: Jogging, seen: AxisFeedback) -> AxisCommand:
     """Return the motion of this tick; where a trusted soft limit is near, one that comes to rest there."""
-    config = mind.config.axis(jogging.axis)
+    config = paced(mind).axis(jogging.axis)
     speed_dps = config.jog_fast_dps if jogging.speed is JogSpeed.FAST else config.jog_slow_dps
     braking_deg = max(speed_dps, abs(seen.velocity_dps)) ** 2 / (2.0 * config.acceleration_dps2)
     if mind.memory.home is not None:

@@ -14,6 +14,7 @@ from app.tracker.mind import Mind, Turn
 from app.tracker.motion import Feedback
 from app.tracker.mount import aim, sky
 from app.tracker.mounts.abilities import axis_of, axis_title
+from app.tracker.pace import paced
 from app.tracker.protections.words import StowName
 from app.tracker.reason import Reason
 from app.tracker.runs import arrived, new_run
@@ -91,7 +92,7 @@ def _go(mind: Mind, feedback: Feedback, orientation: Orientation, kind: MoveKind
 
 def _begin(mind: Mind, feedback: Feedback, target: AxisPair, kind: MoveKind, text: str) -> None:
     announce_if_remote(mind, text)
-    run = new_run(mind.config, feedback, target, begins_at(mind), by_hand=kind is MoveKind.STEP)
+    run = new_run(paced(mind), feedback, target, begins_at(mind), by_hand=kind is MoveKind.STEP)
     mind.activity = Moving(kind, run, mind.actor)
     mind.say(EventKind.MOVE_STARTED, text, move=kind)
 

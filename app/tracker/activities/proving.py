@@ -9,6 +9,7 @@ from app.tracker.conditions import Action, demand_drive
 from app.tracker.guards import axis_feedback, room_deg
 from app.tracker.mind import Mind
 from app.tracker.motion import AxisFeedback, Feedback
+from app.tracker.pace import paced
 from app.tracker.proofs import ProofKind, ProofMove
 from app.tracker.reason import Reason
 from app.tracker.runs import new_run
@@ -91,7 +92,7 @@ def _begin(mind: Mind, axis: Axis, way_deg: float, kind: MoveKind, action: Actio
     target_deg = seen.position_deg + degrees
     on_azimuth = axis is Axis.AZIMUTH
     target = AxisPair(target_deg if on_azimuth else None, None if on_azimuth else target_deg)
-    run = new_run(mind.config, feedback, target, mind.now, by_hand=True)
+    run = new_run(paced(mind), feedback, target, mind.now, by_hand=True)
     mind.activity = Moving(kind, run, mind.actor)
     move = ProofMove(_KINDS[kind], axis, seen.position_deg, mind.site_time, mind.actor)
     mind.remember(proofs=replace(mind.memory.proofs, move=move))

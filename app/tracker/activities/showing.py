@@ -10,6 +10,7 @@ from app.tracker.commands import CommandRejected, GoToStart, RunShow
 from app.tracker.conditions import Action, demand, demand_drive, unmet
 from app.tracker.mind import HALTED, Mind, Turn
 from app.tracker.motion import DriveCommand, Feedback, Position
+from app.tracker.pace import paced
 from app.tracker.programs.show import Course, ShowPlan, check_show, course_of
 from app.tracker.reason import Reason
 from app.tracker.runs import arrived, new_run
@@ -26,7 +27,7 @@ def go_to_start(mind: Mind, command: GoToStart) -> None:
     course = _course(mind, command.plan)
     switch_tracking_off(mind, "a show was commanded.")
     announce_if_remote(mind, "The panel goes to the start of a show.")
-    run = new_run(mind.config, feedback, _start(course), begins_at(mind))
+    run = new_run(paced(mind), feedback, _start(course), begins_at(mind))
     mind.activity = Showing(course, ShowPhase.GOING_TO_START, run, timedelta(0), mind.now, mind.actor)
     mind.say(EventKind.MOVE_STARTED, "Going to the start of the show.", show_id=command.plan.show_id)
 

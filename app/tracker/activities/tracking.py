@@ -20,6 +20,7 @@ from app.tracker.mode import Mode
 from app.tracker.motion import Feedback
 from app.tracker.mounts.kinematics import FIRST_FOLLOWS
 from app.tracker.observation import Observation
+from app.tracker.pace import paced
 from app.tracker.programs.schedule import Aimed, Followed, Moment, aimed, scheduled, scheduled_dawn
 from app.tracker.pursuit import next_run, pursue, widened
 from app.tracker.reason import Reason
@@ -58,15 +59,16 @@ def track(mind: Mind) -> None:
     mind.say(EventKind.TRACKING_STARTED, f"Tracking started, mode {mind.memory.mode}.", mode=mind.memory.mode)
 
 
-def resume(mind: Mind) -> None:
-    """After a restart: go on tracking if it was on and all is trusted, else wait and say for what."""
+def resume(mind: Mind, after: str = "the restart") -> None:
+    """Go on tracking after a restart if it was on and all is trusted, else wait and say for what."""
     if not mind.memory.tracking_on:
         return
     reasons = unmet(mind, Action.TRACK)
     if not reasons:
         mind.activity = TRACKING[TrackPhase.FOLLOWING]
-        mind.say(EventKind.TRACKING_RESUMED, "Tracking goes on after the restart.", mode=mind.memory.mode)
-        announce(mind, f"{mind.config.name} goes on tracking after the restart.")
+        mind.wait = None
+        mind.say(EventKind.TRACKING_RESUMED, f"Tracking goes on after {after}.", mode=mind.memory.mode)
+        announce(mind, f"{mind.config.name} goes on tracking after {after}.")
         return
     mind.wait = reasons[0]
     why = " ".join(reason.message for reason in reasons)
@@ -115,8 +117,8 @@ def _begin(
     if isinstance(strategy, Continuous) and phase is not TrackPhase.NIGHT:
         if _must_wait(mind, tracking, phase):
             return Turn(TRACKING[phase], HALTED, wanted.direction, sun)
-        return Turn(TRACKING[phase], pursue(mind.config, wanted.target), wanted.direction, sun)
-    run = next_run(strategy, mind.config, feedback, wanted.target, mind.now)
+        return Turn(TRACKING[phase], pursue(paced(mind), wanted.target), wanted.direction, sun)
+    run = next_run(strategy, paced(mind), feedback, wanted.target, mind.now)
     if run is None:
         return Turn(
             RESTED[phase] if _has_rested(tracking) else TRACKING[phase], HALTED, wanted.direction, sun
@@ -202,7 +204,7 @@ def _go_on(
         return Turn(mind.activity, HALTED, direction, sun)
     run = tracking.run
     if wanted is not None:
-        run = widened(run, strategy, mind.config, feedback, wanted.target, mind.now)
+        run = widened(run, strategy, paced(mind), feedback, wanted.target, mind.now)
     same = run is tracking.run
     return Turn(tracking if same else Tracking(tracking.phase, run), run.command, direction, sun)
 

@@ -79,16 +79,19 @@ class MaintenanceLock:
 
 @dataclass(frozen=True, slots=True)
 class ServiceMode:
-    """Somebody serves the machine: it moves slowly, and only while the area was said to be clear.
-
-    Instants are by the site's clock; the word that the area is clear counts until `clear_until` (None: it was
-    not given, or a restart has ended it).
-    """
+    """Somebody serves the machine, since an instant of the site's clock; it moves at slow hand speed."""
 
     name: str
     by: str
     since: datetime
-    clear_until: datetime | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceState:
+    """Service mode as it is shown: the word that the area is clear counts so long; 0: not given or over."""
+
+    mode: ServiceMode
+    clear_for_s: float
 
 
 @dataclass(frozen=True, slots=True)

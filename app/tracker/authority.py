@@ -1,0 +1,92 @@
+"""Who may move the machine: the switch at its cabinet before all, somebody in service next."""
+
+from datetime import timedelta
+
+from app.tracker.activity import STOPPING, Faulted, Holding, Stopping
+from app.tracker.commands import BeginService
+from app.tracker.conditions import Action, demand
+from app.tracker.lockout import named
+from app.tracker.mind import NOWHERE, Mind
+from app.tracker.motion import Feedback
+from app.tracker.protections.words import ServiceMode, ServiceState
+from app.tracker.reason import Reason
+from app.tracker.snapshot import EventKind
+from app.tracker.transitions import interrupt, leave, switch_tracking_off
+
+
+def watch_local(mind: Mind, before: Feedback | None, feedback: Feedback) -> None:
+    """End everything while the switch at the cabinet is on local; nothing resumes when it is turned back."""
+    was_local = before is not None and before.local
+    if feedback.local and not was_local:
+        reason = at_cabinet(mind)
+        mind.say(EventKind.LOCAL_TAKEN, reason.message, code=reason.code)
+    elif was_local and not feedback.local:
+        text = f"The switch at the cabinet of {mind.config.name} is on remote again. Nothing moves by itself."
+        mind.say(EventKind.LOCAL_GIVEN_BACK, text)
+    if feedback.local and not isinstance(mind.activity, Holding | Stopping | Faulted):
+        interrupt(mind, at_cabinet(mind))
+
+
+def at_cabinet(mind: Mind) -> Reason:
+    """Return that the switch at the cabinet keeps the panel from moving anything."""
+    return Reason(
+        "local",
+        f"The switch at the cabinet of {mind.config.name} is on local.",
+        "The machine is moved from its cabinet; turn the switch to remote to move it from here.",
+    )
+
+
+def begin_service(mind: Mind, command: BeginService) -> None:
+    """Stop, and from now on move slowly and only while the area is clear, or raise `CommandRejected`."""
+    demand(mind, Action.BEGIN_SERVICE, named(command.name, "Service mode"))
+    name = command.name.strip()
+    switch_tracking_off(mind, "service mode begins.")
+    leave(mind, "service mode begins.")
+    mind.setpoint = NOWHERE
+    if not isinstance(mind.activity, Faulted):
+        mind.activity = STOPPING
+    mind.remember(service=ServiceMode(name, mind.actor, mind.site_time))
+    mind.clear_until = None
+    text = f"{name} serves {mind.config.name}: it moves slowly, once the area was said to be clear."
+    mind.say(EventKind.SERVICE_BEGAN, text, name=name)
+
+
+def confirm_clear(mind: Mind) -> None:
+    """Take the word that nobody stands where the panel moves, or raise `CommandRejected`."""
+    demand(mind, Action.CONFIRM_CLEAR)
+    seconds = mind.config.machine.clear_for_s
+    mind.clear_until = mind.now + timedelta(seconds=seconds)
+    text = f"The area around {mind.config.name} is clear; that counts for {seconds / 60.0:g} minutes."
+    mind.say(EventKind.AREA_CLEARED, text, seconds=seconds)
+
+
+def end_service(mind: Mind) -> None:
+    """Leave service mode, or raise `CommandRejected`; a motion under way ends, nothing else begins."""
+    demand(mind, Action.END_SERVICE)
+    leave(mind, "service mode ends.")
+    mind.remember(service=None)
+    mind.clear_until = None
+    mind.say(EventKind.SERVICE_ENDED, f"Service mode of {mind.config.name} has ended.")
+
+
+def watch_service(mind: Mind) -> None:
+    """End a motion when the word that the area is clear has expired."""
+    if mind.memory.service is None or mind.clear_until is None or mind.now < mind.clear_until:
+        return
+    mind.clear_until = None
+    reason = Reason(
+        "area_not_clear",
+        f"The word that the area around {mind.config.name} is clear has expired.",
+        "Look whether the area is clear, then press Area is clear.",
+    )
+    if not isinstance(mind.activity, Holding | Stopping | Faulted):
+        interrupt(mind, reason)
+    mind.say(EventKind.AREA_DOUBTED, reason.message, code=reason.code)
+
+
+def service_state(mind: Mind) -> ServiceState | None:
+    """Return service mode as it is shown, None outside it."""
+    if mind.memory.service is None:
+        return None
+    left = timedelta(0) if mind.clear_until is None else mind.clear_until - mind.now
+    return ServiceState(mind.memory.service, max(0.0, left.total_seconds()))

@@ -1,0 +1,31 @@
+"""How fast the axes may turn now: slowly in service mode, and an axis that stops too late."""
+
+from dataclasses import replace
+
+from app.tracker.axes import Axis, AxisConfig
+from app.tracker.config import TrackerConfig
+from app.tracker.mind import Mind
+
+
+def paced(mind: Mind) -> TrackerConfig:
+    """Return the configuration with the speeds that are allowed now; unchanged where nothing limits them."""
+    slow = [axis for axis in Axis if is_slow(mind, axis)]
+    if not slow:
+        return mind.config
+    config = mind.config
+    if Axis.AZIMUTH in slow:
+        config = replace(config, azimuth=_slowed(config.azimuth))
+    if Axis.ELEVATION in slow:
+        config = replace(config, elevation=_slowed(config.elevation))
+    return config
+
+
+def is_slow(mind: Mind, axis: Axis) -> bool:
+    """Return whether an axis may turn at the slow hand speed only."""
+    guard = mind.guards.get(axis)
+    return mind.memory.service is not None or (guard is not None and guard.slow_stops_left > 0)
+
+
+def _slowed(axis: AxisConfig) -> AxisConfig:
+    slow_dps = axis.jog_slow_dps
+    return replace(axis, speed_dps=slow_dps, jog_fast_dps=slow_dps)
