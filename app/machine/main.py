@@ -3,10 +3,12 @@
 import asyncio
 import gc
 import os
+import shutil
 import signal
 import sqlite3
 from datetime import datetime, timedelta
 from functools import partial
+from pathlib import Path
 from uuid import uuid4
 
 import structlog
@@ -146,10 +148,21 @@ def _site(
             recordings_keep=settings.recordings_keep,
             weather_stale_after=timedelta(seconds=settings.weather_stale_s),
             make_station=partial(met_reader, factory.buses),
+            journal_retention=timedelta(days=settings.journal_retention_days),
+            disk_free=lambda: _disk_free(settings.data_dir),
         ),
         tools=DriveProbe(factory.buses, factory.profiles),
+        alarms=beginning.alarms,
     )
     return site
+
+
+def _disk_free(folder: Path) -> int | None:
+    """Return how many bytes are free beside the database, None where that cannot be told."""
+    try:
+        return shutil.disk_usage(folder).free
+    except OSError:
+        return None
 
 
 def _newest_event(writer: Writer) -> datetime:

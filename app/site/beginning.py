@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
+from app.alarms.alarm import Alarm
 from app.build import VERSION
 from app.store.store import Writer
 from app.tracker.config import TrackerConfig
@@ -21,6 +22,7 @@ class Beginning:
     site: SiteState
     trackers: tuple[TrackerState, ...]
     events: tuple[Event, ...]
+    alarms: tuple[Alarm, ...] = ()
 
 
 def begin(store: Writer, now: datetime, *, unclean_since: datetime | None) -> Beginning:
@@ -42,7 +44,7 @@ def begin(store: Writer, now: datetime, *, unclean_since: datetime | None) -> Be
             "cut_off": [info.recording_id for info in cut],
         },
     )
-    return Beginning(site, tuple(store.trackers()), (event,))
+    return Beginning(site, tuple(store.trackers()), (event,), tuple(store.standing_alarms()))
 
 
 def _message(unclean_since: datetime | None, cut: list[RecordingInfo]) -> str:

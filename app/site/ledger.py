@@ -6,7 +6,7 @@ from typing import Protocol, TypeVar
 
 from app.audit.entry import Entry
 from app.site.auditing import IN_HAND, log_head
-from app.store.store import PlannedShow, StoreFailed, Writer
+from app.store.store import KeptAlarm, PlannedShow, StoreFailed, Writer
 from app.tracker.commands import CommandRejected
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.reason import Reason
@@ -105,13 +105,31 @@ class Ledger:
         if self._writer is not None:
             self._writer.post(log_head)
 
-    def catch_up(self, site: SiteState, trackers: Sequence[TrackerState]) -> None:
+    def post_alarms(self, alarms: Sequence[KeptAlarm], events: Sequence[Event]) -> None:
+        """Have alarms and what became of them stored soon, without waiting.
+
+        They come by themselves, even while an order is carried out: its audit entry is none of theirs.
+        """
+        self.event_count += len(events)
+        if self._writer is None:
+            return
+
+        def save(writer: Writer) -> None:
+            writer.save_alarms(alarms, events)
+
+        if not self._writer.post(lambda writer: self._noted(writer, save, None)):
+            self._fall_behind(None)
+
+    def catch_up(
+        self, site: SiteState, trackers: Sequence[TrackerState], alarms: Sequence[KeptAlarm] = ()
+    ) -> None:
         """Have the whole state stored anew; once it is on disk, nothing is behind any more."""
 
         def store(writer: Writer) -> None:
             writer.save_site(site)
             for state in trackers:
                 writer.save_tracker(state)
+            writer.save_alarms(alarms)
             while self._unrecorded:
                 _record(self._unrecorded[0])(writer)
                 self._unrecorded.popleft()

@@ -3,18 +3,23 @@
 import asyncio
 import itertools
 import resource
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
+from functools import partial
 
 import structlog
 
+from app.alarms.alarm import Alarm
+from app.alarms.conditions import Condition
 from app.clock import Clock
 from app.drives.drive import Drive
 from app.link.messages import (
+    AlarmOrder,
     CheckConnection,
     ControlOrder,
     LockOrder,
+    NotificationOrder,
     Order,
     SiteCommand,
     SiteDetail,
@@ -24,7 +29,8 @@ from app.link.messages import (
 )
 from app.link.metrics import MachineMetrics
 from app.link.outlet import Outlet
-from app.site import control, settings_lock, site_orders, tracker_orders
+from app.site import control, notifying, settings_lock, site_orders, tracker_orders
+from app.site.alarming import AlarmDesk
 from app.site.auditing import Auditor, as_action
 from app.site.checking import Checks, DriveTools
 from app.site.ledger import BackgroundWriter, Ledger
@@ -40,6 +46,7 @@ from app.tracker.commands import Jog
 from app.tracker.commissioning import steps
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import MetStation, SiteState, TrackerState
+from app.tracker.notifications import Notifications
 from app.tracker.observation import Observation
 from app.tracker.proof_states import proof_states
 from app.tracker.snapshot import Event, EventKind, SiteSnapshot
@@ -63,6 +70,8 @@ class SiteOptions:
     retention: timedelta = timedelta(days=400)
     recordings_keep: int = 500
     weather_stale_after: timedelta = STALE_AFTER
+    journal_retention: timedelta = timedelta(days=1825)
+    disk_free: Callable[[], int | None] = lambda: None
     make_station: Callable[[MetStation], StationReader] | None = None
 
 
@@ -80,6 +89,7 @@ class Site:
         writer: BackgroundWriter | None = None,
         options: SiteOptions | None = None,
         tools: DriveTools | None = None,
+        alarms: Sequence[Alarm] = (),
     ) -> None:
         self._options = options or SiteOptions()
         self._clock = clock
@@ -100,6 +110,7 @@ class Site:
         for tracker in trackers:
             self.model.add(tracker)
         self._auditor = Auditor(self._options.boot_id, self.model.timekeeper, ledger.post_entry)
+        self._alarms = AlarmDesk.open(self.model, alarms, self._options.disk_free)
         self._outlet = Outlet()
         self._repeats = Repeats()
         self._changing = asyncio.Lock()
@@ -138,6 +149,15 @@ class Site:
         """Journal and tell what happened at one of the site's other doors."""
         self.model.ledger.post_events(events)
         self._publish(events)
+
+    def trouble(self, name: str, condition: Condition | None) -> None:
+        """Note a condition that is for the alarms, or with None that it is over."""
+        self._alarms.trouble(name, condition)
+
+    @property
+    def notifications(self) -> Notifications:
+        """Return where alarms are to be sent."""
+        return self.model.state.notifications
 
     async def stop_drives(self) -> None:
         """Stop every drive for good, as far as each can be reached: the machine is about to end."""
@@ -219,6 +239,8 @@ class Site:
         return self._publish(events)
 
     async def _carry_out_for_site(self, order: Order, command: SiteCommand) -> tuple[Event, ...]:
+        if isinstance(command, AlarmOrder):
+            return self._alarms.carry_out(command, order.actor)
         if isinstance(command, StopAll | CheckConnection):
             return await site_orders.carry_out(self.model, command, order.actor)
         if isinstance(command, ControlOrder):
@@ -228,6 +250,8 @@ class Site:
             settings_lock.refuse_locked(self.model, command)
             if isinstance(command, LockOrder):
                 return await settings_lock.carry_out(self.model, command, order.actor)
+            if isinstance(command, NotificationOrder):
+                return await notifying.carry_out(self.model, command, order.actor)
             return await site_orders.carry_out(self.model, command, order.actor)
 
     def _on_tick(self, loop: TrackerLoop, seen: Observation, events: tuple[Event, ...]) -> None:
@@ -238,14 +262,18 @@ class Site:
             self.model.ledger.post_events(events)
         self.model.recorder.observe(loop, self.model.state, seen, events)
         if events or self._due(WHILE_MOVING if loop.moving else AT_REST):
-            self._publish(events)
+            self._publish(events, looks=True)
 
     def _due(self, after: timedelta) -> bool:
         return self._clock.now() - self._published_at >= after
 
-    def _publish(self, events: tuple[Event, ...] = ()) -> SiteSnapshot:
+    def _publish(self, events: tuple[Event, ...] = (), *, looks: bool = False) -> SiteSnapshot:
+        """Tell everyone what is and what happened; with `looks` alarms are judged first, if it is time."""
         self._published_at = self._clock.now()
         snapshot = self._snapshot(self.model.now())
+        if looks:
+            events = (*events, *self._alarms.look(snapshot, at_once=bool(events)))
+        snapshot = self._alarms.shown(snapshot)
         self._outlet.publish(snapshot, events)
         return snapshot
 
@@ -278,7 +306,7 @@ class Site:
             if now - self._pruned_at >= PRUNE_EVERY:
                 self._prune()
             if self._due(AT_REST):
-                self._publish()
+                self._publish(looks=True)
             due = max(due + PULSE, now)
             await self._clock.sleep_until(due)
 
@@ -295,7 +323,8 @@ class Site:
         """Hand frames to the store, and what it could not take before: a latch must outlive a power cut."""
         model = self.model
         if model.ledger.behind:
-            model.ledger.catch_up(model.state, tuple(loop.state for loop in model.loops.values()))
+            states = tuple(loop.state for loop in model.loops.values())
+            model.ledger.catch_up(model.state, states, self._alarms.standing())
         model.recorder.flush()
         if self._auditor.head_is_due(self._clock.now()):
             model.ledger.post_head()
@@ -322,3 +351,10 @@ class Site:
         keep = self._options.recordings_keep
         if writer is not None:
             writer.post(lambda store: store.prune(days_before=before, keep=keep))
+            oldest = self.model.now() - self._options.journal_retention
+            writer.post(lambda store: store.prune_history(oldest, partial(self._pruned, oldest)))
+
+    def _pruned(self, oldest: datetime, entries: int) -> Event:
+        """Return the event that says what retention removed."""
+        text = f"Retention removed {entries} entries of the journal from before {oldest:%Y-%m-%d}."
+        return self.model.event(EventKind.JOURNAL_PRUNED, text, "machine", entries=entries)
