@@ -1,0 +1,130 @@
+"""Alarms: those that stand, the history, the catalogue, and what an operator does about them."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Query
+from pydantic import Field
+
+from app.alarms.catalogue import ENTRIES
+from app.alarms.view import told
+from app.link.messages import AcknowledgeAlarm, AlarmOrder, ShelveAlarm, UnshelveAlarm
+from app.store.store import AlarmFilter, KeptAlarm
+from app.tracker.alarm_words import AlarmCounts, AlarmNow
+from app.web.api.base import NOT_FOUND, Input, Output
+from app.web.api.orders import Sender, SenderDep
+from app.web.deps import ReaderDep, SnapshotDep
+
+router = APIRouter(prefix="/alarms", tags=["alarms"])
+AlarmId = Annotated[
+    str, Path(min_length=1, max_length=120, description="Name of the alarm.", examples=["drive_lost@T1"])
+]
+
+
+class AlarmsNow(Output):
+    """The alarms that stand, the most urgent first: at most 50; the counts tell of all."""
+
+    alarms: tuple[AlarmNow, ...]
+    counts: AlarmCounts
+
+
+class PastAlarm(Output):
+    """One alarm from its raising to its end."""
+
+    number: int = Field(description="Its place in the history.")
+    ended: bool = Field(description="Whether it has ended; if not, it stands.")
+    alarm: AlarmNow
+
+
+class AlarmHistory(Output):
+    """Alarms, newest first, and where the next page begins."""
+
+    alarms: list[PastAlarm]
+    next_before: int | None = Field(description="Give this as `before` for older ones; None: no more.")
+
+
+class AlarmKind(Output):
+    """One kind of alarm."""
+
+    code: str
+    priority: int = Field(ge=1, le=4, description="1 at once, 2 within 10 minutes, 3 within hours, 4 days.")
+    title: str
+    consequence: str = Field(description="What follows if nobody acts.")
+    do: str = Field(description="What to do.")
+    on_delay_s: float = Field(description="How long its condition lasts before it is raised.")
+    off_delay_s: float = Field(description="How long its condition is gone before it has returned.")
+    suppressed_by: tuple[str, ...] = Field(description="Codes that suppress it by design.")
+
+
+class Shelving(Input):
+    """For how long an alarm is put aside, and why."""
+
+    minutes: int = Field(ge=1, le=1440, examples=[60])
+    reason: str = Field(min_length=1, max_length=300, examples=["The sensor is being replaced."])
+
+
+@router.get("", summary="The alarms that stand")
+async def read_alarms(snapshot: SnapshotDep) -> AlarmsNow:
+    """Return active, returned, shelved, suppressed alarms and those out of service, with counts."""
+    return AlarmsNow(alarms=snapshot.alarms, counts=snapshot.alarm_counts)
+
+
+@router.get("/history", summary="The history of alarms, newest first")
+def read_history(
+    reader: ReaderDep,
+    before: Annotated[
+        int | None, Query(ge=1, le=2**63 - 1, description="Cursor: alarms before this.")
+    ] = None,
+    limit: Annotated[int, Query(ge=1, le=1000)] = 100,
+    tracker_id: Annotated[str | None, Query(max_length=64)] = None,
+    priority: Annotated[list[int] | None, Query(description="Only these priorities.")] = None,
+) -> AlarmHistory:
+    """Return alarms that were raised, a page at a time."""
+    found = reader.alarm_history(AlarmFilter(before, limit, tracker_id, tuple(priority or ())))
+    more = found[-1].number if len(found) == limit else None
+    return AlarmHistory(alarms=[_past(one) for one in found], next_before=more)
+
+
+@router.get("/catalogue", summary="Every alarm there is")
+async def read_catalogue() -> list[AlarmKind]:
+    """Return each kind of alarm with its priority, what follows and what to do."""
+    return [
+        AlarmKind(
+            code=one.code,
+            priority=one.priority,
+            title=one.title,
+            consequence=one.consequence,
+            do=one.do,
+            on_delay_s=one.on_delay.total_seconds(),
+            off_delay_s=one.off_delay.total_seconds(),
+            suppressed_by=one.suppressed_by,
+        )
+        for one in ENTRIES
+    ]
+
+
+@router.post("/{alarm_id}/acknowledge", summary="Acknowledge an alarm", responses=NOT_FOUND)
+async def acknowledge(alarm_id: AlarmId, sender: SenderDep) -> AlarmsNow:
+    """Say that somebody has seen it; one that is acknowledged already stays so."""
+    return await _ordered(sender, AcknowledgeAlarm(alarm_id))
+
+
+@router.post("/{alarm_id}/shelve", summary="Shelve an alarm", responses=NOT_FOUND)
+async def shelve(alarm_id: AlarmId, shelving: Shelving, sender: SenderDep) -> AlarmsNow:
+    """Put it aside for some minutes; one of priority 1 cannot be shelved."""
+    return await _ordered(sender, ShelveAlarm(alarm_id, shelving.minutes, shelving.reason))
+
+
+@router.post("/{alarm_id}/unshelve", summary="Take an alarm back from the shelf", responses=NOT_FOUND)
+async def unshelve(alarm_id: AlarmId, sender: SenderDep) -> AlarmsNow:
+    """Announce it again if it is still active."""
+    return await _ordered(sender, UnshelveAlarm(alarm_id))
+
+
+async def _ordered(sender: Sender, order: AlarmOrder) -> AlarmsNow:
+    after = await sender.send(order)
+    return AlarmsNow(alarms=after.alarms, counts=after.alarm_counts)
+
+
+def _past(kept: KeptAlarm) -> PastAlarm:
+    shown = told(kept.alarm, kept.ended_at)
+    return PastAlarm(number=kept.number, ended=kept.ended_at is not None, alarm=shown)

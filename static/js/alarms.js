@@ -1,0 +1,102 @@
+// The alarm strip of every page, and the sound of alarms that nobody has acknowledged.
+
+import { live } from "./live.js";
+import { clockTime } from "./format.js";
+
+const CALLS = ["unacknowledged", "returned"];
+const SOUND = "heliopanel-sound";
+const MUTED = "heliopanel-muted-until";
+const MUTE_MS = 10 * 60 * 1000;
+const REPEAT_MS = 3000;
+const LOUD_UP_TO = 2;
+const TONES_HZ = [880, 660];
+const TONE_S = 0.18;
+
+const calls = (alarm) => CALLS.includes(alarm.state);
+const one = (id) => document.getElementById(id);
+
+function paintFirst(site) {
+  const first = site.alarms.find((alarm) => calls(alarm) && !alarm.collapsed);
+  for (const shape of document.querySelectorAll("[data-first-shape]")) {
+    shape.hidden = Number(shape.dataset.firstShape) !== first?.priority;
+  }
+  const standing = site.alarm_counts.standing.reduce((sum, count) => sum + count, 0);
+  const title = first?.title ?? (standing ? "No new alarm" : "No alarms");
+  const where = first ? `${first.where} · ${clockTime(first.since, live.zone)}` : "";
+  if (one("alarm-first-title").textContent !== title) one("alarm-first-title").textContent = title;
+  if (one("alarm-first-where").textContent !== where) one("alarm-first-where").textContent = where;
+  const form = one("alarm-ack");
+  form.toggleAttribute("data-idle", !first);
+  form.querySelector("[name=alarm_id]").value = first?.alarm_id ?? "";
+  const key = form.querySelector("button");
+  if (!key.closest("[data-denied]")) key.disabled = !first || live.link !== "live";
+}
+
+function paintCounts(site) {
+  for (const item of document.querySelectorAll("[data-count]")) {
+    const count = site.alarm_counts.standing[item.dataset.count - 1];
+    item.toggleAttribute("data-none", !count);
+    const shown = item.querySelector("b");
+    if (shown.textContent !== String(count)) shown.textContent = count;
+  }
+}
+
+let context = null;
+let soundedAt = 0;
+
+function stored(name) {
+  try { return localStorage.getItem(name); } catch { return null; }
+}
+
+function store(name, value) {
+  try { localStorage.setItem(name, value); } catch { /* the choice holds for this page only */ }
+}
+
+export const soundIsOn = () => stored(SOUND) === "on";
+export const mutedUntil = () => Number(stored(MUTED) ?? 0);
+
+export function switchSound(on) {
+  store(SOUND, on ? "on" : "off");
+  store(MUTED, 0);
+  if (on) wake();
+}
+
+export const mute = () => store(MUTED, Date.now() + MUTE_MS);
+
+// Browsers let a page make sound only after it was touched once.
+export function wake() {
+  context ??= new AudioContext();
+  if (context.state === "suspended") context.resume();
+}
+
+function tone(frequency, from) {
+  const source = context.createOscillator();
+  const volume = context.createGain();
+  source.frequency.value = frequency;
+  volume.gain.setValueAtTime(0.0001, from);
+  volume.gain.exponentialRampToValueAtTime(0.3, from + 0.02);
+  volume.gain.exponentialRampToValueAtTime(0.0001, from + TONE_S);
+  source.connect(volume).connect(context.destination);
+  source.start(from);
+  source.stop(from + TONE_S);
+}
+
+function sound() {
+  const loud = live.site?.alarms.some((alarm) => calls(alarm) && alarm.priority <= LOUD_UP_TO);
+  const due = performance.now() - soundedAt >= REPEAT_MS;
+  if (!loud || !due || !soundIsOn() || Date.now() < mutedUntil() || context?.state !== "running") return;
+  soundedAt = performance.now();
+  document.documentElement.dataset.sounded = String(Number(document.documentElement.dataset.sounded ?? 0) + 1);
+  TONES_HZ.forEach((frequency, place) => tone(frequency, context.currentTime + place * (TONE_S + 0.04)));
+}
+
+export function start() {
+  if (!one("alarm-strip")) return;
+  live.on("state", ({ site }) => {
+    paintFirst(site);
+    paintCounts(site);
+    sound();
+  });
+  const touched = () => soundIsOn() && wake();
+  for (const kind of ["pointerdown", "keydown"]) document.addEventListener(kind, touched);
+}
