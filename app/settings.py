@@ -34,8 +34,24 @@ class Settings(BaseSettings):
     model_config = SettingsConfigDict(env_prefix=PREFIX, frozen=True, extra="forbid")
 
     host: str = Field(
-        "127.0.0.1", description="Address the panel listens on; loopback only until access control exists."
+        "127.0.0.1", description="Address the panel listens on; beyond loopback only with a certificate."
     )
+    allowed_hosts: Annotated[tuple[str, ...], NoDecode] = Field(
+        (), description="Other names by which the panel is opened, separated by commas."
+    )
+    trusted_proxies: Annotated[tuple[str, ...], NoDecode] = Field(
+        (),
+        description="Addresses or networks of reverse proxies whose word on who asks is taken, separated by "
+        "commas.",
+    )
+    tls_cert_file: Path | None = Field(
+        None, description="Certificate (with chain) of the panel instead of what `heliopanel tls init` made."
+    )
+    tls_key_file: Path | None = Field(None, description="Its key.")
+    insecure_lan: bool = Field(
+        False, description="Listen beyond loopback without a certificate; every page warns of it."
+    )
+    mdns: bool = Field(False, description="Announce the panel as heliopanel.local (needs the extra mdns).")
     port: int = Field(8000, ge=1, le=65535, description="TCP port of the panel.")
     data_dir: Path = Field(
         Path("data"), description="Folder of the database, the lock, the link and backups."
@@ -112,24 +128,47 @@ class Settings(BaseSettings):
         """Return where settings come from: arguments before the environment before the file."""
         return init_settings, env_settings, InitSettingsSource(settings_cls, _from_file())
 
-    @field_validator("host", "sunspec_host")
+    @field_validator("sunspec_host")
     @classmethod
     def _loopback_only(cls, host: str, info: ValidationInfo) -> str:
         if host not in LOOPBACK:
             variable = PREFIX + str(info.field_name).upper()
             raise ValueError(
-                f"Heliopanel does not listen on {host}: until access control is built, only loopback is "
+                f"Heliopanel does not serve SunSpec on {host}: Modbus knows no passwords, so only loopback is "
                 f"allowed (127.0.0.1 or ::1). Leave {variable} unset, or use an SSH tunnel to this "
                 "computer."
             )
         return host
+
+    @field_validator("allowed_hosts", "trusted_proxies", mode="before")
+    @classmethod
+    def _listed(cls, given: object) -> object:
+        return tuple(_words(given)) if isinstance(given, str) else given
+
+    @field_validator("trusted_proxies")
+    @classmethod
+    def _proxies(cls, given: tuple[str, ...]) -> tuple[str, ...]:
+        for host in given:
+            _check_network(host, "HELIOPANEL_TRUSTED_PROXIES", "Write addresses or networks such as 10.0.0.5.")
+        return given
+
+    @model_validator(mode="after")
+    def _listening(self) -> Self:
+        if (self.tls_cert_file is None) != (self.tls_key_file is None):
+            raise ValueError("HELIOPANEL_TLS_CERT_FILE and HELIOPANEL_TLS_KEY_FILE go together: set both.")
+        refusal = refusal_to_listen(
+            self.host, has_certificate=self.certificate is not None, insecure_lan=self.insecure_lan
+        )
+        if refusal:
+            raise ValueError(refusal)
+        return self
 
     @field_validator("sunspec_write_hosts", mode="before")
     @classmethod
     def _hosts(cls, given: object) -> object:
         if not isinstance(given, str):
             return given
-        hosts = tuple(host.strip() for host in given.split(",") if host.strip())
+        hosts = tuple(_words(given))
         for host in hosts:
             if host != "serial":
                 _check_network(host)
@@ -157,6 +196,29 @@ class Settings(BaseSettings):
         return f"sqlite:///{self.data_dir.resolve() / 'access.db'}"
 
     @property
+    def tls_dir(self) -> Path:
+        """Return the folder of the certificates that `heliopanel tls init` makes."""
+        return self.data_dir.resolve() / "tls"
+
+    @property
+    def certificate(self) -> tuple[Path, Path] | None:
+        """Return the files of the panel's certificate and key: the given ones, its own, None without any."""
+        if self.tls_cert_file is not None and self.tls_key_file is not None:
+            return self.tls_cert_file, self.tls_key_file
+        own = self.tls_dir / "server.crt", self.tls_dir / "server.key"
+        return own if all(path.is_file() for path in own) else None
+
+    @property
+    def scheme(self) -> str:
+        """Return how the panel is opened: https with a certificate, http without."""
+        return "http" if self.certificate is None else "https"
+
+    @property
+    def is_bare(self) -> bool:
+        """Return whether a network reaches the panel without TLS, of which every page warns."""
+        return not self.is_loopback and self.certificate is None
+
+    @property
     def is_loopback(self) -> bool:
         """Return whether only this computer can reach the panel."""
         return self.host in LOOPBACK
@@ -179,14 +241,33 @@ def read_settings() -> Settings:
         raise SettingsWrong(" ".join(_sentence(detail) for detail in error.errors())) from error
 
 
-def _check_network(host: str) -> None:
+def refusal_to_listen(host: str, *, has_certificate: bool, insecure_lan: bool) -> str:
+    """Return why the panel does not listen on an address, nothing if it does.
+
+    Who may do what there is another question: without an administrator it serves only its set-up page.
+    """
+    if host in LOOPBACK or has_certificate or insecure_lan:
+        return ""
+    return (
+        f"Heliopanel does not listen on {host} without a certificate: passwords would cross the network in "
+        "the clear. Make one with `heliopanel tls init`, or name yours in HELIOPANEL_TLS_CERT_FILE and "
+        "HELIOPANEL_TLS_KEY_FILE. On a network that nobody else can reach, --insecure-lan goes without."
+    )
+
+
+def _words(text: str) -> list[str]:
+    return [word.strip() for word in text.split(",") if word.strip()]
+
+
+def _check_network(
+    host: str,
+    variable: str = "HELIOPANEL_SUNSPEC_WRITE_HOSTS",
+    hint: str = "Write addresses or networks such as 127.0.0.1 or 10.0.0.0/24, separated by commas, or serial.",
+) -> None:
     try:
         ipaddress.ip_network(host, strict=False)
     except ValueError as error:
-        raise ValueError(
-            f"HELIOPANEL_SUNSPEC_WRITE_HOSTS names {host!r}, which is no address. Write addresses or "
-            "networks such as 127.0.0.1 or 10.0.0.0/24, separated by commas, or serial."
-        ) from error
+        raise ValueError(f"{variable} names {host!r}, which is no address. {hint}") from error
 
 
 def _sentence(detail: Any) -> str:
