@@ -18,6 +18,7 @@ from app.cli_drives import drive_sim, fault_proxy
 from app.cli_profiles import drive
 from app.cli_strategies import strategies
 from app.cli_study import compare, study
+from app.cli_tls import tls
 from app.cli_sun import accuracy, reproduce
 from app.cli_users import users
 from app.clock import SystemClock
@@ -54,6 +55,7 @@ cli = typer.Typer(
 cli.add_typer(drive)
 cli.add_typer(users)
 cli.add_typer(audit)
+cli.add_typer(tls)
 cli.command()(drive_sim)
 cli.command()(strategies)
 cli.command()(fault_proxy)
@@ -68,11 +70,19 @@ Longitude = Annotated[float, typer.Option("--lon", help="Longitude, degrees, eas
 
 
 @cli.command()
-def serve() -> None:
+def serve(
+    *,
+    insecure_lan: Annotated[
+        bool,
+        typer.Option("--insecure-lan", help="Listen on a network without a certificate; every page warns."),
+    ] = False,
+) -> None:
     """Run the controller service and the panel, and start either again when it dies."""
+    if insecure_lan:
+        os.environ["HELIOPANEL_INSECURE_LAN"] = "1"
     settings = read_settings()
     typer.echo(
-        f"Heliopanel {VERSION}: open http://{_bracketed(settings.host)}:{settings.port} (Ctrl-C ends it)"
+        f"Heliopanel {VERSION}: open {settings.scheme}://{_bracketed(settings.host)}:{settings.port} (Ctrl-C ends it)"
     )
     raise typer.Exit(supervise(settings))
 

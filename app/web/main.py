@@ -29,8 +29,9 @@ from app.web.deps import Panel
 from app.web.documented import DocumentedApp
 from app.web.gate import Gate
 from app.web.hub import Hub
+from app.web.limits import StreamLimit
 from app.web.routes import guarded_routes
-from app.web.security import LARGEST_BODY, Guard, SecurityHeaders, Uploads
+from app.web.security import LARGEST_BODY, Guard, SecurityHeaders, Uploads, host_names
 from app.web.server import (
     FAREWELL_S,
     KEEP_ALIVE_S,
@@ -81,7 +82,8 @@ def create_app(
     app.add_middleware(GZipMiddleware, minimum_size=SMALLEST_COMPRESSED)
     app.state.routes = guarded_routes(app.routes)
     app.add_middleware(Gate, panel_app=app, keeper=keeper, clock=clock, routes=app.state.routes)
-    app.add_middleware(Guard)
+    app.add_middleware(StreamLimit)
+    app.add_middleware(Guard, hosts=host_names(settings))
     app.add_middleware(SecurityHeaders)
     return app
 
@@ -128,6 +130,7 @@ def run(settings: Settings) -> None:
     """Serve the panel until it is told to end."""
     set_up_logs("web", log_format=settings.log_format, log_level=settings.log_level)
     app = create_app(settings)
+    certificate = settings.certificate
     config = uvicorn.Config(
         app,
         host=settings.host,
@@ -140,7 +143,10 @@ def run(settings: Settings) -> None:
         ws_per_message_deflate=False,
         log_config=None,
         access_log=False,
-        proxy_headers=False,
+        proxy_headers=bool(settings.trusted_proxies),
+        forwarded_allow_ips=",".join(settings.trusted_proxies),
+        ssl_certfile=certificate[0] if certificate else None,
+        ssl_keyfile=certificate[1] if certificate else None,
         server_header=False,
         timeout_keep_alive=KEEP_ALIVE_S,
         timeout_graceful_shutdown=FAREWELL_S,

@@ -8,6 +8,9 @@ from app.access.roles import Permission
 
 _TABLE: dict[Permission, str] = {
     Permission.OPEN: """
+        GET /certificate
+        GET /certificate/ca.crt
+        GET /api/v1/certificate
         GET /login
         POST /login
         GET /setup

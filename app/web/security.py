@@ -1,5 +1,6 @@
 """Who may call at all: the guard against foreign pages, and the headers that every answer carries."""
 
+import ipaddress
 from http import HTTPStatus
 from urllib.parse import urlsplit
 
@@ -7,6 +8,8 @@ import orjson
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.settings import Settings
 
 LARGEST_BODY = 1024 * 1024
 LARGEST_UPLOAD = 9 * 1024 * 1024
@@ -33,6 +36,10 @@ HEADERS = {
 }
 
 
+HSTS = "max-age=31536000"
+"""Sent with TLS alone: the browser then never opens this name without it."""
+
+
 class SecurityHeaders:
     """Adds the headers to every answer, and `no-store` where the answer does not say otherwise."""
 
@@ -44,14 +51,16 @@ class SecurityHeaders:
 
         async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
-                add_headers(MutableHeaders(scope=message))
+                add_headers(MutableHeaders(scope=message), is_secure=scope["scheme"] == "https")
             await send(message)
 
         await self._app(scope, receive, send_with_headers if scope["type"] == "http" else send)
 
 
-def add_headers(headers: MutableHeaders) -> None:
-    """Add what every answer carries."""
+def add_headers(headers: MutableHeaders, *, is_secure: bool) -> None:
+    """Add what every answer carries; with TLS also that nothing else shall be used from now on."""
+    if is_secure:
+        headers.setdefault("Strict-Transport-Security", HSTS)
     for name, value in HEADERS.items():
         headers.setdefault(name, value)
     headers.setdefault("Cache-Control", "no-store")
@@ -77,14 +86,15 @@ class Guard:
     def _refusal(self, scope: Scope) -> str | None:
         headers = Headers(scope=scope)
         host = headers.get("host", "")
-        if _host_name(host) not in self._hosts:
+        name = _host_name(host)
+        if name not in self._hosts and not _is_own_address(name, scope):
             return (
-                "This panel answers only to the names 127.0.0.1 and localhost. "
-                "Open it by one of these, through an SSH tunnel if it runs on another computer."
+                "This panel does not answer to that name. Open it by 127.0.0.1 or localhost, through an SSH "
+                "tunnel if it runs on another computer, or by a name in HELIOPANEL_ALLOWED_HOSTS."
             )
         if scope["type"] == "http" and scope["method"] in SAFE_METHODS:
             return None
-        return _foreign(headers, host)
+        return _foreign(headers, host, is_secure=scope["scheme"] in ("https", "wss"))
 
 
 class Uploads:
@@ -112,13 +122,38 @@ def _host_name(host: str) -> str | None:
         return None
 
 
-def _foreign(headers: Headers, host: str) -> str | None:
+def host_names(settings: Settings) -> frozenset[str]:
+    """Return the names by which this panel may be called; an address that it listens on is always right."""
+    named = {name.lower() for name in settings.allowed_hosts}
+    own = {"heliopanel.local"} if settings.mdns or not settings.is_loopback else set()
+    return LOOPBACK_NAMES | named | own
+
+
+def _is_own_address(name: str | None, scope: Scope) -> bool:
+    """Return whether a host is the very address that was connected to: no foreign name can stand for that."""
+    server = scope.get("server")
+    try:
+        return bool(name and server) and ipaddress.ip_address(name or "") == ipaddress.ip_address(server[0])
+    except ValueError:
+        return False
+
+
+def _foreign(headers: Headers, host: str, *, is_secure: bool) -> str | None:
     site, origin = headers.get("sec-fetch-site"), headers.get("origin")
     if site is not None and site not in OWN_SITES:
         return "Another web site asked for this; it must come from a page of this panel."
-    if origin is not None and (origin == "null" or urlsplit(origin).netloc != host):
+    if origin is not None and not _is_own_origin(origin, host, is_secure=is_secure):
         return f"A page of {origin} asked for this; it must come from a page of this panel."
     return None
+
+
+def _is_own_origin(origin: str, host: str, *, is_secure: bool) -> bool:
+    """Return whether a page of this panel asks; behind a proxy that ends TLS its pages are secure too."""
+    try:
+        parts = urlsplit(origin)
+    except ValueError:
+        return False
+    return parts.netloc == host and parts.scheme in (("https",) if is_secure else ("http", "https"))
 
 
 def _body_size(scope: Scope) -> int:

@@ -1,11 +1,13 @@
 """uvicorn with patience that ends: a deadline for requests, limits for connections, a quick farewell."""
 
 import asyncio
+import re
 import resource
 import socket
 from collections import Counter
 from collections.abc import Callable
-from typing import Any
+from enum import Enum
+from typing import Any, assert_never
 
 import structlog
 import uvicorn
@@ -16,23 +18,67 @@ from uvicorn.server import ServerState
 log = structlog.get_logger()
 
 REQUEST_DEADLINE_S = 8.0
+LARGEST_HEAD = 64 * 1024
+STOPS = re.compile(rb"(/api/v1)?(/trackers/[^/?]+)?/stop(\?.*)?")
+"""What is answered even where a client has no connection left."""
+
+FULL = (
+    b"HTTP/1.1 503 Service Unavailable\r\nconnection: close\r\nretry-after: 5\r\n"
+    b"content-type: text/plain; charset=utf-8\r\ncontent-length: 52\r\n\r\n"
+    b"Too many connections are open. Close some, try again"
+)
+HEAD_TOO_LARGE = b"HTTP/1.1 431 Request Header Fields Too Large\r\nconnection: close\r\ncontent-length: 0\r\n\r\n"
 KEEP_ALIVE_S = 15
 FAREWELL_S = 2
 PING_S = 5.0
 UNACKNOWLEDGED_MS = 10_000
 MOST_A_CLIENT = 256
+RESERVED = 64
+RESERVED_A_CLIENT = 8
 DESCRIPTORS_RESERVED = 128
 DESCRIPTORS_WANTED = 8192
 LARGEST_MESSAGE = 16 * 1024
 
 
+class Admission(Enum):
+    """What a new connection may be used for."""
+
+    ANYTHING = "anything"
+    STOP = "stop"
+    NOTHING = "nothing"
+
+
 class Connections:
-    """How many plain connections each client holds, and how many there may be."""
+    """How many plain connections each client holds, and how many there may be; some are kept for Stop."""
 
     def __init__(self, most: int, most_a_client: int = MOST_A_CLIENT) -> None:
         self._most = most
         self._most_a_client = most_a_client
         self._held: Counter[str] = Counter()
+        self._reserved: Counter[str] = Counter()
+
+    def enter(self, client: str) -> Admission:
+        """Count one more connection of a client, and return what it may be used for."""
+        if self.admit(client):
+            return Admission.ANYTHING
+        if self._reserved[client] >= RESERVED_A_CLIENT or self._reserved.total() >= RESERVED:
+            return Admission.NOTHING
+        self._reserved[client] += 1
+        return Admission.STOP
+
+    def leave(self, client: str, admission: Admission) -> None:
+        """Count one less."""
+        match admission:
+            case Admission.ANYTHING:
+                self.release(client)
+            case Admission.STOP:
+                self._reserved[client] -= 1
+                if self._reserved[client] <= 0:
+                    del self._reserved[client]
+            case Admission.NOTHING:
+                pass
+            case _:
+                assert_never(admission)
 
     def admit(self, client: str) -> bool:
         """Count one more connection of a client, unless that would be too many."""
@@ -65,17 +111,20 @@ class CautiousHttp(HttpToolsProtocol):
         self._counted = connections
         self._deadline_s = deadline_s
         self._deadline: asyncio.TimerHandle | None = None
-        self._admitted: str | None = None
+        self._name = ""
+        self._admission = Admission.NOTHING
+        self._head_bytes = 0
+        self._head_is_open = True
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override] # as its parent
         """Begin to wait for a request, or hang up on a client that has too many connections."""
         super().connection_made(transport)
-        name = self.client[0] if self.client else ""
-        if not self._counted.admit(name):
-            log.warning("a client has too many connections", client=name)
+        self._name = self.client[0] if self.client else ""
+        self._admission = self._counted.enter(self._name)
+        if self._admission is Admission.NOTHING:
+            log.warning("a client has too many connections", client=self._name)
             transport.abort()
             return
-        self._admitted = name
         _watch(transport)
         self._expect()
 
@@ -85,8 +134,30 @@ class CautiousHttp(HttpToolsProtocol):
         self._release()
         super().connection_lost(exc)
 
+    def data_received(self, data: bytes) -> None:
+        """Take what came, unless a request's head has become too large."""
+        self._head_bytes += len(data)
+        if self._head_is_open and self._head_bytes > LARGEST_HEAD + len(data):
+            self.transport.write(HEAD_TOO_LARGE)
+            self.transport.close()
+            return
+        super().data_received(data)
+
+    def on_headers_complete(self) -> None:
+        """Begin to answer; a connection beyond the client's share is answered only if it stops something."""
+        self._head_is_open = False
+        if self._admission is Admission.STOP and not self._is_stop():
+            self.transport.write(FULL)
+            self.transport.close()
+            return
+        super().on_headers_complete()
+
+    def _is_stop(self) -> bool:
+        return self.parser.get_method() == b"POST" and STOPS.fullmatch(self.url) is not None
+
     def on_message_begin(self) -> None:
         """Begin to wait for the rest of a request."""
+        self._head_is_open, self._head_bytes = True, 0
         self._expect()
         super().on_message_begin()
 
@@ -111,9 +182,8 @@ class CautiousHttp(HttpToolsProtocol):
             self._deadline = None
 
     def _release(self) -> None:
-        if self._admitted is not None:
-            self._counted.release(self._admitted)
-            self._admitted = None
+        self._counted.leave(self._name, self._admission)
+        self._admission = Admission.NOTHING
 
 
 class PanelServer(uvicorn.Server):

@@ -7,8 +7,8 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.store.store import AuditFilter
-from app.web.audit_contexts import AuditPage
 from app.web.deps import ReaderDep
+from app.web.security_contexts import AuditPage
 from app.web.ui.frame import site_frame
 from app.web.ui.render import page
 

@@ -10,6 +10,7 @@ from app.web.ui import (
     account,
     accuracy,
     audit,
+    certificate,
     clock,
     drive,
     glance,
@@ -77,6 +78,7 @@ ROUTERS = (
     papers.router,
     journal.router,
     audit.router,
+    certificate.router,
     site.router,
     wizard.router,
 )

@@ -1,0 +1,54 @@
+"""How many lasting answers one client may hold open: streams and live sockets, but never a stop."""
+
+from collections import Counter
+
+import orjson
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+LASTING = frozenset({"/live", "/api/v1/stream"})
+MOST_STREAMS = 1024
+MOST_STREAMS_A_CLIENT = 64
+LOOPBACK = frozenset({"127.0.0.1", "::1"})
+"""Programs on this computer, and tunnels that end here, share the total alone."""
+
+TOO_MANY = "This computer has too many live pages or streams open. Close some, then try again."
+
+
+class StreamLimit:
+    """Turns away live sockets and streams beyond a client's share; every other request passes."""
+
+    def __init__(
+        self, app: ASGIApp, *, most: int = MOST_STREAMS, most_a_client: int = MOST_STREAMS_A_CLIENT
+    ) -> None:
+        self._app = app
+        self._most = most
+        self._most_a_client = most_a_client
+        self._open: Counter[str] = Counter()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass the request on, or answer 503 (a WebSocket: close it with 1013, try again later)."""
+        if scope["type"] not in ("http", "websocket") or scope["path"] not in LASTING:
+            await self._app(scope, receive, send)
+            return
+        client = scope["client"][0] if scope.get("client") else ""
+        share = self._most if client in LOOPBACK else self._most_a_client
+        if self._open[client] >= share or self._open.total() >= self._most:
+            await _refuse(scope, send)
+            return
+        self._open[client] += 1
+        try:
+            await self._app(scope, receive, send)
+        finally:
+            self._open[client] -= 1
+            if not self._open[client]:
+                del self._open[client]
+
+
+async def _refuse(scope: Scope, send: Send) -> None:
+    if scope["type"] == "websocket":
+        await send({"type": "websocket.close", "code": 1013, "reason": "too many"})
+        return
+    problem = {"type": "about:blank", "title": "Service Unavailable", "status": 503, "detail": TOO_MANY}
+    headers = [(b"content-type", b"application/problem+json"), (b"retry-after", b"5")]
+    await send({"type": "http.response.start", "status": 503, "headers": headers})
+    await send({"type": "http.response.body", "body": orjson.dumps(problem)})
