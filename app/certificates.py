@@ -1,4 +1,4 @@
-"""Certificates of one's own: an authority that tablets trust once, and the panel's certificate signed by it."""
+"""Certificates of one's own: an authority that tablets trust once, and the panel's, signed by it."""
 
 import ipaddress
 import os
@@ -37,7 +37,7 @@ class Certified:
 
 
 def init(folder: Path, names: Iterable[str], now: datetime) -> Certified:
-    """Write a new certificate of the panel for these names, by the authority of the folder, made if missing."""
+    """Write a new certificate of the panel for these names; the authority that signs it is made if missing."""
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     authority, signing = _authority(folder, now)
     key = ec.generate_private_key(ec.SECP256R1())

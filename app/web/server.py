@@ -27,7 +27,9 @@ FULL = (
     b"content-type: text/plain; charset=utf-8\r\ncontent-length: 52\r\n\r\n"
     b"Too many connections are open. Close some, try again"
 )
-HEAD_TOO_LARGE = b"HTTP/1.1 431 Request Header Fields Too Large\r\nconnection: close\r\ncontent-length: 0\r\n\r\n"
+HEAD_TOO_LARGE = (
+    b"HTTP/1.1 431 Request Header Fields Too Large\r\nconnection: close\r\ncontent-length: 0\r\n\r\n"
+)
 KEEP_ALIVE_S = 15
 FAREWELL_S = 2
 PING_S = 5.0
