@@ -25,6 +25,11 @@ class FaultKind(StrEnum):
     MISALIGNED = "misaligned"
     CLOUD = "cloud"
     LIGHT_SENSOR_STUCK = "light_sensor_stuck"
+    LOCAL_SWITCH = "local_switch"
+    SWAPPED_AXES = "swapped_axes"
+    LONG_STOP = "long_stop"
+    LIMIT_DEAD = "limit_dead"
+    SUPPLY = "supply"
 
 
 LINK_FAULTS = frozenset({FaultKind.SILENCE, FaultKind.LATE_REPLIES, FaultKind.CORRUPT_REPLIES})
@@ -39,7 +44,8 @@ class Fault:
     """One fault: `axis` None means both.
 
     `amount` is degrees (jump, misalignment), degrees a second (slip), a code (drive fault), the share of the
-    beam that is taken (cloud) or W/m2 (stuck light sensor).
+    beam that is taken (cloud), W/m2 (stuck light sensor), the share of the deceleration that is left (long
+    stop, a tenth if none is given) or volts (supply).
     """
 
     kind: FaultKind

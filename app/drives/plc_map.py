@@ -95,6 +95,7 @@ class PlcMap:
             **self.words("elevation_position", feedback.elevation.position_deg),
             **self.words("azimuth_velocity", feedback.azimuth.velocity_dps),
             **self.words("elevation_velocity", feedback.elevation.velocity_dps),
+            **self.words("supply", feedback.supply_v or 0.0),
             **self._light_words(feedback.light),
         }
 
@@ -112,7 +113,14 @@ class PlcMap:
             request_done=self._integer("request_done", words, first_address),
             request_failed=_flag(self._status, "request_failed", status),
             light=self._light(words, first_address),
+            local=_flag(self._status, "local", status),
+            supply_v=self._supply_v(words, first_address),
         )
+
+    def _supply_v(self, words: Sequence[int], first_address: int) -> float | None:
+        """Return the supply voltage; None without a register for it, or if that reads nothing."""
+        register = self._registers.get("supply")
+        return None if register is None else register.value(words, first_address) or None
 
     def _light(self, words: Sequence[int], first_address: int) -> LightReading | None:
         """Return what the photo-sensors read; None without registers for all four, or if all read nothing."""
@@ -179,6 +187,7 @@ def _status_flags(feedback: Feedback) -> dict[str, bool]:
         "homing": feedback.homing,
         "watchdog_tripped": feedback.watchdog_tripped,
         "request_failed": feedback.request_failed,
+        "local": feedback.local,
     }
 
 
@@ -220,7 +229,7 @@ def _check(profile: Profile) -> None:
 
 def _check_block(profile: Profile) -> None:
     inside = profile.blocks["status"].addresses
-    others = (*LIGHT, *(name for name in profile.bits if name == "switches"))
+    others = (*LIGHT, "supply", *(name for name in profile.bits if name == "switches"))
     for name in (*NEEDED, *(other for other in others if other in profile.registers)):
         register: Register = profile.registers[name]
         if not all(address in inside for address in register.addresses):

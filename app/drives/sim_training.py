@@ -28,7 +28,7 @@ AMOUNT = Register(
     scale=0.001,
     access=Access.READ_WRITE,
     text="Degrees of a jump or misalignment, degrees a second of a slip, a fault code, the share that a "
-    "cloud takes, or W/m2 of a stuck light sensor",
+    "cloud takes, W/m2 of a stuck light sensor, the share of the deceleration that a long stop has, or volts",
 )
 TRUE_AZIMUTH = Register(
     "true_azimuth", FIRST + 4, WordType.INT32, scale=0.001, unit="deg", text="Where the panel really points"

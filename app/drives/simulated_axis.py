@@ -9,6 +9,7 @@ from app.tracker.axes import AxisConfig
 from app.tracker.motion import HALT, AxisCommand, AxisFeedback, Halt, Position, Velocity
 
 COUNTS_PER_REVOLUTION = 3600
+WORN_GRIP = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +104,7 @@ class SimulatedAxis:
             return
         goal = self._goal(command, start.position_deg)
         if goal is None:
-            self._path = brake(start, acceleration_dps2)
+            self._path = brake(start, acceleration_dps2 * self._grip())
             return
         target_deg, speed_dps = goal
         self._path = move(start, self._within_ends(target_deg, start), speed_dps, acceleration_dps2)
@@ -142,6 +143,11 @@ class SimulatedAxis:
         self._faults.clear()
         self.obey(self._command, time_s)
 
+    def _grip(self) -> float:
+        """Return the share of its deceleration that the axis stops with."""
+        fault = self._faults.get(FaultKind.LONG_STOP)
+        return 1.0 if fault is None else min(1.0, fault.amount or WORN_GRIP)
+
     def _start(self, time_s: float) -> Phase:
         return Phase(time_s, *self._path.at(time_s))
 
@@ -152,6 +158,8 @@ class SimulatedAxis:
         return round((motor_deg + self._offset_deg) / resolution_deg) * resolution_deg
 
     def _switches(self, motor_deg: float) -> tuple[bool, bool]:
+        if FaultKind.LIMIT_DEAD in self._faults:
+            return False, False
         return (
             motor_deg <= self._lower_switch_deg or FaultKind.LOWER_LIMIT_STUCK in self._faults,
             motor_deg >= self._upper_switch_deg or FaultKind.UPPER_LIMIT_STUCK in self._faults,

@@ -5,6 +5,7 @@ from datetime import datetime, timedelta
 from pathlib import Path
 
 from app.clock import Clock
+from app.drives.cabinet import CABINET_FAULTS, Cabinet
 from app.drives.faults import LIGHT_FAULTS, LINK_FAULTS, Fault, FaultKind
 from app.drives.position_memory import AxisMemory, PositionMemory, recall, remember
 from app.drives.simulated_axis import STANDARD, Mechanics, SimulatedAxis
@@ -64,6 +65,7 @@ class SimulatedMachine:
         self._request_failed = False
         self._link_fault: FaultKind | None = None
         self._ignores_writes = False
+        self._cabinet = Cabinet()
         self._clock_offset = timedelta(0)
         self._steady: Feedback | None = None
         if not known.trusted:
@@ -140,6 +142,8 @@ class SimulatedMachine:
             watchdog_tripped=self._tripped,
             request_done=self._request_done,
             request_failed=self._request_failed,
+            local=self._cabinet.local,
+            supply_v=self._cabinet.supply_v,
         )
         if resting and self._kept_trusted:
             self._steady = feedback
@@ -231,6 +235,9 @@ class SimulatedMachine:
                 self._turn(self._command, now_s)
             case FaultKind.POWER_LOSS:
                 self._lose_power(now_s)
+            case kind if kind in CABINET_FAULTS:
+                self._cabinet.inject(fault)
+                self._turn(self._command, now_s)
             case _:
                 self._inject_axes(fault, now_s)
 
@@ -245,6 +252,7 @@ class SimulatedMachine:
         self._change(now_s)
         self._link_fault = None
         self._ignores_writes = False
+        self._cabinet = Cabinet()
         if self._light is not None:
             self._light.clear()
         self._azimuth.clear_faults(now_s)
@@ -282,9 +290,10 @@ class SimulatedMachine:
 
     def _turn(self, command: DriveCommand, now_s: float) -> None:
         self._command = command
-        barred = self._fault_code != 0
-        self._azimuth.obey(HALT if barred else command.azimuth, now_s)
-        self._elevation.obey(HALT if barred else command.elevation, now_s)
+        barred = self._fault_code != 0 or self._cabinet.local
+        first, second = self._cabinet.wired(command)
+        self._azimuth.obey(HALT if barred else first, now_s)
+        self._elevation.obey(HALT if barred else second, now_s)
 
     def _change(self, now_s: float) -> None:
         """Note that the next reading differs and the position memory is no longer true."""
