@@ -6,6 +6,7 @@ from typing import Any, ClassVar, Protocol
 from app.store.store import JournalEntry
 from app.sun.algorithms import PUBLISHED
 from app.tracker.config import MountConfig, TrackerConfig
+from app.tracker.control import ControlState
 from app.tracker.memory import ClockSetting, HomeTrust, Pointing, Sighting, StepName, TrackerMemory
 from app.tracker.mode import Mode
 from app.tracker.motion import DriveCapabilities
@@ -14,6 +15,7 @@ from app.tracker.reason import Reason
 from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import SiteSnapshot, Snapshot
 from app.web.record import CommissioningRecord
+from app.web.standing import Standing, standing
 from app.web.ui.drawings import DayChart, SunDiagram
 from app.web.who import Who
 
@@ -93,6 +95,11 @@ class Frame:
     def step(self) -> StepName | None:
         """Return the step of the wizard that this page is."""
         return next((mark.name for mark in self.steps if mark.current), None)
+
+    @property
+    def standing(self) -> Standing:
+        """Return how who looks stands to control of the tracker."""
+        return standing(self.tracker.control if self.tracker else ControlState(0), self.who)
 
     @property
     def stop_url(self) -> str:

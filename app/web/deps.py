@@ -82,8 +82,12 @@ def order_of(
     tracker_id: str | None = None,
     key: str | None = None,
     issued_at: datetime | None = None,
+    epoch: int | None = None,
 ) -> Order:
-    """Return somebody's order, or raise the error that says why they may not give it."""
+    """Return somebody's order, or raise the error that says why they may not give it.
+
+    `epoch` is the one of control that it was given under, None where that is not known.
+    """
     about = tracker_id or getattr(command, "tracker_id", None)
     who.require_order(command.kind, about)
-    return Order(command, who.actor, tracker_id, key, issued_at, who.via.value, who.address)
+    return Order(command, who.actor, tracker_id, key, issued_at, who.via.value, who.address, epoch, who.rank)

@@ -24,6 +24,7 @@ from app.studies.folder import StudyUnknown, WeatherFileRefused
 from app.sun.position import InstantRefused
 from app.sun.spa import AlgorithmMissing
 from app.tracker.commands import CommandRejected
+from app.tracker.control import ControlHeld, ControlLost
 from app.tracker.reason import Reason
 from app.web.security import add_headers
 
@@ -125,6 +126,8 @@ def _sentence(error: Exception, otherwise: str) -> str:
 
 PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
     CommandRejected: rejected,
+    ControlHeld: lambda error: Problem(423, str(error), error.reasons),
+    ControlLost: lambda error: Problem(423, str(error), error.reasons),
     SignInNeeded: lambda error: Problem(401, str(error), headers=SIGN_IN),
     ProofNeeded: lambda error: Problem(403, str(error), (Reason("proof_needed", str(error), PROVE),)),
     NotAllowed: lambda error: Problem(403, str(error)),

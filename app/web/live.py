@@ -13,7 +13,7 @@ from starlette.websockets import WebSocket
 
 from app.access.principal import NotAllowed, Principal, ProofNeeded, SignInNeeded
 from app.access.roles import Permission
-from app.link.messages import MachineUnreachable, StopAll, UnknownTracker
+from app.link.messages import MachineUnreachable, RenewControl, StopAll, UnknownTracker
 from app.tracker.axes import Axis, JogSpeed
 from app.tracker.commands import CommandRejected, EndJog, Jog, Stop
 from app.tracker.reason import Reason
@@ -27,6 +27,7 @@ log = structlog.get_logger()
 router = APIRouter()
 
 MOST_IN_FLIGHT = 4
+STAY_EVERY = timedelta(seconds=3)
 DEAD_PRESS = Reason("press_dead", "This press has ended.", "Let the key go and press it again.")
 SLOW_LINK = Reason(
     "link_too_slow",
@@ -58,6 +59,7 @@ class JogBeat(_Incoming):
     sequence: int = Field(ge=0, le=2**53)
     tc: Milliseconds
     rtt_ms: Milliseconds | None = None
+    epoch: int | None = Field(None, ge=0, le=2**53)
 
 
 class JogEnd(_Incoming):
@@ -82,10 +84,11 @@ class StopEverything(_Incoming):
 
 
 class Ping(_Incoming):
-    """The page measures the connection."""
+    """The page measures the connection, and tells whether somebody can see it."""
 
     type: Literal["ping"]
     tc: Milliseconds
+    visible: bool = False
 
 
 Incoming = Annotated[JogBeat | JogEnd | StopOne | StopEverything | Ping, Discriminator("type")]
@@ -105,6 +108,7 @@ class Session:
         self._delay = LinkDelay()
         self._presses = Presses(self._delay, panel.hub.dead)
         self._in_flight = 0
+        self._stayed_at = panel.clock.now() - STAY_EVERY
 
     def hear(self, text: str) -> None:
         """Act on one message; nothing here waits."""
@@ -124,8 +128,10 @@ class Session:
                 self._hub.spawn(self._stop(Stop(), tracker_id))
             case StopEverything():
                 self._hub.spawn(self._stop(StopAll()))
-            case Ping(tc=tc):
+            case Ping(tc=tc, visible=visible):
                 self._delay.beyond_best(tc, self._clock.now())
+                if visible:
+                    self._hub.spawn(self._stay())
                 self._tell("pong", tc=tc)
             case _:
                 assert_never(message)
@@ -165,7 +171,7 @@ class Session:
         jog = Jog(beat.press_id, beat.axis, beat.direction, beat.speed, beat.sequence, lease)
         try:
             who = self._keeper.current(self._who)
-            await self._machine.execute(order_of(who, jog, beat.tracker_id))
+            await self._machine.execute(order_of(who, jog, beat.tracker_id, epoch=beat.epoch))
             await self._keeper.used(who)
         except CommandRejected as error:
             self._refuse(beat.press_id, *error.reasons)
@@ -183,6 +189,22 @@ class Session:
         self._presses.end(press_id)
         statuses = [STATUS_OF_CODE[reason.code] for reason in reasons if reason.code in STATUS_OF_CODE]
         self._answer(press_id, statuses[0] if statuses else "refused", *reasons)
+
+    async def _stay(self) -> None:
+        """Renew control of what this page shows, where whoever looks at it has control."""
+        site, who, now = self._machine.latest(), self._keeper.current(self._who), self._clock.now()
+        if site is None or now - self._stayed_at < STAY_EVERY or not who.may(Permission.OPERATE):
+            return
+        mine = tuple(
+            one.tracker_id
+            for one in site.trackers
+            if self._viewer.wanted.tracker_id in (None, one.tracker_id)
+            and (one.control.holder, one.control.via) == (who.actor, who.via.value)
+        )
+        if mine:
+            self._stayed_at = now
+            with suppress(CommandRejected, MachineUnreachable, UnknownTracker, *FORBIDDEN):
+                await self._machine.execute(order_of(who, RenewControl(mine)))
 
     async def _end(self, tracker_id: str, press_id: str) -> None:
         with suppress(CommandRejected, MachineUnreachable, UnknownTracker, ValueError, *FORBIDDEN):

@@ -116,6 +116,8 @@ _TABLE: dict[Permission, str] = {
         GET /api/v1/trackers/{tracker_id}/actions
         GET /api/v1/trackers/{tracker_id}/capabilities
         GET /api/v1/trackers/{tracker_id}/commissioning
+        GET /api/v1/trackers/{tracker_id}/control
+        GET /api/v1/trackers/{tracker_id}/settings-lock
         GET /api/v1/trackers/{tracker_id}/drive/check
         GET /api/v1/trackers/{tracker_id}/drive/choices
         GET /api/v1/trackers/{tracker_id}/mount
@@ -147,6 +149,7 @@ _TABLE: dict[Permission, str] = {
         DELETE /api/v1/weather-files/{name}
     """,
     Permission.OPERATE: """
+        POST /trackers/{tracker_id}/control
         POST /trackers/{tracker_id}/move
         POST /trackers/{tracker_id}/lock
         POST /trackers/{tracker_id}/park
@@ -162,7 +165,10 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/show/resume
         POST /trackers/{tracker_id}/show/run
         POST /trackers/{tracker_id}/show/stop
+        POST /api/v1/control
         POST /api/v1/trackers/{tracker_id}/commands
+        POST /api/v1/trackers/{tracker_id}/control
+        DELETE /api/v1/trackers/{tracker_id}/control
         POST /api/v1/trackers/{tracker_id}/jog
         POST /api/v1/trackers/{tracker_id}/shows
         POST /api/v1/trackers/{tracker_id}/shows/{show_id}/{action}
@@ -194,6 +200,8 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/proofs/stop
         POST /trackers/{tracker_id}/protections
         POST /trackers/{tracker_id}/settings
+        POST /trackers/{tracker_id}/settings-lock
+        POST /trackers/{tracker_id}/settings-lock/open
         POST /trackers/{tracker_id}/settings/remove
         POST /trackers/{tracker_id}/strategy
         POST /trackers/{tracker_id}/strategy/hybrid
@@ -213,6 +221,7 @@ _TABLE: dict[Permission, str] = {
         POST /api/v1/trackers/{tracker_id}/drive/check
         POST /api/v1/trackers/{tracker_id}/drive/restore
         PUT /api/v1/trackers/{tracker_id}/program
+        PUT /api/v1/trackers/{tracker_id}/settings-lock
         PUT /api/v1/trackers/{tracker_id}/program.csv
         POST /api/v1/trackers/{tracker_id}/proofs/direction
         POST /api/v1/trackers/{tracker_id}/proofs/limits

@@ -17,3 +17,6 @@ class Who:
     csrf: str = ""
     stop_ticket: str = ""
     stepped_until: datetime | None = None
+    actor: str = ""
+    via: str = ""
+    weight: int = 0

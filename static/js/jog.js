@@ -20,7 +20,7 @@ function beat() {
     return;
   }
   const message = { type: "jog", tracker_id: live.trackerId, press_id: press.id, axis: press.axis, direction: press.direction,
-    speed: press.speed, sequence: press.sequence, tc: performance.now() };
+    speed: press.speed, sequence: press.sequence, tc: performance.now(), epoch: press.epoch };
   if (live.roundTripMs !== null) message.rtt_ms = live.roundTripMs;
   // A heartbeat that cannot leave now is not sent at all: silence stops the axis, a backlog would move it late.
   if (live.send(message)) press.sequence += 1;
@@ -28,7 +28,8 @@ function beat() {
 
 function begin(key, pointer) {
   if (press || key.disabled || live.link !== "live") return;
-  press = { id: randomId(), key, pointer, axis: key.dataset.jog, direction: Number(key.dataset.direction), speed: speed(), sequence: 0 };
+  press = { id: randomId(), key, pointer, axis: key.dataset.jog, direction: Number(key.dataset.direction), speed: speed(), sequence: 0,
+    epoch: live.tracker.control.epoch };
   press.box = key.getBoundingClientRect();
   key.dataset.held = "";
   said.textContent = "";

@@ -222,6 +222,6 @@ export function start() {
   addEventListener("pageshow", (shownAgain) => { if (shownAgain.persisted) location.reload(); });
   document.addEventListener("htmx:after:swap", paint);
   setInterval(judge, 250);
-  setInterval(() => live.send({ type: "ping", tc: performance.now() }), 1000);
+  setInterval(() => live.send({ type: "ping", tc: performance.now(), visible: !document.hidden }), 1000);
   connect();
 }

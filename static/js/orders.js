@@ -19,6 +19,7 @@ function prepare(event) {
   const body = ctx.request.body;
   if (body?.has?.("issued_at")) body.set("issued_at", live.machineNow() ?? "");
   if (body?.has?.("key")) body.set("key", randomId());
+  if (body?.has?.("epoch")) body.set("epoch", live.tracker?.control?.epoch ?? "");
 }
 
 // After a swap that reports wrong input, the summary of errors has the focus.

@@ -1,5 +1,6 @@
 // What every page runs.
 
+import { start as startControl } from "./control.js";
 import { start as startLive } from "./live.js";
 import { start as startOrders } from "./orders.js";
 import { start as startSteps } from "./steps.js";
@@ -10,6 +11,7 @@ startStop();
 startTheme();
 startOrders();
 startSteps();
+startControl();
 startLive();
 
 const heading = document.getElementById("heading");

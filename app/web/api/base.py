@@ -56,7 +56,10 @@ def _problem(description: str) -> dict[str, Any]:
 
 
 NOT_FOUND: Responses = {404: _problem("There is no such thing.")}
-REFUSED: Responses = {409: _problem("The state forbids it; `reasons` has every unmet condition.")}
+REFUSED: Responses = {
+    409: _problem("The state forbids it; `reasons` has every unmet condition."),
+    423: _problem("Somebody else has control, or had it since; `reasons` says who, and how to ask."),
+}
 TOO_MANY: Responses = {429: _problem("Too much of this is under way; try again later.")}
 COMMON: Responses = {
     400: _problem("The body cannot be read as text."),

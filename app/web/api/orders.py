@@ -21,18 +21,34 @@ Key = Annotated[
         description="A repeated request with the same key is answered as the first was, and done once.",
     ),
 ]
+Epoch = Annotated[
+    int | None,
+    Header(
+        alias="Control-Epoch",
+        ge=0,
+        le=2**53,
+        description="The `epoch` of control that this order is given under; when control has changed since, "
+        "the order is refused with 423.",
+    ),
+]
 
 
 class Sender:
     """Gives the machine one order, with what the request says about repeats and age."""
 
     def __init__(
-        self, machine: MachineDep, who: PrincipalDep, key: Key = None, issued_at: IssuedAt = None
+        self,
+        machine: MachineDep,
+        who: PrincipalDep,
+        key: Key = None,
+        issued_at: IssuedAt = None,
+        epoch: Epoch = None,
     ) -> None:
         self._machine: Machine = machine
         self._who = who
         self._key = key
         self._issued_at = issued_at
+        self._epoch = epoch
 
     async def send(
         self,
@@ -42,9 +58,9 @@ class Sender:
     ) -> SiteSnapshot:
         """Carry out a command and return the site after it; what cannot be is a 422."""
         try:
-            return await self._machine.execute(
-                order_of(self._who, command, tracker_id, self._key, issued_at or self._issued_at)
-            )
+            at = issued_at or self._issued_at
+            order = order_of(self._who, command, tracker_id, self._key, at, self._epoch)
+            return await self._machine.execute(order)
         except ValueError as error:
             raise NotAcceptable(str(error)) from error
 

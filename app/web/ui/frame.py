@@ -147,6 +147,9 @@ def who_looks(request: Request) -> Who:
         csrf=keeper.csrf(session_id) if session else "",
         stop_ticket=keeper.stop_ticket(who) if who.may(Permission.STOP) else "",
         stepped_until=session.stepped_until if session and Role.OPERATOR in who.roles else None,
+        actor=who.actor,
+        via=who.via.value,
+        weight=who.rank,
     )
 
 

@@ -25,15 +25,18 @@ class Press:
         key: Annotated[str | None, Form(max_length=64)] = None,
         issued_at: Annotated[str, Form(max_length=40)] = "",
         back: Annotated[str, Form(max_length=300)] = "/",
+        epoch: Annotated[str, Form(max_length=20)] = "",
     ) -> None:
         self.request = request
         self.key = key or None
         self.issued_at = _instant(issued_at)
         self.back = own_path(back)
+        self.epoch = int(epoch) if epoch.isascii() and epoch.isdigit() else None
 
     async def send(self, command: Command | SiteCommand, tracker_id: str | None = None) -> None:
         """Send one order to the machine; every refusal is raised."""
-        order = order_of(principal(self.request), command, tracker_id, self.key, self.issued_at)
+        who = principal(self.request)
+        order = order_of(who, command, tracker_id, self.key, self.issued_at, self.epoch)
         try:
             await panel(self.request).machine.execute(order)
         except ValueError as error:

@@ -1,0 +1,50 @@
+"""The lock on what was commissioned."""
+
+from fastapi import APIRouter
+from pydantic import Field
+
+from app.link.messages import LockSettings, UnlockSettings
+from app.tracker.memory import CommissioningLock
+from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, TrackerId
+from app.web.api.orders import SenderDep, tracker_of
+from app.web.deps import SnapshotDep
+
+router = APIRouter(tags=["commissioning"])
+
+
+class LockInput(Input):
+    """Lock the settings, or unlock them for a reason."""
+
+    locked: bool = Field(description="True locks, false unlocks.", examples=[True])
+    reason: str = Field("", max_length=200, description="Why they are unlocked; goes into the journal.")
+
+
+class LockOutput(Output):
+    """Whether the settings of a tracker are locked."""
+
+    tracker_id: str = Field(description="The tracker.")
+    locked: CommissioningLock | None = Field(description="Who locked them and when; null: they are open.")
+
+
+@router.get(
+    "/trackers/{tracker_id}/settings-lock",
+    operation_id="read_settings_lock",
+    summary="Whether a tracker's settings are locked",
+    responses=NOT_FOUND,
+)
+async def read(tracker_id: TrackerId, site: SnapshotDep) -> LockOutput:
+    """Return who locked the settings, if anybody did."""
+    return LockOutput(tracker_id=tracker_id, locked=tracker_of(site, tracker_id).settings_lock)
+
+
+@router.put(
+    "/trackers/{tracker_id}/settings-lock",
+    operation_id="set_settings_lock",
+    summary="Lock a tracker's settings, or unlock them",
+    responses=NOT_FOUND | REFUSED,
+)
+async def change(tracker_id: TrackerId, said: LockInput, sender: SenderDep) -> LockOutput:
+    """Lock settings, drive, mount, strategy, zero and location as commissioned, or unlock them."""
+    order = LockSettings(tracker_id) if said.locked else UnlockSettings(tracker_id, said.reason)
+    site = await sender.send(order)
+    return LockOutput(tracker_id=tracker_id, locked=tracker_of(site, tracker_id).settings_lock)

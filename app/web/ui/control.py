@@ -1,0 +1,63 @@
+"""The keys of control on every page of a tracker, and the lock on its settings."""
+
+from typing import Annotated, Literal, assert_never
+
+from fastapi import APIRouter, Form
+from starlette.responses import Response
+
+from app.link.messages import (
+    AnswerControl,
+    LockSettings,
+    ReleaseControl,
+    RequestControl,
+    SiteCommand,
+    UnlockSettings,
+)
+from app.web.ui.orders import PressDep
+
+router = APIRouter(prefix="/trackers/{tracker_id}")
+
+Wanted = Literal["request", "take_over", "hand_over", "keep", "release"]
+Reason = Annotated[str, Form(max_length=200)]
+DONE = {
+    "request": "Control was asked for.",
+    "take_over": "Control passes when the countdown ends, unless it is refused.",
+    "hand_over": "Control was handed over.",
+    "keep": "You keep control.",
+    "release": "You let go of control.",
+}
+
+
+@router.post("/control")
+async def control(
+    tracker_id: str, press: PressDep, wanted: Annotated[Wanted, Form()], reason: Reason = ""
+) -> Response:
+    """Do what a key of control says."""
+    await press.send(_command(tracker_id, wanted, reason))
+    return press.answer(DONE[wanted])
+
+
+def _command(tracker_id: str, wanted: Wanted, reason: str) -> SiteCommand:
+    match wanted:
+        case "request" | "take_over":
+            return RequestControl((tracker_id,), wanted == "take_over", reason)
+        case "hand_over" | "keep":
+            return AnswerControl(tracker_id, wanted == "hand_over")
+        case "release":
+            return ReleaseControl(tracker_id)
+        case _:
+            assert_never(wanted)
+
+
+@router.post("/settings-lock")
+async def lock(tracker_id: str, press: PressDep) -> Response:
+    """Lock the settings."""
+    await press.send(LockSettings(tracker_id))
+    return press.answer("The settings are locked.")
+
+
+@router.post("/settings-lock/open")
+async def unlock(tracker_id: str, press: PressDep, reason: Reason = "") -> Response:
+    """Unlock the settings for a reason."""
+    await press.send(UnlockSettings(tracker_id, reason))
+    return press.answer("The settings are unlocked.")
