@@ -3,7 +3,6 @@
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Protocol
 
-from app.store.store import JournalEntry
 from app.sun.algorithms import PUBLISHED
 from app.tracker.config import MountConfig, TrackerConfig
 from app.tracker.control import ControlState
@@ -355,19 +354,6 @@ class SimulatePage:
     form: Form
     trackers: tuple[tuple[str, str], ...]
     modes: tuple[tuple[str, str], ...]
-
-
-@dataclass(frozen=True, slots=True)
-class JournalPage:
-    """What happened, newest first."""
-
-    template: ClassVar[str] = "journal.html"
-
-    frame: Frame
-    entries: tuple[JournalEntry, ...]
-    trackers: tuple[str, ...]
-    tracker: str
-    older: str | None
 
 
 @dataclass(frozen=True, slots=True)

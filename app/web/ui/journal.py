@@ -1,31 +1,95 @@
-"""The journal: what happened, newest first."""
+"""The journal: what happened, newest first, narrowed as one likes, and as a file."""
 
+from datetime import datetime, timedelta
+from typing import Annotated
 from urllib.parse import urlencode
+from zoneinfo import ZoneInfo
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Query
 from starlette.requests import Request
 from starlette.responses import Response
 
 from app.store.store import JournalFilter
-from app.web.contexts import JournalPage
+from app.tracker.snapshot import EventKind
+from app.web.alarm_contexts import JournalPage, JournalQuery
 from app.web.deps import ReaderDep
 from app.web.ui.frame import site_frame
 from app.web.ui.render import page
 
 router = APIRouter(prefix="/journal")
 A_PAGE = 60
+Typed = Annotated[str, Query(max_length=200)]
+WRONG_DAY = "{} is no day: write it as 2026-11-21. The journal is shown from its first to its last day."
 
 
 @router.get("")
-def journal(request: Request, reader: ReaderDep, tracker: str = "", before: int | None = None) -> Response:
+def journal(
+    request: Request,
+    reader: ReaderDep,
+    tracker: Typed = "",
+    kind: Typed = "",
+    actor: Typed = "",
+    text: Typed = "",
+    since: Typed = "",
+    until: Typed = "",
+    before: int | None = None,
+) -> Response:
     """Show one page of the journal; `before` is the number of the oldest entry of the page before."""
-    found = reader.journal(JournalFilter(before=before, limit=A_PAGE, tracker_id=tracker or None))
-    older = {"before": str(found[-1].number)} | ({"tracker": tracker} if tracker else {}) if found else {}
+    frame = site_frame(request, "Journal")
+    typed = JournalQuery(tracker, kind, actor.strip(), text.strip(), since.strip(), until.strip())
+    begins, wrong_since = _day(typed.since, frame.zone)
+    ends, wrong_until = _day(typed.until, frame.zone, last=True)
+    narrowed = JournalFilter(
+        before=before,
+        limit=A_PAGE,
+        tracker_id=typed.tracker or None,
+        kinds=(EventKind(typed.kind),) if typed.kind in list(EventKind) else (),
+        actor=typed.actor or None,
+        text=typed.text or None,
+        since=begins,
+        until=ends,
+    )
+    found = reader.journal(narrowed)
     context = JournalPage(
-        frame=site_frame(request, "Journal"),
+        frame=frame,
         entries=tuple(found),
         trackers=tuple(state.config.tracker_id for state in reader.trackers()),
-        tracker=tracker,
-        older=f"/journal?{urlencode(older)}" if len(found) == A_PAGE else None,
+        kinds=tuple(EventKind),
+        query=typed,
+        error=wrong_since or wrong_until,
+        csv=_file(narrowed, "csv"),
+        json=_file(narrowed, "json"),
+        older=_older(typed, found[-1].number) if len(found) == A_PAGE else None,
     )
-    return page(request, context)
+    return page(request, context, status=422 if context.error else 200)
+
+
+def _day(text: str, zone: str, *, last: bool = False) -> tuple[datetime | None, str]:
+    """Return when a day of the site begins (with `last`: ends), and what is wrong with it."""
+    if not text:
+        return None, ""
+    try:
+        begins = datetime.strptime(text, "%Y-%m-%d").replace(tzinfo=ZoneInfo(zone))
+        return begins + timedelta(days=1, microseconds=-1) if last else begins, ""
+    except (ValueError, OverflowError):
+        return None, WRONG_DAY.format(repr(text))
+
+
+def _older(typed: JournalQuery, before: int) -> str:
+    given = {name: getattr(typed, name) for name in JournalQuery.__dataclass_fields__}
+    return f"/journal?{urlencode({name: one for name, one in given.items() if one} | {'before': before})}"
+
+
+def _file(narrowed: JournalFilter, kind: str) -> str:
+    """Return the address of the same entries as a file."""
+    since, until = narrowed.since, narrowed.until
+    given = {
+        "format": kind,
+        "tracker_id": narrowed.tracker_id,
+        "kind": narrowed.kinds[0].value if narrowed.kinds else None,
+        "actor": narrowed.actor,
+        "text": narrowed.text,
+        "since": since.isoformat() if since else None,
+        "until": until.isoformat() if until else None,
+    }
+    return f"/api/v1/journal/export?{urlencode({name: one for name, one in given.items() if one})}"
