@@ -11,6 +11,7 @@ import structlog
 from app.clock import Clock
 from app.drives.drive import Drive, DriveError
 from app.site.lateness import TickCounter
+from app.site.link_quality import RoundTrips
 from app.tracker.config import DriveKind, TrackerConfig
 from app.tracker.controller import Controller
 from app.tracker.memory import TrackerMemory, TrackerState
@@ -52,6 +53,7 @@ class TrackerLoop:
         self.drive = drive
         self.controller = Controller(state.config, state.memory, drive.capabilities)
         self.counter = TickCounter()
+        self.round_trips = RoundTrips()
         self.feedback: Feedback | None = None
         self.broken: Reason | None = None
         self._clock = clock
@@ -200,6 +202,7 @@ class TrackerLoop:
         unheard = self._write_failed
         self.feedback = await self._read()
         seen = self._surroundings.observe(self.config, self.feedback)
+        seen = replace(seen, link=self.round_trips.quality(self._within_s))
         tick = self.controller.tick(seen)
         if not self.controller.is_silent:
             await self._write(_unmoved(tick.command) if unheard or self._ending else tick.command)
@@ -212,6 +215,7 @@ class TrackerLoop:
         return max(within_s, LINE_WITHIN_S) if self.config.drive.kind in ON_A_LINE else within_s
 
     async def _read(self) -> Feedback | None:
+        asked_at = self._clock.now()
         try:
             async with asyncio.timeout(self._within_s):
                 feedback = await self.drive.read()
@@ -219,6 +223,7 @@ class TrackerLoop:
             self.counter.read_failures += 1
             self._trouble = _trouble(error)
             return None
+        self.round_trips.count(self._clock.now() - asked_at)
         if self._write_failed:
             return None
         self._trouble = None

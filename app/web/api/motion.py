@@ -8,8 +8,11 @@ from pydantic import AwareDatetime, Field
 from app.link.messages import StopAll
 from app.tracker.axes import Axis, JogSpeed
 from app.tracker.commands import (
+    BeginService,
     Command,
+    ConfirmClear,
     EndJog,
+    EndService,
     Home,
     Jog,
     LockOut,
@@ -174,6 +177,37 @@ class ReleaseLockCommand(_Command):
         return ReleaseLock()
 
 
+class BeginServiceCommand(_Command):
+    """Serve the machine: stop, then move at the slow hand speed and only while the area is clear."""
+
+    type: Literal["begin_service"]
+    name: str = Field(min_length=1, max_length=60, description="Who works there.", examples=["Ada"])
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return BeginService(self.name)
+
+
+class ConfirmClearCommand(_Command):
+    """Nobody stands where the panel moves; in service mode that allows motion for a while."""
+
+    type: Literal["confirm_clear"]
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return ConfirmClear()
+
+
+class EndServiceCommand(_Command):
+    """Leave service mode; nothing moves because of it."""
+
+    type: Literal["end_service"]
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return EndService()
+
+
 class ResetFaultCommand(_Command):
     """The cause is removed: clear the fault and hold."""
 
@@ -242,6 +276,9 @@ AnyCommand = Annotated[
     | ResumeCommand
     | LockOutCommand
     | ReleaseLockCommand
+    | BeginServiceCommand
+    | ConfirmClearCommand
+    | EndServiceCommand
     | ResetFaultCommand
     | ProveDirectionCommand
     | ProveScaleCommand
