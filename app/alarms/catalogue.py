@@ -96,6 +96,41 @@ ENTRIES = (
         "Check the wiring of the switches, then clear the fault.",
     ),
     Entry(
+        "position_frozen", 2, Group.MOTION, "Position frozen",
+        "The drive says that it turns, its counter stands: the true position is not known.",
+        "Check the encoder and its cable, clear the fault, set the zero again in step 3.",
+    ),
+    Entry(
+        "axes_swapped", 2, Group.MOTION, "The wrong axis moves",
+        "The panel turns where nobody sent it: axes swapped, or two drives have one address.",
+        "Check the unit ids and the motor cables of both axes, then clear the fault.",
+    ),
+    Entry(
+        "limit_stuck", 2, Group.MOTION, "Limit switch stays on",
+        "The switch does not protect the machine, and bars the way to one side.",
+        "Check the switch and its cable, then clear the fault.",
+    ),
+    Entry(
+        "over_travel", 2, Group.MOTION, "Axis beyond its soft limits",
+        "The axis may reach its end; the zero may be wrong.",
+        "Find out why it went on, clear the fault, set the zero again in step 3.",
+    ),
+    Entry(
+        "creep", 2, Group.MOTION, "Axis moves without a command",
+        "The panel drifts, or somebody else moves it.",
+        "Keep people away; check the brake, and whether wind or another master moves the axis.",
+    ),
+    Entry(
+        "overrun", 3, Group.MOTION, "Axis stops too late",
+        "It may run into its end or into somebody; it moves slowly until its stops are short again.",
+        "Check brake and load, then measure the stop again on the page Proofs.",
+    ),
+    Entry(
+        "supply_voltage", 2, Group.DRIVE, "Supply voltage out of range",
+        "The tracker stands still and does not stow.",
+        "Check the supply and its cables, then clear the fault.",
+    ),
+    Entry(
         "move_overdue", 2, Group.MOTION, "Move takes too long",
         "The axis is slow or blocked: a stow would be late, too.",
         "Look for what blocks the axis, then start the move again.",
