@@ -12,6 +12,7 @@ from app.show.strategy_day import StrategyDay, strategy_day
 from app.sun.position import Location, sun_position
 from app.sun.trigonometry import SCALAR
 from app.tracker.axes import AxisConfig
+from app.tracker.commands import Track
 from app.tracker.config import MountConfig, MountKind, Orientation, Rows, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
@@ -20,6 +21,7 @@ from app.tracker.mounts.kinematics import followed
 from app.tracker.programs.examples import ALEXANDRU_TABLE_3
 from app.tracker.programs.schedule import Moment, solar_hour
 from app.tracker.programs.show import ShowPlan, check_show, schedule_of
+from app.tracker.programs.step_table import from_table, to_table
 from app.tracker.programs.stepped import ProgramStep, StepFrame, StepProgram, TimeBase
 from app.tracker.strategy import (
     Continuous,
@@ -32,6 +34,7 @@ from app.tracker.strategy import (
     Stepped,
     Strategy,
 )
+from tests.tracker.plant import READY, Plant
 
 HELD = Orientation(180.0, 45.0)
 TURNING = AxisConfig(-110.0, 110.0, 4.0, 6.0, 0.5, 2.0)
@@ -226,3 +229,49 @@ def test_a_show_too_fast_for_its_moves_is_refused_with_the_shortest_time_that_wo
     again = replace(plan, duration=check.shortest)
     assert check_show(again, config).feasible
     assert not check_show(replace(again, duration=check.shortest - timedelta(seconds=2)), config).feasible
+
+
+def test_a_wrapped_cable_unwinds_at_night_and_not_at_noon() -> None:
+    """From the upper part of 540 degrees to the place of the next sunrise in the lower part."""
+    wide = replace(TrackerConfig("T1", "T1").azimuth, minimum_deg=-270.0, maximum_deg=270.0)
+    config = TrackerConfig("T1", "T1", azimuth=wide)
+    begin, end = datetime(2026, 12, 21, 9, 30, tzinfo=UTC), datetime(2026, 12, 21, 16, tzinfo=UTC)
+    step = timedelta(seconds=10)
+    _, frames = simulate(
+        config, Pointing(), BRASOV, "UTC", Mode.DUAL, HELD, begin, end, step=step, sparing=True
+    )
+    turned_deg = np.abs((np.diff(frames.column("measured_azimuth_deg")) + 180.0) % 360.0 - 180.0)
+    up = frames.column("sun_elevation_deg")[1:] > 0.0
+    noon = np.abs(frames.column("sun_azimuth_deg")[1:] - 180.0) < 10.0
+    assert noon.sum() > 100
+    assert turned_deg[up].max() < 2.0, "no way round while the sun is up"
+    dusk_deg = frames.column("sun_azimuth_deg")[1:][up].max()
+    assert turned_deg[~up].sum() == pytest.approx(2.0 * dusk_deg, abs=8.0), "down to the next sunrise"
+
+
+@pytest.mark.parametrize("imported", [False, True], ids=["by hand", "from CSV"])
+def test_a_program_runs_on_the_machine_in_a_show_and_in_a_simulation(imported: bool) -> None:
+    steps = (ProgramStep(0.0, 120.0, 20.0), ProgramStep(10.0, 150.0, 40.0), ProgramStep(11.0, 170.0, 50.0))
+    program = StepProgram("Three places", steps, StepFrame.HORIZON, TimeBase.CLOCK, 2.0)
+    if imported:
+        program = from_table(to_table(program))
+    strategy = Stepped(program)
+    config = TrackerConfig("T1", "T1", strategy=strategy)
+    begin, end = datetime(2026, 6, 21, 7, 59, tzinfo=UTC), datetime(2026, 6, 21, 9, 20, tzinfo=UTC)
+    plan = ShowPlan(
+        "show", begin, end, timedelta(minutes=2), BRASOV, Mode.DUAL, HELD, schedule=schedule_of(strategy)
+    )
+    told, show = simulate_show(config, Pointing(), "UTC", plan)
+    assert (told.outcome, told.duration_s) == ("completed", pytest.approx(120.0, abs=0.5))
+    _, day_frames = simulate(config, Pointing(), BRASOV, "UTC", Mode.DUAL, HELD, begin, end)
+    for frames in (show, day_frames):
+        azimuth, elevation = frames.column("measured_azimuth_deg"), frames.column("measured_elevation_deg")
+        for step in steps:
+            off_deg = np.hypot(azimuth - step.first_deg, elevation - step.second_deg)
+            assert off_deg.min() < 0.06, step
+    machine = Plant(READY, config=config, at=begin + timedelta(seconds=40), location=BRASOV)
+    machine.tick()
+    machine.ask(Track())
+    machine.forward(70.0)
+    assert (machine.azimuth_deg, machine.elevation_deg) == pytest.approx((150.0, 40.0), abs=0.06)
+    assert "step 2 of 3 of Three places" in machine.snapshot.activity_text
