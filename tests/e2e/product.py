@@ -16,8 +16,11 @@ from pathlib import Path
 
 import httpx
 
+DRIVE_SIM = (sys.executable, "-c", "import typer; from app.cli_drives import drive_sim; typer.run(drive_sim)")
+"""The command `heliopanel drive-sim` alone, without the panel and machine that `heliopanel` imports."""
 COMMAND = str(Path(sys.executable).with_name("heliopanel"))
 LONGEST_WAIT_S = 40.0
+LONGEST_START_S = 240.0
 LOOK_EVERY_S = 0.02
 
 
@@ -62,9 +65,7 @@ class DriveSim:
         """Return once it listens; with a memory it knows its position after a power cut at rest."""
         port = port or free_port()
         kept = [] if memory is None else ["--memory", str(memory)]
-        process = subprocess.Popen(
-            [COMMAND, "drive-sim", "--tcp", f"127.0.0.1:{port}", *kept], stdout=subprocess.PIPE
-        )
+        process = subprocess.Popen([*DRIVE_SIM, "--tcp", f"127.0.0.1:{port}", *kept], stdout=subprocess.PIPE)
         assert process.stdout is not None
         assert process.stdout.readline(), "drive-sim did not start"
         return cls(port, process)
@@ -101,7 +102,11 @@ class Product:
         product = cls(data_dir, port, process)
         product.reading = threading.Thread(target=product._read, daemon=True)
         product.reading.start()
-        product.until_ready()
+        try:
+            product.until_ready()
+        except TimeoutError:
+            product.stop()
+            raise
         return product
 
     @property
@@ -111,7 +116,7 @@ class Product:
 
     def until_ready(self) -> None:
         """Return once panel, machine and database answer, or fail."""
-        eventually(self.is_ready, "panel, machine and database answer")
+        eventually(self.is_ready, "panel, machine and database answer", within_s=LONGEST_START_S)
 
     def is_ready(self) -> bool:
         """Return whether panel, machine and database answer now."""
