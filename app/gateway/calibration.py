@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 
 from app.gateway.door import Door, Update, refused, send
+from app.link.messages import RequestControl
 from app.tracker.commands import CommandRejected, Home, Stop, Track
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
@@ -46,6 +47,7 @@ class Calibrations:
             rejected = CommandRejected(*against)
             refused(self._door, tracker.tracker_id, actor, f"The calibration was not begun: {rejected}")
             raise rejected
+        await send(self._door, RequestControl((tracker.tracker_id,)), tracker.tracker_id, actor)
         if tracker.actions["home"]:
             await send(self._door, Stop(), tracker.tracker_id, actor)
             self._running[tracker.tracker_id] = Calibration(_Phase.STOPPING, actor)

@@ -2,11 +2,15 @@
 
 from typing import Protocol
 
-from app.link.messages import Machine, Order, Update
+from app.link.messages import Machine, Order, RequestControl, Update
 from app.tracker.commands import Command, CommandRejected
 from app.tracker.snapshot import Event, EventKind, SiteSnapshot
 
 __all__ = ["Door", "Update", "refused", "send", "written"]
+
+
+SUNSPEC, MQTT = "sunspec", "mqtt"
+"""How orders of these doors are known; each is one holder of control, whichever host or client wrote."""
 
 
 class Door(Machine, Protocol):
@@ -16,10 +20,10 @@ class Door(Machine, Protocol):
         """Journal and tell what happened at this door."""
 
 
-async def send(door: Door, command: Command, tracker_id: str, actor: str, key: str | None = None) -> None:
-    """Send one order; one that is refused is journalled with its reasons before it raises."""
+async def send(door: Door, command: Command | RequestControl, tracker_id: str | None, actor: str) -> None:
+    """Send one order of SunSpec's; one that is refused is journalled with its reasons before it raises."""
     try:
-        await door.execute(Order(command, actor, tracker_id, key))
+        await door.execute(Order(command, actor, tracker_id, via=SUNSPEC))
     except CommandRejected as rejected:
         refused(door, tracker_id, actor, f"{command.kind} was refused: {rejected}")
         raise

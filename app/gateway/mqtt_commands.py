@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 import orjson
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
-from app.gateway.door import Door, refused
+from app.gateway.door import MQTT, Door, refused
 from app.link.messages import MachineUnreachable, Order, UnknownTracker
 from app.tracker.commands import Command, CommandRejected, Home, Move, Park, ResetFault, Stop, Track
 from app.tracker.config import Orientation
@@ -81,7 +81,7 @@ async def obey(door: Door, tracker_id: str, payload: bytes, *, retained: bool) -
 
 async def _carry_out(door: Door, tracker_id: str, message: _Plain | _Move, actor: str) -> tuple[Reason, ...]:
     """Return why it was refused, nothing if it was carried out."""
-    order = Order(message.command(), actor, tracker_id, message.key, message.issued_at)
+    order = Order(message.command(), actor, tracker_id, message.key, message.issued_at, MQTT)
     try:
         await door.execute(order)
     except CommandRejected as rejected:

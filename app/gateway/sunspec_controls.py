@@ -8,7 +8,7 @@ from app.drives.modbus_server import ILLEGAL_ADDRESS, ILLEGAL_VALUE, Refusal
 from app.gateway.calibration import Calibrations
 from app.gateway.door import Door, Update, refused, send, written
 from app.gateway.sunspec_values import Control, Targets
-from app.link.messages import UnknownTracker
+from app.link.messages import RequestControl, UnknownTracker
 from app.tracker.commands import CommandRejected, Move, Track
 from app.tracker.config import Orientation
 from app.tracker.reason import Reason
@@ -97,9 +97,14 @@ class Controls:
                 raise Refusal(ILLEGAL_VALUE)
 
     async def _act(self, tracker_id: str | None, control: Control, targets: Targets, actor: str) -> None:
-        """Act on one tracker or on all; of all, those that can do it, and it fails if none can."""
+        """Act on one tracker or on all; of all, those that can do it, and it fails if none can.
+
+        All of them need control of all: while a person has one, none is moved.
+        """
         failures: list[Refusal] = []
         trackers = _addressed(self._door.latest(), tracker_id)
+        if tracker_id is None and trackers:
+            await self._take(tuple(one.tracker_id for one in trackers), actor)
         for tracker in trackers:
             try:
                 await self._act_on(tracker, control, targets, actor, for_all=tracker_id is None)
@@ -110,6 +115,12 @@ class Controls:
                 failures.append(Refusal(ILLEGAL_ADDRESS))
         if len(failures) == len(trackers):
             raise failures[0] if failures else Refusal(BUSY)
+
+    async def _take(self, tracker_ids: tuple[str, ...], actor: str) -> None:
+        try:
+            await send(self._door, RequestControl(tracker_ids), None, actor)
+        except CommandRejected as rejected:
+            raise Refusal(BUSY) from rejected
 
     async def _act_on(
         self, tracker: Snapshot, control: Control, targets: Targets, actor: str, *, for_all: bool

@@ -121,7 +121,10 @@ def _renew(model: SiteModel, tracker_ids: Sequence[str], who: Holder) -> tuple[E
 
 
 async def _request(model: SiteModel, command: RequestControl, order: Order) -> tuple[Event, ...]:
-    """Take control of all trackers that are asked for, in the order of their ids, or of none."""
+    """Take control of all trackers that are asked for, in the order of their ids, or of none.
+
+    Of one tracker it can also be asked for; doors that have no page to wait at cannot ask.
+    """
     if len(command.reason) > LONGEST_REASON:
         raise ValueError(f"A reason has at most {LONGEST_REASON} letters.")
     loops = [model.tracker(tracker_id) for tracker_id in sorted(set(command.tracker_ids))]
@@ -130,7 +133,7 @@ async def _request(model: SiteModel, command: RequestControl, order: Order) -> t
             await stack.enter_async_context(model.control.lock(loop.config.tracker_id))
         events = [event for loop in loops for event in await _settle(model, loop)]
         who = holder_of(order)
-        if len(loops) > 1:
+        if len(loops) > 1 or who.via in OWN_NAMES:
             _refuse_group(model, loops, who)
         for loop in loops:
             events += await _want(model, loop, command, order, who)

@@ -21,7 +21,7 @@ from app.drives.simulated import SimulatedDrive
 from app.gateway.sunspec import SunSpecTcp
 from app.gateway.sunspec_device import SunSpecDevice
 from app.gateway.sunspec_map import BASE, END, map_table, sunspec_map
-from app.link.messages import ConfigureTracker, ReportWeather
+from app.link.messages import ConfigureTracker, ReleaseControl, ReportWeather, RequestControl
 from app.settings import Settings
 from app.tracker.axes import Axis
 from app.tracker.commands import Jog, SelectMode, Stop
@@ -456,5 +456,21 @@ async def _tracking(system: Scada) -> None:
     plant = system.plant
     await plant.commission()
     await plant.ask(SelectMode(Mode.DUAL))
+    await plant.ask(ReleaseControl("T1"))
     assert (await system.write(CTL, 0))[0] == 16
     await plant.until(lambda seen: seen.in_position and seen.activity is ActivityName.TRACKING)
+
+
+async def test_what_a_person_has_control_of_is_not_moved_over_sunspec() -> None:
+    async with scada() as system:
+        plant = system.plant
+        await plant.commission()
+        await plant.ask(RequestControl(("T1",)))
+        assert await system.write(EL_CTL, *packed(30.0), *packed(140.0), 1) == bytes((0x90, 6))
+        assert await system.write(BASE + 70 + 20, *packed(30.0), *packed(120.0), 1) == bytes((0x90, 6))
+        assert await system.write(CTL, 2) == bytes((0x90, 6)), "it is not even stopped for a calibration"
+        assert plant.tracker().activity is ActivityName.HOLDING
+        assert "technician has control of Tracker" in system.journal()[-1][2]
+        await plant.ask(ReleaseControl("T1"))
+        assert (await system.write(EL_CTL, *packed(30.0), *packed(140.0), 1))[0] == 16
+        assert plant.tracker().control.holder == "SunSpec"

@@ -2,17 +2,18 @@
 
 import asyncio
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 
 from app.clock import VirtualClock
 from app.drives.drive import Drive
 from app.drives.simulated import SimulatedDrive
-from app.link.messages import Order, SetClock, SetLocation, SiteCommand
+from app.link.messages import Order, ReleaseControl, SetClock, SetLocation, SiteCommand
 from app.site.ledger import BackgroundWriter
 from app.site.site import Site
 from app.sun.position import Location
-from app.tracker.commands import Command, Home
+from app.tracker.commands import Command, CommandRejected, Home
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import SiteState, TrackerMemory, TrackerState
 from app.tracker.snapshot import ActivityName, Event, EventKind, SiteSnapshot, Snapshot
@@ -67,7 +68,7 @@ class Plant:
             await self.forward(seconds=0.1)
 
     def tracker(self, tracker_id: str = "T1") -> Snapshot:
-        return self.site.model.tracker(tracker_id).snapshot(self.site.model.now())
+        return self.site.model.snapshot(self.site.model.tracker(tracker_id), self.site.model.now())
 
     def happened(self, kind: EventKind) -> list[Event]:
         return [event for event in self.events if event.kind is kind]
@@ -82,6 +83,8 @@ class Plant:
                 and self.tracker(tracker_id).activity is ActivityName.HOLDING
             )
         )
+        with suppress(CommandRejected):
+            await self.ask(ReleaseControl(tracker_id))
 
     async def _listen(self) -> None:
         async for update in self.site.updates():
