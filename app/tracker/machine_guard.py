@@ -5,8 +5,9 @@ from dataclasses import replace
 from datetime import timedelta
 
 from app.tracker.activities.measuring import is_silent
-from app.tracker.activity import Faulted, Homing, Zeroing
+from app.tracker.activity import Faulted, Homing, Jogging, Zeroing
 from app.tracker.axes import Axis
+from app.tracker.conditions import prompt
 from app.tracker.guards import axis_feedback
 from app.tracker.machine_watch import (
     CROSSED_DEG,
@@ -27,7 +28,7 @@ from app.tracker.mounts.abilities import axis_of
 from app.tracker.proofs import StopProof, StopSpeed
 from app.tracker.reason import Reason
 from app.tracker.snapshot import EventKind
-from app.tracker.transitions import fail, lose_home
+from app.tracker.transitions import fail, leave, lose_home
 
 CREEP_SHOWN = timedelta(seconds=60)
 SLOW_STOPS = 3
@@ -38,19 +39,32 @@ SUPPLY_FOR = timedelta(seconds=2)
 
 def watch_machine(mind: Mind, before: Feedback | None, feedback: Feedback) -> None:
     """Judge the newest reading against what the axes were told, and latch what is a fault."""
+    if isinstance(mind.activity, Jogging) and (slow := prompt(mind)) is not None:
+        leave(mind, slow.message)
     told, was_told = mind.command, mind.told_before
     mind.told_before = told
-    if before is None or before is feedback or _is_exempt(mind, before, feedback):
-        mind.guards = mind.guards if before is feedback else {}
-        return
-    mind.guards = {
+    if before is not None and before is not feedback:
+        exempt = _is_exempt(mind, before, feedback)
+        mind.guards = {} if exempt else _watched(mind, before, feedback, was_told, told)
+    for axis in mind.guards:
+        _say_creep(mind, axis, feedback)
+        _say_overrun(mind, axis, feedback)
+    _watch_supply(mind, feedback)
+    _latch(mind, feedback)
+
+
+def _watched(
+    mind: Mind, before: Feedback, feedback: Feedback, was_told: DriveCommand, told: DriveCommand
+) -> dict[Axis, AxisGuard]:
+    """Return the next state of everything that is watched."""
+    return {
         axis: _seen(mind, axis, before, feedback, (_told(was_told, axis), _told(told, axis)))
         for axis in mind.config.mount.axes
     }
-    _watch_supply(mind, feedback)
-    for axis in mind.config.mount.axes:
-        _say_creep(mind, axis, feedback)
-        _say_overrun(mind, axis, feedback)
+
+
+def _latch(mind: Mind, feedback: Feedback) -> None:
+    """Fail for the first of the judges that objects; a fault stays the fault that it is."""
     if isinstance(mind.activity, Faulted):
         return
     for judge in JUDGES:
@@ -66,7 +80,8 @@ def watch_machine(mind: Mind, before: Feedback | None, feedback: Feedback) -> No
 
 def notices(mind: Mind) -> tuple[Reason, ...]:
     """Return what is watched and no fault: an axis that crept of late, and one that stops too late."""
-    found: list[Reason] = []
+    slow = prompt(mind)
+    found: list[Reason] = [] if slow is None else [slow]
     for axis, guard in mind.guards.items():
         if guard.crept_at is not None and mind.now - guard.crept_at < CREEP_SHOWN:
             found.append(creeps(mind, axis))

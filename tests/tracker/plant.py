@@ -14,6 +14,7 @@ from app.tracker.memory import HomeTrust, TrackerMemory
 from app.tracker.mode import Mode
 from app.tracker.motion import DriveCommand, DriveRequest, RequestKind
 from app.tracker.observation import Observation
+from app.tracker.protections.words import LinkQuality
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
 from app.tracker.weather import NOTHING_SENSED, Quality, Reading, Sensed
 
@@ -50,6 +51,7 @@ class Plant:
         self._dawn_at: datetime | None = None
         self.told = DriveCommand()
         self.weather = NOTHING_SENSED
+        self.link: LinkQuality | None = None
         if memory.home is not None:
             self._be_homed(at)
         self.clock.move_to(at)
@@ -78,6 +80,7 @@ class Plant:
             location=self.location,
             location_revision=self.revision,
             weather=self.weather,
+            link=self.link,
         )
         done = self.controller.tick(seen)
         self.told = done.command

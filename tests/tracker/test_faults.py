@@ -1,0 +1,454 @@
+"""Rows of the fault table that happen at the machine: noticed in time, answered as the table says, and told.
+
+`witnessed` measures on the virtual clock from the fault to the first word of it, and hands time and sentence
+to the table of faults (`python -m tests.fault_table`).
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from datetime import timedelta
+from typing import Any
+
+import pytest
+
+from app.drives.faults import Fault, FaultKind
+from app.tracker.axes import Axis, JogSpeed
+from app.tracker.commands import (
+    BeginService,
+    CommandRejected,
+    ConfirmClear,
+    EndService,
+    Home,
+    Jog,
+    Move,
+    Park,
+    ProveDirection,
+    ResetFault,
+    Step,
+    Stop,
+    Track,
+)
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.machine_watch import Braking, allowed_overrun_deg
+from app.tracker.motion import HALT, Feedback
+from app.tracker.proofs import StopProof, StopSpeed
+from app.tracker.protections.machine_config import MachineProtection, Recoveries, Recovery, RecoveryPolicy
+from app.tracker.protections.words import LinkQuality
+from app.tracker.reason import Reason
+from app.tracker.snapshot import ActivityName, EventKind, Snapshot
+from tests.tracker.plant import CONFIG, MORNING, READY, Plant
+
+SOUTH = Move(Orientation(180.0, 45.0))
+Witness = Callable[..., float]
+
+
+@pytest.fixture
+def witnessed(record_property: Callable[[str, object], None]) -> Witness:
+    """Let time pass until a code is shown; record how long that took, and the very sentence."""
+
+    def wait(plant: Plant, code: str, *, within_s: float, policy: str = "none: a person clears it") -> float:
+        begun = plant.clock.now()
+        while (reason := shown(plant.snapshot).get(code)) is None:
+            assert plant.clock.now() - begun <= timedelta(seconds=within_s), f"{code} was not noticed"
+            plant.forward(0.1)
+        took_s = (plant.clock.now() - begun).total_seconds()
+        record_property("detected_s", f"{took_s:.1f}")
+        record_property("shown", reason.message)
+        record_property("policy", policy)
+        return took_s
+
+    return wait
+
+
+def shown(snapshot: Snapshot) -> dict[str, Reason]:
+    """Return everything that the operator is told, by code."""
+    fault = () if snapshot.fault is None else (snapshot.fault,)
+    return {reason.code: reason for reason in (*fault, *snapshot.notices, *snapshot.waiting)}
+
+
+def moving(config: TrackerConfig = CONFIG, *, tracks: bool = False) -> Plant:
+    plant = Plant(READY, config=config)
+    plant.tick()
+    if tracks:
+        plant.ask(Track())
+        plant.forward(60.0)
+    else:
+        plant.ask(SOUTH)
+        plant.forward(3.0)
+    return plant
+
+
+def doing(plant: Plant) -> ActivityName:
+    return plant.activity
+
+
+def hurt(plant: Plant, kind: FaultKind, axis: Axis | None = Axis.AZIMUTH, amount: float = 0.0) -> None:
+    plant.drive.inject(Fault(kind, axis, amount))
+
+
+def guarded(**machine: Any) -> TrackerConfig:
+    return replace(CONFIG, machine=replace(MachineProtection(), **machine))
+
+
+def stands(plant: Plant, seconds: float = 3.0) -> bool:
+    plant.forward(seconds)
+    return plant.told.azimuth == HALT and plant.told.elevation == HALT
+
+
+@pytest.mark.fault(1)
+def test_a_cut_cable_in_mid_move_is_told_with_the_age_of_the_reading(witnessed: Witness) -> None:
+    plant = moving(tracks=True)
+    plant.cut = True
+    assert witnessed(plant, "drive_lost", within_s=1.0) <= 1.0
+    assert plant.activity is ActivityName.HOLDING
+    assert plant.snapshot.measured is None
+    assert plant.snapshot.position_age_s is not None
+
+
+@pytest.mark.fault(3)
+@pytest.mark.fault(22)
+def test_a_drive_that_lost_its_power_has_lost_its_zero(witnessed: Witness) -> None:
+    plant = moving(tracks=True)
+    hurt(plant, FaultKind.POWER_LOSS, None)
+    witnessed(plant, "drive_restarted", within_s=0.5, policy="none: the zero is set again")
+    assert plant.controller.memory.home is None
+    assert "home_not_trusted" in plant.reasons("track") & plant.reasons("stow") & plant.reasons("move")
+    assert plant.reasons("jog") == set(), "slow hand motion is the way back"
+
+
+@pytest.mark.fault(4)
+def test_slow_replies_end_and_refuse_motion_by_a_held_key(witnessed: Witness) -> None:
+    plant = Plant(READY)
+    plant.tick()
+    plant.link = LinkQuality(0.05, 0.08)
+    plant.forward(0.1)
+    assert plant.reasons("jog") == {"link_slow"}
+    assert plant.reasons("step") == set()
+    assert witnessed(plant, "link_slow", within_s=0.5, policy="unlimited: it ends with its cause") <= 0.5
+    plant.link = LinkQuality(0.03, 0.08)
+    plant.forward(0.1)
+    assert plant.reasons("jog") == set()
+
+
+@pytest.mark.fault(9)
+def test_the_wrong_axis_moves_and_the_proof_of_the_direction_fails(witnessed: Witness) -> None:
+    plant = Plant(READY)
+    plant.forward(1.0)
+    hurt(plant, FaultKind.SWAPPED_AXES)
+    plant.ask(ProveDirection(Axis.AZIMUTH))
+    assert witnessed(plant, "axes_swapped", within_s=2.0) <= 2.0
+    assert stands(plant)
+    assert plant.controller.memory.proofs.directions == ()
+
+
+@pytest.mark.fault(11)
+def test_a_frozen_counter_is_told_from_an_axis_that_stands(witnessed: Witness) -> None:
+    plant = moving()
+    hurt(plant, FaultKind.FROZEN_POSITION)
+    assert witnessed(plant, "position_frozen", within_s=1.5) <= 1.5
+    assert stands(plant)
+    assert plant.controller.memory.home is None
+
+
+@pytest.mark.fault(12)
+def test_an_axis_that_turns_the_wrong_way_asks_for_its_phases(witnessed: Witness) -> None:
+    plant = Plant(READY)
+    plant.tick()
+    hurt(plant, FaultKind.WRONG_DIRECTION)
+    plant.ask(SOUTH)
+    assert witnessed(plant, "wrong_direction", within_s=2.0) <= 2.0
+    assert stands(plant)
+    assert "phases" in (plant.snapshot.fault or Reason("", "", "")).hint
+
+
+@pytest.mark.fault(13)
+def test_a_counter_that_jumps_costs_the_zero(witnessed: Witness) -> None:
+    plant = moving(tracks=True)
+    hurt(plant, FaultKind.ENCODER_JUMP, amount=12.4)
+    assert witnessed(plant, "encoder_jump", within_s=0.5, policy="none: the zero is set again") <= 0.5
+    assert plant.controller.memory.home is None
+    assert plant.activity is ActivityName.HOLDING
+
+
+@pytest.mark.fault(14)
+def test_an_axis_that_is_stuck_is_not_tried_again_and_again(witnessed: Witness) -> None:
+    plant = moving()
+    hurt(plant, FaultKind.STALL)
+    assert witnessed(plant, "following_error", within_s=3.0) <= 3.0
+    assert stands(plant, 700.0)
+    assert len(plant.happened(EventKind.FAULT_RAISED)) == 1
+
+
+@pytest.mark.fault(15)
+def test_an_axis_that_creeps_is_told_until_it_rests(witnessed: Witness) -> None:
+    plant = Plant(READY)
+    plant.forward(1.0)
+    hurt(plant, FaultKind.SLIP, Axis.ELEVATION, 0.5)
+    took_s = witnessed(
+        plant, "creep", within_s=4.0, policy="unlimited: it ends a minute after the last motion"
+    )
+    assert took_s <= 4.0, "a degree at half a degree a second"
+    plant.forward(30.0)
+    assert len(plant.happened(EventKind.CREPT)) == 1, "said once, not with every degree"
+    plant.drive.clear_faults()
+    plant.forward(70.0)
+    assert "creep" not in shown(plant.snapshot)
+
+
+@pytest.mark.fault(16)
+def test_an_axis_that_stops_too_late_is_slow_until_its_stops_are_short(witnessed: Witness) -> None:
+    plant = Plant(READY)
+    plant.tick()
+    plant.ask(Move(Orientation(300.0, 45.0)))
+    plant.forward(10.0)
+    hurt(plant, FaultKind.LONG_STOP)
+    plant.ask(Stop())
+    witnessed(plant, "overrun", within_s=5.0, policy="limited: three short stops in a row")
+    plant.drive.clear_faults()
+    plant.forward(10.0)
+    for _ in range(3):
+        plant.ask(Move(Orientation(20.0, 20.0)))
+        plant.forward(10.0)
+        assert abs(plant.drive.observe().azimuth.velocity_dps) <= CONFIG.azimuth.jog_slow_dps + 1e-9
+        plant.ask(Stop())
+        plant.forward(3.0)
+    assert "overrun" not in shown(plant.snapshot)
+    plant.ask(Move(Orientation(20.0, 20.0)))
+    plant.forward(3.0)
+    assert abs(plant.drive.observe().azimuth.velocity_dps) > 5.0
+
+
+def test_a_stop_is_judged_by_the_one_that_was_measured() -> None:
+    config = CONFIG.azimuth
+    proof = StopProof(
+        Axis.AZIMUTH, StopSpeed.RATED, 6.0, 1.2, 4.0, 0.05, MORNING, "technician", CONFIG.drive, config
+    )
+    fast, slow = Braking(0.0, 6.0), Braking(0.0, -3.0)
+    assert allowed_overrun_deg(fast, config, proof, 2.0) == pytest.approx(2 * (4.0 + 0.3) + 0.3)
+    assert allowed_overrun_deg(slow, config, proof, 2.0) == pytest.approx(2 * (2.0 + 0.15) + 0.3)
+    other = replace(proof, settings=replace(config, acceleration_dps2=3.0))
+    assert allowed_overrun_deg(fast, config, other, 2.0) == allowed_overrun_deg(fast, config, None, 2.0)
+
+
+@pytest.mark.fault(17)
+def test_one_switch_in_the_range_leaves_the_other_way_free(witnessed: Witness) -> None:
+    plant = moving()
+    hurt(plant, FaultKind.UPPER_LIMIT_STUCK)
+    plant.ask(Track())
+    plant.ask(SOUTH)
+    plant.forward(2.0)
+    assert plant.happened(EventKind.LIMIT_REACHED)
+    with pytest.raises(CommandRejected, match="limit switch"):
+        plant.ask(Jog("up", Axis.AZIMUTH, 1))
+    plant.ask(Step(Axis.AZIMUTH, -1.0))
+    assert plant.activity is ActivityName.MOVING
+
+
+@pytest.mark.fault(18)
+def test_a_switch_that_stays_on_is_a_fault_after_the_axis_has_left_it(witnessed: Witness) -> None:
+    plant = Plant(READY)
+    plant.tick()
+    plant.ask(Move(Orientation(100.0, 20.0)))
+    plant.forward(30.0)
+    hurt(plant, FaultKind.UPPER_LIMIT_STUCK)
+    plant.ask(Move(Orientation(10.0, 20.0)))
+    assert witnessed(plant, "limit_stuck", within_s=6.0) <= 6.0, "ten degrees at six degrees a second"
+    assert stands(plant)
+    plant.ask(ResetFault())
+    plant.ask(Step(Axis.AZIMUTH, -5.0))
+    plant.forward(5.0)
+    assert plant.activity is ActivityName.HOLDING, "away from the switch it may move"
+
+
+@pytest.mark.fault(19)
+def test_an_axis_whose_switch_never_comes_is_stopped_beyond_its_soft_limit(witnessed: Witness) -> None:
+    plant = Plant(READY)
+    plant.forward(1.0)
+    hurt(plant, FaultKind.LIMIT_DEAD, Axis.ELEVATION)
+    hurt(plant, FaultKind.SLIP, Axis.ELEVATION, -1.0)
+    assert witnessed(plant, "over_travel", within_s=4.0) <= 4.0
+    assert plant.controller.memory.home is None, "over-travel ends the trust in the zero"
+
+
+@pytest.mark.fault(20)
+def test_both_switches_at_once_are_a_fault_of_the_wiring(witnessed: Witness) -> None:
+    plant = moving()
+    hurt(plant, FaultKind.LOWER_LIMIT_STUCK)
+    hurt(plant, FaultKind.UPPER_LIMIT_STUCK)
+    assert witnessed(plant, "limit_switch_wiring", within_s=0.5) <= 0.5
+    assert stands(plant)
+    assert "fault" in plant.reasons("jog") & plant.reasons("step") & plant.reasons("home")
+
+
+@pytest.mark.fault(21)
+@pytest.mark.parametrize("code", [1, 7, 65535])
+def test_a_drive_fault_stops_both_axes_and_costs_the_zero(witnessed: Witness, code: int) -> None:
+    plant = moving(tracks=True)
+    hurt(plant, FaultKind.DRIVE_FAULT, amount=float(code))
+    assert witnessed(plant, "drive_fault", within_s=0.5) <= 0.5
+    assert stands(plant)
+    assert plant.controller.memory.home is None
+
+
+def test_a_supply_that_is_out_of_range_for_two_seconds_is_a_fault(witnessed: Witness) -> None:
+    plant = Plant(READY, config=guarded(supply_low_v=21.0, supply_high_v=28.0))
+    plant.forward(1.0)
+    hurt(plant, FaultKind.SUPPLY, None, 24.0)
+    plant.forward(5.0)
+    assert plant.snapshot.fault is None
+    hurt(plant, FaultKind.SUPPLY, None, 18.5)
+    assert 2.0 <= witnessed(plant, "supply_voltage", within_s=3.0) <= 2.3
+
+
+def test_an_ordinary_stop_keeps_the_zero_and_a_search_gives_it_up() -> None:
+    plant = moving(tracks=True)
+    plant.ask(Stop())
+    plant.forward(3.0)
+    assert plant.snapshot.home_trusted
+    plant.ask(Home())
+    assert not plant.snapshot.home_trusted
+
+
+def test_the_switch_at_the_cabinet_beats_everything() -> None:
+    plant = moving(tracks=True)
+    hurt(plant, FaultKind.LOCAL_SWITCH, None)
+    plant.forward(0.2)
+    assert plant.snapshot.local
+    assert plant.activity is ActivityName.HOLDING
+    assert plant.snapshot.waiting[0].message == "The switch at the cabinet of Tracker 1 is on local."
+    for action in ("jog", "step", "move", "park", "track", "stow", "home", "prove_direction"):
+        assert "local" in plant.reasons(action), action
+    assert plant.reasons("stop") == set()
+    plant.drive.clear_faults()
+    plant.forward(5.0)
+    assert plant.activity is ActivityName.HOLDING, "nothing resumes by itself"
+    assert [len(plant.happened(kind)) for kind in (EventKind.LOCAL_TAKEN, EventKind.LOCAL_GIVEN_BACK)] == [
+        1,
+        1,
+    ]
+    plant.ask(Track())
+
+
+def test_service_moves_slowly_and_only_while_the_area_is_clear() -> None:
+    plant = moving(tracks=True)
+    plant.ask(BeginService("Ada"))
+    plant.forward(3.0)
+    assert plant.snapshot.service is not None
+    assert plant.reasons("move") == plant.reasons("jog") == {"area_not_clear"}
+    assert "in_service" in plant.reasons("track") & plant.reasons("park") & plant.reasons("stow")
+    plant.ask(ConfirmClear())
+    plant.ask(Move(Orientation(20.0, 20.0)))
+    plant.forward(5.0)
+    seen = plant.drive.observe()
+    assert abs(seen.azimuth.velocity_dps) == pytest.approx(CONFIG.azimuth.jog_slow_dps)
+    assert abs(seen.elevation.velocity_dps) <= CONFIG.elevation.jog_slow_dps + 1e-9
+    plant.ask(Stop())
+    plant.forward(2.0)
+    plant.ask(EndService())
+    assert plant.snapshot.service is None
+    plant.ask(Park())
+
+
+def test_the_word_that_the_area_is_clear_expires_in_mid_move() -> None:
+    plant = Plant(READY, config=guarded(clear_for_s=20.0))
+    plant.tick()
+    plant.ask(BeginService("Ada"))
+    plant.forward(1.0)
+    plant.ask(ConfirmClear())
+    plant.ask(SOUTH)
+    plant.forward(19.5)
+    assert doing(plant) is ActivityName.MOVING
+    plant.forward(1.0)
+    assert doing(plant) is ActivityName.HOLDING
+    assert plant.happened(EventKind.AREA_DOUBTED)
+    with pytest.raises(CommandRejected, match="nobody has said that the area is clear"):
+        plant.ask(SOUTH)
+
+
+def test_service_bears_a_name_and_is_left_once() -> None:
+    plant = Plant(READY)
+    plant.tick()
+    with pytest.raises(CommandRejected, match="name of 1 to 60"):
+        plant.ask(BeginService("  "))
+    with pytest.raises(CommandRejected, match="not in service mode"):
+        plant.ask(EndService())
+
+
+def recovering(kind: Recovery, *, times: int = 2) -> Plant:
+    policy = RecoveryPolicy(kind, times, 10.0)
+    return moving(guarded(recovery=Recoveries(following=policy, link=policy)), tracks=True)
+
+
+def block_and_free(plant: Plant) -> None:
+    """Block the axis until the fault is latched, then remove what blocked it."""
+    hurt(plant, FaultKind.STALL)
+    plant.forward(300.0)
+    plant.drive.clear_faults()
+
+
+def test_without_a_policy_a_person_leaves_the_fault() -> None:
+    plant = moving(tracks=True)
+    block_and_free(plant)
+    plant.forward(100.0)
+    assert plant.activity is ActivityName.FAULTED
+
+
+def test_a_fault_is_left_by_itself_as_often_as_its_policy_says() -> None:
+    plant = recovering(Recovery.LIMITED)
+    hurt(plant, FaultKind.STALL)
+    plant.forward(1500.0)
+    assert len(plant.happened(EventKind.FAULT_RECOVERED)) == 2, "twice an hour, then a person has to come"
+    assert plant.activity is ActivityName.FAULTED
+    announced = plant.happened(EventKind.MOTION_ANNOUNCED)
+    assert [event.message for event in announced if "fault" in event.message], "its motion is announced"
+
+
+def test_a_lost_drive_is_tracked_again_if_its_policy_says_so() -> None:
+    plant = recovering(Recovery.UNLIMITED)
+    plant.cut = True
+    plant.forward(5.0)
+    plant.cut = False
+    plant.forward(5.0)
+    assert doing(plant) is ActivityName.HOLDING
+    plant.forward(10.0)
+    assert doing(plant) is ActivityName.TRACKING
+    assert plant.happened(EventKind.TRACKING_RESUMED)
+
+
+def test_a_fault_that_needs_service_is_cleared_in_service_only() -> None:
+    plant = recovering(Recovery.SERVICE)
+    block_and_free(plant)
+    assert plant.reasons("reset_fault") == {"service_needed"}
+    plant.ask(BeginService("Ada"))
+    plant.ask(ResetFault())
+    assert plant.activity is not ActivityName.FAULTED
+
+
+def test_no_fault_is_left_by_itself_under_a_maintenance_lock_or_in_service() -> None:
+    plant = recovering(Recovery.UNLIMITED)
+    hurt(plant, FaultKind.STALL)
+    while plant.activity is not ActivityName.FAULTED:
+        plant.forward(10.0)
+    plant.ask(BeginService("Ada"))
+    plant.forward(60.0)
+    assert not plant.happened(EventKind.FAULT_RECOVERED)
+
+
+def test_a_reading_of_the_supply_that_is_not_there_is_no_fault() -> None:
+    plant = Plant(READY, config=guarded(supply_low_v=21.0, supply_high_v=28.0))
+    plant.forward(5.0)
+    seen: Feedback = plant.drive.observe()
+    assert seen.supply_v is None
+    assert plant.snapshot.fault is None
+
+
+def test_a_slow_key_stays_slow() -> None:
+    plant = Plant(READY)
+    plant.tick()
+    plant.ask(BeginService("Ada"))
+    plant.forward(1.0)
+    plant.ask(ConfirmClear())
+    for beat in range(1, 20):
+        plant.ask(Jog("press", Axis.AZIMUTH, 1, JogSpeed.FAST, beat))
+        plant.forward(0.1)
+    assert abs(plant.drive.observe().azimuth.velocity_dps) <= CONFIG.azimuth.jog_slow_dps + 1e-9
