@@ -48,6 +48,8 @@ _TABLE: dict[Permission, str] = {
     Permission.READ: """
         GET /
         GET /accuracy
+        GET /alarms
+        GET /alarms/guide
         GET /journal
         GET /metrics
         GET /papers
@@ -89,7 +91,11 @@ _TABLE: dict[Permission, str] = {
         GET /api/v1/openapi.json
         GET /api/v1/me
         POST /api/v1/tickets
+        GET /api/v1/alarms
+        GET /api/v1/alarms/catalogue
+        GET /api/v1/alarms/history
         GET /api/v1/journal
+        GET /api/v1/journal/export
         GET /api/v1/mechanisms
         GET /api/v1/metrics
         GET /api/v1/mounts
@@ -150,6 +156,12 @@ _TABLE: dict[Permission, str] = {
     """,
     Permission.OPERATE: """
         POST /trackers/{tracker_id}/control
+        POST /alarms/acknowledge
+        POST /alarms/shelve
+        POST /alarms/unshelve
+        POST /api/v1/alarms/{alarm_id}/acknowledge
+        POST /api/v1/alarms/{alarm_id}/shelve
+        POST /api/v1/alarms/{alarm_id}/unshelve
         POST /trackers/{tracker_id}/move
         POST /trackers/{tracker_id}/lock
         POST /trackers/{tracker_id}/park
@@ -293,6 +305,7 @@ STREAMS = frozenset({"WS /live", "GET /api/v1/stream"})
 """What lasts: it ends within a second when who asked for it must leave."""
 
 TICKETED = STREAMS | {
+    "GET /api/v1/journal/export",
     "GET /diagnostics.zip",
     "GET /api/v1/diagnostics.zip",
     "GET /api/v1/recordings/{recording_id}/frames",

@@ -1,6 +1,7 @@
 // What every page runs.
 
 import { start as startControl } from "./control.js";
+import { start as startAlarms } from "./alarms.js";
 import { start as startLive } from "./live.js";
 import { start as startOrders } from "./orders.js";
 import { start as startSteps } from "./steps.js";
@@ -12,6 +13,7 @@ startTheme();
 startOrders();
 startSteps();
 startControl();
+startAlarms();
 startLive();
 
 const heading = document.getElementById("heading");

@@ -5,6 +5,7 @@ from fastapi import APIRouter
 from app.web.api import (
     access,
     accuracy,
+    alarms,
     audit,
     certificate,
     commissioning,
@@ -53,6 +54,7 @@ ROUTERS = (
     recordings.router,
     simulations.router,
     studies.router,
+    alarms.router,
     journal.router,
     audit.router,
     certificate.router,

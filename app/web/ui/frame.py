@@ -29,6 +29,7 @@ STATUS_TEXT = {
 }
 SITE_TABS = (
     ("Trackers", "/"),
+    ("Alarms", "/alarms"),
     ("Recordings", "/recordings"),
     ("Simulate a day", "/simulate"),
     ("Studies", "/studies"),

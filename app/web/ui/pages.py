@@ -9,6 +9,7 @@ from app.web.errors import Problem
 from app.web.ui import (
     account,
     accuracy,
+    alarms,
     audit,
     certificate,
     clock,
@@ -78,6 +79,7 @@ ROUTERS = (
     study.router,
     accuracy.router,
     papers.router,
+    alarms.router,
     journal.router,
     audit.router,
     certificate.router,
