@@ -261,7 +261,7 @@ class Keeper:
                 try:
                     return await asyncio.to_thread(work)
                 finally:
-                    self._turn_to(await asyncio.to_thread(self._store.load))
+                    await self.refresh()
         finally:
             self._waiting -= 1
 
@@ -287,8 +287,7 @@ class Keeper:
             change.forgive((here,))
 
     def _wait(self, subjects: tuple[str, ...], *, first: str = "") -> None:
-        with self._store.writing() as change:
-            found = change.failures(subjects)
+        found = self._store.failures(subjects)
         judged = [one for name, one in found.items() if first in found or not name.startswith("account:")]
         wait = wait_left(judged, self._clock.now())
         if wait > timedelta():

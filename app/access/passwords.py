@@ -110,7 +110,7 @@ def _is_row(text: str) -> bool:
 
 def _is_common(text: str, name: str) -> bool:
     """Return whether nothing is left of a text but common words, the user's name, digits and signs."""
-    words = common_words() | ({name} if name else set())
+    words = common_words() | ({re.sub(r"[^a-z]", "", name)} - {""})
     return any(_made_of(re.sub(r"[^a-z]", "", shape), words) for shape in (text, text.translate(LOOKALIKES)))
 
 

@@ -80,6 +80,13 @@ class AccessStore:
                 update(tables.meta).where(tables.meta.c.name == CHANGES).values(value=str(number))
             )
 
+    def failures(self, subjects: Iterable[str]) -> dict[str, Failures]:
+        """Return how often each of these was wrong."""
+        if not self.exists():
+            return {}
+        with transaction(self._engine) as connection:
+            return _failures(connection, subjects)
+
     def events(self) -> list[tuple[AccessEvent, str, str]]:
         """Return every event with the hash of the one before and its own, oldest first."""
         if not self.exists():
@@ -160,9 +167,7 @@ class Change:
 
     def failures(self, subjects: Iterable[str]) -> dict[str, Failures]:
         """Return how often each of these was wrong."""
-        wanted = tables.failures.c.subject.in_(list(subjects))
-        rows = self._connection.execute(select(tables.failures).where(wanted)).mappings()
-        return {row["subject"]: Failures(row["count"], row["last_at"]) for row in rows}
+        return _failures(self._connection, subjects)
 
     def put_failures(self, subject: str, failures: Failures) -> None:
         """Remember how often something was wrong; what is a day old is forgotten."""
@@ -194,6 +199,12 @@ class Change:
 
 def _rows(connection: Connection, table: Table) -> list[dict[str, Any]]:
     return [dict(row) for row in connection.execute(select(table)).mappings()]
+
+
+def _failures(connection: Connection, subjects: Iterable[str]) -> dict[str, Failures]:
+    wanted = tables.failures.c.subject.in_(list(subjects))
+    rows = connection.execute(select(tables.failures).where(wanted)).mappings()
+    return {row["subject"]: Failures(row["count"], row["last_at"]) for row in rows}
 
 
 def _meta(connection: Connection, name: str) -> str:

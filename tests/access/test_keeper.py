@@ -1,0 +1,231 @@
+"""Signing in, guessing, revoking and the first run, on a virtual clock."""
+
+import asyncio
+from collections.abc import Iterator
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+from click.testing import Result
+from typer.testing import CliRunner
+
+from app.access.accounts import TokenWish
+from app.access.events import chained
+from app.access.keeper import Credentials, Keeper, Throttled, WrongPassword
+from app.access.opening import open_keeper, open_store
+from app.access.principal import Via, this_computer
+from app.access.roles import Permission, Role
+from app.access.setup import CODE_FILE, RESET_FILE
+from app.access.users import AccessRefused
+from app.audit.chain import FIRST
+from app.cli_users import users
+from app.clock import VirtualClock
+from app.settings import Settings
+from tests.access.fake_hasher import FakeHasher
+
+START = datetime(2026, 11, 21, 12, tzinfo=UTC)
+PASSWORD = "violet-anvil-harbour-9"  # noqa: S105 - of people who do not exist
+HERE = this_computer("127.0.0.1")
+
+
+class Door:
+    """A keeper with quick hashes on a clock that stands until it is moved."""
+
+    def __init__(self, folder: Path, host: str = "127.0.0.1") -> None:
+        self.clock = VirtualClock(START)
+        self.hasher = FakeHasher()
+        self.settings = Settings(data_dir=folder).model_copy(update={"host": host})
+        self.keeper: Keeper = open_keeper(self.settings, self.clock, self.hasher)
+
+    async def add(self, name: str, *roles: Role) -> None:
+        now = self.clock.now()
+        await self.keeper.do(lambda: self.keeper.accounts.add(HERE, name, roles, PASSWORD, now))
+
+    async def tries(self, name: str, password: str, address: str = "10.0.0.9") -> str:
+        return await self.keeper.log_in(name, password, address, "test")
+
+    def via(self, session_id: str) -> Via:
+        return self.keeper.identify(Credentials("10.0.0.9", session_id)).via
+
+
+@pytest.fixture
+def door(tmp_path: Path) -> Iterator[Door]:
+    door = Door(tmp_path)
+    yield door
+    door.keeper.close()
+
+
+async def test_without_users_this_computer_may_everything_and_nothing_is_written(
+    door: Door, tmp_path: Path
+) -> None:
+    who = door.keeper.identify(Credentials("127.0.0.1"))
+    assert who.permissions >= set(Permission)
+    assert door.keeper.identify(Credentials("10.0.0.9")).via is Via.NOBODY
+    assert not (tmp_path / "access.db").exists()
+
+
+async def test_with_users_this_computer_signs_in_too(door: Door, tmp_path: Path) -> None:
+    await door.add("ada", Role.ADMINISTRATOR)
+    assert door.keeper.identify(Credentials("127.0.0.1")).via is Via.NOBODY
+    assert (tmp_path / "access.db").stat().st_mode & 0o077 == 0
+    assert PASSWORD.encode() not in (tmp_path / "access.db").read_bytes()
+    session = await door.tries("ADA", PASSWORD)
+    assert session.encode() not in (tmp_path / "access.db").read_bytes()
+    assert door.via(session) is Via.SESSION
+
+
+async def test_the_first_user_and_the_last_administrator_are_administrators(door: Door) -> None:
+    with pytest.raises(AccessRefused, match="first user"):
+        await door.add("olga", Role.OPERATOR)
+    await door.add("ada", Role.ADMINISTRATOR)
+    await door.add("olga", Role.OPERATOR)
+    now = door.clock.now()
+    with pytest.raises(AccessRefused, match="at least one administrator"):
+        await door.keeper.do(lambda: door.keeper.accounts.remove(HERE, "ada", now))
+    with pytest.raises(AccessRefused, match="at least one administrator"):
+        await door.keeper.do(lambda: door.keeper.accounts.set_roles(HERE, "ada", {Role.VIEWER}, now))
+
+
+async def test_a_thousand_guesses_get_nowhere_and_lock_nobody_out(door: Door) -> None:
+    await door.add("ada", Role.ADMINISTRATOR)
+    at_home = await door.tries("ada", PASSWORD, "10.0.0.2")
+    looked_at = door.hasher.checked
+    for number in range(1000):
+        with pytest.raises((Throttled, WrongPassword)):
+            await door.tries("ada", f"guess number {number}", "10.0.0.66")
+        door.clock.advance(timedelta(seconds=1))
+    assert 30 <= door.hasher.checked - looked_at <= 45
+    assert door.via(at_home) is Via.SESSION
+    assert await door.tries("ada", PASSWORD, "10.0.0.2")
+    assert await door.tries("ada", PASSWORD, "10.0.0.77")
+
+
+async def test_the_wait_survives_a_restart_and_is_told_in_seconds(door: Door, tmp_path: Path) -> None:
+    await door.add("ada", Role.ADMINISTRATOR)
+    for _ in range(6):
+        with pytest.raises(WrongPassword):
+            await door.tries("ada", "wrong wrong wrong")
+        door.clock.advance(timedelta(seconds=31))
+    with pytest.raises(WrongPassword):
+        await door.tries("ada", "wrong wrong wrong")
+    again = Door(tmp_path)
+    again.clock.move_to(door.clock.now())
+    with pytest.raises(Throttled, match=r"Wait 16 s"):
+        await again.tries("ada", PASSWORD)
+    again.clock.advance(timedelta(seconds=30))
+    assert await again.tries("ada", PASSWORD)
+    again.keeper.close()
+
+
+async def test_an_unknown_name_is_hashed_like_a_known_one(door: Door) -> None:
+    await door.add("ada", Role.ADMINISTRATOR)
+    with pytest.raises(WrongPassword):
+        await door.tries("ada", "wrong wrong wrong", "10.0.0.3")
+    made, checked = door.hasher.made, door.hasher.checked
+    for name, address in (("ada", "10.0.0.4"), ("nobody-here", "10.0.0.5")):
+        with pytest.raises(WrongPassword) as wrong:
+            await door.tries(name, "wrong wrong wrong", address)
+        assert str(wrong.value) == "The name or the password is wrong."
+    assert (door.hasher.made - made, door.hasher.checked - checked) == (0, 2)
+
+
+async def test_a_new_password_ends_the_sessions_of_its_user(door: Door) -> None:
+    await door.add("ada", Role.ADMINISTRATOR)
+    session, now = await door.tries("ada", PASSWORD), door.clock.now()
+    other = "quiet-lantern-meadow-4"
+    await door.keeper.do(lambda: door.keeper.accounts.set_password(HERE, "ada", other, now))
+    assert door.via(session) is Via.NOBODY
+    assert await door.tries("ada", other)
+
+
+async def test_what_another_process_revokes_ends_here(door: Door) -> None:
+    await door.add("ada", Role.ADMINISTRATOR)
+    session = await door.tries("ada", PASSWORD)
+    who = door.keeper.identify(Credentials("10.0.0.9", session))
+    waiting = asyncio.create_task(door.keeper.until_gone(who))
+    other = open_store(door.settings)
+    with other.writing() as change:
+        change.end_sessions("ada")
+    other.close()
+    await door.keeper.refresh()
+    async with asyncio.timeout(5):
+        await waiting
+    assert door.via(session) is Via.NOBODY
+
+
+async def test_a_cabinet_views_and_operates_for_five_minutes_after_its_pin(door: Door) -> None:
+    await door.add("ada", Role.ADMINISTRATOR)
+    wish, now = TokenWish("gate 3", pin="270441"), door.clock.now()
+    token = await door.keeper.do(lambda: door.keeper.accounts.mint(HERE, wish, now))
+    session = await door.keeper.log_in_kiosk(token, "10.0.0.9", "panel")
+    asked = Credentials("10.0.0.9", session)
+    door.clock.advance(timedelta(days=30))
+    who = door.keeper.identify(asked)
+    assert (who.via, who.may(Permission.STOP), who.may(Permission.OPERATE)) == (Via.KIOSK, True, False)
+    with pytest.raises(WrongPassword):
+        await door.keeper.step_up(who, "270442")
+    await door.keeper.step_up(who, "270441")
+    assert door.keeper.identify(asked).may(Permission.OPERATE)
+    door.clock.advance(timedelta(minutes=5))
+    assert not door.keeper.identify(asked).may(Permission.OPERATE)
+    door.clock.advance(timedelta(days=61))
+    assert door.via(session) is Via.NOBODY
+
+
+async def test_a_panel_that_others_reach_is_set_up_with_the_code_of_its_console(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    door = Door(tmp_path, host="0.0.0.0")
+    code_file = tmp_path / CODE_FILE
+    code = code_file.read_text().strip()
+    assert code in capsys.readouterr().err
+    assert code_file.stat().st_mode & 0o077 == 0
+    assert door.keeper.is_closed
+    assert door.keeper.identify(Credentials("127.0.0.1")).via is Via.NOBODY
+    with pytest.raises(WrongPassword):
+        await door.keeper.set_up("AAAA-BBBB-CCCC-DDDD", "ada", PASSWORD, "10.0.0.9")
+    await door.keeper.set_up(code.lower(), "ada", PASSWORD, "10.0.0.9")
+    assert not door.keeper.is_closed
+    assert not code_file.exists()
+    with pytest.raises(WrongPassword):
+        await door.keeper.set_up(code, "eve", PASSWORD, "10.0.0.9")
+    door.keeper.close()
+
+
+async def test_a_file_in_the_data_folder_resets_access_and_the_events_stay_chained(
+    door: Door, tmp_path: Path
+) -> None:
+    await door.add("ada", Role.ADMINISTRATOR)
+    (tmp_path / RESET_FILE).touch()
+    again = Door(tmp_path)
+    assert not again.keeper.book.users
+    assert not (tmp_path / RESET_FILE).exists()
+    store = open_store(door.settings)
+    events = store.events()
+    assert [event.action for event, _, _ in events] == ["user_added", "factory_reset"]
+    previous = FIRST
+    for event, before, own in events:
+        assert before == previous
+        assert own == chained(previous, event)
+        previous = own
+    store.close()
+    again.keeper.close()
+
+
+def test_the_command_line_adds_lists_and_removes(tmp_path: Path) -> None:
+    def run(*arguments: str, typed: str = "") -> Result:
+        return CliRunner().invoke(users, arguments, input=typed, env={"HELIOPANEL_DATA_DIR": str(tmp_path)})
+
+    added = run("add", "ada", "--role", "administrator", "--password-stdin", typed=PASSWORD + "\n")
+    assert added.exit_code == 0, added.output
+    weak = run("reset", "ada", "--password-stdin", typed="solartracker\n")
+    assert isinstance(weak.exception, ValueError)
+    assert "People guess" in str(weak.exception)
+    listed = run("list").output
+    assert "ada" in listed
+    assert "administrator" in listed
+    asked = run("reset", "ada", typed=f"{PASSWORD}\n{PASSWORD}\n")
+    assert asked.exit_code == 0, asked.output
+    assert PASSWORD not in asked.output
+    assert run("remove", "ada").exit_code == 0
+    assert "no users" in run("list").output

@@ -1,0 +1,175 @@
+"""The rules of access, without a panel."""
+
+from datetime import UTC, datetime, timedelta
+from typing import get_args
+
+import pytest
+
+from app.access.passwords import Argon, Passwords, weakness
+from app.access.principal import (
+    NotAllowed,
+    Principal,
+    ProofNeeded,
+    SignInNeeded,
+    Via,
+    nobody,
+    this_computer,
+)
+from app.access.roles import GRANTS, ORDERS, Permission, Role, permissions_of
+from app.access.sessions import Session, SessionState, state
+from app.access.throttle import Failures, delay, one_more, wait_left
+from app.access.tickets import OneShots, read_stop_ticket, stop_ticket
+from app.access.tokens import SCOPES, mint, token_id_of
+from app.access.users import AccessRefused
+from app.link.messages import SiteCommand
+from app.tracker.commands import Command
+from tests.access.fake_hasher import FakeHasher
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+KEY = b"k" * 32
+
+
+def test_every_kind_of_order_has_a_permission_and_no_other_has() -> None:
+    kinds = {one.__dataclass_fields__["kind"].default for one in (*get_args(Command), *get_args(SiteCommand))}
+    assert kinds == set(ORDERS), "app/access/roles.py: ORDERS"
+
+
+@pytest.mark.parametrize("role", Role)
+def test_every_role_sees_and_stops_and_only_an_administrator_manages_users(role: Role) -> None:
+    assert {Permission.READ, Permission.STOP} <= GRANTS[role]
+    assert (Permission.ADMINISTER in GRANTS[role]) == (role is Role.ADMINISTRATOR)
+    assert (Permission.OPERATE in GRANTS[role]) == (role in {Role.OPERATOR, Role.ENGINEER})
+
+
+def test_no_scope_reaches_users() -> None:
+    assert all(Permission.ADMINISTER not in granted for granted in SCOPES.values())
+
+
+def test_the_delay_grows_to_thirty_seconds_and_no_further() -> None:
+    waits = [delay(Failures(count, NOW)).total_seconds() for count in (1, 2, 3, 4, 5, 8, 1000)]
+    assert waits == [0, 0, 1, 2, 4, 30, 30]
+
+
+def test_a_clock_that_is_set_back_makes_nobody_wait_longer() -> None:
+    assert wait_left([Failures(50, NOW)], NOW - timedelta(days=3)) == timedelta(seconds=30)
+
+
+def test_mistakes_of_yesterday_are_forgotten() -> None:
+    assert one_more(Failures(9, NOW), NOW + timedelta(hours=25)).count == 1
+    assert one_more(Failures(9, NOW), NOW + timedelta(hours=1)).count == 10
+
+
+def test_a_session_rests_after_thirty_minutes_and_ends_after_twelve_hours() -> None:
+    session = Session("d", "anna", "", "127.0.0.1", "", NOW, NOW, NOW)
+    assert state(session, NOW + timedelta(minutes=29)) is SessionState.LIVE
+    assert state(session, NOW + timedelta(minutes=30)) is SessionState.RESTS
+    assert state(session, NOW + timedelta(hours=12)) is SessionState.ENDED
+
+
+def test_a_token_with_one_wrong_letter_is_none() -> None:
+    token_id, text = mint()
+    assert token_id_of(text) == token_id
+    assert text.startswith("hp_")
+    for place in (3, 20, len(text) - 1):
+        changed = "A" if text[place] != "A" else "B"
+        assert token_id_of(text[:place] + changed + text[place + 1 :]) is None
+    assert token_id_of("hp_" + "é" * 46) is None
+
+
+def test_a_ticket_opens_once_and_only_for_five_seconds() -> None:
+    tickets, who = OneShots(), this_computer("127.0.0.1")
+    ticket = tickets.issue(who, NOW)
+    assert tickets.redeem(ticket, NOW + timedelta(seconds=4)) == who
+    assert tickets.redeem(ticket, NOW + timedelta(seconds=4)) is None
+    late = tickets.issue(who, NOW)
+    assert tickets.redeem(late, NOW + timedelta(seconds=5)) is None
+
+
+@pytest.mark.parametrize("ticket", ["", ".", "a.b", "é.é", "a.b.c", "AAAA.AAAA"])
+def test_a_stop_ticket_from_elsewhere_stops_nothing(ticket: str) -> None:
+    assert read_stop_ticket(KEY, ticket, NOW) is None
+
+
+def test_a_stop_ticket_names_its_page_and_lasts_a_day() -> None:
+    ticket = stop_ticket(KEY, "anna", NOW)
+    found = read_stop_ticket(KEY, ticket, NOW + timedelta(hours=23))
+    assert found is not None
+    assert found.name == "anna"
+    assert read_stop_ticket(KEY, ticket, NOW + timedelta(hours=25)) is None
+    assert read_stop_ticket(b"x" * 32, ticket, NOW) is None
+
+
+@pytest.mark.parametrize(
+    "password",
+    [
+        "short",
+        "x" * 129,
+        "aaaaaaaaaaaa",
+        "abcabcabcabc",
+        "123456789012",
+        "qwertyuiopas",
+        "Heliopanel2026!",
+        "S0larTr4cker99",
+        "passwordpassword",
+        "anna.k2026anna.k",
+    ],
+)
+def test_passwords_that_people_guess_are_refused(password: str) -> None:
+    assert weakness(password, "anna.k")
+
+
+@pytest.mark.parametrize(
+    "password", ["violet-anvil-harbour-9", "ğüşiöç ve üç ördek", "lower case is fine too", "z9" + "qk7" * 40]
+)
+def test_other_passwords_are_taken_whatever_they_are_made_of(password: str) -> None:
+    assert weakness(password, "anna") is None
+
+
+@pytest.mark.parametrize("pin", ["12345", "111222", "123456", "12345a", "1234567890123"])
+def test_simple_pins_are_refused(pin: str) -> None:
+    with pytest.raises(AccessRefused, match="PIN"):
+        Passwords(FakeHasher()).hash_pin(pin)
+
+
+def test_an_unknown_name_takes_the_work_of_a_known_one() -> None:
+    hasher = FakeHasher()
+    passwords = Passwords(hasher)
+    stored = passwords.hash("violet-anvil-harbour-9")
+    passwords.warm()
+    made, checked = hasher.made, hasher.checked
+    assert not passwords.matches(stored, "wrong")
+    assert not passwords.matches(None, "wrong")
+    assert (hasher.made - made, hasher.checked - checked) == (0, 2)
+
+
+def test_argon2id_is_used_with_the_decided_cost() -> None:
+    argon = Argon()
+    stored = argon.hash("violet-anvil-harbour-9")
+    assert stored.startswith("$argon2id$v=19$m=65536,t=3,p=1$")
+    assert argon.verify(stored, "violet-anvil-harbour-9")
+    assert not argon.verify(stored, "violet-anvil-harbour-8")
+    assert not argon.verify("no hash", "violet-anvil-harbour-9")
+
+
+def test_a_refusal_says_who_may_and_a_rest_asks_for_the_password() -> None:
+    viewer = frozenset({Role.VIEWER})
+    who = Principal("vera", viewer, permissions_of(viewer), Via.SESSION, "")
+    with pytest.raises(NotAllowed, match="operator or engineer"):
+        who.require(Permission.OPERATE)
+    operator = frozenset({Role.OPERATOR})
+    resting = Principal("olga", operator, permissions_of(viewer), Via.SESSION, "", rests=True)
+    with pytest.raises(ProofNeeded, match="30 minutes"):
+        resting.require_order("jog", "T1")
+    with pytest.raises(SignInNeeded):
+        nobody("").require(Permission.READ)
+
+
+def test_a_token_for_some_trackers_reaches_no_other_and_not_the_site_but_stops_all() -> None:
+    allowed = permissions_of(frozenset({Role.ENGINEER}))
+    who = Principal("scada", frozenset(), allowed, Via.TOKEN, "", "id", frozenset({"T1"}))
+    assert who.may_order("move", "T1")
+    assert not who.may_order("move", "T2")
+    assert not who.may_order("set_location")
+    assert who.may_order("stop_all")
+    with pytest.raises(NotAllowed, match="T2"):
+        who.require_order("move", "T2")
