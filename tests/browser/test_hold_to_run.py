@@ -97,6 +97,7 @@ def test_finger_holds_and_lets_go(size: str, release: str, opened: Opened, plant
     assert is_at_rest(plant, page)
 
 
+@pytest.mark.fault(58)
 def test_small_drift_keeps_the_hold_and_sliding_off_ends_it(opened: Opened, plant: Plant) -> None:
     page = opened(HOMING, "tablet", touch=True)
     session, (x, y) = hold_with_finger(page, plant)
@@ -145,6 +146,7 @@ HIDE = (
         HIDE,
     ],
 )
+@pytest.mark.fault(58)
 def test_window_that_goes_away_ends_it(event: str, opened: Opened, plant: Plant) -> None:
     page = opened(HOMING)
     hold_with_mouse(page, plant)
@@ -152,6 +154,7 @@ def test_window_that_goes_away_ends_it(event: str, opened: Opened, plant: Plant)
     assert is_at_rest(plant, page)
 
 
+@pytest.mark.fault(57)
 def test_closed_tab_ends_it(opened: Opened, plant: Plant) -> None:
     watching = opened(HOMING)
     page = opened(HOMING)
@@ -160,6 +163,7 @@ def test_closed_tab_ends_it(opened: Opened, plant: Plant) -> None:
     assert is_at_rest(plant, watching)
 
 
+@pytest.mark.fault(57)
 def test_blocked_page_sends_nothing_late(opened: Opened, plant: Plant) -> None:
     page = opened(HOMING)
     hold_with_mouse(page, plant)

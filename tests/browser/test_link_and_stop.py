@@ -1,5 +1,6 @@
 """Stop is one touch; a page without a connection says so within two seconds and sends nothing late."""
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Opened, Plant
@@ -39,6 +40,7 @@ def test_stop_works_without_javascript(plant: Plant, opened: Opened) -> None:
     plain.close()
 
 
+@pytest.mark.fault(62)
 def test_stop_on_eight_tabs_is_still_at_once(opened: Opened, plant: Plant) -> None:
     pages = [opened(T2) for _ in range(8)]
     took_ms = pages[-1].evaluate(

@@ -256,6 +256,7 @@ async def test_a_position_out_of_range_is_never_believed() -> None:
             await bench.drive.read()
 
 
+@pytest.mark.fault(11)
 async def test_a_heartbeat_that_stands_still_is_an_error() -> None:
     async with on_the_bench() as bench:
         bench.wire.still = {2: 5}

@@ -39,6 +39,7 @@ async def service(tmp_path: Path) -> AsyncIterator[Service]:
     await started.stop()
 
 
+@pytest.mark.fault(44)
 async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service, drive: DriveSimulator) -> None:
     await service.commission(drive)
     await service.ask(SelectMode(Mode.DUAL))
@@ -57,6 +58,7 @@ async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service, dri
 
 
 @pytest.mark.timeout(60 + 15 * KILLS)
+@pytest.mark.fault(43)
 async def test_killed_at_any_instant_of_a_show_nothing_is_lost_and_the_axes_stop(
     service: Service, drive: DriveSimulator
 ) -> None:
@@ -65,6 +67,7 @@ async def test_killed_at_any_instant_of_a_show_nothing_is_lost_and_the_axes_stop
         assert await kill_mid_show(service, drive, number) <= WATCHDOG_AND_RAMP_S + 1.0
 
 
+@pytest.mark.fault(45)
 async def test_a_frozen_machine_moves_nothing_and_does_not_catch_up(
     service: Service, drive: DriveSimulator
 ) -> None:
@@ -95,6 +98,7 @@ async def _hold(service: Service) -> None:
         await asyncio.sleep(0.05)
 
 
+@pytest.mark.fault(47)
 async def test_a_second_machine_refuses_to_start_and_says_who_runs(service: Service) -> None:
     environment = os.environ | {"HELIOPANEL_DATA_DIR": str(service.data_dir)}
     second = await asyncio.create_subprocess_exec(

@@ -127,6 +127,7 @@ async def test_trackers_come_and_go(plant: Plant) -> None:
         (TrackerConfig("T2", "x", drive=DriveConfig(DriveKind.MODBUS_TCP, host=" ")), "host"),
     ],
 )
+@pytest.mark.fault(24)
 async def test_an_implausible_tracker_is_refused(plant: Plant, config: TrackerConfig, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         await plant.ask(AddTracker(config))
@@ -245,6 +246,7 @@ async def test_the_age_of_a_reading_grows_while_the_next_one_is_waited_for(plant
     assert plant.tracker().position_age_s == pytest.approx(before + 0.7)
 
 
+@pytest.mark.fault(7)
 async def test_a_command_that_is_not_taken_counts_as_no_contact() -> None:
     plant = await running(make_plant(wrap=WrappedDrive))
     await plant.forward(seconds=0.2)
@@ -297,6 +299,7 @@ async def test_stop_reaches_the_drive_of_a_tracker_whose_controller_is_broken() 
     await plant.close()
 
 
+@pytest.mark.fault(37)
 async def test_a_new_location_makes_later_steps_to_be_confirmed(plant: Plant) -> None:
     await plant.commission()
     await plant.ask(SetLocation(Location(40.0, 30.0), "Europe/Istanbul"))
@@ -350,6 +353,7 @@ async def test_a_date_before_the_software_was_made_is_refused(plant: Plant) -> N
         await plant.ask(SetClock("manual", datetime(2020, 1, 1, tzinfo=UTC)))
 
 
+@pytest.mark.fault(26)
 async def test_a_jump_of_the_system_clock_pauses_trust_for_a_minute() -> None:
     drift = [timedelta(0)]
     clock = VirtualClock(SUMMER_NOON)
@@ -379,6 +383,7 @@ async def test_a_clock_set_by_hand_does_not_follow_a_jump_of_the_system() -> Non
     assert keeper.setting.offset_s == 60.0 + 7200.0
 
 
+@pytest.mark.fault(27)
 async def test_a_clock_that_shows_less_than_the_journal_is_not_trusted() -> None:
     clock = VirtualClock(SUMMER_NOON)
     keeper = Timekeeper(clock, ClockSetting("system"), not_before=SUMMER_NOON + timedelta(days=1))

@@ -143,6 +143,7 @@ def test_text_that_no_database_holds_is_made_plain(writer: DatabaseWriter, reade
         ("UPDATE trackers SET document = '{}'", "stored tracker 'T1' cannot be read"),
     ],
 )
+@pytest.mark.fault(52)
 def test_a_document_that_does_not_fit_is_named(
     url: str, writer: DatabaseWriter, statement: str, sentence: str
 ) -> None:

@@ -137,6 +137,7 @@ def test_restoring_into_nothing_makes_the_database(url: str, tmp_path: Path) -> 
     assert content(fresh) == before
 
 
+@pytest.mark.fault(51)
 def test_a_damaged_database_is_kept_and_replaced(sqlite_url: str, tmp_path: Path) -> None:
     upgrade(sqlite_url)
     before = fill(sqlite_url)
@@ -210,6 +211,7 @@ def newer(path: Path) -> None:
         (lambda path: path.unlink(), "There is no file"),
     ],
 )
+@pytest.mark.fault(72)
 def test_what_is_not_a_good_backup_is_refused(
     url: str, tmp_path: Path, spoil: Callable[[Path], None], sentence: str
 ) -> None:

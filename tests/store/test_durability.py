@@ -88,6 +88,7 @@ def on_sqlite(sqlite_url: str) -> Iterator[DatabaseWriter]:
     writer.close()
 
 
+@pytest.mark.fault(49)
 def test_a_full_disk_is_told_and_nothing_is_half_written(on_sqlite: DatabaseWriter) -> None:
     on_sqlite.save_site(SITE, [event(1)])
     on_sqlite.begin_recording(day_info())
@@ -105,6 +106,7 @@ def test_a_full_disk_is_told_and_nothing_is_half_written(on_sqlite: DatabaseWrit
     assert on_sqlite.site() == large
 
 
+@pytest.mark.fault(48)
 def test_a_locked_database_is_told_and_works_again(sqlite_url: str, on_sqlite: DatabaseWriter) -> None:
     with (
         limited(on_sqlite, "busy_timeout = 20"),
@@ -127,6 +129,7 @@ def overwrite(path: Path) -> None:
         file.write(b"\xa5" * (size - 4096))
 
 
+@pytest.mark.fault(51)
 def test_a_damaged_file_is_told_at_the_start(sqlite_url: str, on_sqlite: DatabaseWriter) -> None:
     on_sqlite.save_site(SITE)
     on_sqlite.close()

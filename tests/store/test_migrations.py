@@ -93,6 +93,7 @@ def test_a_migration_that_fails_leaves_nothing_behind(empty_url: str) -> None:
     engine.dispose()
 
 
+@pytest.mark.fault(72)
 def test_a_newer_database_is_refused(url: str) -> None:
     execute(url, "UPDATE alembic_version SET version_num = '9999'")
     with pytest.raises(
@@ -209,6 +210,7 @@ def test_a_migration_that_fails_midway_leaves_the_old_database(url: str, tmp_pat
     assert still_usable(url)
 
 
+@pytest.mark.fault(53)
 def test_a_migration_that_is_killed_midway_leaves_the_old_database(url: str, tmp_path: Path) -> None:
     with_a_site(url)
     scripts = later_software(tmp_path, "os.kill(os.getpid(), signal.SIGKILL)")

@@ -123,6 +123,7 @@ def test_the_drive_searches_its_origin_by_itself() -> None:
     assert plant.drive.true_orientation.azimuth_deg == pytest.approx(0.0, abs=0.6)
 
 
+@pytest.mark.fault(23)
 def test_a_search_that_is_stopped_leaves_no_zero_and_the_drive_at_rest() -> None:
     plant = Plant()
     plant.tick()
@@ -150,6 +151,7 @@ def test_a_search_that_fails_says_why(answer: dict[str, bool], why: str) -> None
     assert why in script.happened(EventKind.HOMING_ENDED)[0].message
 
 
+@pytest.mark.fault(19)
 def test_a_search_waits_for_rest_and_ends_when_it_takes_too_long() -> None:
     script = Scripted()
     script.tick()

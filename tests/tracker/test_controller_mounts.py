@@ -215,6 +215,7 @@ RANGES = {
     latitude_deg=st.floats(-60.0, 60.0).filter(lambda degrees: abs(degrees) > 24.0),
     day=st.integers(0, 364),
 )
+@pytest.mark.fault(35)
 def test_below_a_full_turn_no_mount_unwinds_while_the_sun_is_up(
     kind: MountKind, latitude_deg: float, day: int
 ) -> None:

@@ -131,6 +131,7 @@ def test_a_panel_that_stands_level_already_is_not_missed() -> None:
     assert plant.snapshot.not_stowed is None
 
 
+@pytest.mark.fault(42)
 def test_without_a_zero_or_with_a_fault_the_panel_is_not_stowed() -> None:
     plant = Plant().blow(STORM).forward(5)
     reason = plant.snapshot.not_stowed
@@ -296,6 +297,7 @@ def test_after_a_restart_a_storm_that_was_not_seen_over_still_holds() -> None:
     assert fresh.controller.memory.protection is Protection.TYPHOON
 
 
+@pytest.mark.fault(38)
 def test_a_wind_sensor_that_fails_stows_after_a_minute() -> None:
     plant = tracking()
     plant.blow(None).forward(55)
@@ -429,6 +431,7 @@ def test_the_warning_time_can_be_switched_off() -> None:
     assert plant.drive.observe().elevation.moving
 
 
+@pytest.mark.fault(33)
 def test_in_the_polar_night_a_storm_stows_and_calm_brings_the_night_back() -> None:
     plant = (
         Plant(

@@ -177,6 +177,7 @@ def test_a_sun_beyond_the_limits_is_faced_as_nearly_as_possible_and_it_is_said()
     assert shown.measured.elevation_deg == pytest.approx(30.0, abs=0.05)
 
 
+@pytest.mark.fault(34)
 def test_a_slow_azimuth_axis_says_that_it_passes_the_zenith() -> None:
     slow = replace(CONFIG, azimuth=replace(CONFIG.azimuth, speed_dps=0.2, jog_slow_dps=0.1, jog_fast_dps=0.2))
     noon = datetime(2026, 6, 10, 11, 45, tzinfo=UTC)

@@ -156,6 +156,7 @@ async def test_late_heartbeats_do_not_extend_and_small_delays_shorten_the_lease(
     assert timedelta(milliseconds=140) < first.lease <= timedelta(milliseconds=180)
 
 
+@pytest.mark.fault(59)
 async def test_burst_after_a_frozen_link_does_not_start_motion(app: FastAPI, machine: FakeMachine) -> None:
     async with connected(app) as page:
         await page.send(type="ping", tc=100_000.0)
@@ -266,6 +267,7 @@ async def test_stop_of_a_page_that_reads_nothing_is_carried_out(app: FastAPI, ma
     assert machine.orders[0].tracker_id == "T2"
 
 
+@pytest.mark.fault(66)
 async def test_reader_that_takes_nothing_is_dropped_and_the_others_go_on(
     app: FastAPI, machine: FakeMachine, clock: VirtualClock
 ) -> None:

@@ -68,6 +68,7 @@ def test_the_walk_over_the_routes_finds_them() -> None:
 
 
 @pytest.mark.parametrize("headers", FOREIGN, ids=str)
+@pytest.mark.fault(70)
 async def test_no_changing_route_obeys_a_foreign_page(
     client: httpx.AsyncClient, machine: FakeMachine, headers: dict[str, str]
 ) -> None:
@@ -94,6 +95,7 @@ async def test_own_pages_and_programs_are_obeyed(client: httpx.AsyncClient, head
     assert answer.status_code == 202
 
 
+@pytest.mark.fault(70)
 async def test_names_of_other_hosts_are_not_even_read(client: httpx.AsyncClient) -> None:
     assert (await client.get("/api/v1/site", headers={"host": "attacker.example"})).status_code == 403
 

@@ -80,6 +80,7 @@ BAD_REPLIES: dict[str, Answer] = {
 
 
 @pytest.mark.parametrize("name", BAD_REPLIES)
+@pytest.mark.fault(6)
 async def test_a_bad_reply_is_never_believed_and_the_next_read_is_right(name: str) -> None:
     async with linked(BAD_REPLIES[name], BAD_REPLIES[name], good) as (link, server, _):
         with pytest.raises(DriveError):
@@ -104,6 +105,7 @@ async def test_a_reply_in_many_pieces_is_put_together() -> None:
         assert server.connections == 1
 
 
+@pytest.mark.fault(2)
 async def test_silence_is_noticed_within_the_time_out_and_costs_the_connection() -> None:
     async with linked(silent, good) as (link, server, _):
         began = time.monotonic()
@@ -115,6 +117,7 @@ async def test_silence_is_noticed_within_the_time_out_and_costs_the_connection()
         assert server.connections == 2
 
 
+@pytest.mark.fault(5)
 async def test_a_late_reply_is_not_taken_for_the_next_one() -> None:
     late: list[bytes] = []
 
@@ -173,6 +176,7 @@ async def test_what_a_device_does_not_know_is_refused_for_good(code: int) -> Non
 
 
 @pytest.mark.parametrize("code", [4, 5, 6])
+@pytest.mark.fault(10)
 async def test_a_busy_device_is_asked_again_later(code: int) -> None:
     async with linked(exception(code), good) as (link, server, _):
         with pytest.raises(DriveError, match="asked again") as caught:
