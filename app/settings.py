@@ -116,6 +116,22 @@ class Settings(BaseSettings):
     mqtt_discovery: bool = Field(False, description="Announce sensors to Home Assistant.")
     mqtt_commands: bool = Field(False, description="Take commands over MQTT.")
 
+    webhook_secret: SecretStr | None = Field(
+        None, description="Secret that signs every webhook message (HMAC-SHA256); unsigned unless set."
+    )
+    smtp_host: str | None = Field(None, description="Mail server for alarms; no mail unless set.")
+    smtp_port: int | None = Field(
+        None, ge=1, le=65535, description="Its port; default is 587, with `tls` 465, with `none` 25."
+    )
+    smtp_tls: Literal["starttls", "tls", "none"] = Field(
+        "starttls", description="How the way to it is encrypted."
+    )
+    smtp_username: str | None = Field(None, description="User at the mail server.")
+    smtp_password: SecretStr | None = Field(None, description="Its password.")
+    smtp_from: str = Field(
+        "heliopanel@localhost", min_length=3, max_length=200, description="Sender of the mail."
+    )
+
     @classmethod
     def settings_customise_sources(
         cls,
@@ -134,8 +150,8 @@ class Settings(BaseSettings):
         if host not in LOOPBACK:
             variable = PREFIX + str(info.field_name).upper()
             raise ValueError(
-                f"Heliopanel does not serve SunSpec on {host}: Modbus knows no passwords, so only loopback is "
-                f"allowed (127.0.0.1 or ::1). Leave {variable} unset, or use an SSH tunnel to this "
+                f"Heliopanel does not serve SunSpec on {host}: Modbus knows no passwords, so only loopback "
+                f"is allowed (127.0.0.1 or ::1). Leave {variable} unset, or use an SSH tunnel to this "
                 "computer."
             )
         return host
@@ -149,7 +165,9 @@ class Settings(BaseSettings):
     @classmethod
     def _proxies(cls, given: tuple[str, ...]) -> tuple[str, ...]:
         for host in given:
-            _check_network(host, "HELIOPANEL_TRUSTED_PROXIES", "Write addresses or networks such as 10.0.0.5.")
+            _check_network(
+                host, "HELIOPANEL_TRUSTED_PROXIES", "Write addresses or networks such as 10.0.0.5."
+            )
         return given
 
     @model_validator(mode="after")
@@ -262,7 +280,7 @@ def _words(text: str) -> list[str]:
 def _check_network(
     host: str,
     variable: str = "HELIOPANEL_SUNSPEC_WRITE_HOSTS",
-    hint: str = "Write addresses or networks such as 127.0.0.1 or 10.0.0.0/24, separated by commas, or serial.",
+    hint: str = "Write addresses or networks such as 127.0.0.1 or 10.0.0.0/24, with commas, or serial.",
 ) -> None:
     try:
         ipaddress.ip_network(host, strict=False)

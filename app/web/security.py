@@ -57,7 +57,7 @@ class SecurityHeaders:
         await self._app(scope, receive, send_with_headers if scope["type"] == "http" else send)
 
 
-def add_headers(headers: MutableHeaders, *, is_secure: bool) -> None:
+def add_headers(headers: MutableHeaders, *, is_secure: bool = False) -> None:
     """Add what every answer carries; with TLS also that nothing else shall be used from now on."""
     if is_secure:
         headers.setdefault("Strict-Transport-Security", HSTS)
@@ -131,9 +131,9 @@ def host_names(settings: Settings) -> frozenset[str]:
 
 def _is_own_address(name: str | None, scope: Scope) -> bool:
     """Return whether a host is the very address that was connected to: no foreign name can stand for that."""
-    server = scope.get("server")
+    server = scope.get("server") or ("",)
     try:
-        return bool(name and server) and ipaddress.ip_address(name or "") == ipaddress.ip_address(server[0])
+        return ipaddress.ip_address(name or "") == ipaddress.ip_address(server[0])
     except ValueError:
         return False
 

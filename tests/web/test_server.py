@@ -6,11 +6,19 @@ import socket
 from collections.abc import AsyncIterator
 from datetime import timedelta
 
+import pytest
 import uvicorn
 from websockets.asyncio.client import connect
 
 from app.clock import SystemClock
-from app.web.server import Connections, PanelServer, cautious
+from app.web.server import (
+    LARGEST_HEAD,
+    RESERVED_A_CLIENT,
+    UNACKNOWLEDGED_MS,
+    Connections,
+    PanelServer,
+    cautious,
+)
 from tests.fakes import FakeMachine, fake_app
 
 
@@ -39,6 +47,7 @@ async def serving(connections: Connections, deadline_s: float) -> AsyncIterator[
         listener.close()
 
 
+@pytest.mark.fault(65)
 async def test_request_that_never_ends_is_hung_up_on() -> None:
     async with serving(Connections(100), 0.2) as (_, port):
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
@@ -48,10 +57,11 @@ async def test_request_that_never_ends_is_hung_up_on() -> None:
         writer.close()
 
 
+@pytest.mark.fault(65)
 async def test_client_with_too_many_connections_is_hung_up_on_and_may_come_back() -> None:
     connections = Connections(100, most_a_client=2)
     async with serving(connections, 5.0) as (_, port):
-        held = [await asyncio.open_connection("127.0.0.1", port) for _ in range(2)]
+        held = [await asyncio.open_connection("127.0.0.1", port) for _ in range(2 + RESERVED_A_CLIENT)]
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
         with contextlib.suppress(ConnectionResetError):
             assert await asyncio.wait_for(reader.read(), 3) == b""
@@ -59,8 +69,45 @@ async def test_client_with_too_many_connections_is_hung_up_on_and_may_come_back(
         for _, other in held:
             other.close()
             await other.wait_closed()
-        await asyncio.sleep(0.1)
+        clock = SystemClock()
+        while connections._held or connections._reserved:
+            await clock.sleep_until(clock.now() + timedelta(milliseconds=10))
         assert await _status(port) == b"200"
+
+
+@pytest.mark.fault(65)
+async def test_stop_is_obeyed_where_a_client_has_no_connection_left() -> None:
+    async with serving(Connections(100, most_a_client=2), 5.0) as (_, port):
+        held = [await asyncio.open_connection("127.0.0.1", port) for _ in range(2)]
+        assert await _status(port) == b"503"
+        assert await _status(port, "POST /api/v1/trackers/T1/stop") == b"202"
+        assert await _status(port, "POST /api/v1/trackers/T1/track") == b"503"
+        for _, other in held:
+            other.close()
+            await other.wait_closed()
+
+
+async def test_a_head_that_does_not_end_is_refused() -> None:
+    async with serving(Connections(100), 5.0) as (_, port):
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(b"GET /health HTTP/1.1\r\nHost: 127.0.0.1\r\nX: " + b"a" * (LARGEST_HEAD * 4))
+        answer = b""
+        with contextlib.suppress(ConnectionResetError):
+            answer = await asyncio.wait_for(reader.read(), 3)
+        assert answer.split(b" ")[1] == b"431"
+        writer.close()
+
+
+@pytest.mark.fault(68)
+async def test_a_viewer_that_has_gone_silently_is_noticed_by_the_system() -> None:
+    async with serving(Connections(100), 5.0) as (server, port):
+        _, writer = await asyncio.open_connection("127.0.0.1", port)
+        assert await _status(port) == b"200"
+        (held,) = server.server_state.connections
+        raw = held.transport.get_extra_info("socket")
+        assert raw.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT) == UNACKNOWLEDGED_MS
+        assert raw.getsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE) == 1
+        writer.close()
 
 
 async def test_live_sockets_do_not_use_up_the_share_of_requests() -> None:
@@ -89,9 +136,9 @@ async def test_server_ends_quickly_though_streams_are_open() -> None:
         writer.close()
 
 
-async def _status(port: int) -> bytes:
+async def _status(port: int, request: str = "GET /health") -> bytes:
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
-    writer.write(b"GET /health HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
+    writer.write(f"{request} HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n".encode())
     answer = await asyncio.wait_for(reader.read(), 3)
     writer.close()
     return answer.split(b" ")[1]
