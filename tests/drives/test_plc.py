@@ -198,6 +198,7 @@ async def another_master(bench: Bench) -> AsyncIterator[BusUnit]:
 
 
 @pytest.mark.parametrize(("address", "words"), [(22, [0, 5000]), (20, [999]), (33, [1])])
+@pytest.mark.fault(8)
 async def test_another_master_is_noticed(address: int, words: list[int]) -> None:
     async with on_the_bench() as bench, another_master(bench) as other:
         command = DriveCommand(Position(110.0, 6.0), Position(40.0, 4.0))
