@@ -17,6 +17,8 @@ from pydantic_settings import (
     SettingsConfigDict,
 )
 
+from app.foreseen import Foreseen
+
 PREFIX = "HELIOPANEL_"
 FILE_VARIABLE = "HELIOPANEL_CONFIG"
 
@@ -24,7 +26,7 @@ LONGEST_SOCKET_PATH = 100
 LOOPBACK = {"127.0.0.1", "::1", "localhost"}
 
 
-class SettingsWrong(Exception):
+class SettingsWrong(Foreseen):
     """Heliopanel cannot start with these settings; the text says which one and why."""
 
 

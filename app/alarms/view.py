@@ -1,7 +1,7 @@
 """From the book to what the snapshot tells: the most urgent first, bounded, with counts of all."""
 
 from collections import Counter
-from datetime import datetime
+from datetime import UTC, datetime, timedelta
 from typing import cast
 
 from app.alarms.alarm import Alarm
@@ -9,6 +9,7 @@ from app.alarms.book import Book
 from app.tracker.alarm_words import MOST_SHOWN, PRIORITIES, AlarmCounts, AlarmNow, AlarmState
 
 COLLAPSED_FROM = 3
+EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 MAINTENANCE = "locked for maintenance"
 SILENCED = (AlarmState.SUPPRESSED, AlarmState.OUT_OF_SERVICE)
 ASIDE = (AlarmState.SHELVED, *SILENCED)
@@ -30,9 +31,10 @@ def view(book: Book, at: datetime, now: datetime) -> tuple[tuple[AlarmNow, ...],
     return tuple(alarms[:MOST_SHOWN]), counts
 
 
-def told(alarm: Alarm, at: datetime, now: datetime) -> AlarmNow:
-    """Return one alarm as people are told it."""
-    return _now(alarm, Book(), at, now)
+def told(alarm: Alarm, ended_at: datetime | None) -> AlarmNow:
+    """Return an alarm of the history as people read it."""
+    at = ended_at or alarm.raised_at or EPOCH
+    return _now(alarm, Book(), at, at)
 
 
 def _now(alarm: Alarm, book: Book, at: datetime, now: datetime) -> AlarmNow:
@@ -51,7 +53,7 @@ def _now(alarm: Alarm, book: Book, at: datetime, now: datetime) -> AlarmNow:
         returned_at=alarm.returned_at,
         acknowledged_at=alarm.acknowledged_at,
         acknowledged_by=alarm.acknowledged_by,
-        shelved_until=None if shelf is None else at + (shelf.until - now),
+        shelved_until=None if shelf is None else _by_site(shelf.until, at, now),
         shelved_by="" if shelf is None else shelf.by,
         shelved_for="" if shelf is None else shelf.reason,
         silenced_by=_silenced_by(alarm),
@@ -59,6 +61,11 @@ def _now(alarm: Alarm, book: Book, at: datetime, now: datetime) -> AlarmNow:
         collapsed=book.flood and entry.priority >= COLLAPSED_FROM,
         occurrences=max(1, alarm.occurrences),
     )
+
+
+def _by_site(steady: datetime, at: datetime, now: datetime) -> datetime:
+    """Return an instant of the steady clock by the site's clock, to the second."""
+    return (at + (steady - now) + timedelta(seconds=0.5)).replace(microsecond=0)
 
 
 def _silenced_by(alarm: Alarm) -> str:

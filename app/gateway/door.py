@@ -2,8 +2,10 @@
 
 from typing import Protocol
 
+from app.alarms.conditions import Condition
 from app.link.messages import Machine, Order, RequestControl, Update
 from app.tracker.commands import Command, CommandRejected
+from app.tracker.notifications import Notifications
 from app.tracker.snapshot import Event, EventKind, SiteSnapshot
 
 __all__ = ["Door", "Update", "refused", "send", "written"]
@@ -18,6 +20,13 @@ class Door(Machine, Protocol):
 
     def note(self, *events: Event) -> None:
         """Journal and tell what happened at this door."""
+
+    def trouble(self, name: str, condition: Condition | None) -> None:
+        """Note a condition that is for the alarms, or with None that it is over."""
+
+    @property
+    def notifications(self) -> Notifications:
+        """Return where alarms are to be sent."""
 
 
 async def send(door: Door, command: Command | RequestControl, tracker_id: str | None, actor: str) -> None:

@@ -10,6 +10,8 @@ import structlog
 from app.clock import Clock
 from app.gateway.door import Door
 from app.gateway.mqtt import MQTT, MqttGateway
+from app.gateway.notices import post_webhook, send_mail
+from app.gateway.notifier import Deliver, Notifier
 from app.gateway.outbox import Outbox
 from app.gateway.sunspec import RTU, TCP, SunSpecRtu, SunSpecTcp
 from app.gateway.sunspec_device import SunSpecDevice
@@ -17,10 +19,16 @@ from app.link.messages import Order, SiteDetail, Update
 from app.link.metrics import GatewayMetrics, GatewayStatus, MachineMetrics
 from app.settings import Settings
 from app.store.store import Reader
+from app.tracker.notifications import Channel
 from app.tracker.snapshot import SiteSnapshot
 
 TELL_AGAIN_S = 1.0
 OUTBOX_NAME = "mqtt-outbox.json"
+
+CHANNELS: tuple[tuple[str, Channel, Deliver], ...] = (
+    ("Webhook", Channel.WEBHOOK, post_webhook),
+    ("E-mail", Channel.MAIL, send_mail),
+)
 
 log = structlog.get_logger(__name__)
 
@@ -53,6 +61,7 @@ class Gateways:
         self._sunspec = device
         self._open: list[Gateway] = []
         self._off: list[GatewayMetrics] = []
+        self._notifiers: list[Notifier] = []
         self._tasks: list[asyncio.Task[None]] = []
         self._add(TCP, "SUNSPEC_PORT", settings.sunspec_port, lambda: SunSpecTcp(device, clock, settings))
         self._add(RTU, "SUNSPEC_SERIAL", settings.sunspec_serial, lambda: SunSpecRtu(device, clock, settings))
@@ -60,6 +69,9 @@ class Gateways:
         self._add(
             MQTT, "MQTT_HOST", settings.mqtt_host, lambda: MqttGateway(machine, clock, settings, outbox)
         )
+        for name, channel, deliver in CHANNELS:
+            sent = Outbox(reader, settings.data_dir / f"{channel}-outbox.json")
+            self._notifiers.append(Notifier(name, channel, deliver, machine, clock, settings, sent))
 
     def _add(self, name: str, variable: str, wanted: object, make: Callable[[], Gateway]) -> None:
         """Make a door if the settings want it, else note how it is opened."""
@@ -71,7 +83,7 @@ class Gateways:
 
     def start(self) -> None:
         """Open the doors."""
-        for gateway in self._open:
+        for gateway in (*self._open, *self._notifiers):
             self._begin(gateway.run(), gateway.metrics().name)
         if self._open:
             self._begin(self._sunspec.follow(), "SunSpec controls")
@@ -106,7 +118,8 @@ class Gateways:
 
     async def metrics(self) -> MachineMetrics:
         """Return the machine's counters and how its doors are doing."""
-        gateways = (*(gateway.metrics() for gateway in self._open), *self._off)
+        sent = tuple(notifier.metrics() for notifier in self._notifiers)
+        gateways = (*(gateway.metrics() for gateway in self._open), *self._off, *sent)
         return replace(await self._machine.metrics(), gateways=gateways)
 
 

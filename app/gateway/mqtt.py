@@ -22,6 +22,7 @@ from app.gateway.mqtt_messages import (
     OFFLINE,
     ONLINE,
     Topics,
+    alarm_payload,
     columns_payload,
     event_payload,
     recording_payload,
@@ -63,6 +64,7 @@ class MqttGateway:
         self._error = ""
         self._waiting = 0
         self._announced: dict[str, bytes] = {}
+        self._alarms: dict[str, bytes] | None = None
 
     def metrics(self) -> GatewayMetrics:
         """Return how it is doing."""
@@ -108,6 +110,7 @@ class MqttGateway:
                 await client.subscribe(self._topics.commands, AT_LEAST_ONCE)
             await client.publish(self._topics.availability, ONLINE, AT_LEAST_ONCE, retain=True)
             self._status, self._error, self._announced = GatewayStatus.CONNECTED, "", {}
+            self._alarms = None
             log.info("mqtt_connected", broker=self._where)
             try:
                 yield client
@@ -158,6 +161,7 @@ class MqttGateway:
             if site is not None:
                 await self._announce(client, site)
                 await self._tell_site(client, site)
+                await self._tell_alarms(client, site)
             due = max(due + self._every, self._clock.now())
             await self._clock.sleep_until(due)
 
@@ -169,6 +173,20 @@ class MqttGateway:
         for tracker in site.trackers:
             topic = self._topics.snapshot(tracker.tracker_id)
             await heeding(client.publish(topic, tracker_payload(site, tracker)))
+
+    async def _tell_alarms(self, client: Client, site: SiteSnapshot) -> None:
+        """Retain every alarm that stands, and take back those that ended; what is the same is not told."""
+        standing = {self._topics.alarm(one.alarm_id): alarm_payload(one) for one in site.alarms}
+        if standing == self._alarms:
+            return
+        before = await asyncio.to_thread(self._outbox.retained_alarms)
+        await asyncio.to_thread(self._outbox.retain_alarms, sorted({*before, *standing}))
+        gone = {topic: b"" for topic in before if topic not in standing}
+        for topic, payload in (gone | standing).items():
+            if (self._alarms or {}).get(topic) != payload:
+                await heeding(client.publish(topic, payload, AT_LEAST_ONCE, retain=True))
+        await asyncio.to_thread(self._outbox.retain_alarms, sorted(standing))
+        self._alarms = standing
 
     async def _announce(self, client: Client, site: SiteSnapshot) -> None:
         """Announce trackers that are new or changed to Home Assistant, and take back those that are gone."""

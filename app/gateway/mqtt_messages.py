@@ -8,6 +8,7 @@ import orjson
 
 from app.gateway.outbox import recording_state
 from app.store.store import JournalEntry
+from app.tracker.alarm_words import AlarmNow
 from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import Pair, SiteSnapshot, Snapshot
 
@@ -44,6 +45,10 @@ class Topics:
     def events(self) -> str:
         """Return where the journal is told."""
         return f"{self.base}/events"
+
+    def alarm(self, alarm_id: str) -> str:
+        """Return where one alarm is retained while it stands."""
+        return f"{self.base}/alarms/{alarm_id}"
 
     @property
     def recordings(self) -> str:
@@ -116,6 +121,7 @@ def site_payload(site: SiteSnapshot) -> bytes:
         "sun_azimuth_deg": None if sun is None else sun.azimuth_deg,
         "sun_elevation_deg": None if sun is None else sun.apparent_elevation_deg,
         "weather": None if weather is None else asdict(weather),
+        "alarm_counts": asdict(site.alarm_counts),
         "weather_age_s": None if site.weather is None else site.weather.age_s,
         "trackers": [tracker.tracker_id for tracker in site.trackers],
     }
@@ -125,6 +131,11 @@ def site_payload(site: SiteSnapshot) -> bytes:
 def event_payload(series: str, entry: JournalEntry) -> bytes:
     """Return one entry of the journal; `series` and `sequence` together name it once and for all."""
     return orjson.dumps({"series": series, "sequence": entry.number, **asdict(entry.event)}, default=str)
+
+
+def alarm_payload(alarm: AlarmNow) -> bytes:
+    """Return one alarm as it stands."""
+    return orjson.dumps(alarm)
 
 
 def recording_payload(recording: RecordingInfo) -> bytes:

@@ -22,13 +22,15 @@ RECORDINGS_KNOWN = 500
 class _Cursor:
     """How far a series of numbers was acknowledged, and how each recording was last announced.
 
-    `at` is when the event of that number happened: another one there means another journal.
+    `at` is when the event of that number happened: another one there means another journal. `alarms` are
+    those that are retained at the broker.
     """
 
     series: str
     number: int
     at: str = ""
     recordings: dict[str, str] = field(default_factory=dict)
+    alarms: list[str] = field(default_factory=list)
 
 
 class Outbox:
@@ -90,6 +92,17 @@ class Outbox:
             known[recording.recording_id] = recording_state(recording)
             for oldest in list(known)[: max(0, len(known) - RECORDINGS_KNOWN)]:
                 del known[oldest]
+            self._save()
+
+    def retained_alarms(self) -> list[str]:
+        """Return the alarms that are retained at the broker."""
+        with self._one_at_a_time:
+            return list(self._known().alarms)
+
+    def retain_alarms(self, alarm_ids: list[str]) -> None:
+        """Note which alarms are, or may be, retained at the broker."""
+        with self._one_at_a_time:
+            self._known().alarms = alarm_ids
             self._save()
 
     def _known(self) -> _Cursor:
