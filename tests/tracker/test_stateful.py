@@ -4,6 +4,7 @@ Random commands, faults of the machine, cut cables, weather, bad sensors, jumps 
 witness looks at every tick. The short run is part of `make test`, millions of ticks are part of `make soak`.
 """
 
+import os
 from collections.abc import Iterator
 from dataclasses import replace
 from datetime import timedelta
@@ -59,7 +60,7 @@ from tests.tracker.plant import CONFIG, READY, Plant
 from tests.tracker.test_controller_show import PLAN
 from tests.tracker.witness import Witness, moves
 
-EXAMPLES = amount(45, 4000)
+EXAMPLES = int(os.environ.get("HELIOPANEL_TEST_EXAMPLES", amount(30, 1000)))
 STEPS = amount(25, 50)
 LONGEST_S = amount(8.0, 40.0)
 QUICK = ProtectionConfig(
@@ -279,7 +280,7 @@ def told_how_long() -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("told_how_long")
-@pytest.mark.timeout(amount(120, 7200))
+@pytest.mark.timeout(amount(300, 7200))
 def test_whatever_is_asked_and_whatever_goes_wrong() -> None:
     run_state_machine_as_test(  # type: ignore[no-untyped-call]
         Operation,
@@ -292,4 +293,4 @@ def test_whatever_is_asked_and_whatever_goes_wrong() -> None:
             print_blob=not SOAK,
         ),
     )
-    assert Operation.ticks > amount(1_000, 1_000_000)
+    assert Operation.ticks > EXAMPLES * 100

@@ -79,6 +79,7 @@ class Witness:
         self._commanded = self._fresh = True
         self._stopped = False
         self._before = ActivityName.HOLDING
+        self._hand_since: datetime | None = None
 
     def command(self, command: Command) -> None:
         """Note that a command was taken."""
@@ -98,6 +99,7 @@ class Witness:
         plant, now = self._plant, self._plant.clock.now()
         self.ticks += 1
         self.wind.see(now, plant.weather.wind.good)
+        self._hand_since = (self._hand_since or now) if self._moves_by_hand() else None
         if moves(plant.told.azimuth) or moves(plant.told.elevation):
             self._see_motion(plant.activity, now)
         self._see_targets()
@@ -126,8 +128,8 @@ class Witness:
         if activity is ActivityName.STOWING:
             assert self._plant.controller.memory.protection is not None
             assert f"position {StowName.WIND}" in self._plant.snapshot.activity_text
-        if activity in (ActivityName.JOGGING, ActivityName.MOVING):
-            assert now - self.wind.begun <= HAND_GRACE or not self._moves_by_hand()
+        if self._hand_since is not None:
+            assert now - max(self.wind.begun, self._hand_since) <= HAND_GRACE
 
     def _moves_by_hand(self) -> bool:
         text = self._plant.snapshot.activity_text
