@@ -90,3 +90,17 @@ class JournalPage:
     csv: str
     json: str
     older: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class NotificationsPage:
+    """Where alarms are sent, as it is stored or as it was typed; `error` says what is wrong with that."""
+
+    template: ClassVar[str] = "notifications.html"
+
+    frame: Frame
+    webhook_url: str
+    webhook_priorities: tuple[int, ...]
+    mail_to: str
+    mail_priorities: tuple[int, ...]
+    error: str

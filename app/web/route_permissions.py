@@ -49,6 +49,8 @@ _TABLE: dict[Permission, str] = {
         GET /
         GET /accuracy
         GET /alarms
+        GET /site/notifications
+        GET /api/v1/site/notifications
         GET /alarms/guide
         GET /journal
         GET /metrics
@@ -188,6 +190,10 @@ _TABLE: dict[Permission, str] = {
     Permission.CONFIGURE: """
         POST /recordings/{recording_id}/delete
         POST /site/name
+        POST /site/notifications
+        POST /site/notifications/test
+        PUT /api/v1/site/notifications
+        POST /api/v1/site/notifications/{channel}/test
         POST /site/weather-station
         PUT /api/v1/site/weather/station
         DELETE /api/v1/site/weather/station

@@ -1,0 +1,69 @@
+"""Where alarms are sent: addresses and priorities, and a test message."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Form
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.link.messages import SetNotifications, TestNotification
+from app.tracker.alarm_words import PRIORITIES
+from app.tracker.notifications import Channel, Notifications
+from app.web.alarm_contexts import NotificationsPage
+from app.web.contexts import Link
+from app.web.deps import MachineDep
+from app.web.ui.frame import site_frame
+from app.web.ui.orders import PressDep
+from app.web.ui.render import page
+
+router = APIRouter(prefix="/site/notifications")
+BACK = Link("Site", "/site")
+
+
+@router.get("")
+async def notifications(request: Request, machine: MachineDep) -> Response:
+    """Show where alarms are sent."""
+    now = (await machine.detail()).site.notifications
+    return page(request, _page(request, now, now.webhook_url, ", ".join(now.mail_to)))
+
+
+@router.post("")
+async def save(
+    press: PressDep,
+    webhook_url: Annotated[str, Form(max_length=600)] = "",
+    mail_to: Annotated[str, Form(max_length=2000)] = "",
+    webhook_priority: Annotated[tuple[int, ...], Form()] = (),
+    mail_priority: Annotated[tuple[int, ...], Form()] = (),
+) -> Response:
+    """Keep them, or show the same form with what is wrong."""
+    priorities = tuple(one for one in PRIORITIES if one in webhook_priority)
+    by_mail = tuple(one for one in PRIORITIES if one in mail_priority)
+    addresses = tuple(one for part in mail_to.split(",") if (one := part.strip()))
+    try:
+        wanted = Notifications(webhook_url.strip(), priorities, addresses, by_mail)
+    except ValueError as error:
+        typed = Notifications("", priorities, (), by_mail)
+        context = _page(press.request, typed, webhook_url, mail_to, str(error))
+        return page(press.request, context, block="form", status=422)
+    await press.send(SetNotifications(wanted))
+    return press.answer("Saved.")
+
+
+@router.post("/test")
+async def test(press: PressDep, channel: Annotated[Channel, Form()]) -> Response:
+    """Send a test message."""
+    await press.send(TestNotification(channel))
+    return press.answer("A test message is on its way; the page Site says whether it arrived.")
+
+
+def _page(
+    request: Request, now: Notifications, webhook_url: str, mail_to: str, error: str = ""
+) -> NotificationsPage:
+    return NotificationsPage(
+        frame=site_frame(request, "Notifications", back=BACK),
+        webhook_url=webhook_url,
+        webhook_priorities=now.webhook_priorities,
+        mail_to=mail_to,
+        mail_priorities=now.mail_priorities,
+        error=error,
+    )
