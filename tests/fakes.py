@@ -27,12 +27,10 @@ from app.link.messages import (
     Order,
     RemoveTracker,
     RenameSite,
-    ReportWeather,
     SavePlan,
     SaveRecording,
     SetClock,
     SetLocation,
-    SetMetStation,
     SiteDetail,
     StopAll,
     TakeSighting,
@@ -43,6 +41,7 @@ from app.link.messages import (
 )
 from app.link.metrics import GatewayMetrics, GatewayStatus, MachineMetrics
 from app.link.outlet import Outlet
+from app.link.weather_orders import ReportWeather, SetMetStation, SetWeatherWindows, SimulateWeather
 from app.settings import Settings
 from app.store.store import PlannedShow
 from app.tracker.commands import (
@@ -161,7 +160,12 @@ class FakeMachine:
                 setting = ClockSetting(source, offset_s, now, order.actor)
                 self.site = replace(self.site, clock=setting, time_zone=zone or self.site.time_zone)
             case SetMetStation(station=station):
-                self.site = replace(self.site, met_station=station)
+                made_up = None if station else self.site.simulated_weather
+                self.site = replace(self.site, met_station=station, simulated_weather=made_up)
+            case SimulateWeather(station=station):
+                self.site = replace(self.site, simulated_weather=station, met_station=None)
+            case SetWeatherWindows(windows=windows):
+                self.site = replace(self.site, weather_windows=windows)
             case RenameSite(name=name):
                 self.site = replace(self.site, name=name)
             case AddTracker(config=config):

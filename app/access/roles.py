@@ -102,6 +102,8 @@ ORDERS: dict[str, Permission] = {
     "check_connection": Permission.CONFIGURE,
     "set_location": Permission.CONFIGURE,
     "set_met_station": Permission.CONFIGURE,
+    "simulate_weather": Permission.CONFIGURE,
+    "set_weather_windows": Permission.CONFIGURE,
     "set_clock": Permission.CONFIGURE,
     "rename_site": Permission.CONFIGURE,
     "add_tracker": Permission.CONFIGURE,

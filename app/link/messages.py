@@ -5,13 +5,14 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Literal, Protocol
 
+from app.link.weather_orders import ReportWeather, SetMetStation, SetWeatherWindows, SimulateWeather
 from app.sun.position import Location
 from app.tracker.axes import Axis
 from app.tracker.commands import Command
 from app.tracker.commissioning import Step
 from app.tracker.config import DriveConfig, TrackerConfig
 from app.tracker.drive_check import DriveCheck, DriveChoices
-from app.tracker.memory import MetStation, Sighting, SiteState, StepName, TrackerState
+from app.tracker.memory import Sighting, SiteState, StepName, TrackerState
 from app.tracker.motion import DriveCapabilities
 from app.tracker.notifications import Channel, Notifications
 from app.tracker.programs.show import ShowPlan
@@ -19,7 +20,6 @@ from app.tracker.proof_states import ProofState
 from app.tracker.proofs import AxisEnd
 from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import Event, SiteSnapshot
-from app.tracker.weather import Weather
 
 
 class MachineUnreachable(Exception):
@@ -254,15 +254,6 @@ class DeleteRecording:
 
 
 @dataclass(frozen=True, slots=True)
-class ReportWeather:
-    """What a weather station measured, at `measured_at` (None: now); trackers stow by it."""
-
-    readings: Weather
-    measured_at: datetime | None = None
-    kind: Literal["report_weather"] = "report_weather"
-
-
-@dataclass(frozen=True, slots=True)
 class AcknowledgeAlarm:
     """Somebody has seen an alarm."""
 
@@ -313,19 +304,11 @@ NotificationOrder = SetNotifications | TestNotification
 """What concerns where alarms are sent."""
 
 
-@dataclass(frozen=True, slots=True)
-class SetMetStation:
-    """Read this weather station from now on; None: none."""
-
-    station: MetStation | None
-    kind: Literal["set_met_station"] = "set_met_station"
-
-
 SiteCommand = (
     SetLocation | SetClock | RenameSite | AddTracker | ConfigureTracker | RemoveTracker | ConfirmStep
     | SavePlan | TakeSighting | ApplySightings | StopAll | SaveRecording | DeleteRecording
     | AnswerDirection | AnswerScale | SetSoftLimit | RestoreDrive | CheckConnection
-    | ReportWeather | SetMetStation
+    | ReportWeather | SetMetStation | SimulateWeather | SetWeatherWindows
     | AcknowledgeAlarm | ShelveAlarm | UnshelveAlarm | SetNotifications | TestNotification
     | RequestControl | AnswerControl | ReleaseControl | RenewControl
     | LockSettings | UnlockSettings

@@ -10,9 +10,11 @@ import structlog
 from app.clock import Clock
 from app.drives.drive import DriveError
 from app.tracker.memory import MetStation
+from app.tracker.simulated_weather import SimulatedStation
 from app.tracker.weather import Weather
 
 EVERY = timedelta(seconds=1)
+Station = MetStation | SimulatedStation
 
 log = structlog.get_logger(__name__)
 
@@ -33,7 +35,7 @@ class MetPoll:
     def __init__(
         self,
         clock: Clock,
-        make_reader: Callable[[MetStation], StationReader] | None,
+        make_reader: Callable[[Station], StationReader] | None,
         on_reading: Callable[[Weather | None, tuple[str, ...], str], None],
     ) -> None:
         self.trouble = ""
@@ -42,7 +44,7 @@ class MetPoll:
         self._on_reading = on_reading
         self._task: asyncio.Task[None] | None = None
 
-    async def follow(self, station: MetStation | None) -> None:
+    async def follow(self, station: Station | None) -> None:
         """Read this station from now on, None: no station."""
         await self.close()
         if station is not None and self._make_reader is not None:
@@ -57,7 +59,7 @@ class MetPoll:
             task.cancel()
             await asyncio.gather(task, return_exceptions=True)
 
-    async def _run(self, station: MetStation, reader: StationReader) -> None:
+    async def _run(self, station: Station, reader: StationReader) -> None:
         try:
             while True:
                 await self._read(station, reader)
@@ -65,7 +67,7 @@ class MetPoll:
         finally:
             await reader.close()
 
-    async def _read(self, station: MetStation, reader: StationReader) -> None:
+    async def _read(self, station: Station, reader: StationReader) -> None:
         """Read once; a station that does not answer says nothing, and its values grow old."""
         try:
             readings, impossible = await reader.read()

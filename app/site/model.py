@@ -12,8 +12,9 @@ from app.site.checking import Checks
 from app.site.controls import Controls
 from app.site.ledger import Ledger
 from app.site.loop import TrackerLoop
-from app.site.met_poll import MetPoll, StationReader
+from app.site.met_poll import MetPoll, Station, StationReader
 from app.site.recorder import Recorder
+from app.site.simulated_reader import SimulatedReader
 from app.site.sky import Sky
 from app.site.timekeeping import Timekeeper
 from app.site.unusable import UnusableDrive
@@ -23,6 +24,7 @@ from app.tracker.config import DriveKind, TrackerConfig
 from app.tracker.memory import MetStation, SiteState, TrackerState
 from app.tracker.motion import Feedback
 from app.tracker.observation import Observation
+from app.tracker.simulated_weather import SimulatedStation
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
 from app.tracker.weather import Weather
 
@@ -49,9 +51,16 @@ class SiteModel:
     met: MetPoll = field(init=False)
 
     def __post_init__(self) -> None:
-        self.met = MetPoll(self.clock, self.make_station, self._take_weather)
+        self.met = MetPoll(self.clock, self._reader, self._take_weather)
 
     control: Controls = field(default_factory=Controls)
+
+    @property
+    def station(self) -> Station | None:
+        """Return the weather station of this site; made-up weather never moves a real tracker."""
+        drives = {loop.config.drive.kind for loop in self.loops.values()}
+        made_up = self.state.simulated_weather if drives <= {DriveKind.SIMULATED} else None
+        return made_up or (self.state.met_station if self.make_station else None)
 
     def now(self) -> datetime:
         """Return the site's time."""
@@ -122,6 +131,13 @@ class SiteModel:
             return self.make_drive(config)
         except (DriveError, ValueError) as error:
             return UnusableDrive(str(error))
+
+    def _reader(self, station: Station) -> StationReader:
+        if isinstance(station, SimulatedStation):
+            return SimulatedReader(station, self.now, self.sun)
+        if self.make_station is None:
+            raise ValueError("This machine reads no weather stations.")
+        return self.make_station(station)
 
     def _take_weather(self, readings: Weather | None, impossible: tuple[str, ...], source: str) -> None:
         self.weather.receive(readings, None, source, self.now(), self.clock.now(), impossible)

@@ -40,7 +40,7 @@ from app.site.model import SiteModel
 from app.site.recorder import Recorder
 from app.site.repeats import Repeats, refuse_old
 from app.site.timekeeping import Timekeeper
-from app.site.weather import STALE_AFTER, WeatherStation
+from app.site.weather import WeatherStation
 from app.sun.position import Algorithm
 from app.tracker.commands import Jog
 from app.tracker.commissioning import steps
@@ -50,6 +50,7 @@ from app.tracker.notifications import Notifications
 from app.tracker.observation import Observation
 from app.tracker.proof_states import proof_states
 from app.tracker.snapshot import Event, EventKind, SiteSnapshot
+from app.tracker.weather_windows import USUAL_OLD_S, same_age
 
 PULSE = timedelta(milliseconds=500)
 WHILE_MOVING = timedelta(milliseconds=95)
@@ -69,7 +70,7 @@ class SiteOptions:
     period: timedelta = timedelta(milliseconds=100)
     retention: timedelta = timedelta(days=400)
     recordings_keep: int = 500
-    weather_stale_after: timedelta = STALE_AFTER
+    weather_stale_after: timedelta = timedelta(seconds=USUAL_OLD_S)
     journal_retention: timedelta = timedelta(days=1825)
     disk_free: Callable[[], int | None] = lambda: None
     make_station: Callable[[MetStation], StationReader] | None = None
@@ -104,7 +105,10 @@ class Site:
             make_drive,
             self._on_tick,
             checks=Checks(tools),
-            weather=WeatherStation(self._options.weather_stale_after),
+            weather=WeatherStation(
+                state.weather_windows or same_age(self._options.weather_stale_after),
+                simulated=state.simulated_weather is not None,
+            ),
             make_station=self._options.make_station,
         )
         for tracker in trackers:
@@ -126,7 +130,7 @@ class Site:
         self._prune()
         for loop in self.model.loops.values():
             loop.start()
-        await self.model.met.follow(self.model.state.met_station)
+        await self.model.met.follow(self.model.station)
         self._pulse = asyncio.create_task(self._beat(), name="site pulse")
         self._watching = asyncio.create_task(self._watch_control(), name="control authority")
         self._publish(events)
@@ -185,7 +189,8 @@ class Site:
             )
             for tracker_id, loop in self.model.loops.items()
         }
-        return SiteDetail(self.model.state, trackers, await self.model.checks.choices())
+        state = replace(self.model.state, weather_windows=self.model.weather.windows)
+        return SiteDetail(state, trackers, await self.model.checks.choices())
 
     def latest(self) -> SiteSnapshot | None:
         """Return the newest snapshot that was told."""

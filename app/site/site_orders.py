@@ -20,19 +20,24 @@ from app.link.messages import (
     DriveOrder,
     RemoveTracker,
     RenameSite,
-    ReportWeather,
     RestoreDrive,
     SavePlan,
     SaveRecording,
     SetClock,
     SetLocation,
-    SetMetStation,
     SetSoftLimit,
     StopAll,
     TakeSighting,
     UnknownRecording,
 )
-from app.site import proving, sightings, tracker_orders, tracker_setup
+from app.link.weather_orders import (
+    ReportWeather,
+    SetMetStation,
+    SetWeatherWindows,
+    SimulateWeather,
+    WeatherOrder,
+)
+from app.site import proving, sightings, tracker_orders, tracker_setup, weather_setup
 from app.site.checks import check_name, check_time_zone
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
@@ -54,7 +59,7 @@ log = structlog.get_logger(__name__)
 SiteOrder = (
     SetLocation | SetClock | RenameSite | ConfirmStep | AddTracker | ConfigureTracker | RemoveTracker
     | TakeSighting | ApplySightings | SavePlan | SaveRecording | DeleteRecording | DriveOrder | StopAll
-    | ReportWeather | SetMetStation
+    | WeatherOrder
 )  # fmt: skip
 
 
@@ -73,27 +78,10 @@ async def carry_out(model: SiteModel, command: SiteOrder, actor: str) -> tuple[E
             return await _set_up_drive(model, command, actor)
         case StopAll():
             return await _stop_all(model, actor)
-        case ReportWeather() | SetMetStation():
-            return await _take_weather(model, command, actor)
+        case ReportWeather() | SetMetStation() | SimulateWeather() | SetWeatherWindows():
+            return await weather_setup.carry_out(model, command, actor)
         case _:
             assert_never(command)
-
-
-async def _take_weather(
-    model: SiteModel, command: ReportWeather | SetMetStation, actor: str
-) -> tuple[Event, ...]:
-    if isinstance(command, ReportWeather):
-        at, now = model.now(), model.clock.now()
-        model.weather.receive(command.readings, command.measured_at, actor, at, now)
-        return ()
-    station = command.station
-    told = "No weather station is read any more."
-    if station is not None:
-        told = f"The weather station {station.name} is read from now on."
-    event = model.event(EventKind.WEATHER_STATION_SET, told, actor)
-    events = await _keep(model, replace(model.state, met_station=station), event)
-    await model.met.follow(station)
-    return events
 
 
 async def _change_site(
@@ -117,8 +105,10 @@ async def _change_trackers(
 ) -> tuple[Event, ...]:
     match command:
         case AddTracker():
+            weather_setup.refuse_real(model, command.config)
             return await tracker_setup.add(model, command.config, actor)
         case ConfigureTracker():
+            weather_setup.refuse_real(model, command.config)
             return await tracker_setup.configure(model, command.config, actor)
         case RemoveTracker():
             return await tracker_setup.remove(model, command.tracker_id, actor)

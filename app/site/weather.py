@@ -5,9 +5,10 @@ from datetime import datetime, timedelta
 
 from app.site.weather_series import FROZEN_AFTER, Sample, Series
 from app.tracker.weather import NOTHING_SENSED, Quality, Reading, Sensed, Weather, WeatherNow
+from app.tracker.weather_windows import WeatherWindows
 
 MOST_AHEAD = timedelta(seconds=10)
-STALE_AFTER = timedelta(minutes=5)
+USUAL = WeatherWindows()
 NAMES = tuple(field.name for field in fields(Weather))
 MOVES_WITH = {"wind_mps": "wind_direction_deg"}
 """A vane that turns while the anemometer shows no wind says that the anemometer is stuck."""
@@ -16,12 +17,27 @@ MOVES_WITH = {"wind_mps": "wind_direction_deg"}
 class WeatherStation:
     """Keeps every quantity's samples; ages grow with the machine's own clock, whatever the site's does."""
 
-    def __init__(self, stale_after: timedelta = STALE_AFTER) -> None:
-        self._stale_after = stale_after
-        self._series = {name: Series(name, stale_after) for name in NAMES}
+    def __init__(self, windows: WeatherWindows = USUAL, *, simulated: bool = False) -> None:
+        self.begin_anew(windows, simulated=simulated)
+
+    def begin_anew(self, windows: WeatherWindows, *, simulated: bool = False) -> None:
+        """Forget every value: what is measured and what is made up are never mixed."""
+        self._windows, self._simulated = windows, simulated
+        self._series = {name: Series(name, windows) for name in NAMES}
         self._reported_at: datetime | None = None
         self._measured_at: datetime | None = None
         self._source = ""
+
+    @property
+    def windows(self) -> WeatherWindows:
+        """Return what the values are judged by."""
+        return self._windows
+
+    def judge_by(self, windows: WeatherWindows) -> None:
+        """Go by other windows from now on; a mean over a longer one grows into it."""
+        self._windows = windows
+        for series in self._series.values():
+            series.windows = windows
 
     def receive(
         self,
@@ -60,11 +76,12 @@ class WeatherStation:
             _newest(quantities),
             self._measured_at,
             age.total_seconds(),
-            age > self._stale_after,
+            age > self._windows.oldest,
             self._source,
             quantities,
             wind.gust(now),
             wind.mean(),
+            self._simulated,
         )
 
     def sensed(self, now: datetime) -> Sensed:
@@ -81,6 +98,7 @@ class WeatherStation:
             self._reading("light_wm2", now),
             series.mean(),
             self._reading("wind_direction_deg", now).good,
+            self._simulated,
         )
 
     def _reading(self, name: str, now: datetime) -> Reading:
@@ -96,8 +114,8 @@ class WeatherStation:
                 f"The weather was measured at {measured_at.isoformat()}, but the site's clock shows "
                 f"{site_time.isoformat()}. Set the station's clock, or leave the time out."
             )
-        if age > self._stale_after:
-            limit_s = self._stale_after.total_seconds()
+        if age > self._windows.oldest:
+            limit_s = self._windows.oldest.total_seconds()
             raise ValueError(
                 f"The weather is {age.total_seconds():.0f} s old; older than {limit_s:.0f} s is not taken. "
                 "Send it sooner, or leave the time out."

@@ -5,10 +5,8 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 from app.tracker.weather import Quality, Reading
+from app.tracker.weather_windows import WeatherWindows
 
-GUST_OVER = timedelta(seconds=3)
-MEAN_OVER = timedelta(minutes=10)
-"""A gust is the highest value of 3 s, a mean is over 10 min, as WMO-No. 8 has them."""
 FROZEN_AFTER = timedelta(minutes=10)
 FROZEN_SAMPLES = 5
 """So many equal samples in a row, at least, make a sensor that is frozen."""
@@ -31,9 +29,9 @@ class Sample:
 class Series:
     """One quantity of a station; times are steady."""
 
-    def __init__(self, name: str, stale_after: timedelta) -> None:
+    def __init__(self, name: str, windows: WeatherWindows) -> None:
         self._name = name
-        self._stale_after = stale_after
+        self.windows = windows
         self._samples: deque[Sample] = deque()
         self._total = 0.0
         self._newest: Sample | None = None
@@ -70,29 +68,33 @@ class Series:
         return Reading(newest.value, quality, (now - newest.at).total_seconds(), newest.source)
 
     def gust(self, now: datetime) -> float | None:
-        """Return the highest believable value of the 3 s up to the newest one, None if that is stale."""
+        """Return the highest believable value of the gust's window, None if the newest is stale."""
         newest = self._samples[-1] if self._samples else None
         if newest is None or now - newest.at > self._stale_after:
             return None
         highest = newest.value
         for sample in reversed(self._samples):
-            if newest.at - sample.at > GUST_OVER:
+            if newest.at - sample.at > self.windows.gust_over:
                 break
             highest = max(highest, sample.value)
         return highest
 
     def mean(self) -> float | None:
-        """Return the mean of the believable values of the 10 minutes up to the newest one."""
+        """Return the mean of the believable values of the mean's window up to the newest one."""
         return self._total / len(self._samples) if self._samples else None
 
     def is_stale(self, now: datetime) -> bool:
         """Return whether the newest sample is too old to be used."""
         return self._newest is not None and now - self._newest.at > self._stale_after
 
+    @property
+    def _stale_after(self) -> timedelta:
+        return self.windows.old_after(self._name)
+
     def _is_over(self, now: datetime) -> bool:
         """Return whether the oldest sample has had its time."""
         samples = self._samples
-        return bool(samples) and (now - samples[0].at > MEAN_OVER or len(samples) > MOST_SAMPLES)
+        return bool(samples) and (now - samples[0].at > self.windows.mean_over or len(samples) > MOST_SAMPLES)
 
     def _jumped(self, before: Sample | None, sample: Sample) -> bool:
         steepest = STEEPEST.get(self._name)

@@ -10,7 +10,9 @@ from app.tracker.mode import Mode
 from app.tracker.notifications import Notifications
 from app.tracker.proofs import Proofs
 from app.tracker.protections.words import MaintenanceLock, Protection, ServiceMode, StowName
+from app.tracker.simulated_weather import SimulatedStation
 from app.tracker.weather import Quantity
+from app.tracker.weather_windows import WeatherWindows
 
 
 class StepName(StrEnum):
@@ -150,7 +152,10 @@ class MetStation:
 
 @dataclass(frozen=True, slots=True)
 class SiteState:
-    """Everything stored about the site that its trackers share."""
+    """Everything stored about the site that its trackers share; it has one weather station at most.
+
+    `weather_windows` None are the usual ones, with the age that the machine was set up with.
+    """
 
     name: str = "Solar site"
     location: Location | None = None
@@ -160,3 +165,5 @@ class SiteState:
     confirmations: dict[StepName, Confirmation] = field(default_factory=dict)
     met_station: MetStation | None = None
     notifications: Notifications = field(default_factory=Notifications)
+    simulated_weather: SimulatedStation | None = None
+    weather_windows: WeatherWindows | None = None

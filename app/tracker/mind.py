@@ -68,6 +68,7 @@ class Mind:
         "guards",
         "hand_until",
         "lost",
+        "made_up",
         "memory",
         "misses",
         "now",
@@ -103,6 +104,7 @@ class Mind:
         self.feedback_at: datetime | None = None
         self.misses = 0
         self.lost = False
+        self.made_up = False
         self.aftermath: Reason | None = None
         self.wait: Reason | None = None
         self.warning: Warned | None = None

@@ -5,7 +5,7 @@ from app.tracker.protections.config import ProtectionConfig
 from app.tracker.protections.guarding import limits_of
 from app.tracker.shelter import BAD, doubt_reason, guarding
 from app.tracker.snapshot import SensorState
-from app.tracker.weather import NO_READING, Quality, Quantity, Reading
+from app.tracker.weather import NOTHING_SENSED, SIMULATED, Quality, Quantity, Reading
 
 UNITS = {Quantity.WIND: "m/s", Quantity.SNOW: "kg", Quantity.LIGHT: "W/m2"}
 AGAINST = {Quantity.WIND: "wind", Quantity.SNOW: "snow", Quantity.LIGHT: "too little light"}
@@ -30,8 +30,11 @@ def limit_of(config: ProtectionConfig, quantity: Quantity) -> float:
 def _sensor(mind: Mind, quantity: Quantity) -> SensorState:
     config = mind.config.protection
     limits = limits_of(config, quantity)
-    reading = mind.seen.weather.reading(quantity) if mind.seen else NO_READING
-    known = limits.required or quantity in mind.memory.sensors
+    sensed = mind.seen.weather if mind.seen else NOTHING_SENSED
+    reading = sensed.reading(quantity)
+    made_up = sensed.simulated and reading.value is not None
+    known = limits.required or made_up or quantity in mind.memory.sensors
+    text = _text(mind, quantity, reading, enabled=limits.enabled, known=known)
     return SensorState(
         quantity=quantity,
         enabled=limits.enabled,
@@ -41,7 +44,7 @@ def _sensor(mind: Mind, quantity: Quantity) -> SensorState:
         unit=UNITS[quantity],
         quality=reading.quality,
         age_s=reading.age_s,
-        text=_text(mind, quantity, reading, enabled=limits.enabled, known=known),
+        text=f"{text} The reading is {SIMULATED}." if made_up else text,
     )
 
 

@@ -33,12 +33,12 @@ REACTS = {
 def look(mind: Mind, seen: Observation) -> None:
     """Take in the weather: run every timer, latch what holds, and say what begins and ends."""
     sensed = seen.weather
-    _learn(mind, sensed)
     before = guarding(mind)
-    if before is OFF_GUARD and sensed is NOTHING_SENSED and not _expected(mind):
+    begun = _sobered(mind, before, sensed)
+    if begun is before is OFF_GUARD and sensed is NOTHING_SENSED and not _expected(mind):
         return
-    config, known = mind.config.protection, mind.memory.sensors
-    after = step(before, config, sensed, known, seen.now, night=_is_night(mind, seen))
+    config, known = mind.config.protection, _learnt(mind, sensed)
+    after = step(begun, config, sensed, known, seen.now, night=_is_night(mind, seen))
     mind.guarding = after
     latch = after.kind if after.kind in LATCHED else None
     if latch is not mind.memory.protection:
@@ -133,14 +133,24 @@ def doubts(mind: Mind) -> tuple[Reason, ...]:
     )
 
 
-def _learn(mind: Mind, sensed: Sensed) -> None:
-    """Remember that a sensor is there: from now on it can be missed."""
-    if sensed is NOTHING_SENSED:
-        return
+def _sobered(mind: Mind, before: Guarding, sensed: Sensed) -> Guarding:
+    """Return the state to go on from: what made-up weather did ends with it, for nothing else would."""
+    ended = mind.made_up and not sensed.simulated
+    mind.made_up = sensed.simulated
+    return OFF_GUARD if ended else before
+
+
+def _learnt(mind: Mind, sensed: Sensed) -> tuple[Quantity, ...]:
+    """Return the sensors that can be missed: every real one is remembered, made-up ones are not."""
     known = mind.memory.sensors
+    if sensed is NOTHING_SENSED:
+        return known
+    if sensed.simulated:
+        return known + tuple(one for one in Quantity if sensed.reading(one).value is not None)
     fresh = tuple(one for one in Quantity if one not in known and sensed.reading(one).good is not None)
     if fresh:
         mind.remember(sensors=known + fresh)
+    return known + fresh
 
 
 def _expected(mind: Mind) -> bool:

@@ -6,6 +6,8 @@ from datetime import datetime
 from enum import StrEnum
 from math import isfinite
 
+SIMULATED = "SIMULATED"
+"""What the name of every made-up source begins with."""
 RANGES = {
     "wind_mps": ("The wind speed", 0.0, 120.0, "m/s"),
     "wind_direction_deg": ("The wind direction", 0.0, 360.0, "degrees from north"),
@@ -95,7 +97,8 @@ class Sensed:
     """What one tick of a tracker is told of the weather.
 
     `wind` is the gust, the fastest wind of the last 3 s; `wind_mean_mps` the mean of up to 10 minutes, None
-    without a sample; `wind_from_deg` where a good reading says that it comes from, clockwise from north.
+    without a sample (the site may set other windows); `wind_from_deg` where a good reading says that it comes
+    from, clockwise from north; `simulated` says that it is all made up.
     """
 
     wind: Reading = NO_READING
@@ -103,6 +106,7 @@ class Sensed:
     light: Reading = NO_READING
     wind_mean_mps: float | None = None
     wind_from_deg: float | None = None
+    simulated: bool = False
 
     def reading(self, quantity: Quantity) -> Reading:
         """Return one quantity."""
@@ -118,7 +122,7 @@ class WeatherNow:
 
     A stale one is older than the site allows: it is shown with its age and must not be used. `quantities`
     tells age, source and quality of each value; `gust_mps` is the fastest wind of the last 3 s, `mean_mps`
-    the mean of up to 10 minutes.
+    the mean of up to 10 minutes, unless the site sets other windows. `simulated` says that it is all made up.
     """
 
     readings: Weather
@@ -129,6 +133,7 @@ class WeatherNow:
     quantities: dict[str, Reading] = field(default_factory=dict)
     gust_mps: float | None = None
     mean_mps: float | None = None
+    simulated: bool = False
 
     @property
     def usable(self) -> Weather | None:

@@ -21,7 +21,8 @@ from app.drives.simulated import SimulatedDrive
 from app.gateway.sunspec import SunSpecTcp
 from app.gateway.sunspec_device import SunSpecDevice
 from app.gateway.sunspec_map import BASE, END, map_table, sunspec_map
-from app.link.messages import ConfigureTracker, ReleaseControl, ReportWeather, RequestControl
+from app.link.messages import ConfigureTracker, ReleaseControl, RequestControl
+from app.link.weather_orders import ReportWeather
 from app.settings import Settings
 from app.tracker.axes import Axis
 from app.tracker.commands import Jog, SelectMode, Stop

@@ -12,7 +12,8 @@ from structlog.testing import capture_logs
 
 from app.audit.chain import first_break
 from app.audit.entry import Entry
-from app.link.messages import RenameSite, ReportWeather, SetLocation, StopAll
+from app.link.messages import RenameSite, SetLocation, StopAll
+from app.link.weather_orders import ReportWeather
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.offloaded import WriterThread

@@ -5,7 +5,7 @@ from math import nan
 
 import pytest
 
-from app.link.messages import ReportWeather
+from app.link.weather_orders import ReportWeather
 from app.tracker.snapshot import ActivityName
 from app.tracker.weather import RANGES, Weather
 from tests.site.plant import Plant, settle

@@ -4,13 +4,14 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from app.link.messages import ReportWeather
+from app.link.weather_orders import ReportWeather
 from app.site.weather import WeatherStation
 from app.tracker.commands import SelectMode, Stow, Track
 from app.tracker.mode import Mode
 from app.tracker.protections.words import Protection, StowName
 from app.tracker.snapshot import ActivityName, EventKind
 from app.tracker.weather import NOTHING_SENSED, Quality, Weather
+from app.tracker.weather_windows import same_age
 from tests.site.plant import Plant
 
 BEGIN = datetime(2026, 6, 21, 6, tzinfo=UTC)
@@ -114,7 +115,7 @@ def test_what_is_no_number_or_out_of_range_is_a_condition_of_its_own() -> None:
 
 
 def test_a_value_grows_stale() -> None:
-    station = WeatherStation(timedelta(seconds=30))
+    station = WeatherStation(same_age(timedelta(seconds=30)))
     report(station, 0, wind_mps=3.0)
     assert quality(station, 30) is Quality.GOOD
     assert quality(station, 30.1) is Quality.STALE

@@ -5,7 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import AwareDatetime, Field
 
-from app.link.messages import ReportWeather, SetMetStation
+from app.link.weather_orders import ReportWeather, SetMetStation
 from app.tracker.memory import MetStation
 from app.tracker.weather import RANGES, Weather, WeatherNow
 from app.web.api.base import NOT_FOUND, REFUSED, Input

@@ -7,7 +7,8 @@ from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
 
-from app.link.messages import MachineUnreachable, SetMetStation
+from app.link.messages import MachineUnreachable
+from app.link.weather_orders import SetMetStation
 from app.tracker.memory import MetStation
 from app.web.deps import MachineDep
 from app.web.metrics import counted

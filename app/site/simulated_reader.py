@@ -1,0 +1,26 @@
+"""Reads a made-up weather station as a real one is read."""
+
+from collections.abc import Callable
+from datetime import datetime
+
+from app.sun.position import SunPosition
+from app.tracker.simulated_weather import SimulatedStation, weather_at
+from app.tracker.weather import Weather
+
+
+class SimulatedReader:
+    """A station whose values are a function of the site's time and its sun."""
+
+    def __init__(
+        self, station: SimulatedStation, now: Callable[[], datetime], sun: Callable[[], SunPosition | None]
+    ) -> None:
+        self._station = station
+        self._now = now
+        self._sun = sun
+
+    async def read(self) -> tuple[Weather | None, tuple[str, ...]]:
+        """Return what it makes up; nothing of it is ever impossible."""
+        return weather_at(self._station, self._now(), self._sun()), ()
+
+    async def close(self) -> None:
+        """Let go of nothing."""

@@ -1,0 +1,149 @@
+"""A site with a made-up weather station: it moves simulated trackers, is marked, and leaves no trace."""
+
+from collections.abc import AsyncIterator
+from dataclasses import replace
+
+import pytest
+
+from app.link.messages import AddTracker, ConfigureTracker
+from app.link.weather_orders import ReportWeather, SetMetStation, SetWeatherWindows, SimulateWeather
+from app.site.weather import WeatherStation
+from app.tracker.commands import CommandRejected, SelectMode, Track
+from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
+from app.tracker.memory import MetStation, SiteState
+from app.tracker.mode import Mode
+from app.tracker.simulated_weather import Scenario, SimulatedStation
+from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.weather import Quality, Weather, WeatherNow
+from app.tracker.weather_windows import LIMITS, WeatherWindows
+from tests.site.plant import SUMMER_NOON, Plant, make_plant
+from tests.site.test_weather_quality import at, quality, report
+
+REAL = DriveConfig(DriveKind.MODBUS_TCP, host="10.0.0.5")
+STORM = SimulatedStation(Scenario.STORM, seed=3)
+
+
+async def weather(plant: Plant) -> WeatherNow:
+    await plant.forward(seconds=0.6)
+    seen = plant.site.latest()
+    assert seen is not None
+    assert seen.weather is not None
+    return seen.weather
+
+
+async def track(plant: Plant) -> None:
+    await plant.commission()
+    await plant.ask(SelectMode(Mode.DUAL))
+    await plant.ask(Track())
+    await plant.until(lambda tracker: tracker.in_position)
+
+
+async def test_weather_by_hand_is_shown_as_simulated_and_stows(plant: Plant) -> None:
+    await track(plant)
+    await plant.ask(SimulateWeather(SimulatedStation(wind_mps=25.0, snow_kg=1.0)))
+    seen = await weather(plant)
+    assert seen.simulated
+    assert seen.source == "SIMULATED station (by hand)"
+    assert seen.readings.snow_kg == 1.0
+    await plant.forward(seconds=2)
+    assert plant.tracker().activity is ActivityName.STOWING
+    wind = plant.tracker().sensors[0]
+    assert wind.text.endswith("The reading is SIMULATED.")
+
+
+async def test_what_made_up_weather_did_ends_with_it_and_no_sensor_is_missed(plant: Plant) -> None:
+    await track(plant)
+    await plant.ask(SimulateWeather(SimulatedStation(wind_mps=25.0)))
+    await plant.until(lambda tracker: tracker.activity is ActivityName.STOWING)
+    await plant.ask(SimulateWeather(None))
+    await plant.until(lambda tracker: tracker.activity is ActivityName.TRACKING)
+    await plant.forward(seconds=62)
+    assert plant.tracker().activity is ActivityName.TRACKING
+    assert not any(sensor.known for sensor in plant.tracker().sensors)
+    assert plant.site.model.state.simulated_weather is None
+    told = [event.message for event in plant.happened(EventKind.WEATHER_STATION_SET)]
+    assert told == [
+        "The weather is SIMULATED from now on: by hand.",
+        "The weather is not simulated any more.",
+    ]
+
+
+async def test_a_scenario_goes_on_after_a_restart(plant: Plant) -> None:
+    await plant.ask(SimulateWeather(STORM))
+    state = plant.site.model.state
+    assert state.simulated_weather == replace(STORM, begun_at=SUMMER_NOON)
+    later = make_plant(start=at(0), state=replace(state, simulated_weather=replace(STORM, begun_at=at(-600))))
+    await later.start()
+    seen = await weather(later)
+    assert seen.simulated
+    assert seen.readings.wind_mps is not None
+    assert seen.readings.wind_mps > 10.0
+    await later.close()
+
+
+async def test_what_is_measured_is_not_taken_beside_it_and_takes_its_place_by_an_order(plant: Plant) -> None:
+    await plant.ask(SimulateWeather(SimulatedStation(wind_mps=6.0)))
+    with pytest.raises(CommandRejected, match="nothing that was measured is taken"):
+        await plant.ask(ReportWeather(Weather(wind_mps=3.0)))
+    await plant.ask(SetMetStation(None))
+    assert (await weather(plant)).simulated, "reading no station does not end what is made up"
+    await plant.ask(SetMetStation(MetStation("10.0.0.9")))
+    assert plant.site.model.weather.now(plant.clock.now()) is None, "nothing made up is left"
+    told = await plant.ask(ReportWeather(Weather(wind_mps=3.0)))
+    assert told.weather is not None
+    assert not told.weather.simulated
+    assert told.weather.mean_mps == 3.0
+
+
+async def test_real_trackers_and_made_up_weather_exclude_each_other(plant: Plant) -> None:
+    await plant.ask(SimulateWeather(STORM))
+    for order in (
+        AddTracker(TrackerConfig("T2", "Tracker 2", drive=REAL)),
+        ConfigureTracker(TrackerConfig("T1", "Tracker 1", drive=REAL)),
+    ):
+        with pytest.raises(CommandRejected, match="must not move a machine that is not"):
+            await plant.ask(order)
+    await plant.ask(SimulateWeather(None))
+    await plant.ask(AddTracker(TrackerConfig("T2", "Tracker 2", drive=REAL)))
+    with pytest.raises(CommandRejected, match="T2 is not simulated"):
+        await plant.ask(SimulateWeather(STORM))
+    assert plant.site.model.state.simulated_weather is None
+
+
+@pytest.fixture
+async def windowed() -> AsyncIterator[Plant]:
+    made = make_plant(state=SiteState(weather_windows=WeatherWindows(wind_old_after_s=20.0)))
+    await made.start()
+    yield made
+    await made.close()
+
+
+async def test_every_quantity_grows_old_at_its_own_age_also_after_a_restart(windowed: Plant) -> None:
+    await windowed.ask(ReportWeather(Weather(wind_mps=12.0, snow_kg=1.0)))
+    await windowed.forward(seconds=25)
+    seen = await weather(windowed)
+    assert seen.usable == Weather(snow_kg=1.0)
+    await windowed.ask(SetWeatherWindows(WeatherWindows(wind_old_after_s=60.0)))
+    assert (await weather(windowed)).usable == Weather(wind_mps=12.0, snow_kg=1.0)
+    detail = await windowed.site.detail()
+    assert detail.site.weather_windows == WeatherWindows(wind_old_after_s=60.0)
+
+
+def test_gust_and_mean_are_taken_over_the_windows_of_the_site() -> None:
+    station = WeatherStation(WeatherWindows(gust_s=10.0, mean_s=60.0))
+    for second in range(121):
+        report(station, second, wind_mps=20.0 if second < 50 else 5.0 + 0.01 * second)
+    seen = station.sensed(at(120))
+    assert seen.wind_mean_mps == pytest.approx(5.9, abs=0.01)
+    report(station, 121, wind_mps=9.0)
+    report(station, 130, wind_mps=6.0)
+    assert station.sensed(at(130)).wind.good == 9.0
+    assert quality(station, 131) is Quality.GOOD
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_windows_out_of_range_are_refused_with_a_sentence(name: str) -> None:
+    title, low, high = LIMITS[name]
+    for wrong in (low - 0.5, high + 1.0, float("inf")):
+        with pytest.raises(ValueError, match=f"{title} must lie between {low:g} and {high:g} s"):
+            WeatherWindows(**{name: wrong})

@@ -1,0 +1,114 @@
+"""Made-up weather: the same twice, within what its numbers promise, and every scenario's story."""
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from statistics import mean
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given
+from hypothesis import strategies as some
+from pvlib import clearsky
+
+from app.sun.position import SunPosition
+from app.tracker.simulated_weather import (
+    SPANS,
+    Scenario,
+    SimulatedStation,
+    clear_light_wm2,
+    weather_at,
+)
+from app.tracker.weather import Weather
+
+BEGIN = datetime(2026, 6, 21, 9, tzinfo=UTC)
+SUN = SunPosition(180.0, 60.0, 60.0)
+
+
+def read(station: SimulatedStation, *, minutes: float = 0.0, sun: SunPosition | None = SUN) -> Weather:
+    return weather_at(replace(station, begun_at=BEGIN), BEGIN + timedelta(minutes=minutes), sun)
+
+
+def told(station: SimulatedStation, name: str, *, of: range, step_s: float = 1.0) -> list[float]:
+    return [getattr(read(station, minutes=second * step_s / 60.0), name) for second in of]
+
+
+@pytest.mark.parametrize("scenario", Scenario)
+def test_the_same_seed_makes_the_same_weather_and_another_one_another(scenario: Scenario) -> None:
+    station = SimulatedStation(scenario, seed=7)
+    assert read(station, minutes=3.3) == read(SimulatedStation(scenario, seed=7), minutes=3.3)
+    assert read(station, minutes=3.3) != read(SimulatedStation(scenario, seed=8), minutes=3.3)
+
+
+def test_gusts_by_hand_exceed_the_mean_by_at_most_the_gustiness() -> None:
+    winds = told(SimulatedStation(wind_mps=10.0, gustiness_pct=40.0), "wind_mps", of=range(3600))
+    assert mean(winds) == pytest.approx(10.0, abs=0.2)
+    assert 12.5 < max(winds) <= 14.0
+    assert 6.0 <= min(winds) < 7.5
+
+
+def test_a_value_that_is_set_by_hand_trembles_as_a_sensor_that_works_does() -> None:
+    station = SimulatedStation(wind_mps=8.0, gustiness_pct=0.0, light_wm2=500.0)
+    winds, lights = (told(station, name, of=range(60)) for name in ("wind_mps", "light_wm2"))
+    assert len(set(winds)) == len(set(lights)) == 60
+    assert max(abs(wind - 8.0) for wind in winds) <= 0.08
+    assert max(abs(light - 500.0) for light in lights) <= 5.0
+
+
+def test_a_storm_comes_and_goes() -> None:
+    storm = SimulatedStation(Scenario.STORM)
+    assert max(told(storm, "wind_mps", of=range(120))) < 8.0
+    assert max(told(storm, "wind_mps", of=range(360, 840))) > 22.0
+    assert mean(told(storm, "wind_mps", of=range(360, 840))) == pytest.approx(20.0, abs=0.6)
+    assert max(told(storm, "wind_mps", of=range(1500, 3600))) < 4.0
+
+
+def test_snow_falls_and_slides_off() -> None:
+    loads = told(SimulatedStation(Scenario.SNOWFALL), "snow_kg", of=range(30), step_s=60.0)
+    assert (loads[0], loads[14], loads[19], loads[25]) == (0.0, 8.0, 8.0, 0.0)
+    assert loads[:15] == sorted(loads[:15])
+
+
+def test_clouds_pass_and_a_dark_bank_covers_the_sun_for_twenty_minutes() -> None:
+    clear_wm2 = clear_light_wm2(60.0)
+    light = told(SimulatedStation(Scenario.CLOUDS), "light_wm2", of=range(3600))
+    assert max(light[300:1800]) / min(light[300:1800]) > 1.8
+    assert max(light[1980:3180]) < 0.02 * clear_wm2
+    assert light[3500] > 0.4 * clear_wm2
+
+
+def test_without_a_sun_light_is_not_made_up_unless_by_hand() -> None:
+    assert read(SimulatedStation(Scenario.CALM), sun=None).light_wm2 is None
+    assert read(SimulatedStation(light_wm2=300.0), sun=None).light_wm2 == pytest.approx(300.0, rel=0.01)
+    assert read(SimulatedStation(), sun=SunPosition(0.0, -5.0, -5.0)).light_wm2 == 0.0
+
+
+def test_clear_light_is_what_pvlib_makes_of_haurwitz() -> None:
+    elevations = np.array([-3.0, 0.0, 0.2, 5.0, 30.0, 72.0, 90.0])
+    expected = clearsky.haurwitz(pd.Series(90.0 - elevations))["ghi"].to_numpy()
+    assert [clear_light_wm2(one) for one in elevations] == pytest.approx(expected, abs=1e-9)
+
+
+@given(
+    some.sampled_from(Scenario),
+    some.integers(0, 2**31 - 1),
+    some.floats(-1e4, 1e4),
+    some.floats(0.0, 50.0),
+    some.floats(0.0, 100.0),
+    some.floats(-90.0, 90.0),
+)
+def test_nothing_is_ever_made_up_that_no_station_can_measure(
+    scenario: Scenario, seed: int, minutes: float, wind_mps: float, gustiness_pct: float, elevation_deg: float
+) -> None:
+    station = SimulatedStation(scenario, seed, wind_mps, gustiness_pct, light_wm2=None)
+    read(station, minutes=minutes, sun=SunPosition(180.0, elevation_deg, elevation_deg))
+
+
+@pytest.mark.parametrize("name", SPANS)
+def test_what_is_out_of_range_is_refused_with_a_sentence(name: str) -> None:
+    title, low, high, unit = SPANS[name]
+    for wrong in (low - 1.0, high + 1.0, float("nan")):
+        with pytest.raises(ValueError, match=f"{title} must lie between {low:g} and {high:g} {unit}"):
+            SimulatedStation(**{name: wrong})
+    with pytest.raises(ValueError, match="seed"):
+        SimulatedStation(seed=-1)
