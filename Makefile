@@ -1,6 +1,7 @@
 # make run  : sets everything up and serves the panel with a simulated tracker at http://127.0.0.1:8000
 # make test : sets up what tests need and runs them all, browser tests included
 # make check: formatting, lint, types, import contracts, migrations, vendored files
+# make fuzz : 10,000 cases against the API and hostile values for every form; takes minutes
 # make bench: measures and writes docs/benchmarks.md
 
 PYTHON ?= python3
@@ -9,7 +10,7 @@ BIN := $(VENV)/bin
 ON_PROCESSES := tests/drives/timed tests/machine tests/browser tests/e2e
 
 .DEFAULT_GOAL := help
-.PHONY: help setup fast run test check bench format lock browser system-packages clean
+.PHONY: help setup fast run test check fuzz bench format lock browser system-packages clean
 
 help: ## Show what each command does
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-10s %s\n", $$1, $$2}'
@@ -54,8 +55,13 @@ check: $(VENV)/.dev ## Formatting, lint, types, import contracts, migrations, ve
 	@$(BIN)/ruff check .
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports
+	@$(BIN)/bandit -q -r app -c pyproject.toml -ll
+	@$(BIN)/python -m tests.secret_search
 	@$(BIN)/python static/vendor/vendor.py check
 	@$(BIN)/python -m app.store.migrations check
+
+fuzz: $(VENV)/.dev ## Send 10,000 bad requests to the API, and hostile values into every form
+	@$(BIN)/python -m tests.fuzz
 
 bench: $(VENV)/.dev system-packages ## Measure, as ratios against peers in the same run, and write docs/benchmarks.md
 	@$(BIN)/python -m bench

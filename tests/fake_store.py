@@ -2,7 +2,8 @@
 
 from app.audit.chain import FIRST
 from app.audit.entry import Entry, Sealed, seal
-from app.store.store import AuditFilter, JournalEntry, JournalFilter, PlannedShow
+from app.alarms.alarm import Alarm
+from app.store.store import AlarmFilter, AuditFilter, JournalEntry, JournalFilter, KeptAlarm, PlannedShow
 from app.tracker.memory import (
     SiteState,
     TrackerState,
@@ -72,6 +73,14 @@ class FakeReader:
         ordered = found if wanted.after is not None else [*reversed(found)]
         kept = [one for one in ordered if wanted.before is None or one.seq < wanted.before]
         return kept[: wanted.limit]
+
+    def standing_alarms(self) -> list[Alarm]:
+        """Return that no alarm stands."""
+        return []
+
+    def alarm_history(self, wanted: AlarmFilter) -> list[KeptAlarm]:
+        """Return that there never was an alarm."""
+        return []
 
     def show(self, show_id: str) -> PlannedShow | None:
         """Return the plan of a show."""

@@ -78,7 +78,11 @@ def test_a_removed_end_is_seen_by_a_head_that_was_logged(ask: Ask, tmp_path: Pat
 
 
 def test_the_record_of_users_is_checked_too(ask: Ask, tmp_path: Path) -> None:
-    forge(tmp_path / "access.db", "none", "UPDATE access_events SET actor = 'eve' WHERE number = 2")
+    forge(
+        tmp_path / "access.db",
+        "access_events_UPDATE_refused",
+        "UPDATE access_events SET actor = 'eve' WHERE number = 2",
+    )
     told = ask("verify")
     assert told.exit_code == 1
     assert "The record of users and tokens is broken at entry 2" in told.output

@@ -1,0 +1,120 @@
+"""Every form of the panel, found by walking its pages, and values that nobody would type by accident."""
+
+import random
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from html.parser import HTMLParser
+
+import httpx
+
+SCRIPT = "<script>alert('hostile')</script>"
+HOSTILE = (
+    SCRIPT,
+    f"\"'>{SCRIPT}<img src=x onerror=alert('hostile')>",
+    "{{7*7}}{% include '/etc/passwd' %}",
+    "'; DROP TABLE events; --",
+    "../../../../etc/passwd",
+    "x" * 20_000,
+    "\x00",
+    "nul\x00in\x00between",
+    "\ud7ff\U0001f600\u202e",
+    "",
+    " ",
+    "-1",
+    "1e400",
+    "NaN",
+    "-Infinity",
+    "99999999999999999999999999",
+    "2026-02-30",
+    "9999-12-31T23:59",
+    "0001-01-01",
+    "25:61",
+    "[]",
+    "true",
+)
+START = (
+    "/",
+    "/journal",
+    "/site",
+    "/simulate",
+    "/studies",
+    "/recordings",
+    "/trackers/T1",
+    "/users",
+    "/tokens",
+)
+LEFT_OUT = re.compile(r"/(s/|api/|logout|setup|backup|diagnostics)|\.csv$|\.crt$|\.zip$")
+MOST_PAGES = 90
+
+
+@dataclass(frozen=True, slots=True)
+class PageForm:
+    """Where a form sends what, and the values it holds."""
+
+    page: str
+    method: str
+    action: str
+    values: dict[str, str] = field(default_factory=dict, hash=False)
+
+
+class Reading(HTMLParser):
+    """Collects a page's forms and links."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.page = page
+        self.forms: list[PageForm] = []
+        self.links: set[str] = set()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = {name: value or "" for name, value in attrs}
+        if tag == "a" and given.get("href", "").startswith("/"):
+            self.links.add(given["href"].split("#")[0])
+        elif tag == "form":
+            action = given.get("action") or self.page
+            self.forms.append(PageForm(self.page, given.get("method", "get").upper(), action))
+        elif tag in ("input", "select", "textarea", "button") and self.forms and given.get("name"):
+            self.forms[-1].values.setdefault(given["name"], given.get("value", ""))
+        if path := given.get("hx-post"):
+            self.forms.append(PageForm(self.page, "POST", path))
+
+
+async def every_form(client: httpx.AsyncClient) -> list[PageForm]:
+    """Walk the pages from the first ones on and return each form once."""
+    waiting, seen, found = list(START), set(START), {}
+    while waiting and len(seen) <= MOST_PAGES:
+        page = waiting.pop(0)
+        answer = await client.get(page, follow_redirects=True)
+        if "text/html" not in answer.headers.get("content-type", ""):
+            continue
+        reading = Reading(page)
+        reading.feed(answer.text)
+        for form in reading.forms:
+            found.setdefault((form.method, form.action, tuple(form.values)), form)
+        for link in sorted(reading.links - seen):
+            if not LEFT_OUT.search(link):
+                seen.add(link)
+                waiting.append(link)
+    return list(found.values())
+
+
+def bad_values(form: PageForm, rounds: int, chance: random.Random) -> Iterator[dict[str, str]]:
+    """Yield what to send: now every field hostile, now a single one among right ones, now fields left out."""
+    names = list(form.values) or ["unknown"]
+    for number in range(rounds):
+        match number % 3:
+            case 0:
+                yield {name: chance.choice(HOSTILE) for name in names}
+            case 1:
+                yield form.values | {chance.choice(names): chance.choice(HOSTILE)}
+            case _:
+                yield {name: chance.choice(HOSTILE) for name in names if chance.random() < 0.5}
+
+
+def hostile_in(text: str) -> str:
+    """Return what a page gives back unescaped of what was sent; nothing is how it must be."""
+    for mark in (SCRIPT, "onerror=alert('hostile')>", "<img src=x"):
+        if mark in text:
+            return mark
+    return ""
