@@ -3,10 +3,11 @@
 from datetime import datetime
 from typing import Protocol
 
+from app.foreseen import Foreseen
 from app.tracker.motion import DriveCapabilities, DriveCommand, Feedback
 
 
-class DriveError(Exception):
+class DriveError(Foreseen):
     """A drive could not be read or written; the text says what happened and what to do."""
 
 

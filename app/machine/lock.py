@@ -8,10 +8,12 @@ from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 
+from app.foreseen import Foreseen
+
 LOCK_NAME = "machine.lock"
 
 
-class AlreadyRunning(Exception):
+class AlreadyRunning(Foreseen):
     """Another controller service holds this data folder."""
 
 

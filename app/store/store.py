@@ -8,13 +8,14 @@ from typing import Protocol
 
 from app.alarms.alarm import Alarm
 from app.audit.entry import Entry, Sealed
+from app.foreseen import Foreseen
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.programs.show import ShowPlan
 from app.tracker.recording import Frames, RecordingInfo, RecordingKind
 from app.tracker.snapshot import Event, EventKind
 
 
-class StoreFailed(Exception):
+class StoreFailed(Foreseen):
     """The database could not do it; the text says what to do. Nothing was half written."""
 
 

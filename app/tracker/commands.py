@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from datetime import timedelta
 from typing import Literal
 
+from app.foreseen import Foreseen
 from app.tracker.axes import Axis, JogSpeed
 from app.tracker.config import Orientation
 from app.tracker.mode import Mode
@@ -15,7 +16,7 @@ from app.tracker.reason import Reason
 JOG_LEASE = timedelta(milliseconds=240)
 
 
-class CommandRejected(Exception):
+class CommandRejected(Foreseen):
     """The tracker will not do this now; `reasons` lists every unmet condition."""
 
     def __init__(self, *reasons: Reason) -> None:
