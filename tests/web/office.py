@@ -1,0 +1,75 @@
+"""A panel with one user of every role, a movable clock and quick hashes."""
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from datetime import datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import httpx
+from fastapi import FastAPI
+
+from app.access.keeper import Keeper
+from app.access.principal import this_computer
+from app.access.roles import Role
+from app.clock import SystemClock
+from app.settings import Settings
+from app.web.main import create_app
+from tests.access.fake_hasher import FakeHasher
+from tests.fakes import PORT, FakeMachine
+
+PASSWORD = "violet-anvil-harbour-9"  # noqa: S105 - of people who do not exist
+COOKIE = f"heliopanel-{PORT}"
+ORIGIN = f"http://127.0.0.1:{PORT}"
+HERE = this_computer("127.0.0.1")
+
+
+class MovableClock(SystemClock):
+    """The system's clock, set forward by `ahead`; waiting takes real time."""
+
+    ahead = timedelta()
+
+    def now(self) -> datetime:
+        return super().now() + self.ahead
+
+    async def sleep_until(self, until: datetime) -> None:
+        await super().sleep_until(until - self.ahead)
+
+
+class Office:
+    """A panel, its machine, and browsers in front of it."""
+
+    def __init__(self, folder: Path, *, host: str = "127.0.0.1") -> None:
+        self.clock = MovableClock()
+        self.machine = FakeMachine(self.clock)
+        self.hasher = FakeHasher()
+        settings = Settings(data_dir=folder, port=PORT).model_copy(update={"host": host})
+        self.app: FastAPI = create_app(
+            settings, machine=self.machine, reader=self.machine.store, clock=self.clock, hasher=self.hasher
+        )
+        self.keeper: Keeper = self.app.state.panel.keeper
+
+    async def hire(self, *roles: Role) -> None:
+        """Add a user of each of these roles, named as the role, the administrator first."""
+        for role in sorted(set(roles) | {Role.ADMINISTRATOR}):
+            now = self.clock.now()
+            await self.keeper.do(
+                lambda role=role, now=now: self.keeper.accounts.add(HERE, role + "-1", {role}, PASSWORD, now)
+            )
+
+    async def session(self, name: str) -> str:
+        """Return the id of a new session."""
+        return await self.keeper.log_in(name + "-1", PASSWORD, "127.0.0.1", "test")
+
+    @asynccontextmanager
+    async def browser(
+        self, session_id: str = "", address: str = "127.0.0.1", app: Any = None
+    ) -> AsyncIterator[httpx.AsyncClient]:
+        """Give a browser that holds this session."""
+        transport = httpx.ASGITransport(app or self.app, client=(address, 50000))
+        cookies = {COOKIE: session_id} if session_id else None
+        headers = {"origin": ORIGIN, "sec-fetch-site": "same-origin"}
+        async with httpx.AsyncClient(
+            transport=transport, base_url=ORIGIN, cookies=cookies, headers=headers
+        ) as client:
+            yield client

@@ -1,0 +1,305 @@
+"""Who gets through: every route of the panel with every role, and with everything that is no good."""
+
+import re
+from collections.abc import AsyncIterator
+from datetime import timedelta
+from pathlib import Path
+
+import httpx
+import pytest
+from fastapi import FastAPI
+from fastapi.routing import iter_route_contexts
+from starlette.responses import Response
+from starlette.types import Receive, Send
+from starlette.types import Scope as Asked
+
+from app.access.accounts import TokenWish
+from app.access.roles import GRANTS, Permission, Role
+from app.access.tokens import SCOPES, Scope
+from app.web.gate import Gate
+from app.web.route_permissions import PROVEN, ROUTES
+from app.web.routes import RouteUnguarded, guarded_routes, key_of, walk
+from tests.web.office import HERE, PORT, Office
+from tests.web.sockets import connected
+
+ASKED = sorted(key for key in ROUTES if not key.startswith("WS ") and key != "GET /api/v1/stream")
+
+
+@pytest.fixture
+async def office(tmp_path: Path) -> AsyncIterator[Office]:
+    office = Office(tmp_path)
+    async with office.app.router.lifespan_context(office.app):
+        await office.hire(*Role)
+        yield office
+
+
+def filled(key: str) -> tuple[str, str]:
+    """Return method and address of a route; what its parameters name does not exist."""
+    method, path = key.split(" ", 1)
+    return method, re.sub(r"{[^}]*}", "none", path)
+
+
+def is_turned_away(answer: httpx.Response) -> bool:
+    """Return whether the gate said no, in one of its ways."""
+    to = answer.headers.get("location", "") + answer.headers.get("hx-redirect", "")
+    return answer.status_code in (401, 403) or to.startswith(("/login", "/prove"))
+
+
+def test_the_table_has_every_route_and_no_other(tmp_path: Path) -> None:
+    app = Office(tmp_path).app
+    told = {
+        f"{method} {route.path}"
+        for route in iter_route_contexts(app.routes)
+        if route.path != "/s"
+        for method in route.methods or {"WS"}
+        if method != "HEAD"
+    }
+    walked = {f"{method} {one.path}" for one in walk(app.routes) for method in one.methods}
+    assert walked - {"GET /s"} == told
+    assert told == set(ROUTES), "app/web/route_permissions.py"
+    assert set(ROUTES) >= PROVEN
+
+
+def test_a_route_without_an_entry_keeps_the_panel_from_starting(tmp_path: Path) -> None:
+    app: FastAPI = Office(tmp_path).app
+
+    @app.post("/api/v1/open-to-all")
+    def open_to_all() -> None:
+        """Forgotten in the table."""
+
+    with pytest.raises(RouteUnguarded, match="POST /api/v1/open-to-all"):
+        guarded_routes(app.routes)
+
+
+async def test_every_role_gets_through_where_the_table_says_so(office: Office) -> None:
+    for role in Role:
+        session = await office.session(role)
+        headers = {"x-csrf-token": office.keeper.csrf(session)}
+        refused = await refusals(office, session, headers)
+        assert refused == {key for key in ASKED if ROUTES[key] not in GRANTS[role]}, role
+    assert office.machine.orders == []
+
+
+async def refusals(office: Office, session: str, headers: dict[str, str]) -> set[str]:
+    """Return what the whole panel refuses; what the gate lets through only reaches a stand-in here."""
+    seen: set[str] = set()
+    passed: set[str] = set()
+
+    async def stand_in(scope: Asked, receive: Receive, send: Send) -> None:
+        passed.add(scope["state"]["key"])
+        await Response(status_code=204)(scope, receive, send)
+
+    panel = office.app.state.panel
+    gate = Gate(
+        stand_in,
+        panel_app=office.app,
+        keeper=panel.keeper,
+        clock=office.clock,
+        routes=office.app.state.routes,
+    )
+
+    async def marked(scope: Asked, receive: Receive, send: Send) -> None:
+        key, _ = key_of(office.app.state.routes, scope)
+        await gate(scope | {"state": {"key": key}}, receive, send)
+
+    async with office.browser(session) as whole, office.browser(session, app=marked) as probe:
+        for key in ASKED:
+            method, path = filled(key)
+            await probe.request(method, path, headers=headers)
+            if key not in passed:
+                answer = await whole.request(method, path, headers=headers)
+                assert answer.status_code == 403, key
+                assert "may not" in answer.text, key
+                seen.add(key)
+    return seen
+
+
+async def test_nobody_gets_through_without_what_is_good(office: Office) -> None:
+    ended, expired = await office.session(Role.ENGINEER), await office.session(Role.ENGINEER)
+    async with office.browser(ended) as browser:
+        await browser.post("/logout")
+    token, now = await made(office, *Scope), office.clock.now()
+    await office.keeper.do(lambda: office.keeper.accounts.revoke(HERE, token[3:11], now))
+    office.clock.ahead = timedelta(hours=12, seconds=1)
+    for session in ("", "x" * 43, ended, expired):
+        await nothing_passes(office, session, {})
+    for bearer in (token, "hp_nonsense", ""):
+        await nothing_passes(office, expired, {"authorization": f"Bearer {bearer}"})
+    assert office.machine.orders == []
+
+
+async def nothing_passes(office: Office, session: str, headers: dict[str, str]) -> None:
+    """Assert that the whole panel turns this away, everywhere but at what is open to all."""
+    async with office.browser(session) as browser:
+        for key in ASKED:
+            if ROUTES[key] is Permission.OPEN and not headers:
+                continue
+            method, path = filled(key)
+            answer = await browser.request(method, path, headers=headers)
+            assert is_turned_away(answer), (key, answer.status_code, headers)
+            assert "North field" not in answer.text, key
+
+
+async def made(office: Office, *scopes: Scope, trackers: frozenset[str] | None = None) -> str:
+    """Return a new token."""
+    wish, now = TokenWish("scada", frozenset(scopes), trackers), office.clock.now()
+    return await office.keeper.do(lambda: office.keeper.accounts.mint(HERE, wish, now))
+
+
+async def test_a_token_reaches_what_its_scope_says(office: Office) -> None:
+    for scope in Scope:
+        headers = {"authorization": f"Bearer {await made(office, scope)}"}
+        refused = await refusals(office, "", headers)
+        assert refused == {key for key in ASKED if ROUTES[key] not in SCOPES[scope] | {Permission.OPEN}}, scope
+    assert office.machine.orders == []
+
+
+async def test_a_token_for_one_tracker_does_not_reach_another(office: Office) -> None:
+    headers = {"authorization": f"Bearer {await made(office, Scope.MOTION, trackers=frozenset({'T1'}))}"}
+    async with office.browser() as browser:
+        assert (await browser.get("/api/v1/trackers/T1/snapshot", headers=headers)).status_code == 200
+        refused = await browser.get("/api/v1/trackers/T2/snapshot", headers=headers)
+    assert refused.status_code == 403
+    assert "T2" in refused.json()["detail"]
+
+
+async def test_foreign_pages_and_old_pages_change_nothing(office: Office) -> None:
+    session = await office.session(Role.OPERATOR)
+    csrf = office.keeper.csrf(session)
+    async with office.browser(session) as browser:
+        for headers in (
+            {"origin": "http://elsewhere.example"},
+            {"hx-request": "true"},
+            {"x-csrf-token": "x"},
+        ):
+            assert (await browser.post("/trackers/T1/park", headers=headers)).status_code == 403, headers
+        browser.headers.pop("origin")
+        browser.headers.pop("sec-fetch-site")
+        assert (await browser.post("/trackers/T1/park")).status_code == 403
+        assert office.machine.orders == []
+        right = {"x-csrf-token": csrf, "hx-request": "true"}
+        assert (await browser.post("/trackers/T1/park", headers=right)).status_code == 200
+    assert [order.actor for order in office.machine.orders] == ["operator-1"]
+
+
+async def test_a_resting_session_views_and_stops_and_moves_after_the_password(office: Office) -> None:
+    session = await office.session(Role.OPERATOR)
+    office.clock.ahead = timedelta(minutes=31)
+    async with office.browser(session) as browser:
+        assert (await browser.get("/trackers/T1")).status_code == 200
+        assert (await browser.post("/trackers/T1/stop")).status_code == 303
+        asked = await browser.post("/trackers/T1/park")
+        assert asked.headers["location"].startswith("/prove")
+        assert (await browser.post("/prove", data={"password": "wrong wrong wrong"})).status_code == 401
+        await browser.post("/prove", data={"password": "violet-anvil-harbour-9"})
+        assert (await browser.post("/trackers/T1/park")).status_code == 303
+    assert [order.command.kind for order in office.machine.orders] == ["stop", "park"]
+
+
+async def test_what_is_of_weight_wants_a_fresh_password(office: Office) -> None:
+    session = await office.session(Role.ADMINISTRATOR)
+    office.clock.ahead = timedelta(minutes=6)
+    new = {"name": "zoe", "password": "violet-anvil-harbour-9", "role": "viewer"}
+    async with office.browser(session) as browser:
+        asked = await browser.post("/users", data=new)
+        assert asked.headers["location"].startswith("/prove")
+        assert "zoe" not in office.keeper.book.users
+        await browser.post("/prove", data={"password": "violet-anvil-harbour-9"})
+        assert (await browser.post("/users", data=new)).status_code == 200
+    assert "zoe" in office.keeper.book.users
+
+
+async def test_a_page_whose_session_ended_still_stops_and_does_nothing_else(office: Office) -> None:
+    session = await office.session(Role.VIEWER)
+    async with office.browser(session) as browser:
+        page = (await browser.get("/trackers/T1")).text
+        action = re.search(r'action="(/trackers/T1/stop\?stop_ticket=[^"]+)"', page)
+        assert action is not None
+        await browser.post("/logout")
+    async with office.browser() as later:
+        assert (await later.post(action[1], headers={"hx-request": "true"})).status_code == 200
+        other = action[1].replace("/stop?", "/park?")
+        assert is_turned_away(await later.post(other))
+        many = [(await later.post(action[1])).status_code for _ in range(12)]
+    assert many.count(429) >= 2
+    stopped = office.machine.orders[0]
+    assert (stopped.command.kind, stopped.actor) == ("stop", "viewer-1 (stop ticket)")
+    assert {order.command.kind for order in office.machine.orders} == {"stop"}
+
+
+async def test_a_socket_ends_within_a_second_of_revocation_and_comes_back_only_to_stop(
+    office: Office,
+) -> None:
+    session = await office.session(Role.OPERATOR)
+    headers = {"cookie": f"heliopanel-{PORT}={session}", "origin": f"http://127.0.0.1:{PORT}"}
+    async with connected(office.app, headers=headers) as socket:
+        await socket.next("state")
+        async with office.browser(session) as browser:
+            await browser.post("/logout")
+        began = office.clock.now()
+        await socket.ended.wait()
+        assert office.clock.now() - began < timedelta(seconds=1)
+    assert socket.closed == 1008
+    ticket = office.keeper.stop_ticket(HERE)
+    async with connected(office.app, f"stop_ticket={ticket}", headers) as again:
+        await again.next("signed_out")
+        await again.send(
+            type="jog",
+            tracker_id="T1",
+            press_id="p",
+            axis="azimuth",
+            direction=1,
+            speed="slow",
+            sequence=0,
+            tc=0,
+        )
+        assert (await again.next("jog"))["status"] == "refused"
+        await again.send(type="stop_all")
+        await again.next("stopped")
+    assert [order.command.kind for order in office.machine.orders] == ["stop_all"]
+    async with connected(office.app, headers=headers) as without:
+        await without.ended.wait()
+    assert without.closed == 1008
+
+
+async def test_a_viewer_cannot_jog_over_the_socket(office: Office) -> None:
+    session = await office.session(Role.VIEWER)
+    headers = {"cookie": f"heliopanel-{PORT}={session}", "origin": f"http://127.0.0.1:{PORT}"}
+    async with connected(office.app, "tracker=T1", headers) as socket:
+        await socket.send(
+            type="jog",
+            tracker_id="T1",
+            press_id="p",
+            axis="azimuth",
+            direction=1,
+            speed="slow",
+            sequence=0,
+            tc=0,
+        )
+        refused = await socket.next("jog")
+    assert "operator or engineer" in refused["reasons"][0]["message"]
+    assert office.machine.orders == []
+
+
+async def test_a_ticket_opens_a_download_once(office: Office) -> None:
+    headers = {"authorization": f"Bearer {await made(office, Scope.READ)}"}
+    path = "/api/v1/recordings/none/frames"
+    async with office.browser() as browser:
+        ticket = (await browser.post("/api/v1/tickets", headers=headers)).json()["ticket"]
+        assert (await browser.get(f"{path}?ticket={ticket}")).status_code == 404
+        assert (await browser.get(f"{path}?ticket={ticket}")).status_code == 401
+
+
+async def test_pages_show_a_viewer_what_a_role_may_not_do(office: Office) -> None:
+    async with office.browser(await office.session(Role.VIEWER)) as browser:
+        seen = (await browser.get("/trackers/T1")).text
+        homing = (await browser.get("/trackers/T1/commissioning/homing")).text
+    park = seen[seen.index('action="/trackers/T1/park"') :]
+    assert park[: park.index("</form>")].count('<fieldset class="denied" disabled>') == 1
+    assert "Only for operator or engineer." in park
+    stop = seen[seen.index('id="stop-form"') :]
+    assert "disabled" not in stop[: stop.index("</form>")]
+    assert "data-jog=" not in homing
+    async with office.browser(await office.session(Role.ENGINEER)) as browser:
+        homing = (await browser.get("/trackers/T1/commissioning/homing")).text
+    assert "data-jog=" in homing
