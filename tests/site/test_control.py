@@ -1,0 +1,218 @@
+"""Stories of control at a site: who may move a tracker, how that passes, and what late orders do: nothing."""
+
+import asyncio
+from dataclasses import dataclass
+
+import pytest
+
+from app.link.messages import (
+    AnswerControl,
+    ConfigureTracker,
+    LockSettings,
+    Order,
+    ReleaseControl,
+    RenewControl,
+    RequestControl,
+    SetLocation,
+    SiteCommand,
+    UnlockSettings,
+)
+from app.sun.position import Location
+from app.tracker.axes import Axis
+from app.tracker.commands import (
+    Command,
+    CommandRejected,
+    Jog,
+    LockOut,
+    Move,
+    SelectMode,
+    SetZero,
+    Stop,
+    Track,
+)
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.control import ControlHeld, ControlLost
+from app.tracker.memory import TrackerMemory, TrackerState
+from app.tracker.mode import Mode
+from app.tracker.snapshot import ActivityName, EventKind
+from tests.site.plant import SAMSUN, Plant, make_plant, settle
+
+AWAY = Move(Orientation(200.0, 40.0))
+TAKE = RequestControl(("T1",), takes=True, reason="rain is coming")
+SECOND = TrackerState(TrackerConfig("T2", "Tracker 2"), TrackerMemory())
+
+
+@dataclass
+class Person:
+    """Somebody at a page of the plant; without an epoch of their own they order under the present one."""
+
+    plant: Plant
+    name: str
+    rank: int = 1
+    via: str = "session"
+
+    @property
+    def epoch(self) -> int:
+        return self.plant.tracker().control.epoch
+
+    async def ask(self, command: Command | SiteCommand, *, epoch: int | None = None) -> None:
+        tracker_id = None if isinstance(command, SiteCommand) else "T1"
+        given = self.epoch if epoch is None else epoch
+        order = Order(command, self.name, tracker_id, via=self.via, epoch=given, rank=self.rank)
+        asking = asyncio.create_task(self.plant.site.execute(order))
+        while not asking.done():
+            await settle()
+        await asking
+
+
+@pytest.fixture
+async def ready(plant: Plant) -> Plant:
+    await plant.commission()
+    return plant
+
+
+@pytest.mark.fault(55)
+async def test_the_first_who_moves_has_control_and_the_other_may_only_stop(ready: Plant) -> None:
+    ada, bo = Person(ready, "ada"), Person(ready, "bo")
+    await ada.ask(AWAY)
+    assert ready.tracker().control.holder == "ada"
+    with pytest.raises(ControlHeld, match="ada has control of Tracker 1"):
+        await bo.ask(Track())
+    await bo.ask(Stop())
+    await ready.forward(seconds=2)
+    assert ready.tracker().activity is ActivityName.HOLDING
+    await bo.ask(LockOut("bo", "works at the gear"))
+    assert ready.tracker().control.holder == "ada"
+
+
+@pytest.mark.fault(56)
+async def test_taking_over_stops_the_motion_first_and_late_orders_move_nothing(ready: Plant) -> None:
+    ada, bo = Person(ready, "ada"), Person(ready, "bo")
+    await ada.ask(AWAY)
+    epoch = ada.epoch
+    await bo.ask(TAKE)
+    await ready.forward(seconds=9)
+    assert ready.tracker().activity is ActivityName.MOVING, "the countdown runs"
+    await ada.ask(RenewControl(("T1",)))
+    await ready.forward(seconds=2)
+    assert ready.tracker().control.holder == "bo"
+    kinds = [event.kind for event in ready.events]
+    assert kinds.index(EventKind.STOPPED) < len(kinds) - 1 - kinds[::-1].index(EventKind.CONTROL_TAKEN)
+    for late in (AWAY, Jog("held", Axis.AZIMUTH, 1, sequence=40), Jog("new", Axis.AZIMUTH, 1), Track()):
+        with pytest.raises(ControlLost, match="bo has control now"):
+            await ada.ask(late, epoch=epoch)
+    await ready.forward(seconds=1)
+    assert not ready.site.model.tracker("T1").moving
+
+
+async def test_a_held_key_ends_when_control_passes(ready: Plant) -> None:
+    ada, cy = Person(ready, "ada"), Person(ready, "cy", rank=2)
+    await ada.ask(Jog("p", Axis.AZIMUTH, 1))
+    held = ada.epoch - 1
+    refused = False
+    await cy.ask(TAKE)
+    for sequence in range(1, 121):
+        try:
+            await ada.ask(Jog("p", Axis.AZIMUTH, 1, sequence=sequence), epoch=held)
+        except CommandRejected:
+            refused = True
+        await ready.forward(seconds=0.1)
+    assert refused
+    assert ready.tracker().control.holder == "cy"
+    assert not ready.site.model.tracker("T1").moving
+
+
+async def test_who_has_control_may_keep_it_hand_it_over_or_let_it_go(ready: Plant) -> None:
+    ada, bo = Person(ready, "ada"), Person(ready, "bo")
+    await ada.ask(RequestControl(("T1",)))
+    with pytest.raises(CommandRejected, match="needs a reason"):
+        await bo.ask(RequestControl(("T1",), takes=True))
+    await bo.ask(TAKE)
+    await ada.ask(AnswerControl("T1", grants=False))
+    await ready.forward(seconds=11)
+    assert ready.tracker().control.holder == "ada"
+    with pytest.raises(ControlHeld):
+        await bo.ask(AnswerControl("T1", grants=True))
+    await ada.ask(RenewControl(("T1",)))
+    await bo.ask(RequestControl(("T1",)))
+    await ada.ask(AnswerControl("T1", grants=True))
+    assert ready.tracker().control.holder == "bo"
+    await bo.ask(ReleaseControl("T1"))
+    assert ready.tracker().control.holder is None
+    with pytest.raises(CommandRejected, match="do not have control"):
+        await bo.ask(ReleaseControl("T1"))
+
+
+async def test_tracking_goes_on_when_who_began_it_leaves(ready: Plant) -> None:
+    ada, bo = Person(ready, "ada"), Person(ready, "bo")
+    await ada.ask(SelectMode(Mode.DUAL))
+    await ada.ask(Track())
+    await ready.until(lambda seen: seen.in_position and seen.control.holder is None)
+    assert ready.tracker().activity is ActivityName.TRACKING
+    await bo.ask(RequestControl(("T1",)))
+    cy = Person(ready, "cy", rank=2)
+    await cy.ask(TAKE)
+    await ready.forward(seconds=11)
+    assert ready.tracker().control.holder == "cy"
+    assert ready.tracker().activity is ActivityName.TRACKING
+
+
+async def test_a_program_gives_way_to_a_person_at_once(ready: Plant) -> None:
+    ada, program = Person(ready, "ada"), Person(ready, "scada (token)", via="token")
+    await program.ask(AWAY)
+    with pytest.raises(ControlHeld):
+        await ada.ask(Track())
+    await ada.ask(RequestControl(("T1",)))
+    assert ready.tracker().control.holder == "ada"
+    await ready.forward(seconds=1)
+    assert not ready.site.model.tracker("T1").moving
+    with pytest.raises(ControlHeld, match="ada has control"):
+        await program.ask(AWAY)
+
+
+async def test_a_group_is_taken_as_a_whole_or_not_at_all() -> None:
+    plant = make_plant(trackers=(TrackerState(TrackerConfig("T1", "One"), TrackerMemory()), SECOND))
+    await plant.start()
+    ada, bo = Person(plant, "ada"), Person(plant, "bo")
+    await bo.ask(RequestControl(("T2",)))
+    with pytest.raises(ControlHeld, match="bo has control of Tracker 2"):
+        await ada.ask(RequestControl(("T2", "T1")))
+    assert plant.tracker("T1").control.holder is None
+    await bo.ask(ReleaseControl("T2"))
+    await ada.ask(RequestControl(("T2", "T1")))
+    assert [plant.tracker(one).control.holder for one in ("T1", "T2")] == ["ada", "ada"]
+    await plant.close()
+
+
+@pytest.mark.fault(61)
+async def test_an_order_from_before_a_restart_is_refused(ready: Plant) -> None:
+    ada = Person(ready, "ada")
+    await ada.ask(RequestControl(("T1",)))
+    epoch, stored = ada.epoch, ready.site.model.tracker("T1").state
+    assert stored.memory.control_epoch == epoch
+    later = make_plant(trackers=(stored,))
+    await later.start()
+    with pytest.raises(ControlLost):
+        await Person(later, "ada").ask(AWAY, epoch=epoch)
+    assert later.tracker().control.epoch > epoch
+    await later.close()
+
+
+async def test_locked_settings_stay_until_an_engineer_says_why(ready: Plant) -> None:
+    ada = Person(ready, "ada", rank=2)
+    config = ready.site.model.tracker("T1").config
+    await ada.ask(LockSettings("T1"))
+    assert ready.tracker().settings_lock is not None
+    for change in (
+        ConfigureTracker(config),
+        SetLocation(Location(0.0, 0.0, 0.0), "UTC"),
+        SetZero(),
+    ):
+        with pytest.raises(CommandRejected, match="settings of Tracker 1 were locked by ada"):
+            await ada.ask(change)
+    await ada.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
+    with pytest.raises(CommandRejected, match="needs a reason"):
+        await ada.ask(UnlockSettings("T1", " "))
+    await ada.ask(UnlockSettings("T1", "a new gear"))
+    await ada.ask(ConfigureTracker(config))
+    assert ready.happened(EventKind.SETTINGS_UNLOCKED)[0].message.endswith("Reason: a new gear")
