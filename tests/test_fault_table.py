@@ -5,7 +5,6 @@ import re
 from tests.fault_table import PAGE, proofs, rows
 
 OPEN = {
-    25: "forbidden regions on the path",
     28: "a measure of the clock's drift",
     30: "a start without time-zone data",
     31: "23:59:60 in an API input",

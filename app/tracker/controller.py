@@ -56,6 +56,7 @@ from app.tracker.proofs import Proofs
 from app.tracker.protect import check_following, found, miss, obey_switches, protect
 from app.tracker.reason import Reason
 from app.tracker.recovery import recover
+from app.tracker.regions import bar
 from app.tracker.runs import at_rest
 from app.tracker.shelter import look
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
@@ -242,7 +243,7 @@ class Controller:
         mind.sun = seen.sun if turn.sun is None else turn.sun
         if turn.command is HALTED:
             return STANDING if feedback.homing and not isinstance(turn.activity, Homing) else HALTED
-        return self._note(obey_switches(mind, turn.command, feedback))
+        return self._note(bar(mind, obey_switches(mind, turn.command, feedback), feedback))
 
     def _first_reading(self) -> None:
         """Decide once whether tracking goes on after a restart."""

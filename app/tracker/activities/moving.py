@@ -17,6 +17,7 @@ from app.tracker.mounts.abilities import axis_of, axis_title
 from app.tracker.pace import paced
 from app.tracker.protections.words import StowName
 from app.tracker.reason import Reason
+from app.tracker.regions import entered, forbidden
 from app.tracker.runs import arrived, new_run
 from app.tracker.selection import at_orientation, confirm_mode, out_of_reach
 from app.tracker.snapshot import EventKind
@@ -27,7 +28,9 @@ LARGEST_STEP_DEG = 5.0
 
 def move(mind: Mind, command: Move) -> None:
     """Go to an orientation, or raise `CommandRejected`."""
-    feedback = demand_drive(mind, Action.MOVE, out_of_reach(mind, command.orientation))
+    feedback = demand_drive(
+        mind, Action.MOVE, out_of_reach(mind, command.orientation), _in_the_way(mind, command.orientation)
+    )
     switch_tracking_off(mind, "a move was commanded.")
     _go(mind, feedback, command.orientation, MoveKind.MOVE)
 
@@ -95,6 +98,18 @@ def _begin(mind: Mind, feedback: Feedback, target: AxisPair, kind: MoveKind, tex
     run = new_run(paced(mind), feedback, target, begins_at(mind), by_hand=kind is MoveKind.STEP)
     mind.activity = Moving(kind, run, mind.actor)
     mind.say(EventKind.MOVE_STARTED, text, move=kind)
+
+
+def _in_the_way(mind: Mind, orientation: Orientation) -> Reason | None:
+    """Return the forbidden region that a move would lead through."""
+    feedback = mind.feedback
+    if feedback is None or not mind.config.machine.regions:
+        return None
+    target = aim(mind.config, mind.memory.pointing, orientation, feedback.azimuth.position_deg)
+    pair = AxisPair(target.azimuth_deg, target.elevation_deg)
+    run = new_run(paced(mind), feedback, pair, mind.now)
+    region = entered(mind.config, run.command, feedback)
+    return None if region is None else forbidden(mind.config, region)
 
 
 def _step_size(command: Step) -> Reason | None:

@@ -17,6 +17,7 @@ from app.tracker.reason import Reason
 from app.tracker.snapshot import Snapshot
 from app.tracker.strategy import Strategy
 from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, Output, TrackerId
+from app.web.api.machine_inputs import MachineChange
 from app.web.api.mount_inputs import ActuatorIn, MountChange
 from app.web.api.orders import SenderDep, tracker_of
 from app.web.api.protection_inputs import ProtectionChange, kept_azimuths
@@ -121,6 +122,7 @@ class TrackerChange(Input):
         None, description="When the tracker moves; given as a whole."
     )
     hybrid: HybridChange | None = Field(None, description="Correction by photo-sensor pairs.")
+    machine: MachineChange | None = Field(None, description="Machine protections, recovery, regions.")
     protection: ProtectionChange | None = Field(None, description="Wind, snow, light, stow positions.")
 
 
