@@ -1,0 +1,43 @@
+"""Every reason that says something is wrong is an alarm, and every alarm is in the operator's guide."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+from app.alarms.catalogue import ENTRIES, Entry
+
+ROOT = Path(__file__).resolve().parents[2]
+GUIDE = (ROOT / "docs" / "operators-guide.md").read_text()
+FAULTS = ("guards.py", "protect.py", "activities/faulted.py")
+WHERE = ROOT / "app" / "tracker"
+EVENTS_ONLY = {"drive_back", "not_homed"}
+"""A drive that came back in order asks for nothing; a lost zero is told by `home_lost`."""
+
+
+@pytest.mark.parametrize("entry", ENTRIES, ids=lambda one: one.code)
+def test_every_alarm_has_its_entry_in_the_operators_guide(entry: Entry) -> None:
+    row = next(line for line in GUIDE.splitlines() if f'id="alarm-{entry.code}"' in line)
+    for said in (entry.title, f"| {entry.priority} |", entry.consequence, entry.do):
+        assert said in row
+
+
+def test_every_fault_of_the_guards_is_an_alarm() -> None:
+    found = {code for name in FAULTS for code in _codes(WHERE / name)}
+    assert len(found) > 8
+    assert found - {one.code for one in ENTRIES} - EVENTS_ONLY == set(), (
+        "write an entry for each in app/alarms/catalogue.py and in docs/operators-guide.md, chapter Alarms"
+    )
+
+
+def _codes(path: Path) -> set[str]:
+    """Return the codes of the reasons that a module makes."""
+    return {
+        str(node.args[0].value)
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.Call)
+        and isinstance(node.func, ast.Name)
+        and node.func.id == "Reason"
+        and node.args
+        and isinstance(node.args[0], ast.Constant)
+    }

@@ -1,0 +1,126 @@
+"""Alarms and the journal over API and pages, with the real site behind them."""
+
+from collections.abc import AsyncIterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.alarms.conditions import Condition
+from tests.web.desk import Desk
+
+FULL = Condition("disk_full", None, "Site", "12 MB are free.")
+DOWN = Condition("gateway_down", None, "Site", "MQTT is down.")
+
+
+@pytest.fixture
+async def desk(tmp_path: Path) -> AsyncIterator[Desk]:
+    async with Desk(tmp_path) as found:
+        found.plant.site.trouble("disk", FULL)
+        found.plant.site.trouble("mqtt", DOWN)
+        await found.forward(34)
+        yield found
+
+
+async def standing(desk: Desk) -> dict[str, dict[str, Any]]:
+    answer = await desk.ask("GET", "/api/v1/alarms")
+    return {one["alarm_id"]: one for one in answer.json()["alarms"]}
+
+
+async def test_an_alarm_is_told_acknowledged_and_kept_in_the_history(desk: Desk) -> None:
+    found = (await standing(desk))["disk_full"]
+    assert (found["priority"], found["state"], found["where"]) == (2, "unacknowledged", "Site")
+    answer = await desk.ask("POST", "/api/v1/alarms/disk_full/acknowledge")
+    assert answer.status_code == 200
+    assert (await standing(desk))["disk_full"]["state"] == "acknowledged"
+    desk.plant.site.trouble("disk", None)
+    await desk.forward(34)
+    assert "disk_full" not in await standing(desk)
+    history = (await desk.ask("GET", "/api/v1/alarms/history?priority=2")).json()["alarms"]
+    assert [(one["alarm"]["code"], one["ended"]) for one in history] == [("disk_full", True)]
+    page = await desk.ask("GET", "/alarms?view=history")
+    assert "Disk is full" in page.text
+
+
+async def test_shelving_needs_a_reason_and_what_was_typed_stays(desk: Desk) -> None:
+    form = {"alarm_id": "disk_full", "minutes": "480", "reason": " "}
+    answer = await desk.ask("POST", "/alarms/shelve", data=form)
+    assert answer.status_code == 422
+    assert "Say why the alarm is shelved." in answer.text
+    assert '<option value="480" selected>' in answer.text
+    done = await desk.ask("POST", "/alarms/shelve", data=form | {"reason": "A bigger disk comes."})
+    assert done.status_code == 303
+    shelved = (await standing(desk))["disk_full"]
+    assert (shelved["state"], shelved["shelved_for"]) == ("shelved", "A bigger disk comes.")
+    assert "A bigger disk comes." in (await desk.ask("GET", "/alarms?view=shelved")).text
+    await desk.ask("POST", "/api/v1/alarms/disk_full/unshelve")
+    await desk.forward(1)
+    assert (await standing(desk))["disk_full"]["state"] == "unacknowledged"
+
+
+async def test_unknown_alarms_are_404_and_long_shelves_422(desk: Desk) -> None:
+    answer = await desk.ask("POST", "/api/v1/alarms/drive_lost@T9/acknowledge")
+    assert answer.status_code == 404
+    long = {"minutes": 1441, "reason": "known"}
+    assert (await desk.ask("POST", "/api/v1/alarms/disk_full/shelve", json=long)).status_code == 422
+
+
+async def test_one_key_acknowledges_what_is_listed(desk: Desk) -> None:
+    answer = await desk.ask(
+        "POST", "/alarms/acknowledge", data={"alarm_id": ["disk_full", "gateway_down"], "back": "/alarms?p=2"}
+    )
+    assert (answer.status_code, answer.headers["location"]) == (303, "/alarms?p=2")
+    assert {one["state"] for one in (await standing(desk)).values()} == {"acknowledged"}
+
+
+async def test_the_list_is_narrowed_to_priorities(desk: Desk) -> None:
+    page = (await desk.ask("GET", "/alarms?p=4")).text
+    assert 'id="alarm-gateway_down"' in page
+    assert 'id="alarm-disk_full"' not in page
+
+
+async def test_every_alarm_is_in_the_guide_of_the_panel_and_the_api(desk: Desk) -> None:
+    kinds = (await desk.ask("GET", "/api/v1/alarms/catalogue")).json()
+    page = (await desk.ask("GET", "/alarms/guide")).text
+    assert all(f'id="alarm-{one["code"]}"' in page for one in kinds)
+
+
+async def test_the_journal_is_narrowed_and_handed_out_as_a_file(desk: Desk) -> None:
+    await desk.ask("POST", "/api/v1/alarms/disk_full/acknowledge")
+    found = (await desk.ask("GET", "/api/v1/journal?text=DISK%20is&kind=alarm_raised")).json()["entries"]
+    assert [one["event"]["data"]["code"] for one in found] == ["disk_full"]
+    actor = found[0]["event"]["actor"]
+    assert actor == "machine"
+    others = (await desk.ask("GET", "/api/v1/journal?kind=alarm_raised&actor=nobody")).json()
+    assert others["entries"] == []
+    file = await desk.ask("GET", "/api/v1/journal/export?kind=alarm_acknowledged")
+    head, line = file.text.splitlines()
+    assert head == "number,at,kind,tracker_id,actor,message,data"
+    assert "was acknowledged." in line
+    whole = (await desk.ask("GET", "/api/v1/journal/export?format=json")).json()
+    assert {"alarm_raised", "alarm_acknowledged", "machine_started"} & {one["kind"] for one in whole}
+    assert (await desk.ask("GET", "/api/v1/journal/export?format=json&actor=nobody")).json() == []
+
+
+async def test_the_journal_page_keeps_what_was_typed(desk: Desk) -> None:
+    page = await desk.ask("GET", "/journal?text=disk&kind=alarm_raised&since=2027-06-21")
+    assert page.status_code == 200
+    assert 'value="disk"' in page.text
+    assert "/api/v1/journal/export?format=csv&amp;kind=alarm_raised&amp;text=disk" in page.text
+    wrong = await desk.ask("GET", "/journal?since=tomorrow")
+    assert wrong.status_code == 422
+    assert 'value="tomorrow"' in wrong.text
+
+
+async def test_where_alarms_are_sent_is_set_on_a_page_and_over_the_api(desk: Desk) -> None:
+    wrong = await desk.ask("POST", "/site/notifications", data={"mail_to": "ayse", "mail_priority": ["1"]})
+    assert wrong.status_code == 422
+    assert 'value="ayse"' in wrong.text
+    form = {"mail_to": "ayse@example.org", "mail_priority": ["1", "3"]}
+    assert (await desk.ask("POST", "/site/notifications", data=form)).status_code == 303
+    kept = (await desk.ask("GET", "/api/v1/site/notifications")).json()
+    assert (kept["mail_to"], kept["mail_priorities"]) == (["ayse@example.org"], [1, 3])
+    body = {"webhook_url": "gopher://example.org"}
+    assert (await desk.ask("PUT", "/api/v1/site/notifications", json=body)).status_code == 422
+    assert (await desk.ask("POST", "/api/v1/site/notifications/webhook/test")).status_code == 409
+    assert (await desk.ask("POST", "/api/v1/site/notifications/mail/test")).status_code == 202
