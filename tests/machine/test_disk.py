@@ -1,0 +1,131 @@
+"""The disk fails under a running service: tracking goes on, everybody is told, nothing is half written."""
+
+import signal
+import sqlite3
+from collections.abc import AsyncIterator
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+import pytest_asyncio
+
+from app.link.messages import RenameSite, SetClock, SetLocation
+from app.store.engine import open_reader
+from app.store.store import JournalFilter
+from app.tracker.alarm_words import AlarmState
+from app.tracker.commands import CommandRejected, SelectMode, SetZero, Stop, Track
+from app.tracker.mode import Mode
+from app.tracker.snapshot import ActivityName
+from tests.machine.failing_disk import DiskFault, failing, needs_strace
+from tests.machine.service import SAMSUN, Service, eventually
+
+LATEST_TICK_S = 1.0
+WATCHED_S = 2.5
+GONE = (AlarmState.RETURNED, AlarmState.NORMAL)
+
+pytestmark = [needs_strace, pytest.mark.asyncio(loop_scope="module")]
+
+
+@pytest_asyncio.fixture(scope="module", loop_scope="module")
+async def service(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Service]:
+    """A service whose simulated tracker tracks, for all stories of this module, one after the other."""
+    started = await Service.start(tmp_path_factory.mktemp("disk") / "data")
+    await started.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
+    await started.ask(SetClock("system"))
+    await begin_to_track(started)
+    yield started
+    await started.stop()
+
+
+async def begin_to_track(service: Service) -> None:
+    """Call the place where the axes stand zero, as often as the drive has lost it, and track."""
+    await service.ask_until_taken(Stop())
+    await service.until(lambda seen: not seen.actions["zero"])
+    await service.ask(SetZero())
+    await service.until(lambda seen: seen.home_trusted and seen.activity is ActivityName.HOLDING)
+    await service.ask(SelectMode(Mode.DUAL))
+    await service.ask(Track())
+
+
+async def watch_ticks(service: Service) -> None:
+    """Fail unless the machine ticks on as if nothing had happened, and tracks."""
+    before = await service.link.metrics()
+    await eventually_after(service, before.uptime_s + WATCHED_S)
+    after = await service.link.metrics()
+    ticked = after.trackers["T1"].ticks - before.trackers["T1"].ticks
+    assert ticked >= (after.uptime_s - before.uptime_s) * 10 - LATEST_TICK_S * 10
+    seen = service.tracker()
+    assert seen is not None
+    assert seen.activity is ActivityName.TRACKING
+    assert after.boot_id == before.boot_id
+
+
+async def eventually_after(service: Service, uptime_s: float) -> None:
+    while (await service.link.metrics()).uptime_s < uptime_s:
+        await eventually(lambda: service.link.latest() is not None)
+
+
+def alarms(service: Service) -> set[str]:
+    latest = service.link.latest()
+    return set() if latest is None else {alarm.code for alarm in latest.alarms if alarm.state not in GONE}
+
+
+def check_database(service: Service, name: str) -> None:
+    """Fail if the database is damaged, or holds half of a change."""
+    path = service.data_dir / "heliopanel.db"
+    with closing(sqlite3.connect(path)) as connection:
+        assert connection.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
+    reader = open_reader(f"sqlite:///{path}")
+    site, journal = reader.site(), reader.journal(JournalFilter(limit=1000))
+    reader.close()
+    assert site is not None
+    assert site.name == name
+    told = [entry.event.message for entry in journal if "The site is now called" in entry.event.message]
+    assert told[0] == f"The site is now called {name}."
+
+
+async def refused(service: Service, name: str) -> str:
+    with pytest.raises(CommandRejected) as rejected:
+        await service.ask(RenameSite(name))
+    assert [reason.code for reason in rejected.value.reasons] == ["not_stored"]
+    return str(rejected.value)
+
+
+@pytest.mark.fault(50)
+async def test_a_stalled_card_delays_what_is_stored_and_no_tick(service: Service, tmp_path: Path) -> None:
+    async with failing(service.starts("machine")[-1], DiskFault.STALLED, tmp_path / "log"):
+        await service.ask(RenameSite("Slowly"))
+        await watch_ticks(service)
+    check_database(service, "Slowly")
+
+
+@pytest.mark.fault(49)
+async def test_a_full_disk_stops_no_tracking_and_what_waited_is_stored_once_there_is_room(
+    service: Service, tmp_path: Path
+) -> None:
+    await service.ask(RenameSite("Before"))
+    async with failing(service.starts("machine")[-1], DiskFault.FULL, tmp_path / "log"):
+        assert "The disk is full" in await refused(service, "Not stored")
+        await watch_ticks(service)
+        await eventually(lambda: "store_behind" in alarms(service))
+    check_database(service, "Before")
+    await eventually(lambda: "store_behind" not in alarms(service))
+    await service.ask(RenameSite("After"))
+    check_database(service, "After")
+
+
+@pytest.mark.fault(50)
+@pytest.mark.parametrize("fault", [DiskFault.NO_SYNC, DiskFault.READ_ONLY])
+async def test_a_disk_that_fails_is_not_trusted_until_it_was_opened_and_checked_again(
+    service: Service, tmp_path: Path, fault: DiskFault
+) -> None:
+    await service.ask(RenameSite(f"Before {fault}"))
+    async with failing(service.starts("machine")[-1], fault, tmp_path / "log"):
+        assert "Check the disk or card, then restart Heliopanel" in await refused(service, "Not stored")
+        await watch_ticks(service)
+        await eventually(lambda: "store_behind" in alarms(service))
+    await refused(service, "Still not stored")
+    service.signal("machine", signal.SIGKILL)
+    await begin_to_track(service)
+    await service.ask(RenameSite("Again"))
+    check_database(service, "Again")
