@@ -2,6 +2,8 @@
 # make test : sets up what tests need and runs them all, browser tests included
 # make check: formatting, lint, types, import contracts, migrations, vendored files
 # make fuzz : 10,000 cases against the API and hostile values for every form; takes minutes
+# make soak : the long proofs: millions of random ticks, 1,000 kills, 300 power cuts, a day of 20 trackers
+# make mutants: changes the guards' code in a copy, one place at a time, and counts what their tests notice
 # make bench: measures and writes docs/benchmarks.md
 
 PYTHON ?= python3
@@ -46,6 +48,14 @@ test: $(VENV)/.dev system-packages ## Set up what tests need and run them all, b
 	@$(BIN)/python -m pytest -n 2 --dist loadfile $(ON_PROCESSES:%=--ignore=%)
 	@echo "Running the tests on real sockets, processes and in the browser, one at a time, as they measure ..."
 	@$(BIN)/python -m pytest $(ON_PROCESSES)
+
+soak: $(VENV)/.dev system-packages ## Run the long proofs (hours): random operation, kills, power cuts, a day of a field
+	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/store/test_power_cut.py tests/tracker/test_stateful.py tests/site/test_field.py
+	@HELIOPANEL_TEST_KILLS=$${HELIOPANEL_TEST_KILLS:-1000} $(BIN)/python -m pytest -s tests/e2e/test_kill.py
+
+mutants: $(VENV)/.dev ## Change the guards' code place by place, in a copy, and count what their tests notice
+	@$(BIN)/mutmut run --max-children 2 >mutants.log 2>&1 || { tail -n 20 mutants.log; exit 1; }
+	@$(BIN)/mutmut results
 
 browser: $(VENV)/.dev system-packages ## Run the browser tests alone; screenshots go to build/screens
 	@$(BIN)/python -m pytest tests/browser

@@ -2,7 +2,9 @@
 
 import random
 import signal
+import sqlite3
 import time
+from contextlib import closing
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -127,6 +129,9 @@ class Killing:
         assert len(started) == len(self.names) + 1
         assert started[0]["data"]["clean"] is False
         assert "without warning" in started[0]["message"]
+        path = self.product.data_dir / "heliopanel.db"
+        with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
+            assert database.execute("PRAGMA quick_check").fetchall() == [("ok",)]
 
     def _stop(self) -> None:
         self.integrator.post("/stop")

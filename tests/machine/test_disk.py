@@ -73,7 +73,7 @@ def alarms(service: Service) -> set[str]:
 def check_database(service: Service, name: str) -> None:
     """Fail if the database is damaged, or holds half of a change."""
     path = service.data_dir / "heliopanel.db"
-    with closing(sqlite3.connect(path)) as connection:
+    with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as connection:
         assert connection.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
     reader = open_reader(f"sqlite:///{path}")
     site, journal = reader.site(), reader.journal(JournalFilter(limit=1000))
