@@ -82,6 +82,7 @@ class Frame:
     back: Link | None
     forward: Forward | None
     who: Who = field(default_factory=Who)
+    is_bare: bool = False
 
     @property
     def name(self) -> str:

@@ -30,6 +30,7 @@ from app.web.documented import DocumentedApp
 from app.web.gate import Gate
 from app.web.hub import Hub
 from app.web.limits import StreamLimit
+from app.web.mdns import announced
 from app.web.routes import guarded_routes
 from app.web.security import LARGEST_BODY, Guard, SecurityHeaders, Uploads, host_names
 from app.web.server import (
@@ -115,6 +116,8 @@ async def _living(app: FastAPI) -> AsyncIterator[None]:
         if isinstance(panel.reader, DatabaseReader):
             stack.callback(panel.reader.close)
         stack.callback(panel.keeper.close)
+        if panel.settings.mdns:
+            await stack.enter_async_context(announced(panel.settings))
         following = asyncio.gather(panel.hub.run(), panel.keeper.run())
         try:
             yield

@@ -130,6 +130,7 @@ def _frame(
         back=back,
         forward=forward,
         who=who_looks(request),
+        is_bare=panel(request).settings.is_bare,
     )
 
 

@@ -1,0 +1,188 @@
+"""Network: what becomes of ticks, requests, Stop and memory while one computer attacks the panel
+
+The bounds: ticks at most 50 ms late, a stop answered within 100 ms (p99), the panel's memory within 120 MB.
+"""
+
+import asyncio
+import contextlib
+import tempfile
+import time
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import httpx
+
+from bench.table import Row
+from tests.e2e.integrator import Integrator
+from tests.e2e.product import Product
+
+COMMAND = "python -m bench network"
+LASTS_S = 9.0
+PROBE_EVERY_S = 0.05
+STOP_MS, MEMORY_MB, LATE_MS = 100.0, 120.0, 50.0
+HALF = b"GET /health HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Slow: "
+STREAM = b"GET /api/v1/stream HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
+DEEP = b"[" * 900_000
+BIG_HEAD = b"PATCH /api/v1/site HTTP/1.1\r\nHost: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n\r\n"
+Attack = Callable[[int, float], Awaitable[None]]
+
+
+@dataclass(frozen=True, slots=True)
+class Felt:
+    """How the attack was felt: times of stops and of pages, what was refused, memory, and lateness."""
+
+    stops_ms: list[float]
+    pages_ms: list[float]
+    failed: int
+    memory_mb: float
+    late: str
+
+
+def measure() -> list[Row]:
+    """Return what each attack did to a running panel."""
+    with tempfile.TemporaryDirectory() as folder:
+        product = Product.start(Path(folder) / "data")
+        try:
+            calling = Integrator(product.url)
+            calling.place_and_time()
+            calling.close()
+            return [_row(name, asyncio.run(_under(product, attack))) for name, attack in ATTACKS.items()]
+        finally:
+            product.stop()
+
+
+async def _under(product: Product, attack: Attack) -> Felt:
+    until = time.monotonic() + LASTS_S
+    before = await _lateness(product)
+    attacking = asyncio.create_task(attack(product.port, until))
+    stops, pages, failed, memory = [], [], 0, 0.0
+    while time.monotonic() < until:
+        for path, method, times in (("/api/v1/trackers/T1/stop", "POST", stops), ("/health", "GET", pages)):
+            took = await _probe(product.port, method, path)
+            failed += took is None
+            times += [took] if took is not None else []
+        memory = max(memory, _resident_mb(product.starts("web")[-1]))
+        await asyncio.sleep(PROBE_EVERY_S)
+    await asyncio.gather(attacking, return_exceptions=True)
+    after = await _lateness(product)
+    return Felt(stops, pages, failed, memory, _latest(before, after))
+
+
+async def _probe(port: int, method: str, path: str) -> float | None:
+    """Return how long a request on a new connection took, milliseconds; None if it was not answered."""
+    begun = time.perf_counter()
+    with contextlib.suppress(OSError, TimeoutError, IndexError):
+        async with asyncio.timeout(5):
+            reader, writer = await asyncio.open_connection("127.0.0.1", port)
+            writer.write(f"{method} {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n".encode())
+            answer = await reader.read()
+            writer.close()
+            if answer.split(b" ")[1][:1] == b"2":
+                return (time.perf_counter() - begun) * 1000
+    return None
+
+
+async def _lateness(product: Product) -> dict[str, float]:
+    """Return how many ticks were at most so late, by the bound in seconds."""
+    async with httpx.AsyncClient(timeout=10) as client:
+        text = (await client.get(f"{product.url}/metrics")).text
+    rows = [line for line in text.splitlines() if "late" in line and "_bucket" in line]
+    return {line.partition('le="')[2].partition('"')[0]: float(line.rsplit(" ", 1)[1]) for line in rows}
+
+
+def _latest(before: dict[str, float], after: dict[str, float]) -> str:
+    grown = {bound: after[bound] - before.get(bound, 0.0) for bound in after}
+    total = grown.get("+Inf", 0.0)
+    for bound in sorted((one for one in grown if one != "+Inf"), key=float):
+        if grown[bound] >= total:
+            return f"all {total:.0f} at most {float(bound) * 1000:.0f} ms late"
+    return f"{total:.0f} ticks, some later than the last bound"
+
+
+def _resident_mb(process_id: int) -> float:
+    for line in Path(f"/proc/{process_id}/status").read_text().splitlines():
+        if line.startswith("VmRSS"):
+            return float(line.split()[1]) / 1000
+    return 0.0
+
+
+async def _hold(port: int, count: int, first: bytes, again: bytes, until: float) -> None:
+    """Hold connections open that begin so and go on so once a second; those hung up on are opened anew."""
+
+    async def one() -> None:
+        while time.monotonic() < until:
+            with contextlib.suppress(OSError):
+                _, writer = await asyncio.open_connection("127.0.0.1", port)
+                writer.write(first)
+                while time.monotonic() < until and not writer.is_closing():
+                    await asyncio.sleep(1)
+                    writer.write(again)
+                writer.transport.abort()
+            await asyncio.sleep(0.5)
+
+    await asyncio.gather(*(one() for _ in range(count)))
+
+
+async def _slow(port: int, until: float) -> None:
+    await _hold(port, 200, HALF, b"a", until)
+
+
+async def _idle(port: int, until: float) -> None:
+    await _hold(port, 1000, b"", b"", until)
+
+
+async def _streams(port: int, until: float) -> None:
+    await _hold(port, 250, STREAM, b"", until)
+
+
+async def _body(port: int, until: float) -> None:
+    """Send up to a gigabyte in chunks, for as long as it is taken."""
+    sent, chunk = 0, b"100000\r\n" + b" " * 0x100000 + b"\r\n"
+    while time.monotonic() < until and sent < 1000:
+        with contextlib.suppress(OSError):
+            _, writer = await asyncio.open_connection("127.0.0.1", port)
+            writer.write(BIG_HEAD)
+            while time.monotonic() < until and sent < 1000 and not writer.is_closing():
+                writer.write(chunk)
+                sent += 1
+                await writer.drain()
+            writer.transport.abort()
+
+
+async def _deep(port: int, until: float) -> None:
+    async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{port}", timeout=10) as client:
+        headers = {"content-type": "application/json"}
+        while time.monotonic() < until:
+            with contextlib.suppress(httpx.HTTPError):
+                await client.patch("/api/v1/site", content=DEEP, headers=headers)
+
+
+async def _nothing(port: int, until: float) -> None:
+    await asyncio.sleep(max(0.0, until - time.monotonic()))
+
+
+ATTACKS: dict[str, Attack] = {
+    "nothing (for comparison)": _nothing,
+    "200 requests that never end": _slow,
+    "1,000 idle connections": _idle,
+    "250 streams": _streams,
+    "a body of 1 GB": _body,
+    "JSON 900,000 levels deep": _deep,
+}
+
+
+def _p99(times: list[float]) -> float:
+    return sorted(times)[int(len(times) * 0.99)] if times else float("inf")
+
+
+def _row(name: str, felt: Felt) -> Row:
+    return Row(
+        f"under {name}: stop p99, page p99, not answered, panel's memory, ticks",
+        f"{_p99(felt.stops_ms):.0f} ms, {_p99(felt.pages_ms):.0f} ms, "
+        f"{felt.failed} of {felt.failed + len(felt.stops_ms) + len(felt.pages_ms)}, "
+        f"{felt.memory_mb:.0f} MB, {felt.late}",
+        f"{STOP_MS:.0f} ms, -, 0, {MEMORY_MB:.0f} MB, {LATE_MS:.0f} ms",
+        f"{_p99(felt.stops_ms) / STOP_MS:.2f}",
+        COMMAND,
+    )
