@@ -24,7 +24,18 @@ from app.web.routes import STATIC, Guarded, key_of
 from app.web.security import SAFE_METHODS
 from app.web.ui.paths import login_path, proof_path
 
-WHILE_CLOSED = frozenset({STATIC, "GET /setup", "POST /setup", "GET /health", "GET /ready", "POST /theme"})
+WHILE_CLOSED = frozenset(
+    {
+        STATIC,
+        "GET /setup",
+        "POST /setup",
+        "GET /certificate",
+        "GET /certificate/ca.crt",
+        "GET /health",
+        "GET /ready",
+        "POST /theme",
+    }
+)
 STOPS_WINDOW, MOST_STOPS = timedelta(seconds=1), 10
 MOST_ADDRESSES = 1000
 OLD_PAGE = "This page is too old to change anything. Load it again, then repeat what you did."
