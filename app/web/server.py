@@ -7,7 +7,7 @@ import socket
 from collections import Counter
 from collections.abc import Callable
 from enum import Enum
-from typing import Any, assert_never
+from typing import Any, Protocol, assert_never
 
 import structlog
 import uvicorn
@@ -50,6 +50,17 @@ class Admission(Enum):
     NOTHING = "nothing"
 
 
+class Member(Protocol):
+    """A connection that is counted."""
+
+    @property
+    def is_idle(self) -> bool:
+        """Return whether no answer is under way on it."""
+
+    def hang_up(self) -> None:
+        """End it, and count it no more."""
+
+
 class Connections:
     """How many plain connections each client holds, and how many there may be; some are kept for Stop."""
 
@@ -58,6 +69,7 @@ class Connections:
         self._most_a_client = most_a_client
         self._held: Counter[str] = Counter()
         self._reserved: Counter[str] = Counter()
+        self._members: dict[str, dict[Member, None]] = {}
 
     def enter(self, client: str) -> Admission:
         """Count one more connection of a client, and return what it may be used for."""
@@ -67,6 +79,28 @@ class Connections:
             return Admission.NOTHING
         self._reserved[client] += 1
         return Admission.STOP
+
+    def join(self, client: str, member: Member) -> Admission:
+        """Count a connection; where a client's share is used up, its oldest idle connection makes room."""
+        admission = self.enter(client)
+        if admission is not Admission.ANYTHING and (oldest := self._oldest_idle(client)) is not None:
+            self.leave(client, admission)
+            oldest.hang_up()
+            admission = self.enter(client)
+        if admission is not Admission.NOTHING:
+            self._members.setdefault(client, {})[member] = None
+        return admission
+
+    def part(self, client: str, member: Member, admission: Admission) -> None:
+        """Count a connection no more."""
+        mine = self._members.get(client, {})
+        mine.pop(member, None)
+        if not mine:
+            self._members.pop(client, None)
+        self.leave(client, admission)
+
+    def _oldest_idle(self, client: str) -> Member | None:
+        return next((one for one in self._members.get(client, ()) if one.is_idle), None)
 
     def leave(self, client: str, admission: Admission) -> None:
         """Count one less."""
@@ -122,7 +156,7 @@ class CautiousHttp(HttpToolsProtocol):
         """Begin to wait for a request, or hang up on a client that has too many connections."""
         super().connection_made(transport)
         self._name = self.client[0] if self.client else ""
-        self._admission = self._counted.enter(self._name)
+        self._admission = self._counted.join(self._name, self)
         if self._admission is Admission.NOTHING:
             log.warning("a client has too many connections", client=self._name)
             transport.abort()
@@ -154,6 +188,17 @@ class CautiousHttp(HttpToolsProtocol):
             return
         super().on_headers_complete()
 
+    @property
+    def is_idle(self) -> bool:
+        """Return whether no answer is under way: nothing was asked, or not all of it, or it is answered."""
+        return self.cycle is None or self.cycle.response_complete
+
+    def hang_up(self) -> None:
+        """End the connection, and count it no more."""
+        self._settle()
+        self._release()
+        self.transport.abort()
+
     def _is_stop(self) -> bool:
         return self.parser.get_method() == b"POST" and STOPS.fullmatch(self.url) is not None
 
@@ -184,7 +229,7 @@ class CautiousHttp(HttpToolsProtocol):
             self._deadline = None
 
     def _release(self) -> None:
-        self._counted.leave(self._name, self._admission)
+        self._counted.part(self._name, self, self._admission)
         self._admission = Admission.NOTHING
 
 
