@@ -237,7 +237,7 @@ class Site:
                 command, taken = await control.admit(self.model, loop, order, command)
             if taken:
                 self._publish(taken)
-            events = await tracker_orders.command(self.model, loop, command, order.actor)
+            events = await tracker_orders.command(self.model, loop, command, order.actor, order.via)
             newest = self._outlet.latest
             if isinstance(command, Jog) and not events and newest is not None:
                 return newest

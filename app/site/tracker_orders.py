@@ -21,7 +21,9 @@ NOT_RECORDED = Reason(
 log = structlog.get_logger(__name__)
 
 
-async def command(model: SiteModel, loop: TrackerLoop, given: Command, actor: str) -> tuple[Event, ...]:
+async def command(
+    model: SiteModel, loop: TrackerLoop, given: Command, actor: str, via: str = ""
+) -> tuple[Event, ...]:
     """Have the controller obey, and return once what changed is on disk; a jog does not wait for that.
 
     Without a store that works everything but a stop is refused, and a jog that lasts ends with its lease.
@@ -35,7 +37,7 @@ async def command(model: SiteModel, loop: TrackerLoop, given: Command, actor: st
         return _repair(model, loop, given, actor)
     if model.ledger.behind and not isinstance(given, EndJog):
         raise CommandRejected(NOT_RECORDED)
-    events = loop.controller.handle(given, model.clock.now(), actor)
+    events = loop.controller.handle(given, model.clock.now(), actor, via)
     if isinstance(given, RunShow):
         model.recorder.announce(loop.config.tracker_id, given.plan)
     if events or not isinstance(given, Jog):

@@ -2,13 +2,10 @@
 
 from datetime import datetime, timedelta
 
+from app.tracker.control import PROGRAMS
 from app.tracker.mind import Mind, Warned
 from app.tracker.reason import Reason
 from app.tracker.snapshot import EventKind
-
-REMOTE = ("mqtt ", "sunspec ")
-PROGRAM = "(token)"
-"""What the actor of an order begins or ends with that came from another machine."""
 
 
 def announce(mind: Mind, why: str) -> None:
@@ -23,7 +20,7 @@ def announce(mind: Mind, why: str) -> None:
 
 def announce_if_remote(mind: Mind, why: str) -> None:
     """Warn of a motion that another machine asked for."""
-    if mind.actor.startswith(REMOTE) or mind.actor.endswith(PROGRAM):
+    if mind.via in PROGRAMS:
         announce(mind, why)
 
 

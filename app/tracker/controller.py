@@ -111,14 +111,17 @@ class Controller:
         """Return whether the drive is to be told nothing at all, so that its watchdog is not fed."""
         return measuring.is_silent(self._mind)
 
-    def handle(self, command: Command, now: datetime, actor: str = "operator") -> tuple[Event, ...]:
+    def handle(
+        self, command: Command, now: datetime, actor: str = "operator", via: str = ""
+    ) -> tuple[Event, ...]:
         """Obey a command and return what happened, or raise `CommandRejected` with all unmet conditions.
 
         `now` is the machine's steady time, as in `Observation.now`. The drive hears of it at the next tick.
+        `via` is how whoever ordered was known, as in `Order`: what a program starts is announced.
         """
         mind = self._mind
         mind.site_time = mind.seen.site_time + (now - mind.seen.now) if mind.seen else now
-        mind.now, mind.actor = now, actor
+        mind.now, mind.actor, mind.via = now, actor, via
         obey(mind, command)
         mind.aftermath = None
         return mind.drain()
@@ -129,6 +132,7 @@ class Controller:
         if mind.config.mount.single_axis:
             seen = replace(seen, feedback=as_mounted(mind.config, seen.feedback))
         mind.now, mind.site_time, mind.seen, mind.actor = seen.now, seen.site_time, seen, "machine"
+        mind.via = ""
         mind.ticks += 1
         if mind.started_at is None:
             self._start(seen.now)

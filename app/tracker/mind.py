@@ -84,6 +84,7 @@ class Mind:
         "target",
         "ticks",
         "told_before",
+        "via",
         "wait",
         "warning",
         "watches",
@@ -96,6 +97,7 @@ class Mind:
         self.capabilities = capabilities
         self.activity: Activity = HOLDING
         self.actor = "machine"
+        self.via = ""
         self.now = LONG_AGO
         self.site_time = LONG_AGO
         self.started_at: datetime | None = None

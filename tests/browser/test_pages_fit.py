@@ -24,6 +24,7 @@ PAGES = {
     "settings": f"{T1}/settings",
     "drive": f"{T1}/drive",
     "proofs": f"{T1}/proofs",
+    "protections": f"{T1}/protections",
     "show": SHOW,
     "recordings": "/recordings",
     "player": "/recordings/show-1",

@@ -57,9 +57,9 @@ class Plant:
         self.clock.move_to(at)
         self.controller = Controller(config, memory, self.drive.capabilities)
 
-    def ask(self, command: Command, actor: str = "technician") -> list[EventKind]:
+    def ask(self, command: Command, actor: str = "technician", via: str = "") -> list[EventKind]:
         """Give a command and tick at once, as the loop does; return what happened."""
-        happened = list(self.controller.handle(command, self.clock.now(), actor))
+        happened = list(self.controller.handle(command, self.clock.now(), actor, via))
         self.events += happened
         happened += self.tick()
         return [event.kind for event in happened]

@@ -391,10 +391,10 @@ def test_a_lock_bears_a_name(name: str) -> None:
         plant.ask(LockOut(name))
 
 
-@pytest.mark.parametrize("actor", ["mqtt broker", "sunspec 10.0.0.5", "scada (token)"])
-def test_what_another_machine_starts_is_announced(actor: str) -> None:
+@pytest.mark.parametrize("via", ["mqtt", "sunspec", "token"])
+def test_what_another_machine_starts_is_announced(via: str) -> None:
     plant = Plant(READY).blow().forward(1)
-    plant.ask(Move(Orientation(90.0, 30.0)), actor)
+    plant.ask(Move(Orientation(90.0, 30.0)), via=via)
     before = plant.azimuth_deg
     plant.forward(4.7)
     assert plant.azimuth_deg == before
@@ -407,7 +407,7 @@ def test_what_another_machine_starts_is_announced(actor: str) -> None:
 def test_what_somebody_at_the_machine_starts_begins_at_once() -> None:
     plant = Plant(READY).blow().forward(1)
     before = plant.azimuth_deg
-    plant.ask(Move(Orientation(90.0, 30.0)))
+    plant.ask(Move(Orientation(90.0, 30.0)), "mqtt (token)", via="session")
     plant.forward(1)
     assert plant.azimuth_deg > before
     assert not plant.happened(EventKind.MOTION_ANNOUNCED)

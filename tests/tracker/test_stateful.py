@@ -108,7 +108,7 @@ LIGHTS = st.sampled_from([700.0, 600.0, 49.0, 0.0, None])
 JUMPS = st.sampled_from(
     [timedelta(hours=1), timedelta(hours=-1), timedelta(days=-365), timedelta(days=30), timedelta(seconds=5)]
 )
-SENDERS = st.sampled_from(["somebody", "mqtt plant", "scheduler (token)"])
+SENDERS = st.sampled_from(["", "session", "mqtt", "token"])
 
 
 class Operation(RuleBasedStateMachine):
@@ -129,9 +129,9 @@ class Operation(RuleBasedStateMachine):
         self.plant.tick()
         self.witness.see()
 
-    @rule(command=COMMANDS, sender=SENDERS)
-    def command(self, command: Command, sender: str) -> None:
-        self._ask(command, sender)
+    @rule(command=COMMANDS, via=SENDERS)
+    def command(self, command: Command, via: str) -> None:
+        self._ask(command, via)
 
     @rule(axis=AXES, direction=st.sampled_from([-1, 1]), seconds=st.floats(0.1, 3.0))
     def hold_a_key(self, axis: Axis, direction: int, seconds: float) -> None:
@@ -248,10 +248,10 @@ class Operation(RuleBasedStateMachine):
     def _forward(self, seconds: float) -> None:
         self.plant.forward(seconds, self.witness.see)
 
-    def _ask(self, command: Command, sender: str = "somebody") -> bool:
+    def _ask(self, command: Command, via: str = "") -> bool:
         """Give a command; a refusal has reasons that are sentences."""
         try:
-            happened = self.plant.controller.handle(command, self.plant.clock.now(), sender)
+            happened = self.plant.controller.handle(command, self.plant.clock.now(), "somebody", via)
         except CommandRejected as rejected:
             refused = rejected.reasons
         else:
