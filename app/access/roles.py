@@ -67,6 +67,8 @@ ORDERS: dict[str, Permission] = {
     "resume": Permission.OPERATE,
     "lock_out": Permission.OPERATE,
     "release_lock": Permission.OPERATE,
+    "play_fault": Permission.CONFIGURE,
+    "clear_faults": Permission.CONFIGURE,
     "begin_service": Permission.CONFIGURE,
     "confirm_clear": Permission.CONFIGURE,
     "end_service": Permission.CONFIGURE,

@@ -77,6 +77,11 @@ class CorrectedDrive:
         self._elevation = elevation
 
     @property
+    def inner(self) -> Drive:
+        """Return the drive behind this one."""
+        return self._inner
+
+    @property
     def capabilities(self) -> DriveCapabilities:
         """Return what the drive can do."""
         return self._inner.capabilities

@@ -36,6 +36,11 @@ class TransmittedDrive:
         self._angles_deg = dict.fromkeys(Axis, 0.0)
 
     @property
+    def inner(self) -> Drive:
+        """Return the drive behind this one."""
+        return self._inner
+
+    @property
     def capabilities(self) -> DriveCapabilities:
         """Return what the drive can do."""
         can = self._inner.capabilities

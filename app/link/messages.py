@@ -304,6 +304,23 @@ NotificationOrder = SetNotifications | TestNotification
 """What concerns where alarms are sent."""
 
 
+@dataclass(frozen=True, slots=True)
+class PlayFault:
+    """Play a fault of the lessons on a tracker that is simulated in the machine's process."""
+
+    tracker_id: str
+    fault: str
+    kind: Literal["play_fault"] = "play_fault"
+
+
+@dataclass(frozen=True, slots=True)
+class ClearFaults:
+    """End every fault that is played on a simulated tracker."""
+
+    tracker_id: str
+    kind: Literal["clear_faults"] = "clear_faults"
+
+
 SiteCommand = (
     SetLocation | SetClock | RenameSite | AddTracker | ConfigureTracker | RemoveTracker | ConfirmStep
     | SavePlan | TakeSighting | ApplySightings | StopAll | SaveRecording | DeleteRecording
@@ -312,6 +329,7 @@ SiteCommand = (
     | AcknowledgeAlarm | ShelveAlarm | UnshelveAlarm | SetNotifications | TestNotification
     | RequestControl | AnswerControl | ReleaseControl | RenewControl
     | LockSettings | UnlockSettings
+    | PlayFault | ClearFaults
 )  # fmt: skip
 
 

@@ -14,10 +14,12 @@ from app.link.messages import (
     AnswerScale,
     ApplySightings,
     CheckConnection,
+    ClearFaults,
     ConfigureTracker,
     ConfirmStep,
     DeleteRecording,
     DriveOrder,
+    PlayFault,
     RemoveTracker,
     RenameSite,
     RestoreDrive,
@@ -37,7 +39,7 @@ from app.link.weather_orders import (
     SimulateWeather,
     WeatherOrder,
 )
-from app.site import proving, sightings, tracker_orders, tracker_setup, weather_setup
+from app.site import proving, sightings, tracker_orders, tracker_setup, training, weather_setup
 from app.site.checks import check_name, check_time_zone
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
@@ -59,7 +61,7 @@ log = structlog.get_logger(__name__)
 SiteOrder = (
     SetLocation | SetClock | RenameSite | ConfirmStep | AddTracker | ConfigureTracker | RemoveTracker
     | TakeSighting | ApplySightings | SavePlan | SaveRecording | DeleteRecording | DriveOrder | StopAll
-    | WeatherOrder
+    | WeatherOrder | PlayFault | ClearFaults
 )  # fmt: skip
 
 
@@ -74,7 +76,10 @@ async def carry_out(model: SiteModel, command: SiteOrder, actor: str) -> tuple[E
             return await _note(model, command, actor)
         case SaveRecording() | DeleteRecording():
             return await _change_recordings(model, command, actor)
-        case AnswerDirection() | AnswerScale() | SetSoftLimit() | RestoreDrive() | CheckConnection():
+        case (
+            AnswerDirection() | AnswerScale() | SetSoftLimit() | RestoreDrive() | CheckConnection()
+            | PlayFault() | ClearFaults()
+        ):  # fmt: skip
             return await _set_up_drive(model, command, actor)
         case StopAll():
             return await _stop_all(model, actor)
@@ -132,8 +137,12 @@ async def _note(
             assert_never(command)
 
 
-async def _set_up_drive(model: SiteModel, command: DriveOrder, actor: str) -> tuple[Event, ...]:
+async def _set_up_drive(
+    model: SiteModel, command: DriveOrder | PlayFault | ClearFaults, actor: str
+) -> tuple[Event, ...]:
     match command:
+        case PlayFault() | ClearFaults():
+            return await training.carry_out(model, command, actor)
         case AnswerDirection():
             return await proving.answer_direction(model, command, actor)
         case AnswerScale():

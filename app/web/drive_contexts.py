@@ -9,6 +9,7 @@ from app.tracker.memory import TrackerMemory
 from app.tracker.motion import DriveCapabilities
 from app.tracker.proof_states import ProofState
 from app.tracker.proofs import ProofMove
+from app.tracker.training import Lesson
 from app.web.contexts import Form, Frame
 
 Options = tuple[tuple[str, str], ...]
@@ -36,6 +37,17 @@ class DrivePage:
     can_undo: bool
     done: str
     tested: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class TrainingPage:
+    """The faults that can be played on a simulated tracker; none on a real one."""
+
+    template: ClassVar[str] = "training.html"
+
+    frame: Frame
+    lessons: tuple[Lesson, ...]
+    simulated: bool
 
 
 @dataclass(frozen=True, slots=True)

@@ -81,6 +81,7 @@ _TABLE: dict[Permission, str] = {
         GET /trackers/{tracker_id}/mount
         POST /trackers/{tracker_id}/mount/kind
         GET /trackers/{tracker_id}/proofs
+        GET /trackers/{tracker_id}/training
         GET /trackers/{tracker_id}/record
         GET /trackers/{tracker_id}/protections
         GET /trackers/{tracker_id}/settings
@@ -132,6 +133,7 @@ _TABLE: dict[Permission, str] = {
         GET /api/v1/trackers/{tracker_id}/program
         GET /api/v1/trackers/{tracker_id}/program/examples
         GET /api/v1/trackers/{tracker_id}/proofs
+        GET /api/v1/trackers/{tracker_id}/training
         GET /api/v1/trackers/{tracker_id}/record
         GET /api/v1/trackers/{tracker_id}/shows/{show_id}
         GET /api/v1/trackers/{tracker_id}/sightings
@@ -216,6 +218,8 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/proofs/scale
         POST /trackers/{tracker_id}/proofs/scale/answer
         POST /trackers/{tracker_id}/proofs/stop
+        POST /trackers/{tracker_id}/training/clear
+        POST /trackers/{tracker_id}/training/play
         POST /trackers/{tracker_id}/protections
         POST /trackers/{tracker_id}/settings
         POST /trackers/{tracker_id}/settings-lock
@@ -242,6 +246,8 @@ _TABLE: dict[Permission, str] = {
         PUT /api/v1/trackers/{tracker_id}/settings-lock
         PUT /api/v1/trackers/{tracker_id}/program.csv
         POST /api/v1/trackers/{tracker_id}/proofs/direction
+        DELETE /api/v1/trackers/{tracker_id}/training
+        POST /api/v1/trackers/{tracker_id}/training
         POST /api/v1/trackers/{tracker_id}/proofs/limits
         POST /api/v1/trackers/{tracker_id}/proofs/scale
         POST /api/v1/trackers/{tracker_id}/sightings

@@ -29,6 +29,7 @@ from app.web.api import (
     sun,
     telemetry,
     trackers,
+    training,
     users,
     weather,
 )
@@ -51,6 +52,7 @@ ROUTERS = (
     settings_lock.router,
     motion.router,
     proofs.router,
+    training.router,
     shows.router,
     recordings.router,
     simulations.router,

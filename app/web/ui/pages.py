@@ -43,6 +43,7 @@ from app.web.ui import (
     theme,
     token_page,
     tracker,
+    training,
     wizard,
 )
 from app.web.ui.frame import site_frame
@@ -72,6 +73,7 @@ ROUTERS = (
     mount.router,
     drive.router,
     proofs.router,
+    training.router,
     recordings.router,
     simulate.router,
     step_programs.router,
