@@ -161,8 +161,9 @@ def _location(view: View) -> dict[str, Value]:
 
 
 def _weather(view: View) -> dict[str, Value]:
-    readings: Weather | None = view.site.weather.usable if view.site.weather else None
-    if readings is None:
+    weather = view.site.weather
+    readings: Weather | None = weather.usable if weather else None
+    if readings is None or (weather is not None and weather.simulated):
         return {}
     return {
         "TmpAmb": readings.temperature_degc,

@@ -110,7 +110,9 @@ _TABLE: dict[Permission, str] = {
         GET /api/v1/site/clock
         GET /api/v1/site/integrations
         GET /api/v1/site/weather
+        GET /api/v1/site/weather/simulation
         GET /api/v1/site/weather/station
+        GET /api/v1/site/weather/windows
         GET /api/v1/stream
         GET /api/v1/studies
         GET /api/v1/studies-comparison
@@ -196,7 +198,13 @@ _TABLE: dict[Permission, str] = {
         POST /site/notifications/test
         PUT /api/v1/site/notifications
         POST /api/v1/site/notifications/{channel}/test
+        POST /site/simulated-weather
+        POST /site/simulated-weather/end
         POST /site/weather-station
+        POST /site/weather-windows
+        PUT /api/v1/site/weather/simulation
+        DELETE /api/v1/site/weather/simulation
+        PUT /api/v1/site/weather/windows
         PUT /api/v1/site/weather/station
         DELETE /api/v1/site/weather/station
         POST /studies/program/use

@@ -9,10 +9,20 @@ from app.web.contexts import Form, Frame
 
 @dataclass(frozen=True, slots=True)
 class SitePage:
-    """The site's weather and its other doors; `gateways` None where the machine does not tell."""
+    """The site's weather, where it comes from, and its other doors; `gateways` None where it does not tell.
+
+    `is_known` says that the machine told its settings; `real_trackers` are those that forbid made-up weather.
+    """
 
     template: ClassVar[str] = "site.html"
 
     frame: Frame
     gateways: tuple[GatewayMetrics, ...] | None
+    is_known: bool
     form: Form
+    simulation: Form
+    scenarios: tuple[tuple[str, str], ...]
+    is_simulated: bool
+    real_trackers: tuple[str, ...]
+    windows: Form
+    window_hints: dict[str, str]

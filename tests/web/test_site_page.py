@@ -1,10 +1,15 @@
 """Weather and integrations, on pages and over the API."""
 
 from collections.abc import AsyncIterator
+from dataclasses import asdict, replace
 
 import httpx
 import pytest
 
+from app.tracker.config import DriveConfig, DriveKind
+from app.tracker.simulated_weather import Scenario, SimulatedStation
+from app.tracker.weather import Weather, WeatherNow
+from app.tracker.weather_windows import WeatherWindows
 from tests.fakes import FakeMachine, fake_app, serving
 
 API = "/api/v1/site"
@@ -69,3 +74,108 @@ async def test_every_integration_tells_its_state(panel: httpx.AsyncClient, machi
     machine.cut()
     assert (await panel.get(f"{API}/integrations")).status_code == 503
     assert "does not tell how its integrations are doing" in (await panel.get("/site")).text
+
+
+SIMULATED = {
+    "scenario": "by_hand",
+    "seed": "5",
+    "wind_mps": "12,5",
+    "gustiness_pct": "40",
+    "wind_direction_deg": "300",
+    "light_wm2": "",
+    "snow_kg": "2",
+    "temperature_degc": "-4",
+}
+
+
+async def test_made_up_weather_is_chosen_and_ended_on_the_page(
+    panel: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    assert "Simulate this weather" in (await panel.get("/site")).text
+    assert (await panel.post("/site/simulated-weather", data=SIMULATED)).status_code == 303
+    assert machine.site.simulated_weather == SimulatedStation(
+        Scenario.BY_HAND, 5, 12.5, 40.0, 300.0, None, 2.0, -4.0
+    )
+    text = (await panel.get("/site")).text
+    assert "SIMULATED now" in text
+    assert 'value="12.5"' in text
+    assert (await panel.post("/site/simulated-weather/end")).status_code == 303
+    assert machine.site.simulated_weather is None
+
+
+async def test_made_up_weather_that_cannot_be_keeps_what_was_typed(
+    panel: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    wrong = SIMULATED | {"wind_mps": "51", "scenario": "hurricane", "snow_kg": ""}
+    answer = await panel.post("/site/simulated-weather", data=wrong)
+    assert answer.status_code == 422
+    assert "3 values need another look" in answer.text
+    assert "The simulated mean wind must lie between 0 and 50." in answer.text
+    assert 'value="51"' in answer.text
+    assert machine.orders == []
+
+
+async def test_a_site_with_a_real_tracker_is_offered_no_made_up_weather(
+    panel: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    real = machine.trackers["T2"]
+    real.config = replace(real.config, drive=DriveConfig(DriveKind.MODBUS_TCP, host="10.0.0.5"))
+    text = (await panel.get("/site")).text
+    assert "all of whose trackers are simulated: T2 is not" in text
+    assert "Simulate this weather" not in text
+
+
+async def test_made_up_weather_over_the_api(panel: httpx.AsyncClient, machine: FakeMachine) -> None:
+    url = f"{API}/weather/simulation"
+    assert (await panel.get(url)).json() is None
+    told = await panel.put(url, json={"scenario": "storm", "seed": 9})
+    assert told.status_code == 200
+    assert (told.json()["scenario"], told.json()["seed"]) == ("storm", 9)
+    for wrong in ({"wind_mps": 51}, {"seed": -1}, {"scenario": "flood"}, {"moon": 1}):
+        assert (await panel.put(url, json=wrong)).status_code == 422
+    assert (await panel.delete(url)).status_code == 204
+    assert machine.site.simulated_weather is None
+
+
+async def test_windows_and_ages_are_set_on_the_page_and_over_the_api(
+    panel: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    url = f"{API}/weather/windows"
+    usual = WeatherWindows()
+    assert (await panel.get(url)).json() == asdict(usual)
+    text = (await panel.get("/site")).text
+    assert "5 to 86400, usual 300." in text
+    typed = {name: str(value) for name, value in asdict(usual).items()}
+    done = await panel.post("/site/weather-windows", data=typed | {"wind_old_after_s": "20"})
+    assert done.status_code == 303
+    assert machine.site.weather_windows == replace(usual, wind_old_after_s=20.0)
+    wrong = await panel.post("/site/weather-windows", data=typed | {"gust_s": "61", "mean_s": "x"})
+    assert wrong.status_code == 422
+    assert "The window of the gust must lie between 1 and 60." in wrong.text
+    assert 'value="61"' in wrong.text
+    assert (await panel.put(url, json={"gust_s": 5})).json() == asdict(replace(usual, gust_s=5.0))
+    assert (await panel.put(url, json={"mean_s": 59})).status_code == 422
+
+
+async def test_made_up_weather_is_marked_where_it_is_shown(
+    panel: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    source = "SIMULATED station (storm)"
+    machine.weather = WeatherNow(
+        Weather(wind_mps=9.0), machine.clock.now(), 0.0, stale=False, source=source, simulated=True
+    )
+    machine.emit()
+    for page in ("/", "/site"):
+        text = (await panel.get(page)).text
+        assert "Weather, SIMULATED" in text
+        assert source in text
+    assert (await panel.get(f"{API}/weather")).json()["simulated"] is True
+
+
+async def test_without_the_machine_no_settings_are_offered(
+    panel: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    machine.cut()
+    text = (await panel.get("/site")).text
+    assert "its settings are not known here" in text
+    assert "station-form" not in text

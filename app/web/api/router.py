@@ -32,6 +32,7 @@ from app.web.api import (
     training,
     users,
     weather,
+    weather_sources,
 )
 from app.web.api.base import COMMON
 
@@ -40,6 +41,7 @@ ROUTERS = (
     users.router,
     site.router,
     weather.router,
+    weather_sources.router,
     integrations.router,
     sun.router,
     accuracy.router,

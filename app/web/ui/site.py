@@ -1,4 +1,4 @@
-"""The site: its weather, and how the machine's other doors are doing."""
+"""The site: its weather, where that comes from, and how the machine's other doors are doing."""
 
 from typing import Annotated
 
@@ -7,16 +7,18 @@ from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
 
-from app.link.messages import MachineUnreachable
-from app.link.weather_orders import SetMetStation
-from app.tracker.memory import MetStation
+from app.link.messages import MachineUnreachable, SiteDetail
+from app.link.weather_orders import SetMetStation, SetWeatherWindows, SimulateWeather
+from app.tracker.config import DriveKind
+from app.tracker.memory import SiteState
 from app.web.deps import MachineDep
 from app.web.metrics import counted
 from app.web.site_contexts import SitePage
+from app.web.ui import weather_forms as forms
 from app.web.ui.forms import Typed
 from app.web.ui.frame import site_frame
-from app.web.ui.orders import PressDep
-from app.web.ui.render import page
+from app.web.ui.orders import Press, PressDep
+from app.web.ui.render import go, page
 
 router = APIRouter(prefix="/site")
 
@@ -29,14 +31,34 @@ class StationForm(BaseModel):
     unit: str = "1"
 
 
+class SimulationForm(BaseModel):
+    """Made-up weather as it was typed."""
+
+    scenario: str = ""
+    seed: str = ""
+    wind_mps: str = ""
+    gustiness_pct: str = ""
+    wind_direction_deg: str = ""
+    light_wm2: str = ""
+    snow_kg: str = ""
+    temperature_degc: str = ""
+
+
+class WindowsForm(BaseModel):
+    """Windows and ages as they were typed."""
+
+    gust_s: str = ""
+    mean_s: str = ""
+    wind_old_after_s: str = ""
+    light_old_after_s: str = ""
+    snow_old_after_s: str = ""
+    other_old_after_s: str = ""
+
+
 @router.get("")
 async def site(request: Request, machine: MachineDep) -> Response:
     """Show the newest weather and the state of every gateway."""
-    try:
-        station = (await machine.detail()).site.met_station
-    except MachineUnreachable:
-        station = None
-    return await _answer(request, machine, _texts(station))
+    return await _answer(request, machine, block="gateways")
 
 
 @router.post("/weather-station")
@@ -45,28 +67,87 @@ async def weather_station(
 ) -> Response:
     """Read this weather station from now on; without a host none."""
     typed = Typed(form.model_dump())
-    host = form.host.strip()
-    port = typed.whole("port", "Port", 1, 65535)
-    unit = typed.whole("unit", "Unit", 0, 255)
+    station = forms.read_station(typed)
     if typed.errors:
-        return await _answer(press.request, machine, typed, block="station", status=422)
-    await press.send(SetMetStation(MetStation(host, port, unit) if host else None))
-    return press.answer("The weather station is read from now on." if host else "No weather station is read.")
+        return await _refused(press, machine, "station", typed)
+    await press.send(SetMetStation(station))
+    return press.answer(
+        "The weather station is read from now on." if station else "No weather station is read."
+    )
 
 
-def _texts(station: MetStation | None) -> Typed:
+@router.post("/simulated-weather")
+async def simulated_weather(
+    press: PressDep, machine: MachineDep, form: Annotated[SimulationForm, Form()]
+) -> Response:
+    """Make the weather up from now on."""
+    typed = Typed(form.model_dump())
+    station = forms.read_simulation(typed)
     if station is None:
-        return Typed(StationForm().model_dump())
-    return Typed({"host": station.host, "port": str(station.port), "unit": str(station.unit)})
+        return await _refused(press, machine, "simulation", typed)
+    await press.send(SimulateWeather(station))
+    return go(press.request, "/site")
+
+
+@router.post("/simulated-weather/end")
+async def end_simulated_weather(press: PressDep) -> Response:
+    """Make no weather up any more."""
+    await press.send(SimulateWeather(None))
+    return go(press.request, "/site")
+
+
+@router.post("/weather-windows")
+async def weather_windows(
+    press: PressDep, machine: MachineDep, form: Annotated[WindowsForm, Form()]
+) -> Response:
+    """Go by these windows and ages from now on."""
+    typed = Typed(form.model_dump())
+    windows = forms.read_windows(typed)
+    if windows is None:
+        return await _refused(press, machine, "windows", typed)
+    await press.send(SetWeatherWindows(windows))
+    return press.answer("The weather is judged by these windows and ages from now on.")
+
+
+async def _refused(press: Press, machine: MachineDep, block: str, typed: Typed) -> Response:
+    return await _answer(press.request, machine, block=block, typed=typed, status=422)
 
 
 async def _answer(
-    request: Request, machine: MachineDep, typed: Typed, *, block: str = "gateways", status: int = 200
+    request: Request, machine: MachineDep, *, block: str, typed: Typed | None = None, status: int = 200
 ) -> Response:
+    """Show the site, with what was typed in the form of this block."""
+    try:
+        detail: SiteDetail | None = await machine.detail()
+    except MachineUnreachable:
+        detail = None
+    state = SiteState() if detail is None else detail.site
+    shown = {
+        "station": forms.station_texts(state.met_station),
+        "simulation": forms.simulation_texts(state.simulated_weather),
+        "windows": forms.window_texts(state.weather_windows),
+    }
+    if typed is not None:
+        shown[block] = typed
     metrics = await counted(machine)
     context = SitePage(
         frame=site_frame(request, "Site"),
         gateways=None if metrics is None else metrics.gateways,
-        form=typed.form(StationForm.model_fields),
+        is_known=detail is not None,
+        form=shown["station"].form(forms.STATION_NAMES),
+        simulation=shown["simulation"].form(forms.SIMULATION_NAMES),
+        scenarios=forms.SCENARIOS,
+        is_simulated=state.simulated_weather is not None,
+        real_trackers=() if detail is None else _real(detail),
+        windows=shown["windows"].form(forms.WINDOW_NAMES),
+        window_hints=forms.window_hints(),
     )
     return page(request, context, block=block, status=status)
+
+
+def _real(detail: SiteDetail) -> tuple[str, ...]:
+    return tuple(
+        name
+        for name, one in detail.trackers.items()
+        if one.state.config.drive.kind is not DriveKind.SIMULATED
+    )
