@@ -17,6 +17,7 @@ from app.cli import cli
 from app.settings import Settings
 from app.web.limits import MOST_STREAMS_A_CLIENT, StreamLimit
 from app.web.main import create_app
+from app.web.mdns import addresses
 from app.web.security import HSTS, Guard, SecurityHeaders, host_names
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
 
@@ -176,3 +177,19 @@ async def test_deep_json_is_refused_and_does_no_harm() -> None:
             )
             assert answer.status_code in (400, 422), answer.status_code
         assert (await client.get("/health")).status_code == 200
+
+
+async def test_a_network_without_a_certificate_is_warned_of_on_every_page(tmp_path: Path) -> None:
+    settings = Settings(host="0.0.0.0", data_dir=tmp_path, insecure_lan=True)
+    app = create_app(settings, machine=FakeMachine(), reader=FakeReader())
+    async with serving(app) as client:
+        for path in ("/setup", "/certificate"):
+            assert 'id="bare-banner"' in (await client.get(path)).text
+    async with serving(fake_app()) as client:
+        assert 'id="bare-banner"' not in (await client.get("/")).text
+
+
+def test_what_is_announced_is_reached_from_elsewhere() -> None:
+    assert addresses("10.0.0.5") == [bytes((10, 0, 0, 5))]
+    assert addresses("127.0.0.1") == [bytes((127, 0, 0, 1))]
+    assert bytes((127, 0, 0, 1)) not in addresses("0.0.0.0")
