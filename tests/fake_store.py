@@ -1,9 +1,16 @@
 """A store that lives in memory."""
 
+from app.alarms.alarm import Alarm
 from app.audit.chain import FIRST
 from app.audit.entry import Entry, Sealed, seal
-from app.alarms.alarm import Alarm
-from app.store.store import AlarmFilter, AuditFilter, JournalEntry, JournalFilter, KeptAlarm, PlannedShow
+from app.store.store import (
+    AlarmFilter,
+    AuditFilter,
+    JournalEntry,
+    JournalFilter,
+    KeptAlarm,
+    PlannedShow,
+)
 from app.tracker.memory import (
     SiteState,
     TrackerState,
@@ -114,6 +121,8 @@ def _matches(entry: JournalEntry, wanted: JournalFilter) -> bool:
         (wanted.before is None or entry.number < wanted.before)
         and wanted.tracker_id in (None, entry.event.tracker_id)
         and (not wanted.kinds or entry.event.kind in wanted.kinds)
+        and wanted.actor in (None, entry.event.actor)
+        and (wanted.text or "").lower() in entry.event.message.lower()
         and (wanted.since is None or entry.event.at >= wanted.since)
         and (wanted.until is None or entry.event.at <= wanted.until)
     )

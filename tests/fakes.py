@@ -18,6 +18,7 @@ from fastapi import FastAPI
 
 from app.clock import Clock, SystemClock
 from app.link.messages import (
+    AcknowledgeAlarm,
     AddTracker,
     ApplySightings,
     ConfigureTracker,
@@ -31,12 +32,14 @@ from app.link.messages import (
     SaveRecording,
     SetClock,
     SetLocation,
+    ShelveAlarm,
     SiteDetail,
     StopAll,
     TakeSighting,
     TrackerDetail,
     UnknownRecording,
     UnknownTracker,
+    UnshelveAlarm,
     Update,
 )
 from app.link.metrics import GatewayMetrics, GatewayStatus, MachineMetrics
@@ -44,6 +47,7 @@ from app.link.outlet import Outlet
 from app.link.weather_orders import ReportWeather, SetMetStation, SetWeatherWindows, SimulateWeather
 from app.settings import Settings
 from app.store.store import PlannedShow
+from app.tracker.alarm_words import AlarmNow
 from app.tracker.commands import (
     CommandRejected,
     Stop,
@@ -69,6 +73,7 @@ from app.tracker.snapshot import (
 )
 from app.tracker.weather import WeatherNow
 from app.web.main import create_app
+from tests.fake_alarms import after, counted
 from tests.fake_data import commissioned, made_up_sun, site_state
 from tests.fake_store import FakeReader
 from tests.fake_tracker import CAPABILITIES, FakeTracker
@@ -118,6 +123,7 @@ class FakeMachine:
         self.refusal = ""
         self.reachable = True
         self.weather: WeatherNow | None = None
+        self.alarms: tuple[AlarmNow, ...] = ()
         self.sequence = 0
         self._outlet = Outlet()
         self.emit()
@@ -199,6 +205,8 @@ class FakeMachine:
             case ApplySightings(tracker_id=tracker_id, keep=keep):
                 tracker = self._tracker(tracker_id)
                 tracker.memory = replace(tracker.memory, sightings=keep)
+            case AcknowledgeAlarm() | ShelveAlarm() | UnshelveAlarm():
+                self.alarms = after(self.alarms, order.command, now, order.actor)
             case ReportWeather(readings=readings, measured_at=at):
                 self.weather = WeatherNow(readings, at or now, 0.0, stale=False, source=order.actor)
 
@@ -238,6 +246,8 @@ class FakeMachine:
             sun=made_up_sun(now),
             trackers=tuple(tracker.snapshot(now, self.sequence) for tracker in self.trackers.values()),
             weather=self.weather,
+            alarms=self.alarms,
+            alarm_counts=counted(self.alarms),
         )
 
     async def metrics(self) -> MachineMetrics:
