@@ -186,7 +186,7 @@ class Snapshot:
     not_stowed: Reason | None = None
     warning: WarningState | None = None
     lock: MaintenanceLock | None = None
-    control: ControlState = ControlState(0)
+    control: ControlState = field(default_factory=lambda: ControlState(0))
     settings_lock: CommissioningLock | None = None
     sensors: tuple[SensorState, ...] = ()
     local: bool = False
@@ -318,4 +318,4 @@ class SiteSnapshot:
     trackers: tuple[Snapshot, ...]
     weather: WeatherNow | None = None
     alarms: tuple[AlarmNow, ...] = ()
-    alarm_counts: AlarmCounts = AlarmCounts()
+    alarm_counts: AlarmCounts = field(default_factory=AlarmCounts)

@@ -33,9 +33,7 @@ def _narrowed(
 ) -> JournalFilter:
     """Return what the query narrows the journal to."""
     kinds = tuple(kind or ())
-    return JournalFilter(
-        tracker_id=tracker_id, kinds=kinds, actor=actor, text=text, since=since, until=until
-    )
+    return JournalFilter(tracker_id=tracker_id, kinds=kinds, actor=actor, text=text, since=since, until=until)
 
 
 FilterDep = Annotated[JournalFilter, Depends(_narrowed)]
