@@ -37,7 +37,7 @@ class Certified:
 
 
 def init(folder: Path, names: Iterable[str], now: datetime) -> Certified:
-    """Write a new certificate of the panel for these names; the authority that signs it is made if missing."""
+    """Write a new certificate of the panel for these names; the authority that signs it, too, if missing."""
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     authority, signing = _authority(folder, now)
     key = ec.generate_private_key(ec.SECP256R1())
