@@ -13,6 +13,7 @@ from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 from starlette.middleware.gzip import GZipMiddleware
 
 from app.access.opening import open_keeper
+from app.access.passwords import Hasher
 from app.clock import Clock, SystemClock
 from app.link.client import LinkClient
 from app.link.messages import Machine
@@ -57,6 +58,7 @@ def create_app(
     machine: Machine | None = None,
     reader: Reader | None = None,
     clock: Clock | None = None,
+    hasher: Hasher | None = None,
 ) -> FastAPI:
     """Build the whole panel; without a machine it connects to the one that the settings name."""
     clock = clock or SystemClock()
@@ -73,7 +75,7 @@ def create_app(
     )
     assets, hub = Assets(STATIC), Hub(machine, clock)
     studies = Studies(settings.data_dir, clock)
-    keeper = open_keeper(settings, clock)
+    keeper = open_keeper(settings, clock, hasher)
     panel = Panel(settings, machine, reader, clock, assets, hub, Simulations(), studies, keeper)
     app.state.panel = panel
     _add_doors(app, panel)
