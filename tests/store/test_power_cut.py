@@ -14,7 +14,7 @@ from tests.store.committing import ACKNOWLEDGED, check
 from tests.store.power_cut import Call, Disk, Recording, record
 from tests.store.tracked_day import day_info
 
-CUTS = amount(20, 300)
+CUTS = amount(12, 300)
 COMMITS = 60
 PAGE = 4096
 AS_SHIPPED, OFTEN = 1000, 6
