@@ -343,5 +343,5 @@ class LifeOfABook(RuleBasedStateMachine):
             assert self.desk.happened(name)[0] is Happened.RAISED
 
 
-LifeOfABook.TestCase.settings = settings(max_examples=25, stateful_step_count=15, deadline=None)
+LifeOfABook.TestCase.settings = settings(max_examples=20, stateful_step_count=12, deadline=None)
 TestLifeOfABook = LifeOfABook.TestCase

@@ -9,16 +9,16 @@ import pytest
 from app.alarms.conditions import Condition
 from tests.web.desk import Desk
 
-FULL = Condition("disk_full", None, "Site", "12 MB are free.")
-DOWN = Condition("gateway_down", None, "Site", "MQTT is down.")
+BEHIND = Condition("store_behind", None, "Site", "The last changes were not stored.")
+UNSENT = Condition("notification_failed", None, "Site", "The webhook answered 500.")
 
 
 @pytest.fixture
 async def desk(tmp_path: Path) -> AsyncIterator[Desk]:
     async with Desk(tmp_path) as found:
-        found.plant.site.trouble("disk", FULL)
-        found.plant.site.trouble("mqtt", DOWN)
-        await found.forward(34)
+        found.plant.site.trouble("store", BEHIND)
+        found.plant.site.trouble("webhook", UNSENT)
+        await found.forward(4)
         yield found
 
 
@@ -28,46 +28,48 @@ async def standing(desk: Desk) -> dict[str, dict[str, Any]]:
 
 
 async def test_an_alarm_is_told_acknowledged_and_kept_in_the_history(desk: Desk) -> None:
-    found = (await standing(desk))["disk_full"]
+    found = (await standing(desk))["store_behind"]
     assert (found["priority"], found["state"], found["where"]) == (2, "unacknowledged", "Site")
-    answer = await desk.ask("POST", "/api/v1/alarms/disk_full/acknowledge")
+    answer = await desk.ask("POST", "/api/v1/alarms/store_behind/acknowledge")
     assert answer.status_code == 200
-    assert (await standing(desk))["disk_full"]["state"] == "acknowledged"
-    desk.plant.site.trouble("disk", None)
-    await desk.forward(34)
-    assert "disk_full" not in await standing(desk)
+    assert (await standing(desk))["store_behind"]["state"] == "acknowledged"
+    desk.plant.site.trouble("store", None)
+    await desk.forward(11)
+    assert "store_behind" not in await standing(desk)
     history = (await desk.ask("GET", "/api/v1/alarms/history?priority=2")).json()["alarms"]
-    assert [(one["alarm"]["code"], one["ended"]) for one in history] == [("disk_full", True)]
+    assert [(one["alarm"]["code"], one["ended"]) for one in history] == [("store_behind", True)]
     page = await desk.ask("GET", "/alarms?view=history")
-    assert "Disk is full" in page.text
+    assert "Nothing can be stored" in page.text
 
 
 async def test_shelving_needs_a_reason_and_what_was_typed_stays(desk: Desk) -> None:
-    form = {"alarm_id": "disk_full", "minutes": "480", "reason": " "}
+    form = {"alarm_id": "store_behind", "minutes": "480", "reason": " "}
     answer = await desk.ask("POST", "/alarms/shelve", data=form)
     assert answer.status_code == 422
     assert "Say why the alarm is shelved." in answer.text
     assert '<option value="480" selected>' in answer.text
-    done = await desk.ask("POST", "/alarms/shelve", data=form | {"reason": "A bigger disk comes."})
+    done = await desk.ask("POST", "/alarms/shelve", data=form | {"reason": "A bigger card comes."})
     assert done.status_code == 303
-    shelved = (await standing(desk))["disk_full"]
-    assert (shelved["state"], shelved["shelved_for"]) == ("shelved", "A bigger disk comes.")
-    assert "A bigger disk comes." in (await desk.ask("GET", "/alarms?view=shelved")).text
-    await desk.ask("POST", "/api/v1/alarms/disk_full/unshelve")
+    shelved = (await standing(desk))["store_behind"]
+    assert (shelved["state"], shelved["shelved_for"]) == ("shelved", "A bigger card comes.")
+    assert "A bigger card comes." in (await desk.ask("GET", "/alarms?view=shelved")).text
+    await desk.ask("POST", "/api/v1/alarms/store_behind/unshelve")
     await desk.forward(1)
-    assert (await standing(desk))["disk_full"]["state"] == "unacknowledged"
+    assert (await standing(desk))["store_behind"]["state"] == "unacknowledged"
 
 
 async def test_unknown_alarms_are_404_and_long_shelves_422(desk: Desk) -> None:
     answer = await desk.ask("POST", "/api/v1/alarms/drive_lost@T9/acknowledge")
     assert answer.status_code == 404
     long = {"minutes": 1441, "reason": "known"}
-    assert (await desk.ask("POST", "/api/v1/alarms/disk_full/shelve", json=long)).status_code == 422
+    assert (await desk.ask("POST", "/api/v1/alarms/store_behind/shelve", json=long)).status_code == 422
 
 
 async def test_one_key_acknowledges_what_is_listed(desk: Desk) -> None:
     answer = await desk.ask(
-        "POST", "/alarms/acknowledge", data={"alarm_id": ["disk_full", "gateway_down"], "back": "/alarms?p=2"}
+        "POST",
+        "/alarms/acknowledge",
+        data={"alarm_id": ["store_behind", "notification_failed"], "back": "/alarms?p=2"},
     )
     assert (answer.status_code, answer.headers["location"]) == (303, "/alarms?p=2")
     assert {one["state"] for one in (await standing(desk)).values()} == {"acknowledged"}
@@ -75,8 +77,8 @@ async def test_one_key_acknowledges_what_is_listed(desk: Desk) -> None:
 
 async def test_the_list_is_narrowed_to_priorities(desk: Desk) -> None:
     page = (await desk.ask("GET", "/alarms?p=4")).text
-    assert 'id="alarm-gateway_down"' in page
-    assert 'id="alarm-disk_full"' not in page
+    assert 'id="alarm-notification_failed"' in page
+    assert 'id="alarm-store_behind"' not in page
 
 
 async def test_every_alarm_is_in_the_guide_of_the_panel_and_the_api(desk: Desk) -> None:
@@ -86,9 +88,9 @@ async def test_every_alarm_is_in_the_guide_of_the_panel_and_the_api(desk: Desk) 
 
 
 async def test_the_journal_is_narrowed_and_handed_out_as_a_file(desk: Desk) -> None:
-    await desk.ask("POST", "/api/v1/alarms/disk_full/acknowledge")
-    found = (await desk.ask("GET", "/api/v1/journal?text=DISK%20is&kind=alarm_raised")).json()["entries"]
-    assert [one["event"]["data"]["code"] for one in found] == ["disk_full"]
+    await desk.ask("POST", "/api/v1/alarms/store_behind/acknowledge")
+    found = (await desk.ask("GET", "/api/v1/journal?text=NOTHING%20can&kind=alarm_raised")).json()["entries"]
+    assert [one["event"]["data"]["code"] for one in found] == ["store_behind"]
     actor = found[0]["event"]["actor"]
     assert actor == "machine"
     others = (await desk.ask("GET", "/api/v1/journal?kind=alarm_raised&actor=nobody")).json()
@@ -103,10 +105,10 @@ async def test_the_journal_is_narrowed_and_handed_out_as_a_file(desk: Desk) -> N
 
 
 async def test_the_journal_page_keeps_what_was_typed(desk: Desk) -> None:
-    page = await desk.ask("GET", "/journal?text=disk&kind=alarm_raised&since=2027-06-21")
+    page = await desk.ask("GET", "/journal?text=stored&kind=alarm_raised&since=2027-06-21")
     assert page.status_code == 200
-    assert 'value="disk"' in page.text
-    assert "/api/v1/journal/export?format=csv&amp;kind=alarm_raised&amp;text=disk" in page.text
+    assert 'value="stored"' in page.text
+    assert "/api/v1/journal/export?format=csv&amp;kind=alarm_raised&amp;text=stored" in page.text
     wrong = await desk.ask("GET", "/journal?since=tomorrow")
     assert wrong.status_code == 422
     assert 'value="tomorrow"' in wrong.text

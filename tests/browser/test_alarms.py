@@ -1,0 +1,76 @@
+"""The alarm strip is live on every page; alarms are acknowledged, shelved and heard."""
+
+from collections.abc import Callable
+
+import httpx
+import pytest
+from playwright.sync_api import Page, expect
+
+from app.tracker.alarm_words import AlarmState
+from tests.browser.conftest import Opened, Plant
+from tests.fake_alarms import alarm
+
+
+@pytest.fixture(autouse=True)
+def warm(plant: Plant) -> None:
+    """Have the routes built before the browser's patience begins to count."""
+    httpx.get(f"{plant.url}/alarms", timeout=60).raise_for_status()
+
+
+def raised(plant: Plant, *codes: str) -> None:
+    machine = plant.machine
+
+    def put() -> None:
+        machine.alarms = tuple(alarm(code, machine.clock.now()) for code in codes)
+        machine.emit()
+
+    plant.do(put)
+
+
+def test_the_strip_is_live_and_never_jumps(
+    plant: Plant, opened: Opened, picture: Callable[[Page, str], None]
+) -> None:
+    page = opened("/trackers/T1", "phone")
+    strip = page.locator("#alarm-strip")
+    before = strip.bounding_box()
+    expect(page.locator("#alarm-first-title")).to_have_text("No alarms")
+    raised(plant, "not_stowed", "drive_lost")
+    expect(page.locator("#alarm-first-title")).to_have_text("Not stowed")
+    expect(page.locator('[data-first-shape="1"]')).to_be_visible()
+    expect(page.locator('[data-count="2"] b')).to_have_text("1")
+    assert strip.bounding_box() == before
+    picture(page, "alarm-strip-phone")
+    page.locator("#alarm-ack button").click()
+    expect(page.locator("#alarm-first-title")).to_have_text("Drive does not answer")
+    assert [one.alarm_id for one in plant.orders("acknowledge_alarm")] == ["not_stowed@T1"]
+
+
+def test_an_alarm_is_shelved_with_a_reason(
+    plant: Plant, opened: Opened, picture: Callable[[Page, str], None]
+) -> None:
+    page = opened("/alarms", allow=("422",))
+    raised(plant, "drive_lost", "link_poor")
+    row = page.locator('[id="alarm-drive_lost@T1"]')
+    row.locator("summary").click()
+    row.get_by_role("button", name="Shelve").click()
+    expect(page.locator(".field-error")).to_contain_text("Say why")
+    row.get_by_label("Why").fill("The cable is being replaced.")
+    row.get_by_role("button", name="Shelve").click()
+    expect(row).to_have_count(0)
+    page.get_by_role("link", name="Shelved").click()
+    picture(page, "alarms-shelved-desk")
+    row.get_by_role("button", name="Take back").click()
+    expect(row).to_have_count(0)
+    assert plant.machine.alarms[0].state is AlarmState.UNACKNOWLEDGED
+
+
+def test_the_sound_is_switched_on_here_heard_and_muted(plant: Plant, opened: Opened) -> None:
+    page = opened("/alarms")
+    raised(plant, "not_stowed")
+    expect(page.locator("#alarm-first-title")).to_have_text("Not stowed")
+    assert page.evaluate("document.documentElement.dataset.sounded") is None
+    page.locator("#sound-key").click()
+    expect(page.locator("#sound-key")).to_have_attribute("aria-pressed", "true")
+    page.wait_for_selector("html[data-sounded]")
+    page.locator("#mute-key").click()
+    expect(page.locator("#mute-key")).to_contain_text("Muted until")
