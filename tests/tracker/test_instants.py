@@ -1,0 +1,153 @@
+"""Instants at which clocks stumble, places without day or night: nothing moves that should not."""
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from zoneinfo import ZoneInfo
+
+import pytest
+
+from app.site.sky import Sky
+from app.sun.position import Algorithm, Location
+from app.tracker.commands import Track
+from app.tracker.mode import Mode
+from app.tracker.motion import DriveCommand
+from app.tracker.snapshot import ActivityName, EventKind
+from tests.tracker.plant import CONFIG, READY, SAMSUN, Plant
+from tests.tracker.scripted import Scripted
+
+AROUND = timedelta(seconds=15)
+SUN_AND_DEADBAND_DEG = 1.2
+"""How far an axis may turn in half a minute: one run of the deadband."""
+SPITSBERGEN = Location(78.22, 15.65, 10.0)
+ZONES = {
+    "Europe/Berlin": (datetime(2027, 3, 28, 1, 0, tzinfo=UTC), datetime(2027, 10, 31, 1, 0, tzinfo=UTC)),
+    "America/New_York": (datetime(2027, 3, 14, 7, 0, tzinfo=UTC), datetime(2027, 11, 7, 6, 0, tzinfo=UTC)),
+    "Australia/Lord_Howe": (
+        datetime(2027, 10, 2, 15, 30, tzinfo=UTC),
+        datetime(2027, 4, 3, 15, 0, tzinfo=UTC),
+    ),
+    "Antarctica/Troll": (datetime(2027, 3, 28, 1, 0, tzinfo=UTC), datetime(2027, 10, 31, 1, 0, tzinfo=UTC)),
+}
+PLACES = {
+    "Europe/Berlin": Location(52.52, 13.4),
+    "America/New_York": Location(40.7, -74.0),
+    "Australia/Lord_Howe": Location(-31.55, 159.08),
+    "Antarctica/Troll": Location(-72.01, 2.53),
+}
+SWITCHES = [(zone, switch) for zone, pair in ZONES.items() for switch in pair]
+
+
+def tracked_over(instant: datetime, location: Location) -> Plant:
+    """Return a plant that follows the sun, having been looked at on both sides of an instant."""
+    plant = Plant(replace(READY, mode=Mode.DUAL), at=instant - timedelta(seconds=90), location=location)
+    plant.tick()
+    plant.ask(Track())
+    plant.forward(75.0)
+    assert plant.clock.now() == instant - AROUND
+    before, told = (plant.azimuth_deg, plant.elevation_deg), len(plant.events)
+    plant.forward(30.0)
+    assert plant.activity is ActivityName.TRACKING
+    assert abs(plant.azimuth_deg - before[0]) < SUN_AND_DEADBAND_DEG
+    assert abs(plant.elevation_deg - before[1]) < SUN_AND_DEADBAND_DEG
+    assert len(plant.events) == told, "nothing happens that is worth telling"
+    return plant
+
+
+@pytest.mark.fault(29)
+@pytest.mark.parametrize(("zone", "switch"), SWITCHES)
+def test_the_hour_at_which_clocks_are_put_on_or_back_moves_nothing(zone: str, switch: datetime) -> None:
+    just_before, just_after = (switch + timedelta(seconds=s) for s in (-1, 1))
+    local = ZoneInfo(zone)
+    assert just_before.astimezone(local).utcoffset() != just_after.astimezone(local).utcoffset()
+    tracked_over(switch, PLACES[zone])
+
+
+@pytest.mark.fault(31)
+@pytest.mark.fault(32)
+@pytest.mark.parametrize(
+    "instant",
+    [
+        datetime(2027, 7, 1, 0, 0, tzinfo=UTC),
+        datetime(2028, 1, 1, 0, 0, tzinfo=UTC),
+        datetime(2028, 2, 29, 0, 0, tzinfo=UTC),
+        datetime(2028, 3, 1, 0, 0, tzinfo=UTC),
+        datetime(2036, 2, 7, 6, 28, 16, tzinfo=UTC),
+        datetime(2038, 1, 19, 3, 14, 8, tzinfo=UTC),
+        datetime(2096, 2, 29, 0, 0, tzinfo=UTC),
+        datetime(2099, 12, 28, 0, 0, tzinfo=UTC),
+    ],
+    ids=lambda instant: f"{instant:%Y-%m-%d}",
+)
+@pytest.mark.parametrize("location", [SAMSUN, Location(-33.9, 151.2)], ids=["Samsun", "Sydney"])
+def test_an_end_of_an_era_moves_nothing(instant: datetime, location: Location) -> None:
+    tracked_over(instant, location)
+
+
+@pytest.mark.fault(33)
+def test_in_the_polar_night_nothing_moves_and_nothing_is_waited_for() -> None:
+    plant = Plant(READY, at=datetime(2027, 12, 21, tzinfo=UTC), location=SPITSBERGEN, watchdog=None)
+    plant.tick()
+    plant.ask(Track())
+    plant.forward(60.0)
+    stood = (plant.azimuth_deg, plant.elevation_deg)
+    for hour in range(24):
+        plant.leap(datetime(2027, 12, 21, hour, 30, tzinfo=UTC))
+        plant.forward(3.0)
+        assert plant.activity is ActivityName.TRACKING
+        assert (plant.azimuth_deg, plant.elevation_deg) == stood
+
+
+@pytest.mark.fault(33)
+def test_the_midnight_sun_is_followed_all_around_within_the_limits() -> None:
+    plant = Plant(READY, at=datetime(2027, 6, 21, tzinfo=UTC), location=SPITSBERGEN, watchdog=None)
+    plant.tick()
+    plant.ask(Track())
+    faced = set()
+    for hour in range(0, 24, 3):
+        plant.leap(datetime(2027, 6, 21, hour, 30, tzinfo=UTC))
+        plant.forward(30.0)
+        assert plant.activity is ActivityName.TRACKING
+        assert CONFIG.azimuth.beyond_deg(plant.azimuth_deg) < 1e-6
+        faced.add(round(plant.azimuth_deg / 15.0))
+    assert len(faced) == 8
+    assert not plant.happened(EventKind.FAULT_RAISED)
+
+
+@pytest.mark.fault(26)
+@pytest.mark.parametrize(
+    "by",
+    [timedelta(hours=1), timedelta(hours=-1), timedelta(days=-1), timedelta(days=-365), timedelta(days=365)],
+    ids=str,
+)
+def test_a_clock_that_jumps_moves_nothing_until_it_is_trusted(by: timedelta) -> None:
+    plant = tracked_over(datetime(2027, 6, 21, 9, 0, tzinfo=UTC), SAMSUN)
+    plant.jump(by)
+    plant.tick()
+    assert plant.told == DriveCommand()
+    plant.forward(2.0)
+    stood = (plant.azimuth_deg, plant.elevation_deg)
+    plant.forward(58.0)
+    assert (plant.azimuth_deg, plant.elevation_deg) == stood
+    assert plant.activity is ActivityName.TRACKING
+    assert plant.happened(EventKind.TRACKING_WAITING)
+    plant.jump(-by)
+    plant.clock_trusted = True
+    plant.forward(10.0)
+    assert plant.activity is ActivityName.TRACKING
+    assert plant.snapshot.in_position
+
+
+@pytest.mark.fault(32)
+def test_in_2100_the_sun_is_not_known_and_tracking_waits() -> None:
+    leap_day_that_is_none = datetime(2100, 2, 28, 23, 59, 59, tzinfo=UTC)
+    sky = Sky()
+    assert sky.sun(SAMSUN, Algorithm.PSA, leap_day_that_is_none) is None
+    assert sky.dawn(SAMSUN, Algorithm.PSA, leap_day_that_is_none) is None
+    script = Scripted(READY)
+    script.tick()
+    script.ask(Track())
+    script.sun = None
+    script.tick()
+    assert script.told == DriveCommand()
+    assert script.snapshot.activity is ActivityName.HOLDING
+    assert [reason.code for reason in script.snapshot.waiting] == ["sun_unknown"]
