@@ -1,0 +1,31 @@
+"""A day of a field in minutes: weather, faults, repairs; nothing breaks, and the memory does not grow."""
+
+from datetime import UTC, datetime
+from time import perf_counter
+
+import pytest
+
+from app.tracker.snapshot import ActivityName
+from tests.site.field import Field
+from tests.soak import amount
+
+TRACKERS, MINUTES = amount(3, 20), amount(20, 24 * 60)
+BEGIN = datetime(2027, 6, 21, 5, 0, tzinfo=UTC)
+MOST_GROWTH_BYTES = 24 * 1024 * 1024
+
+
+@pytest.mark.fault(46)
+@pytest.mark.timeout(amount(400, 14_400))
+async def test_a_field_lives_through_weather_and_faults_and_needs_no_more_memory() -> None:
+    begun = perf_counter()
+    field = Field(TRACKERS, BEGIN, seed=2026)
+    await field.live(MINUTES)
+    seen = field.seen
+    print(
+        f"{TRACKERS} trackers, {MINUTES} minutes in {perf_counter() - begun:.0f} s, {seen.faults} faults; "
+        f"memory {[round(size / 1e6) for size in seen.memory_bytes]} MB"
+    )
+    assert seen.activities >= {ActivityName.TRACKING, ActivityName.STOWING, ActivityName.STOWED}
+    assert seen.faults > 0
+    settled, last = seen.memory_bytes[amount(0, 12)], seen.memory_bytes[-1]
+    assert last - settled < MOST_GROWTH_BYTES
