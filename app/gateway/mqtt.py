@@ -14,6 +14,7 @@ from typing import TypeVar
 import structlog
 from aiomqtt import Client, MqttError, TLSParameters, Will
 
+from app.alarms.conditions import SITE, Condition
 from app.clock import Clock
 from app.gateway.door import Door
 from app.gateway.mqtt_commands import obey
@@ -100,6 +101,7 @@ class MqttGateway:
             first = first.exceptions[0]
         self._status = GatewayStatus.CONNECTING
         self._error = f"The broker at {self._where} is not reached: {first}. It is tried again."
+        self._door.trouble(MQTT, Condition("gateway_down", None, SITE, self._error))
         log.warning("mqtt_disconnected", reason=str(first), broker=self._where)
 
     @asynccontextmanager
@@ -111,6 +113,7 @@ class MqttGateway:
             await client.publish(self._topics.availability, ONLINE, AT_LEAST_ONCE, retain=True)
             self._status, self._error, self._announced = GatewayStatus.CONNECTED, "", {}
             self._alarms = None
+            self._door.trouble(MQTT, None)
             log.info("mqtt_connected", broker=self._where)
             try:
                 yield client

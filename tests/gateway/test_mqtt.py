@@ -14,9 +14,10 @@ import pytest
 from aiomqtt import Client, MqttError
 from pydantic import SecretStr
 
+from app.alarms.conditions import Condition
 from app.gateway.gateways import Gateways
 from app.gateway.mqtt import heeding
-from app.link.messages import RenameSite
+from app.link.messages import AcknowledgeAlarm, RenameSite
 from app.link.metrics import GatewayMetrics, GatewayStatus
 from app.settings import Settings
 from app.store.store import JournalEntry, JournalFilter, Writer
@@ -367,3 +368,17 @@ async def _until(gateways: Gateways, found: Callable[[GatewayMetrics], bool]) ->
             return seen
         await asyncio.sleep(0.02)
     raise AssertionError(f"it did not become so: {seen}")
+
+
+async def test_alarms_are_retained_while_they_stand_and_taken_back(tmp_path: Path, broker: Broker) -> None:
+    topic = "plant/north/alarms/clock_jumped"
+    async with kept_plant(tmp_path) as (plant, store), opened(plant, settings(tmp_path, broker), store):
+        plant.site.trouble("clock", Condition("clock_jumped", None, "Site", "It jumped."))
+        await plant.forward(seconds=1)
+        await eventually(lambda: any(name == topic for name, _, _ in broker.heard))
+        told = broker.told(topic)[0]
+        assert (told["priority"], told["state"], told["message"]) == (3, "unacknowledged", "It jumped.")
+        plant.site.trouble("clock", None)
+        await plant.ask(AcknowledgeAlarm("clock_jumped"))
+        await plant.forward(seconds=11)
+        await eventually(lambda: (topic, b"") in [(name, payload) for name, payload, _ in broker.heard])
