@@ -83,7 +83,7 @@ format: $(VENV)/.dev ## Format the code
 lock: ## Renew the locked dependencies (needs uv)
 	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build pyproject.toml -o requirements.txt
 	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra fast -c requirements.txt pyproject.toml -o requirements-fast.txt
-	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra fast --extra dev -c requirements.txt pyproject.toml -o requirements-dev.txt
+	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra fast --extra mdns --extra dev -c requirements.txt pyproject.toml -o requirements-dev.txt
 
 clean: ## Remove what was built (not the data)
 	rm -rf $(VENV) build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
