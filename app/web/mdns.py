@@ -1,7 +1,6 @@
 """The name heliopanel.local, announced on the local network where the setting asks for it."""
 
 import ipaddress
-import socket
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
@@ -37,14 +36,20 @@ async def announced(settings: Settings) -> AsyncIterator[None]:
 
 def addresses(host: str) -> list[bytes]:
     """Return the addresses to announce: the one that the panel listens on, or all that this computer has."""
-    wanted = own_names() if host in ("0.0.0.0", "::") else (host,)
     found = []
-    for one in wanted:
+    for one in own_names() if _everywhere(host) else (host,):
         try:
             address = ipaddress.ip_address(one)
         except ValueError:
             continue
         if not address.is_loopback or one == host:
-            family = socket.AF_INET6 if address.version == 6 else socket.AF_INET
-            found.append(socket.inet_pton(family, one))
+            found.append(address.packed)
     return found
+
+
+def _everywhere(host: str) -> bool:
+    """Return whether the panel listens on all addresses of this computer."""
+    try:
+        return ipaddress.ip_address(host).is_unspecified
+    except ValueError:
+        return False
