@@ -49,10 +49,10 @@ async def kill_panel(service: Service) -> None:
     panels = len(service.starts("web"))
     service.signal("web", signal.SIGKILL)
     await eventually(lambda: len(service.starts("web")) > panels)
-    await _until_served(service.port)
+    await until_served(service.port)
 
 
-async def _until_served(port: int) -> None:
+async def until_served(port: int) -> None:
     async with httpx.AsyncClient() as client, asyncio.timeout(20):
         while True:
             with suppress(httpx.TransportError):

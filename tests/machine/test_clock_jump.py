@@ -1,0 +1,85 @@
+"""The computer's clock is set while the service tracks: it says so, waits, and its timers go on."""
+
+import asyncio
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import pytest
+
+from app.build import BUILT_AT
+from app.link.messages import SetClock, SetLocation
+from app.store.engine import open_reader
+from app.store.store import JournalFilter
+from app.tracker.commands import SelectMode, SetZero, Track
+from app.tracker.mode import Mode
+from app.tracker.snapshot import ActivityName, EventKind
+from tests.machine.service import SAMSUN, Service, eventually
+from tests.soak import SOAK
+
+LIBRARIES = sorted(Path("/usr/lib").glob("*/faketime/libfaketime.so.1"))
+
+pytestmark = [
+    pytest.mark.skipif(not LIBRARIES, reason="Install faketime to set a process's clock."),
+    pytest.mark.skipif(not SOAK, reason="A process with a made-up clock is slow: part of make soak."),
+]
+
+
+@pytest.fixture
+def shift(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A file that says by how much the clock of what is started now is off."""
+    path = tmp_path / "shift"
+    path.write_text("+0\n")
+    monkeypatch.setenv("LD_PRELOAD", str(LIBRARIES[0]))
+    monkeypatch.setenv("FAKETIME_TIMESTAMP_FILE", str(path))
+    monkeypatch.setenv("FAKETIME_NO_CACHE", "1")
+    monkeypatch.setenv("FAKETIME_DONT_FAKE_MONOTONIC", "1")
+    return path
+
+
+@pytest.fixture
+async def service(tmp_path: Path, shift: Path) -> AsyncIterator[Service]:
+    started = await Service.start(tmp_path / "data")
+    await started.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
+    await started.ask(SetClock("system"))
+    await started.ask(SetZero())
+    await started.until(lambda seen: seen.home_trusted)
+    await started.ask(SelectMode(Mode.DUAL))
+    await started.ask(Track())
+    yield started
+    await started.stop()
+
+
+@pytest.mark.fault(26)
+async def test_a_clock_that_is_set_under_the_service_moves_nothing(service: Service, shift: Path) -> None:
+    before = await service.link.metrics()
+    for told in ("-365d", "+1h"):
+        await asyncio.to_thread(shift.write_text, f"{told}\n")
+        await service.until(lambda seen: seen.activity_text.endswith("clock is trusted again"))
+        await service.until(lambda seen: seen.azimuth is not None and not seen.azimuth.moving)
+        seen = service.tracker()
+        assert seen is not None
+        assert seen.activity is ActivityName.TRACKING
+        if told == "-365d":
+            with pytest.raises(ValueError, match="The clock cannot be"):
+                await service.ask(SetClock("system"))
+    await eventually(lambda: shown_year(service) >= BUILT_AT.year)
+    await service.ask(SetClock("system"))
+    await eventually(lambda: trusted(service))
+    after = await service.link.metrics()
+    assert after.boot_id == before.boot_id
+    assert after.trackers["T1"].ticks > before.trackers["T1"].ticks
+    reader = open_reader(f"sqlite:///{service.data_dir / 'heliopanel.db'}")
+    journal = [entry.event for entry in reader.journal(JournalFilter(limit=200))]
+    reader.close()
+    jumps = [event.data["seconds"] for event in reversed(journal) if event.kind is EventKind.CLOCK_JUMPED]
+    assert [round(float(seconds) / 3600.0) for seconds in jumps] == [-365 * 24, 365 * 24 + 1]
+
+
+def shown_year(service: Service) -> int:
+    latest = service.link.latest()
+    return 0 if latest is None else latest.at.year
+
+
+def trusted(service: Service) -> bool:
+    latest = service.link.latest()
+    return latest is not None and latest.clock.trusted
