@@ -10,7 +10,7 @@ from app.tracker.commands import Jog, Move, Track
 from app.tracker.config import Orientation
 from app.tracker.motion import Feedback
 from app.tracker.snapshot import ActivityName, EventKind
-from tests.tracker.plant import READY
+from tests.tracker.plant import BLANK, READY
 from tests.tracker.scripted import Scripted
 
 
@@ -22,6 +22,7 @@ def script() -> Scripted:
 
 
 def jogging(script: Scripted) -> Scripted:
+    script.tick()
     script.ask(Jog("p", Axis.AZIMUTH, 1, lease=timedelta(milliseconds=240)))
     assert script.controller.activity is ActivityName.JOGGING
     return script
@@ -124,3 +125,39 @@ def test_an_axis_that_is_blocked_is_a_fault_only_after_its_patience(script: Scri
     assert script.controller.memory.fault_code == "following_error"
     assert script.controller.memory.home is not None, "a blocked axis still knows its zero"
     assert 10 < waited < 60
+
+
+def test_a_zero_that_an_axis_has_lost_is_not_believed(script: Scripted) -> None:
+    sound = reading(script)
+    script.reading = replace(sound, elevation=replace(sound.elevation, homed=False))
+    script.tick()
+    assert script.controller.memory.home is None
+    assert [event.data["code"] for event in script.happened(EventKind.HOME_LOST)] == ["not_homed"]
+
+
+def test_a_zero_of_another_life_of_the_drive_is_not_believed_from_the_first_reading() -> None:
+    begun = Scripted(READY)
+    begun.reading = replace(reading(begun), boot_count=2)
+    begun.tick()
+    assert begun.controller.memory.home is None
+
+
+def test_a_drive_that_restarts_ends_a_jog_though_no_zero_is_lost() -> None:
+    script = jogging(Scripted(BLANK))
+    script.reading = replace(reading(script), boot_count=2)
+    script.tick()
+    assert script.controller.activity is ActivityName.HOLDING
+    (ended,) = script.happened(EventKind.JOG_ENDED)
+    assert "The drive of Tracker 1 has restarted" in ended.message
+
+
+@pytest.mark.parametrize("axis", list(Axis))
+def test_a_switch_that_is_reached_is_told_with_its_axis(script: Scripted, axis: Axis) -> None:
+    script.ask(Move(Orientation(90.0, 45.0)))
+    sound = reading(script)
+    pressed = replace(sound.azimuth, at_upper_limit=True)
+    script.reading = replace(sound, **{str(axis): pressed})
+    script.tick()
+    (told,) = script.happened(EventKind.LIMIT_REACHED)
+    assert told.data["axis"] is axis
+    assert str(axis) in told.message
