@@ -4,13 +4,15 @@ import asyncio
 import gc
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
 import uvicorn
-from fastapi import FastAPI
+from fastapi import APIRouter, FastAPI
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 from starlette.middleware.gzip import GZipMiddleware
+from starlette.routing import BaseRoute
 
 from app.access.opening import open_keeper
 from app.access.passwords import Hasher
@@ -46,7 +48,8 @@ from app.web.server import (
 )
 from app.web.simulations import Simulations
 from app.web.studies import Studies
-from app.web.ui.pages import include_pages
+from app.web.ui.pages import ROUTERS, error_page
+from app.web.ui.render import environment
 
 STATIC = Path(__file__).resolve().parents[2] / "static"
 SMALLEST_COMPRESSED = 600
@@ -73,17 +76,19 @@ def create_app(
         openapi_url="/api/v1/openapi.json",
         lifespan=_living,
     )
-    assets, hub = Assets(STATIC), Hub(machine, clock)
+    hub = Hub(machine, clock)
     studies = Studies(settings.data_dir, clock)
     keeper = open_keeper(settings, clock, hasher)
-    panel = Panel(settings, machine, reader, clock, assets, hub, Simulations(), studies, keeper)
+    panel = Panel(settings, machine, reader, clock, _assets(), hub, Simulations(), studies, keeper)
     app.state.panel = panel
-    _add_doors(app, panel)
+    app.state.templates, app.state.error_page = environment(), error_page
+    app.mount("/s", panel.assets, name="static")
+    app.router.routes.extend(_doors())
+    app.state.routes = guarded_routes(app.routes)
     errors.install(app)
     app.add_middleware(Uploads)
     app.add_middleware(RequestBodyLimitMiddleware, max_body_size=LARGEST_BODY)
     app.add_middleware(GZipMiddleware, minimum_size=SMALLEST_COMPRESSED)
-    app.state.routes = guarded_routes(app.routes)
     app.add_middleware(Gate, panel_app=app, keeper=keeper, clock=clock, routes=app.state.routes)
     app.add_middleware(StreamLimit)
     app.add_middleware(Guard, hosts=host_names(settings))
@@ -100,12 +105,22 @@ done. A repeated request with the same `Idempotency-Key` is done once; one whose
 is refused. The live socket of the pages is `/live`; for programs there is `/api/v1/stream`."""
 
 
-def _add_doors(app: FastAPI, panel: Panel) -> None:
-    app.mount("/s", panel.assets, name="static")
-    app.include_router(live.router)
-    app.include_router(api_router())
-    app.include_router(operations, include_in_schema=False)
-    include_pages(app)
+@cache
+def _doors() -> tuple[BaseRoute, ...]:
+    """Return all ways in, shared by every panel of the process: FastAPI needs a second to work them out."""
+    inner = APIRouter()
+    inner.include_router(live.router)
+    inner.include_router(api_router())
+    inner.include_router(operations, include_in_schema=False)
+    for pages in ROUTERS:
+        inner.include_router(pages, include_in_schema=False)
+    return tuple(inner.routes)
+
+
+@cache
+def _assets() -> Assets:
+    """Return the static files; their hash is worked out once."""
+    return Assets(STATIC)
 
 
 @asynccontextmanager

@@ -1,6 +1,5 @@
 """The pages of the panel: one router a subject, and the page that tells what went wrong."""
 
-from fastapi import FastAPI
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -47,7 +46,7 @@ from app.web.ui import (
     wizard,
 )
 from app.web.ui.frame import site_frame
-from app.web.ui.render import environment, page, wants_block
+from app.web.ui.render import page, wants_block
 
 ROUTERS = (
     overview.router,
@@ -90,14 +89,6 @@ ROUTERS = (
     site.router,
     wizard.router,
 )
-
-
-def include_pages(app: FastAPI) -> None:
-    """Add every page to the application."""
-    app.state.templates = environment()
-    app.state.error_page = error_page
-    for router in ROUTERS:
-        app.include_router(router, include_in_schema=False)
 
 
 def error_page(request: Request, problem: Problem) -> Response:
