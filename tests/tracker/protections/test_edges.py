@@ -4,10 +4,13 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from app.tracker.protections import hibernation, typhoon
-from app.tracker.protections.config import LightProtection, WindProtection
+from app.tracker.protections import guarding, hibernation, typhoon
+from app.tracker.protections.config import LightProtection, ProtectionConfig, WindProtection
+from app.tracker.protections.guarding import OFF_GUARD
 from app.tracker.protections.hibernation import AWAKE, Hibernation
 from app.tracker.protections.typhoon import CALM, Typhoon, Wind
+from app.tracker.protections.words import Protection
+from app.tracker.weather import Quality, Reading, Sensed
 
 NOW = datetime(2026, 6, 21, 6, 0, tzinfo=UTC)
 LIMITS = WindProtection(gust_mps=17.0, mean_mps=15.0, hysteresis_mps=2.0)
@@ -45,3 +48,30 @@ def test_an_unknown_light_keeps_what_was_known_and_begins_the_delay_anew() -> No
     )
     resting = Hibernation(NOW, NOW, False)
     assert hibernation.step(resting, LIGHT, None, later) is resting
+
+
+def air(gust_mps: float | None, mean_mps: float | None) -> Sensed:
+    wind = Reading() if gust_mps is None else Reading(gust_mps, Quality.GOOD, 0.0)
+    return Sensed(wind, wind_mean_mps=mean_mps)
+
+
+def test_the_mean_wind_stows_too_but_only_while_the_sensor_is_well() -> None:
+    config = ProtectionConfig(wind=LIMITS)
+    for gust_mps, mean_mps, kind in (
+        (10.0, 15.0, Protection.TYPHOON),
+        (10.0, 14.9, Protection.TRACK),
+        (10.0, None, Protection.TRACK),
+        (None, 15.0, Protection.TRACK),
+    ):
+        seen = air(gust_mps, mean_mps)
+        assert guarding.step(OFF_GUARD, config, seen, (), NOW, night=False).kind is kind
+
+
+def test_what_holds_is_known_since_it_began() -> None:
+    config, later = ProtectionConfig(wind=LIMITS), NOW + timedelta(seconds=5)
+    begun = guarding.step(OFF_GUARD, config, air(20.0, 5.0), (), NOW, night=False)
+    assert (begun.kind, begun.since) == (Protection.TYPHOON, NOW)
+    assert guarding.step(begun, config, air(20.0, 5.0), (), later, night=False).since == NOW
+    over = later + timedelta(seconds=700)
+    ended = guarding.step(begun, config, air(3.0, 5.0), (), over, night=True)
+    assert (ended.kind, ended.since) == (Protection.NIGHT, over)
