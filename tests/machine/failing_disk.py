@@ -20,12 +20,10 @@ class DiskFault(StrEnum):
     STALLED = "fdatasync:delay_enter=2000000"
 
 
-needs_strace = pytest.mark.skipif(shutil.which("strace") is None, reason="Install strace to make calls fail.")
-
-
 @asynccontextmanager
 async def failing(process_id: int, fault: DiskFault, log: Path) -> AsyncIterator[None]:
     """Have the calls of a process fail while the block runs."""
+    assert shutil.which("strace"), "Install strace to make calls fail: apt-get install strace."
     call = fault.partition(":")[0]
     tracer = await asyncio.create_subprocess_exec(
         "strace", "-f", "-p", str(process_id), "-o", str(log), "-e", f"trace={call}", "-e", f"inject={fault}",
@@ -36,7 +34,7 @@ async def failing(process_id: int, fault: DiskFault, log: Path) -> AsyncIterator
         told = (await tracer.stderr.readline()).decode()
     if "attached" not in told:
         await tracer.wait()
-        pytest.skip(f"This computer lets no process be traced: {told.strip()}")
+        pytest.fail(f"This computer lets no process be traced: {told.strip()}")
     try:
         yield
     finally:

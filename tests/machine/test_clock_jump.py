@@ -14,14 +14,8 @@ from app.tracker.commands import SelectMode, SetZero, Track
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName, EventKind
 from tests.machine.service import SAMSUN, Service, eventually
-from tests.soak import SOAK
 
 LIBRARIES = sorted(Path("/usr/lib").glob("*/faketime/libfaketime.so.1"))
-
-pytestmark = [
-    pytest.mark.skipif(not LIBRARIES, reason="Install faketime to set a process's clock."),
-    pytest.mark.skipif(not SOAK, reason="A process with a made-up clock is slow: part of make soak."),
-]
 
 
 @pytest.fixture

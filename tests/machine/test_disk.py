@@ -16,14 +16,14 @@ from app.tracker.alarm_words import AlarmState
 from app.tracker.commands import CommandRejected, SelectMode, SetZero, Stop, Track
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName
-from tests.machine.failing_disk import DiskFault, failing, needs_strace
+from tests.machine.failing_disk import DiskFault, failing
 from tests.machine.service import SAMSUN, Service, eventually
 
 LATEST_TICK_S = 1.0
 WATCHED_S = 2.5
 GONE = (AlarmState.RETURNED, AlarmState.NORMAL)
 
-pytestmark = [needs_strace, pytest.mark.asyncio(loop_scope="module")]
+pytestmark = pytest.mark.asyncio(loop_scope="module")
 
 
 @pytest_asyncio.fixture(scope="module", loop_scope="module")

@@ -15,14 +15,11 @@ from app.tracker.commands import SelectMode, SetZero, Track
 from app.tracker.mode import Mode
 from tests.machine.service import SAMSUN, Service
 from tests.machine.stories import until_served
-from tests.soak import SOAK
 
 VIEWERS = 100
 WATCHED_S = float(os.environ.get("HELIOPANEL_TEST_WATCHED_S", "3600"))
 ON_TIME = 0.999
 LATEST_MS = 10.0
-
-pytestmark = pytest.mark.skipif(not SOAK, reason="An hour on the real clock: part of make soak.")
 
 
 async def watch(port: int, until: float) -> int:

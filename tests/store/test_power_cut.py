@@ -20,10 +20,9 @@ PAGE = 4096
 AS_SHIPPED, OFTEN = 1000, 6
 """Pages after which the log is folded into the file: SQLite's own rule, and often enough to be cut in it."""
 
-pytestmark = pytest.mark.skipif(shutil.which("strace") is None, reason="Install strace to record file calls.")
-
 
 def recorded(folder: Path, *, checkpoint_pages: int, synchronous: str = "as_shipped") -> Recording:
+    assert shutil.which("strace"), "Install strace to record file calls: apt-get install strace."
     data = folder / "data"
     data.mkdir()
     url = f"sqlite:///{data / 'heliopanel.db'}"
