@@ -156,9 +156,7 @@ class Witness:
         if self._before is ActivityName.STOWED:
             assert activity in (ActivityName.STOWING, ActivityName.TRACKING)
             assert activity is ActivityName.STOWING or memory.tracking_on
-        elif activity is ActivityName.STOWING:
-            assert memory.stow is not None, "only what was sent by command is stowed from rest"
-        else:
-            assert activity is ActivityName.TRACKING, f"{activity} began by itself"
+        elif activity is not ActivityName.STOWING or memory.stow is None:
+            assert activity in (ActivityName.TRACKING, ActivityName.STOWING), f"{activity} began by itself"
             assert self._fresh, "only a restart lets tracking go on"
             assert memory.tracking_on
