@@ -60,7 +60,7 @@ from tests.tracker.plant import CONFIG, READY, Plant
 from tests.tracker.test_controller_show import PLAN
 from tests.tracker.witness import Witness, moves
 
-EXAMPLES = int(os.environ.get("HELIOPANEL_TEST_EXAMPLES", amount(20, 1000)))
+EXAMPLES = int(os.environ.get("HELIOPANEL_TEST_EXAMPLES", amount(20, 1500)))
 STEPS = amount(25, 50)
 LONGEST_S = amount(8.0, 40.0)
 QUICK = ProtectionConfig(
