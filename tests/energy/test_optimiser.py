@@ -23,6 +23,8 @@ from app.tracker.programs.stepped import StepFrame, TimeBase
 
 ANY_DAY = st.integers(1, 365)
 ANY_LATITUDE = st.floats(-66, 66)
+QUADRATURE = 1e-7
+"""How well integrals of the same day, cut at different instants, agree: measured 1e-8."""
 
 
 def cloudy(share: float, at_h: float) -> SolarDay:
@@ -66,13 +68,14 @@ def test_never_below_it_under_any_sky_and_price(
 def test_no_instants_are_better_than_the_midpoints(
     latitude_deg: float, day_of_year: int, angles: list[float], data: st.DataObject
 ) -> None:
-    """The rule itself: shifting the steps never helps, whatever the angles."""
+    """The rule itself: shifting the steps never helps, whatever the angles, but for the integral's own error."""
     day = clear_day(latitude_deg, day_of_year, declination_deg(day_of_year))
     falling = tuple(sorted(angles, reverse=True))
     tilt_deg = latitude_deg - day.declination_deg
     best = Steps(midpoint_h(falling), falling, tilt_deg)
     starts = tuple(sorted(start + data.draw(st.floats(-1, 1)) for start in best.starts_h))
-    assert stepped_whm2(day, best) >= stepped_whm2(day, Steps(starts, falling, tilt_deg)) - 1e-6
+    shifted_whm2 = stepped_whm2(day, Steps(starts, falling, tilt_deg))
+    assert stepped_whm2(day, best) >= shifted_whm2 * (1 - QUADRATURE)
 
 
 def test_beats_angles_tried_at_random() -> None:

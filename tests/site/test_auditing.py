@@ -80,12 +80,12 @@ async def test_commands_tell_what_they_changed_and_refusals_why(audited: Audited
     assert ("take_control", "T1", "done") in audited.told()
     found = [one for one in audited.entries() if one.action != "take_control"]
     assert [one.action for one in found] == [
-        "track", "set_location", "set_clock", "home", "set_mode", "track", "stop",
+        "track", "set_location", "set_clock", "home", "release_control", "set_mode", "track", "stop",
     ]  # fmt: skip
     assert found[0].result.startswith("refused: ")
-    assert json.loads(found[5].after)["memory.tracking_on"] is True
-    assert json.loads(found[6].before)["memory.tracking_on"] is True
-    assert found[6].clock_quality == "trusted"
+    assert json.loads(found[6].after)["memory.tracking_on"] is True
+    assert json.loads(found[7].before)["memory.tracking_on"] is True
+    assert found[7].clock_quality == "trusted"
     sealed = audited.store.audit(AuditFilter(after=0))
     assert first_break(one.link() for one in sealed) is None
 
