@@ -114,6 +114,9 @@ ORDERS: dict[str, Permission] = {
     "confirm_step": Permission.CONFIGURE,
     "lock_settings": Permission.CONFIGURE,
     "unlock_settings": Permission.CONFIGURE,
+    "add_record_photo": Permission.CONFIGURE,
+    "remove_record_photo": Permission.CONFIGURE,
+    "sign_record": Permission.CONFIGURE,
     "take_sighting": Permission.CONFIGURE,
     "apply_sightings": Permission.CONFIGURE,
 }

@@ -39,6 +39,7 @@ from app.link.messages import (
 )
 from app.link.metrics import MachineMetrics
 from app.link.outlet import Outlet
+from app.link.record_orders import AddRecordPhoto, SignRecord
 from app.tracker.commands import Jog
 from app.tracker.snapshot import SiteSnapshot
 
@@ -207,7 +208,7 @@ class LinkClient:
 
 def _patience_s(order: Order) -> float:
     """Return how long to wait: what is stored may have to wait for a slow disk."""
-    if isinstance(order.command, SaveRecording):
+    if isinstance(order.command, SaveRecording | AddRecordPhoto | SignRecord):
         return LONG_ANSWER_S
     return STORED_ANSWER_S if isinstance(order.command, SiteCommand) else ANSWER_S
 

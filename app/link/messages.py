@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Literal, Protocol
 
+from app.link.record_orders import RecordOrder
 from app.link.weather_orders import ReportWeather, SetMetStation, SetWeatherWindows, SimulateWeather
 from app.sun.position import Location
 from app.tracker.axes import Axis
@@ -323,13 +324,9 @@ class ClearFaults:
 
 SiteCommand = (
     SetLocation | SetClock | RenameSite | AddTracker | ConfigureTracker | RemoveTracker | ConfirmStep
-    | SavePlan | TakeSighting | ApplySightings | StopAll | SaveRecording | DeleteRecording
-    | AnswerDirection | AnswerScale | SetSoftLimit | RestoreDrive | CheckConnection
-    | ReportWeather | SetMetStation | SimulateWeather | SetWeatherWindows
-    | AcknowledgeAlarm | ShelveAlarm | UnshelveAlarm | SetNotifications | TestNotification
-    | RequestControl | AnswerControl | ReleaseControl | RenewControl
-    | LockSettings | UnlockSettings
-    | PlayFault | ClearFaults
+    | SavePlan | TakeSighting | ApplySightings | StopAll | SaveRecording | DeleteRecording | DriveOrder
+    | ReportWeather | SetMetStation | SimulateWeather | SetWeatherWindows | AlarmOrder | NotificationOrder
+    | ControlOrder | LockOrder | RecordOrder | PlayFault | ClearFaults
 )  # fmt: skip
 
 

@@ -29,7 +29,8 @@ from app.link.messages import (
 )
 from app.link.metrics import MachineMetrics
 from app.link.outlet import Outlet
-from app.site import control, notifying, settings_lock, site_orders, tracker_orders
+from app.link.record_orders import RecordOrder
+from app.site import control, notifying, records, settings_lock, site_orders, tracker_orders
 from app.site.alarming import AlarmDesk
 from app.site.auditing import Auditor, as_action
 from app.site.checking import Checks, DriveTools
@@ -255,6 +256,8 @@ class Site:
             settings_lock.refuse_locked(self.model, command)
             if isinstance(command, LockOrder):
                 return await settings_lock.carry_out(self.model, command, order.actor)
+            if isinstance(command, RecordOrder):
+                return await records.carry_out(self.model, command, order.actor)
             if isinstance(command, NotificationOrder):
                 return await notifying.carry_out(self.model, command, order.actor)
             return await site_orders.carry_out(self.model, command, order.actor)

@@ -9,7 +9,7 @@ from sqlalchemy import Connection, Engine, Row, Select, select
 
 from app.alarms.alarm import Alarm
 from app.audit.entry import Sealed
-from app.store import alarming, auditing, tables
+from app.store import alarming, auditing, signed, tables
 from app.store.chunks import ChunkDamaged, decode_all
 from app.store.connections import require_revision, transaction
 from app.store.documents import EVENT_DATA, PLAN, RECORDING, SITE, TRACKER
@@ -19,7 +19,10 @@ from app.store.store import (
     JournalEntry,
     JournalFilter,
     KeptAlarm,
+    Photo,
     PlannedShow,
+    RecordHead,
+    SignedRecord,
     StoreFailed,
 )
 from app.tracker.memory import SiteState, TrackerState
@@ -88,6 +91,33 @@ class DatabaseReader:
         with self._read() as connection:
             rows = connection.execute(alarming.history(wanted)).all()
         return [alarming.kept(row) for row in rows]
+
+    def signed_records(self, tracker_id: str | None = None, *, limit: int = 200) -> list[RecordHead]:
+        """Return the heads of signed commissioning records, newest first."""
+        with self._read() as connection:
+            return signed.heads(connection, tracker_id, limit)
+
+    def signed_record(self, number: int) -> SignedRecord | None:
+        """Return one signed record."""
+        with self._read() as connection:
+            return signed.record(connection, number)
+
+    def waiting_photos(self, tracker_id: str) -> list[Photo]:
+        """Return the photos that wait for the next record of a tracker, in the order they were added."""
+        photos = tables.record_photos.c
+        with self._read() as connection:
+            return signed.photos(connection, photos.tracker_id == tracker_id, photos.record_number.is_(None))
+
+    def photos_of(self, record_number: int) -> list[Photo]:
+        """Return the photos of a signed record, in the order they were added."""
+        with self._read() as connection:
+            return signed.photos(connection, tables.record_photos.c.record_number == record_number)
+
+    def photo(self, number: int) -> Photo | None:
+        """Return one photo."""
+        with self._read() as connection:
+            found = signed.photos(connection, tables.record_photos.c.number == number)
+        return found[0] if found else None
 
     def show(self, show_id: str) -> PlannedShow | None:
         """Return the plan of a show."""

@@ -27,7 +27,14 @@ LOCK_NAME = "machine.lock"
 PENDING_NAME = "restore.pending"
 REFUSED_NAME = "restore.refused"
 KEPT_NAME = "heliopanel.db"
-NUMBERED = (tables.trackers, tables.events, tables.shows, tables.alarms)
+NUMBERED = (
+    tables.trackers,
+    tables.events,
+    tables.shows,
+    tables.alarms,
+    tables.records,
+    tables.record_photos,
+)
 
 
 @dataclass(frozen=True, slots=True)

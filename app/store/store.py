@@ -89,6 +89,44 @@ class AuditFilter:
     until: datetime | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class RecordHead:
+    """A signed record in a list: its number, whose, when, by whom, and the hash of its document."""
+
+    number: int
+    tracker_id: str
+    kept_at: datetime
+    kept_by: str
+    digest: str
+
+
+@dataclass(frozen=True, slots=True)
+class SignedRecord:
+    """A signed record: its head and its document, byte for byte what the hash covers."""
+
+    head: RecordHead
+    document: str
+
+
+@dataclass(frozen=True, slots=True)
+class Photo:
+    """A photo for a record, as JPEG; without a `record_number` it waits for the next one of its tracker.
+
+    `digest` is the SHA-256 of the content, width and height are pixels; number 0: not stored yet.
+    """
+
+    tracker_id: str
+    added_at: datetime
+    added_by: str
+    caption: str
+    digest: str
+    width: int
+    height: int
+    content: bytes
+    number: int = 0
+    record_number: int | None = None
+
+
 class Reader(Protocol):
     """Reading only; safe from any thread of any process."""
 
@@ -109,6 +147,21 @@ class Reader(Protocol):
 
     def alarm_history(self, wanted: AlarmFilter) -> list[KeptAlarm]:
         """Return alarms, those that stand and those that ended, newest first."""
+
+    def signed_records(self, tracker_id: str | None = None, *, limit: int = 200) -> list[RecordHead]:
+        """Return the heads of signed commissioning records, newest first."""
+
+    def signed_record(self, number: int) -> SignedRecord | None:
+        """Return one signed record."""
+
+    def waiting_photos(self, tracker_id: str) -> list[Photo]:
+        """Return the photos that wait for the next record of a tracker, in the order they were added."""
+
+    def photos_of(self, record_number: int) -> list[Photo]:
+        """Return the photos of a signed record, in the order they were added."""
+
+    def photo(self, number: int) -> Photo | None:
+        """Return one photo."""
 
     def show(self, show_id: str) -> PlannedShow | None:
         """Return the plan of a show."""
@@ -157,6 +210,17 @@ class Writer(Reader, Protocol):
 
         This is the only way by which entries leave the journal; `note` makes the event that says so.
         """
+
+    def sign_record(
+        self, head: RecordHead, document: str, photos: Sequence[int], events: Sequence[Event]
+    ) -> int:
+        """Keep a signed record for good, with photos that waited for it; return the number it gets."""
+
+    def add_photo(self, photo: Photo) -> None:
+        """Store a photo that waits for the next record of its tracker."""
+
+    def remove_photo(self, number: int) -> None:
+        """Remove a photo that waits; one of a signed record stays."""
 
     def begin_recording(self, info: RecordingInfo) -> None:
         """Open a recording."""

@@ -21,7 +21,7 @@ from sqlalchemy import (
     UniqueConstraint,
 )
 
-REVISION = "0003"
+REVISION = "0004"
 """The newest migration: what the tables of a database must be for this software to use them."""
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
@@ -163,4 +163,35 @@ audit = Table(
     Column("prev_hash", String(64), nullable=False),
     Column("hash", String(64), nullable=False),
     Index(None, "utc"),
+)
+
+records = Table(
+    "records",
+    metadata,
+    Column("number", Number, Identity(), primary_key=True),
+    Column("tracker_id", String(200), nullable=False),
+    Column("kept_at", Instant, nullable=False),
+    Column("kept_by", Text, nullable=False),
+    Column("digest", String(64), nullable=False, unique=True),
+    Column("document", Text, nullable=False),
+    Index(None, "tracker_id", "number"),
+    sqlite_autoincrement=True,
+)
+
+record_photos = Table(
+    "record_photos",
+    metadata,
+    Column("number", Number, Identity(), primary_key=True),
+    Column("tracker_id", String(200), nullable=False),
+    Column("record_number", BigInteger),
+    Column("added_at", Instant, nullable=False),
+    Column("added_by", Text, nullable=False),
+    Column("caption", Text, nullable=False),
+    Column("digest", String(64), nullable=False),
+    Column("width", Integer, nullable=False),
+    Column("height", Integer, nullable=False),
+    Column("content", LargeBinary, nullable=False),
+    Index(None, "tracker_id"),
+    Index(None, "record_number"),
+    sqlite_autoincrement=True,
 )

@@ -8,13 +8,13 @@ from sqlalchemy import ColumnElement, Connection, Engine, Table, delete, insert,
 from sqlalchemy.exc import SQLAlchemyError
 
 from app.audit.entry import Entry
-from app.store import alarming, auditing, tables
+from app.store import alarming, auditing, signed, tables
 from app.store.chunks import CHUNK_FRAMES, ChunkDamaged, decode, encode_all, join
 from app.store.connections import require_revision
 from app.store.documents import EVENT_DATA, PLAN, RECORDING, SITE, TRACKER, plain
 from app.store.failures import explained, is_lasting
 from app.store.reader import HEAD, DatabaseReader, head
-from app.store.store import KeptAlarm, PlannedShow, StoreFailed
+from app.store.store import KeptAlarm, Photo, PlannedShow, RecordHead, StoreFailed
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.recording import Frames, RecordingInfo, RecordingKind
 from app.tracker.snapshot import Event
@@ -126,6 +126,25 @@ class DatabaseWriter(DatabaseReader):
             if removed:
                 _append(connection, (note(removed),))
         return removed
+
+    def sign_record(
+        self, head: RecordHead, document: str, photos: Sequence[int], events: Sequence[Event]
+    ) -> int:
+        """Keep a signed record for good, with photos that waited for it; return the number it gets."""
+        with self._write() as connection:
+            number = signed.sign(connection, head, document, photos)
+            _append(connection, events)
+        return number
+
+    def add_photo(self, photo: Photo) -> None:
+        """Store a photo that waits for the next record of its tracker."""
+        with self._write() as connection:
+            signed.add_photo(connection, photo)
+
+    def remove_photo(self, number: int) -> None:
+        """Remove a photo that waits; one of a signed record stays."""
+        with self._write() as connection:
+            signed.remove_photo(connection, number)
 
     def begin_recording(self, info: RecordingInfo) -> None:
         """Open a recording."""

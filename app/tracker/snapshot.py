@@ -10,7 +10,7 @@ from app.tracker.alarm_words import AlarmCounts, AlarmNow
 from app.tracker.config import Orientation
 from app.tracker.control import ControlState
 from app.tracker.hybrid import HybridPhase
-from app.tracker.memory import CommissioningLock
+from app.tracker.memory import CommissioningLock, HomeTrust
 from app.tracker.mode import Mode
 from app.tracker.motion import LightReading
 from app.tracker.protections.words import (
@@ -148,7 +148,8 @@ class Snapshot:
     that forbid it (none: allowed). `protection` is what wind, snow or light demand now (None: nothing),
     `stow` the place it is or goes to for that or by command, `not_stowed` why it does not stow although it
     should (priority 1), `local` that the switch at the cabinet is on local, `service` who serves the machine,
-    `link` how the drive's replies come. `warning` counts down to a motion that nobody at the machine asked
+    `link` how the drive's replies come. `home` says who set the zero that is trusted, `home_lost` why and
+    `home_lost_at` since when none is. `warning` counts down to a motion that nobody at the machine asked
     for.
     """
 
@@ -192,6 +193,9 @@ class Snapshot:
     local: bool = False
     service: ServiceState | None = None
     link: LinkQuality | None = None
+    home: HomeTrust | None = None
+    home_lost: str = ""
+    home_lost_at: datetime | None = None
 
 
 class EventKind(StrEnum):
@@ -255,6 +259,7 @@ class EventKind(StrEnum):
     SETTINGS_LOCKED = "settings_locked"
     SETTINGS_UNLOCKED = "settings_unlocked"
     CREPT = "crept"
+    RECORD_SIGNED = "record_signed"
     OVERRAN = "overran"
     LOCAL_TAKEN = "local_taken"
     LOCAL_GIVEN_BACK = "local_given_back"
