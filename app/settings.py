@@ -18,6 +18,7 @@ from pydantic_settings import (
 )
 
 from app.foreseen import Foreseen
+from app.network import FILE_NAME, NETWORK_FIELDS, Network, read_network
 
 PREFIX = "HELIOPANEL_"
 FILE_VARIABLE = "HELIOPANEL_CONFIG"
@@ -50,6 +51,9 @@ class Settings(BaseSettings):
         None, description="Certificate (with chain) of the panel instead of what `heliopanel tls init` made."
     )
     tls_key_file: Path | None = Field(None, description="Its key.")
+    tls: bool | None = Field(
+        None, description="Serve https, or not although there is a certificate; unset: where there is one."
+    )
     insecure_lan: bool = Field(
         False, description="Listen beyond loopback without a certificate; every page warns of it."
     )
@@ -143,8 +147,17 @@ class Settings(BaseSettings):
         dotenv_settings: PydanticBaseSettingsSource,
         file_secret_settings: PydanticBaseSettingsSource,
     ) -> tuple[PydanticBaseSettingsSource, ...]:
-        """Return where settings come from: arguments before the environment before the file."""
-        return init_settings, env_settings, InitSettingsSource(settings_cls, _from_file())
+        """Return where settings come from: arguments, the environment, the page Network, the file."""
+        given = _from_file()
+        places = (init_settings(), env_settings(), given)
+        named = [found["data_dir"] for found in places if "data_dir" in found]
+        network = _from_page(Path(named[0] if named else cls.model_fields["data_dir"].default))
+        return (
+            init_settings,
+            env_settings,
+            InitSettingsSource(settings_cls, network),
+            InitSettingsSource(settings_cls, given),
+        )
 
     @field_validator("sunspec_host")
     @classmethod
@@ -176,6 +189,10 @@ class Settings(BaseSettings):
     def _listening(self) -> Self:
         if (self.tls_cert_file is None) != (self.tls_key_file is None):
             raise ValueError("HELIOPANEL_TLS_CERT_FILE and HELIOPANEL_TLS_KEY_FILE go together: set both.")
+        if self.tls and self.certificate is None:
+            raise ValueError(
+                "HELIOPANEL_TLS is on, but there is no certificate. Make one with: heliopanel tls init"
+            )
         refusal = refusal_to_listen(
             self.host, has_certificate=self.certificate is not None, insecure_lan=self.insecure_lan
         )
@@ -222,11 +239,19 @@ class Settings(BaseSettings):
 
     @property
     def certificate(self) -> tuple[Path, Path] | None:
-        """Return the files of the panel's certificate and key: the given ones, its own, None without any."""
+        """Return the files of the panel's certificate and key: the given ones, its own, None without https."""
+        if self.tls is False:
+            return None
         if self.tls_cert_file is not None and self.tls_key_file is not None:
             return self.tls_cert_file, self.tls_key_file
         own = self.tls_dir / "server.crt", self.tls_dir / "server.key"
         return own if all(path.is_file() for path in own) else None
+
+    @property
+    def network(self) -> Network:
+        """Return what of these settings the page Network changes."""
+        hosts, proxies, tls = self.allowed_hosts, self.trusted_proxies, self.certificate is not None
+        return Network(self.host, self.port, hosts, proxies, tls)
 
     @property
     def scheme(self) -> str:
@@ -259,6 +284,11 @@ def read_settings() -> Settings:
         return Settings()
     except ValidationError as error:
         raise SettingsWrong(" ".join(_sentence(detail) for detail in error.errors())) from error
+
+
+def fixed_by_environment() -> frozenset[str]:
+    """Return what of the network the environment sets, so that the page Network cannot."""
+    return frozenset(name for name in NETWORK_FIELDS if PREFIX + name.upper() in os.environ)
 
 
 def refusal_to_listen(host: str, *, has_certificate: bool, insecure_lan: bool) -> str:
@@ -295,6 +325,17 @@ def _sentence(detail: Any) -> str:
         return str(detail["ctx"]["error"])
     name = PREFIX + "_".join(str(part) for part in detail["loc"]).upper()
     return f"{name} is wrong: {detail['msg']}."
+
+
+def _from_page(folder: Path) -> dict[str, Any]:
+    """Return what the page Network has set."""
+    try:
+        return read_network(folder)
+    except (OSError, ValueError) as error:
+        raise SettingsWrong(
+            f"The file {folder / FILE_NAME}, which the page Network wrote, cannot be read: {error}. "
+            "Remove it; the environment and the defaults count then."
+        ) from error
 
 
 def _from_file() -> dict[str, Any]:
