@@ -70,6 +70,7 @@ check: $(VENV)/.dev ## Formatting, lint, types, import contracts, migrations, ve
 	@$(BIN)/python -m tests.secret_search
 	@$(BIN)/python static/vendor/vendor.py check
 	@$(BIN)/python -m app.store.migrations check
+	@$(BIN)/python -m app.access.migrations
 
 fuzz: $(VENV)/.dev ## Send 10,000 bad requests to the API, and hostile values into every form
 	@$(BIN)/python -m tests.fuzz

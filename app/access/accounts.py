@@ -117,6 +117,11 @@ class Accounts:
             change.end_session(digest)
             note(change, by, "session_ended", digest[:8], now)
 
+    def record(self, by: Principal, action: str, thing: str, now: datetime, result: str = "done") -> None:
+        """Append to the events of access what changes no user."""
+        with self._store.writing() as change:
+            note(change, by, action, thing, now, result)
+
     def factory_reset(self, by: Principal, now: datetime) -> None:
         """Remove all users, sessions, tokens and wrong passwords."""
         with self._store.writing() as change:

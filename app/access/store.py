@@ -74,8 +74,8 @@ class AccessStore:
         """Yield one change: all of it happens, or nothing."""
         self._make()
         with transaction(self._engine) as connection:
+            number = _locked(connection) + 1
             yield Change(connection)
-            number = int(_meta(connection, CHANGES)) + 1
             connection.execute(
                 update(tables.meta).where(tables.meta.c.name == CHANGES).values(value=str(number))
             )
@@ -212,6 +212,12 @@ def _meta(connection: Connection, name: str) -> str:
         select(tables.meta.c.value).where(tables.meta.c.name == name)
     ).scalar_one()
     return found
+
+
+def _locked(connection: Connection) -> int:
+    """Return the number of changes; on PostgreSQL others wait here (SQLite's transactions begin locked)."""
+    asked = select(tables.meta.c.value).where(tables.meta.c.name == CHANGES).with_for_update()
+    return int(connection.execute(asked).scalar_one())
 
 
 def _user(row: dict[str, Any]) -> User:
