@@ -202,6 +202,12 @@ ENTRIES = (
         SHORT, LONG,
     ),
     Entry(
+        "wind_sensors_disagree", 3, Group.WEATHER, "Wind sensors disagree",
+        "The higher wind counts: the panel may be stowed without need, or the other sensor hides a storm.",
+        "Compare both sensors with the wind outside; check or switch off the one that is wrong.",
+        SHORT, LONG,
+    ),
+    Entry(
         "snow_sensor_bad", 3, Group.WEATHER, "Snow sensor fails",
         "A load of snow would not be noticed.",
         "Check the sensor, its cable and its address; look at the panel when it snows.",

@@ -107,6 +107,9 @@ def _of_site(site: SiteSnapshot) -> Iterator[Condition]:
     for reason in site.clock.reasons:
         if reason.code in CATALOGUE:
             yield Condition(reason.code, None, SITE, reason.message, reason.hint)
+    apart = None if site.weather is None else site.weather.disagreement
+    if apart is not None:
+        yield Condition(apart.code, None, SITE, apart.message, apart.hint)
 
 
 def _of_health(health: SiteHealth, before: frozenset[str]) -> Iterator[Condition]:

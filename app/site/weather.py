@@ -3,6 +3,7 @@
 from dataclasses import fields
 from datetime import datetime, timedelta
 
+from app.site.anemometers import Anemometers
 from app.site.weather_series import FROZEN_AFTER, Sample, Series
 from app.tracker.weather import NOTHING_SENSED, Quality, Reading, Sensed, Weather, WeatherNow
 from app.tracker.weather_windows import WeatherWindows
@@ -10,7 +11,8 @@ from app.tracker.weather_windows import WeatherWindows
 MOST_AHEAD = timedelta(seconds=10)
 USUAL = WeatherWindows()
 NAMES = tuple(field.name for field in fields(Weather))
-MOVES_WITH = {"wind_mps": "wind_direction_deg"}
+WIND = "wind_mps"
+MOVES_WITH = {WIND: "wind_direction_deg"}
 """A vane that turns while the anemometer shows no wind says that the anemometer is stuck."""
 
 
@@ -23,7 +25,9 @@ class WeatherStation:
     def begin_anew(self, windows: WeatherWindows, *, simulated: bool = False) -> None:
         """Forget every value: what is measured and what is made up are never mixed."""
         self._windows, self._simulated = windows, simulated
-        self._series = {name: Series(name, windows) for name in NAMES}
+        self._winds = Anemometers(windows)
+        self._series: dict[str, Series | Anemometers] = {name: Series(name, windows) for name in NAMES}
+        self._series[WIND] = self._winds
         self._reported_at: datetime | None = None
         self._measured_at: datetime | None = None
         self._source = ""
@@ -60,7 +64,7 @@ class WeatherStation:
             if value is not None:
                 self._series[name].take(Sample(at, value, source))
         for name in impossible:
-            last = self._series[name].newest
+            last = self._winds.last_of(source) if name == WIND else self._series[name].newest
             value = 0.0 if last is None else last.value
             self._series[name].take(Sample(at, value, source), impossible=True)
         self._reported_at, self._measured_at, self._source = at, measured_at, source
@@ -71,7 +75,7 @@ class WeatherStation:
             return None
         quantities = {name: self._reading(name, now) for name in NAMES if self._series[name].newest}
         age = now - self._reported_at
-        wind = self._series["wind_mps"]
+        vane_turns = self._turns(WIND, now)
         return WeatherNow(
             _newest(quantities),
             self._measured_at,
@@ -79,33 +83,38 @@ class WeatherStation:
             age > self._windows.oldest,
             self._source,
             quantities,
-            wind.gust(now),
-            wind.mean(),
+            self._winds.gust(now, others_vary=vane_turns),
+            self._winds.mean(now, others_vary=vane_turns),
             self._simulated,
+            self._winds.readings(now, others_vary=vane_turns),
+            self._winds.disagreement(now, others_vary=vane_turns),
         )
 
     def sensed(self, now: datetime) -> Sensed:
         """Return what one tick of a tracker is told."""
         if self._reported_at is None:
             return NOTHING_SENSED
-        wind, series = self._reading("wind_mps", now), self._series["wind_mps"]
-        gust_mps = series.gust(now)
+        vane_turns = self._turns(WIND, now)
+        wind, gust_mps = self._reading(WIND, now), self._winds.gust(now, others_vary=vane_turns)
         if wind.quality is Quality.GOOD and gust_mps is not None:
             wind = Reading(gust_mps, wind.quality, wind.age_s, wind.source)
         return Sensed(
             wind,
             self._reading("snow_kg", now),
             self._reading("light_wm2", now),
-            series.mean(),
+            self._winds.mean(now, others_vary=vane_turns),
             self._reading("wind_direction_deg", now).good,
             self._simulated,
         )
 
     def _reading(self, name: str, now: datetime) -> Reading:
+        return self._series[name].reading(now, others_vary=self._turns(name, now))
+
+    def _turns(self, name: str, now: datetime) -> bool:
+        """Return whether what moves with this quantity has changed of late."""
         with_it = self._series.get(MOVES_WITH.get(name, ""))
         changed_at = None if with_it is None else with_it.changed_at
-        varies = changed_at is not None and now - changed_at < FROZEN_AFTER
-        return self._series[name].reading(now, others_vary=varies)
+        return changed_at is not None and now - changed_at < FROZEN_AFTER
 
     def _checked_age(self, measured_at: datetime, site_time: datetime) -> timedelta:
         age = site_time - measured_at

@@ -83,6 +83,15 @@ class Series:
         """Return the mean of the believable values of the mean's window up to the newest one."""
         return self._total / len(self._samples) if self._samples else None
 
+    def mean_of_last(self, span: timedelta) -> float | None:
+        """Return the mean of the believable values of this span up to the newest one."""
+        found: list[float] = []
+        for sample in reversed(self._samples):
+            if self._samples[-1].at - sample.at > span:
+                break
+            found.append(sample.value)
+        return sum(found) / len(found) if found else None
+
     def is_stale(self, now: datetime) -> bool:
         """Return whether the newest sample is too old to be used."""
         return self._newest is not None and now - self._newest.at > self._stale_after

@@ -6,6 +6,8 @@ from datetime import datetime
 from enum import StrEnum
 from math import isfinite
 
+from app.tracker.reason import Reason
+
 SIMULATED = "SIMULATED"
 """What the name of every made-up source begins with."""
 RANGES = {
@@ -123,6 +125,7 @@ class WeatherNow:
     A stale one is older than the site allows: it is shown with its age and must not be used. `quantities`
     tells age, source and quality of each value; `gust_mps` is the fastest wind of the last 3 s, `mean_mps`
     the mean of up to 10 minutes, unless the site sets other windows. `simulated` says that it is all made up.
+    `winds` are the wind sensors by their source, `disagreement` says that two of them are too far apart.
     """
 
     readings: Weather
@@ -134,6 +137,8 @@ class WeatherNow:
     gust_mps: float | None = None
     mean_mps: float | None = None
     simulated: bool = False
+    winds: dict[str, Reading] = field(default_factory=dict)
+    disagreement: Reason | None = None
 
     @property
     def usable(self) -> Weather | None:
