@@ -14,6 +14,7 @@ import typer
 from app.access.opening import open_store
 from app.audit.chain import Break, Link, first_break
 from app.audit.entry import Entry, Sealed
+from app.instants import without_leap_second
 from app.settings import Settings, read_settings
 from app.store.engine import open_reader
 from app.store.store import AuditFilter, Reader
@@ -164,5 +165,5 @@ def _harmless(value: object) -> object:
 def _instant(text: str) -> datetime | None:
     if not text:
         return None
-    found = datetime.fromisoformat(text)
+    found = datetime.fromisoformat(without_leap_second(text))
     return found if found.tzinfo is not None else found.replace(tzinfo=UTC)

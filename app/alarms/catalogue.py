@@ -230,6 +230,21 @@ ENTRIES = (
         "Set the clock in step 2; if it happens after every start, change the battery of the clock.",
     ),
     Entry(
+        "clock_drifts", 3, Group.CLOCK, "Clock runs away",
+        "The panel points a little beside the sun; from 5 minutes on nothing tracks any more.",
+        "Compare the clock in the header with a good one and set it in step 2; let NTP keep it.",
+    ),
+    Entry(
+        "clock_off", 2, Group.CLOCK, "Clock is minutes off",
+        "Nothing tracks: the panel would point beside the sun.",
+        "Set the clock in step 2; if the sun check says so but the clock is right, check the zero.",
+    ),
+    Entry(
+        "zones_missing", 4, Group.CLOCK, "Time zones are missing",
+        "All times are shown in UTC; tracking is not concerned.",
+        "Install tzdata on this computer, then restart Heliopanel.",
+    ),
+    Entry(
         "store_behind", 2, Group.STORE, "Nothing can be stored",
         "Tracking goes on, but journal, settings and recordings are lost at a power cut.",
         "Free the disk or check the card and the database; then restart if it does not end by itself.",

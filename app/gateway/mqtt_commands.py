@@ -4,9 +4,10 @@ from dataclasses import asdict
 from typing import Annotated, Literal
 
 import orjson
-from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from app.gateway.door import MQTT, Door, refused
+from app.instants import Instant
 from app.link.messages import MachineUnreachable, Order, UnknownTracker
 from app.tracker.commands import Command, CommandRejected, Home, Move, Park, ResetFault, Stop, Track
 from app.tracker.config import Orientation
@@ -20,7 +21,7 @@ class _Message(BaseModel):
 
     client: str = Field(min_length=1, max_length=40, pattern=r"^[\w.@ -]+$")
     key: str | None = Field(None, min_length=1, max_length=64)
-    issued_at: AwareDatetime | None = None
+    issued_at: Instant | None = None
 
 
 class _Plain(_Message):

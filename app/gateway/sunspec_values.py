@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from enum import IntEnum
 from uuid import getnode
-from zoneinfo import ZoneInfo
 
 from app.build import VERSION
 from app.gateway.sunspec_map import Block
@@ -13,6 +12,7 @@ from app.gateway.sunspec_points import COMMON, DEGREES_SF, LOCATION, TRACKERS, W
 from app.tracker.config import MountKind
 from app.tracker.snapshot import ActivityName, Pair, SiteSnapshot, Snapshot
 from app.tracker.weather import Weather
+from app.zones import zone_of
 
 UNKNOWN_TYPE, OTHER_TYPE = 0, 99
 TYPES = {
@@ -54,7 +54,7 @@ class View:
     @property
     def local(self) -> datetime:
         """Return the site's civil time."""
-        return self.site.at.astimezone(ZoneInfo(self.site.time_zone))
+        return self.site.at.astimezone(zone_of(self.site.time_zone))
 
     def control(self, tracker: Snapshot) -> Control:
         """Return what a tracker's control register tells: what it does, not what was written."""

@@ -13,6 +13,7 @@ from uuid import uuid4
 
 import structlog
 
+from app.alarms.conditions import SITE, Condition
 from app.build import BUILT_AT, VERSION
 from app.clock import SystemClock
 from app.drives.factory import DriveFactory
@@ -27,7 +28,8 @@ from app.machine.systemd import notify
 from app.machine.watchdog import LoopWatchdog
 from app.settings import Settings
 from app.site.beginning import Beginning, begin
-from app.site.ntp import ntp_synchronised
+from app.site.checks import NO_ZONES
+from app.site.ntp import kernel_clock
 from app.site.site import Site, SiteOptions
 from app.site.timekeeping import Timekeeper
 from app.store.engine import open_writer
@@ -37,6 +39,7 @@ from app.store.offloaded import WriterThread
 from app.store.restore import apply_pending_restore
 from app.store.store import JournalFilter, StoreFailed, Writer
 from app.tracker.snapshot import Event, EventKind
+from app.zones import zones_missing
 
 FIFO_PRIORITY = 10
 
@@ -61,6 +64,12 @@ def run(settings: Settings) -> None:
             writer.close()
 
 
+def _note_zones(site: Site) -> None:
+    """Raise an alarm where this computer cannot tell local time; tracking needs none."""
+    if zones_missing():
+        site.trouble("zones", Condition(NO_ZONES.code, None, SITE, NO_ZONES.message, NO_ZONES.hint))
+
+
 def _restore_if_asked(settings: Settings) -> None:
     """Bring back a backup that was handed over; one that cannot be used is put aside and logged."""
     try:
@@ -80,6 +89,7 @@ async def _serve(settings: Settings, clock: SystemClock, writer: Writer) -> None
     gateways = Gateways(site, clock, settings, writer)
     server = LinkServer(gateways, settings.link_path)
     stopped = _on_signals()
+    _note_zones(site)
     await site.start(*beginning.events)
     await server.start()
     gateways.start()

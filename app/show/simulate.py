@@ -5,7 +5,6 @@ from dataclasses import replace
 from datetime import UTC, date, datetime, time, timedelta
 from math import ceil
 from uuid import uuid4
-from zoneinfo import ZoneInfo
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +20,7 @@ from app.tracker.mode import Mode
 from app.tracker.programs.show import ShowPlan, schedule_of
 from app.tracker.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
 from app.tracker.snapshot import ActivityName, EventKind, ShowPhase, Snapshot
+from app.zones import zone_of
 
 SECOND = timedelta(seconds=1)
 LONGEST = timedelta(days=3)
@@ -123,7 +123,7 @@ def simulate_show_of_date(
 
 
 def _local_day(day: date, time_zone: str) -> tuple[datetime, datetime]:
-    zone = ZoneInfo(time_zone)
+    zone = zone_of(time_zone)
     begin, end = (datetime.combine(at, time.min, zone) for at in (day, day + timedelta(days=1)))
     return begin, end
 
@@ -199,11 +199,11 @@ def _frames(rows: list[tuple[float, ...]], elapsed_s: NDArray[np.float64]) -> Fr
 
 
 def _day_title(config: TrackerConfig, time_zone: str, begin: datetime) -> str:
-    return f"Simulated {begin.astimezone(ZoneInfo(time_zone)):%Y-%m-%d}, {config.name}"
+    return f"Simulated {begin.astimezone(zone_of(time_zone)):%Y-%m-%d}, {config.name}"
 
 
 def _show_title(plan: ShowPlan, time_zone: str) -> str:
-    begin, end = (at.astimezone(ZoneInfo(time_zone)) for at in (plan.begin_at, plan.end_at))
+    begin, end = (at.astimezone(zone_of(time_zone)) for at in (plan.begin_at, plan.end_at))
     return f"Simulated show of {begin:%Y-%m-%d %H:%M} to {end:%H:%M}"
 
 

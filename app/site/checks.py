@@ -4,12 +4,18 @@ import re
 from collections.abc import Iterable
 from math import isfinite
 from typing import assert_never
-from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 from app.drives.corrected import check_ratio
 from app.tracker.axes import AxisConfig
 from app.tracker.config import DriveConfig, DriveKind, MountKind, TrackerConfig
+from app.tracker.reason import Reason
+from app.zones import shown_zone, zones_missing
 
+NO_ZONES = Reason(
+    "zones_missing",
+    "This computer has no time zones, so that all times are shown in UTC.",
+    "Install tzdata (the system's package or Python's), then restart Heliopanel.",
+)
 TRACKER_ID = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,15}")
 LONGEST_NAME = 60
 WIDEST_RANGE_DEG = 720.0
@@ -32,13 +38,13 @@ def check_name(name: str) -> str:
 
 def check_time_zone(name: str) -> str:
     """Return the name of a time zone that exists, or raise `ValueError`."""
-    try:
-        ZoneInfo(name)
-    except (ZoneInfoNotFoundError, ValueError, OSError) as error:
-        raise ValueError(
-            f"There is no time zone {name!r}. Use a name of the IANA database, such as Europe/Istanbul."
-        ) from error
-    return name
+    if shown_zone(name) == name:
+        return name
+    if zones_missing():
+        raise ValueError(f"{NO_ZONES.message} {NO_ZONES.hint} Until then choose UTC.")
+    raise ValueError(
+        f"There is no time zone {name!r}. Use a name of the IANA database, such as Europe/Istanbul."
+    )
 
 
 def check_config(config: TrackerConfig) -> None:

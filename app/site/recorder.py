@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, time, timedelta
-from zoneinfo import ZoneInfo
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from app.tracker.observation import Observation
 from app.tracker.programs.show import ShowPlan
 from app.tracker.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
 from app.tracker.snapshot import Event, EventKind, ShowPhase, ShowProgress
+from app.zones import zone_of
 
 DAY_STEP = timedelta(seconds=1)
 RECORDED_PHASES = {ShowPhase.RUNNING, ShowPhase.PAUSED}
@@ -158,7 +158,7 @@ def _outcome(event: Event) -> str:
 
 
 def _local(at: datetime, site: SiteState) -> datetime:
-    return at.astimezone(ZoneInfo(site.time_zone))
+    return at.astimezone(zone_of(site.time_zone))
 
 
 def _same_day(info: RecordingInfo, site: SiteState, at: datetime) -> bool:
@@ -187,6 +187,9 @@ def _day_info(loop: TrackerLoop, site: SiteState, location: Location, at: dateti
         held_elevation_deg=memory.orientation.elevation_deg,
         algorithm=config.algorithm.value,
         drive=loop.drive.capabilities.description,
+        mount=config.mount,
+        first_deg=config.turning_deg[0],
+        second_deg=config.turning_deg[1],
     )
 
 
@@ -212,4 +215,7 @@ def _show_info(
         held_elevation_deg=plan.orientation.elevation_deg,
         algorithm=plan.algorithm.value,
         drive=loop.drive.capabilities.description,
+        mount=config.mount,
+        first_deg=config.turning_deg[0],
+        second_deg=config.turning_deg[1],
     )

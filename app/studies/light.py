@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from datetime import UTC, date, datetime, timedelta
-from zoneinfo import ZoneInfo
 
 import numpy as np
 import pandas as pd
@@ -14,6 +13,7 @@ from app.studies.request import CLEAR_SKIES, LightModel, StudyRequest
 from app.studies.weather import WeatherYear
 from app.sun.position import RISE_ELEVATION_DEG, Algorithm, Location, SunPath, sun_path
 from app.sun.trigonometry import Array
+from app.zones import zone_of
 
 DAY_S = 86_400.0
 HOURS = 24
@@ -99,7 +99,7 @@ def clear_light(model: LightModel, location: Location, at_unix_s: Array) -> Ligh
 
 def standard_offset_h(time_zone: str, year: int) -> float:
     """Return by how many hours a zone is ahead of UTC without its summer time."""
-    zone = ZoneInfo(time_zone)
+    zone = zone_of(time_zone)
     halves = (datetime(year, month, 1, tzinfo=zone) for month in (1, 7))
     return min((at.utcoffset() or timedelta()) / timedelta(hours=1) for at in halves)
 

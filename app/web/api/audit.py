@@ -5,9 +5,10 @@ from datetime import datetime
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
-from pydantic import AwareDatetime, Field
+from pydantic import Field
 
 from app.audit.entry import Sealed
+from app.instants import Instant
 from app.store.store import AuditFilter
 from app.web.api.base import Output
 from app.web.deps import ReaderDep
@@ -52,8 +53,8 @@ def read_audit(
     limit: Annotated[int, Query(ge=1, le=1000)] = 100,
     actor: Annotated[str | None, Query(max_length=64)] = None,
     about: Annotated[str | None, Query(max_length=64, description="A tracker, a recording, or site.")] = None,
-    since: AwareDatetime | None = None,
-    until: AwareDatetime | None = None,
+    since: Instant | None = None,
+    until: Instant | None = None,
 ) -> AuditPage:
     """Return audit entries, filtered, a page at a time; `heliopanel audit verify` checks their chain."""
     wanted = AuditFilter(before=before, limit=limit, actor=actor, object=about, since=since, until=until)

@@ -3,8 +3,9 @@
 from typing import Annotated, Any
 
 from fastapi import Path, Query
-from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field
 
+from app.instants import Instant
 from app.tracker.reason import Reason
 
 Responses = dict[int | str, dict[str, Any]]
@@ -13,7 +14,7 @@ TrackerId = Annotated[
 ]
 RecordingId = Annotated[str, Path(min_length=1, max_length=64, description="Id of the recording.")]
 IssuedAt = Annotated[
-    AwareDatetime | None,
+    Instant | None,
     Query(description="When this was asked, by the site's clock; refused when older than 2 s."),
 ]
 Azimuth = Annotated[float, Field(ge=0, lt=360, description="Degrees clockwise from true north.")]

@@ -4,9 +4,10 @@ from dataclasses import replace
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query
-from pydantic import AwareDatetime, Field
+from pydantic import Field
 from starlette.responses import Response
 
+from app.instants import Instant
 from app.store.store import JournalEntry, JournalFilter
 from app.tracker.snapshot import EventKind
 from app.web.api.base import Output, Responses
@@ -28,8 +29,8 @@ def _narrowed(
     kind: Annotated[list[EventKind] | None, Query(description="Only these kinds.")] = None,
     actor: Annotated[str | None, Query(max_length=200, description="Who did it.")] = None,
     text: Annotated[str | None, Query(max_length=200, description="Somewhere in the message.")] = None,
-    since: AwareDatetime | None = None,
-    until: AwareDatetime | None = None,
+    since: Instant | None = None,
+    until: Instant | None = None,
 ) -> JournalFilter:
     """Return what the query narrows the journal to."""
     kinds = tuple(kind or ())

@@ -3,8 +3,9 @@
 from typing import Annotated, Literal
 
 from fastapi import APIRouter
-from pydantic import AwareDatetime, Field
+from pydantic import Field
 
+from app.instants import Instant
 from app.link.messages import StopAll
 from app.tracker.axes import Axis, JogSpeed
 from app.tracker.commands import (
@@ -49,7 +50,7 @@ PressId = Annotated[
 
 
 class _Command(Input):
-    issued_at: AwareDatetime | None = Field(
+    issued_at: Instant | None = Field(
         None, description="When this was asked, by the site's clock; refused when older than 2 s."
     )
 

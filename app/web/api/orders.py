@@ -3,8 +3,8 @@
 from typing import Annotated
 
 from fastapi import Depends, Header
-from pydantic import AwareDatetime
 
+from app.instants import Instant
 from app.link.messages import Machine, SiteCommand, UnknownTracker
 from app.tracker.commands import Command
 from app.tracker.snapshot import SiteSnapshot, Snapshot
@@ -54,7 +54,7 @@ class Sender:
         self,
         command: Command | SiteCommand,
         tracker_id: str | None = None,
-        issued_at: AwareDatetime | None = None,
+        issued_at: Instant | None = None,
     ) -> SiteSnapshot:
         """Carry out a command and return the site after it; what cannot be is a 422."""
         try:
@@ -64,9 +64,7 @@ class Sender:
         except ValueError as error:
             raise NotAcceptable(str(error)) from error
 
-    async def command(
-        self, tracker_id: str, command: Command, issued_at: AwareDatetime | None = None
-    ) -> Snapshot:
+    async def command(self, tracker_id: str, command: Command, issued_at: Instant | None = None) -> Snapshot:
         """Carry out a tracker's command and return the tracker after it."""
         return tracker_of(await self.send(command, tracker_id, issued_at), tracker_id)
 

@@ -7,9 +7,10 @@ from uuid import uuid4
 
 from fastapi import APIRouter
 from fastapi.responses import Response
-from pydantic import AwareDatetime, Field, model_validator
+from pydantic import Field, model_validator
 from starlette.concurrency import run_in_threadpool
 
+from app.instants import Instant
 from app.link.messages import SavePlan, TrackerDetail
 from app.store.store import Reader
 from app.sun.events import day_events
@@ -46,8 +47,8 @@ OTHER_SHOW = Reason(
 class NewShow(Input):
     """Which stretch of sun time, in how long: `begin_at` and `end_at`, or `date` from sunrise to sunset."""
 
-    begin_at: AwareDatetime | None = Field(None, examples=["2026-06-21T06:00:00+03:00"])
-    end_at: AwareDatetime | None = Field(None, examples=["2026-06-21T20:00:00+03:00"])
+    begin_at: Instant | None = Field(None, examples=["2026-06-21T06:00:00+03:00"])
+    end_at: Instant | None = Field(None, examples=["2026-06-21T20:00:00+03:00"])
     date: CivilDate | None = Field(None, description="Civil date of the site: from sunrise to sunset.")
     duration_s: float = Field(ge=1, le=604800, description="How long the show takes.", examples=[180])
     mode: Mode | None = Field(None, description="Left out: the tracker's selected mode, else dual.")

@@ -6,8 +6,9 @@ from typing import Self
 
 from fastapi import APIRouter
 from fastapi.responses import Response
-from pydantic import AwareDatetime, Field, model_validator
+from pydantic import Field, model_validator
 
+from app.instants import Instant
 from app.link.messages import SaveRecording
 from app.sun.algorithms import Algorithm
 from app.tracker.config import Orientation
@@ -32,8 +33,8 @@ class NewSimulation(Input):
 
     tracker_id: str = Field(min_length=1, max_length=64, examples=["T1"])
     date: CivilDate | None = Field(None, description="Civil date of the site.", examples=["2026-06-21"])
-    begin_at: AwareDatetime | None = None
-    end_at: AwareDatetime | None = None
+    begin_at: Instant | None = None
+    end_at: Instant | None = None
     mode: Mode | None = Field(None, description="Left out: the tracker's selected mode, else dual.")
     azimuth_deg: Azimuth | None = Field(None, description="For modes that hold the azimuth.")
     elevation_deg: Elevation | None = Field(None, description="For modes that hold the elevation.")

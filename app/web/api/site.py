@@ -4,8 +4,9 @@ from datetime import datetime, timedelta
 from typing import Literal, Self
 
 from fastapi import APIRouter
-from pydantic import AwareDatetime, Field, model_validator
+from pydantic import Field, model_validator
 
+from app.instants import Instant
 from app.link.messages import RenameSite, SetClock, SetLocation
 from app.sun.position import Location
 from app.tracker.reason import Reason
@@ -38,7 +39,7 @@ class ClockChange(Input):
     """Trust the computer's clock, or make the site's clock show `at` now."""
 
     source: Literal["system", "manual"] = Field(examples=["system"])
-    at: AwareDatetime | None = Field(None, description="What the clock shall show now; with `manual` only.")
+    at: Instant | None = Field(None, description="What the clock shall show now; with `manual` only.")
     time_zone: str | None = Field(None, min_length=1, max_length=64, description="IANA name; None keeps it.")
 
     @model_validator(mode="after")

@@ -6,13 +6,13 @@ from collections.abc import Iterable
 from datetime import UTC, date, datetime, time, timedelta
 from enum import StrEnum
 from typing import Annotated
-from zoneinfo import ZoneInfo
 
 import numpy as np
 from fastapi import APIRouter, Query
 from fastapi.responses import Response
-from pydantic import AwareDatetime, Field
+from pydantic import Field
 
+from app.instants import Instant
 from app.sun.algorithms import PUBLISHED
 from app.sun.events import PolarDay, day_events
 from app.sun.position import Algorithm, Location, sun_path, sun_position
@@ -21,6 +21,7 @@ from app.tracker.reason import Reason
 from app.tracker.snapshot import SiteSnapshot
 from app.web.api.base import REFUSED, Output, Responses
 from app.web.deps import SnapshotDep
+from app.zones import zone_of
 
 router = APIRouter(prefix="/sun", tags=["sun"])
 
@@ -88,7 +89,7 @@ class SunDay(Output):
 @router.get("", summary="The sun at an instant", responses=REFUSED)
 async def read_sun(
     site: SnapshotDep,
-    at: Annotated[AwareDatetime | None, Query(description="With offset; left out: now.")] = None,
+    at: Annotated[Instant | None, Query(description="With offset; left out: now.")] = None,
     algorithm: AlgorithmQuery = Algorithm.PSA,
 ) -> SunNow:
     """Return the sun's place over the site."""
@@ -114,7 +115,7 @@ def read_day(
     format: TextFormat = TextFormat.JSON,
 ) -> SunDay | Response:
     """Return rise, transit, set and the path, as JSON or as CSV."""
-    zone = ZoneInfo(site.time_zone)
+    zone = zone_of(site.time_zone)
     day = sun_day(site, date or site.at.astimezone(zone).date(), step_s, algorithm)
     return day if format is TextFormat.JSON else Response(_csv(day.path), media_type="text/csv")
 
@@ -128,7 +129,7 @@ def location_of(site: SiteSnapshot) -> Location:
 
 def midnights(day: date, time_zone: str) -> tuple[datetime, datetime]:
     """Return the instants at which a civil day begins and ends."""
-    zone = ZoneInfo(time_zone)
+    zone = zone_of(time_zone)
     begin, end = (datetime.combine(one, time(), zone) for one in (day, day + timedelta(days=1)))
     return begin.astimezone(UTC), end.astimezone(UTC)
 

@@ -6,8 +6,8 @@ from typing import Annotated
 import numpy as np
 from fastapi import APIRouter, Query
 from fastapi.responses import Response
-from pydantic import AwareDatetime
 
+from app.instants import Instant
 from app.store.decimate import decimate
 from app.store.store import Reader
 from app.tracker.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
@@ -37,8 +37,8 @@ class Telemetry(Output):
 def read_telemetry(
     reader: ReaderDep,
     tracker_id: Annotated[str, Query(min_length=1, max_length=64)],
-    begin: AwareDatetime,
-    end: AwareDatetime,
+    begin: Instant,
+    end: Instant,
     points: Annotated[int, Query(ge=18, le=100_000, description="At most so many; extremes stay.")] = 1000,
 ) -> Response:
     """Return what was recorded of a tracker's days in a range of time."""

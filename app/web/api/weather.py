@@ -3,8 +3,9 @@
 from typing import Annotated
 
 from fastapi import APIRouter
-from pydantic import AwareDatetime, Field
+from pydantic import Field
 
+from app.instants import Instant
 from app.link.weather_orders import ReportWeather, SetMetStation
 from app.tracker.memory import MetStation
 from app.tracker.weather import RANGES, Weather, WeatherNow
@@ -24,7 +25,7 @@ def _measured(name: str, example: float) -> object:
 class WeatherReport(Input):
     """What a station measured; leave out what it does not measure, but give at least one value."""
 
-    measured_at: AwareDatetime | None = Field(
+    measured_at: Instant | None = Field(
         None, description="When it was measured, by the site's clock; left out it is now."
     )
     wind_mps: Annotated[float | None, _measured("wind_mps", 4.2)] = None

@@ -3,8 +3,9 @@
 from typing import Annotated
 
 from fastapi import APIRouter
-from pydantic import AwareDatetime, Field
+from pydantic import Field
 
+from app.instants import Instant
 from app.link.weather_orders import SetWeatherWindows, SimulateWeather
 from app.tracker.simulated_weather import MOST_SEED, SPANS, Scenario, SimulatedStation
 from app.tracker.weather_windows import LIMITS, WeatherWindows
@@ -36,7 +37,7 @@ class SimulatedStationIn(Input):
     ] = None
     snow_kg: Annotated[float, _made_up("snow_kg")] = STATION.snow_kg
     temperature_degc: Annotated[float, _made_up("temperature_degc")] = STATION.temperature_degc
-    begun_at: AwareDatetime | None = Field(
+    begun_at: Instant | None = Field(
         None, description="When the scenario begins, by the site's clock; left out it begins at once."
     )
 

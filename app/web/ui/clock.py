@@ -8,6 +8,7 @@ from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
 
+from app.instants import without_leap_second
 from app.link.messages import SetClock, SiteDetail
 from app.tracker.memory import StepName
 from app.web.contexts import ClockPage
@@ -58,7 +59,7 @@ async def copy_device(
 ) -> Response:
     """Make the controller's clock show what this device's clock shows."""
     try:
-        instant = datetime.fromisoformat(at)
+        instant = datetime.fromisoformat(without_leap_second(at))
     except ValueError:
         raise NotAcceptable(
             "This device's browser did not tell its time; enter date and time by hand."

@@ -1,13 +1,13 @@
 """The curves of a planned show as SVG: azimuth above, elevation below, nights shaded."""
 
 from datetime import UTC, datetime, timedelta
-from zoneinfo import ZoneInfo
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.tracker.programs.show import ShowPath
 from app.web.ui.drawings import Band, DayChart, Tick
+from app.zones import zone_of
 
 Array = NDArray[np.float64]
 LEFT, RIGHT = 46.0, 990.0
@@ -83,14 +83,12 @@ def _nights(x: Array, up: NDArray[np.bool_]) -> tuple[tuple[float, float], ...]:
 def _hours(begin: float, end: float, zone: str) -> tuple[Tick, ...]:
     span_h = (end - begin) / 3600
     step = timedelta(hours=next((step for step in HOUR_STEPS if span_h / step <= MOST_HOURS), HOUR_STEPS[-1]))
-    midnight = datetime.fromtimestamp(begin, ZoneInfo(zone)).replace(
-        hour=0, minute=0, second=0, microsecond=0
-    )
+    midnight = datetime.fromtimestamp(begin, zone_of(zone)).replace(hour=0, minute=0, second=0, microsecond=0)
     ticks = []
     at = midnight.astimezone(UTC)
     while at.timestamp() <= end:
         if at.timestamp() >= begin:
             x = LEFT + (RIGHT - LEFT) * (at.timestamp() - begin) / (end - begin)
-            ticks.append(Tick(round(x, 1), at.astimezone(ZoneInfo(zone)).strftime("%H:%M")))
+            ticks.append(Tick(round(x, 1), at.astimezone(zone_of(zone)).strftime("%H:%M")))
         at += step
     return tuple(ticks)

@@ -3,7 +3,8 @@
 from collections.abc import Callable
 from datetime import datetime, timedelta
 from typing import Any
-from zoneinfo import ZoneInfo
+
+from app.zones import zone_of
 
 UNKNOWN = "–"
 POINTS = (
@@ -50,12 +51,12 @@ def signed_seconds(value: float) -> str:
 
 def local(at: datetime, zone: str, pattern: str) -> str:
     """Return an instant in the civil time of a zone."""
-    return at.astimezone(ZoneInfo(zone)).strftime(pattern)
+    return at.astimezone(zone_of(zone)).strftime(pattern)
 
 
 def offset(at: datetime, zone: str) -> str:
     """Return the zone's distance from UTC at an instant, such as `UTC+3` or `UTC−3:30`."""
-    delta = at.astimezone(ZoneInfo(zone)).utcoffset() or timedelta()
+    delta = at.astimezone(zone_of(zone)).utcoffset() or timedelta()
     total = round(delta.total_seconds() / 60)
     hours, minutes = divmod(abs(total), 60)
     if not total:

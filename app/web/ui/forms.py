@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterable, Mapping
 from datetime import date, datetime, time
 from math import nan
 from typing import TypeVar
-from zoneinfo import ZoneInfo
 
 from app.web.contexts import Field, Form
+from app.zones import zone_of
 
 T = TypeVar("T")
 NUMBER = r"(\d+(?:[.,]\d+)?)"
@@ -16,6 +16,7 @@ ANGLE = re.compile(
     re.IGNORECASE,
 )
 PAIR = re.compile(r"\s*([+-]?\d+\.\d+)\s*[,;]\s*([+-]?\d+\.\d+)\s*")
+LEAP_SECOND = 60
 TIME = re.compile(r"\s*(\d{1,2})[:.h](\d{2})(?:[:.](\d{2}))?\s*")
 
 
@@ -128,6 +129,7 @@ def clock_time(text: str, label: str) -> time:
     if match is None:
         raise Unreadable(f"{label}: type a time such as 05:12 or 17:45:30.")
     hour, minute, second = (int(part or 0) for part in match.groups())
+    second = 59 if second == LEAP_SECOND else second
     if hour > 23 or minute > 59 or second > 59:
         raise Unreadable(f"{label} must lie between 00:00 and 23:59:59.")
     return time(hour, minute, second)
@@ -135,4 +137,4 @@ def clock_time(text: str, label: str) -> time:
 
 def in_zone(on: date, at: time, zone: str) -> datetime:
     """Return the instant at which the clocks of a zone show this date and time."""
-    return datetime.combine(on, at, ZoneInfo(zone))
+    return datetime.combine(on, at, zone_of(zone))

@@ -13,6 +13,7 @@ from app.tracker.snapshot import SiteSnapshot, Snapshot
 from app.web.contexts import Forward, Frame, Link, StepMark
 from app.web.deps import panel, principal
 from app.web.who import Who
+from app.zones import shown_zone
 
 THEMES = ("day", "sun", "night")
 STEP_LABELS = {
@@ -121,7 +122,7 @@ def _frame(
         where=f"Step {current.number} of {len(steps)} · {current.label}" if current else title,
         path=request.url.path,
         theme=theme if theme in THEMES else "day",
-        zone=site.time_zone if site else "UTC",
+        zone=shown_zone(site.time_zone) if site else "UTC",
         site=site,
         tracker=snapshot_of(site, tracker_id),
         tracker_id=tracker_id,

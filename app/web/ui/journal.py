@@ -3,7 +3,6 @@
 from datetime import datetime, timedelta
 from typing import Annotated
 from urllib.parse import urlencode
-from zoneinfo import ZoneInfo
 
 from fastapi import APIRouter, Query
 from starlette.requests import Request
@@ -15,6 +14,7 @@ from app.web.alarm_contexts import JournalPage, JournalQuery
 from app.web.deps import ReaderDep
 from app.web.ui.frame import site_frame
 from app.web.ui.render import page
+from app.zones import zone_of
 
 router = APIRouter(prefix="/journal")
 A_PAGE = 60
@@ -69,7 +69,7 @@ def _day(text: str, zone: str, *, last: bool = False) -> tuple[datetime | None, 
     if not text:
         return None, ""
     try:
-        begins = datetime.strptime(text, "%Y-%m-%d").replace(tzinfo=ZoneInfo(zone))
+        begins = datetime.strptime(text, "%Y-%m-%d").replace(tzinfo=zone_of(zone))
         return begins + timedelta(days=1, microseconds=-1) if last else begins, ""
     except (ValueError, OverflowError):
         return None, WRONG_DAY.format(repr(text))

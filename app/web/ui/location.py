@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from functools import cache
 from typing import Annotated
-from zoneinfo import ZoneInfo, available_timezones
+from zoneinfo import available_timezones
 
 from fastapi import APIRouter, Form, Query
 from pydantic import BaseModel
@@ -25,6 +25,7 @@ from app.web.ui.forms import Typed
 from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
 from app.web.ui.wizard import tracker_of, wizard_frame
+from app.zones import zone_of
 
 router = APIRouter(prefix="/trackers/{tracker_id}/commissioning/location")
 NAMES = ("latitude", "longitude", "altitude", "latitude_side", "longitude_side", "time_zone")
@@ -163,7 +164,7 @@ def _preview(found: Read, config: TrackerConfig, now: datetime) -> LocationPrevi
     place = found.location
     if place is None:
         return None
-    midnight = now.astimezone(ZoneInfo(found.zone)).replace(hour=0, minute=0, second=0, microsecond=0)
+    midnight = now.astimezone(zone_of(found.zone)).replace(hour=0, minute=0, second=0, microsecond=0)
     events = day_events(config.algorithm, place, midnight, midnight + timedelta(days=1))
     noon_deg = events.transit_elevation_deg
     return LocationPreview(

@@ -7,6 +7,7 @@ from fastapi import Depends, Form
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
+from app.instants import without_leap_second
 from app.link.messages import SiteCommand
 from app.tracker.commands import Command
 from app.web.contexts import Outcome
@@ -54,7 +55,7 @@ PressDep = Annotated[Press, Depends()]
 
 def _instant(text: str) -> datetime | None:
     try:
-        at = datetime.fromisoformat(text)
+        at = datetime.fromisoformat(without_leap_second(text))
     except ValueError:
         return None
     return at if at.tzinfo else None

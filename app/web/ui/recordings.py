@@ -2,7 +2,6 @@
 
 from typing import Annotated
 from urllib.parse import urlencode
-from zoneinfo import ZoneInfo
 
 from fastapi import APIRouter, Query
 from starlette.requests import Request
@@ -19,7 +18,9 @@ from app.web.ui.formats import local
 from app.web.ui.frame import site_frame
 from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
-from app.web.ui.sunpath import arc, diagram_of, sector
+from app.web.ui.scene import scene_recorded
+from app.web.ui.sunpath import diagram_of, sector
+from app.zones import zone_of
 
 router = APIRouter(prefix="/recordings")
 SHOWN = 200
@@ -52,7 +53,7 @@ def player(
     """Play one recording, and another one laid over it."""
     info = _stored(reader, recording_id)
     speeds = DAY_SPEEDS if info.duration_s > LONG_S else SHOW_SPEEDS
-    on = info.sun_begin_at.astimezone(ZoneInfo(info.time_zone)).date()
+    on = info.sun_begin_at.astimezone(zone_of(info.time_zone)).date()
     algorithm = Algorithm(info.algorithm)
     context = PlayerPage(
         frame=_frame(request, info),

@@ -5,7 +5,6 @@ from math import ceil
 from typing import Annotated
 from urllib.parse import urlencode
 from uuid import uuid4
-from zoneinfo import ZoneInfo
 
 from fastapi import APIRouter, Form, Query
 from pydantic import BaseModel
@@ -36,6 +35,7 @@ from app.web.ui.render import go, page
 from app.web.ui.sunpath import arc, diagram_of, outline
 from app.web.ui.wizard import tracker_of
 
+from app.zones import zone_of
 router = APIRouter(prefix="/trackers/{tracker_id}")
 NAMES = ("date", "start", "end", "minutes")
 DEFAULT_MINUTES = "3"
@@ -138,7 +138,7 @@ def _plan_page(
     tracker, zone = tracker_of(detail, tracker_id), detail.site.time_zone
     location = _place(detail)
     latest = built.machine.latest()
-    today = (latest.at if latest else built.clock.now()).astimezone(ZoneInfo(zone)).date()
+    today = (latest.at if latest else built.clock.now()).astimezone(zone_of(zone)).date()
     typed = Typed(form.model_dump() if form.date else _sun_span(tracker, location, zone, today))
     wanted = _read(typed, tracker, location, zone)
     context = ShowPlanPage(
@@ -161,8 +161,8 @@ def _read(typed: Typed, tracker: TrackerDetail, location: Location, zone: str) -
     config, memory = tracker.state.config, tracker.state.memory
     return ShowPlan(
         show_id=uuid4().hex[:12],
-        begin_at=datetime.combine(day, start, ZoneInfo(zone)),
-        end_at=datetime.combine(last_day, end, ZoneInfo(zone)),
+        begin_at=datetime.combine(day, start, zone_of(zone)),
+        end_at=datetime.combine(last_day, end, zone_of(zone)),
         duration=timedelta(seconds=round(minutes * 60)),
         location=location,
         mode=memory.mode or Mode.DUAL,
@@ -177,8 +177,8 @@ def _sun_span(
     tracker: TrackerDetail, location: Location, zone: str, day: date, minutes: str = DEFAULT_MINUTES
 ) -> dict[str, str]:
     """Return the form for sunrise to sunset of a day, or for the whole of a polar day."""
-    begin = datetime.combine(day, time(), ZoneInfo(zone))
-    end = datetime.combine(day + timedelta(days=1), time(), ZoneInfo(zone))
+    begin = datetime.combine(day, time(), zone_of(zone))
+    end = datetime.combine(day + timedelta(days=1), time(), zone_of(zone))
     events = day_events(tracker.state.config.algorithm, location, begin, end)
     start, stop = "00:00", "00:00"
     if events.rise and events.set and events.rise < events.set:
@@ -261,7 +261,7 @@ def _run_page(request: Request, tracker: TrackerDetail, wanted: ShowPlan, built:
     config = tracker.state.config
     latest = built.machine.latest()
     zone = latest.time_zone if latest else "UTC"
-    on = wanted.begin_at.astimezone(ZoneInfo(zone)).date()
+    on = wanted.begin_at.astimezone(zone_of(zone)).date()
     minutes = f"{wanted.duration.total_seconds() / 60:.6g}"
     again = {
         "date": on.isoformat(),

@@ -2,7 +2,6 @@
 
 from datetime import date, datetime, time, timedelta
 from typing import Annotated
-from zoneinfo import ZoneInfo
 
 from fastapi import APIRouter, Form
 from pydantic import BaseModel
@@ -22,6 +21,7 @@ from app.web.ui.mode import CHOICES
 from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
 from app.web.ui.wizard import tracker_of
+from app.zones import zone_of
 
 router = APIRouter(prefix="/simulate")
 NAMES = ("tracker", "date", "mode", "azimuth", "elevation")
@@ -43,7 +43,7 @@ async def simulate(request: Request, machine: MachineDep, built: PanelDep) -> Re
     """Show the form for a day's simulation."""
     detail = await machine.detail()
     latest = machine.latest()
-    zone = ZoneInfo(detail.site.time_zone)
+    zone = zone_of(detail.site.time_zone)
     today = (latest.at if latest else built.clock.now()).astimezone(zone).date()
     first = next(iter(detail.trackers), "")
     form = SimulationForm(tracker=first, date=today.isoformat(), mode=Mode.DUAL)
@@ -102,7 +102,7 @@ def _mode(text: str) -> Mode:
 
 
 def _midnight(day: date, zone: str) -> datetime:
-    return datetime.combine(day, time(), ZoneInfo(zone))
+    return datetime.combine(day, time(), zone_of(zone))
 
 
 def _answer(request: Request, detail: SiteDetail, typed: Typed, *, status: int = 200) -> Response:

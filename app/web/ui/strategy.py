@@ -3,7 +3,6 @@
 from dataclasses import replace
 from datetime import datetime, timedelta
 from typing import Annotated
-from zoneinfo import ZoneInfo
 
 from fastapi import APIRouter, Form
 from fastapi.responses import PlainTextResponse
@@ -45,6 +44,7 @@ from app.web.ui.strategy_forms import (
     typed_program,
 )
 from app.web.ui.wizard import tracker_of
+from app.zones import zone_of
 
 router = APIRouter(prefix="/trackers/{tracker_id}/strategy")
 SAVED = "The strategy is saved."
@@ -202,7 +202,7 @@ def _answer(
 
 
 def _today(at: datetime, zone: str) -> tuple[datetime, datetime]:
-    begin = at.astimezone(ZoneInfo(zone)).replace(hour=0, minute=0, second=0, microsecond=0)
+    begin = at.astimezone(zone_of(zone)).replace(hour=0, minute=0, second=0, microsecond=0)
     return begin, begin + timedelta(days=1)
 
 

@@ -3,7 +3,6 @@
 from datetime import UTC, date, datetime, timedelta
 from functools import lru_cache
 from math import cos, radians, sin
-from zoneinfo import ZoneInfo
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +15,7 @@ from app.tracker.mounts.kinematics import direction
 from app.tracker.snapshot import SiteSnapshot
 from app.web.contexts import Arc
 from app.web.ui.drawings import Curve, HourLabel, SunDiagram
+from app.zones import zone_of
 
 HORIZON = 100.0
 DAY_S = 86_400
@@ -37,7 +37,7 @@ def diagram(site: SiteSnapshot | None, config: TrackerConfig) -> SunDiagram | No
     """Return the diagram of the site for today, None while the location is not known."""
     if site is None or site.location is None:
         return None
-    today = site.at.astimezone(ZoneInfo(site.time_zone)).date()
+    today = site.at.astimezone(zone_of(site.time_zone)).date()
     return diagram_of(site.location, site.time_zone, today, config.algorithm, outline(config))
 
 
@@ -45,7 +45,7 @@ def todays_arc(site: SiteSnapshot | None, config: TrackerConfig) -> Arc:
     """Return today's arc of the sun at the site; empty while the location is not known."""
     if site is None or site.location is None:
         return ()
-    return arc(config.algorithm, site.location, site.at.astimezone(ZoneInfo(site.time_zone)).date())
+    return arc(config.algorithm, site.location, site.at.astimezone(zone_of(site.time_zone)).date())
 
 
 def arc(algorithm: Algorithm, location: Location, on: date) -> Arc:
@@ -121,7 +121,7 @@ def broken(x: NDArray[np.float64], y: NDArray[np.float64], up: NDArray[np.bool_]
 
 def hour_labels(algorithm: Algorithm, location: Location, today: date, zone: str) -> tuple[HourLabel, ...]:
     """Return the full hours of today's civil time at their places outside today's curve."""
-    midnight = datetime(today.year, today.month, today.day, tzinfo=ZoneInfo(zone)).astimezone(UTC)
+    midnight = datetime(today.year, today.month, today.day, tzinfo=zone_of(zone)).astimezone(UTC)
     instants = [midnight + timedelta(hours=hour) for hour in range(25)]
     path = sun_path(algorithm, location, np.array([at.timestamp() for at in instants]))
     labels = []
@@ -130,7 +130,7 @@ def hour_labels(algorithm: Algorithm, location: Location, today: date, zone: str
     ):
         if elevation_deg > 1.5:
             x, y = point(azimuth_deg, elevation_deg - LABEL_GAP * 0.9)
-            labels.append(HourLabel(x, y, str(at.astimezone(ZoneInfo(zone)).hour)))
+            labels.append(HourLabel(x, y, str(at.astimezone(zone_of(zone)).hour)))
     return tuple(labels)
 
 

@@ -1,0 +1,25 @@
+"""Instants as programs and people write them, leap seconds included."""
+
+import re
+from typing import Annotated
+
+from pydantic import AwareDatetime, BeforeValidator
+
+LEAP_SECOND = re.compile(r"([T ]\d{2}:\d{2}):60(?:[.,]\d+)?(?=$|[Zz+-])")
+
+
+def without_leap_second(text: str) -> str:
+    """Return an ISO 8601 text with a second 60 as second 59, which no calendar of a computer has.
+
+    A leap second ends at the same instant everywhere, so that its minute is :59, or :29 and :44 in zones that
+    are half or a quarter of an hour off.
+    """
+    return LEAP_SECOND.sub(r"\1:59", text)
+
+
+def _clamped(given: object) -> object:
+    return without_leap_second(given) if isinstance(given, str) else given
+
+
+Instant = Annotated[AwareDatetime, BeforeValidator(_clamped)]
+"""An instant with its offset in what comes in; 23:59:60 is taken as 23:59:59."""
