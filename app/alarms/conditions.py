@@ -104,7 +104,7 @@ def _of_link(tracker: Snapshot, unread: float | None, before: frozenset[str]) ->
 
 
 def _of_site(site: SiteSnapshot) -> Iterator[Condition]:
-    for reason in site.clock.reasons:
+    for reason in (*site.clock.reasons, *site.clock.warnings):
         if reason.code in CATALOGUE:
             yield Condition(reason.code, None, SITE, reason.message, reason.hint)
     apart = None if site.weather is None else site.weather.disagreement

@@ -140,7 +140,7 @@ def _site(
         clock,
         beginning.site.clock,
         drift=clock.drift,
-        synchronised=ntp_synchronised,
+        kernel=kernel_clock,
         not_before=_newest_event(writer),
     )
     factory = DriveFactory(clock, settings.data_dir, sun=lambda: site.model.sun())

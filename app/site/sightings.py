@@ -1,6 +1,7 @@
 """Sightings of the sun: stored one by one, fitted to a pointing correction."""
 
 from dataclasses import replace
+from datetime import timedelta
 
 from app.link.messages import ApplySightings
 from app.site.loop import TrackerLoop
@@ -13,8 +14,11 @@ from app.tracker.memory import Pointing, Sighting
 from app.tracker.mounts.abilities import abilities
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind
+from app.tracker.sun_clock import clock_error
 
 MOST_SIGHTINGS = 50
+SAID_BY_THE_SUN = "clock_off"
+"""What views of the sun may say must not keep from taking more of them."""
 
 
 async def take(model: SiteModel, tracker_id: str, actor: str) -> tuple[Event, ...]:
@@ -33,7 +37,23 @@ async def take(model: SiteModel, tracker_id: str, actor: str) -> tuple[Event, ..
     memory = replace(loop.memory, sightings=taken)
     await model.ledger.save_tracker(replace(loop.state, memory=memory), (event,))
     loop.controller.set_sightings(taken)
+    ask_the_sun(model)
     return (event,)
+
+
+def ask_the_sun(model: SiteModel) -> None:
+    """Judge the clock by the views of the sun since it was set; of trackers that tell, the worst counts."""
+    model.timekeeper.offset.by_sun = max(
+        filter(None, (_clock_error(model, loop) for loop in model.loops.values())), key=abs, default=None
+    )
+
+
+def _clock_error(model: SiteModel, loop: TrackerLoop) -> timedelta | None:
+    place, set_at = model.state.location, model.state.clock.set_at
+    if place is None:
+        return None
+    since = tuple(one for one in loop.memory.sightings if set_at is None or one.at > set_at)
+    return clock_error(since, place, loop.config.algorithm, refraction=loop.config.refraction)
 
 
 def _sighting(model: SiteModel, loop: TrackerLoop) -> Sighting:
@@ -48,7 +68,7 @@ def _sighting(model: SiteModel, loop: TrackerLoop) -> Sighting:
         reasons.append(Reason("moving", "The panel is moving.", "Wait until it stands still."))
     if loop.memory.home is None:
         reasons.append(Reason("not_homed", "The zero is not known.", "Do step 3 first."))
-    reasons.extend(model.timekeeper.reasons())
+    reasons.extend(reason for reason in model.timekeeper.reasons() if reason.code != SAID_BY_THE_SUN)
     reasons.extend(_no_sightings(loop.config))
     if reasons or sun is None or feedback is None:
         raise CommandRejected(*reasons)
@@ -93,4 +113,5 @@ async def apply(model: SiteModel, given: ApplySightings, actor: str) -> tuple[Ev
     await model.ledger.save_tracker(replace(loop.state, memory=memory), (event,))
     loop.controller.set_sightings(given.keep)
     loop.controller.set_pointing(pointing)
+    ask_the_sun(model)
     return (event,)

@@ -30,7 +30,7 @@ from app.link.messages import (
 from app.link.metrics import MachineMetrics
 from app.link.outlet import Outlet
 from app.link.record_orders import RecordOrder
-from app.site import control, notifying, records, settings_lock, site_orders, tracker_orders
+from app.site import control, notifying, records, settings_lock, sightings, site_orders, tracker_orders
 from app.site.alarming import AlarmDesk
 from app.site.auditing import Auditor, as_action
 from app.site.checking import Checks, DriveTools
@@ -129,6 +129,7 @@ class Site:
         """Begin to tick, and journal how this life began."""
         self.model.ledger.post_events(events)
         self._prune()
+        sightings.ask_the_sun(self.model)
         for loop in self.model.loops.values():
             loop.start()
         await self.model.met.follow(self.model.station)

@@ -6,6 +6,8 @@ from datetime import UTC, datetime, timedelta
 
 from app.build import BUILT_AT
 from app.clock import Clock
+from app.site.clock_offset import ClockOffset
+from app.site.ntp import KernelClock
 from app.tracker.memory import ClockSetting
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ClockState
@@ -37,16 +39,16 @@ class Timekeeper:
         setting: ClockSetting,
         *,
         drift: Callable[[], timedelta] = no_drift,
-        synchronised: Callable[[], bool | None] = lambda: None,
+        kernel: Callable[[], KernelClock | None] = lambda: None,
         not_before: datetime = BUILT_AT,
     ) -> None:
         self._clock = clock
         self._drift = drift
-        self._synchronised = synchronised
+        self._kernel = kernel
         self._not_before = not_before
         self._setting = setting
         self._followed = drift()
-        self._is_synchronised = synchronised()
+        self.offset = ClockOffset(kernel())
         self._jumped_at: datetime | None = None
         self._jumped_by = timedelta(0)
 
@@ -80,16 +82,19 @@ class Timekeeper:
         self._setting = setting
         self._jumped_at = None
         self._not_before = BUILT_AT
+        self.offset.forget()
 
     def watch(self) -> Jump | None:
         """Look at the system's clock; return its jump since the last look, if there was one.
 
-        A clock set by hand keeps showing the operator's time: its offset takes up the jump.
+        A clock set by hand keeps showing the operator's time: its offset takes up the jump. What moves by
+        less is followed, and counted.
         """
-        self._is_synchronised = self._synchronised()
+        self.offset.kernel = self._kernel()
         moved = self._drift() - self._followed
         self._followed += moved
         if abs(moved) <= LARGEST_STEP:
+            self.offset.moved(moved)
             return None
         if self._setting.source == "manual":
             kept_s = self._setting.offset_s - moved.total_seconds()
@@ -121,7 +126,7 @@ class Timekeeper:
                     "Confirm the clock in step 2, or wait until it has been stable for 60 s.",
                 )
             )
-        return tuple(found)
+        return (*found, *self.offset.reasons())
 
     def state(self) -> ClockState:
         """Return the clock as the pages show it."""
@@ -130,7 +135,9 @@ class Timekeeper:
             self._setting.source,
             self._setting.offset_s,
             not reasons,
-            self._is_synchronised,
+            None if self.offset.kernel is None else self.offset.kernel.synchronised,
             self._setting.set_at,
             reasons,
+            self.offset.warnings(),
+            self.offset.seconds,
         )

@@ -42,11 +42,15 @@ class Mistake(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """A likely mistake: what to check, and how far off the sighting would still be without it, degrees."""
+    """A likely mistake: what to check, and how far off the sighting would still be without it, degrees.
+
+    `shift_s` is, for the clock, what has to be added to it.
+    """
 
     mistake: Mistake
     message: str
     residual_deg: float
+    shift_s: float | None = None
 
 
 def diagnose(
@@ -121,7 +125,7 @@ def _clock_mistake(sky: _Sky) -> Iterator[tuple[int, Cause]]:
     message = f"The clock is {minutes:.1f} minutes {'slow' if slow else 'fast'}. Check step 2"
     whole_hours = abs(best_s / 3600.0 - round(best_s / 3600.0)) < 0.05 and abs(best_s) > 1800.0
     message += ": the time zone or daylight saving time is probably wrong." if whole_hours else "."
-    yield 1, Cause(Mistake.CLOCK, message, residual_deg)
+    yield 1, Cause(Mistake.CLOCK, message, residual_deg, best_s)
 
 
 def _shifted_off(sky: _Sky, shifts_s: Array) -> Array:

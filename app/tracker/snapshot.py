@@ -294,7 +294,11 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class ClockState:
-    """The controller's clock: where it comes from and whether automatic motion may rely on it."""
+    """The controller's clock: where it comes from and whether automatic motion may rely on it.
+
+    `off_s` is by how much it is known to be fast, None if nothing tells; `warnings` say so while it may still
+    be relied on.
+    """
 
     source: str
     offset_s: float
@@ -302,6 +306,8 @@ class ClockState:
     ntp_synchronised: bool | None
     set_at: datetime | None
     reasons: tuple[Reason, ...] = ()
+    warnings: tuple[Reason, ...] = ()
+    off_s: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -61,6 +61,11 @@ class Clock(Output):
     set_at: datetime | None
     age_s: float | None = Field(description="Seconds since the clock was set.")
     reasons: tuple[Reason, ...] = Field(description="Why it is not trusted.")
+    warnings: tuple[Reason, ...] = Field(description="What is wrong with it while it is trusted still.")
+    off_s: float | None = Field(
+        description="By how much it is known to be fast, seconds: by NTP, by views of the sun, or by steps "
+        "that nobody answers for. Null where nothing tells."
+    )
 
 
 @router.get("", summary="The whole site now")
@@ -107,4 +112,6 @@ def _clock(site: SiteSnapshot) -> Clock:
         set_at=state.set_at,
         age_s=age,
         reasons=state.reasons,
+        warnings=state.warnings,
+        off_s=state.off_s,
     )
