@@ -9,7 +9,10 @@ from app.store.store import (
     JournalEntry,
     JournalFilter,
     KeptAlarm,
+    Photo,
     PlannedShow,
+    RecordHead,
+    SignedRecord,
 )
 from app.tracker.memory import (
     SiteState,
@@ -51,6 +54,8 @@ class FakeReader:
             )
         ]
         self.shows: dict[str, PlannedShow] = {}
+        self.signed: list[SignedRecord] = []
+        self.photos: list[Photo] = []
         self.entries = [
             JournalEntry(
                 number, Event(head.began_at, EventKind.SHOW_STARTED, "T1", f"{head.title} began.", "operator")
@@ -88,6 +93,27 @@ class FakeReader:
     def alarm_history(self, wanted: AlarmFilter) -> list[KeptAlarm]:
         """Return that there never was an alarm."""
         return []
+
+    def signed_records(self, tracker_id: str | None = None, *, limit: int = 200) -> list[RecordHead]:
+        """Return the heads of signed records, newest first."""
+        heads = [one.head for one in reversed(self.signed) if tracker_id in (None, one.head.tracker_id)]
+        return heads[:limit]
+
+    def signed_record(self, number: int) -> SignedRecord | None:
+        """Return one signed record."""
+        return next((one for one in self.signed if one.head.number == number), None)
+
+    def waiting_photos(self, tracker_id: str) -> list[Photo]:
+        """Return the photos that wait."""
+        return [one for one in self.photos if one.tracker_id == tracker_id and one.record_number is None]
+
+    def photos_of(self, record_number: int) -> list[Photo]:
+        """Return the photos of a record."""
+        return [one for one in self.photos if one.record_number == record_number]
+
+    def photo(self, number: int) -> Photo | None:
+        """Return one photo."""
+        return next((one for one in self.photos if one.number == number), None)
 
     def show(self, show_id: str) -> PlannedShow | None:
         """Return the plan of a show."""

@@ -44,6 +44,7 @@ from app.link.messages import (
 )
 from app.link.metrics import GatewayMetrics, GatewayStatus, MachineMetrics
 from app.link.outlet import Outlet
+from app.link.record_orders import AddRecordPhoto, RemoveRecordPhoto, SignRecord
 from app.link.weather_orders import ReportWeather, SetMetStation, SetWeatherWindows, SimulateWeather
 from app.settings import Settings
 from app.store.store import PlannedShow
@@ -75,6 +76,7 @@ from app.tracker.weather import WeatherNow
 from app.web.main import create_app
 from tests.fake_alarms import after, counted
 from tests.fake_data import commissioned, made_up_sun, site_state
+from tests.fake_records import keep_record
 from tests.fake_store import FakeReader
 from tests.fake_tracker import CAPABILITIES, FakeTracker
 
@@ -202,6 +204,9 @@ class FakeMachine:
                 self.store.shows[plan.show_id] = PlannedShow(tracker_id, plan)
             case TakeSighting(tracker_id=tracker_id):
                 self._tracker(tracker_id)
+            case AddRecordPhoto() | RemoveRecordPhoto() | SignRecord():
+                self._tracker(order.command.tracker_id)
+                keep_record(self.store, order.command, now, order.actor)
             case ApplySightings(tracker_id=tracker_id, keep=keep):
                 tracker = self._tracker(tracker_id)
                 tracker.memory = replace(tracker.memory, sightings=keep)

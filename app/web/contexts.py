@@ -13,7 +13,6 @@ from app.tracker.programs.show import ShowPlan
 from app.tracker.reason import Reason
 from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import SiteSnapshot, Snapshot
-from app.web.record import CommissioningRecord
 from app.web.standing import Standing, standing
 from app.web.ui.drawings import DayChart, SunDiagram
 from app.web.who import Who
@@ -380,15 +379,3 @@ class SunCheckPage:
     errors: tuple[tuple[float, float], ...]
     causes: tuple[str, ...]
     pointing: Pointing
-
-
-@dataclass(frozen=True, slots=True)
-class RecordPage:
-    """The commissioning record, to be printed."""
-
-    template: ClassVar[str] = "record.html"
-
-    frame: Frame
-    record: CommissioningRecord
-    labels: dict[str, str]
-    choice: ModeChoice | None

@@ -1,58 +1,124 @@
 """The commissioning record for printing: the same sections as HTML and as PDF."""
 
+from base64 import b64encode
 from collections.abc import Iterator
-from dataclasses import asdict
-from datetime import datetime
+from dataclasses import asdict, dataclass
+from datetime import datetime, tzinfo
 from enum import Enum
 from html import escape
+from io import BytesIO
 from pathlib import Path
 from typing import Any
-from zoneinfo import ZoneInfo
 
 from fpdf import FPDF
 
+from app.store.store import JournalEntry
 from app.tracker.drive_check import DriveCheck
 from app.tracker.proof_states import ProofState
 from app.web.record import CommissioningRecord
+from app.web.signatures import HEIGHT, WIDTH, Signature, SignatureRole
+from app.zones import zone_of
 
 FONT = "DejaVu"
 FONTS = Path(__file__).parents[2] / "static" / "vendor" / "dejavu" / "2.37.3"
-Section = tuple[str, list[tuple[str, str]]]
-SIGNATURES = (("Commissioned by", ""), ("Accepted by", ""), ("Date", ""))
+Row = tuple[str, str]
+Section = tuple[str, tuple[Row, ...]]
 STATUS_WORDS = {"done": "done", "to_do": "to do", "to_be_confirmed": "to be confirmed"}
+TO_SIGN = (Signature(SignatureRole.TECHNICIAN, ""), Signature(SignatureRole.CUSTOMER, ""))
+SIGNED_MM = (70.0, 21.0)
+PHOTO_MM = (82.0, 66.0)
+UNITS = {
+    "deg": "°",
+    "dps": "°/s",
+    "dps2": "°/s²",
+    "m": "m",
+    "mps": "m/s",
+    "s": "s",
+    "kg": "kg",
+    "wm2": "W/m²",
+}
 
 
-def record_html(record: CommissioningRecord) -> str:
+@dataclass(frozen=True, slots=True)
+class PaperPhoto:
+    """A photo on paper: what it shows, and the JPEG."""
+
+    caption: str
+    content: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Paper:
+    """A record as it is printed; one that nobody has signed has lines to sign on and no hash."""
+
+    title: str
+    at: datetime
+    sections: tuple[Section, ...]
+    signatures: tuple[Signature, ...] = TO_SIGN
+    photos: tuple[PaperPhoto, ...] = ()
+    mark: str = "not signed"
+    digest: str = ""
+
+
+def draft(record: CommissioningRecord) -> Paper:
+    """Return the record as it stands now, for signing on paper."""
+    return Paper(title(record), record.written_at, tuple(sections(record)))
+
+
+def record_html(paper: Paper) -> str:
     """Return the record as one HTML file that needs nothing else."""
     parts = [
         "<!doctype html><html lang='en'><meta charset='utf-8'>",
-        f"<title>{escape(_title(record))}</title><h1>{escape(_title(record))}</h1>",
+        f"<title>{escape(paper.title)}</title><h1>{escape(paper.title)}</h1>",
+        f"<p>{escape(' '.join(filter(None, (paper.mark, paper.digest and 'SHA-256', paper.digest))))}</p>",
     ]
-    for heading, rows in sections(record):
+    for heading, rows in paper.sections:
         lines = (
             f"<tr><th align='left'>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows
         )
         parts.append(f"<h2>{escape(heading)}</h2><table>{''.join(lines)}</table>")
+    parts += [_photo_html(one) for one in paper.photos]
+    parts += [_signature_html(one) for one in paper.signatures]
     return "\n".join([*parts, "</html>"])
 
 
-def record_pdf(record: CommissioningRecord) -> bytes:
-    """Return the record as a PDF on A4, every section a table, with lines to sign on."""
-    pdf = _Paper(_title(record))
-    pdf.set_creation_date(record.written_at)
+def _photo_html(photo: PaperPhoto) -> str:
+    source = f"data:image/jpeg;base64,{b64encode(photo.content).decode()}"
+    caption = escape(photo.caption)
+    return (
+        f"<figure><img src='{source}' width='480' alt='{caption}'><figcaption>{caption}</figcaption></figure>"
+    )
+
+
+def _signature_html(one: Signature) -> str:
+    drawn = (
+        f"<svg viewBox='0 0 {WIDTH} {HEIGHT}' width='400' role='img'><path d='{one.path}' fill='none' "
+        "stroke='#000' stroke-width='5'/></svg>"
+        if one.strokes
+        else "<br><br>"
+    )
+    return f"<p>{drawn}<br>________________________<br>{escape(one.words)}: {escape(one.name)}</p>"
+
+
+def record_pdf(paper: Paper) -> bytes:
+    """Return the record as a PDF on A4: every section a table, photos, and signatures or lines to sign on."""
+    pdf = _Sheets(paper)
+    pdf.set_creation_date(paper.at)
     pdf.heading()
-    for heading, rows in sections(record):
+    for heading, rows in paper.sections:
         pdf.section(heading, rows)
+    pdf.photos()
+    pdf.signatures()
     return bytes(pdf.output())
 
 
-class _Paper(FPDF):
+class _Sheets(FPDF):
     """A4 with the project's font, which has the letters of people's names, and page numbers."""
 
-    def __init__(self, title: str) -> None:
+    def __init__(self, paper: Paper) -> None:
         super().__init__(format="A4")
-        self._words = title
-        self.set_title(title)
+        self._paper = paper
+        self.set_title(paper.title)
         self.add_font(FONT, "", FONTS / "DejaVuSans.ttf")
         self.add_font(FONT, "B", FONTS / "DejaVuSans-Bold.ttf")
         self.set_margins(18, 18)
@@ -60,34 +126,82 @@ class _Paper(FPDF):
         self.add_page()
 
     def heading(self) -> None:
-        """Write the title of the paper."""
+        """Write the title of the paper, its number and its hash."""
         self.set_font(FONT, "B", 15)
-        self.multi_cell(0, 8, self._words, new_x="LMARGIN", new_y="NEXT")
-
-    def section(self, heading: str, rows: list[tuple[str, str]]) -> None:
-        """Write one section; a row without a value is a line to sign on."""
-        self.ln(4)
-        self.set_font(FONT, "B", 11)
-        self.multi_cell(0, 7, heading, new_x="LMARGIN", new_y="NEXT")
+        self.multi_cell(0, 8, self._paper.title, new_x="LMARGIN", new_y="NEXT")
         self.set_font(FONT, "", 8.5)
+        hashed = f"SHA-256 of the JSON file: {self._paper.digest}" if self._paper.digest else ""
+        self.multi_cell(0, 5, f"{self._paper.mark}\n{hashed}".strip(), new_x="LMARGIN", new_y="NEXT")
+
+    def section(self, heading: str, rows: tuple[Row, ...]) -> None:
+        """Write one section as a table."""
+        self._heading(heading)
         with self.table(
             col_widths=(3, 5), first_row_as_headings=False, borders_layout="HORIZONTAL_LINES", line_height=5
         ) as table:
             for name, value in rows:
-                row = table.row(min_height=12 if not value else None)
+                row = table.row()
                 row.cell(name)
                 row.cell(value)
 
+    def photos(self) -> None:
+        """Set the photos side by side, two in a row, each above what it shows."""
+        if not self._paper.photos:
+            return
+        self._heading("Photos")
+        for place, photo in enumerate(self._paper.photos):
+            if place % 2 == 0 and self.will_page_break(PHOTO_MM[1]):
+                self.add_page()
+            left, top = self.l_margin + (place % 2) * (PHOTO_MM[0] + 8), self.get_y()
+            self.image(
+                BytesIO(photo.content), left, top, PHOTO_MM[0], PHOTO_MM[1] - 8, keep_aspect_ratio=True
+            )
+            self.set_xy(left, top + PHOTO_MM[1] - 7)
+            self.cell(PHOTO_MM[0], 5, photo.caption)
+            last_in_row = place % 2 == 1 or place == len(self._paper.photos) - 1
+            self.set_xy(self.l_margin, top + PHOTO_MM[1] if last_in_row else top)
+
+    def signatures(self) -> None:
+        """Draw what was signed, above a line with the name; an empty line is for a pen."""
+        if self.will_page_break(SIGNED_MM[1] + 25):
+            self.add_page()
+        self._heading("Signatures")
+        top = self.get_y()
+        for place, one in enumerate(self._paper.signatures):
+            left = self.l_margin + place * (SIGNED_MM[0] + 20)
+            self._draw(one, left, top)
+            self.line(left, top + SIGNED_MM[1], left + SIGNED_MM[0], top + SIGNED_MM[1])
+            self.set_xy(left, top + SIGNED_MM[1] + 1)
+            self.multi_cell(SIGNED_MM[0], 5, f"{one.words}\n{one.name}".strip())
+
+    def _draw(self, one: Signature, left: float, top: float) -> None:
+        self.set_line_width(0.4)
+        for (x1, y1), (x2, y2) in one.lines:
+            across, down = SIGNED_MM[0] / WIDTH, SIGNED_MM[1] / HEIGHT
+            self.line(left + x1 * across, top + y1 * down, left + x2 * across, top + y2 * down)
+        self.set_line_width(0.2)
+
+    def _heading(self, heading: str) -> None:
+        self.ln(4)
+        self.set_font(FONT, "B", 11)
+        self.multi_cell(0, 7, heading, new_x="LMARGIN", new_y="NEXT")
+        self.set_font(FONT, "", 8.5)
+
     def footer(self) -> None:
-        """Number the pages."""
+        """Number the pages, and say which paper they are of."""
         self.set_y(-14)
         self.set_font(FONT, "", 8)
-        self.cell(0, 6, f"{self._words} - page {self.page_no()}", align="C")
+        which = f"{self._paper.title} - {self._paper.mark} - page {self.page_no()}"
+        self.cell(0, 6, which, align="C")
 
 
 def sections(record: CommissioningRecord) -> Iterator[Section]:
     """Yield every section of the record as a heading and rows of name and value."""
-    zone = ZoneInfo(record.time_zone)
+    for heading, rows in _sections(record, zone_of(record.time_zone)):
+        yield heading, tuple(rows)
+
+
+def _sections(record: CommissioningRecord, zone: tzinfo) -> Iterator[tuple[str, list[Row]]]:
     yield "Written", [("at", _local(record.written_at, zone)), ("by", record.software)]
     yield "Site", [("name", record.site_name), *_fields("location", record.location, zone)]
     yield "Clock", _fields("", record.clock, zone)
@@ -98,30 +212,22 @@ def sections(record: CommissioningRecord) -> Iterator[Section]:
     yield "Drive, as it was read", _checked(record.check, zone)
     yield "Drive, as it was proven", [_proof(proof, zone) for proof in record.proofs]
     yield "Pointing correction", _fields("", record.pointing, zone)
-    yield (
-        "Now",
-        [
-            ("off the sun", _degrees(record.off_sun_deg)),
-            ("following error", _degrees(record.following_error_deg)),
-        ],
-    )
-    yield (
-        "Events",
-        [
-            (_local(entry.event.at, zone), f"{entry.event.message} ({entry.event.actor})")
-            for entry in record.events
-        ],
-    )
-    yield "Signatures", list(SIGNATURES)
+    off, error = _degrees(record.off_sun_deg), _degrees(record.following_error_deg)
+    yield "Now", [("off the sun", off), ("following error", error)]
+    yield "Events", [_event(entry, zone) for entry in record.events]
 
 
-def _step(step: Any, zone: ZoneInfo) -> tuple[str, str]:
+def _event(entry: JournalEntry, zone: tzinfo) -> Row:
+    return _local(entry.event.at, zone), f"{entry.event.message} ({entry.event.actor})"
+
+
+def _step(step: Any, zone: tzinfo) -> tuple[str, str]:
     when = f", {_local(step.confirmed_at, zone)} by {step.confirmed_by}" if step.confirmed_at else ""
     why = "".join(f" {reason.message}" for reason in step.reasons)
     return step.name, f"{STATUS_WORDS[step.status]}{when}.{why}"
 
 
-def _proof(proof: ProofState, zone: ZoneInfo) -> tuple[str, str]:
+def _proof(proof: ProofState, zone: tzinfo) -> tuple[str, str]:
     """Return what was proven, how it stands now, when, by whom and with which result."""
     name = " ".join(filter(None, (proof.axis or "drive", proof.kind.replace("_", " "), proof.speed)))
     when = f", {_local(proof.at, zone)} by {proof.by}" if proof.at else ""
@@ -129,7 +235,7 @@ def _proof(proof: ProofState, zone: ZoneInfo) -> tuple[str, str]:
     return name, f"{STATUS_WORDS[proof.status]}{when}. {proof.result}{why}"
 
 
-def _checked(check: DriveCheck | None, zone: ZoneInfo) -> list[tuple[str, str]]:
+def _checked(check: DriveCheck | None, zone: tzinfo) -> list[tuple[str, str]]:
     if check is None:
         return [("connection", "not tested since the controller was started")]
     seen = check.readings
@@ -143,20 +249,27 @@ def _checked(check: DriveCheck | None, zone: ZoneInfo) -> list[tuple[str, str]]:
     ]
 
 
-def _fields(prefix: str, value: Any, zone: ZoneInfo) -> list[tuple[str, str]]:
+def _fields(prefix: str, value: Any, zone: tzinfo) -> list[tuple[str, str]]:
     return [] if value is None else list(_flat(prefix, asdict(value), zone))
 
 
-def _flat(prefix: str, values: dict[str, Any], zone: ZoneInfo) -> Iterator[tuple[str, str]]:
+def _flat(prefix: str, values: dict[str, Any], zone: tzinfo) -> Iterator[tuple[str, str]]:
     for name, value in values.items():
         label = f"{prefix} {name}".strip()
         if isinstance(value, dict):
             yield from _flat(label, value, zone)
         elif value != ():
-            yield label.replace("_", " "), _text(value, zone)
+            yield _label(label), _text(value, zone)
 
 
-def _text(value: Any, zone: ZoneInfo) -> str:
+def _label(name: str) -> str:
+    """Return a field's name with its unit in brackets instead of behind an underscore."""
+    words, _, unit = name.rpartition("_")
+    named = f"{words} ({UNITS[unit]})" if words and unit in UNITS else name
+    return named.replace("_", " ")
+
+
+def _text(value: Any, zone: tzinfo) -> str:
     match value:
         case None:
             return "not known"
@@ -164,6 +277,8 @@ def _text(value: Any, zone: ZoneInfo) -> str:
             return "yes" if value else "no"
         case datetime():
             return _local(value, zone)
+        case float():
+            return f"{value:.6g}"
         case Enum():
             return str(value.value)
         case _:
@@ -174,9 +289,10 @@ def _degrees(angle: float | None) -> str:
     return "not known" if angle is None else f"{angle:.3f} degrees"
 
 
-def _local(at: datetime, zone: ZoneInfo) -> str:
+def _local(at: datetime, zone: tzinfo) -> str:
     return at.astimezone(zone).isoformat(sep=" ", timespec="seconds")
 
 
-def _title(record: CommissioningRecord) -> str:
+def title(record: CommissioningRecord) -> str:
+    """Return the title of a tracker's record."""
     return f"Commissioning record: {record.tracker.name} ({record.tracker.tracker_id})"

@@ -55,6 +55,9 @@ _TABLE: dict[Permission, str] = {
         GET /journal
         GET /metrics
         GET /papers
+        GET /records
+        GET /records/compare
+        GET /records/{number}
         GET /recordings
         GET /recordings/{recording_id}
         GET /simulate
@@ -83,6 +86,8 @@ _TABLE: dict[Permission, str] = {
         GET /trackers/{tracker_id}/proofs
         GET /trackers/{tracker_id}/training
         GET /trackers/{tracker_id}/record
+        GET /trackers/{tracker_id}/record/photos/{number}.jpg
+        GET /trackers/{tracker_id}/label
         GET /trackers/{tracker_id}/protections
         GET /trackers/{tracker_id}/settings
         GET /trackers/{tracker_id}/show
@@ -103,6 +108,12 @@ _TABLE: dict[Permission, str] = {
         GET /api/v1/metrics
         GET /api/v1/mounts
         GET /api/v1/papers
+        GET /api/v1/records
+        GET /api/v1/records/{number}
+        GET /api/v1/records/{number}/photos
+        GET /api/v1/records-comparison
+        GET /api/v1/record-photos/{number}
+        GET /api/v1/trackers/{tracker_id}/record/photos
         GET /api/v1/recordings
         GET /api/v1/recordings/{recording_id}
         GET /api/v1/recordings/{recording_id}/frames
@@ -226,6 +237,9 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/proofs/scale
         POST /trackers/{tracker_id}/proofs/scale/answer
         POST /trackers/{tracker_id}/proofs/stop
+        POST /trackers/{tracker_id}/record
+        POST /trackers/{tracker_id}/record/photos
+        POST /trackers/{tracker_id}/record/photos/{number}/remove
         POST /trackers/{tracker_id}/training/clear
         POST /trackers/{tracker_id}/training/play
         POST /trackers/{tracker_id}/protections
@@ -254,6 +268,9 @@ _TABLE: dict[Permission, str] = {
         PUT /api/v1/trackers/{tracker_id}/settings-lock
         PUT /api/v1/trackers/{tracker_id}/program.csv
         POST /api/v1/trackers/{tracker_id}/proofs/direction
+        POST /api/v1/trackers/{tracker_id}/records
+        POST /api/v1/trackers/{tracker_id}/record/photos
+        DELETE /api/v1/trackers/{tracker_id}/record/photos/{number}
         DELETE /api/v1/trackers/{tracker_id}/training
         POST /api/v1/trackers/{tracker_id}/training
         POST /api/v1/trackers/{tracker_id}/proofs/limits
@@ -329,6 +346,8 @@ TICKETED = STREAMS | {
     "GET /diagnostics.zip",
     "GET /api/v1/diagnostics.zip",
     "GET /api/v1/recordings/{recording_id}/frames",
+    "GET /api/v1/records/{number}",
+    "GET /api/v1/record-photos/{number}",
     "GET /studies/{study_id}/curves.csv",
     "GET /studies/{study_id}/table.csv",
 }

@@ -1,6 +1,7 @@
 """Who may call at all: the guard against foreign pages, and the headers that every answer carries."""
 
 import ipaddress
+import re
 from http import HTTPStatus
 from urllib.parse import urlsplit
 
@@ -13,10 +14,10 @@ from app.settings import Settings
 
 LARGEST_BODY = 1024 * 1024
 LARGEST_UPLOAD = 9 * 1024 * 1024
-UPLOADS = frozenset({"/api/v1/weather-files", "/studies/weather"})
+UPLOADS = re.compile(r"/api/v1/weather-files|/studies/weather|(?:/api/v1)?/trackers/[^/]+/record/photos")
 """Where files come in; everywhere else a request has at most `LARGEST_BODY`."""
 
-TOO_LARGE = "A request to this panel has at most one megabyte, an upload of a weather file eight."
+TOO_LARGE = "A request to this panel has at most one megabyte, an upload of a weather file or a photo eight."
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
 OWN_SITES = frozenset({"same-origin", "none"})
@@ -106,13 +107,13 @@ class Uploads:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on with the limit of its address."""
-        app = self._larger if scope["type"] == "http" and scope["path"] in UPLOADS else self._app
+        app = self._larger if scope["type"] == "http" and UPLOADS.fullmatch(scope["path"]) else self._app
         await app(scope, receive, send)
 
 
 def largest_body(scope: Scope) -> int:
     """Return how many bytes a request may bring."""
-    return LARGEST_UPLOAD if scope["path"] in UPLOADS else LARGEST_BODY
+    return LARGEST_UPLOAD if UPLOADS.fullmatch(scope["path"]) else LARGEST_BODY
 
 
 def _host_name(host: str) -> str | None:

@@ -2,6 +2,7 @@
 
 from enum import StrEnum
 from typing import Annotated
+from urllib.parse import quote
 
 from fastapi import APIRouter, Path
 from fastapi.responses import Response
@@ -16,7 +17,7 @@ from app.web.api.trackers import detail_of
 from app.web.deps import MachineDep, PanelDep
 from app.web.errors import NotAcceptable
 from app.web.record import CommissioningRecord, read_record
-from app.web.record_files import record_html, record_pdf
+from app.web.record_files import draft, record_html, record_pdf
 
 router = APIRouter(prefix="/trackers/{tracker_id}", tags=["commissioning"])
 
@@ -117,11 +118,13 @@ async def read_commissioning_record(
         case RecordFormat.JSON:
             return record
         case RecordFormat.HTML:
-            return _file(record_html(record), "text/html", f"{name}.html")
+            return written(record_html(draft(record)), format, name)
         case RecordFormat.PDF:
-            return _file(record_pdf(record), "application/pdf", f"{name}.pdf")
+            return written(record_pdf(draft(record)), format, name)
 
 
-def _file(content: str | bytes, media_type: str, name: str) -> Response:
-    headers = {"Content-Disposition": f'attachment; filename="{name}"'}
+def written(content: str | bytes, kind: RecordFormat, name: str) -> Response:
+    """Return a record as a file to be kept; `name` without its ending."""
+    media_type = "text/html" if kind is RecordFormat.HTML else "application/pdf"
+    headers = {"Content-Disposition": f"attachment; filename*=utf-8''{quote(name)}.{kind.value}"}
     return Response(content, media_type=media_type, headers=headers)

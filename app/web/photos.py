@@ -1,0 +1,51 @@
+"""Photos as they come from a camera, made small, plain and free of what they tell besides the picture."""
+
+from dataclasses import dataclass
+from io import BytesIO
+
+from PIL import Image, ImageOps, UnidentifiedImageError
+
+LONGEST_EDGE = 1600
+MOST_PIXELS = 60_000_000
+LARGEST_UPLOAD = 8 * 1024 * 1024
+QUALITY = 82
+FORMATS = ("JPEG", "PNG")
+
+
+class PhotoRefused(ValueError):
+    """A file is no photo that can be kept; the text says what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlainPhoto:
+    """A JPEG without metadata, and its pixels."""
+
+    content: bytes
+    width: int
+    height: int
+
+
+def plain_photo(upload: bytes) -> PlainPhoto:
+    """Return an upload as an upright JPEG of at most 1600 pixels a side, or raise `PhotoRefused`."""
+    if len(upload) > LARGEST_UPLOAD:
+        raise PhotoRefused("A photo has at most 8 MB: let the camera take a smaller one.")
+    try:
+        with Image.open(BytesIO(upload), formats=FORMATS) as opened:
+            return _plain(opened)
+    except (UnidentifiedImageError, OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
+        if isinstance(error, PhotoRefused):
+            raise
+        raise PhotoRefused("This file is no JPEG or PNG picture, or it is damaged: choose another.") from None
+
+
+def _plain(opened: Image.Image) -> PlainPhoto:
+    if opened.width * opened.height > MOST_PIXELS:
+        raise PhotoRefused("A photo has at most 60 million pixels: let the camera take a smaller one.")
+    opened.draft("RGB", (LONGEST_EDGE, LONGEST_EDGE))
+    upright = ImageOps.exif_transpose(opened).convert("RGBA")
+    upright.thumbnail((LONGEST_EDGE, LONGEST_EDGE))
+    paper = Image.new("RGB", upright.size, "white")  # a new picture has none of the old one's metadata
+    paper.paste(upright, mask=upright)
+    out = BytesIO()
+    paper.save(out, "JPEG", quality=QUALITY, optimize=True)
+    return PlainPhoto(out.getvalue(), paper.width, paper.height)

@@ -1,0 +1,143 @@
+"""A commissioning record as it is signed: one canonical JSON text that its hash covers."""
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+from pydantic_core import to_jsonable_python
+
+from app.audit.chain import canonical
+from app.store.documents import plain
+from app.store.store import Photo, SignedRecord, StoreFailed
+from app.web.record import CommissioningRecord
+from app.web.record_files import Paper, PaperPhoto, Section, sections, title
+from app.web.signatures import Signature
+
+FORMAT = "heliopanel commissioning record 1"
+LONGEST_REMARK = 1000
+PASSING = ("Written", "Now", "Events")
+"""Sections that differ between any two records and say nothing of what was set up."""
+
+
+@dataclass(frozen=True, slots=True)
+class NamedPhoto:
+    """A photo as the record names it: SHA-256 of its content, what it shows, its pixels."""
+
+    digest: str
+    caption: str
+    width: int
+    height: int
+
+
+@dataclass(frozen=True, slots=True)
+class RecordDocument:
+    """What was signed: for people in `sections`, for programs in `state`."""
+
+    format: str
+    tracker_id: str
+    title: str
+    time_zone: str
+    written_at: str
+    kept_by: str
+    remark: str
+    sections: tuple[Section, ...]
+    signatures: tuple[Signature, ...]
+    photos: tuple[NamedPhoto, ...]
+    state: dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """One line of two records side by side; an empty text stands where a record has no such line."""
+
+    section: str
+    name: str
+    first: str
+    second: str
+
+    @property
+    def differs(self) -> bool:
+        """Return whether the records say different things here."""
+        return self.first != self.second
+
+
+_adapter: TypeAdapter[RecordDocument] = TypeAdapter(RecordDocument)
+
+
+def document(
+    record: CommissioningRecord,
+    kept_by: str,
+    remark: str,
+    signatures: Sequence[Signature],
+    photos: Sequence[Photo],
+) -> tuple[str, str]:
+    """Return the canonical JSON of a record and its SHA-256, in hexadecimal."""
+    made = RecordDocument(
+        format=FORMAT,
+        tracker_id=record.tracker.tracker_id,
+        title=title(record),
+        time_zone=record.time_zone,
+        written_at=record.written_at.isoformat(),
+        kept_by=kept_by,
+        remark=plain(remark),
+        sections=tuple(sections(record)),
+        signatures=tuple(signatures),
+        photos=tuple(NamedPhoto(one.digest, one.caption, one.width, one.height) for one in photos),
+        state=to_jsonable_python(record),
+    )
+    text = plain(canonical(_adapter.dump_python(made, mode="json")))
+    return text, hashlib.sha256(text.encode()).hexdigest()
+
+
+def read_document(signed: SignedRecord) -> RecordDocument:
+    """Return a signed record's document, or raise `StoreFailed` where it cannot be read or was changed."""
+    if hashlib.sha256(signed.document.encode()).hexdigest() != signed.head.digest:
+        raise StoreFailed(
+            f"Record {signed.head.number} is not what was signed: its hash does not fit. Restore a backup."
+        )
+    try:
+        return _adapter.validate_json(signed.document)
+    except ValidationError as error:
+        raise StoreFailed(
+            f"Record {signed.head.number} cannot be read. Install the version that wrote it."
+        ) from error
+
+
+def paper(signed: SignedRecord, photos: Sequence[Photo]) -> Paper:
+    """Return a signed record as it is printed."""
+    read = read_document(signed)
+    remark = (("Remark", (("remark", read.remark),)),) if read.remark else ()
+    return Paper(
+        title=read.title,
+        at=signed.head.kept_at,
+        sections=(*read.sections, *remark),
+        signatures=read.signatures,
+        photos=tuple(PaperPhoto(one.caption, one.content) for one in photos),
+        mark=f"No. {signed.head.number}",
+        digest=signed.head.digest,
+    )
+
+
+def differences(first: RecordDocument, second: RecordDocument) -> list[Difference]:
+    """Return every line of two records side by side, in their order, without what passes."""
+    left, right = dict(_lines(first)), dict(_lines(second))
+    keys = [*left, *(key for key in right if key not in left)]
+    order = {heading: place for place, heading in enumerate(dict.fromkeys(section for section, _ in keys))}
+    keys.sort(key=lambda key: order[key[0]])
+    return [Difference(*key, left.get(key, ""), right.get(key, "")) for key in keys]
+
+
+def _lines(read: RecordDocument) -> Iterator[tuple[tuple[str, str], str]]:
+    for heading, rows in read.sections:
+        if heading in PASSING:
+            continue
+        seen: dict[str, int] = {}
+        for name, value in rows:
+            seen[name] = seen.get(name, 0) + 1
+            yield (heading, name if seen[name] == 1 else f"{name} ({seen[name]})"), value
+    for one in read.signatures:
+        yield ("Signatures", one.words), one.name
+    for number, photo in enumerate(read.photos, start=1):
+        yield ("Photos", f"photo {number}"), photo.caption or photo.digest[:12]

@@ -1,0 +1,68 @@
+"""Signing a record and adding photos to it: what the pages and the API do alike."""
+
+from base64 import b64encode
+from collections.abc import Awaitable, Callable, Sequence
+
+from starlette.concurrency import run_in_threadpool
+
+from app.link.messages import UnknownTracker
+from app.link.record_orders import AddRecordPhoto, RecordOrder, RemoveRecordPhoto, SignRecord
+from app.store.store import Photo, Reader, RecordHead, SignedRecord
+from app.web.deps import Panel
+from app.web.errors import NotFound
+from app.web.photos import plain_photo
+from app.web.record import read_record
+from app.web.record_document import document
+from app.web.signatures import Signature
+
+Send = Callable[[RecordOrder], Awaitable[object]]
+
+
+async def add_photo(send: Send, tracker_id: str, upload: bytes, caption: str) -> None:
+    """Keep a photo for the next record of a tracker, or raise `PhotoRefused`."""
+    photo = await run_in_threadpool(plain_photo, upload)
+    encoded = b64encode(photo.content).decode()
+    await send(AddRecordPhoto(tracker_id, encoded, photo.width, photo.height, " ".join(caption.split())))
+
+
+async def remove_photo(send: Send, reader: Reader, tracker_id: str, number: int) -> None:
+    """Remove a photo that waits for the next record, or raise `NotFound`."""
+    photo = await run_in_threadpool(photo_of, reader, number)
+    if photo.tracker_id != tracker_id or photo.record_number is not None:
+        raise NotFound(f"No photo {number} waits for the next record of {tracker_id}.")
+    await send(RemoveRecordPhoto(tracker_id, number))
+
+
+async def sign(
+    send: Send, built: Panel, tracker_id: str, kept_by: str, remark: str, signatures: Sequence[Signature]
+) -> RecordHead:
+    """Keep the record of a tracker as it stands now, with its photos; return its head."""
+    record = await read_record(built.machine, built.reader, tracker_id)
+    photos = await run_in_threadpool(built.reader.waiting_photos, tracker_id)
+    text, digest = document(record, kept_by, remark, signatures, photos)
+    encoded = b64encode(text.encode()).decode()
+    await send(SignRecord(tracker_id, encoded, digest, tuple(photo.number for photo in photos)))
+    kept = await run_in_threadpool(built.reader.signed_records, tracker_id)
+    return next(head for head in kept if head.digest == digest)
+
+
+async def require_tracker(built: Panel, tracker_id: str) -> None:
+    """Raise `UnknownTracker` if the machine has no such tracker."""
+    if tracker_id not in (await built.machine.detail()).trackers:
+        raise UnknownTracker(tracker_id)
+
+
+def signed_record(reader: Reader, number: int) -> SignedRecord:
+    """Return a signed record, or raise `NotFound`."""
+    found = reader.signed_record(number)
+    if found is None:
+        raise NotFound(f"There is no commissioning record {number}; see the list of records.")
+    return found
+
+
+def photo_of(reader: Reader, number: int) -> Photo:
+    """Return a photo, or raise `NotFound`."""
+    found = reader.photo(number)
+    if found is None:
+        raise NotFound(f"There is no photo {number}.")
+    return found

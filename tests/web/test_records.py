@@ -1,0 +1,168 @@
+"""Records are signed, kept, compared and printed; photos come in small and plain."""
+
+import hashlib
+import io
+import json
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from tests.web.desk import Desk
+
+T1 = "/api/v1/trackers/T1"
+STROKES = [[[10, 20], [400, 250], [900, 30]], [[5, 5], [6, 9]]]
+SIGNED = {"signatures": [{"role": "technician", "name": "Ayşe Yılmaz", "strokes": STROKES}]}
+
+
+def picture(kind: str = "JPEG", size: tuple[int, int] = (640, 480)) -> bytes:
+    """Return a picture whose metadata tell where and with what it was taken."""
+    made = Image.new("RGB", size, "teal")
+    exif = Image.Exif()
+    exif[0x010F] = "SecretMaker"
+    exif[0x0112] = 6  # turned by a quarter
+    out = io.BytesIO()
+    made.save(out, kind, exif=exif, comment=b"SecretComment")
+    return out.getvalue()
+
+
+@pytest.fixture
+async def desk(tmp_path: Path) -> AsyncIterator[Desk]:
+    async with Desk(tmp_path) as one:
+        yield one
+
+
+async def sign(desk: Desk, **more: object) -> dict[str, object]:
+    answer = await desk.ask("POST", f"{T1}/records", json=SIGNED | more)
+    assert answer.status_code == 201, answer.text
+    found: dict[str, object] = answer.json()
+    return found
+
+
+async def test_a_signed_record_is_its_hash(desk: Desk) -> None:
+    head = await sign(desk, remark="Frost on the ground.")
+    answer = await desk.ask("GET", f"/api/v1/records/{head['number']}")
+    assert hashlib.sha256(answer.content).hexdigest() == head["digest"]
+    read = answer.json()
+    assert read["signatures"][0]["strokes"] == STROKES
+    assert read["remark"] == "Frost on the ground."
+    assert read["state"]["tracker"]["tracker_id"] == "T1"
+    assert list(read) == sorted(read), "canonical JSON has its keys in order"
+    page = (await desk.ask("GET", f"/records/{head['number']}")).text
+    assert "M10 20 L400 250 L900 30 M5 5 L6 9" in page
+    assert "Ayşe Yılmaz" in page
+    pdf = await desk.ask("GET", f"/api/v1/records/{head['number']}?format=pdf")
+    assert pdf.content.startswith(b"%PDF-")
+    assert "commissioning-T1-1.pdf" in pdf.headers["content-disposition"]
+
+
+async def test_a_later_change_leaves_what_was_signed_and_is_shown_beside_it(desk: Desk) -> None:
+    first = await sign(desk)
+    assert (await desk.ask("PATCH", T1, json={"deadband_deg": 0.75})).status_code == 200
+    second = await sign(desk)
+    before = (await desk.ask("GET", "/api/v1/records/1")).content
+    assert hashlib.sha256(before).hexdigest() == first["digest"] != second["digest"]
+    lines = (await desk.ask("GET", "/api/v1/records-comparison?first=1&second=2")).json()
+    changed = [line for line in lines if line["differs"]]
+    assert [line["name"] for line in changed] == ["deadband (°)"]
+    assert changed[0]["second"] == "0.75"
+    page = (await desk.ask("GET", "/records/compare?pick=1&pick=2")).text
+    assert "One line differs" in page
+    assert "≠" in page
+    assert "≠" not in (await desk.ask("GET", "/records/compare?pick=1&pick=1")).text
+    assert [one["number"] for one in (await desk.ask("GET", "/api/v1/records")).json()] == [2, 1]
+
+
+async def test_photos_wait_and_go_with_the_next_record(desk: Desk) -> None:
+    files = {"photo": ("plate.jpg", picture(size=(4000, 1000)))}
+    added = await desk.ask("POST", f"{T1}/record/photos", files=files, data={"caption": "Type plate"})
+    assert added.status_code == 201, added.text
+    waiting = added.json()[0]
+    assert (waiting["width"], waiting["height"]) == (400, 1600)
+    content = (await desk.ask("GET", f"/api/v1/record-photos/{waiting['number']}")).content
+    assert b"Secret" not in content
+    assert hashlib.sha256(content).hexdigest() == waiting["digest"]
+    head = await sign(desk)
+    assert (await desk.ask("GET", f"{T1}/record/photos")).json() == []
+    record = (await desk.ask("GET", f"/api/v1/records/{head['number']}")).json()
+    assert record["photos"] == [
+        {"caption": "Type plate", "digest": waiting["digest"], "height": 1600, "width": 400}
+    ]
+    gone = await desk.ask("DELETE", f"{T1}/record/photos/{waiting['number']}")
+    assert gone.status_code == 404
+    listed = (await desk.ask("GET", f"/api/v1/records/{head['number']}/photos")).json()
+    assert listed[0]["caption"] == "Type plate"
+    pdf = (await desk.ask("GET", f"/api/v1/records/{head['number']}?format=pdf")).content
+    assert b"/Subtype /Image" in pdf
+
+
+@pytest.mark.parametrize(
+    ("upload", "words"),
+    [
+        (b"<svg/>", "no JPEG or PNG"),
+        (picture("PNG")[:300], "no JPEG or PNG"),
+        (picture("GIF"), "no JPEG or PNG"),
+        (b"x" * (8 * 1024 * 1024 + 1), "at most 8 MB"),
+    ],
+)
+async def test_what_is_no_photo_is_refused(upload: bytes, words: str, desk: Desk) -> None:
+    answer = await desk.ask("POST", f"{T1}/record/photos", files={"photo": ("a.jpg", upload)})
+    assert answer.status_code == 422
+    assert words in answer.json()["detail"]
+    page = await desk.ask("POST", "/trackers/T1/record/photos", files={"photo": ("a.jpg", upload)})
+    assert page.status_code == 422
+    assert words in page.text
+
+
+async def test_a_picture_too_large_to_open_is_refused_before_it_is_opened(desk: Desk) -> None:
+    blank = io.BytesIO()
+    Image.new("1", (9000, 9000)).save(blank, "PNG")
+    answer = await desk.ask("POST", f"{T1}/record/photos", files={"photo": ("a.png", blank.getvalue())})
+    assert answer.status_code == 422
+    assert "60 million" in answer.json()["detail"]
+
+
+async def test_the_form_signs_and_keeps_what_was_typed_where_it_cannot(desk: Desk) -> None:
+    form = {"remark": "Sign here", "technician": "", "technician_drawn": json.dumps(STROKES)}
+    answer = await desk.ask("POST", "/trackers/T1/record", data=form)
+    assert answer.status_code == 422
+    assert "type the name of whoever signed" in answer.text
+    assert "Sign here" in answer.text
+    assert "[400, 250]" in answer.text
+    good = await desk.ask("POST", "/trackers/T1/record", data=form | {"technician": "Ion Popescu"})
+    assert good.status_code == 303
+    assert good.headers["location"] == "/records/1"
+    assert "Ion Popescu" in (await desk.ask("GET", "/records/1")).text
+
+
+@pytest.mark.parametrize(
+    "drawn", ["[[", "[[[1,2,3],[1,2]]]", "[[[0,0],[1001,0]]]", "[[1]]", '{"a": 1}', f"[{'[],' * 300}[]]"]
+)
+async def test_a_drawing_that_is_none_is_refused(drawn: str, desk: Desk) -> None:
+    form = {"technician": "Ion", "technician_drawn": drawn}
+    answer = await desk.ask("POST", "/trackers/T1/record", data=form)
+    assert answer.status_code == 422
+    assert "sign again" in answer.text
+
+
+async def test_a_record_needs_the_technician(desk: Desk) -> None:
+    customer = {"signatures": [{"role": "customer", "name": "Owner"}]}
+    answer = await desk.ask("POST", f"{T1}/records", json=customer)
+    assert answer.status_code == 422
+    assert "technician" in answer.json()["detail"]
+
+
+async def test_the_label_opens_the_trackers_page(desk: Desk) -> None:
+    page = (await desk.ask("GET", "/trackers/T1/label?address=https://heliopanel.local:8443/x")).text
+    assert "https://heliopanel.local:8443/trackers/T1" in page
+    assert "this computer only" in (await desk.ask("GET", "/trackers/T1/label")).text
+    wrong = await desk.ask("GET", "/trackers/T1/label?address=javascript:alert(1)")
+    assert wrong.status_code == 422
+    assert "Address: type how tablets reach" in wrong.text
+
+
+@pytest.mark.parametrize("path", ["/records/9", "/api/v1/records/9", "/records/compare?pick=1&pick=9"])
+async def test_what_is_not_there_is_not_found(path: str, desk: Desk) -> None:
+    assert (await desk.ask("GET", path)).status_code == 404
+    assert (await desk.ask("GET", "/records/compare?pick=1")).status_code == 422
