@@ -1,6 +1,7 @@
 """Trackers come, change and go: always while they stand still, always stored first."""
 
 from dataclasses import replace
+from datetime import datetime
 
 from app.site.checks import check_config, check_name
 from app.site.loop import TrackerLoop
@@ -58,10 +59,11 @@ async def configure(model: SiteModel, config: TrackerConfig, actor: str) -> tupl
     )
     old = loop.config
     rebuilt = _machine(old) != _machine(config)
-    memory = _memory_for(loop.memory, old, config) if rebuilt else loop.memory
+    at = model.now()
+    memory = _memory_for(loop.memory, old, config, at) if rebuilt else loop.memory
     await model.ledger.save_tracker(TrackerState(config, memory), (event,))
     if rebuilt:
-        loop = await _rebuild(model, loop, config)
+        loop = await _rebuild(model, loop, config, at)
     else:
         loop.controller.configure(config, loop.drive.capabilities)
     if loop.memory != memory:
@@ -69,22 +71,22 @@ async def configure(model: SiteModel, config: TrackerConfig, actor: str) -> tupl
     return (event,)
 
 
-async def _rebuild(model: SiteModel, loop: TrackerLoop, config: TrackerConfig) -> TrackerLoop:
+async def _rebuild(model: SiteModel, loop: TrackerLoop, config: TrackerConfig, at: datetime) -> TrackerLoop:
     """Put a new loop with a new drive in the place of one that ends, with what that one knew last."""
     await loop.close()
-    fresh = model.add(TrackerState(config, _memory_for(loop.memory, loop.config, config)))
+    fresh = model.add(TrackerState(config, _memory_for(loop.memory, loop.config, config, at)))
     fresh.start()
     return fresh
 
 
-def _memory_for(memory: TrackerMemory, old: TrackerConfig, new: TrackerConfig) -> TrackerMemory:
+def _memory_for(memory: TrackerMemory, old: TrackerConfig, new: TrackerConfig, at: datetime) -> TrackerMemory:
     """Return what stays true with other limits, another mount, actuator or drive.
 
     The last three have no trusted zero, and a move that nobody has judged yet was made with the former one.
     """
     if _zeroed(old) == _zeroed(new):
         return replace(memory, tracking_on=False)
-    memory = replace(memory, proofs=replace(memory.proofs, move=None))
+    memory = replace(memory, proofs=replace(memory.proofs, move=None), home_lost_at=at)
     if old.mount.kind != new.mount.kind:
         return _remounted(memory)
     if old.drive == new.drive:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from enum import StrEnum
 
+from app.sun.horizon import FLAT, Horizon
 from app.sun.position import Location
 from app.tracker.config import DriveConfig, Orientation, TrackerConfig
 from app.tracker.mode import Mode
@@ -81,11 +82,11 @@ class CommissioningLock:
 class TrackerMemory:
     """The latches of one tracker: on disk before the command that changes them is acknowledged.
 
-    `home_lost` says why a zero that was set is no longer trusted; `former_drive` are the drive settings
-    before the last change, so that it can be undone. `stow` is the place it was sent to by command and stays
-    in until it is resumed or commanded otherwise; `protection` is the one that holds, which must be seen good
-    before tracking goes on; `sensors` are those that were ever seen, so that they can be missed.
-    `control_epoch` is the newest number that orders were fenced with.
+    `home_lost` says why a zero that was set is no longer trusted, `home_lost_at` since when (None: not
+    known); `former_drive` are the drive settings before the last change, so that it can be undone. `stow` is
+    the place it was sent to by command and stays in until it is resumed or commanded otherwise; `protection`
+    is the one that holds, which must be seen good before tracking goes on; `sensors` are those that were ever
+    seen, so that they can be missed. `control_epoch` is the newest number that orders were fenced with.
     """
 
     mode: Mode | None = None
@@ -93,6 +94,7 @@ class TrackerMemory:
     tracking_on: bool = False
     home: HomeTrust | None = None
     home_lost: str = ""
+    home_lost_at: datetime | None = None
     showing: str | None = None
     fault_code: str | None = None
     fault_text: str = ""
@@ -167,3 +169,4 @@ class SiteState:
     notifications: Notifications = field(default_factory=Notifications)
     simulated_weather: SimulatedStation | None = None
     weather_windows: WeatherWindows | None = None
+    horizon: Horizon = FLAT

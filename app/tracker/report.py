@@ -74,6 +74,9 @@ def snapshot(mind: Mind, at: datetime, now: datetime) -> Snapshot:
         local=fresh is not None and fresh.local,
         service=service_state(mind),
         link=mind.seen.link if mind.seen else None,
+        home=mind.memory.home,
+        home_lost=mind.memory.home_lost,
+        home_lost_at=mind.memory.home_lost_at,
     )
 
 

@@ -107,8 +107,13 @@ def lose_home(mind: Mind, reason: Reason) -> None:
     mind.zeroed, mind.corrected = frozenset(), None
     if mind.memory.home is None:
         return
-    mind.remember(home=None, home_lost=reason.message)
+    doubt_zero(mind, reason.message)
     mind.say(EventKind.HOME_LOST, f"The zero is no longer trusted: {reason.message}", code=reason.code)
+
+
+def doubt_zero(mind: Mind, why: str) -> None:
+    """Remember since when and why there is no zero that is trusted."""
+    mind.remember(home=None, home_lost=why, home_lost_at=mind.site_time)
 
 
 def switch_tracking_off(mind: Mind, why: str) -> None:

@@ -276,6 +276,7 @@ class TrackerPage:
     limits: str
     diagram: SunDiagram | None
     arc: Arc
+    blocked: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,9 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+from app.tracker.config import TrackerConfig
 from app.web.contexts import Form, Frame
+from app.web.ui.region_picture import RegionPicture
 
 Options = tuple[tuple[str, str], ...]
 
@@ -41,3 +43,44 @@ class ProtectionsPage:
     facings: Options
     stows: Options
     fixed: tuple[Setting, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ServicePage:
+    """Who may move the machine now: the switch at the cabinet, service mode, the trust in the zero."""
+
+    template: ClassVar[str] = "service.html"
+
+    frame: Frame
+    config: TrackerConfig
+    blocked: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FaultRow:
+    """One class of faults: its name in the form, its title, what it is, the codes of its faults."""
+
+    name: str
+    title: str
+    text: str
+    codes: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class MachinePage:
+    """What is set for the protections of the machine itself: limits, recovery, forbidden regions.
+
+    `places` are the numbers of the regions that the form shows; `picture` is None on a mount with one axis.
+    """
+
+    template: ClassVar[str] = "machine.html"
+
+    frame: Frame
+    config: TrackerConfig
+    form: Form
+    settings: tuple[Setting, ...]
+    faults: tuple[FaultRow, ...]
+    recoveries: Options
+    places: tuple[int, ...]
+    how: str
+    picture: RegionPicture | None

@@ -84,6 +84,8 @@ _TABLE: dict[Permission, str] = {
         GET /trackers/{tracker_id}/mount
         POST /trackers/{tracker_id}/mount/kind
         GET /trackers/{tracker_id}/proofs
+        GET /trackers/{tracker_id}/machine
+        POST /trackers/{tracker_id}/machine/picture
         GET /trackers/{tracker_id}/training
         GET /trackers/{tracker_id}/record
         GET /trackers/{tracker_id}/record/photos/{number}.jpg
@@ -92,6 +94,7 @@ _TABLE: dict[Permission, str] = {
         GET /trackers/{tracker_id}/settings
         GET /trackers/{tracker_id}/show
         GET /trackers/{tracker_id}/shows/{show_id}
+        GET /trackers/{tracker_id}/service
         GET /trackers/{tracker_id}/strategy
         GET /trackers/{tracker_id}/strategy/day
         GET /trackers/{tracker_id}/strategy/program.csv
@@ -187,6 +190,9 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/stow
         POST /trackers/{tracker_id}/reset-fault
         POST /trackers/{tracker_id}/step
+        POST /trackers/{tracker_id}/service
+        POST /trackers/{tracker_id}/service/clear
+        POST /trackers/{tracker_id}/service/end
         POST /trackers/{tracker_id}/track
         POST /trackers/{tracker_id}/commissioning/mode
         POST /trackers/{tracker_id}/show/go-to-start
@@ -232,6 +238,7 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/mount
         POST /trackers/{tracker_id}/proofs/direction
         POST /trackers/{tracker_id}/proofs/direction/answer
+        POST /trackers/{tracker_id}/machine
         POST /trackers/{tracker_id}/proofs/limit
         POST /trackers/{tracker_id}/proofs/link-loss
         POST /trackers/{tracker_id}/proofs/scale

@@ -15,6 +15,24 @@ const TONE_S = 0.18;
 const calls = (alarm) => CALLS.includes(alarm.state);
 const one = (id) => document.getElementById(id);
 
+const UNKNOWN = "Alarms are not known now";
+
+// Without the machine nothing is known: what was shown last is no longer the truth.
+function paintUnknown() {
+  one("alarm-strip").toggleAttribute("data-unknown", live.link !== "live" && live.link !== "starting");
+  if (!one("alarm-strip").hasAttribute("data-unknown")) return;
+  const last = live.site?.alarms.find((alarm) => calls(alarm) && !alarm.collapsed);
+  setText("alarm-first-title", UNKNOWN);
+  setText("alarm-first-where", last ? `Last known: ${last.title}, ${last.where}` : "There is no connection to the machine.");
+  for (const shape of document.querySelectorAll("[data-first-shape]")) shape.hidden = true;
+  for (const item of document.querySelectorAll("[data-count] b")) item.textContent = "?";
+  one("alarm-ack").querySelector("button").disabled = true;
+}
+
+function setText(id, text) {
+  if (one(id).textContent !== text) one(id).textContent = text;
+}
+
 function paintFirst(site) {
   const first = site.alarms.find((alarm) => calls(alarm) && !alarm.collapsed);
   for (const shape of document.querySelectorAll("[data-first-shape]")) {
@@ -23,8 +41,8 @@ function paintFirst(site) {
   const standing = site.alarm_counts.standing.reduce((sum, count) => sum + count, 0);
   const title = first?.title ?? (standing ? "No new alarm" : "No alarms");
   const where = first ? `${first.where} · ${clockTime(first.since, live.zone)}` : "";
-  if (one("alarm-first-title").textContent !== title) one("alarm-first-title").textContent = title;
-  if (one("alarm-first-where").textContent !== where) one("alarm-first-where").textContent = where;
+  setText("alarm-first-title", title);
+  setText("alarm-first-where", where);
   const form = one("alarm-ack");
   form.toggleAttribute("data-idle", !first);
   form.querySelector("[name=alarm_id]").value = first?.alarm_id ?? "";
@@ -97,6 +115,7 @@ export function start() {
     paintCounts(site);
     sound();
   });
+  live.on("link", paintUnknown);
   const touched = () => soundIsOn() && wake();
   for (const kind of ["pointerdown", "keydown"]) document.addEventListener(kind, touched);
 }

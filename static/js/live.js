@@ -169,12 +169,23 @@ function paintBanners() {
   const waiting = document.getElementById("waiting-banner");
   if (fault) fault.hidden = !live.tracker?.fault;
   if (waiting) waiting.hidden = !live.tracker?.waiting.length;
+  paintLocal();
   for (const note of document.querySelectorAll("[data-stale-note]")) {
     const one = scopeOf(note);
     const lost = Boolean(one && !one.measured);
     note.hidden = !lost;
     if (lost) note.textContent = lastSeen(one);
   }
+}
+
+// Pages of the whole site name the trackers whose cabinet is on local; those of one tracker have a banner of it.
+function paintLocal() {
+  const banner = document.getElementById("local-banner");
+  if (!banner) return;
+  const names = live.site.trackers.filter((one) => one.local).map((one) => one.tracker_id).join(", ");
+  banner.hidden = !names;
+  const words = document.getElementById("local-names");
+  if (words.textContent !== names) words.textContent = names;
 }
 
 function lastSeen(one) {

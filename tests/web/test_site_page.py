@@ -43,6 +43,22 @@ async def test_a_report_of_the_weather_is_shown_with_its_age(
         assert "Humidity" not in text, "what the station does not measure is not shown"
 
 
+async def test_without_the_machine_nothing_is_said_to_be_well(
+    panel: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    assert "No alarms" in (await panel.get("/site")).text
+    machine.cut()
+    for path, sentence in (
+        ("/site", "so that the weather is not known here"),
+        ("/alarms", "so that it is not known which alarms stand"),
+    ):
+        text = (await panel.get(path)).text
+        assert sentence in text
+        assert "Alarms are not known now" in text
+        assert "No alarms" not in text
+        assert "No weather station has reported" not in text
+
+
 @pytest.mark.parametrize(
     "wrong",
     [

@@ -11,12 +11,12 @@ from app.tracker.guards import axis_feedback
 from app.tracker.memory import HomeTrust, StepName
 from app.tracker.mind import HALTED, NOWHERE, Mind, Turn
 from app.tracker.motion import DriveCommand, DriveRequest, Feedback, RequestKind
-from app.tracker.mounts.abilities import axis_title
+from app.tracker.mounts.abilities import axis_of, axis_title
 from app.tracker.reason import Reason
 from app.tracker.runs import at_rest
 from app.tracker.selection import confirm_step
 from app.tracker.snapshot import EventKind
-from app.tracker.transitions import lose_home
+from app.tracker.transitions import doubt_zero, lose_home
 
 ZERO_PATIENCE = timedelta(seconds=5)
 HOMING_GRACE_S = 60.0
@@ -49,7 +49,7 @@ def home(mind: Mind) -> None:
     demand(mind, Action.HOME)
     mind.setpoint, mind.corrected = NOWHERE, None
     mind.zeroed = frozenset()
-    mind.remember(home=None, home_lost="the search for the origin switches was not finished.")
+    doubt_zero(mind, "the search for the origin switches was not finished.")
     mind.activity = Homing(mind.next_request(), mind.now + _homing_time(mind), mind.actor)
     mind.say(EventKind.HOMING_STARTED, "The drive searches for its origin switches.")
 
@@ -89,7 +89,7 @@ def _homing(mind: Mind, homing: Homing, feedback: Feedback) -> Turn:
             return _homing_failed(mind, "it took too long.")
         return Turn(homing, DriveCommand(request=DriveRequest(homing.number, RequestKind.HOME)))
     if feedback.request_failed:
-        return _homing_failed(mind, "the drive did not find them.")
+        return _homing_failed(mind, f"the drive did not find {_missing(mind, feedback)}.")
     if not at_rest(feedback):
         return Turn(homing)
     if not (feedback.azimuth.homed and feedback.elevation.homed):
@@ -99,6 +99,15 @@ def _homing(mind: Mind, homing: Homing, feedback: Feedback) -> Turn:
     mind.say(EventKind.HOMING_ENDED, "Both axes have found their origin switches.", outcome="homed")
     _trust(mind, feedback, homing.actor, "origin switches")
     return Turn(HOLDING)
+
+
+def _missing(mind: Mind, feedback: Feedback) -> str:
+    """Return whose switch was not met: where one axis stands on its own, the other's."""
+    axes = mind.config.mount.axes
+    unmet = [axis for axis in axes if not axis_feedback(feedback, axis).at_origin]
+    if not unmet or len(unmet) == len(axes) > 1:
+        return "them"
+    return f"that of the {axis_of(mind.config, unmet[0])}, which was to come within its whole travel"
 
 
 def _read_back(mind: Mind, zeroing: Zeroing, feedback: Feedback) -> Turn:
@@ -123,7 +132,7 @@ def _read_back(mind: Mind, zeroing: Zeroing, feedback: Feedback) -> Turn:
 
 def _trust(mind: Mind, feedback: Feedback, actor: str, how: str) -> None:
     trust = HomeTrust(mind.site_time, actor, how, feedback.boot_count)
-    mind.remember(home=trust, home_lost="")
+    mind.remember(home=trust, home_lost="", home_lost_at=None)
     confirm_step(mind, StepName.HOMING, actor)
 
 
@@ -136,7 +145,7 @@ def _zero_failed(mind: Mind, why: str) -> Turn:
 
 def _homing_failed(mind: Mind, why: str) -> Turn:
     mind.activity = HOLDING
-    mind.remember(home_lost=f"the search for the origin switches failed: {why}")
+    doubt_zero(mind, f"the search for the origin switches failed: {why}")
     mind.say(EventKind.HOMING_ENDED, f"The origin switches were not found: {why}", outcome="failed")
     return Turn(HOLDING, HALTED)
 

@@ -19,6 +19,7 @@ from app.web.ui.orders import PressDep
 from app.web.ui.render import page
 from app.web.ui.sunpath import diagram, todays_arc
 from app.web.ui.wizard import tracker_of
+from app.web.ui.zero import blocked_without_zero
 
 router = APIRouter(prefix="/trackers/{tracker_id}")
 
@@ -95,5 +96,6 @@ def _answer(request: Request, tracker: TrackerDetail, typed: Typed, *, status: i
         limits=limits_text(config),
         diagram=diagram(frame.site, config),
         arc=todays_arc(frame.site, config),
+        blocked=blocked_without_zero(),
     )
     return page(request, context, block="go", status=status)

@@ -1,0 +1,80 @@
+"""The page of the machine's own protections: limits, what follows each class of fault, forbidden regions."""
+
+from dataclasses import replace
+
+from fastapi import APIRouter
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.link.messages import ConfigureTracker, TrackerDetail
+from app.web.deps import MachineDep
+from app.web.protection_contexts import MachinePage
+from app.web.ui import machine_forms as forms
+from app.web.ui.forms import Typed
+from app.web.ui.frame import tracker_frame
+from app.web.ui.orders import PressDep
+from app.web.ui.region_picture import region_picture
+from app.web.ui.render import go, page
+from app.web.ui.sunpath import todays_arc
+from app.web.ui.wizard import tracker_of
+
+router = APIRouter(prefix="/trackers/{tracker_id}/machine")
+
+
+@router.get("")
+async def machine_protections(request: Request, tracker_id: str, machine: MachineDep) -> Response:
+    """Show what is set."""
+    tracker = tracker_of(await machine.detail(), tracker_id)
+    return _answer(request, tracker, Typed(forms.texts(tracker.state.config.machine)))
+
+
+@router.post("/picture")
+async def picture(request: Request, tracker_id: str, machine: MachineDep) -> Response:
+    """Draw the regions as they are typed; nothing is saved."""
+    tracker = tracker_of(await machine.detail(), tracker_id)
+    typed = await _typed(request)
+    forms.regions(typed)
+    return _answer(request, tracker, typed, block="regions")
+
+
+@router.post("")
+async def save(request: Request, tracker_id: str, press: PressDep, machine: MachineDep) -> Response:
+    """Save all settings, or none of them."""
+    tracker = tracker_of(await machine.detail(), tracker_id)
+    typed = await _typed(request)
+    wanted = forms.read(typed)
+    if wanted is None:
+        return _answer(press.request, tracker, typed, status=422)
+    config = tracker.state.config
+    if config.mount.single_axis:
+        wanted = replace(wanted, regions=config.machine.regions)
+    await press.send(ConfigureTracker(replace(config, machine=wanted)))
+    return go(press.request, request.url.path)
+
+
+async def _typed(request: Request) -> Typed:
+    form = await request.form()
+    return Typed({name: str(form.get(name, "")) for name in forms.names()})
+
+
+def _answer(
+    request: Request, tracker: TrackerDetail, typed: Typed, *, block: str = "form", status: int = 200
+) -> Response:
+    config = tracker.state.config
+    frame = tracker_frame(request, config.tracker_id, "Machine protections")
+    shown = None
+    if not config.mount.single_axis:
+        arc = todays_arc(frame.site, config)
+        shown = region_picture(config, forms.drawable(typed), tracker.state.memory.pointing, arc)
+    context = MachinePage(
+        frame=frame,
+        config=config,
+        form=typed.form(forms.names()),
+        settings=forms.settings(),
+        faults=forms.fault_rows(),
+        recoveries=forms.RECOVERIES,
+        places=forms.places(typed),
+        how=forms.HOW,
+        picture=shown,
+    )
+    return page(request, context, block=block, status=status)

@@ -1,0 +1,19 @@
+"""The trust in the zero in the words of the pages: what cannot be done without it."""
+
+from app.tracker.conditions import REQUIRED, Action, homed
+
+NEEDS_ZERO: dict[Action, str] = {
+    Action.TRACK: "follow the sun",
+    Action.STOW: "stow, not even against wind",
+    Action.PARK: "park",
+    Action.MOVE: "go to a direction",
+    Action.GO_TO_START: "go to the start of a show",
+    Action.RUN_SHOW: "show movement",
+    Action.SET_LIMIT: "take a place as soft limit",
+}
+"""What each action that needs a trusted zero does, after "it does not"."""
+
+
+def blocked_without_zero() -> tuple[str, ...]:
+    """Return everything that a tracker without a trusted zero does not do, by the table that forbids it."""
+    return tuple(words for action, words in NEEDS_ZERO.items() if homed in REQUIRED[action])

@@ -1,0 +1,182 @@
+"""The machine's protections as a page: limits, what follows each class of fault, forbidden regions."""
+
+import re
+from collections.abc import AsyncIterator
+
+import httpx
+import pytest
+
+from app.tracker.config import MountConfig, MountKind, TrackerConfig
+from app.tracker.memory import Pointing
+from app.tracker.protections.machine_config import (
+    GUARDED,
+    Corner,
+    MachineProtection,
+    Recovery,
+    RecoveryPolicy,
+    Region,
+)
+from app.web.ui.machine_forms import texts
+from app.web.ui.region_picture import region_picture
+from tests.fakes import FakeMachine, fake_app, serving
+
+ROOT = "/trackers/T1"
+PAGE = f"{ROOT}/machine"
+WALL = Region("Wall", (Corner(170.0, 0.0), Corner(190.0, 0.0), Corner(190.0, 30.0)))
+
+
+@pytest.fixture
+def machine() -> FakeMachine:
+    return FakeMachine()
+
+
+@pytest.fixture
+async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
+    async with serving(fake_app(machine)) as browser:
+        yield browser
+
+
+def kept(machine: FakeMachine) -> MachineProtection:
+    found = machine.trackers["T1"].config.machine
+    assert isinstance(found, MachineProtection)
+    return found
+
+
+async def test_the_page_is_reached_from_the_settings_and_tells_range_and_default(
+    client: httpx.AsyncClient,
+) -> None:
+    assert PAGE in (await client.get(f"{ROOT}/settings")).text
+    page = (await client.get(PAGE)).text
+    assert "Outside a soft limit; beyond it is a fault. 0.1 to 45, usual 2." in page
+    assert "An axis does not follow, is frozen or takes too long." in page
+
+
+async def test_what_the_page_shows_is_what_it_saves(client: httpx.AsyncClient, machine: FakeMachine) -> None:
+    assert (await client.post(PAGE, data=texts(GUARDED))).status_code == 303
+    assert kept(machine) == GUARDED
+    changed = {
+        "overtravel_deg": "1,5",
+        "supply_low_v": "21",
+        "supply_high_v": "28",
+        "link_kind": "limited",
+        "link_times_per_hour": "5",
+        "link_after_s": "30",
+        "region0_name": "Wall",
+        "region0_corners": "170 0; 190/0; 190,0 30°",
+    }
+    await client.post(PAGE, data=texts(GUARDED) | changed)
+    saved = kept(machine)
+    assert (saved.overtravel_deg, saved.supply_low_v, saved.supply_high_v) == (1.5, 21.0, 28.0)
+    assert saved.recovery.link == RecoveryPolicy(Recovery.LIMITED, 5, 30.0)
+    assert saved.regions == (WALL,)
+    page = (await client.get(PAGE)).text
+    assert 'value="170 0; 190 0; 190 30"' in page
+    assert 'id="f-region1_name"' in page, "there is room for one more"
+    await client.post(PAGE, data=texts(saved) | {"region0_name": "", "region0_corners": " "})
+    assert kept(machine).regions == (), "empty fields remove a region"
+
+
+@pytest.mark.parametrize(
+    ("typed", "sentence"),
+    [
+        ({"creep_deg": "far"}, "Creep that is borne: type a number"),
+        ({"supply_low_v": "30", "supply_high_v": "20"}, "must not exceed the highest"),
+        ({"drive_kind": "pray"}, "choose from the list who leaves the fault"),
+        ({"travel_times_per_hour": "61"}, "Over-travel: times an hour must lie between 1 and 60"),
+        ({"region0_name": "Gate", "region0_corners": "170 0; 190 0"}, "A region has 3 to 20 of them"),
+        (
+            {"region0_name": "Gate", "region0_corners": "1 2; 3 4; 5 six"},
+            "type each as azimuth and elevation",
+        ),
+        ({"region0_name": "", "region0_corners": "1 2; 3 4; 5 6"}, "give it a name"),
+        (
+            {
+                "region0_name": "Gate",
+                "region0_corners": "1 2; 3 4; 5 6",
+                "region1_name": "Gate",
+                "region1_corners": "1 2; 3 4; 5 6",
+            },
+            "needs a name of its own",
+        ),
+    ],
+)
+async def test_what_cannot_be_is_refused_and_stays_in_the_form(
+    client: httpx.AsyncClient, machine: FakeMachine, typed: dict[str, str], sentence: str
+) -> None:
+    answer = await client.post(PAGE, data=texts(GUARDED) | {"clear_for_s": "777"} | typed)
+    assert answer.status_code == 422
+    assert sentence in answer.text
+    assert 'value="777"' in answer.text
+    assert not machine.orders
+
+
+async def test_regions_are_drawn_before_anything_is_saved(
+    client: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    typed = {"region0_name": "Wall", "region0_corners": "170 0; 190 0; 190 30", "region1_name": "half"}
+    asked = {"HX-Request": "true", "HX-Request-Type": "partial"}
+    drawn = await client.post(f"{PAGE}/picture", data=texts(GUARDED) | typed, headers=asked)
+    assert drawn.status_code == 200
+    assert drawn.text.count("rg-region") == 2, "the region, and its mark in the legend"
+    assert 'value="half"' in drawn.text
+    assert not machine.orders
+
+
+def test_the_picture_has_one_scale_for_both_axes() -> None:
+    picture = region_picture(TrackerConfig("T1", "North"), (WALL,), Pointing(), ((90.0, 10.0), (180.0, 60.0)))
+
+    def place(azimuth_deg: float, elevation_deg: float) -> tuple[float, float]:
+        return (
+            picture.left + (azimuth_deg - picture.azimuth_deg) * picture.scale,
+            picture.bottom - (elevation_deg - picture.elevation_deg) * picture.scale,
+        )
+
+    numbers = [float(one) for one in re.findall(r"[\d.]+", picture.regions[0].path)]
+    corners = [value for one in WALL.corners for value in place(one.azimuth_deg, one.elevation_deg)]
+    assert numbers == pytest.approx(corners, abs=0.06)
+    wide = float(numbers[2] - numbers[0]) / 20.0
+    high = float(numbers[3] - numbers[5]) / 30.0
+    assert wide == pytest.approx(high, rel=0.01)
+    assert picture.sun.startswith("M{:.1f} {:.1f}".format(*place(90.0, 10.0)))
+
+
+async def test_a_single_axis_keeps_its_regions_and_draws_none(
+    client: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    tracker = machine.trackers["T1"]
+    tracker.config = TrackerConfig(
+        "T1",
+        "Row",
+        mount=MountConfig(MountKind.HORIZONTAL_SINGLE_AXIS),
+        machine=MachineProtection(regions=(WALL,)),
+    )
+    page = (await client.get(PAGE)).text
+    assert "This mount has one axis" in page
+    assert "regions-picture" not in page
+    without = {name: text for name, text in texts(GUARDED).items() if not name.startswith("region")}
+    await client.post(PAGE, data=without | {"creep_deg": "3"})
+    assert kept(machine).creep_deg == 3.0
+    assert kept(machine).regions == (WALL,)
+
+
+async def test_the_api_does_what_the_page_does(client: httpx.AsyncClient, machine: FakeMachine) -> None:
+    change = {
+        "machine": {
+            "clear_for_s": 120,
+            "recovery": {"following": {"kind": "service"}},
+            "regions": [
+                {
+                    "name": "Wall",
+                    "corners": [
+                        {"azimuth_deg": one.azimuth_deg, "elevation_deg": one.elevation_deg}
+                        for one in WALL.corners
+                    ],
+                }
+            ],
+        }
+    }
+    answer = await client.patch("/api/v1/trackers/T1", json=change)
+    assert answer.status_code == 200
+    assert kept(machine).clear_for_s == 120.0
+    assert kept(machine).recovery.following.kind is Recovery.SERVICE
+    assert kept(machine).regions == (WALL,)
