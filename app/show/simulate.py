@@ -246,4 +246,7 @@ def _info(
         held_elevation_deg=orientation.elevation_deg,
         algorithm=config.algorithm.value,
         drive=DRIVE,
+        mount=config.mount,
+        first_deg=config.turning_deg[0],
+        second_deg=config.turning_deg[1],
     )

@@ -217,6 +217,13 @@ class TrackerConfig:
     protection: ProtectionConfig = PROTECTED
     machine: MachineProtection = GUARDED
 
+    @property
+    def turning_deg(self) -> tuple[tuple[float, float], tuple[float, float] | None]:
+        """Return the soft limits of first and second axis; None for a second axis that is not there."""
+        first, second = self.azimuth, self.elevation
+        ends = (second.minimum_deg, second.maximum_deg)
+        return (first.minimum_deg, first.maximum_deg), None if self.mount.single_axis else ends
+
     def axis(self, axis: Axis) -> AxisConfig:
         """Return the configuration of one axis."""
         return self.azimuth if axis is Axis.AZIMUTH else self.elevation

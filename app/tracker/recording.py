@@ -1,6 +1,6 @@
 """Recordings: frames as columns, one row a tick, the same for shows, days and simulations."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from enum import StrEnum
 
@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.sun.position import Location
+from app.tracker.config import MountConfig
 from app.tracker.mode import Mode
 
 COLUMNS = (
@@ -42,7 +43,10 @@ class RecordingKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class RecordingInfo:
-    """The head of a recording. `ended_at` is None while it runs; `outcome` says how it ended."""
+    """The head of a recording. `ended_at` is None while it runs; `outcome` says how it ended.
+
+    `first_deg` and `second_deg` are the soft limits that the axes had then; None: not known, or no such axis.
+    """
 
     recording_id: str
     kind: RecordingKind
@@ -63,6 +67,9 @@ class RecordingInfo:
     ended_at: datetime | None = None
     outcome: str = ""
     frame_count: int = 0
+    mount: MountConfig = field(default_factory=MountConfig)
+    first_deg: tuple[float, float] | None = None
+    second_deg: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

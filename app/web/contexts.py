@@ -14,7 +14,7 @@ from app.tracker.reason import Reason
 from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import SiteSnapshot, Snapshot
 from app.web.standing import Standing, standing
-from app.web.ui.drawings import DayChart, SunDiagram
+from app.web.ui.drawings import DayChart, Scene, SunDiagram
 from app.web.who import Who
 
 Arc = tuple[tuple[float, float], ...]
@@ -248,7 +248,7 @@ class OrientationPage:
     held: tuple[str, ...]
     choice: ModeChoice
     limits: str
-    arc: Arc
+    scene: Scene
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,7 +259,7 @@ class RunPage:
 
     frame: Frame
     choice: ModeChoice | None
-    arc: Arc
+    scene: Scene
 
 
 @dataclass(frozen=True, slots=True)
@@ -275,7 +275,7 @@ class TrackerPage:
     form: Form
     limits: str
     diagram: SunDiagram | None
-    arc: Arc
+    scene: Scene
     blocked: tuple[str, ...]
 
 
@@ -315,7 +315,7 @@ class ShowRunPage:
     minutes: str
     again: str
     diagram: SunDiagram
-    arc: Arc
+    scene: Scene
 
 
 @dataclass(frozen=True, slots=True)
@@ -340,7 +340,7 @@ class PlayerPage:
     other: RecordingInfo | None
     others: tuple[RecordingInfo, ...]
     diagram: SunDiagram
-    arc: Arc
+    scene: Scene
     speeds: tuple[int, ...]
     speed: int
 

@@ -9,7 +9,7 @@ import { place } from "./sunpath.js";
 const POINTS = 6000;
 const ANGLES = ["sun", "target", "setpoint", "measured"];
 const head = document.getElementById("player").dataset;
-const scene = new PanelScene(document.getElementById("player-scene"));
+const scene = new PanelScene(document.getElementById("player-scene"), { settle: false });
 const diagram = document.querySelector(".sunpath");
 const key = document.getElementById("player-play");
 const scrubber = document.getElementById("player-scrubber");

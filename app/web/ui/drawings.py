@@ -1,6 +1,10 @@
 """What the drawings on pages consist of, ready for their templates."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+
+import orjson
+
+from app.tracker.config import MountConfig
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,3 +64,31 @@ class DayChart:
     bands: tuple[Band, ...]
     hours: tuple[Tick, ...]
     nights: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """The still part of the moving picture; what moves in it comes with every snapshot.
+
+    `first` and `second` are the ends of the axes, degrees, None where there is no such axis or its ends are
+    not known; `yaw` is the azimuth from which one looks at first. `arc` and `horizon` are azimuth and
+    elevation of the day's sun and of the skyline, `hours` also the hour.
+    """
+
+    mount: MountConfig
+    first: tuple[float, float] | None
+    second: tuple[float, float] | None
+    yaw: float = 152.0
+    arc: tuple[tuple[float, float], ...] = ()
+    hours: tuple[tuple[str, float, float], ...] = ()
+    horizon: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def json(self) -> str:
+        """Return it as the page's script reads it."""
+        mount = {
+            "kind": self.mount.kind.value,
+            "axis_azimuth_deg": self.mount.axis_azimuth_deg,
+            "axis_tilt_deg": self.mount.axis_tilt_deg,
+        }
+        return orjson.dumps(asdict(self) | {"mount": mount}).decode()

@@ -7,7 +7,7 @@ from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
 
-from app.link.messages import TrackerDetail
+from app.link.messages import SiteDetail, TrackerDetail
 from app.tracker.commands import Move, SelectMode
 from app.tracker.config import MountKind, Orientation, TrackerConfig
 from app.tracker.memory import StepName
@@ -19,7 +19,7 @@ from app.web.errors import NotAcceptable
 from app.web.ui.forms import Typed
 from app.web.ui.orders import Press, PressDep
 from app.web.ui.render import go, page
-from app.web.ui.sunpath import todays_arc
+from app.web.ui.scene import scene_now
 from app.web.ui.wizard import tracker_of, wizard_frame
 
 router = APIRouter(prefix="/trackers/{tracker_id}/commissioning/mode")
@@ -81,10 +81,11 @@ async def choose(
 @router.get("/orientation")
 async def orientation(request: Request, tracker_id: str, machine: MachineDep) -> Response:
     """Show the angles that the chosen mode holds."""
-    tracker = tracker_of(await machine.detail(), tracker_id)
+    detail = await machine.detail()
+    tracker = tracker_of(detail, tracker_id)
     stored = tracker.state.memory.orientation
     texts = {"azimuth": f"{stored.azimuth_deg:g}", "elevation": f"{stored.elevation_deg:g}"}
-    return _orientation(request, tracker, Typed(texts))
+    return _orientation(request, detail, tracker, Typed(texts))
 
 
 @router.post("/orientation")
@@ -92,12 +93,13 @@ async def go_there(
     tracker_id: str, press: PressDep, machine: MachineDep, typed: Annotated[OrientationForm, Form()]
 ) -> Response:
     """Save the angles and move the panel there."""
-    tracker = tracker_of(await machine.detail(), tracker_id)
+    detail = await machine.detail()
+    tracker = tracker_of(detail, tracker_id)
     mode = tracker.state.memory.mode or Mode.DUAL
     found = Typed(typed.model_dump())
     wanted = _read(found, tracker, mode)
     if found.errors:
-        return _orientation(press.request, tracker, found, status=422)
+        return _orientation(press.request, detail, tracker, found, status=422)
     await _save_and_move(press, tracker_id, mode, wanted)
     return go(press.request, press.request.url.path)
 
@@ -121,7 +123,9 @@ def _read(found: Typed, tracker: TrackerDetail, mode: Mode) -> Orientation:
     return Orientation(azimuth_deg, elevation_deg)
 
 
-def _orientation(request: Request, tracker: TrackerDetail, typed: Typed, *, status: int = 200) -> Response:
+def _orientation(
+    request: Request, detail: SiteDetail, tracker: TrackerDetail, typed: Typed, *, status: int = 200
+) -> Response:
     mode = tracker.state.memory.mode or Mode.DUAL
     frame = wizard_frame(request, tracker, StepName.MODE)
     context = OrientationPage(
@@ -130,7 +134,7 @@ def _orientation(request: Request, tracker: TrackerDetail, typed: Typed, *, stat
         held=held(tracker.state.config, mode),
         choice=choice(tracker.state.config, mode),
         limits=limits_text(tracker.state.config),
-        arc=todays_arc(frame.site, tracker.state.config),
+        scene=scene_now(frame.site, tracker.state.config, detail.site.horizon),
     )
     return page(request, context, block="form", status=status)
 

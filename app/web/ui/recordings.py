@@ -61,7 +61,7 @@ def player(
         other=_stored(reader, with_) if with_ else None,
         others=_others(reader, info),
         diagram=diagram_of(info.location, info.time_zone, on, algorithm, WHOLE_SKY),
-        arc=arc(algorithm, info.location, on),
+        scene=scene_recorded(info, on),
         speeds=speeds,
         speed=speeds[0],
     )

@@ -9,7 +9,7 @@ from app.web.contexts import RunPage
 from app.web.deps import MachineDep
 from app.web.ui.mode import choice
 from app.web.ui.render import page
-from app.web.ui.sunpath import todays_arc
+from app.web.ui.scene import scene_now
 from app.web.ui.wizard import tracker_of, wizard_frame
 
 router = APIRouter(prefix="/trackers/{tracker_id}/commissioning/run")
@@ -18,12 +18,13 @@ router = APIRouter(prefix="/trackers/{tracker_id}/commissioning/run")
 @router.get("")
 async def show(request: Request, tracker_id: str, machine: MachineDep) -> Response:
     """Show what is done and what is missing, and the two ways to begin."""
-    tracker = tracker_of(await machine.detail(), tracker_id)
+    detail = await machine.detail()
+    tracker = tracker_of(detail, tracker_id)
     mode = tracker.state.memory.mode
     frame = wizard_frame(request, tracker, StepName.RUN)
     context = RunPage(
         frame=frame,
         choice=choice(tracker.state.config, mode) if mode else None,
-        arc=todays_arc(frame.site, tracker.state.config),
+        scene=scene_now(frame.site, tracker.state.config, detail.site.horizon),
     )
     return page(request, context)

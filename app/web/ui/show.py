@@ -32,10 +32,11 @@ from app.web.ui.frame import snapshot_of, tracker_frame
 from app.web.ui.mode import choice
 from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
-from app.web.ui.sunpath import arc, diagram_of, outline
+from app.web.ui.scene import scene_on
+from app.web.ui.sunpath import diagram_of, outline
 from app.web.ui.wizard import tracker_of
-
 from app.zones import zone_of
+
 router = APIRouter(prefix="/trackers/{tracker_id}")
 NAMES = ("date", "start", "end", "minutes")
 DEFAULT_MINUTES = "3"
@@ -84,8 +85,10 @@ async def go_to_start(
 @router.get("/shows/{show_id}")
 async def running(request: Request, tracker_id: str, show_id: str, built: PanelDep) -> Response:
     """Show a show on the machine: picture, progress, angles, and its keys."""
-    tracker = tracker_of(await built.machine.detail(), tracker_id)
-    return await run_in_threadpool(_run_page, request, tracker, _stored(built, tracker_id, show_id), built)
+    detail = await built.machine.detail()
+    return await run_in_threadpool(
+        _run_page, request, tracker_id, detail, _stored(built, tracker_id, show_id), built
+    )
 
 
 @router.post("/show/run")
@@ -257,8 +260,10 @@ def _axis_facts(check: ShowCheck, config: TrackerConfig) -> tuple[tuple[str, str
     )
 
 
-def _run_page(request: Request, tracker: TrackerDetail, wanted: ShowPlan, built: Panel) -> Response:
-    config = tracker.state.config
+def _run_page(
+    request: Request, tracker_id: str, detail: SiteDetail, wanted: ShowPlan, built: Panel
+) -> Response:
+    config = tracker_of(detail, tracker_id).state.config
     latest = built.machine.latest()
     zone = latest.time_zone if latest else "UTC"
     on = wanted.begin_at.astimezone(zone_of(zone)).date()
@@ -278,6 +283,6 @@ def _run_page(request: Request, tracker: TrackerDetail, wanted: ShowPlan, built:
         minutes=minutes,
         again=f"{root}?{urlencode(again)}",
         diagram=diagram_of(wanted.location, zone, on, wanted.algorithm, outline(config)),
-        arc=arc(wanted.algorithm, wanted.location, on),
+        scene=scene_on(config, wanted.location, zone, on, wanted.algorithm, detail.site.horizon),
     )
     return page(request, context)

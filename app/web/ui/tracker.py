@@ -7,7 +7,7 @@ from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
 
-from app.link.messages import TrackerDetail
+from app.link.messages import SiteDetail, TrackerDetail
 from app.tracker.commands import Move, Park, ResetFault, Stop, Track
 from app.tracker.config import Orientation
 from app.web.contexts import TrackerPage
@@ -17,7 +17,8 @@ from app.web.ui.frame import tracker_frame
 from app.web.ui.mode import choice, limits_text
 from app.web.ui.orders import PressDep
 from app.web.ui.render import page
-from app.web.ui.sunpath import diagram, todays_arc
+from app.web.ui.scene import scene_now
+from app.web.ui.sunpath import diagram
 from app.web.ui.wizard import tracker_of
 from app.web.ui.zero import blocked_without_zero
 
@@ -38,7 +39,7 @@ async def show(request: Request, tracker_id: str, machine: MachineDep) -> Respon
     tracker = tracker_of(detail, tracker_id)
     held = tracker.state.memory.orientation
     typed = Typed({"azimuth": f"{held.azimuth_deg:g}", "elevation": f"{held.elevation_deg:g}"})
-    return _answer(request, tracker, typed)
+    return _answer(request, detail, tracker, typed)
 
 
 @router.post("/stop")
@@ -78,13 +79,15 @@ async def move(
     azimuth_deg = found.number("azimuth", "Azimuth", 0, 360)
     elevation_deg = found.number("elevation", "Elevation", 0, 90)
     if found.errors:
-        tracker = tracker_of(await machine.detail(), tracker_id)
-        return _answer(press.request, tracker, found, status=422)
+        detail = await machine.detail()
+        return _answer(press.request, detail, tracker_of(detail, tracker_id), found, status=422)
     await press.send(Move(Orientation(azimuth_deg, elevation_deg)), tracker_id)
     return press.answer("The panel goes there.")
 
 
-def _answer(request: Request, tracker: TrackerDetail, typed: Typed, *, status: int = 200) -> Response:
+def _answer(
+    request: Request, detail: SiteDetail, tracker: TrackerDetail, typed: Typed, *, status: int = 200
+) -> Response:
     config, memory = tracker.state.config, tracker.state.memory
     frame = tracker_frame(request, config.tracker_id, "Live")
     context = TrackerPage(
@@ -95,7 +98,7 @@ def _answer(request: Request, tracker: TrackerDetail, typed: Typed, *, status: i
         form=typed.form(("azimuth", "elevation")),
         limits=limits_text(config),
         diagram=diagram(frame.site, config),
-        arc=todays_arc(frame.site, config),
+        scene=scene_now(frame.site, config, detail.site.horizon),
         blocked=blocked_without_zero(),
     )
     return page(request, context, block="go", status=status)
