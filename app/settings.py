@@ -74,6 +74,12 @@ class Settings(BaseSettings):
     journal_retention_days: int = Field(
         1825, ge=30, description="Journal entries and ended alarms older than this are removed."
     )
+    memory_limit_mb: int = Field(
+        500,
+        ge=100,
+        description="Memory of the controller service; an alarm comes at 3/4 of it, and at its limit it "
+        "starts again as soon as every tracker stands still.",
+    )
     recordings_keep: int = Field(
         500, ge=1, description="Shows and simulations beyond this number are removed, oldest first."
     )

@@ -269,6 +269,13 @@ ENTRIES = (
         SHORT, LONG,
     ),
     Entry(
+        "memory_high", 3, Group.LOAD, "Memory runs short",
+        "At twice its limit the system may end the controller service; drives stop then, tracking goes on "
+        "after its restart.",
+        "Press Stop when the site can do without tracking for seconds: it starts again by itself then.",
+        SHORT, LONG,
+    ),
+    Entry(
         "gateway_down", 4, Group.DOORS, "An integration is not connected",
         "Other systems do not hear of this site.",
         "Look at the page Site, Integrations: it says which one and why.",

@@ -13,7 +13,7 @@ from uuid import uuid4
 
 import structlog
 
-from app.alarms.conditions import SITE, Condition
+from app.alarms.conditions import MEGABYTE, SITE, Condition
 from app.build import BUILT_AT, VERSION
 from app.clock import SystemClock
 from app.drives.factory import DriveFactory
@@ -24,6 +24,7 @@ from app.link.server import LinkServer
 from app.logs import set_up_logs
 from app.machine.lock import only_instance
 from app.machine.marker import mark_running, mark_stopped
+from app.machine.memory import MemoryGuard
 from app.machine.systemd import notify
 from app.machine.watchdog import LoopWatchdog
 from app.settings import Settings
@@ -96,6 +97,7 @@ async def _serve(settings: Settings, clock: SystemClock, writer: Writer) -> None
     watching = asyncio.create_task(
         LoopWatchdog(clock, alive=lambda: site.alive, stop_drives=site.stop_drives).run()
     )
+    guarding = asyncio.create_task(_memory_guard(settings, clock, site, stopped).run(), name="memory guard")
     gc.collect()
     gc.freeze()
     log.info("machine_ready", version=VERSION, link=str(settings.link_path), sqlite=sqlite3.sqlite_version)
@@ -105,6 +107,8 @@ async def _serve(settings: Settings, clock: SystemClock, writer: Writer) -> None
     notify("READY=1")
     await stopped.wait()
     notify("STOPPING=1")
+    guarding.cancel()
+    await asyncio.gather(guarding, return_exceptions=True)
     await _take_down(settings, site, gateways, server, watching, background)
 
 
@@ -127,6 +131,14 @@ async def _take_down(
     if background.close():
         mark_stopped(settings.data_dir)
     log.info("machine_stopped")
+
+
+def _memory_guard(settings: Settings, clock: SystemClock, site: Site, stopped: asyncio.Event) -> MemoryGuard:
+    def restart(why: str) -> None:
+        site.note(site.model.event(EventKind.MACHINE_RESTARTS, why, "machine"))
+        stopped.set()
+
+    return MemoryGuard(clock, site, settings.memory_limit_mb * MEGABYTE, restart)
 
 
 def _site(

@@ -1,14 +1,18 @@
 """What the machine counts about itself, as shares of the last minute."""
 
+import os
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
+from pathlib import Path
 
 from app.alarms.conditions import Condition, SiteHealth
 from app.link.metrics import LATENESS_BOUNDS_MS, TrackerMetrics
 
 EVERY = timedelta(seconds=10)
+STATM = Path("/proc/self/statm")
+PAGE_BYTES = os.sysconf("SC_PAGE_SIZE")
 SAMPLES = 7
 LATE_FROM = LATENESS_BOUNDS_MS.index(100.0) + 1
 FEWEST_TICKS = 50
@@ -53,6 +57,14 @@ class HealthWatch:
             if ticks >= FEWEST_TICKS:
                 found[one] = (newest[one].read_failures - oldest[one].read_failures) / ticks
         return found
+
+
+def resident_bytes() -> int | None:
+    """Return the memory that this process has in use, None where the system does not tell."""
+    try:
+        return int(STATM.read_text().split()[1]) * PAGE_BYTES
+    except OSError:
+        return None
 
 
 def _late(counted: TrackerMetrics) -> int:

@@ -2,7 +2,6 @@
 
 import asyncio
 import itertools
-import resource
 from collections.abc import AsyncIterator, Callable, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
@@ -34,6 +33,7 @@ from app.site import control, notifying, records, settings_lock, sightings, site
 from app.site.alarming import AlarmDesk
 from app.site.auditing import Auditor, as_action
 from app.site.checking import Checks, DriveTools
+from app.site.health import resident_bytes
 from app.site.ledger import BackgroundWriter, Ledger
 from app.site.loop import TrackerLoop
 from app.site.met_poll import StationReader
@@ -216,7 +216,7 @@ class Site:
             frames_waiting=model.recorder.frames_waiting,
             store_queue=getattr(writer, "pending", 0),
             store_failures=getattr(writer, "failed", 0) + getattr(writer, "dropped", 0),
-            resident_bytes=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024,
+            resident_bytes=resident_bytes() or 0,
         )
 
     @property
@@ -224,6 +224,11 @@ class Site:
         """Return whether every loop that was started still runs."""
         pulse_runs = self._pulse is not None and not self._pulse.done()
         return pulse_runs and not any(loop.died for loop in self.model.loops.values())
+
+    @property
+    def rests(self) -> bool:
+        """Return whether no tracker moves or means to."""
+        return all(self.model.rests(loop) for loop in self.model.loops.values())
 
     async def _record(self, order: Order) -> SiteSnapshot:
         return await self._auditor.record(order, self._carry_out)

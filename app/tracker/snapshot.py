@@ -203,6 +203,7 @@ class EventKind(StrEnum):
 
     MACHINE_STARTED = "machine_started"
     MACHINE_STOPPED = "machine_stopped"
+    MACHINE_RESTARTS = "machine_restarts"
     LOCATION_SET = "location_set"
     CLOCK_SET = "clock_set"
     CLOCK_JUMPED = "clock_jumped"

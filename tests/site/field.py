@@ -4,13 +4,13 @@ import asyncio
 import gc
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
-from pathlib import Path
 from random import Random
 
 from app.clock import VirtualClock
 from app.drives.faults import Fault, FaultKind
 from app.drives.simulated import SimulatedDrive
 from app.link.messages import Order, ReportWeather, SetClock, SetLocation, SiteCommand
+from app.site.health import resident_bytes
 from app.site.loop import TrackerLoop
 from app.site.site import Site, SiteOptions
 from app.tracker.axes import Axis
@@ -90,7 +90,7 @@ class Field:
             for _ in range(TICKS_A_MINUTE):
                 await self._tick()
             if (minute + 1) % A_LOOK_AT_MEMORY_EVERY_MIN == 0:
-                self.seen.memory_bytes.append(resident_bytes())
+                self.seen.memory_bytes.append(held_bytes())
         await self.site.close()
 
     async def ask(self, command: Command | SiteCommand, tracker_id: str | None = None) -> bool:
@@ -166,7 +166,7 @@ class Field:
             assert activity in LIVE | {ActivityName.HOLDING, ActivityName.STOPPING, ActivityName.STOWED}
 
 
-def resident_bytes() -> int:
-    """Return the memory that this process has in use."""
+def held_bytes() -> int:
+    """Return the memory that this process has in use once what is not needed is gone."""
     gc.collect()
-    return int(Path("/proc/self/statm").read_text().split()[1]) * PAGE_BYTES
+    return resident_bytes() or 0
