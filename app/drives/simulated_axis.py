@@ -89,7 +89,8 @@ class SimulatedAxis:
             homed=self._homed,
             at_lower_limit=lower,
             at_upper_limit=upper,
-            at_origin=abs(motor_deg) <= self._mechanics.origin_deg,
+            at_origin=abs(motor_deg) <= self._mechanics.origin_deg
+            and FaultKind.LIMIT_DEAD not in self._faults,
         )
 
     def obey(self, command: AxisCommand, time_s: float) -> None:
@@ -110,11 +111,16 @@ class SimulatedAxis:
         self._path = move(start, self._within_ends(target_deg, start), speed_dps, acceleration_dps2)
 
     def seek_origin(self, time_s: float) -> None:
-        """Turn to the origin switch at half the rated speed, whatever the encoder says."""
+        """Turn to the origin switch at half the rated speed, whatever the encoder says.
+
+        Without a switch the search ends at the end of the travel.
+        """
         start = self._start(time_s)
         speed_dps = self._config.speed_dps / 2.0
         if not self._is_blocked():
-            self._path = move(start, 0.0, speed_dps, self._config.acceleration_dps2)
+            dead = FaultKind.LIMIT_DEAD in self._faults
+            goal_deg = self._within_ends(float("-inf"), start) if dead else 0.0
+            self._path = move(start, goal_deg, speed_dps, self._config.acceleration_dps2)
 
     def set_zero(self, time_s: float) -> None:
         """Call the present reading zero."""

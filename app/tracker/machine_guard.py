@@ -235,9 +235,11 @@ def _over_travel(mind: Mind, feedback: Feedback) -> Reason | None:
         outside_deg = mind.config.axis(axis).beyond_deg(axis_feedback(feedback, axis).position_deg)
         if guard.beyond is None or outside_deg - guard.beyond.least_deg <= mind.config.machine.overtravel_deg:
             continue
+        unseen = ", and met no limit switch" if mind.capabilities.limit_switches else ""
         return Reason(
             "over_travel",
-            f"The {axis_of(mind.config, axis)} has left its soft limits by {outside_deg:.1f} degrees.",
+            f"The {axis_of(mind.config, axis)} has left its soft limits by {outside_deg:.1f} degrees"
+            f"{unseen}.",
             "Find out why it went on, clear the fault, then set the zero again in step 3, Homing.",
         )
     return None

@@ -270,6 +270,34 @@ def test_an_axis_whose_switch_never_comes_is_stopped_beyond_its_soft_limit(witne
     assert plant.controller.memory.home is None, "over-travel ends the trust in the zero"
 
 
+@pytest.mark.fault(19)
+def test_a_search_whose_switch_never_comes_ends_with_the_travel_and_says_whose(
+    record_property: Callable[[str, object], None],
+) -> None:
+    plant = Plant()
+    plant.tick()
+    hurt(plant, FaultKind.LIMIT_DEAD)
+    plant.ask(Home())
+    begun = plant.clock.now()
+    while not plant.happened(EventKind.HOMING_ENDED):
+        assert doing(plant) is ActivityName.HOMING
+        assert plant.clock.now() - begun < timedelta(seconds=120)
+        plant.forward(0.1)
+    (told,) = plant.happened(EventKind.HOMING_ENDED)
+    record_property("detected_s", f"{(plant.clock.now() - begun).total_seconds():.1f}")
+    record_property("shown", told.message)
+    record_property("policy", "none: the zero is set again")
+    assert told.data == {"outcome": "failed"}
+    assert "did not find that of the azimuth axis" in told.message
+    assert stands(plant)
+    assert "home_lost" in shown(plant.snapshot)
+    assert "home_not_trusted" in plant.reasons("track") & plant.reasons("move")
+    plant.drive.clear_faults()
+    plant.ask(Home())
+    plant.forward(120.0)
+    assert plant.snapshot.home_trusted
+
+
 @pytest.mark.fault(20)
 def test_both_switches_at_once_are_a_fault_of_the_wiring(witnessed: Witness) -> None:
     plant = moving()
