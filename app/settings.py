@@ -245,7 +245,7 @@ class Settings(BaseSettings):
 
     @property
     def certificate(self) -> tuple[Path, Path] | None:
-        """Return the files of the panel's certificate and key: the given ones, its own, None without https."""
+        """Return the files of the panel's certificate and key: given ones, its own, None without https."""
         if self.tls is False:
             return None
         if self.tls_cert_file is not None and self.tls_key_file is not None:

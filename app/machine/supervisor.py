@@ -32,6 +32,7 @@ class Child:
     module: tuple[str, ...]
     process: asyncio.subprocess.Process | None = None
     pause: timedelta = FIRST_PAUSE
+    has_worked: bool = False
 
     async def start(self) -> asyncio.subprocess.Process:
         """Start it in a session of its own: the terminal's signals reach it only through the supervisor."""
@@ -49,7 +50,11 @@ class Child:
 
 
 class Supervisor:
-    """Keeps children alive until it is told to stop or one of them says that its settings are wrong."""
+    """Keeps children alive until it is told to stop or one of them says that its settings are wrong.
+
+    Settings of a child that has worked with them were right: its address is gone, say. It is tried again, and
+    the other child goes on.
+    """
 
     def __init__(self, clock: Clock, *children: Child) -> None:
         self._clock = clock
@@ -75,10 +80,10 @@ class Supervisor:
         while True:
             began = self._clock.now()
             code = await (await child.start()).wait()
-            if code == WRONG_SETTINGS:
-                return code
             if self._clock.now() - began >= LIVED_LONG:
-                child.pause = FIRST_PAUSE
+                child.pause, child.has_worked = FIRST_PAUSE, True
+            if code == WRONG_SETTINGS and not child.has_worked:
+                return code
             log.error("child_died", child=child.name, code=code, again_in_s=child.pause.total_seconds())
             await self._clock.sleep_until(self._clock.now() + child.pause)
             child.pause = min(child.pause * 2, LONGEST_PAUSE)

@@ -17,6 +17,7 @@ from app.tracker.commands import Command
 from app.tracker.snapshot import SiteSnapshot
 from app.web.assets import Assets
 from app.web.hub import Hub
+from app.web.network import NetworkDesk
 from app.web.simulations import Simulations
 from app.web.studies import Studies
 
@@ -34,6 +35,7 @@ class Panel:
     simulations: Simulations
     studies: Studies
     keeper: Keeper
+    network: NetworkDesk
 
 
 def panel(connection: HTTPConnection) -> Panel:

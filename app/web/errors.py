@@ -26,6 +26,8 @@ from app.sun.spa import AlgorithmMissing
 from app.tracker.commands import CommandRejected
 from app.tracker.control import ControlHeld, ControlLost
 from app.tracker.reason import Reason
+from app.web.network import NetworkBusy, NotOnTrial
+from app.web.network_check import NetworkRefused
 from app.web.security import add_headers
 
 log = structlog.get_logger()
@@ -112,6 +114,11 @@ def _wait(error: Throttled) -> dict[str, str]:
     return {"Retry-After": str(ceil(error.wait.total_seconds()))}
 
 
+def _wrong_fields(error: NetworkRefused) -> Problem:
+    found = tuple({"location": f"body.{name}", "message": text} for name, text in error.errors.items())
+    return Problem(422, str(error), errors=found)
+
+
 def _no_tracker(error: Exception) -> Problem:
     return Problem(404, _sentence(error, f"There is no tracker {error}."))
 
@@ -144,6 +151,9 @@ PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
     UnknownPaper: lambda error: Problem(404, str(error)),
     AlgorithmMissing: lambda error: Problem(422, str(error)),
     NotAcceptable: lambda error: Problem(422, str(error)),
+    NetworkRefused: _wrong_fields,
+    NetworkBusy: lambda error: Problem(409, str(error)),
+    NotOnTrial: lambda error: Problem(409, str(error)),
     Busy: lambda error: Problem(429, str(error), headers={"Retry-After": "5"}),
     StudyUnknown: lambda error: Problem(404, str(error)),
     WeatherFileRefused: lambda error: Problem(422, str(error)),

@@ -217,8 +217,8 @@ def way_in(request: Request, error: Exception) -> Response | None:
     if request.url.path.startswith(FOR_PROGRAMS) or isinstance(error, NotAllowed | Busy):
         return None
     is_form = request.method not in SAFE_METHODS
-    back = "/" if is_form else str(request.url.path)
-    path = login_path(back) if isinstance(error, SignInNeeded) else proof_path(_page_of(request, back))
+    back = _page_of(request, "/") if is_form else str(request.url.path)
+    path = login_path("/" if is_form else back) if isinstance(error, SignInNeeded) else proof_path(back)
     if "hx-request" in request.headers:
         return Response(status_code=204, headers={"HX-Redirect": path})
     return RedirectResponse(path, 303)

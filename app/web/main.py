@@ -8,6 +8,7 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
+import structlog
 import uvicorn
 from fastapi import APIRouter, FastAPI
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
@@ -17,10 +18,11 @@ from starlette.routing import BaseRoute
 from app.access.opening import open_keeper
 from app.access.passwords import Hasher
 from app.clock import Clock, SystemClock
+from app.foreseen import Foreseen
 from app.link.client import LinkClient
 from app.link.messages import Machine
 from app.logs import set_up_logs
-from app.settings import Settings
+from app.settings import Settings, fixed_by_environment
 from app.store.engine import open_reader
 from app.store.reader import DatabaseReader
 from app.store.store import Reader
@@ -34,6 +36,7 @@ from app.web.gate import Gate
 from app.web.hub import Hub
 from app.web.limits import StreamLimit
 from app.web.mdns import announced
+from app.web.network import NOT_SERVED, NetworkDesk, Stage
 from app.web.routes import guarded_routes
 from app.web.security import LARGEST_BODY, Guard, SecurityHeaders, Uploads, host_names
 from app.web.server import (
@@ -51,6 +54,8 @@ from app.web.studies import Studies
 from app.web.ui.pages import ROUTERS, error_page
 from app.web.ui.render import environment
 
+log = structlog.get_logger()
+
 STATIC = Path(__file__).resolve().parents[2] / "static"
 SMALLEST_COMPRESSED = 600
 
@@ -62,8 +67,12 @@ def create_app(
     reader: Reader | None = None,
     clock: Clock | None = None,
     hasher: Hasher | None = None,
+    stage: Stage | None = None,
 ) -> FastAPI:
-    """Build the whole panel; without a machine it connects to the one that the settings name."""
+    """Build the whole panel; without a machine it connects to the one that the settings name.
+
+    `stage` says whether these settings are on trial; without one they are for good.
+    """
     clock = clock or SystemClock()
     machine = machine or LinkClient(settings.link_path, clock)
     reader = reader or open_reader(settings.url)
@@ -79,7 +88,8 @@ def create_app(
     hub = Hub(machine, clock)
     studies = Studies(settings.data_dir, clock)
     keeper = open_keeper(settings, clock, hasher)
-    panel = Panel(settings, machine, reader, clock, _assets(), hub, Simulations(), studies, keeper)
+    network = NetworkDesk(stage or Stage(settings), clock, keeper)
+    panel = Panel(settings, machine, reader, clock, _assets(), hub, Simulations(), studies, keeper, network)
     app.state.panel = panel
     app.state.templates, app.state.error_page = environment(), error_page
     app.mount("/s", panel.assets, name="static")
@@ -135,7 +145,7 @@ async def _living(app: FastAPI) -> AsyncIterator[None]:
         stack.callback(panel.keeper.close)
         if panel.settings.mdns:
             await stack.enter_async_context(announced(panel.settings))
-        following = asyncio.gather(panel.hub.run(), panel.keeper.run())
+        following = asyncio.gather(panel.hub.run(), panel.keeper.run(), panel.network.run())
         try:
             yield
         finally:
@@ -146,12 +156,42 @@ async def _living(app: FastAPI) -> AsyncIterator[None]:
             await asyncio.gather(following, return_exceptions=True)
 
 
-def run(settings: Settings) -> None:
-    """Serve the panel until it is told to end."""
+def run(settings: Settings, clock: Clock | None = None) -> None:
+    """Serve the panel until it is told to end; a change of its network is tried, kept or taken back here."""
     set_up_logs("web", log_format=settings.log_format, log_level=settings.log_level)
-    app = create_app(settings)
+    stage: Stage | None = Stage(settings, fixed_by_environment())
+    while stage is not None:
+        stage = _serve(stage, clock) if stage.trial is None else _try(stage, clock)
+        gc.unfreeze()
+
+
+def _try(stage: Stage, clock: Clock | None) -> Stage | None:
+    """Serve settings that are on trial; where that fails, what was in force is next."""
+    try:
+        return _serve(stage, clock)
+    except (OSError, SystemExit, Foreseen) as error:
+        log.error("network_not_served", reason=str(error))
+        return stage.back(NOT_SERVED)
+
+
+def _serve(stage: Stage, clock: Clock | None) -> Stage | None:
+    """Serve one stage and return what to serve next, None if the panel was told to end."""
+    settings = stage.settings
+    app = create_app(settings, clock=clock, stage=stage)
+    panel: Panel = app.state.panel
+    server = PanelServer(_configured(app, settings), panel.hub.closing.set)
+    panel.network.restart = server.leave
+    gc.collect()
+    gc.freeze()
+    server.run()
+    if stage.trial is not None and not server.started:
+        return stage.back(NOT_SERVED)
+    return panel.network.following
+
+
+def _configured(app: FastAPI, settings: Settings) -> uvicorn.Config:
     certificate = settings.certificate
-    config = uvicorn.Config(
+    return uvicorn.Config(
         app,
         host=settings.host,
         port=settings.port,
@@ -171,6 +211,3 @@ def run(settings: Settings) -> None:
         timeout_keep_alive=KEEP_ALIVE_S,
         timeout_graceful_shutdown=FAREWELL_S,
     )
-    gc.collect()
-    gc.freeze()
-    PanelServer(config, app.state.panel.hub.closing.set).run()

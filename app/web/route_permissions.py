@@ -15,6 +15,9 @@ _TABLE: dict[Permission, str] = {
         POST /login
         GET /setup
         POST /setup
+        GET /network/trial
+        POST /network/trial
+        POST /api/v1/network/confirmation
         GET /kiosk
         POST /kiosk
         POST /theme
@@ -81,20 +84,20 @@ _TABLE: dict[Permission, str] = {
         GET /trackers/{tracker_id}/commissioning/progress/{step}
         GET /trackers/{tracker_id}/commissioning/run
         GET /trackers/{tracker_id}/drive
+        GET /trackers/{tracker_id}/machine
+        POST /trackers/{tracker_id}/machine/picture
         GET /trackers/{tracker_id}/mount
         POST /trackers/{tracker_id}/mount/kind
         GET /trackers/{tracker_id}/proofs
-        GET /trackers/{tracker_id}/machine
-        POST /trackers/{tracker_id}/machine/picture
         GET /trackers/{tracker_id}/training
         GET /trackers/{tracker_id}/record
         GET /trackers/{tracker_id}/record/photos/{number}.jpg
         GET /trackers/{tracker_id}/label
         GET /trackers/{tracker_id}/protections
+        GET /trackers/{tracker_id}/service
         GET /trackers/{tracker_id}/settings
         GET /trackers/{tracker_id}/show
         GET /trackers/{tracker_id}/shows/{show_id}
-        GET /trackers/{tracker_id}/service
         GET /trackers/{tracker_id}/strategy
         GET /trackers/{tracker_id}/strategy/day
         GET /trackers/{tracker_id}/strategy/program.csv
@@ -187,12 +190,12 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/park
         POST /trackers/{tracker_id}/release-lock
         POST /trackers/{tracker_id}/resume
-        POST /trackers/{tracker_id}/stow
-        POST /trackers/{tracker_id}/reset-fault
-        POST /trackers/{tracker_id}/step
         POST /trackers/{tracker_id}/service
         POST /trackers/{tracker_id}/service/clear
         POST /trackers/{tracker_id}/service/end
+        POST /trackers/{tracker_id}/stow
+        POST /trackers/{tracker_id}/reset-fault
+        POST /trackers/{tracker_id}/step
         POST /trackers/{tracker_id}/track
         POST /trackers/{tracker_id}/commissioning/mode
         POST /trackers/{tracker_id}/show/go-to-start
@@ -235,10 +238,10 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/drive/restore
         POST /trackers/{tracker_id}/drive/test
         POST /trackers/{tracker_id}/home
+        POST /trackers/{tracker_id}/machine
         POST /trackers/{tracker_id}/mount
         POST /trackers/{tracker_id}/proofs/direction
         POST /trackers/{tracker_id}/proofs/direction/answer
-        POST /trackers/{tracker_id}/machine
         POST /trackers/{tracker_id}/proofs/limit
         POST /trackers/{tracker_id}/proofs/link-loss
         POST /trackers/{tracker_id}/proofs/scale
@@ -288,6 +291,10 @@ _TABLE: dict[Permission, str] = {
     Permission.ADMINISTER: """
         GET /audit
         GET /api/v1/audit
+        GET /network
+        POST /network
+        GET /api/v1/network
+        PUT /api/v1/network
         GET /backup
         POST /backup
         GET /diagnostics.zip
@@ -330,6 +337,9 @@ PROVEN = frozenset(
     POST /users/{name}/password
     POST /users/{name}/remove
     POST /tokens
+    GET /network
+    POST /network
+    PUT /api/v1/network
     POST /trackers/{tracker_id}/drive
     POST /trackers/{tracker_id}/drive/restore
     POST /backup

@@ -4,7 +4,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from app.audit.entry import Sealed
-from app.web.contexts import Frame
+from app.network import Network
+from app.web.contexts import Form, Frame
+from app.web.network import Outcome
 from app.web.trust import Trust
 
 
@@ -30,3 +32,40 @@ class CertificatePage:
     frame: Frame
     trust: Trust
     is_loopback: bool
+
+
+@dataclass(frozen=True, slots=True)
+class NetworkPage:
+    """Where the panel listens, and the form to change that; with `ways` the change is about to be tried.
+
+    `ticket` is what keeps it, `fixed` what the environment sets, `seconds` how long one has to confirm.
+    """
+
+    template: ClassVar[str] = "network.html"
+
+    frame: Frame
+    form: Form
+    in_force: Network
+    here: tuple[str, ...]
+    fixed: frozenset[str]
+    outcome: Outcome | None
+    on_trial: bool
+    has_own_certificate: bool
+    leaves_https: bool = False
+    ways: tuple[str, ...] = ()
+    ticket: str = ""
+    seconds: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class NetworkTrialPage:
+    """The panel at its new address, to be confirmed; without a ticket there is nothing to confirm."""
+
+    template: ClassVar[str] = "network_trial.html"
+
+    frame: Frame
+    in_force: Network
+    ticket: str
+    seconds: int
+    problem: str
+    kept: bool

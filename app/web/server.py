@@ -36,6 +36,7 @@ PING_S = 5.0
 UNACKNOWLEDGED_MS = 10_000
 MOST_A_CLIENT = 256
 RESERVED = 64
+MOST_TOLD = 1000
 RESERVED_A_CLIENT = 8
 DESCRIPTORS_RESERVED = 128
 DESCRIPTORS_WANTED = 8192
@@ -70,6 +71,7 @@ class Connections:
         self._held: Counter[str] = Counter()
         self._reserved: Counter[str] = Counter()
         self._members: dict[str, dict[Member, None]] = {}
+        self._told: set[str] = set()
 
     def enter(self, client: str) -> Admission:
         """Count one more connection of a client, and return what it may be used for."""
@@ -99,6 +101,13 @@ class Connections:
             self._members.pop(client, None)
         self.leave(client, admission)
 
+    def is_new_excess(self, client: str) -> bool:
+        """Return whether a client's excess is to be told of: once, until it has fewer connections again."""
+        if client in self._told or len(self._told) >= MOST_TOLD:
+            return False
+        self._told.add(client)
+        return True
+
     def _oldest_idle(self, client: str) -> Member | None:
         return next((one for one in self._members.get(client, ()) if one.is_idle), None)
 
@@ -126,6 +135,8 @@ class Connections:
     def release(self, client: str) -> None:
         """Count one less."""
         self._held[client] -= 1
+        if self._held[client] <= self._most_a_client // 2:
+            self._told.discard(client)
         if self._held[client] <= 0:
             del self._held[client]
 
@@ -158,7 +169,8 @@ class CautiousHttp(HttpToolsProtocol):
         self._name = self.client[0] if self.client else ""
         self._admission = self._counted.join(self._name, self)
         if self._admission is Admission.NOTHING:
-            log.warning("a client has too many connections", client=self._name)
+            if self._counted.is_new_excess(self._name):
+                log.warning("a client has too many connections", client=self._name)
             transport.abort()
             return
         _watch(transport)
@@ -239,6 +251,10 @@ class PanelServer(uvicorn.Server):
     def __init__(self, config: Config, say_farewell: Callable[[], None]) -> None:
         super().__init__(config)
         self._say_farewell = say_farewell
+
+    def leave(self) -> None:
+        """End this serving as if it had been told to."""
+        self.should_exit = True
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """End the streams, then wait for what is under way."""

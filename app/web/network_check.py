@@ -1,0 +1,160 @@
+"""Whether the panel could be served as somebody wants it: said before anything is tried."""
+
+import ipaddress
+import re
+import socket
+import ssl
+from collections.abc import Iterable
+from dataclasses import asdict
+from datetime import datetime
+
+from pydantic import ValidationError
+
+from app.certificates import SERVER, init, own_names, read
+from app.network import Network
+from app.settings import LOOPBACK, PREFIX, Settings
+
+NAME = re.compile(r"(?!-)[A-Za-z0-9-]{1,63}(?<!-)(\.(?!-)[A-Za-z0-9-]{1,63}(?<!-))*\.?")
+MOST_NAMES = 20
+LONGEST_NAME = 253
+
+
+class NetworkRefused(Exception):
+    """The panel cannot be served so; `errors` has a sentence for every field that is wrong."""
+
+    def __init__(self, errors: dict[str, str]) -> None:
+        self.errors = errors
+        super().__init__(" ".join(errors.values()))
+
+
+def refuse_impossible(
+    now_served: Settings, wanted: Network, fixed: Iterable[str], *, has_administrator: bool
+) -> None:
+    """Raise `NetworkRefused` with everything that is wrong; nothing is written."""
+    errors = _fixed(now_served.network, wanted, fixed) | _misspelt(wanted)
+    if "host" not in errors and (refusal := _cannot_listen(now_served.network, wanted)):
+        field, sentence = refusal
+        errors.setdefault(field, sentence)
+    if wanted.host not in LOOPBACK and not has_administrator:
+        errors.setdefault(
+            "host",
+            "Other computers could reach this panel, and it has no users yet. Add an administrator first, "
+            "on the page Users.",
+        )
+    if errors:
+        raise NetworkRefused(errors)
+
+
+def prepared(now_served: Settings, wanted: Network, now: datetime) -> Settings:
+    """Return the settings with what is wanted, a certificate made where one is missing, or refuse them."""
+    if wanted.tls:
+        _certify(now_served, wanted, now)
+    settings = _settings(now_served, wanted)
+    if settings.certificate is not None:
+        _load(settings)
+    return settings
+
+
+def addresses_here() -> tuple[str, ...]:
+    """Return the addresses of this computer that others may reach."""
+    return tuple(
+        name for name in own_names() if _is_address(name) and not ipaddress.ip_address(name).is_loopback
+    )
+
+
+def _fixed(now_served: Network, wanted: Network, fixed: Iterable[str]) -> dict[str, str]:
+    return {
+        name: f"{PREFIX}{name.upper()} sets this where the service is started; change it there."
+        for name in fixed
+        if getattr(now_served, name) != getattr(wanted, name)
+    }
+
+
+def _misspelt(wanted: Network) -> dict[str, str]:
+    errors = {}
+    if wanted.host != "localhost" and not _is_address(wanted.host):
+        errors["host"] = (
+            f"{wanted.host[:60] or 'Nothing'} is no address. Give 127.0.0.1, 0.0.0.0 or one of this computer."
+        )
+    wrong = [name for name in wanted.allowed_hosts if len(name) > LONGEST_NAME or not NAME.fullmatch(name)]
+    if wrong:
+        errors["allowed_hosts"] = f"{wrong[0][:60]} is no name of a host. Give names such as tracker.example."
+    for field in ("allowed_hosts", "trusted_proxies"):
+        if len(getattr(wanted, field)) > MOST_NAMES:
+            errors[field] = f"Give at most {MOST_NAMES} of these."
+    return errors
+
+
+def _cannot_listen(now_served: Network, wanted: Network) -> tuple[str, str] | None:
+    """Return which field is wrong and why; the port that this panel holds itself is not tried."""
+    if fault := _fault_of(wanted.host, 0):
+        return (
+            "host",
+            f"This computer cannot listen on {wanted.host}: {fault}. Give one of its own addresses.",
+        )
+    if wanted.port != now_served.port and (fault := _fault_of(wanted.host, wanted.port)):
+        return "port", f"Port {wanted.port} cannot be used: {fault}. Choose another one, such as 8443."
+    return None
+
+
+def _fault_of(host: str, port: int) -> str:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    try:
+        with socket.socket(family) as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            probe.bind((host, port))
+    except OSError as error:
+        return (error.strerror or str(error)).lower()
+    return ""
+
+
+def _certify(now_served: Settings, wanted: Network, now: datetime) -> None:
+    """Make a certificate of our own that is for every name wanted, unless one was given or there is one."""
+    if now_served.tls_cert_file is not None:
+        return
+    host = (
+        ()
+        if wanted.host == "localhost" or ipaddress.ip_address(wanted.host).is_unspecified
+        else (wanted.host,)
+    )
+    needed = (*own_names(), *wanted.allowed_hosts, *host)
+    path = now_served.tls_dir / SERVER
+    have = read(path).names if path.is_file() else ()
+    if not set(needed) <= set(have):
+        init(now_served.tls_dir, (*needed, *have), now)
+
+
+def _settings(now_served: Settings, wanted: Network) -> Settings:
+    given = {name: getattr(now_served, name) for name in type(now_served).model_fields}
+    try:
+        return Settings(**given | asdict(wanted))
+    except ValidationError as error:
+        raise NetworkRefused(
+            {str(one["loc"][0]) if one["loc"] else "tls": _sentence(one["msg"]) for one in error.errors()}
+        ) from error
+
+
+def _load(settings: Settings) -> None:
+    """Raise `NetworkRefused` if the certificate and its key cannot be served."""
+    certificate, key = settings.certificate or ("", "")
+    try:
+        ssl.create_default_context(ssl.Purpose.CLIENT_AUTH).load_cert_chain(certificate, key)
+    except OSError as error:
+        raise NetworkRefused(
+            {
+                "tls": f"The certificate {certificate} cannot be served: {error}. Name another one, or "
+                "switch https off."
+            }
+        ) from error
+
+
+def _sentence(message: str) -> str:
+    return message.removeprefix("Value error, ")
+
+
+def _is_address(text: str) -> bool:
+    try:
+        ipaddress.ip_address(text)
+    except ValueError:
+        return False
+    return True

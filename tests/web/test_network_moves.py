@@ -1,0 +1,119 @@
+"""The panel moves to another address while it is used, over real sockets: kept if confirmed, else back."""
+
+import json
+import re
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from app.network import read_network
+from app.settings import Settings
+from app.web.network import NOT_CONFIRMED, NOT_SERVED
+from tests.machine.service import free_port
+
+ROOT = Path(__file__).resolve().parents[2]
+SOON_S = 20.0
+LOOK_EVERY_S = 0.02
+
+
+@dataclass
+class Moving:
+    """A panel in a process of its own, and a browser on the same computer."""
+
+    folder: Path
+    port: int
+    process: "subprocess.Popen[bytes]"
+
+    @classmethod
+    def start(cls, folder: Path) -> "Moving":
+        port = free_port()
+        command = [sys.executable, "-m", "tests.web.hasty_panel", str(folder), str(port)]
+        moving = cls(folder, port, subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE))
+        moving.until(port)
+        return moving
+
+    def ask(self, method: str, port: int, path: str, **more: Any) -> httpx.Response:
+        return httpx.request(method, f"http://127.0.0.1:{port}{path}", timeout=5, **more)
+
+    def is_there(self, port: int) -> bool:
+        with suppress(httpx.TransportError):
+            return self.ask("GET", port, "/health").status_code == 200
+        return False
+
+    def until(self, port: int, *, there: bool = True) -> None:
+        """Return once the panel answers at a port, or does not any more; fail if that takes too long."""
+        give_up = time.monotonic() + SOON_S
+        while self.is_there(port) is not there:
+            assert time.monotonic() < give_up, f"The panel is not as expected on {port}."
+            time.sleep(LOOK_EVERY_S)
+
+    def propose(self, port: int) -> str:
+        change = {"host": "127.0.0.1", "port": port, "tls": False}
+        answer = self.ask("PUT", self.port, "/api/v1/network", json=change)
+        assert answer.status_code == 202, answer.text
+        return str(answer.json()["ticket"])
+
+    def state(self) -> dict[str, Any]:
+        found: dict[str, Any] = self.ask("GET", self.port, "/api/v1/network").json()
+        return found
+
+
+@pytest.fixture(scope="module")
+def moving(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Moving]:
+    started = Moving.start(tmp_path_factory.mktemp("moving"))
+    yield started
+    started.process.terminate()
+    _, told = started.process.communicate(timeout=15)
+    events = [json.loads(line).get("event") for line in told.splitlines() if line.startswith(b"{")]
+    assert events.count("network_rolled_back") == 2
+    assert "network_kept" in events
+
+
+def test_what_nobody_confirms_is_taken_back(moving: Moving) -> None:
+    tried = free_port()
+    ticket = moving.propose(tried)
+    moving.until(tried)
+    assert not moving.is_there(moving.port)
+    page = moving.ask("GET", tried, f"/network/trial?ticket={ticket}").text
+    assert "Keep this" in page
+    assert Settings(data_dir=moving.folder).port == moving.port
+    moving.until(moving.port)
+    assert not moving.is_there(tried)
+    assert moving.state()["last_rollback"] == NOT_CONFIRMED
+    assert "The last change was taken back." in moving.ask("GET", moving.port, "/network").text
+
+
+def test_what_cannot_be_served_is_taken_back_at_once(moving: Moving) -> None:
+    tried = free_port()
+    moving.propose(tried)
+    with socket.create_server(("127.0.0.1", tried)):
+        moving.until(moving.port, there=False)
+        moving.until(moving.port)
+    assert moving.state()["last_rollback"] == NOT_SERVED
+
+
+def test_what_is_confirmed_there_is_kept(moving: Moving) -> None:
+    tried, before = free_port(), moving.port
+    ticket = moving.propose(tried)
+    moving.until(tried)
+    wrong = moving.ask("POST", tried, "/network/trial?ticket=guessed")
+    assert wrong.status_code == 409
+    page = moving.ask("GET", tried, f"/network/trial?ticket={ticket}").text
+    action = re.search(r'action="(/network/trial[^"]+)"', page)
+    assert action is not None
+    assert "The panel stays here" in moving.ask("POST", tried, action[1]).text
+    moving.port = tried
+    time.sleep(5.3)
+    assert moving.is_there(tried)
+    assert not moving.is_there(before)
+    assert (moving.state()["confirm_until"], moving.state()["last_rollback"]) == (None, "")
+    assert read_network(moving.folder)["port"] == tried
