@@ -36,6 +36,7 @@ from app.web.gate import Gate
 from app.web.hub import Hub
 from app.web.limits import StreamLimit
 from app.web.mdns import announced
+from app.web.nesting import NestingLimit
 from app.web.network import NOT_SERVED, NetworkDesk, Stage
 from app.web.routes import guarded_routes
 from app.web.security import LARGEST_BODY, Guard, SecurityHeaders, Uploads, host_names
@@ -96,6 +97,7 @@ def create_app(
     app.router.routes.extend(_doors())
     app.state.routes = guarded_routes(app.routes)
     errors.install(app)
+    app.add_middleware(NestingLimit)
     app.add_middleware(Uploads)
     app.add_middleware(RequestBodyLimitMiddleware, max_body_size=LARGEST_BODY)
     app.add_middleware(GZipMiddleware, minimum_size=SMALLEST_COMPRESSED)

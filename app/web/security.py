@@ -170,5 +170,7 @@ async def _refuse(scope: Scope, send: Send, status: int, detail: str) -> None:
         {"type": "about:blank", "title": HTTPStatus(status).phrase, "status": status, "detail": detail}
     )
     headers = [(b"content-type", b"application/problem+json"), (b"content-length", str(len(body)).encode())]
+    if status == HTTPStatus.REQUEST_ENTITY_TOO_LARGE:
+        headers.append((b"connection", b"close"))
     await send({"type": "http.response.start", "status": status, "headers": headers})
     await send({"type": "http.response.body", "body": body})

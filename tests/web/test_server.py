@@ -101,6 +101,18 @@ async def test_stop_is_obeyed_where_a_client_has_no_connection_left() -> None:
         assert await _status(port) == b"200"
 
 
+def test_a_client_with_too_many_connections_is_told_of_once_until_it_has_fewer() -> None:
+    connections = Connections(100, most_a_client=4)
+    for _ in range(4):
+        assert connections.admit("10.0.0.7")
+    assert connections.is_new_excess("10.0.0.7")
+    assert not connections.is_new_excess("10.0.0.7")
+    assert connections.is_new_excess("10.0.0.8")
+    for _ in range(2):
+        connections.release("10.0.0.7")
+    assert connections.is_new_excess("10.0.0.7")
+
+
 async def test_a_head_that_does_not_end_is_refused() -> None:
     async with serving(Connections(100), 5.0) as (_, port):
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
