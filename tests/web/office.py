@@ -12,7 +12,7 @@ from fastapi import FastAPI
 from app.access.keeper import Keeper
 from app.access.principal import this_computer
 from app.access.roles import Role
-from app.clock import SystemClock
+from app.clock import Clock, SystemClock
 from app.settings import Settings
 from app.web.main import create_app
 from tests.access.fake_hasher import FakeHasher
@@ -39,13 +39,17 @@ class MovableClock(SystemClock):
 class Office:
     """A panel, its machine, and browsers in front of it."""
 
-    def __init__(self, folder: Path, *, host: str = "127.0.0.1") -> None:
-        self.clock = MovableClock()
+    def __init__(self, folder: Path, *, host: str = "127.0.0.1", clock: Clock | None = None) -> None:
+        self.clock = clock or MovableClock()
         self.machine = FakeMachine(self.clock)
         self.hasher = FakeHasher()
-        settings = Settings(data_dir=folder, port=PORT).model_copy(update={"host": host})
+        self.settings = Settings(data_dir=folder, port=PORT).model_copy(update={"host": host})
         self.app: FastAPI = create_app(
-            settings, machine=self.machine, reader=self.machine.store, clock=self.clock, hasher=self.hasher
+            self.settings,
+            machine=self.machine,
+            reader=self.machine.store,
+            clock=self.clock,
+            hasher=self.hasher,
         )
         self.keeper: Keeper = self.app.state.panel.keeper
 
