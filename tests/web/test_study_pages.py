@@ -179,6 +179,9 @@ async def test_step_programs_are_shown_and_used(client: httpx.AsyncClient, machi
     }
     first = await client.get("/studies/program")
     assert 'hx-trigger="load"' in first.text
+    bookmarked = await client.get("/studies/program", params=asked)
+    assert "longitude=25.6" in bookmarked.text[bookmarked.text.index('hx-trigger="load"') - 400 :]
+    assert "leave most" not in bookmarked.text
     answer = await client.get("/studies/program", params={**asked, "chosen": "8"}, headers=HTMX)
     assert answer.status_code == 200
     assert "The program of 8 steps" in answer.text

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Annotated
 from urllib.parse import urlencode
 
-from fastapi import APIRouter, Form
+from fastapi import APIRouter, Form, Query
 from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
@@ -76,8 +76,10 @@ class UseForm(ProgramForm):
 
 
 @router.get("")
-async def ask(request: Request, machine: MachineDep, built: PanelDep) -> Response:
-    """Show the question; once asked, the programs."""
+async def ask(
+    request: Request, machine: MachineDep, built: PanelDep, *, ready: Annotated[bool, Query()] = False
+) -> Response:
+    """Show the question at once, and the programs as soon as they are worked out."""
     detail = await machine.detail()
     asked = {name: text for name, text in request.query_params.items() if name in NAMES}
     latest = machine.latest()
@@ -85,7 +87,8 @@ async def ask(request: Request, machine: MachineDep, built: PanelDep) -> Respons
     form = ProgramForm(**{"date": today.isoformat(), **_site_values(detail), **asked})
     typed = Typed(form.model_dump())
     wanted = _read(typed)
-    answer = await _find(typed, wanted, detail, built) if wanted and asked else None
+    awaited = ready or (bool(asked) and "hx-request" in request.headers)
+    answer = await _find(typed, wanted, detail, built) if wanted and awaited else None
     context = StepProgramPage(
         frame=site_frame(request, "Step program", back=Link("Studies", "/studies")),
         form=typed.form(NAMES),
@@ -94,7 +97,7 @@ async def ask(request: Request, machine: MachineDep, built: PanelDep) -> Respons
         trackers=tuple((name, f"{name} {one.state.config.name}") for name, one in detail.trackers.items()),
         query=urlencode({name: text for name, text in form.model_dump().items() if name != "chosen"}),
         view=_view(answer, form.chosen) if answer else None,
-        load="" if asked or typed.errors else f"/studies/program?{urlencode(form.model_dump())}",
+        load="" if answer or typed.errors else f"/studies/program?{urlencode(form.model_dump())}",
     )
     return page(request, context, block="body", status=422 if typed.errors else 200)
 
