@@ -1,18 +1,20 @@
 """Network: what becomes of ticks, requests, Stop and memory while one computer attacks the panel
 
-The bounds: ticks at most 50 ms late, a stop answered within 100 ms (p99), the panel's memory within 120 MB.
+The attacker is a process of its own at the lowest priority, as if it had a computer of its own. The bounds:
+ticks at most 50 ms late, a stop answered within 100 ms (p99), the panel's memory within 120 MB.
 """
 
 import asyncio
 import contextlib
+import sys
 import tempfile
 import time
-from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import httpx
 
+from bench.attacks import ATTACKS
 from bench.table import Row
 from tests.e2e.integrator import Integrator
 from tests.e2e.product import Product
@@ -21,11 +23,8 @@ COMMAND = "python -m bench network"
 LASTS_S = 9.0
 PROBE_EVERY_S = 0.05
 STOP_MS, MEMORY_MB, LATE_MS = 100.0, 120.0, 50.0
-HALF = b"GET /health HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Slow: "
-STREAM = b"GET /api/v1/stream HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
-DEEP = b"[" * 900_000
-BIG_HEAD = b"PATCH /api/v1/site HTTP/1.1\r\nHost: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n\r\n"
-Attack = Callable[[int, float], Awaitable[None]]
+ATTACKER = ("nice", "-n", "19", sys.executable, "-m", "bench.attacks")
+BEGINS_S = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,15 +46,16 @@ def measure() -> list[Row]:
             calling = Integrator(product.url)
             calling.place_and_time()
             calling.close()
-            return [_row(name, asyncio.run(_under(product, attack))) for name, attack in ATTACKS.items()]
+            return [_row(name, asyncio.run(_under(product, name))) for name in ATTACKS]
         finally:
             product.stop()
 
 
-async def _under(product: Product, attack: Attack) -> Felt:
-    until = time.monotonic() + LASTS_S
+async def _under(product: Product, attack: str) -> Felt:
     before = await _lateness(product)
-    attacking = asyncio.create_task(attack(product.port, until))
+    attacking = await asyncio.create_subprocess_exec(*ATTACKER, attack, str(product.port), str(LASTS_S))
+    await asyncio.sleep(BEGINS_S)
+    until = time.monotonic() + LASTS_S
     stops, pages, failed, memory = [], [], 0, 0.0
     while time.monotonic() < until:
         for path, method, times in (("/api/v1/trackers/T1/stop", "POST", stops), ("/health", "GET", pages)):
@@ -64,7 +64,7 @@ async def _under(product: Product, attack: Attack) -> Felt:
             times += [took] if took is not None else []
         memory = max(memory, _resident_mb(product.starts("web")[-1]))
         await asyncio.sleep(PROBE_EVERY_S)
-    await asyncio.gather(attacking, return_exceptions=True)
+    await attacking.wait()
     after = await _lateness(product)
     return Felt(stops, pages, failed, memory, _latest(before, after))
 
@@ -105,71 +105,6 @@ def _resident_mb(process_id: int) -> float:
         if line.startswith("VmRSS"):
             return float(line.split()[1]) / 1000
     return 0.0
-
-
-async def _hold(port: int, count: int, first: bytes, again: bytes, until: float) -> None:
-    """Hold connections open that begin so and go on so once a second; those hung up on are opened anew."""
-
-    async def one() -> None:
-        while time.monotonic() < until:
-            with contextlib.suppress(OSError):
-                _, writer = await asyncio.open_connection("127.0.0.1", port)
-                writer.write(first)
-                while time.monotonic() < until and not writer.is_closing():
-                    await asyncio.sleep(1)
-                    writer.write(again)
-                writer.transport.abort()
-            await asyncio.sleep(0.5)
-
-    await asyncio.gather(*(one() for _ in range(count)))
-
-
-async def _slow(port: int, until: float) -> None:
-    await _hold(port, 200, HALF, b"a", until)
-
-
-async def _idle(port: int, until: float) -> None:
-    await _hold(port, 1000, b"", b"", until)
-
-
-async def _streams(port: int, until: float) -> None:
-    await _hold(port, 250, STREAM, b"", until)
-
-
-async def _body(port: int, until: float) -> None:
-    """Send up to a gigabyte in chunks, for as long as it is taken."""
-    sent, chunk = 0, b"100000\r\n" + b" " * 0x100000 + b"\r\n"
-    while time.monotonic() < until and sent < 1000:
-        with contextlib.suppress(OSError):
-            _, writer = await asyncio.open_connection("127.0.0.1", port)
-            writer.write(BIG_HEAD)
-            while time.monotonic() < until and sent < 1000 and not writer.is_closing():
-                writer.write(chunk)
-                sent += 1
-                await writer.drain()
-            writer.transport.abort()
-
-
-async def _deep(port: int, until: float) -> None:
-    async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{port}", timeout=10) as client:
-        headers = {"content-type": "application/json"}
-        while time.monotonic() < until:
-            with contextlib.suppress(httpx.HTTPError):
-                await client.patch("/api/v1/site", content=DEEP, headers=headers)
-
-
-async def _nothing(port: int, until: float) -> None:
-    await asyncio.sleep(max(0.0, until - time.monotonic()))
-
-
-ATTACKS: dict[str, Attack] = {
-    "nothing (for comparison)": _nothing,
-    "200 requests that never end": _slow,
-    "1,000 idle connections": _idle,
-    "250 streams": _streams,
-    "a body of 1 GB": _body,
-    "JSON 900,000 levels deep": _deep,
-}
 
 
 def _p99(times: list[float]) -> float:

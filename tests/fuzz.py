@@ -1,8 +1,10 @@
-"""`python -m tests.fuzz`: at least 10,000 cases against the whole API, then hostile values for every form.
+"""`python -m tests.fuzz`: at least 10,000 cases against the whole API, and hostile values for every form.
 
-The panel is the real one on a machine in memory. It ends with exit code 1 at the first kind of failure.
+The panel is the real one on a machine in memory that keeps its two trackers and its recordings. Parts run
+alone with `forms`, or with `api` and `--only REGEX` of paths; the exit code is 1 after any failure.
 """
 
+import argparse
 import asyncio
 import socket
 import subprocess
@@ -14,23 +16,43 @@ from pathlib import Path
 import uvicorn
 
 from app.clock import SystemClock
-from tests.fakes import fake_app
+from app.link.messages import DeleteRecording, Order, RemoveTracker
+from app.tracker.commands import CommandRejected
+from app.tracker.reason import Reason
+from app.tracker.snapshot import SiteSnapshot
+from tests.fakes import FakeMachine, fake_app
 from tests.web.test_forms import fuzz
 
 EXAMPLES = 110
 FORM_ROUNDS = 60
 SEED = 3
 SCHEMATHESIS = Path(sys.executable).with_name("st")
+CONFIG = Path(__file__).with_name("schemathesis.toml")
 LEFT_OUT = "stream|backup|simulations|accuracy|papers|session|users|tokens|me/"
 """Streams do not end; the others are expensive, or would sign the fuzzer out."""
 
 NOT_CHECKED = "unsupported_method,positive_data_acceptance,missing_required_header,ignored_auth"
 """Starlette's answers to unknown methods; rules between fields that no schema can tell; and who may do what,
-which `tests/web/test_gate.py` holds for every route."""
+which `tests/web/test_gate_table.py` holds for every route."""
+
+
+class LastingMachine(FakeMachine):
+    """A machine that refuses to give up the trackers and recordings that it begins with."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._kept = {*self.trackers, *self.store.heads}
+
+    async def execute(self, order: Order) -> SiteSnapshot:
+        """Carry out one order, unless it removes what is kept."""
+        match order.command:
+            case RemoveTracker(tracker_id=name) | DeleteRecording(recording_id=name) if name in self._kept:
+                raise CommandRejected(Reason("kept", f"{name} is kept for the next case.", "Take another."))
+        return await super().execute(order)
 
 
 async def _serving(port: int, ready: threading.Event) -> None:
-    server = uvicorn.Server(uvicorn.Config(fake_app(), port=port, log_level="error"))
+    server = uvicorn.Server(uvicorn.Config(fake_app(LastingMachine()), port=port, log_level="error"))
     task = asyncio.create_task(server.serve())
     clock = SystemClock()
     while not server.started:
@@ -39,21 +61,40 @@ async def _serving(port: int, ready: threading.Event) -> None:
     await task
 
 
-def main() -> int:
-    """Run both fuzzers and return the exit code."""
+def _begin() -> str:
+    """Serve the panel beside this and return where its document is."""
     with socket.create_server(("127.0.0.1", 0)) as probe:
         port = probe.getsockname()[1]
     ready = threading.Event()
     threading.Thread(target=lambda: asyncio.run(_serving(port, ready)), daemon=True).start()
     ready.wait(30)
-    print(f"{asyncio.run(fuzz(FORM_ROUNDS, SEED))} bad values were sent to the forms; none broke anything.")
-    url = f"http://127.0.0.1:{port}/api/v1/openapi.json"
+    return f"http://127.0.0.1:{port}/api/v1/openapi.json"
+
+
+def _api(only: str, examples: int) -> int:
     command = [
-        str(SCHEMATHESIS), "run", url, "-n", str(EXAMPLES), "-w", "2", "--seed", str(SEED),
-        "--suppress-health-check", "all", "--exclude-path-regex", LEFT_OUT,
-        "--exclude-checks", NOT_CHECKED, "--continue-on-failure", "--phases", "examples,fuzzing,stateful",
+        str(SCHEMATHESIS), "--config-file", str(CONFIG), "run", _begin(), "-n", str(examples), "-w", "2",
+        "--seed", str(SEED), "--suppress-health-check", "all", "--include-path-regex", only,
+        "--exclude-path-regex", LEFT_OUT, "--exclude-checks", NOT_CHECKED, "--continue-on-failure",
+        "--phases", "examples,fuzzing,stateful", "--generation-database", "none", "--warnings", "off",
     ]  # fmt: skip
     return subprocess.run(command, check=False).returncode
+
+
+def _forms() -> int:
+    print(f"{asyncio.run(fuzz(FORM_ROUNDS, SEED))} bad values were sent to the forms; none broke anything.")
+    return 0
+
+
+def main() -> int:
+    """Run what was asked for, without a name both, and return the exit code."""
+    arguments = argparse.ArgumentParser(prog="python -m tests.fuzz", description=__doc__)
+    arguments.add_argument("part", nargs="?", choices=("api", "forms", "all"), default="all")
+    arguments.add_argument("--only", default=".", help="regular expression of the API's paths")
+    arguments.add_argument("--examples", type=int, default=EXAMPLES, help="cases for each operation")
+    given = arguments.parse_args()
+    forms = 0 if given.part == "api" else _forms()
+    return forms or (0 if given.part == "forms" else _api(given.only, given.examples))
 
 
 if __name__ == "__main__":

@@ -2,7 +2,6 @@
 
 import random
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
 
@@ -44,7 +43,9 @@ START = (
     "/users",
     "/tokens",
 )
-LEFT_OUT = re.compile(r"/(s/|api/|logout|setup|backup|diagnostics)|\.csv$|\.crt$|\.zip$")
+LEFT_OUT = re.compile(r"/(s/|api/|logout|setup|backup|diagnostics)|\.csv$|\.crt$|\.zip$|\?(show|ready)=")
+"""Files, what signs out, and what is worked out for seconds and holds no further form."""
+
 MOST_PAGES = 90
 
 
@@ -99,17 +100,16 @@ async def every_form(client: httpx.AsyncClient) -> list[PageForm]:
     return list(found.values())
 
 
-def bad_values(form: PageForm, rounds: int, chance: random.Random) -> Iterator[dict[str, str]]:
-    """Yield what to send: now every field hostile, now a single one among right ones, now fields left out."""
+def bad_values(form: PageForm, number: int, chance: random.Random) -> dict[str, str]:
+    """Return what to send, in turn: every field hostile, one among right ones, or fields left out."""
     names = list(form.values) or ["unknown"]
-    for number in range(rounds):
-        match number % 3:
-            case 0:
-                yield {name: chance.choice(HOSTILE) for name in names}
-            case 1:
-                yield form.values | {chance.choice(names): chance.choice(HOSTILE)}
-            case _:
-                yield {name: chance.choice(HOSTILE) for name in names if chance.random() < 0.5}
+    match number % 3:
+        case 0:
+            return {name: chance.choice(HOSTILE) for name in names}
+        case 1:
+            return form.values | {chance.choice(names): chance.choice(HOSTILE)}
+        case _:
+            return {name: chance.choice(HOSTILE) for name in names if chance.random() < 0.5}
 
 
 def hostile_in(text: str) -> str:
