@@ -178,10 +178,12 @@ class LocationPreview:
     noon_elevation: str
     polar: str
 
+    sun_now: str
+    if_swapped: str
 
 @dataclass(frozen=True, slots=True)
 class LocationPage:
-    """Step 1."""
+    """Step 1; `doubts` are what speaks against the location that was typed."""
 
     template: ClassVar[str] = "location.html"
 
@@ -192,6 +194,7 @@ class LocationPage:
     by_place: str
     revision: int
 
+    doubts: tuple[str, ...] = ()
 
 @dataclass(frozen=True, slots=True)
 class ClockPage:

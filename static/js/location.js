@@ -50,5 +50,11 @@ function offerDevicePlace() {
   });
 }
 
-document.addEventListener("htmx:after:swap", () => { moveCross(); offerDevicePlace(); });
+function tellDeviceZone() {
+  const field = document.getElementById("device-zone-name");
+  if (field) field.value = Intl.DateTimeFormat().resolvedOptions().timeZone ?? "";
+}
+
+document.addEventListener("htmx:after:swap", () => { moveCross(); offerDevicePlace(); tellDeviceZone(); });
+tellDeviceZone();
 offerDevicePlace();

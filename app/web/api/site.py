@@ -13,7 +13,9 @@ from app.tracker.reason import Reason
 from app.tracker.snapshot import SiteSnapshot
 from app.web.api.base import REFUSED, Input, Output
 from app.web.api.orders import SenderDep
-from app.web.deps import SnapshotDep
+from app.web.deps import MachineDep, PanelDep, SnapshotDep
+from app.web.errors import NotAcceptable
+from app.web.place import place_doubts
 
 router = APIRouter(prefix="/site", tags=["site"])
 
@@ -32,6 +34,10 @@ class SitePlace(Input):
     altitude_m: float = Field(0.0, ge=-500, le=9000, description="Above mean sea level.", examples=[4.0])
     time_zone: str = Field(
         min_length=1, max_length=64, description="IANA name.", examples=["Europe/Istanbul"]
+    )
+    confirmed: bool = Field(
+        False,
+        description="The place is right although it lies in the sea, or its sun and its time zone disagree.",
     )
 
 
@@ -81,9 +87,18 @@ async def rename_site(change: SiteName, sender: SenderDep) -> SiteSnapshot:
 
 
 @router.put("/location", summary="Step 1: set the location", responses=REFUSED)
-async def set_location(place: SitePlace, sender: SenderDep) -> SiteSnapshot:
-    """Store the location; the steps that depend on it are to be confirmed again."""
+async def set_location(
+    place: SitePlace, sender: SenderDep, built: PanelDep, machine: MachineDep
+) -> SiteSnapshot:
+    """Store the location; the steps that depend on it are to be confirmed again.
+
+    One that is likely to be mistaken is refused with what speaks against it until it is `confirmed`.
+    """
     location = Location(place.latitude_deg, place.longitude_deg, place.altitude_m)
+    before = (await machine.detail()).site.location
+    doubts = place_doubts(location, place.time_zone, built.clock.now(), before=before)
+    if doubts and not place.confirmed:
+        raise NotAcceptable(" ".join((*doubts, "If the place is right, send it again with `confirmed`.")))
     return await sender.send(SetLocation(location, place.time_zone))
 
 

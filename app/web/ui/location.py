@@ -1,6 +1,6 @@
 """Step 1: where the tracker stands, checked against today's sun and a map before it is saved."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from functools import cache
 from typing import Annotated
@@ -14,13 +14,14 @@ from tzfpy import get_tz
 
 from app.link.messages import SetLocation, SiteDetail
 from app.sun.events import PolarDay, SunEvents, day_events
-from app.sun.position import Location
+from app.sun.position import Location, sun_position
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import SiteState, StepName
 from app.web.contexts import LocationPage, LocationPreview
 from app.web.deps import Panel, PanelDep
+from app.web.place import place_doubts, swapped
 from app.web.ui import forms
-from app.web.ui.formats import decimals, local
+from app.web.ui.formats import compass, decimals, local
 from app.web.ui.forms import Typed
 from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
@@ -28,7 +29,7 @@ from app.web.ui.wizard import tracker_of, wizard_frame
 from app.zones import zone_of
 
 router = APIRouter(prefix="/trackers/{tracker_id}/commissioning/location")
-NAMES = ("latitude", "longitude", "altitude", "latitude_side", "longitude_side", "time_zone")
+NAMES = ("latitude", "longitude", "altitude", "latitude_side", "longitude_side", "time_zone", "device_zone")
 BY_PLACE = ""
 
 
@@ -41,6 +42,8 @@ class LocationForm(BaseModel):
     latitude_side: str = "N"
     longitude_side: str = "E"
     time_zone: str = BY_PLACE
+    device_zone: str = ""
+    sun_there: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +53,12 @@ class Read:
     typed: Typed
     location: Location | None
     zone: str
+    doubts: tuple[str, ...] = ()
+
+    @property
+    def is_asked(self) -> bool:
+        """Return whether it must be confirmed that the sun is where the page says, and was not yet."""
+        return bool(self.doubts) and self.typed.texts["sun_there"] != "yes"
 
 
 @router.get("")
@@ -73,9 +82,9 @@ async def save(
     tracker_id: str, typed: Annotated[LocationForm, Form()], press: PressDep, built: PanelDep
 ) -> Response:
     """Save the location and go on to the clock."""
-    found = read(typed)
-    if found.location is None:
-        detail = await built.machine.detail()
+    detail = await built.machine.detail()
+    found = _doubted(read(typed), detail.site, built)
+    if found.location is None or found.is_asked:
         return _answer(press.request, tracker_id, detail, found, built, block="form", status=422)
     await press.send(SetLocation(found.location, found.zone))
     return go(press.request, f"/trackers/{tracker_id}/commissioning/clock")
@@ -97,6 +106,18 @@ def read(form: LocationForm) -> Read:
     return Read(
         typed, Location(latitude, longitude, altitude), form.time_zone or proposed(latitude, longitude)
     )
+
+
+def _doubted(found: Read, site: SiteState, built: Panel) -> Read:
+    """Return what was typed with what speaks against it."""
+    if found.location is None:
+        return found
+    device_zone = found.typed.texts["device_zone"]
+    known = device_zone if device_zone in zones() else ""
+    doubts = place_doubts(
+        found.location, found.zone, built.clock.now(), before=site.location, device_zone=known
+    )
+    return replace(found, doubts=doubts)
 
 
 def _angle(text: str, texts: dict[str, str], name: str, sides: str, limit: float) -> float:
@@ -156,6 +177,7 @@ def _answer(
         zones=zones(),
         by_place=found.zone if found.location else "",
         revision=detail.site.location_revision,
+        doubts=found.doubts,
     )
     return page(request, context, block=block, status=status)
 
@@ -179,7 +201,18 @@ def _preview(found: Read, config: TrackerConfig, now: datetime) -> LocationPrevi
         set=_time(events.set, found.zone),
         noon_elevation="–" if noon_deg is None else f"{decimals(noon_deg, 1)}°",
         polar=_polar(events),
+        sun_now=_sun_now(place, config, now),
+        if_swapped="" if swapped(place) is None else _sun_now(swapped(place) or place, config, now),
     )
+
+
+def _sun_now(place: Location, config: TrackerConfig, now: datetime) -> str:
+    """Return where somebody at a place sees the sun."""
+    sun = sun_position(config.algorithm, place, now)
+    height_deg = sun.apparent_elevation_deg
+    if height_deg <= 0.0:
+        return f"below the horizon, {abs(height_deg):.0f}° deep"
+    return f"{height_deg:.0f}° high in the {compass(sun.azimuth_deg)}, at azimuth {sun.azimuth_deg:.0f}°"
 
 
 def normal_form(place: Location) -> str:

@@ -1,0 +1,109 @@
+"""A location that is likely to be mistaken: the page shows where its sun would be now, and asks."""
+
+from collections.abc import AsyncIterator, Callable
+from datetime import UTC, datetime
+
+import httpx
+import pytest
+
+from app.link.messages import SetLocation
+from app.sun.position import Location
+from app.web.place import place_doubts
+from tests.fakes import FakeMachine, fake_app, serving
+
+SUMMER = datetime(2027, 6, 21, 9, tzinfo=UTC)
+SAMSUN = Location(41.2867, 36.33)
+PAGE = "/trackers/T1/commissioning/location"
+HTMX = {"HX-Request": "true"}
+
+
+@pytest.fixture
+def machine() -> FakeMachine:
+    return FakeMachine()
+
+
+@pytest.fixture
+async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
+    async with serving(fake_app(machine)) as client:
+        yield client
+
+
+def saved(machine: FakeMachine) -> list[SetLocation]:
+    return [order.command for order in machine.orders if isinstance(order.command, SetLocation)]
+
+
+@pytest.mark.parametrize(
+    ("place", "time_zone", "said"),
+    [
+        (SAMSUN, "Europe/Istanbul", ""),
+        (SAMSUN, "UTC", ""),
+        (Location(36.33, 41.2867), "Europe/Istanbul", "clocks keep Europe/Istanbul"),
+        (Location(41.2867, -36.33), "Europe/Istanbul", "highest at 17:25 by the clocks of Europe/Istanbul"),
+        (Location(-33.92, 18.42), "Africa/Johannesburg", ""),
+        (Location(18.42, -33.92), "UTC", "lies in the sea"),
+        (Location(39.5, 75.9), "Asia/Shanghai", ""),
+        (Location(1.87, -157.4), "Pacific/Kiritimati", ""),
+        (Location(-23.65, -70.4), "America/Santiago", ""),
+        (Location(0.0, 170.0), "Etc/GMT-11", ""),
+    ],
+)
+def test_what_speaks_against_a_place(place: Location, time_zone: str, said: str) -> None:
+    doubts = place_doubts(place, time_zone, SUMMER)
+    assert (said in " ".join(doubts)) if said else doubts == ()
+
+
+def test_numbers_of_the_stored_place_exchanged_and_a_device_far_away() -> None:
+    exchanged = Location(36.33, 41.2867)
+    assert "stored location" in place_doubts(exchanged, "UTC", SUMMER, before=SAMSUN)[0]
+    assert place_doubts(SAMSUN, "UTC", SUMMER, before=exchanged)[0].startswith("These are the numbers")
+    assert place_doubts(SAMSUN, "UTC", SUMMER, before=Location(41.3, 36.4)) == ()
+    (far,) = place_doubts(SAMSUN, "Europe/Istanbul", SUMMER, device_zone="America/New_York")
+    assert "are you at the tracker" in far
+
+
+@pytest.mark.fault(37)
+async def test_exchanged_numbers_are_asked_about_with_the_sun_there_now(
+    machine: FakeMachine, client: httpx.AsyncClient, record_property: Callable[[str, object], None]
+) -> None:
+    place = machine.site.location
+    assert place is not None
+    typed = {
+        "latitude": f"{place.longitude_deg}",
+        "longitude": f"{place.latitude_deg}",
+        "device_zone": machine.site.time_zone,
+    }
+    answer = await client.post(PAGE, data=typed, headers=HTMX)
+    assert answer.status_code == 422
+    assert not saved(machine)
+    assert "latitude and longitude exchanged" in answer.text
+    assert "There the sun stands now:" in answer.text
+    assert f'value="{place.longitude_deg}"' in answer.text, "what was typed stays"
+    record_property(
+        "shown", "These are the numbers of the stored location with latitude and longitude exchanged."
+    )
+    record_property("policy", "unlimited: it ends with the right numbers, or when they are confirmed")
+
+    answer = await client.post(PAGE, data=typed | {"sun_there": "yes"})
+    assert answer.status_code == 303
+    assert len(saved(machine)) == 1
+
+
+@pytest.mark.fault(37)
+async def test_a_program_confirms_what_speaks_against_its_place(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    place = {"latitude_deg": 41.2867, "longitude_deg": -36.33, "time_zone": "Europe/Istanbul"}
+    refused = await client.put("/api/v1/site/location", json=place)
+    assert refused.status_code == 422
+    assert "17:25" in refused.text or "16:25" in refused.text
+    assert "confirmed" in refused.text
+    assert not saved(machine)
+    assert (await client.put("/api/v1/site/location", json=place | {"confirmed": True})).status_code == 200
+    assert len(saved(machine)) == 1
+
+
+async def test_before_it_is_saved_the_page_shows_the_sun_of_the_place(client: httpx.AsyncClient) -> None:
+    typed = {"latitude": "41.2867", "longitude": "36.33"}
+    answer = await client.get(f"{PAGE}/preview", params=typed, headers=HTMX)
+    assert "The sun stands there now:" in answer.text
+    assert "With the two numbers exchanged:" in answer.text
