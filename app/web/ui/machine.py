@@ -7,6 +7,9 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.link.messages import ConfigureTracker, TrackerDetail
+from app.tracker.config import TrackerConfig
+from app.tracker.snapshot import SiteSnapshot
+from app.web.contexts import Arc
 from app.web.deps import MachineDep
 from app.web.protection_contexts import MachinePage
 from app.web.ui import machine_forms as forms
@@ -15,8 +18,9 @@ from app.web.ui.frame import tracker_frame
 from app.web.ui.orders import PressDep
 from app.web.ui.region_picture import region_picture
 from app.web.ui.render import go, page
-from app.web.ui.sunpath import todays_arc
+from app.web.ui.sunpath import arc
 from app.web.ui.wizard import tracker_of
+from app.zones import zone_of
 
 router = APIRouter(prefix="/trackers/{tracker_id}/machine")
 
@@ -52,6 +56,12 @@ async def save(request: Request, tracker_id: str, press: PressDep, machine: Mach
     return go(press.request, request.url.path)
 
 
+def _todays_arc(site: SiteSnapshot | None, config: TrackerConfig) -> Arc:
+    if site is None or site.location is None:
+        return ()
+    return arc(config.algorithm, site.location, site.at.astimezone(zone_of(site.time_zone)).date())
+
+
 async def _typed(request: Request) -> Typed:
     form = await request.form()
     return Typed({name: str(form.get(name, "")) for name in forms.names()})
@@ -64,8 +74,9 @@ def _answer(
     frame = tracker_frame(request, config.tracker_id, "Machine protections")
     shown = None
     if not config.mount.single_axis:
-        arc = todays_arc(frame.site, config)
-        shown = region_picture(config, forms.drawable(typed), tracker.state.memory.pointing, arc)
+        shown = region_picture(
+            config, forms.drawable(typed), tracker.state.memory.pointing, _todays_arc(frame.site, config)
+        )
     context = MachinePage(
         frame=frame,
         config=config,
