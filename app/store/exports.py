@@ -8,10 +8,9 @@ from math import isfinite
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
+from app.late import late
 from app.store.documents import RECORDING
 from app.tracker.recording import COLUMNS, Frames, RecordingInfo
 from app.tracker.snapshot import ActivityName
@@ -31,6 +30,7 @@ def to_csv(info: RecordingInfo, frames: Frames) -> Iterator[bytes]:
 
 def to_parquet(info: RecordingInfo, frames: Frames) -> bytes:
     """Return the recording as Parquet (zstd); its head is JSON in the metadata `heliopanel_recording`."""
+    pa, pq = late("pyarrow"), late("pyarrow.parquet")
     columns: dict[str, Any] = {
         "time_utc": _instants(info.began_at.timestamp(), frames.column("elapsed_s")),
         "sun_time_utc": _instants(info.sun_begin_at.timestamp(), frames.column("sun_time_s")),
@@ -67,7 +67,9 @@ def _activity(value: float) -> str | None:
     return str(ACTIVITIES[int(value)]) if 0 <= value < len(ACTIVITIES) else None
 
 
-def _instants(begin_unix_s: float, seconds: NDArray[np.float64]) -> pa.Array:
+def _instants(begin_unix_s: float, seconds: NDArray[np.float64]) -> Any:
+    """Return instants as an array of pyarrow, empty where unknown."""
+    pa = late("pyarrow")
     unix_ms = np.rint((begin_unix_s + seconds) * 1000.0)
     known = np.isfinite(unix_ms)
     whole = np.where(known, unix_ms, 0).astype(np.int64)
