@@ -46,6 +46,16 @@ class PlcDrive:
         self._watchdog_s = profile.watchdog.timeout_ms / 1000.0 if profile.watchdog is not None else None
 
     @property
+    def profile_name(self) -> str:
+        """Return the name of its profile."""
+        return self._profile.name
+
+    @property
+    def link(self) -> BusUnit:
+        """Return the way to the PLC."""
+        return self._link
+
+    @property
     def capabilities(self) -> DriveCapabilities:
         """Return what the profile offers; the watchdog's time-out is the device's own once it was read."""
         return DriveCapabilities(

@@ -24,6 +24,7 @@ from app.tracker.config import DriveKind, TrackerConfig
 from app.tracker.memory import MetStation, SiteState, TrackerState
 from app.tracker.motion import Feedback
 from app.tracker.observation import Observation
+from app.tracker.played_weather import SECOND_MAST, second_mast
 from app.tracker.simulated_weather import SimulatedStation
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
 from app.tracker.weather import Weather
@@ -140,6 +141,10 @@ class SiteModel:
         return self.make_station(station)
 
     def _take_weather(self, readings: Weather | None, impossible: tuple[str, ...], source: str) -> None:
+        made_up = self.state.simulated_weather
+        second = None if made_up is None else second_mast(made_up, readings)
+        if second is not None:
+            self.weather.receive(second, None, SECOND_MAST, self.now(), self.clock.now())
         self.weather.receive(readings, None, source, self.now(), self.clock.now(), impossible)
 
     def event(

@@ -3,8 +3,10 @@
 from collections.abc import Callable
 from datetime import datetime
 
+from app.drives.drive import DriveSilent
 from app.sun.position import SunPosition
-from app.tracker.simulated_weather import SimulatedStation, weather_at
+from app.tracker.played_weather import report_at
+from app.tracker.simulated_weather import SimulatedStation
 from app.tracker.weather import Weather
 
 
@@ -19,8 +21,11 @@ class SimulatedReader:
         self._sun = sun
 
     async def read(self) -> tuple[Weather | None, tuple[str, ...]]:
-        """Return what it makes up; nothing of it is ever impossible."""
-        return weather_at(self._station, self._now(), self._sun()), ()
+        """Return what it makes up, or raise `DriveSilent` while it is played that it says nothing."""
+        readings, impossible = report_at(self._station, self._now(), self._sun())
+        if readings is None:
+            raise DriveSilent("The simulated weather station says nothing: that is being played.")
+        return readings, impossible
 
     async def close(self) -> None:
         """Let go of nothing."""

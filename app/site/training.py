@@ -1,46 +1,98 @@
-"""Playing faults on a tracker that is simulated in this process, for training; all of it is journaled."""
+"""Playing faults on a simulated tracker and on made-up weather, for training; all of it is journaled."""
 
-from app.drives.corrected import CorrectedDrive
-from app.drives.drive import Drive
+from collections.abc import Awaitable, Callable
+from datetime import timedelta
+
+from app.drives.drive import DriveError, DriveRefused
 from app.drives.faults import Fault, FaultKind
-from app.drives.simulated import SimulatedDrive
-from app.drives.transmitted import TransmittedDrive
+from app.drives.trained import Trainer, trainer_of
 from app.link.messages import ClearFaults, PlayFault
+from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
+from app.site.weather_setup import made_up_station, play
 from app.tracker.commands import CommandRejected
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind
-from app.tracker.training import lesson
+from app.tracker.training import Lesson, lesson
+
+TRIES = 12
+BETWEEN = timedelta(milliseconds=250)
+"""A connection on which silence is played is made anew again and again; in between it answers."""
 
 
 async def carry_out(model: SiteModel, command: PlayFault | ClearFaults, actor: str) -> tuple[Event, ...]:
     """Play a fault or end all of them, or raise `CommandRejected` on a tracker that is real."""
     loop = model.tracker(command.tracker_id)
-    name, machine = loop.config.name, _simulated(loop.drive)
-    if machine is None:
-        raise CommandRejected(
-            Reason(
-                "not_simulated",
-                f"{name} is not simulated by this program; faults are played on a simulated tracker only.",
-                "Add a simulated tracker for training, or play faults in heliopanel drive-sim.",
-            )
-        )
     if isinstance(command, ClearFaults):
-        machine.clear_faults()
-        text = f"TRAINING: the faults of {name} that were played are ended."
-        event = model.event(EventKind.FAULTS_CLEARED, text, actor, command.tracker_id)
+        return await _clear(model, loop, actor)
+    return await _play(model, loop, lesson(command.fault), actor)
+
+
+async def _play(model: SiteModel, loop: TrackerLoop, taught: Lesson, actor: str) -> tuple[Event, ...]:
+    name = loop.config.name
+    if taught.weather is not None:
+        made_up_station(model)
+    if taught.parts:
+        trainer = _trainer(loop)
+        faults = [Fault(FaultKind(one.kind), one.axis, one.amount) for one in taught.parts]
+        await _reached(model, loop, lambda: trainer.play(faults))
+    text = f"TRAINING: a fault is played on {name}: {taught.title}."
+    event = model.event(EventKind.FAULT_INJECTED, text, actor, loop.config.tracker_id, fault=taught.fault)
+    if taught.weather is None:
+        await model.ledger.append((event,))
     else:
-        taught = lesson(command.fault)
-        machine.inject(Fault(FaultKind(taught.fault), taught.axis, taught.amount))
-        text = f"TRAINING: a fault is played on {name}: {taught.title}."
-        event = model.event(EventKind.FAULT_INJECTED, text, actor, command.tracker_id, fault=taught.fault)
-    await model.ledger.append((event,))
+        await play(model, taught.weather, event)
     loop.wake()
     return (event,)
 
 
-def _simulated(drive: Drive) -> SimulatedDrive | None:
-    """Return the simulated drive behind gear and actuators, None for a real one."""
-    while isinstance(drive, CorrectedDrive | TransmittedDrive):
-        drive = drive.inner
-    return drive if isinstance(drive, SimulatedDrive) else None
+async def _clear(model: SiteModel, loop: TrackerLoop, actor: str) -> tuple[Event, ...]:
+    """End what is played on the tracker and with the weather; what the controller latched stays."""
+    station = model.state.simulated_weather
+    weather = station is not None and station.played is not None
+    if not weather or trainer_of(loop.drive) is not None:
+        trainer = _trainer(loop)
+        await _reached(model, loop, trainer.clear)
+    text = f"TRAINING: the faults of {loop.config.name} that were played are ended."
+    event = model.event(EventKind.FAULTS_CLEARED, text, actor, loop.config.tracker_id)
+    if weather:
+        await play(model, None, event)
+    else:
+        await model.ledger.append((event,))
+    loop.wake()
+    return (event,)
+
+
+def _trainer(loop: TrackerLoop) -> Trainer:
+    """Return what plays faults on a tracker, or raise `CommandRejected` for one that may be real."""
+    trainer = trainer_of(loop.drive)
+    if trainer is None:
+        raise CommandRejected(
+            Reason(
+                "not_simulated",
+                f"{loop.config.name} is not simulated; faults are played on a simulated tracker only.",
+                "Add a simulated tracker for training, or connect one to heliopanel drive-sim.",
+            )
+        )
+    return trainer
+
+
+async def _reached(model: SiteModel, loop: TrackerLoop, work: Callable[[], Awaitable[None]]) -> None:
+    """Do it, again where the connection was not there just then, or raise `CommandRejected`."""
+    for left in reversed(range(TRIES)):
+        try:
+            await work()
+        except DriveError as error:
+            if not left or isinstance(error, DriveRefused):
+                raise CommandRejected(_not_reached(loop, error)) from error
+        else:
+            return
+        await model.clock.sleep_until(model.clock.now() + BETWEEN)
+
+
+def _not_reached(loop: TrackerLoop, error: DriveError) -> Reason:
+    return Reason(
+        "training_not_reached",
+        f"Faults of {loop.config.name} are played in heliopanel drive-sim, which did not take this: {error}",
+        "Check that it runs with the profile simulated-plc; a real PLC has no faults to be played.",
+    )

@@ -16,13 +16,18 @@ from app.tracker.commands import CommandRejected
 from app.tracker.config import DriveKind, TrackerConfig
 from app.tracker.memory import MetStation, SiteState
 from app.tracker.reason import Reason
-from app.tracker.simulated_weather import SimulatedStation
+from app.tracker.simulated_weather import PlayedWeather, SimulatedStation, WeatherFault
 from app.tracker.snapshot import Event, EventKind
 
 IS_SIMULATED = Reason(
     "weather_simulated",
     "The site's weather is SIMULATED, so that nothing that was measured is taken.",
     "Switch the simulated weather off on the Site page first.",
+)
+NEEDS_MADE_UP = Reason(
+    "weather_not_simulated",
+    "The site's weather is not simulated, so that no weather and no broken sensor can be played.",
+    "Simulate the weather first: on this page, or on the Site page.",
 )
 NEEDS_SIMULATED = Reason(
     "weather_simulated",
@@ -79,6 +84,24 @@ async def _simulate(model: SiteModel, station: SimulatedStation | None, actor: s
     state = replace(model.state, simulated_weather=begun, met_station=None)
     told = f"The weather is SIMULATED from now on: {station.scenario.value.replace('_', ' ')}."
     return await _follow(model, state, told, actor)
+
+
+def made_up_station(model: SiteModel) -> SimulatedStation:
+    """Return the station that makes the weather up, or raise `CommandRejected` where none does."""
+    station = model.state.simulated_weather
+    if station is None:
+        raise CommandRejected(NEEDS_MADE_UP)
+    return station
+
+
+async def play(model: SiteModel, fault: WeatherFault | None, event: Event) -> None:
+    """Play something on the made-up station from now on, None: nothing any more; stored with its event."""
+    station = made_up_station(model)
+    played = None if fault is None else PlayedWeather(fault, model.now())
+    state = replace(model.state, simulated_weather=replace(station, played=played))
+    await model.ledger.save_site(state, (event,))
+    model.state = state
+    await model.met.follow(model.station)
 
 
 def _begin(station: SimulatedStation, now: datetime) -> datetime:

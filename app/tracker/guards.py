@@ -14,7 +14,7 @@ from app.tracker.motion import (
     Position,
     Velocity,
 )
-from app.tracker.mounts.abilities import axis_of
+from app.tracker.mounts.abilities import axis_of, axis_words
 from app.tracker.reason import Reason
 
 JUMP_FACTOR = 1.5
@@ -48,6 +48,30 @@ def wiring_fault(config: TrackerConfig, feedback: Feedback) -> Reason | None:
                 "Check the wiring of the switches, then clear the fault.",
             )
     return None
+
+
+def pressed_switches(config: TrackerConfig, feedback: Feedback) -> tuple[Reason, ...]:
+    """Return every limit switch that is on alone, with the one way that is free."""
+    return tuple(
+        reason
+        for axis in config.mount.axes
+        if (reason := _pressed_switch(config, axis, axis_feedback(feedback, axis))) is not None
+    )
+
+
+def _pressed_switch(config: TrackerConfig, axis: Axis, seen: AxisFeedback) -> Reason | None:
+    words = axis_words(config.mount, axis)
+    if seen.at_lower_limit is seen.at_upper_limit or words is None:
+        return None
+    end, free = ("upper", words.falls) if seen.at_upper_limit else ("lower", words.grows)
+    inside = (
+        " although it stands within its soft limits" if config.axis(axis).contains(seen.position_deg) else ""
+    )
+    return Reason(
+        "at_limit_switch",
+        f"The {end} limit switch of the {axis_of(config, axis)} is on{inside}: it moves {free} only.",
+        "Move it away from the switch by hand; if it does not stand at its end, check switch and zero.",
+    )
 
 
 def restart(name: str, before: Feedback, feedback: Feedback) -> Reason | None:

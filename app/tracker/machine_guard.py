@@ -8,7 +8,7 @@ from app.tracker.activities.measuring import is_silent
 from app.tracker.activity import Faulted, Homing, Jogging, Zeroing
 from app.tracker.axes import Axis
 from app.tracker.conditions import prompt
-from app.tracker.guards import axis_feedback
+from app.tracker.guards import axis_feedback, pressed_switches
 from app.tracker.machine_watch import (
     CROSSED_DEG,
     UNWATCHED,
@@ -82,6 +82,8 @@ def notices(mind: Mind) -> tuple[Reason, ...]:
     """Return what is watched and no fault: an axis that crept of late, and one that stops too late."""
     slow = prompt(mind)
     found: list[Reason] = [] if slow is None else [slow]
+    if mind.seen is not None and mind.seen.feedback is not None:
+        found.extend(pressed_switches(mind.config, mind.seen.feedback))
     for axis, guard in mind.guards.items():
         if guard.crept_at is not None and mind.now - guard.crept_at < CREEP_SHOWN:
             found.append(creeps(mind, axis))

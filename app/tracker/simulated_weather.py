@@ -39,13 +39,35 @@ class Scenario(StrEnum):
     CLOUDS = "clouds"
 
 
+class WeatherFault(StrEnum):
+    """What can be played on a made-up station for training."""
+
+    HIGH_WIND = "high_wind"
+    SNOW_LOAD = "snow_load"
+    SNOW_AND_WIND = "snow_and_wind"
+    LIGHT_FLICKERS = "light_flickers"
+    WIND_IMPOSSIBLE = "wind_impossible"
+    WIND_FROZEN = "wind_frozen"
+    WINDS_DISAGREE = "winds_disagree"
+    STATION_SILENT = "station_silent"
+
+
+@dataclass(frozen=True, slots=True)
+class PlayedWeather:
+    """What is played on a made-up station, since an instant of the site's clock."""
+
+    fault: WeatherFault
+    since: datetime
+
+
 @dataclass(frozen=True, slots=True)
 class SimulatedStation:
     """A made-up station; wind, light, snow and temperature count only by hand, the direction always.
 
     `gustiness_pct` is how far the strongest gust exceeds the mean wind. `light_wm2` None is the light of a
     clear sky at the sun's elevation. A scenario begins at `begun_at`, by the site's clock; None: the site
-    begins it when it takes the order. Raises `ValueError` with a sentence for what is out of range.
+    begins it when it takes the order. `played` is what is played on it for training. Raises `ValueError` with
+    a sentence for what is out of range.
     """
 
     scenario: Scenario = Scenario.BY_HAND
@@ -57,6 +79,7 @@ class SimulatedStation:
     snow_kg: float = 0.0
     temperature_degc: float = 20.0
     begun_at: datetime | None = None
+    played: PlayedWeather | None = None
 
     def __post_init__(self) -> None:
         for name, (title, low, high, unit) in SPANS.items():

@@ -1,6 +1,7 @@
 """What the templates of a drive's set-up are given."""
 
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import ClassVar
 
 from app.tracker.config import DriveConfig, TrackerConfig
@@ -14,6 +15,14 @@ from app.web.contexts import Form, Frame
 
 Options = tuple[tuple[str, str], ...]
 """Values and texts of a list to choose from."""
+
+
+class TrainingPlace(StrEnum):
+    """Where the faults of a tracker are played: in this program, in drive-sim, or not at all."""
+
+    HERE = "here"
+    DRIVE_SIM = "drive-sim"
+    NOWHERE = "nowhere"
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,13 +50,20 @@ class DrivePage:
 
 @dataclass(frozen=True, slots=True)
 class TrainingPage:
-    """The faults that can be played on a simulated tracker; none on a real one."""
+    """The faults that can be played on a tracker by their subjects; none on one that may be real.
+
+    `place` says where they are played; `weather_is` whether the site's weather is made up (None: it cannot
+    be, because a tracker of the site may be real), and `playing` what is played with it.
+    """
 
     template: ClassVar[str] = "training.html"
 
     frame: Frame
-    lessons: tuple[Lesson, ...]
-    simulated: bool
+    place: TrainingPlace
+    lessons: dict[str, tuple[Lesson, ...]]
+    weather_is: bool | None
+    playing: str
+    real_trackers: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)

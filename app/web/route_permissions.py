@@ -261,6 +261,7 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/strategy/hybrid
         POST /trackers/{tracker_id}/strategy/program
         POST /trackers/{tracker_id}/sun-check/apply
+        POST /trackers/{tracker_id}/training/weather
         POST /trackers/{tracker_id}/sun-check/forget
         POST /trackers/{tracker_id}/sun-check/take
         POST /trackers/{tracker_id}/zero

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from app.drives.faults import FaultKind
-from app.tracker.training import LESSONS, lesson
+from app.tracker.simulated_weather import WeatherFault
+from app.tracker.training import LESSONS, Subject, lesson
 from tests.web.desk import Desk
 
 HTMX = {"HX-Request": "true", "HX-Request-Type": "partial"}
@@ -20,8 +21,11 @@ async def desk(tmp_path: Path) -> AsyncIterator[Desk]:
         yield desk
 
 
-def test_every_lesson_can_be_played_by_the_simulator() -> None:
-    assert {one.fault for one in LESSONS} <= set(FaultKind)
+def test_every_fault_of_the_simulator_is_a_lesson_and_every_lesson_can_be_played() -> None:
+    assert {part.kind for one in LESSONS for part in one.parts} == set(FaultKind)
+    assert {one.weather for one in LESSONS if one.weather} == set(WeatherFault)
+    assert len({one.fault for one in LESSONS}) == len(LESSONS)
+    assert all(one.parts or one.weather for one in LESSONS)
     with pytest.raises(ValueError, match="There is no fault 'fire'"):
         lesson("fire")
 
@@ -29,7 +33,8 @@ def test_every_lesson_can_be_played_by_the_simulator() -> None:
 async def test_a_fault_is_played_seen_and_ended(desk: Desk) -> None:
     page = await desk.ask("GET", "/trackers/T1/training")
     assert "TRAINING" in page.text
-    assert all(one.title in unescape(page.text) for one in LESSONS)
+    assert all(one.title in unescape(page.text) for one in LESSONS if one.subject is not Subject.WEATHER)
+    assert "The site's weather is not simulated now" in unescape(page.text)
     played = await desk.ask(
         "POST", "/trackers/T1/training/play", data={"fault": "local_switch"}, headers=HTMX
     )
@@ -52,3 +57,57 @@ async def test_the_api_plays_and_ends_faults_and_knows_their_names(desk: Desk) -
     assert seen["fault"]["code"] == "drive_fault"
     assert (await desk.ask("DELETE", API)).status_code == 204
     assert (await desk.ask("POST", API, json={"fault": "fire"})).status_code == 422
+
+
+async def test_weather_is_played_on_made_up_weather_only_and_ends_with_the_faults(desk: Desk) -> None:
+    refused = await desk.ask("POST", API, json={"fault": "wind_impossible"})
+    assert refused.status_code == 409
+    assert "weather is not simulated" in refused.text
+    assert (await desk.ask("POST", "/trackers/T1/training/weather", headers=HTMX)).status_code == 204
+    await desk.forward(2.0)
+    assert (await desk.ask("POST", API, json={"fault": "wind_impossible"})).status_code == 204
+    page = (await desk.ask("GET", "/trackers/T1/training")).text
+    assert "Played now: wind impossible." in page
+    assert all(one.title in unescape(page) for one in LESSONS)
+    await desk.forward(2.0)
+    assert await wind(desk) == "impossible"
+    assert (await desk.ask("DELETE", API)).status_code == 204
+    await desk.forward(2.0)
+    assert await wind(desk) == "good"
+
+
+@pytest.mark.fault(42)
+async def test_a_storm_that_meets_a_fault_says_not_stowed_on_every_page(desk: Desk) -> None:
+    await desk.ask("POST", "/trackers/T1/training/weather", headers=HTMX)
+    await desk.forward(2.0)
+    assert (await desk.ask("POST", API, json={"fault": "not_stowed"})).status_code == 204
+    await desk.forward(3.0)
+    for path in ("/trackers/T1", "/trackers/T1/training", "/trackers/T1/settings"):
+        page = (await desk.ask("GET", path)).text
+        assert "is NOT STOWED, and wind demands it" in page
+        assert 'data-when="not_stowed">' in page, "the band is shown"
+
+
+async def wind(desk: Desk) -> str:
+    weather = (await desk.ask("GET", "/api/v1/site/weather")).json()
+    quality: str = weather["quantities"]["wind_mps"]["quality"]
+    return quality
+
+
+@pytest.mark.fault(17)
+async def test_a_pressed_switch_is_named_with_the_way_out_on_the_page(desk: Desk) -> None:
+    assert (await desk.ask("POST", API, json={"fault": "upper_limit_stuck"})).status_code == 204
+    await desk.forward(1.0)
+    seen = (await desk.ask("GET", "/api/v1/trackers/T1/snapshot")).json()
+    told = {reason["code"]: reason["message"] for reason in seen["notices"]}
+    sentence = (
+        "The upper limit switch of the azimuth axis of Tracker 1 is on although it stands within"
+    )
+    assert told["at_limit_switch"].startswith(sentence)
+    assert told["at_limit_switch"].endswith("it moves west (anticlockwise) only.")
+    assert sentence in (await desk.ask("GET", "/trackers/T1/training")).text
+    await desk.ask("POST", API, json={"fault": "both_limits"})
+    await desk.forward(1.0)
+    both = (await desk.ask("GET", "/api/v1/trackers/T1/snapshot")).json()
+    assert "at_limit_switch" not in {reason["code"] for reason in both["notices"]}
+    assert both["fault"]["code"] == "limit_switch_wiring"

@@ -6,26 +6,39 @@ from fastapi import APIRouter, Form
 from starlette.requests import Request
 from starlette.responses import Response
 
-from app.link.messages import ClearFaults, PlayFault
-from app.tracker.config import DriveKind
-from app.tracker.training import LESSONS
+from app.link.messages import ClearFaults, PlayFault, SiteDetail
+from app.link.weather_orders import SimulateWeather
+from app.tracker.config import DriveConfig, DriveKind
+from app.tracker.simulated_weather import SimulatedStation
+from app.tracker.training import LESSONS, Lesson, Subject
 from app.web.deps import MachineDep
-from app.web.drive_contexts import TrainingPage
+from app.web.drive_contexts import TrainingPage, TrainingPlace
+from app.web.ui.formats import words
 from app.web.ui.frame import tracker_frame
 from app.web.ui.orders import PressDep
-from app.web.ui.render import page
+from app.web.ui.render import go, page
 from app.web.ui.wizard import tracker_of
 
 router = APIRouter(prefix="/trackers/{tracker_id}/training")
+TRAINED_PROFILE = "simulated-plc"
 
 
 @router.get("")
 async def training(request: Request, tracker_id: str, machine: MachineDep) -> Response:
     """Show every fault that can be played."""
-    tracker = tracker_of(await machine.detail(), tracker_id)
-    simulated = tracker.state.config.drive.kind is DriveKind.SIMULATED
-    frame = tracker_frame(request, tracker_id, "Training")
-    return page(request, TrainingPage(frame, LESSONS if simulated else (), simulated))
+    detail = await machine.detail()
+    place = _place(tracker_of(detail, tracker_id).state.config.drive)
+    real = _real(detail)
+    station = detail.site.simulated_weather
+    context = TrainingPage(
+        frame=tracker_frame(request, tracker_id, "Training"),
+        place=place,
+        lessons={} if place is TrainingPlace.NOWHERE else _by_subject(),
+        weather_is=None if real else station is not None,
+        playing=words(station.played.fault) if station is not None and station.played is not None else "",
+        real_trackers=real,
+    )
+    return page(request, context)
 
 
 @router.post("/play")
@@ -40,3 +53,29 @@ async def clear(tracker_id: str, press: PressDep) -> Response:
     """End every fault that is played."""
     await press.send(ClearFaults(tracker_id))
     return press.answer("No fault is played any more. What is latched waits for you.")
+
+
+@router.post("/weather")
+async def weather(request: Request, tracker_id: str, press: PressDep) -> Response:
+    """Make up quiet weather for the site, so that storms and broken sensors can be played."""
+    await press.send(SimulateWeather(SimulatedStation()))
+    return go(request, f"/trackers/{tracker_id}/training#weather")
+
+
+def _place(drive: DriveConfig) -> TrainingPlace:
+    if drive.kind is DriveKind.SIMULATED:
+        return TrainingPlace.HERE
+    return TrainingPlace.DRIVE_SIM if drive.profile == TRAINED_PROFILE else TrainingPlace.NOWHERE
+
+
+def _by_subject() -> dict[str, tuple[Lesson, ...]]:
+    return {subject.value: tuple(one for one in LESSONS if one.subject is subject) for subject in Subject}
+
+
+def _real(detail: SiteDetail) -> tuple[str, ...]:
+    """Return the trackers that may be real, so that no weather may be made up for them."""
+    return tuple(
+        name
+        for name, one in detail.trackers.items()
+        if one.state.config.drive.kind is not DriveKind.SIMULATED
+    )
