@@ -126,7 +126,7 @@ class Killing:
         told = [event["message"] for event in reversed(self.integrator.journal("tracker_changed"))]
         assert told[-len(self.names) :] == [f"The site is now called {name}." for name in self.names]
         started = self.integrator.journal("machine_started")
-        assert len(started) == len(self.names) + 1
+        assert len(started) == len(self.names) + 1, self.product.deaths()
         assert started[0]["data"]["clean"] is False
         assert "without warning" in started[0]["message"]
         path = self.product.data_dir / "heliopanel.db"

@@ -132,6 +132,14 @@ class Product:
             if line.get("event") == "child_started" and line.get("child") == child
         ]
 
+    def deaths(self) -> list[str]:
+        """Return which child has died of what, in order: a code below 0 is the signal that killed it."""
+        return [
+            f"{line['child']} {line['code']}"
+            for line in list(self.lines)
+            if line.get("event") == "child_died"
+        ]
+
     def signal(self, child: str, number: signal.Signals) -> float:
         """Send a signal to the newest process of a child and return when."""
         process_id = self.starts(child)[-1]

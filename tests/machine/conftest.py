@@ -1,5 +1,5 @@
-"""The proofs that take an hour, or a clock of their own, are collected by `make soak` alone."""
+"""The proof that takes an hour is collected by `make soak` alone."""
 
 from tests.soak import SOAK
 
-collect_ignore = [] if SOAK else ["test_clock_jump.py", "test_viewers.py"]
+collect_ignore = [] if SOAK else ["test_viewers.py"]

@@ -139,6 +139,10 @@ class Service:
             if line.get("event") == "child_started" and line.get("child") == child
         ]
 
+    def deaths(self) -> list[str]:
+        """Return which child has died of what, in order: a code below 0 is the signal that killed it."""
+        return [f"{line['child']} {line['code']}" for line in self.lines if line.get("event") == "child_died"]
+
     def signal(self, child: str, number: signal.Signals) -> None:
         os.kill(self.starts(child)[-1], number)
 

@@ -5,7 +5,6 @@ import random
 import signal
 from contextlib import suppress
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
 
 import httpx
 
@@ -37,7 +36,7 @@ async def kill_mid_show(service: Service, drive: DriveSimulator, number: int) ->
     service.signal("machine", signal.SIGKILL)
     stopped_after_s = await drive.rests(within_s=WATCHDOG_AND_RAMP_S + 2.0)
     await _until_restarted(service, boot_id)
-    _check_nothing_lost(service.data_dir, name, number)
+    _check_nothing_lost(service, name, number)
     seen = service.tracker()
     assert seen is not None
     assert seen.activity is not ActivityName.SHOWING
@@ -77,8 +76,8 @@ async def _until_restarted(service: Service, boot_id: str) -> None:
     await eventually(is_new)
 
 
-def _check_nothing_lost(data_dir: Path, name: str, number: int) -> None:
-    reader = open_reader(f"sqlite:///{data_dir / 'heliopanel.db'}")
+def _check_nothing_lost(service: Service, name: str, number: int) -> None:
+    reader = open_reader(f"sqlite:///{service.data_dir / 'heliopanel.db'}")
     site = reader.site()
     journal = [entry.event for entry in reader.journal(JournalFilter(limit=1000))]
     shows = reader.recordings(kind=RecordingKind.SHOW)
@@ -87,7 +86,7 @@ def _check_nothing_lost(data_dir: Path, name: str, number: int) -> None:
     assert site.name == name
     assert [event for event in journal if event.message == f"The site is now called {name}."]
     starts = [event for event in journal if event.kind is EventKind.MACHINE_STARTED]
-    assert len(starts) == number + 2
+    assert len(starts) == number + 2, service.deaths()
     assert starts[0].data["clean"] is False
     assert "without warning" in starts[0].message
     assert len(shows) == number + 1

@@ -1,0 +1,51 @@
+"""The time zone of the computer is changed while a tracker tracks: nothing that it does depends on it."""
+
+import time
+from collections.abc import Iterator
+
+import pytest
+
+from app.tracker.commands import SelectMode, Track
+from app.tracker.mode import Mode
+from app.tracker.snapshot import ActivityName, EventKind
+from app.web.ui.formats import local
+from tests.site.plant import Plant, make_plant
+
+ZONES = ("Pacific/Kiritimati", "Pacific/Midway", "Australia/Lord_Howe", "Antarctica/Troll")
+
+
+@pytest.fixture
+def zone(monkeypatch: pytest.MonkeyPatch) -> Iterator[pytest.MonkeyPatch]:
+    """Change the zone of this process, and take its own again afterwards."""
+    yield monkeypatch
+    monkeypatch.undo()
+    time.tzset()
+
+
+async def tracking() -> Plant:
+    plant = make_plant()
+    await plant.start()
+    await plant.commission()
+    await plant.ask(SelectMode(Mode.DUAL))
+    await plant.ask(Track())
+    await plant.until(lambda seen: seen.activity is ActivityName.TRACKING and seen.in_position)
+    return plant
+
+
+async def test_a_tracker_tracks_on_as_its_twin_that_was_left_alone(zone: pytest.MonkeyPatch) -> None:
+    twin, moved = await tracking(), await tracking()
+    for name in ZONES:
+        await twin.forward(seconds=20)
+        zone.setenv("TZ", name)
+        time.tzset()
+        assert time.tzname != ("UTC", "UTC")
+        await moved.forward(seconds=20)
+        assert moved.tracker().setpoint == twin.tracker().setpoint
+        assert moved.tracker().measured == twin.tracker().measured
+        assert moved.site.model.now() == twin.site.model.now()
+        now = moved.site.model.now()
+        assert local(now, "Europe/Istanbul", "%H:%M") == f"{now.hour + 3:02d}:{now.minute:02d}"
+    assert not moved.happened(EventKind.CLOCK_JUMPED)
+    assert [event.at for event in moved.events] == [event.at for event in twin.events]
+    await moved.close()
+    await twin.close()
