@@ -5,6 +5,8 @@ from typing import Annotated
 
 from pydantic import AwareDatetime, BeforeValidator
 
+NUMBER = re.compile(r"\s*[-+]?[\d._]+(?:[eE][-+]?\d+)?\s*")
+NOT_A_NUMBER = "Write the instant in ISO 8601 with its offset, such as 2026-06-21T12:00:00+03:00."
 LEAP_SECOND = re.compile(r"([T ]\d{2}:\d{2}):60(?:[.,]\d+)?(?=$|[Zz+-])")
 
 
@@ -18,8 +20,11 @@ def without_leap_second(text: str) -> str:
 
 
 def _clamped(given: object) -> object:
+    """Return what is to be read as an instant; a number, taken for seconds since 1970, is refused."""
+    if isinstance(given, int | float) or (isinstance(given, str) and NUMBER.fullmatch(given)):
+        raise ValueError(NOT_A_NUMBER)
     return without_leap_second(given) if isinstance(given, str) else given
 
 
 Instant = Annotated[AwareDatetime, BeforeValidator(_clamped)]
-"""An instant with its offset in what comes in; 23:59:60 is taken as 23:59:59."""
+"""An instant with its offset in what comes in; 23:59:60 is taken as 23:59:59, and a number is refused."""

@@ -13,7 +13,7 @@ from pydantic import Field
 from starlette.concurrency import run_in_threadpool
 
 from app.link.messages import DeleteRecording, SavePlan, UnknownRecording
-from app.store.decimate import decimate
+from app.store.decimate import FEWEST_POINTS, decimate
 from app.store.exports import to_csv, to_parquet
 from app.store.store import Reader
 from app.sun.position import Algorithm
@@ -24,6 +24,7 @@ from app.tracker.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
 from app.tracker.snapshot import ActivityName, Snapshot
 from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, RecordingId, Responses
 from app.web.api.orders import SenderDep
+from app.web.api.shows import place_of_show
 from app.web.api.trackers import detail_of
 from app.web.deps import MachineDep, ReaderDep
 from app.web.errors import NotAcceptable
@@ -33,7 +34,8 @@ router = APIRouter(prefix="/recordings", tags=["recordings"])
 ACTIVITIES = [name.value for name in ActivityName]
 Seconds = Annotated[float, Query(ge=0, le=1e9, description="Seconds since the recording began.")]
 Points = Annotated[
-    int | None, Query(ge=18, le=1_000_000, description="At most so many frames; the extremes stay.")
+    int | None,
+    Query(ge=FEWEST_POINTS, le=1_000_000, description="At most so many frames; the extremes stay."),
 ]
 
 
@@ -139,7 +141,7 @@ async def rerun(
     config = (await detail_of(machine, tracker_id)).state.config
     plan = again(info, wanted.duration_s, refraction=config.refraction)
     await sender.send(SavePlan(tracker_id, plan))
-    response.headers["Location"] = f"/api/v1/trackers/{tracker_id}/shows/{plan.show_id}"
+    response.headers["Location"] = place_of_show(tracker_id, plan)
     return await sender.command(tracker_id, GoToStart(plan))
 
 

@@ -3,6 +3,7 @@
 from datetime import date, datetime, timedelta
 from enum import StrEnum
 from typing import Self
+from urllib.parse import quote
 from uuid import uuid4
 
 from fastapi import APIRouter
@@ -118,6 +119,11 @@ class ShowAction(StrEnum):
     STOP = "stop"
 
 
+def place_of_show(tracker_id: str, plan: ShowPlan) -> str:
+    """Return where a planned show is found, as a `Location`; a tracker's name may have any letters."""
+    return f"/api/v1/trackers/{quote(tracker_id, safe='')}/shows/{quote(plan.show_id, safe='')}"
+
+
 @router.post("", status_code=201, summary="Plan a show", responses=NOT_FOUND | REFUSED)
 async def plan_show(
     tracker_id: TrackerId,
@@ -132,7 +138,7 @@ async def plan_show(
     plan = await run_in_threadpool(_plan, new, detail, site)
     checked = await run_in_threadpool(_checked, tracker_id, plan, detail, None)
     await sender.send(SavePlan(tracker_id, plan))
-    response.headers["Location"] = f"/api/v1/trackers/{tracker_id}/shows/{plan.show_id}"
+    response.headers["Location"] = place_of_show(tracker_id, plan)
     return checked
 
 

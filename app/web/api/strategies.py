@@ -89,7 +89,7 @@ async def write_table(
     return await _follow(tracker_id, program, sender, machine)
 
 
-@router.get("/program/examples", summary="Step programs that come with Heliopanel")
+@router.get("/program/examples", summary="Step programs that come with Heliopanel", responses=NOT_FOUND)
 async def read_examples(tracker_id: TrackerId, machine: MachineDep) -> dict[str, StepProgram]:
     """Return each example by its short name."""
     await detail_of(machine, tracker_id)

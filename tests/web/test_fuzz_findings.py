@@ -1,0 +1,71 @@
+"""What the fuzzer of the API found once and must not find again: one small case each."""
+
+from collections.abc import AsyncIterator
+from dataclasses import replace
+
+import httpx
+import pytest
+from pydantic import TypeAdapter, ValidationError
+
+from app.instants import Instant
+from tests.fake_data import commissioned
+from tests.fake_tracker import FakeTracker
+from tests.fakes import FakeMachine, fake_app, serving
+
+V1 = "/api/v1"
+INSTANT: TypeAdapter[object] = TypeAdapter(Instant)
+
+
+@pytest.fixture
+def machine() -> FakeMachine:
+    return FakeMachine()
+
+
+@pytest.fixture
+async def api(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
+    async with serving(fake_app(machine)) as client:
+        yield client
+
+
+@pytest.mark.parametrize("number", ["0.0", "37301", " 12 ", "-1461807020419.533", "1.36e-63", 0, 37301, 0.5])
+def test_a_number_is_no_instant(number: object) -> None:
+    with pytest.raises(ValidationError, match="ISO 8601"):
+        INSTANT.validate_python(number)
+
+
+@pytest.mark.parametrize("given", ["2026-06-21T12:00:00+03:00", "2026-06-21T23:59:60Z"])
+def test_an_instant_with_its_offset_is_one(given: str) -> None:
+    assert INSTANT.validate_python(given) is not None
+
+
+@pytest.mark.parametrize("path", ["/audit?since=0.0", "/sun?at=-1461807020419.5", "/journal?until=12"])
+async def test_a_number_in_the_place_of_an_instant_is_refused(api: httpx.AsyncClient, path: str) -> None:
+    answer = await api.get(V1 + path)
+    assert answer.status_code == 422
+    assert "Write the instant in ISO 8601" in answer.json()["errors"][0]["message"]
+
+
+async def test_the_place_of_a_show_is_told_whatever_its_tracker_is_called(
+    api: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    name = "Çatı/\U000b4e39"
+    state = commissioned("T1", "North field", tracking=False)
+    config = replace(state.config, tracker_id=name)
+    machine.trackers[name] = FakeTracker(replace(state, config=config), machine.trackers["T1"].position)
+    answer = await api.post(f"{V1}/recordings/show-1/rerun", json={"tracker_id": name, "duration_s": 9000})
+    assert answer.status_code == 202, answer.text
+    assert answer.headers["location"].startswith("/api/v1/trackers/%C3%87at%C4%B1%2F%F3%B4%B8%B9/shows/")
+
+
+async def test_too_few_points_are_refused(api: httpx.AsyncClient) -> None:
+    for points in (1, 18, 21):
+        answer = await api.get(f"{V1}/recordings/show-1/frames", params={"points": points})
+        assert answer.status_code == 422, points
+
+
+async def test_examples_of_a_tracker_that_is_not_there_are_documented_as_missing(
+    api: httpx.AsyncClient,
+) -> None:
+    assert (await api.get(f"{V1}/trackers/T9/program/examples")).status_code == 404
+    described = (await api.get(f"{V1}/openapi.json")).json()["paths"]
+    assert "404" in described[f"{V1}/trackers/{{tracker_id}}/program/examples"]["get"]["responses"]
