@@ -108,6 +108,10 @@ def create_app(
     return app
 
 
+NOWHERE = {"type": "http", "method": "GET", "path": "/-", "root_path": "", "headers": []}
+"""A request that no route answers. FastAPI works a router's routes out at the first request that comes by;
+left to the first one in service, that held up a heartbeat of hold-to-run for 250 ms."""
+
 DESCRIPTION = """Everything that the browser can do, through the same calls.
 
 Field names carry units. Azimuth is clockwise from true north, elevation above the horizon, longitude positive
@@ -126,6 +130,8 @@ def _doors() -> tuple[BaseRoute, ...]:
     inner.include_router(operations, include_in_schema=False)
     for pages in ROUTERS:
         inner.include_router(pages, include_in_schema=False)
+    for door in inner.routes:
+        door.matches(NOWHERE)
     return tuple(inner.routes)
 
 
