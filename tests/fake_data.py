@@ -106,6 +106,8 @@ def frames(info: RecordingInfo) -> Frames:
     columns = (
         elapsed_s, sun_time_s, azimuth, elevation, azimuth, elevation,
         azimuth, elevation, azimuth - 0.05, measured, np.zeros_like(elapsed_s), np.zeros_like(elapsed_s),
+        np.full_like(elapsed_s, 0.25), np.zeros_like(elapsed_s), np.full_like(elapsed_s, 24.1),
+        6.0 + 2.0 * np.sin(elapsed_s / 7.0), np.full_like(elapsed_s, 6.0), np.full_like(elapsed_s, np.nan),
         np.full_like(elapsed_s, 6.0),
     )  # fmt: skip
     assert len(columns) == len(COLUMNS)

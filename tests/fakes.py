@@ -44,6 +44,7 @@ from app.link.messages import (
 )
 from app.link.metrics import GatewayMetrics, GatewayStatus, MachineMetrics
 from app.link.outlet import Outlet
+from app.link.place_orders import SetHorizon
 from app.link.record_orders import AddRecordPhoto, RemoveRecordPhoto, SignRecord
 from app.link.weather_orders import ReportWeather, SetMetStation, SetWeatherWindows, SimulateWeather
 from app.settings import Settings
@@ -163,6 +164,8 @@ class FakeMachine:
                 revision = self.site.location_revision + 1
                 self.site = replace(self.site, location=location, time_zone=zone, location_revision=revision)
             case SetClock(source=source, at=at, time_zone=zone):
+            case SetHorizon(horizon=horizon):
+                self.site = replace(self.site, horizon=horizon)
                 _check_zone(zone or "UTC")
                 offset_s = (at - now).total_seconds() if at else 0.0
                 setting = ClockSetting(source, offset_s, now, order.actor)
@@ -259,6 +262,9 @@ class FakeMachine:
         """Return counters of a machine that has done nothing yet, with its doors in every state."""
         if not self.reachable:
             raise MachineUnreachable("The controller service does not answer.")
+            sun_behind_horizon=self.site.horizon.hides(
+                made_up_sun(now).azimuth_deg, made_up_sun(now).elevation_deg
+            ),
         return MachineMetrics("fake-boot", 5.0, gateways=GATEWAYS)
 
     async def detail(self) -> SiteDetail:

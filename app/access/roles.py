@@ -103,6 +103,7 @@ ORDERS: dict[str, Permission] = {
     "restore_drive": Permission.CONFIGURE,
     "check_connection": Permission.CONFIGURE,
     "set_location": Permission.CONFIGURE,
+    "set_horizon": Permission.CONFIGURE,
     "set_met_station": Permission.CONFIGURE,
     "simulate_weather": Permission.CONFIGURE,
     "set_weather_windows": Permission.CONFIGURE,

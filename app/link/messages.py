@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Literal, Protocol
 
+from app.link.place_orders import SetHorizon
 from app.link.record_orders import RecordOrder
 from app.link.weather_orders import ReportWeather, SetMetStation, SetWeatherWindows, SimulateWeather
 from app.sun.position import Location
@@ -323,10 +324,10 @@ class ClearFaults:
 
 
 SiteCommand = (
-    SetLocation | SetClock | RenameSite | AddTracker | ConfigureTracker | RemoveTracker | ConfirmStep
-    | SavePlan | TakeSighting | ApplySightings | StopAll | SaveRecording | DeleteRecording | DriveOrder
-    | ReportWeather | SetMetStation | SimulateWeather | SetWeatherWindows | AlarmOrder | NotificationOrder
-    | ControlOrder | LockOrder | RecordOrder | PlayFault | ClearFaults
+    SetLocation | SetHorizon | SetClock | RenameSite | AddTracker | ConfigureTracker | RemoveTracker
+    | ConfirmStep | SavePlan | TakeSighting | ApplySightings | StopAll | SaveRecording | DeleteRecording
+    | DriveOrder | ReportWeather | SetMetStation | SimulateWeather | SetWeatherWindows | AlarmOrder
+    | NotificationOrder | ControlOrder | LockOrder | RecordOrder | PlayFault | ClearFaults
 )  # fmt: skip
 
 

@@ -295,6 +295,7 @@ class Site:
         state, trackers = self.model.state, self.model.snapshots(at)
         first = next(iter(self.model.loops.values()), None)
         algorithm = Algorithm.PSA if first is None else first.config.algorithm
+        sun = self.model.sky.sun(state.location, algorithm, at)
         return SiteSnapshot(
             boot_id=self._options.boot_id,
             sequence=next(self._sequence),
@@ -303,9 +304,11 @@ class Site:
             location=state.location,
             time_zone=state.time_zone,
             clock=self.model.timekeeper.state(),
-            sun=self.model.sky.sun(state.location, algorithm, at),
+            sun=sun,
             trackers=trackers,
             weather=self.model.weather.now(self._clock.now()),
+            sun_behind_horizon=sun is not None
+            and state.horizon.hides(sun.azimuth_deg, sun.apparent_elevation_deg),
         )
 
     async def _beat(self) -> None:

@@ -32,6 +32,7 @@ from app.link.messages import (
     TakeSighting,
     UnknownRecording,
 )
+from app.link.place_orders import SetHorizon
 from app.link.weather_orders import (
     ReportWeather,
     SetMetStation,
@@ -59,16 +60,16 @@ log = structlog.get_logger(__name__)
 
 
 SiteOrder = (
-    SetLocation | SetClock | RenameSite | ConfirmStep | AddTracker | ConfigureTracker | RemoveTracker
-    | TakeSighting | ApplySightings | SavePlan | SaveRecording | DeleteRecording | DriveOrder | StopAll
-    | WeatherOrder | PlayFault | ClearFaults
+    SetLocation | SetHorizon | SetClock | RenameSite | ConfirmStep | AddTracker | ConfigureTracker
+    | RemoveTracker | TakeSighting | ApplySightings | SavePlan | SaveRecording | DeleteRecording | DriveOrder
+    | StopAll | WeatherOrder | PlayFault | ClearFaults
 )  # fmt: skip
 
 
 async def carry_out(model: SiteModel, command: SiteOrder, actor: str) -> tuple[Event, ...]:
     """Carry out one order to the site, stored before this returns, and return what happened."""
     match command:
-        case SetLocation() | SetClock() | RenameSite() | ConfirmStep():
+        case SetLocation() | SetHorizon() | SetClock() | RenameSite() | ConfirmStep():
             return await _change_site(model, command, actor)
         case AddTracker() | ConfigureTracker() | RemoveTracker():
             return await _change_trackers(model, command, actor)
@@ -90,11 +91,13 @@ async def carry_out(model: SiteModel, command: SiteOrder, actor: str) -> tuple[E
 
 
 async def _change_site(
-    model: SiteModel, command: SetLocation | SetClock | RenameSite | ConfirmStep, actor: str
+    model: SiteModel, command: SetLocation | SetHorizon | SetClock | RenameSite | ConfirmStep, actor: str
 ) -> tuple[Event, ...]:
     match command:
         case SetLocation():
             return await _set_location(model, command, actor)
+        case SetHorizon():
+            return await _set_horizon(model, command, actor)
         case SetClock():
             return await _set_clock(model, command, actor)
         case RenameSite():
@@ -193,6 +196,13 @@ async def _set_location(model: SiteModel, command: SetLocation, actor: str) -> t
     )
     event = model.event(EventKind.LOCATION_SET, message, actor)
     return await _keep(model, _confirmed(state, StepName.LOCATION, given), event)
+
+
+async def _set_horizon(model: SiteModel, command: SetHorizon, actor: str) -> tuple[Event, ...]:
+    count = len(command.horizon.points)
+    message = f"The horizon was set: {count} points." if count else "The horizon was set: flat."
+    event = model.event(EventKind.HORIZON_SET, message, actor)
+    return await _keep(model, replace(model.state, horizon=command.horizon), event)
 
 
 def _refuse_while_following(model: SiteModel) -> None:

@@ -22,9 +22,19 @@ LEVEL = 6
 WIDTHS = (2, 4, 8)
 HEADER = struct.Struct("<IHBB")
 LARGEST = 2**53
-FORMER_COLUMNS = tuple(name for name in COLUMNS if not name.startswith("correction_"))
-"""What chunks held before there was a correction: nothing was corrected then, so it is read as zero."""
-FORMER = [COLUMNS.index(name) for name in FORMER_COLUMNS]
+CORRECTIONS = ("correction_azimuth_deg", "correction_elevation_deg")
+BESIDE = ("azimuth_dps", "elevation_dps", "supply_v", "wind_mps", "wind_mean_mps", "light_wm2")
+LAYOUTS = {
+    len(names): [COLUMNS.index(name) for name in names]
+    for names in (
+        COLUMNS,
+        tuple(name for name in COLUMNS if name not in BESIDE),
+        tuple(name for name in COLUMNS if name not in (*BESIDE, *CORRECTIONS)),
+    )
+}
+"""Which columns chunks of so many columns hold: all; before drive and weather were kept, read as unknown;
+and before there was a correction: nothing was corrected then, so it is read as zero."""
+BESIDE_AT = [COLUMNS.index(name) for name in BESIDE]
 LONGEST_BODY = HEADER.size + len(COLUMNS) * (8 + CHUNK_FRAMES * 9)
 
 STEPS_PER_UNIT = {"activity": 1.0}
@@ -73,7 +83,9 @@ def decode_all(chunks: Sequence[bytes]) -> Frames:
         if body.columns == len(COLUMNS):
             _unpack(body, SCALES, rows)
         else:
-            rows[:, FORMER] = _unpack(body, SCALES[:, FORMER], np.empty((body.rows, body.columns)))
+            held = LAYOUTS[body.columns]
+            rows[:, BESIDE_AT] = np.nan
+            rows[:, held] = _unpack(body, SCALES[:, held], np.empty((body.rows, body.columns)))
         begin += body.rows
     return Frames(values)
 
@@ -130,7 +142,7 @@ def _open(chunk: bytes) -> _Body:
     except (ValueError, struct.error, zlib.error) as error:
         raise ChunkDamaged(f"A chunk of {len(chunk)} bytes is damaged: {error}.") from error
     body = _Body(rows, columns, width, bool(has_gaps), content)
-    if columns not in (len(COLUMNS), len(FORMER)) or width not in WIDTHS or not 1 <= rows <= CHUNK_FRAMES:
+    if columns not in LAYOUTS or width not in WIDTHS or not 1 <= rows <= CHUNK_FRAMES:
         raise ChunkDamaged(f"A chunk says that it has {rows} frames of {columns} columns; it is damaged.")
     if len(content) != body.length:
         raise ChunkDamaged(f"A chunk of {rows} frames has {len(content)} bytes, not {body.length}.")

@@ -5,20 +5,21 @@ from numpy.typing import NDArray
 
 from app.tracker.recording import COLUMNS, Frames
 
-ANGLES = tuple(index for index, name in enumerate(COLUMNS) if name.endswith("_deg"))
-FEWEST_POINTS = 2 + 2 * len(ANGLES)
+PEAKS = tuple(index for index, name in enumerate(COLUMNS) if name.endswith(("_deg", "_mps", "_wm2", "_dps")))
+FEWEST_POINTS = 2 + 2 * len(PEAKS)
 
 
 def decimate(frames: Frames, points: int) -> Frames:
-    """Return at most `points` of these frames, in order: of equal stretches the extremes of every angle.
+    """Return at most `points` of these frames, in order: of equal stretches the extremes of every column.
 
-    First and last frame stay. Raises `ValueError` below 18 points.
+    Extremes of angles, speeds, wind and light count. First and last frame stay. Raises `ValueError` below
+    `FEWEST_POINTS`.
     """
     if points < FEWEST_POINTS:
         raise ValueError(f"Ask for at least {FEWEST_POINTS} points, not {points}.")
     kept, stretches = frames.values, points // 2
     while len(kept) > points:
-        kept = kept[_extremes(kept[:, ANGLES].T, -(-len(kept) // stretches))]
+        kept = kept[_extremes(kept[:, PEAKS].T, -(-len(kept) // stretches))]
         stretches = max(1, stretches * 3 // 4)
     return frames if kept is frames.values else Frames(kept)
 

@@ -3,7 +3,7 @@
 import csv
 import io
 from collections.abc import Iterator
-from datetime import timedelta
+from datetime import UTC, datetime, timedelta
 from math import isfinite
 from typing import Any
 
@@ -18,6 +18,8 @@ from app.tracker.snapshot import ActivityName
 ROWS_A_PIECE = 5000
 ACTIVITIES = list(ActivityName)
 NUMBERS = COLUMNS[:-1]
+MEASURED = COLUMNS[2:]
+"""All but the two columns that count seconds."""
 HEAD_KEY = b"heliopanel_recording"
 
 
@@ -26,6 +28,14 @@ def to_csv(info: RecordingInfo, frames: Frames) -> Iterator[bytes]:
     yield _lines([("time_utc", "sun_time_utc", *COLUMNS)])
     for begin in range(0, len(frames), ROWS_A_PIECE):
         yield _lines([_row(info, row) for row in frames.values[begin : begin + ROWS_A_PIECE].tolist()])
+
+
+def measured_csv(begin: datetime, frames: Frames) -> Iterator[bytes]:
+    """Yield frames that count from an instant as CSV: the instant in UTC and everything that was measured."""
+    yield _lines([("time_utc", *MEASURED)])
+    for first in range(0, len(frames), ROWS_A_PIECE):
+        rows = frames.values[first : first + ROWS_A_PIECE].tolist()
+        yield _lines([_measured(begin, row) for row in rows])
 
 
 def to_parquet(info: RecordingInfo, frames: Frames) -> bytes:
@@ -50,8 +60,16 @@ def _lines(rows: list[tuple[object, ...]]) -> bytes:
     return text.getvalue().encode()
 
 
+def _measured(begin: datetime, values: list[float]) -> tuple[object, ...]:
+    return (_stamp(begin + timedelta(seconds=values[0])), *_known(values[2:-1]), _activity(values[-1]))
+
+
+def _known(values: list[float]) -> list[float | None]:
+    return [round(value, 3) if isfinite(value) else None for value in values]
+
+
 def _row(info: RecordingInfo, values: list[float]) -> tuple[object, ...]:
-    known = [round(value, 3) if isfinite(value) else None for value in values[:-1]]
+    known = _known(values[:-1])
     times = (_iso(info, known[0], sun=False), _iso(info, known[1], sun=True))
     return (*times, *known, _activity(values[-1]))
 
@@ -60,7 +78,11 @@ def _iso(info: RecordingInfo, seconds: float | None, *, sun: bool) -> str:
     if seconds is None:
         return ""
     begin = info.sun_begin_at if sun else info.began_at
-    return (begin + timedelta(seconds=seconds)).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+    return _stamp(begin + timedelta(seconds=seconds))
+
+
+def _stamp(at: datetime) -> str:
+    return at.astimezone(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
 def _activity(value: float) -> str | None:

@@ -25,9 +25,7 @@ class Horizon:
             if not 0.0 <= azimuth_deg < 360.0:
                 raise ValueError(f"An azimuth of the horizon must be 0 to below 360, not {azimuth_deg:g}.")
             if not 0.0 <= elevation_deg < 90.0:
-                raise ValueError(
-                    f"An elevation of the horizon must be 0 to below 90, not {elevation_deg:g}."
-                )
+                raise ValueError(f"An elevation of the horizon must be 0 to below 90, not {elevation_deg:g}.")
         azimuths = [azimuth_deg for azimuth_deg, _ in self.points]
         if any(after <= before for before, after in pairwise(azimuths)):
             raise ValueError("The points of the horizon must be in rising order of azimuth, each once.")
@@ -49,7 +47,7 @@ class Horizon:
         return 0.0 <= elevation_deg < self.height_deg(azimuth_deg)
 
     def outline(self) -> tuple[tuple[float, float], ...]:
-        """Return it all the way round, 0 to 360 degrees, its own points among others; empty where it is flat."""
+        """Return the whole skyline, 0 to 360 degrees, its own points among others; empty if it is flat."""
         if not self.points:
             return ()
         steps = {step * OUTLINE_STEP_DEG for step in range(int(360.0 / OUTLINE_STEP_DEG) + 1)}

@@ -24,13 +24,21 @@ COLUMNS = (
     "measured_elevation_deg",
     "correction_azimuth_deg",
     "correction_elevation_deg",
+    "azimuth_dps",
+    "elevation_dps",
+    "supply_v",
+    "wind_mps",
+    "wind_mean_mps",
+    "light_wm2",
     "activity",
 )
 """`elapsed_s`: seconds since the recording began, of the machine. `sun_time_s`: seconds of sun time since
 `RecordingInfo.sun_begin_at`. `sun_elevation_deg` is apparent (refracted) if the tracker refracts. Angles are
 of the sky except that setpoints and measurements of an azimuth-elevation mount are axis angles (azimuth
-wrapped to [0, 360)), and that corrections are what light sensors add to the computed axis angles. What was
-not known is NaN. `activity` is the index in `list(ActivityName)`."""
+wrapped to [0, 360)), and that corrections are what light sensors add to the computed axis angles. Speeds and
+supply voltage are what the drive tells; wind is the gust, with its mean beside it, and light what the site's
+station tells, while they may be relied on. What was not known is NaN. `activity` is the index in
+`list(ActivityName)`."""
 
 
 class RecordingKind(StrEnum):

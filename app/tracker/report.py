@@ -92,8 +92,28 @@ def frame(mind: Mind) -> tuple[float, ...]:
         *_told(mind),
         *_stands(mind, feedback),
         *_corrections(mind),
+        *_drive(feedback),
+        *_weather(mind),
         _INDEX[type(mind.activity)],
     )
+
+
+def _drive(feedback: Feedback | None) -> tuple[float, float, float]:
+    """Return the speed of both axes and the voltage of the supply, as the drive tells them."""
+    if feedback is None:
+        return nan, nan, nan
+    supply_v = nan if feedback.supply_v is None else feedback.supply_v
+    return feedback.azimuth.velocity_dps, feedback.elevation.velocity_dps, supply_v
+
+
+def _weather(mind: Mind) -> tuple[float, float, float]:
+    """Return gust, mean wind and light of this tick, to what a station resolves; NaN what is not good."""
+    if mind.seen is None:
+        return nan, nan, nan
+    told = mind.seen.weather
+    values = (told.wind.good, told.wind_mean_mps, told.light.good)
+    gust_mps, mean_mps, light_wm2 = (nan if value is None else round(value, 1) for value in values)
+    return gust_mps, mean_mps, light_wm2
 
 
 def _told(mind: Mind) -> tuple[float, float]:

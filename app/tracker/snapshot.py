@@ -205,6 +205,7 @@ class EventKind(StrEnum):
     MACHINE_STOPPED = "machine_stopped"
     MACHINE_RESTARTS = "machine_restarts"
     LOCATION_SET = "location_set"
+    HORIZON_SET = "horizon_set"
     CLOCK_SET = "clock_set"
     CLOCK_JUMPED = "clock_jumped"
     TRACKER_ADDED = "tracker_added"
@@ -316,7 +317,8 @@ class SiteSnapshot:
     """The whole site at one instant, full every time.
 
     `boot_id` changes when the machine restarts; `sequence` grows by one with every snapshot. `alarms` are at
-    most 50, the most urgent first; `alarm_counts` tells of all.
+    most 50, the most urgent first; `alarm_counts` tells of all. `sun_behind_horizon` says that the sun is up, but
+    behind the horizon that was entered.
     """
 
     boot_id: str
@@ -331,3 +333,4 @@ class SiteSnapshot:
     weather: WeatherNow | None = None
     alarms: tuple[AlarmNow, ...] = ()
     alarm_counts: AlarmCounts = field(default_factory=AlarmCounts)
+    sun_behind_horizon: bool = False

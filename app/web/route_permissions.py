@@ -65,6 +65,7 @@ _TABLE: dict[Permission, str] = {
         GET /recordings/{recording_id}
         GET /simulate
         GET /site
+        GET /site/horizon
         GET /studies
         GET /studies/glance
         GET /studies/list
@@ -102,6 +103,8 @@ _TABLE: dict[Permission, str] = {
         GET /trackers/{tracker_id}/strategy/day
         GET /trackers/{tracker_id}/strategy/program.csv
         GET /trackers/{tracker_id}/sun-check
+        GET /trackers/{tracker_id}/sun-path
+        GET /trackers/{tracker_id}/trends
         GET /api/v1/openapi.json
         GET /api/v1/me
         POST /api/v1/tickets
@@ -125,6 +128,7 @@ _TABLE: dict[Permission, str] = {
         GET /api/v1/recordings/{recording_id}/frames
         GET /api/v1/site
         GET /api/v1/site/clock
+        GET /api/v1/site/horizon
         GET /api/v1/site/integrations
         GET /api/v1/site/weather
         GET /api/v1/site/weather/simulation
@@ -213,6 +217,7 @@ _TABLE: dict[Permission, str] = {
     """,
     Permission.CONFIGURE: """
         POST /recordings/{recording_id}/delete
+        POST /site/horizon
         POST /site/name
         POST /site/notifications
         POST /site/notifications/test
@@ -268,6 +273,7 @@ _TABLE: dict[Permission, str] = {
         DELETE /api/v1/recordings/{recording_id}
         PATCH /api/v1/site
         PUT /api/v1/site/clock
+        PUT /api/v1/site/horizon
         PUT /api/v1/site/location
         POST /api/v1/trackers
         DELETE /api/v1/trackers/{tracker_id}

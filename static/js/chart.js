@@ -2,7 +2,7 @@
 
 /* global uPlot */
 import { colour } from "./colours.js";
-import { clockTime } from "./format.js";
+import { clockTime, dateIn } from "./format.js";
 
 const tzDate = (zone) => (seconds) => uPlot.tzDate(new Date(seconds * 1000), zone);
 
@@ -21,11 +21,11 @@ export function chart(holder, wanted) {
     legend: { live: true },
     scales: { x: { time: Boolean(wanted.zone) }, y: { range: wanted.range ?? padded } },
     axes: [
-      { ...axis, values: wanted.zone ? (_, ticks) => ticks.map((at) => clockTime(at * 1000, wanted.zone, wanted.seconds ?? false)) : wanted.xTicks },
+      { ...axis, values: wanted.zone ? (_, ticks) => ticks.map((at) => timeOf(at, wanted)) : wanted.xTicks },
       { ...axis, size: 58, values: (_, ticks) => ticks.map((value) => `${value}${unit}`) },
     ],
     series: [
-      { label: wanted.xLabel ?? "Time", value: (_, at) => (at === null ? "–" : wanted.zone ? clockTime(at * 1000, wanted.zone) : wanted.xText?.(at) ?? at) },
+      { label: wanted.xLabel ?? "Time", value: (_, at) => (at === null ? "–" : wanted.zone ? timeOf(at, { ...wanted, seconds: true }) : wanted.xText?.(at) ?? at) },
       ...wanted.series.map((one) => ({ label: one.label, stroke: colour(one.colour), width: one.width ?? 2, dash: one.dash, points: { show: false }, value: (_, value) => text(value), spanGaps: false })),
     ],
     hooks: wanted.hooks,
@@ -33,6 +33,12 @@ export function chart(holder, wanted) {
   const watcher = new ResizeObserver(() => plot.setSize(size()));
   watcher.observe(holder);
   return plot;
+}
+
+// The time of day, and with `days` the month and day before it.
+function timeOf(seconds, { zone, days, seconds: fine = false }) {
+  const time = clockTime(seconds * 1000, zone, fine);
+  return days ? `${dateIn(seconds * 1000, zone).slice(5)} ${time}` : time;
 }
 
 function padded(_, least, most) {

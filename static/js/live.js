@@ -134,7 +134,7 @@ function paintValues() {
 // `data-when="show.phase=running,paused"`: shown while the value is one of these; without `=`, while there is one.
 function holds(element) {
   const [path, wanted] = element.dataset.when.split("=");
-  const value = valueAt(scopeOf(element), path);
+  const value = path.startsWith("site.") ? valueAt(live.site, path.slice(5)) : valueAt(scopeOf(element), path);
   if (wanted === undefined) return Array.isArray(value) ? value.length > 0 : Boolean(value);
   return wanted.split(",").includes(String(value ?? "none"));
 }

@@ -10,6 +10,7 @@ from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
 from app.store.chunks import (
+    BESIDE,
     CHUNK_FRAMES,
     HEADER,
     SCALE,
@@ -100,10 +101,10 @@ def _packed(body: bytes) -> bytes:
         (encode(Frames(np.zeros((5, len(COLUMNS)))))[:-3], "cut short"),
         (_packed(b"\x00" * 10_000_000), "cut short or too long"),
         (_packed(b"abc"), "damaged"),
-        (_packed(HEADER.pack(5, len(COLUMNS) + 1, 2, 0)), "5 frames of 14 columns"),
-        (_packed(HEADER.pack(5, len(COLUMNS), 3, 0)), "5 frames of 13 columns"),
-        (_packed(HEADER.pack(0, len(COLUMNS), 2, 0)), "0 frames of 13 columns"),
-        (_packed(HEADER.pack(5, len(COLUMNS), 2, 0)), "not 242"),
+        (_packed(HEADER.pack(5, len(COLUMNS) + 1, 2, 0)), "5 frames of 20 columns"),
+        (_packed(HEADER.pack(5, len(COLUMNS), 3, 0)), "5 frames of 19 columns"),
+        (_packed(HEADER.pack(0, len(COLUMNS), 2, 0)), "0 frames of 19 columns"),
+        (_packed(HEADER.pack(5, len(COLUMNS), 2, 0)), "not 350"),
     ],
 )
 def test_damage_is_told(damaged: bytes, sentence: str) -> None:
@@ -124,7 +125,19 @@ def test_a_chunk_from_before_corrections_were_recorded_is_read_with_none() -> No
     assert frames.column("correction_azimuth_deg").tolist() == [0.0, 0.0]
     assert frames.column("activity").tolist() == [5.0, 5.0]
     assert np.isnan(frames.values[1, 6:8]).all()
-    assert np.isfinite(np.delete(frames.values, [6, 7], axis=1)).all()
+    beside = [COLUMNS.index(name) for name in BESIDE]
+    assert np.isnan(frames.values[:, beside]).all()
+    assert np.isfinite(np.delete(frames.values, [6, 7, *beside], axis=1)).all()
+
+
+def test_a_chunk_from_before_drive_and_weather_were_recorded_is_read_without_them() -> None:
+    """Thirteen columns, as they were stored before speeds, supply, wind and light came to them."""
+    first = [0, 0, 180_000, 45_000, 180_000, 45_000, 180_250, 45_000, 180_249, 45_001, 300, -20, 5]
+    body = HEADER.pack(1, 13, 2, 0) + np.array(first, "<i8").tobytes() + bytes(26)
+    frames = decode(_packed(body))
+    assert frames.column("correction_azimuth_deg").tolist() == [0.3]
+    assert frames.column("activity").tolist() == [5.0]
+    assert all(np.isnan(frames.column(name)).all() for name in BESIDE)
 
 
 @given(st.integers(0, 10_000), st.integers(1, 255))

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
-from app.store.decimate import ANGLES, FEWEST_POINTS, decimate
+from app.store.decimate import FEWEST_POINTS, PEAKS, decimate
 from app.tracker.recording import COLUMNS, Frames
 from tests.store.tracked_day import tracked_day
 
@@ -26,7 +26,7 @@ def test_peaks_order_and_ends_stay(given_values: NDArray[np.float64], points: in
     assert (np.diff(elapsed_s) > 0).all()
     assert elapsed_s[0] == 0.0
     assert elapsed_s[-1] == len(given_values) - 1
-    for column in ANGLES:
+    for column in PEAKS:
         known = given_values[:, column][~np.isnan(given_values[:, column])]
         kept = few.values[:, column]
         if len(known):
@@ -57,5 +57,5 @@ def test_what_is_short_stays_whole() -> None:
 
 
 def test_too_few_points_are_refused() -> None:
-    with pytest.raises(ValueError, match="at least 22 points"):
+    with pytest.raises(ValueError, match="at least 32 points"):
         decimate(tracked_day(300), FEWEST_POINTS - 1)

@@ -54,7 +54,12 @@ def tracked_day(seconds: int = 86400, *, begin_s: float = 0.0) -> Frames:
     names = list(ActivityName)
     activity = np.where(up, names.index(ActivityName.TRACKING), names.index(ActivityName.HOLDING))
     corrections = [np.where(up, np.round(0.3 + share * 0.01, 3), 0.0) for share in (1.0, 2.0)]
-    columns = [elapsed_s, elapsed_s, azimuth, elevation, *aim, *setpoints, *measured, *corrections, activity]
+    speeds = [np.where(up, np.round(chance.normal(0.0, 0.01, seconds), 3), 0.0) for _ in measured]
+    weather = [np.round(4.0 + np.sin(elapsed_s / 900.0) + share, 1) for share in (1.0, 0.0)]
+    light = np.where(up, np.round(1000.0 * np.sin(np.radians(elevation))), 0.0)
+    beside = [*speeds, np.full(seconds, 24.0), *weather, light]
+    columns = [elapsed_s, elapsed_s, azimuth, elevation, *aim, *setpoints, *measured, *corrections]
+    columns += [*beside, activity]
     return Frames(np.column_stack(columns))
 
 

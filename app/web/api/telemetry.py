@@ -1,14 +1,15 @@
 """What a tracker measured over hours and days, decimated on the server."""
 
-from datetime import datetime, timedelta
-from typing import Annotated
+from datetime import UTC, datetime, timedelta
+from typing import Annotated, Literal
 
 import numpy as np
 from fastapi import APIRouter, Query
-from fastapi.responses import Response
+from fastapi.responses import Response, StreamingResponse
 
 from app.instants import Instant
-from app.store.decimate import decimate
+from app.store.decimate import FEWEST_POINTS, decimate
+from app.store.exports import measured_csv
 from app.store.store import Reader
 from app.tracker.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
 from app.web.api.base import Output
@@ -19,6 +20,7 @@ from app.web.errors import NotAcceptable
 router = APIRouter(tags=["history"])
 
 LONGEST = timedelta(days=31)
+Points = Annotated[int, Query(ge=FEWEST_POINTS, le=100_000, description="At most so many; extremes stay.")]
 EMPTY = Frames(np.empty((0, len(COLUMNS))))
 
 
@@ -33,18 +35,23 @@ class Telemetry(Output):
     columns: dict[str, list[float | None]]
 
 
-@router.get("/telemetry", summary="Measured angles over time", response_model=Telemetry)
+@router.get("/telemetry", summary="Angles, drive and weather over time", response_model=Telemetry)
 def read_telemetry(
     reader: ReaderDep,
     tracker_id: Annotated[str, Query(min_length=1, max_length=64)],
     begin: Instant,
     end: Instant,
-    points: Annotated[int, Query(ge=18, le=100_000, description="At most so many; extremes stay.")] = 1000,
+    points: Points = 1000,
+    file: Annotated[
+        Literal["json", "csv"], Query(alias="format", description="CSV in UTC, for files.")
+    ] = "json",
 ) -> Response:
     """Return what was recorded of a tracker's days in a range of time."""
     if not timedelta() < end - begin <= LONGEST:
         raise NotAcceptable("Give an end after the begin, and a range of at most 31 days.")
-    frames = decimate(_between(reader, tracker_id, begin, end), points)
+    frames = _between(reader, tracker_id, begin, end, points)
+    if file == "csv":
+        return _csv(tracker_id, begin, frames)
     columns = {name: _plain(frames, name) for name in COLUMNS}
     whole = Telemetry(
         tracker_id=tracker_id,
@@ -57,11 +64,18 @@ def read_telemetry(
     return Response(whole.model_dump_json(), media_type="application/json")
 
 
-def _between(reader: Reader, tracker_id: str, begin: datetime, end: datetime) -> Frames:
+def _csv(tracker_id: str, begin: datetime, frames: Frames) -> Response:
+    name = f"{tracker_id}-{begin.astimezone(UTC):%Y%m%dT%H%M%SZ}.csv"
+    headers = {"Content-Disposition": f'attachment; filename="{name}"'}
+    return StreamingResponse(measured_csv(begin, frames), media_type="text/csv", headers=headers)
+
+
+def _between(reader: Reader, tracker_id: str, begin: datetime, end: datetime, points: int) -> Frames:
+    """Return at most so many frames of the days in a range; each day is thinned out before it is joined."""
     days = reader.recordings(kind=RecordingKind.DAY, tracker_id=tracker_id, limit=1000)
     overlapping = [day for day in reversed(days) if day.began_at < end and (day.ended_at or end) > begin]
-    parts = [_part(reader, day, begin, end) for day in overlapping]
-    return Frames(np.concatenate([part.values for part in parts])) if parts else EMPTY
+    parts = [decimate(_part(reader, day, begin, end), points) for day in overlapping]
+    return decimate(Frames(np.concatenate([part.values for part in parts])), points) if parts else EMPTY
 
 
 def _part(reader: Reader, day: RecordingInfo, begin: datetime, end: datetime) -> Frames:

@@ -46,6 +46,26 @@ class Tick:
 
 
 @dataclass(frozen=True, slots=True)
+class Cartesian:
+    """The sun path with azimuth across and elevation up; `centre_deg` is the azimuth in its middle.
+
+    `reach` is a filled shape where `fills`, else an outline; `skyline` is empty where the horizon is flat.
+    """
+
+    centre_deg: float
+    months: tuple[Curve, ...]
+    hours: tuple[Curve, ...]
+    labels: tuple[HourLabel, ...]
+    today: Curve
+    reach: str
+    fills: bool
+    skyline: str
+    columns: tuple[Tick, ...]
+    rows: tuple[Tick, ...]
+    title: str
+
+
+@dataclass(frozen=True, slots=True)
 class Band:
     """One quantity of a day chart: panel and sun as SVG path data, and its grid."""
 

@@ -44,6 +44,8 @@ TRACKER_TABS = (
     ("Show", "/show"),
     ("Sun check", "/sun-check"),
     ("Record", "/record"),
+    ("Sun path", "/sun-path"),
+    ("Trends", "/trends"),
     ("Settings", "/settings"),
 )
 

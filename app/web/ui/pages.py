@@ -16,6 +16,7 @@ from app.web.ui import (
     drive,
     glance,
     homing,
+    horizon,
     journal,
     label,
     location,
@@ -44,10 +45,12 @@ from app.web.ui import (
     studies,
     study,
     sun_check,
+    sun_paths,
     theme,
     token_page,
     tracker,
     training,
+    trends,
     wizard,
 )
 from app.web.ui.frame import site_frame
@@ -97,6 +100,9 @@ ROUTERS = (
     certificate.router,
     network.router,
     site.router,
+    horizon.router,
+    sun_paths.router,
+    trends.router,
     wizard.router,
 )
 

@@ -44,7 +44,7 @@ def environment() -> Environment:
     )
     env.filters |= FILTERS
     env.globals |= {"live": live, "world": world(), "abilities": abilities}
-    for shared in ("_icons.html", "_parts.html", "_sunpath.html", "_scene.html", "_daychart.html"):
+    for shared in ("_icons.html", "_parts.html", "_sunpath.html", "_scene.html", "_cartesian.html", "_daychart.html"):
         env.globals |= _macros(env, shared)
     return env
 

@@ -1,20 +1,17 @@
 """What the moving picture is told once: the mount, its limits, the day's path and hours, the horizon."""
 
-from datetime import UTC, date, datetime, timedelta
-
-import numpy as np
+from datetime import date
 
 from app.sun.horizon import Horizon
-from app.sun.position import Algorithm, Location, sun_path
+from app.sun.position import Algorithm, Location
 from app.tracker.config import TrackerConfig
 from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import SiteSnapshot
 from app.web.ui.drawings import Scene
-from app.web.ui.sunpath import arc
+from app.web.ui.sunpath import arc, hours_of
 from app.zones import zone_of
 
 FROM_SOUTH_DEG, FROM_NORTH_DEG = 152.0, 332.0
-LOWEST_HOUR_DEG = 1.0
 
 
 def scene_now(site: SiteSnapshot | None, config: TrackerConfig, horizon: Horizon) -> Scene:
@@ -34,7 +31,7 @@ def scene_on(
         *config.turning_deg,
         yaw=looked_from_deg(location),
         arc=arc(algorithm, location, on),
-        hours=hours(algorithm, location, on, zone),
+        hours=hours_of(algorithm, location, on, zone),
         horizon=horizon.outline(),
     )
 
@@ -48,25 +45,10 @@ def scene_recorded(info: RecordingInfo, on: date) -> Scene:
         info.second_deg,
         yaw=looked_from_deg(info.location),
         arc=arc(algorithm, info.location, on),
-        hours=hours(algorithm, info.location, on, info.time_zone),
+        hours=hours_of(algorithm, info.location, on, info.time_zone),
     )
 
 
 def looked_from_deg(location: Location) -> float:
     """Return the azimuth from which one looks at a tracker: against the midday sun's side of the sky."""
     return FROM_NORTH_DEG if location.latitude_deg < 0 else FROM_SOUTH_DEG
-
-
-def hours(
-    algorithm: Algorithm, location: Location, on: date, zone: str
-) -> tuple[tuple[str, float, float], ...]:
-    """Return the full hours of a day's civil time with azimuth and elevation of the sun, while it is up."""
-    midnight = datetime(on.year, on.month, on.day, tzinfo=zone_of(zone)).astimezone(UTC)
-    instants = [midnight + timedelta(hours=hour) for hour in range(25)]
-    path = sun_path(algorithm, location, np.array([at.timestamp() for at in instants]))
-    spots = zip(instants, path.azimuth_deg.tolist(), path.elevation_deg.tolist(), strict=True)
-    return tuple(
-        (str(at.astimezone(zone_of(zone)).hour), round(azimuth_deg, 1), round(elevation_deg, 1))
-        for at, azimuth_deg, elevation_deg in spots
-        if elevation_deg > LOWEST_HOUR_DEG
-    )

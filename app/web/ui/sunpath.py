@@ -30,6 +30,7 @@ MONTHS = (
     (6, 21, True),
 )
 LABEL_GAP = 8.5
+LOWEST_HOUR_DEG = 1.5
 OUTLINE_POINTS = 73
 
 
@@ -39,13 +40,6 @@ def diagram(site: SiteSnapshot | None, config: TrackerConfig) -> SunDiagram | No
         return None
     today = site.at.astimezone(zone_of(site.time_zone)).date()
     return diagram_of(site.location, site.time_zone, today, config.algorithm, outline(config))
-
-
-def todays_arc(site: SiteSnapshot | None, config: TrackerConfig) -> Arc:
-    """Return today's arc of the sun at the site; empty while the location is not known."""
-    if site is None or site.location is None:
-        return ()
-    return arc(config.algorithm, site.location, site.at.astimezone(zone_of(site.time_zone)).date())
 
 
 def arc(algorithm: Algorithm, location: Location, on: date) -> Arc:
@@ -74,7 +68,8 @@ def diagram_of(
             for month, day, strong in MONTHS
         ),
         hours=tuple(
-            Curve(str(hour), _hour(algorithm, location, today, hour), strong=False) for hour in range(24)
+            Curve(str(hour), _drawn(hour_path(algorithm, location, today, hour)), strong=False)
+            for hour in range(24)
         ),
         labels=labels,
         today=Curve(today.isoformat(), _drawn(now_path), strong=True),
@@ -95,9 +90,10 @@ def day_path(algorithm: Algorithm, location: Location, on: date) -> SunPath:
     return sun_path(algorithm, location, np.arange(midnight, midnight + DAY_S + 1, FINE_S, dtype=np.float64))
 
 
-def _hour(algorithm: Algorithm, location: Location, today: date, hour: int) -> str:
+def hour_path(algorithm: Algorithm, location: Location, today: date, hour: int) -> SunPath:
+    """Return the sun at one hour of UTC, weekly from December to June."""
     begin = datetime(today.year - 1, 12, 21, hour, tzinfo=UTC).timestamp()
-    return _drawn(sun_path(algorithm, location, begin + np.arange(0, 183, 7, dtype=np.float64) * DAY_S))
+    return sun_path(algorithm, location, begin + np.arange(0, 183, 7, dtype=np.float64) * DAY_S)
 
 
 def _drawn(path: SunPath) -> str:
@@ -121,17 +117,26 @@ def broken(x: NDArray[np.float64], y: NDArray[np.float64], up: NDArray[np.bool_]
 
 def hour_labels(algorithm: Algorithm, location: Location, today: date, zone: str) -> tuple[HourLabel, ...]:
     """Return the full hours of today's civil time at their places outside today's curve."""
-    midnight = datetime(today.year, today.month, today.day, tzinfo=zone_of(zone)).astimezone(UTC)
+    labels = []
+    for text, azimuth_deg, elevation_deg in hours_of(algorithm, location, today, zone):
+        x, y = point(azimuth_deg, elevation_deg - LABEL_GAP * 0.9)
+        labels.append(HourLabel(x, y, text))
+    return tuple(labels)
+
+
+def hours_of(
+    algorithm: Algorithm, location: Location, on: date, zone: str
+) -> tuple[tuple[str, float, float], ...]:
+    """Return the full hours of a day's civil time with azimuth and elevation of the sun, while it is up."""
+    midnight = datetime(on.year, on.month, on.day, tzinfo=zone_of(zone)).astimezone(UTC)
     instants = [midnight + timedelta(hours=hour) for hour in range(25)]
     path = sun_path(algorithm, location, np.array([at.timestamp() for at in instants]))
-    labels = []
-    for at, azimuth_deg, elevation_deg in zip(
-        instants, path.azimuth_deg.tolist(), path.elevation_deg.tolist(), strict=True
-    ):
-        if elevation_deg > 1.5:
-            x, y = point(azimuth_deg, elevation_deg - LABEL_GAP * 0.9)
-            labels.append(HourLabel(x, y, str(at.astimezone(zone_of(zone)).hour)))
-    return tuple(labels)
+    spots = zip(instants, path.azimuth_deg.tolist(), path.elevation_deg.tolist(), strict=True)
+    return tuple(
+        (str(at.astimezone(zone_of(zone)).hour), round(azimuth_deg, 1), round(elevation_deg, 1))
+        for at, azimuth_deg, elevation_deg in spots
+        if elevation_deg > LOWEST_HOUR_DEG
+    )
 
 
 def outline(config: TrackerConfig) -> str:

@@ -57,7 +57,7 @@ const degrees = (value) => `${Math.round(value)}°`.replace("-", "−");
 function firstScale(view) {
   const turned = (angle) => outward(view.frame, angle);
   switch (view.mount.kind) {
-    case "azimuth-elevation": case "vertical-single-axis": return scale([0, 0, GROUND_Z], turned, view.first, 0.74);
+    case "azimuth-elevation": case "vertical-single-axis": return scale([0, 0, 2 * GROUND_Z], turned, view.first, 0.74);
     case "equatorial": return scale(add(view.hub, lowEnd(view), 0.46), turned, view.first, 0.26);
     default: return scale(add(view.hub, lowEnd(view), 0.76), turned, view.first, 0.24);
   }
