@@ -89,6 +89,7 @@ def test_a_frozen_drive_stops_by_its_watchdog_and_keeps_its_zero(
     integrator.command("move", azimuth_deg=20.0, elevation_deg=10.0)
     assert "watchdog" not in told(integrator.snapshot())
     integrator.post("/stop")
+    integrator.until(lambda seen: seen["activity"] == "holding", "the panel is at rest")
     integrator.until(lambda seen: seen["activity"] == "holding", "the axes rest")
 
 
