@@ -163,9 +163,9 @@ class FakeMachine:
                 _check_zone(zone)
                 revision = self.site.location_revision + 1
                 self.site = replace(self.site, location=location, time_zone=zone, location_revision=revision)
-            case SetClock(source=source, at=at, time_zone=zone):
             case SetHorizon(horizon=horizon):
                 self.site = replace(self.site, horizon=horizon)
+            case SetClock(source=source, at=at, time_zone=zone):
                 _check_zone(zone or "UTC")
                 offset_s = (at - now).total_seconds() if at else 0.0
                 setting = ClockSetting(source, offset_s, now, order.actor)
@@ -256,15 +256,15 @@ class FakeMachine:
             weather=self.weather,
             alarms=self.alarms,
             alarm_counts=counted(self.alarms),
+            sun_behind_horizon=self.site.horizon.hides(
+                made_up_sun(now).azimuth_deg, made_up_sun(now).elevation_deg
+            ),
         )
 
     async def metrics(self) -> MachineMetrics:
         """Return counters of a machine that has done nothing yet, with its doors in every state."""
         if not self.reachable:
             raise MachineUnreachable("The controller service does not answer.")
-            sun_behind_horizon=self.site.horizon.hides(
-                made_up_sun(now).azimuth_deg, made_up_sun(now).elevation_deg
-            ),
         return MachineMetrics("fake-boot", 5.0, gateways=GATEWAYS)
 
     async def detail(self) -> SiteDetail:
