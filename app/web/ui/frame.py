@@ -42,10 +42,10 @@ TRACKER_TABS = (
     ("Live", ""),
     ("Commissioning", "/commissioning"),
     ("Show", "/show"),
-    ("Sun check", "/sun-check"),
-    ("Record", "/record"),
     ("Sun path", "/sun-path"),
     ("Trends", "/trends"),
+    ("Sun check", "/sun-check"),
+    ("Record", "/record"),
     ("Settings", "/settings"),
 )
 
