@@ -369,6 +369,7 @@ class SettingsPage:
     frame: Frame
     form: Form
     mount: MountConfig
+    hints: dict[str, str]
     algorithms: tuple[tuple[str, str], ...] = ALGORITHMS
 
 

@@ -176,7 +176,7 @@ def _label(name: str) -> str:
 def _text(value: Any, zone: tzinfo) -> str:
     match value:
         case None:
-            return "not known"
+            return "none"
         case bool():
             return "yes" if value else "no"
         case datetime():

@@ -7,7 +7,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.link.messages import UnknownTracker
 from app.link.record_orders import AddRecordPhoto, RecordOrder, RemoveRecordPhoto, SignRecord
-from app.store.store import Photo, Reader, RecordHead, SignedRecord
+from app.store.store import Photo, Reader, RecordHead, SignedRecord, StoreFailed
 from app.web.deps import Panel
 from app.web.errors import NotFound
 from app.web.photos import plain_photo
@@ -43,7 +43,12 @@ async def sign(
     encoded = b64encode(text.encode()).decode()
     await send(SignRecord(tracker_id, encoded, digest, tuple(photo.number for photo in photos)))
     kept = await run_in_threadpool(built.reader.signed_records, tracker_id)
-    return next(head for head in kept if head.digest == digest)
+    found = next((head for head in kept if head.digest == digest), None)
+    if found is None:
+        raise StoreFailed(
+            "The record was handed over but is not in the list yet. Look there before you sign again."
+        )
+    return found
 
 
 async def require_tracker(built: Panel, tracker_id: str) -> None:

@@ -55,6 +55,10 @@ _TABLE: dict[Permission, str] = {
         GET /site/notifications
         GET /api/v1/site/notifications
         GET /alarms/guide
+        GET /guide
+        GET /guide/pictures/{name}
+        GET /guide/{document}
+        GET /search
         GET /journal
         GET /metrics
         GET /papers

@@ -15,7 +15,7 @@ import uvicorn
 from fastapi import FastAPI
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, sync_playwright
 
-from tests.fakes import FakeMachine, FakeReader, fake_app
+from tests.fakes import FakeMachine, fake_app
 
 CHROMIUM = os.environ.get("HELIOPANEL_TEST_BROWSER", "/usr/bin/chromium")
 FLAGS = [
@@ -54,7 +54,7 @@ class Served:
 
     async def run(self) -> None:
         self.loop = asyncio.get_running_loop()
-        app = self.app or fake_app(self.machine, FakeReader())
+        app = self.app or fake_app(self.machine)
         config = uvicorn.Config(app, host="127.0.0.1", port=0, log_level="error", timeout_graceful_shutdown=1)
         self.server = uvicorn.Server(config)
         moving = asyncio.create_task(self._move())

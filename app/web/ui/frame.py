@@ -37,6 +37,7 @@ SITE_TABS = (
     ("Accuracy", "/accuracy"),
     ("Journal", "/journal"),
     ("Site", "/site"),
+    ("Guide", "/guide"),
 )
 TRACKER_TABS = (
     ("Live", ""),

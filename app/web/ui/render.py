@@ -16,6 +16,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from app.tracker.mounts.abilities import abilities
 from app.web.contexts import Context
 from app.web.deps import panel, principal
+from app.web.help import help_for
 from app.web.ui import formats
 from app.web.ui.allowed import shut
 
@@ -43,8 +44,16 @@ def environment() -> Environment:
         lstrip_blocks=True,
     )
     env.filters |= FILTERS
-    env.globals |= {"live": live, "world": world(), "abilities": abilities}
-    for shared in ("_icons.html", "_parts.html", "_sunpath.html", "_scene.html", "_cartesian.html", "_daychart.html"):
+    env.globals |= {"help_for": help_for, "live": live, "world": world(), "abilities": abilities}
+    for shared in (
+        "_icons.html",
+        "_parts.html",
+        "_sunpath.html",
+        "_scene.html",
+        "_cartesian.html",
+        "_daychart.html",
+        "_help_pictures.html",
+    ):
         env.globals |= _macros(env, shared)
     return env
 

@@ -20,6 +20,7 @@ from app.web.ui.forms import Typed, Unreadable
 from app.web.ui.frame import tracker_frame
 from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
+from app.web.ui.settings_words import SETTINGS
 from app.web.ui.wizard import tracker_of
 
 router = APIRouter(prefix="/trackers/{tracker_id}/settings")
@@ -209,5 +210,7 @@ def _drive_kind(text: str) -> DriveKind:
 def _answer(request: Request, tracker: TrackerDetail, typed: Typed, *, status: int = 200) -> Response:
     frame = tracker_frame(request, tracker.state.config.tracker_id, "Settings")
     mount = tracker.state.config.mount
-    context = SettingsPage(frame=frame, form=typed.form(SettingsForm.model_fields), mount=mount)
+    form = typed.form(SettingsForm.model_fields)
+    hints = {name: words.hint for name, words in SETTINGS.items()}
+    context = SettingsPage(frame=frame, form=form, mount=mount, hints=hints)
     return page(request, context, block="form", status=status)
