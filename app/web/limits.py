@@ -1,9 +1,12 @@
 """How many lasting answers one client may hold open: streams and live sockets, but never a stop."""
 
+import asyncio
 from collections import Counter
 
 import orjson
 from starlette.types import ASGIApp, Receive, Scope, Send
+
+from app.clock import Clock
 
 LASTING = frozenset({"/live", "/api/v1/stream"})
 MOST_STREAMS = 1024
@@ -18,9 +21,16 @@ class StreamLimit:
     """Turns away live sockets and streams beyond a client's share; every other request passes."""
 
     def __init__(
-        self, app: ASGIApp, *, most: int = MOST_STREAMS, most_a_client: int = MOST_STREAMS_A_CLIENT
+        self,
+        app: ASGIApp,
+        *,
+        clock: Clock,
+        most: int = MOST_STREAMS,
+        most_a_client: int = MOST_STREAMS_A_CLIENT,
     ) -> None:
         self._app = app
+        self._clock = clock
+        self._turnstile = asyncio.Lock()
         self._most = most
         self._most_a_client = most_a_client
         self._open: Counter[str] = Counter()
@@ -37,11 +47,17 @@ class StreamLimit:
             return
         self._open[client] += 1
         try:
+            await self._one_by_one()
             await self._app(scope, receive, send)
         finally:
             self._open[client] -= 1
             if not self._open[client]:
                 del self._open[client]
+
+    async def _one_by_one(self) -> None:
+        """Wait for one's turn to begin: of many that come at once each lets other requests pass before it."""
+        async with self._turnstile:
+            await self._clock.sleep_until(self._clock.now())
 
 
 async def _refuse(scope: Scope, send: Send) -> None:

@@ -102,7 +102,7 @@ def create_app(
     app.add_middleware(RequestBodyLimitMiddleware, max_body_size=LARGEST_BODY)
     app.add_middleware(GZipMiddleware, minimum_size=SMALLEST_COMPRESSED)
     app.add_middleware(Gate, panel_app=app, keeper=keeper, clock=clock, routes=app.state.routes)
-    app.add_middleware(StreamLimit)
+    app.add_middleware(StreamLimit, clock=clock)
     app.add_middleware(Guard, hosts=host_names(settings))
     app.add_middleware(SecurityHeaders)
     return app

@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 
 from app.certificates import AUTHORITY, AUTHORITY_KEY, SERVER, SERVER_KEY, init, read
 from app.cli import cli
+from app.clock import VirtualClock
 from app.settings import Settings
 from app.web.limits import MOST_STREAMS_A_CLIENT, StreamLimit
 from app.web.main import create_app
@@ -152,7 +153,7 @@ async def test_streams_are_shared_out_and_other_requests_pass(client: str, admit
     async def hear(message: Any) -> None:
         answers.append(message)
 
-    limit = StreamLimit(lasting, most=100)
+    limit = StreamLimit(lasting, clock=VirtualClock(NOW), most=100)
     scopes = [{"type": "websocket", "path": "/live", "client": (client, number)} for number in range(120)]
     asking = [asyncio.create_task(limit(scope, hear, hear)) for scope in scopes]
     await asyncio.sleep(0)
