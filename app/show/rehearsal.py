@@ -7,6 +7,7 @@ from datetime import UTC, datetime, timedelta
 from app.clock import VirtualClock
 from app.drives.simulated import SimulatedDrive
 from app.drives.sunlight import Sunlight
+from app.show.made_up_weather import MadeUpWeather
 from app.site.sky import Sky
 from app.sun.position import Location, SunPosition
 from app.tracker.commands import Command, Home
@@ -16,6 +17,7 @@ from app.tracker.memory import Pointing, TrackerMemory
 from app.tracker.motion import Halt
 from app.tracker.observation import Observation
 from app.tracker.snapshot import ActivityName, Event, Snapshot
+from app.tracker.weather import NOTHING_SENSED, Sensed
 
 SHORT_STEP = timedelta(milliseconds=100)
 STEADY_TICKS = 10
@@ -30,7 +32,7 @@ class Rehearsal:
     """One simulated tracker whose sun stands still until it is homed and in place; it warns nobody.
 
     The machine's time starts at `begin` and always goes on; `site_time` moves only when told to. `stands`
-    says that the last tick halted both axes.
+    says that the last tick halted both axes. `weather` is none until it is given some.
     """
 
     def __init__(
@@ -47,6 +49,7 @@ class Rehearsal:
         self.controller = Controller(unwarned, TrackerMemory(pointing=pointing), self.drive.capabilities)
         self._sky = Sky()
         self.stands = True
+        self.weather: MadeUpWeather | None = None
 
     def home(self) -> None:
         """Search the origin switches until the zero is trusted."""
@@ -83,11 +86,19 @@ class Rehearsal:
             True,
             location,
             1,
+            weather=self._sensed(self._lit),
         )
         command, events = self.controller.tick(observation)
         self.drive.obey(command)
         self.stands = isinstance(command.azimuth, Halt) and isinstance(command.elevation, Halt)
         return events
+
+    def _sensed(self, sun: SunPosition) -> Sensed:
+        return (
+            NOTHING_SENSED
+            if self.weather is None
+            else self.weather.sensed(self.site_time, sun, self.clock.now())
+        )
 
     def _rests(self, seen: Snapshot) -> bool:
         return seen.activity is ActivityName.HOLDING

@@ -9,6 +9,7 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
+from app.show.made_up_weather import MadeUpWeather
 from app.show.rehearsal import SHORT_STEP, Rehearsal, RehearsalFailed
 from app.store.chunks import encode_all
 from app.sun.events import day_events
@@ -20,6 +21,7 @@ from app.tracker.mode import Mode
 from app.tracker.programs.show import ShowPlan, schedule_of
 from app.tracker.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
 from app.tracker.snapshot import ActivityName, EventKind, ShowPhase, Snapshot
+from app.tracker.weather_day import WeatherDay
 from app.zones import zone_of
 
 SECOND = timedelta(seconds=1)
@@ -41,10 +43,12 @@ def simulate(
     step: timedelta = SECOND,
     title: str = "",
     sparing: bool = False,
+    weather: WeatherDay | None = None,
 ) -> tuple[RecordingInfo, Frames]:
     """Return what the tracker would do from `begin` to `end`; it is homed and in place at the beginning.
 
-    It ticks at least once a second; `sparing` once a `step` while both axes are halted, which is quicker.
+    It ticks at least once a second; `sparing` once a `step` while both axes are halted, which is quicker. The
+    `weather` begins with the day, once the tracker is in place.
     """
     _check_span(begin, end, step)
     begin, end = begin.astimezone(UTC), end.astimezone(UTC)
@@ -53,6 +57,7 @@ def simulate(
     rehearsal.ask(SelectMode(mode, orientation))
     rehearsal.ask(Move(orientation) if mode is Mode.FIXED else Track())
     rehearsal.prepare_until(_settled, "it was in place")
+    rehearsal.weather = None if weather is None else MadeUpWeather(weather)
     elapsed_s, rows = _run(rehearsal, begin, end, step, sparing=sparing)
     info = _info(config, location, time_zone, mode, orientation, begin, end)
     frames = _frames(rows, elapsed_s)

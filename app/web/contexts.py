@@ -361,6 +361,7 @@ class SimulatePage:
 
 
 @dataclass(frozen=True, slots=True)
+    weathers: tuple[tuple[str, str], ...]
 class SettingsPage:
     """What an engineer sets for one tracker."""
 

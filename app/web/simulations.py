@@ -16,6 +16,7 @@ from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
 from app.tracker.recording import RecordingInfo
+from app.tracker.weather_day import WeatherDay
 from app.web.errors import Busy
 
 MOST_AT_ONCE = 4
@@ -42,6 +43,7 @@ class SimulationRequest:
     end: datetime
     step: timedelta
     title: str
+    weather: WeatherDay | None = None
 
 
 class Simulations:
@@ -98,5 +100,6 @@ def simulated(request: SimulationRequest) -> Simulated:
         request.end,
         step=request.step,
         title=request.title,
+        weather=request.weather,
     )
     return info, encoded(frames)

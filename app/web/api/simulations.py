@@ -1,7 +1,7 @@
 """A whole day at the controller's fidelity on a virtual clock; nothing moves."""
 
 from dataclasses import replace
-from datetime import date, datetime, timedelta
+from datetime import date, datetime, timedelta, tzinfo
 from typing import Self
 
 from fastapi import APIRouter
@@ -14,7 +14,18 @@ from app.sun.algorithms import Algorithm
 from app.tracker.config import Orientation
 from app.tracker.mode import Mode
 from app.tracker.recording import RecordingInfo
+from app.tracker.simulated_weather import MOST_SEED, Scenario
 from app.tracker.snapshot import SiteSnapshot
+from app.tracker.weather_day import (
+    MOST_STEPS,
+    WeatherDay,
+    WeatherStep,
+    after_midnight,
+    day_of_scenario,
+    midnight_before,
+    read_steps,
+    stepped_day,
+)
 from app.web.api.base import NOT_FOUND, REFUSED, TOO_MANY, Azimuth, Elevation, Input
 from app.web.api.orders import SenderDep
 from app.web.api.sun import location_of, midnights
@@ -22,10 +33,53 @@ from app.web.api.trackers import detail_of
 from app.web.deps import MachineDep, PanelDep, SnapshotDep
 from app.web.errors import NotAcceptable
 from app.web.simulations import SimulationRequest
+from app.zones import zone_of
 
 router = APIRouter(tags=["recordings"])
 
 CivilDate = date
+
+
+class DayStepIn(Input):
+    """What the weather is from a time on; what is left out stays as it was, the light of a clear sky."""
+
+    time: str = Field(
+        max_length=8, description="Hours and minutes after the first midnight.", examples=["11:30"]
+    )
+    wind_mps: float | None = None
+    gustiness_pct: float | None = None
+    wind_direction_deg: float | None = None
+    light_wm2: float | None = None
+    snow_kg: float | None = None
+    temperature_degc: float | None = None
+
+    def step(self) -> WeatherStep:
+        """Return it in the domain's words, or raise `ValueError`."""
+        given = self.model_dump(exclude_none=True, exclude={"time"})
+        return WeatherStep(after_midnight(self.time, "The step"), given)
+
+
+class DayWeatherIn(Input):
+    """The weather of the day: a scenario that begins at a time, or steps, as a list or as CSV."""
+
+    scenario: Scenario | None = Field(None, description="calm, storm, snowfall or clouds.")
+    begins: str = Field("12:00", max_length=8, description="When the scenario begins, by the site's clock.")
+    seed: int = Field(1, ge=0, le=MOST_SEED)
+    steps: tuple[DayStepIn, ...] | None = Field(None, max_length=MOST_STEPS)
+    csv: str | None = Field(None, max_length=100_000, examples=["time,wind_mps\n10:00,4\n14:00,22\n14:10,3"])
+
+    @model_validator(mode="after")
+    def _one_of_three(self) -> Self:
+        if [self.scenario, self.steps, self.csv].count(None) != 2:
+            raise ValueError("Give one of scenario, steps and csv.")
+        return self
+
+    def day(self, begin: datetime, zone: tzinfo) -> WeatherDay:
+        """Return the weather of the day on which a simulation begins, or raise `ValueError`."""
+        if self.scenario is not None:
+            return day_of_scenario(self.scenario, self.begins, self.seed, begin, zone)
+        steps = read_steps(self.csv or "") if self.steps is None else tuple(one.step() for one in self.steps)
+        return stepped_day(steps, midnight_before(begin, zone), zone, self.seed)
 
 
 class NewSimulation(Input):
@@ -40,6 +94,7 @@ class NewSimulation(Input):
     elevation_deg: Elevation | None = Field(None, description="For modes that hold the elevation.")
     step_s: float = Field(1.0, ge=0.1, le=60, description="Seconds between frames.")
     algorithm: Algorithm | None = Field(None, description="Left out: the tracker's own.")
+    weather: DayWeatherIn | None = Field(None, description="Left out: no weather, and no protection acts.")
     title: str = Field("", max_length=120)
 
     @model_validator(mode="after")
@@ -75,6 +130,10 @@ async def simulate_span(
     state = (await detail_of(machine, new.tracker_id)).state
     held = state.memory.orientation
     begin, end = new.span(site)
+    try:
+        weather = None if new.weather is None else new.weather.day(begin, zone_of(site.time_zone))
+    except ValueError as error:
+        raise NotAcceptable(str(error)) from error
     request = SimulationRequest(
         config=replace(state.config, algorithm=new.algorithm or state.config.algorithm),
         pointing=state.memory.pointing,
@@ -89,6 +148,7 @@ async def simulate_span(
         end=end,
         step=timedelta(seconds=new.step_s),
         title=new.title,
+        weather=weather,
     )
     try:
         info, chunks = await panel.simulations.run(request)

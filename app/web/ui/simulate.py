@@ -4,13 +4,15 @@ from datetime import date, datetime, time, timedelta
 from typing import Annotated
 
 from fastapi import APIRouter, Form
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
 from starlette.requests import Request
 from starlette.responses import Response
 
 from app.link.messages import SaveRecording, SiteDetail
 from app.tracker.config import Orientation
 from app.tracker.mode import Mode
+from app.tracker.simulated_weather import Scenario
+from app.tracker.weather_day import WeatherDay, day_of_scenario, read_steps, stepped_day
 from app.web.contexts import SimulatePage
 from app.web.deps import MachineDep, PanelDep
 from app.web.errors import NotAcceptable
@@ -24,8 +26,18 @@ from app.web.ui.wizard import tracker_of
 from app.zones import zone_of
 
 router = APIRouter(prefix="/simulate")
-NAMES = ("tracker", "date", "mode", "azimuth", "elevation")
+NAMES = ("tracker", "date", "mode", "azimuth", "elevation", "weather", "begins", "steps")
 STEP = timedelta(seconds=1)
+NO_WEATHER, BY_STEPS = "none", "steps"
+WEATHERS = (
+    (NO_WEATHER, "No weather: no protection acts"),
+    (Scenario.CALM.value, "A calm day"),
+    (Scenario.STORM.value, "A storm that comes and goes"),
+    (Scenario.SNOWFALL.value, "A snowfall that slides off"),
+    (Scenario.CLOUDS.value, "Clouds, then a dark bank"),
+    (BY_STEPS, "By the steps below"),
+)
+EXAMPLE = "time,wind_mps,snow_kg\n00:00,3,0\n10:00,,6\n10:30,,0\n14:00,22,\n14:10,3,"
 
 
 class SimulationForm(BaseModel):
@@ -36,6 +48,9 @@ class SimulationForm(BaseModel):
     mode: str = ""
     azimuth: str = "180"
     elevation: str = "45"
+    weather: str = NO_WEATHER
+    begins: str = "12:00"
+    steps: str = Field(EXAMPLE, max_length=100_000)
 
 
 @router.get("")
@@ -78,6 +93,7 @@ def _read(typed: Typed, detail: SiteDetail) -> SimulationRequest | None:
     held = Orientation(
         typed.number("azimuth", "Azimuth", 0, 360), typed.number("elevation", "Elevation", 0, 90)
     )
+    weather = _weather(typed, day, zone)
     if typed.errors or location is None:
         return None
     state = tracker_of(detail, typed.texts["tracker"]).state
@@ -92,7 +108,26 @@ def _read(typed: Typed, detail: SiteDetail) -> SimulationRequest | None:
         end=_midnight(day + timedelta(days=1), zone),
         step=STEP,
         title="",
+        weather=weather,
     )
+
+
+def _weather(typed: Typed, day: date, zone_name: str) -> WeatherDay | None:
+    """Return the weather of the day; what is wrong with it stands at the field that it was typed in."""
+    kind, zone = typed.texts["weather"], zone_of(zone_name)
+    if kind not in {value for value, _ in WEATHERS}:
+        typed.errors["weather"] = "Weather: choose one from the list."
+    if "date" in typed.errors or "weather" in typed.errors or kind == NO_WEATHER:
+        return None
+    midnight = _midnight(day, zone_name)
+    field = "steps" if kind == BY_STEPS else "begins"
+    try:
+        if kind == BY_STEPS:
+            return stepped_day(read_steps(typed.texts["steps"]), midnight, zone)
+        return day_of_scenario(Scenario(kind), typed.texts["begins"].strip(), 1, midnight, zone)
+    except ValueError as error:
+        typed.errors[field] = str(error)
+        return None
 
 
 def _mode(text: str) -> Mode:
@@ -111,5 +146,6 @@ def _answer(request: Request, detail: SiteDetail, typed: Typed, *, status: int =
         form=typed.form(NAMES),
         trackers=tuple((name, f"{name} {one.state.config.name}") for name, one in detail.trackers.items()),
         modes=tuple((one.mode.value, one.label) for one in CHOICES),
+        weathers=WEATHERS,
     )
     return page(request, context, block="form", status=status)
