@@ -251,6 +251,11 @@ ENTRIES = (
         SHORT, SHORT, ("disk_full",),
     ),
     Entry(
+        "store_damaged", 1, Group.STORE, "Database damaged",
+        "Safe mode: nothing moves, not even for wind; drives can be stopped. Nothing is recorded.",
+        "Restore a backup on the page Restore; keep people away, and stow by hand if strong wind comes.",
+    ),
+    Entry(
         "disk_full", 2, Group.STORE, "Disk is full",
         "Journal, settings and recordings cannot be stored any more.",
         "Delete recordings or other files on this computer now.",

@@ -2,9 +2,7 @@
 
 import asyncio
 import gc
-import os
 import shutil
-import signal
 import sqlite3
 from datetime import datetime, timedelta
 from functools import partial
@@ -25,6 +23,8 @@ from app.logs import set_up_logs
 from app.machine.lock import only_instance
 from app.machine.marker import mark_running, mark_stopped
 from app.machine.memory import MemoryGuard
+from app.machine.process import on_signals, raise_priority
+from app.machine.safe_mode import serve_safely
 from app.machine.systemd import notify
 from app.machine.watchdog import LoopWatchdog
 from app.settings import Settings
@@ -38,11 +38,9 @@ from app.store.integrity import sqlite_notice
 from app.store.migrations import upgrade
 from app.store.offloaded import WriterThread
 from app.store.restore import apply_pending_restore
-from app.store.store import JournalFilter, StoreFailed, Writer
+from app.store.store import JournalFilter, StoreDamaged, StoreFailed, Writer
 from app.tracker.snapshot import Event, EventKind
 from app.zones import zones_missing
-
-FIFO_PRIORITY = 10
 
 log = structlog.get_logger(__name__)
 
@@ -50,15 +48,20 @@ log = structlog.get_logger(__name__)
 def run(settings: Settings) -> None:
     """Run the controller service until it is told to stop.
 
-    Raises `AlreadyRunning` if another one holds the data folder, `StoreFailed` if the store cannot be opened.
+    With a damaged database it runs in safe mode. Raises `AlreadyRunning` if another holds the data folder,
+    `StoreFailed` if the store cannot be opened for another reason.
     """
     set_up_logs("machine", log_format=settings.log_format, log_level=settings.log_level)
     settings.data_dir.mkdir(mode=0o700, parents=True, exist_ok=True)
     clock = SystemClock()
     with only_instance(settings.data_dir, clock.now()):
         _restore_if_asked(settings)
-        upgrade(settings.url)
-        writer = open_writer(settings.url)
+        try:
+            upgrade(settings.url)
+            writer = open_writer(settings.url)
+        except StoreDamaged as damage:
+            asyncio.run(serve_safely(settings, clock, damage))
+            return
         try:
             asyncio.run(_serve(settings, clock, writer))
         finally:
@@ -83,13 +86,13 @@ def _restore_if_asked(settings: Settings) -> None:
 
 
 async def _serve(settings: Settings, clock: SystemClock, writer: Writer) -> None:
-    _raise_priority()
+    raise_priority()
     background = WriterThread(writer, _on_store_failure)
     beginning = begin(writer, clock.now(), unclean_since=mark_running(settings.data_dir, clock.now()))
     site = _site(settings, clock, background, writer, beginning)
     gateways = Gateways(site, clock, settings, writer)
     server = LinkServer(gateways, settings.link_path)
-    stopped = _on_signals()
+    stopped = on_signals()
     _note_zones(site)
     await site.start(*beginning.events)
     await server.start()
@@ -193,24 +196,5 @@ def _newest_event(writer: Writer) -> datetime:
     return max(BUILT_AT, newest[0].event.at) if newest else BUILT_AT
 
 
-def _on_signals() -> asyncio.Event:
-    stopped = asyncio.Event()
-    for number in (signal.SIGTERM, signal.SIGINT):
-        asyncio.get_running_loop().add_signal_handler(number, stopped.set)
-    return stopped
-
-
 def _on_store_failure(error: Exception) -> None:
     log.error("not_stored", reason=str(error))
-
-
-def _raise_priority() -> None:
-    """Ask for real-time scheduling of this thread and those it starts; without it the machine still runs.
-
-    The thread that writes needs it too: while it holds the interpreter the loop waits, and other programs
-    must not make both wait.
-    """
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(FIFO_PRIORITY))
-    except OSError as error:
-        log.info("no_real_time_scheduling", reason=error.strerror)

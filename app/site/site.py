@@ -43,13 +43,14 @@ from app.site.repeats import Repeats, refuse_old
 from app.site.timekeeping import Timekeeper
 from app.site.weather import WeatherStation
 from app.sun.position import Algorithm
-from app.tracker.commands import Jog
+from app.tracker.commands import CommandRejected, Jog, Stop
 from app.tracker.commissioning import steps
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import MetStation, SiteState, TrackerState
 from app.tracker.notifications import Notifications
 from app.tracker.observation import Observation
 from app.tracker.proof_states import proof_states
+from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind, SiteSnapshot
 from app.tracker.weather_windows import USUAL_OLD_S, same_age
 
@@ -65,7 +66,10 @@ log = structlog.get_logger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class SiteOptions:
-    """How a site lives: its tick, what it keeps, and the id of this life of the machine."""
+    """How a site lives: its tick, what it keeps, and the id of this life of the machine.
+
+    With `safe_mode` everything but stopping is refused for that reason.
+    """
 
     boot_id: str = "boot"
     period: timedelta = timedelta(milliseconds=100)
@@ -74,6 +78,7 @@ class SiteOptions:
     weather_stale_after: timedelta = timedelta(seconds=USUAL_OLD_S)
     journal_retention: timedelta = timedelta(days=1825)
     disk_free: Callable[[], int | None] = lambda: None
+    safe_mode: Reason | None = None
     make_station: Callable[[MetStation], StationReader] | None = None
 
 
@@ -236,6 +241,8 @@ class Site:
     async def _carry_out(self, order: Order) -> SiteSnapshot:
         refuse_old(order, self.model.now())
         command = order.command
+        if self._options.safe_mode is not None and not isinstance(command, Stop | StopAll | AlarmOrder):
+            raise CommandRejected(self._options.safe_mode)
         if isinstance(command, SiteCommand):
             events = await self._carry_out_for_site(order, command)
         else:

@@ -2,7 +2,7 @@
 
 from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError, SQLAlchemyError
 
-from app.store.store import StoreFailed
+from app.store.store import StoreDamaged, StoreFailed
 
 SENTENCES = (
     ("SQLITE_FULL", "The disk is full: nothing was stored. Free some space or delete old recordings."),
@@ -16,7 +16,8 @@ SENTENCES = (
 UNREACHABLE = ("", "57P01", "57P02", "57P03", "08006")
 """PostgreSQL: no answer at all, shut down, crashed, not yet started, connection lost."""
 
-LASTING = ("SQLITE_IOERR", "SQLITE_CORRUPT", "SQLITE_NOTADB")
+DAMAGED = ("SQLITE_CORRUPT", "SQLITE_NOTADB")
+LASTING = ("SQLITE_IOERR", *DAMAGED)
 
 
 def code_of(error: BaseException) -> str:
@@ -35,7 +36,7 @@ def explained(error: SQLAlchemyError) -> StoreFailed:
     code = code_of(error)
     for name, sentence in SENTENCES:
         if code.startswith(name):
-            return StoreFailed(sentence)
+            return StoreDamaged(sentence) if code.startswith(DAMAGED) else StoreFailed(sentence)
     first_line = str(getattr(error, "orig", None) or error).strip().split("\n", maxsplit=1)[0]
     if isinstance(error, InterfaceError | OperationalError) and code in UNREACHABLE:
         return StoreFailed(

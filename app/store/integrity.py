@@ -6,14 +6,14 @@ from sqlalchemy import text
 
 from app.store import tables
 from app.store.connections import reading_engine, sqlite_path, transaction
-from app.store.store import StoreFailed
+from app.store.store import StoreDamaged
 
 FIRST_SAFE_SQLITE = (3, 51, 3)
 """Older ones may damage a database in WAL mode if two connections write at once; here only one writes."""
 
 
 def check_file(url: str) -> None:
-    """Raise `StoreFailed` if an existing SQLite file is damaged.
+    """Raise `StoreDamaged` if an existing SQLite file is damaged.
 
     Chunks are not looked through: they are most of the file, and each carries its own checksum.
     """
@@ -33,7 +33,7 @@ def check_file(url: str) -> None:
                     else ()
                 )
                 if any(line != "ok" for line in found):
-                    raise StoreFailed(
+                    raise StoreDamaged(
                         f"The database {path} is damaged (table {name}). "
                         "Restore a backup with: heliopanel restore FILE."
                     )

@@ -19,6 +19,10 @@ class StoreFailed(Foreseen):
     """The database could not do it; the text says what to do. Nothing was half written."""
 
 
+class StoreDamaged(StoreFailed):
+    """The database is damaged; the text says where, and that a backup has to be restored."""
+
+
 @dataclass(frozen=True, slots=True)
 class JournalEntry:
     """An event with its place in the journal."""

@@ -312,6 +312,8 @@ _TABLE: dict[Permission, str] = {
         GET /users
         POST /users
         POST /users/{name}/roles
+        GET /restore
+        POST /restore
         POST /users/{name}/password
         POST /users/{name}/remove
         POST /users/sessions/{digest}/end
@@ -324,6 +326,8 @@ _TABLE: dict[Permission, str] = {
         GET /api/v1/users
         POST /api/v1/users
         PATCH /api/v1/users/{name}
+        GET /api/v1/backups
+        POST /api/v1/restore
         DELETE /api/v1/users/{name}
         GET /api/v1/sessions
         DELETE /api/v1/sessions/{digest}
@@ -358,6 +362,8 @@ PROVEN = frozenset(
     PATCH /api/v1/users/{name}
     DELETE /api/v1/users/{name}
     POST /api/v1/tokens
+    POST /restore
+    POST /api/v1/restore
     POST /api/v1/trackers/{tracker_id}/drive/restore
     POST /api/v1/backup
     """.strip()

@@ -22,6 +22,7 @@ from app.web.api import (
     proofs,
     recordings,
     records,
+    restores,
     settings_lock,
     shows,
     simulations,
@@ -73,6 +74,7 @@ ROUTERS = (
     telemetry.router,
     stream.router,
     operations.router,
+    restores.router,
 )
 
 

@@ -36,6 +36,7 @@ from app.web.ui import (
     records,
     run,
     service,
+    restore,
     settings,
     show,
     sign_in,
@@ -105,6 +106,7 @@ ROUTERS = (
     horizon.router,
     sun_paths.router,
     trends.router,
+    restore.router,
     wizard.router,
 )
 

@@ -1,0 +1,56 @@
+"""Bringing back a backup from the panel: offered only while the database is damaged."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from app.link.messages import MachineUnreachable
+from app.store.backup import BackupInfo
+from app.store.backups import BackupFile, backups
+from app.store.restore import request_restore
+from app.tracker.commands import CommandRejected
+from app.tracker.reason import Reason
+from app.tracker.snapshot import SiteSnapshot
+from app.web.deps import Panel
+from app.web.errors import NotFound
+
+DAMAGED = "store_damaged"
+IN_ORDER = Reason(
+    "store_in_order",
+    "The database is in order, so nothing is restored from here.",
+    "To go back to a backup all the same, run on this computer: heliopanel restore FILE",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """Whether the database is damaged (with what that says), and the backups to choose from."""
+
+    damage: str
+    backups: tuple[BackupFile, ...]
+
+
+def choice(built: Panel) -> Choice:
+    """Return what can be chosen now."""
+    snapshot = built.machine.latest()
+    return Choice("" if snapshot is None else damage_of(snapshot), backups(built.settings.data_dir))
+
+
+def damage_of(snapshot: SiteSnapshot) -> str:
+    """Return what is wrong with the database, nothing if it is in order."""
+    return next((alarm.message for alarm in snapshot.alarms if alarm.code == DAMAGED), "")
+
+
+def restore(built: Panel, name: str, now: datetime) -> BackupInfo:
+    """Hand over a backup by its file name; the machine, in safe mode, starts again on it.
+
+    Raises `NotFound`, `CommandRejected` while the database is in order, `StoreFailed` for a bad backup.
+    """
+    snapshot = built.machine.latest()
+    if snapshot is None:
+        raise MachineUnreachable
+    if not damage_of(snapshot):
+        raise CommandRejected(IN_ORDER)
+    chosen = next((one for one in backups(built.settings.data_dir) if one.path.name == name), None)
+    if chosen is None:
+        raise NotFound(f"There is no backup {name} in the folder backups of the data folder.")
+    return request_restore(chosen.path, built.settings.url, built.settings.data_dir, now).backup

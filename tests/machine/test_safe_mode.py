@@ -1,0 +1,94 @@
+"""A damaged database: the service says so, moves nothing, stops what is asked, and offers a backup."""
+
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+
+import httpx
+import pytest
+
+from app.link.messages import RenameSite, SetClock, SetLocation
+from app.tracker.axes import Axis
+from app.tracker.commands import CommandRejected, Jog, Park, SelectMode, SetZero, Stop, Track
+from app.tracker.mode import Mode
+from app.tracker.snapshot import ActivityName
+from tests.machine.service import SAMSUN, Service, eventually
+from tests.machine.stories import until_served
+
+PAGE_BYTES = 4096
+
+
+def damage(data_dir: Path, table: str) -> None:
+    """Put rubbish over the first page of a table."""
+    path = data_dir / "heliopanel.db"
+    with closing(sqlite3.connect(path)) as connection:
+        asked = "SELECT rootpage FROM sqlite_master WHERE name = ?"
+        (page,) = connection.execute(asked, (table,)).fetchone()
+    with path.open("r+b") as file:
+        file.seek((page - 1) * PAGE_BYTES)
+        file.write(b"\xa5" * PAGE_BYTES)
+
+
+async def kept(data_dir: Path) -> str:
+    """Let a site live that tracks and has a backup; return the backup's name."""
+    service = await Service.start(data_dir)
+    try:
+        await service.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
+        await service.ask(SetClock("system"))
+        await service.ask(RenameSite("Kept"))
+        await service.ask(SetZero())
+        await service.until(lambda seen: seen.home_trusted)
+        await service.ask(SelectMode(Mode.DUAL))
+        await service.ask(Track())
+        await until_served(service.port)
+        async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{service.port}/api/v1") as client:
+            written = await client.post("/backup")
+            assert written.status_code == 201, written.text
+            unneeded = await client.post("/restore", json={"file": written.json()["file"]})
+            assert unneeded.status_code == 409
+        return str(written.json()["file"])
+    finally:
+        await service.stop()
+
+
+@pytest.mark.fault(51)
+async def test_a_damaged_database_moves_nothing_and_offers_the_backup(tmp_path: Path) -> None:
+    data_dir = tmp_path / "data"
+    backup = await kept(data_dir)
+    damage(data_dir, "trackers")
+    service = await Service.start(data_dir)
+    try:
+        await eventually(lambda: "store_damaged" in alarms(service))
+        await service.until(lambda seen: seen.activity is ActivityName.HOLDING)
+        for command in (Jog("hand", Axis.AZIMUTH, 1), Park(), Track(), SetZero()):
+            with pytest.raises(CommandRejected) as refused:
+                await service.ask(command)
+            assert [reason.code for reason in refused.value.reasons] == ["safe_mode"]
+        with pytest.raises(CommandRejected, match=r"in safe mode.*is damaged.*Restore a backup"):
+            await service.ask(RenameSite("Lost"))
+        await service.ask(Stop())
+        await until_served(service.port)
+        async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{service.port}") as client:
+            page = await client.get("/restore")
+            assert page.status_code == 200
+            assert "The database is damaged" in page.text
+            assert backup in page.text
+            assert (await client.post("/api/v1/restore", json={"file": "../x"})).status_code == 404
+            begun = await client.post("/api/v1/restore", json={"file": backup})
+            assert begun.status_code == 202, begun.text
+            assert begun.json()["site_name"] == "Kept"
+        await eventually(lambda: restored(service))
+        assert len(service.starts("machine")) == 2
+        await service.ask(RenameSite("Goes on"))
+    finally:
+        await service.stop()
+
+
+def alarms(service: Service) -> set[str]:
+    latest = service.link.latest()
+    return set() if latest is None else {alarm.code for alarm in latest.alarms}
+
+
+def restored(service: Service) -> bool:
+    latest = service.link.latest()
+    return latest is not None and latest.site_name == "Kept" and "store_damaged" not in alarms(service)
