@@ -1,5 +1,6 @@
 """A day of a field in minutes: weather, faults, repairs; nothing breaks, and the memory does not grow."""
 
+import os
 from datetime import UTC, datetime
 from time import perf_counter
 
@@ -9,8 +10,10 @@ from app.tracker.snapshot import ActivityName
 from tests.site.field import Field
 from tests.soak import amount
 
-TRACKERS, MINUTES = amount(3, 20), amount(20, 24 * 60)
-BEGIN = datetime(2027, 6, 21, 5, 0, tzinfo=UTC)
+TRACKERS = amount(3, 20)
+MINUTES = int(os.environ.get("HELIOPANEL_TEST_MINUTES", amount(20, 24 * 60)))
+SEED = int(os.environ.get("HELIOPANEL_TEST_SEED", "2026"))
+BEGIN = datetime(2027, 6, 21, int(os.environ.get("HELIOPANEL_TEST_BEGIN_H", "5")), tzinfo=UTC)
 MOST_GROWTH_BYTES = 24 * 1024 * 1024
 
 
@@ -18,7 +21,7 @@ MOST_GROWTH_BYTES = 24 * 1024 * 1024
 @pytest.mark.timeout(amount(400, 14_400))
 async def test_a_field_lives_through_weather_and_faults_and_needs_no_more_memory() -> None:
     begun = perf_counter()
-    field = Field(TRACKERS, BEGIN, seed=2026)
+    field = Field(TRACKERS, BEGIN, seed=SEED)
     await field.live(MINUTES)
     seen = field.seen
     print(
