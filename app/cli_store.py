@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from app.clock import SystemClock
 from app.gateway.sunspec_map import map_table, sunspec_map
 from app.machine.lock import holder
 from app.settings import read_settings
@@ -19,12 +20,17 @@ def backup(file: Annotated[Path, typer.Argument(help="File to write.")]) -> None
     """Write everything that is stored into one file; the machine may run."""
     info = back_up(read_settings().url, file)
     typer.echo(f"The backup is in {file} ({info.size_bytes} bytes).")
+    if info.audit_head:
+        typer.echo(
+            f"The audit's last entry is {info.audit_head}. Keep this elsewhere: "
+            "`heliopanel audit verify --head` finds it again, or shows that entries were removed."
+        )
 
 
 def restore(file: Annotated[Path, typer.Argument(help="File that `backup` wrote.")]) -> None:
     """Bring back what a backup holds; a running machine stops its drives and starts again on it."""
     settings = read_settings()
-    match request_restore(file, settings.url, settings.data_dir):
+    match request_restore(file, settings.url, settings.data_dir, SystemClock().now()):
         case Restored(backup=found):
             typer.echo(f"The backup of {found.site_name} is restored.")
         case RestorePending(backup=found):

@@ -128,6 +128,7 @@ class FakeMachine:
         self.weather: WeatherNow | None = None
         self.alarms: tuple[AlarmNow, ...] = ()
         self.sequence = 0
+        self.boot_id = "fake-boot"
         self._outlet = Outlet()
         self.emit()
 
@@ -240,11 +241,16 @@ class FakeMachine:
         self.reachable = True
         self.emit()
 
+    def start_again(self) -> None:
+        """Begin another life, as after a restart of the controller service."""
+        self.boot_id = "second-boot"
+        self.emit()
+
     def _snapshot(self) -> SiteSnapshot:
         now = self.clock.now() + timedelta(seconds=self.site.clock.offset_s)
         clock = self.site.clock
         return SiteSnapshot(
-            boot_id="fake-boot",
+            boot_id=self.boot_id,
             sequence=self.sequence,
             at=now,
             site_name=self.site.name,

@@ -20,6 +20,14 @@ class AccessEvent:
     result: str = "done"
 
 
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """An event with its place in the record."""
+
+    number: int
+    event: AccessEvent
+
+
 def covered(event: AccessEvent) -> Mapping[str, str]:
     """Return what the hash of an event covers."""
     return asdict(event) | {"at": event.at.isoformat()}

@@ -8,12 +8,15 @@ from datetime import datetime, timedelta
 from typing import TypeVar
 
 import structlog
+from sqlalchemy.exc import SQLAlchemyError
 
 from app.access import sessions
 from app.access.accounts import Accounts, note
 from app.access.book import Book
+from app.access.events import AccessEvent, Recorded
 from app.access.passwords import Passwords
 from app.access.principal import Principal, SignInNeeded, Via, nobody, this_computer
+from app.access.refusals import Allowance, Refusals
 from app.access.roles import NOBODY, Permission, Role
 from app.access.sessions import Session, digest_of, new_id
 from app.access.setup import Setup
@@ -23,6 +26,7 @@ from app.access.tickets import OneShots, csrf_token, read_stop_ticket, stop_tick
 from app.access.tokens import digest_of as token_digest
 from app.access.tokens import token_id_of
 from app.clock import Clock
+from app.store.store import StoreFailed
 
 log = structlog.get_logger()
 T = TypeVar("T")
@@ -30,6 +34,9 @@ T = TypeVar("T")
 LOOK_EVERY = timedelta(milliseconds=500)
 MOST_WAITING = 20
 LOOPBACK_ADDRESSES = frozenset({"127.0.0.1", "::1"})
+WRONG_AT_ONCE, WRONG_EVERY = 200, timedelta(minutes=1)
+"""How many wrong passwords are recorded one by one: at most 1,440 a day after the first 200."""
+
 WRONG = "The name or the password is wrong."
 
 
@@ -67,12 +74,14 @@ class Keeper:
     def __init__(self, store: AccessStore, passwords: Passwords, clock: Clock, setup: Setup) -> None:
         self.accounts = Accounts(store, passwords)
         self.setup = setup
+        self.refusals = Refusals()
         self._store = store
         self._passwords = passwords
         self._clock = clock
         self._one_shots = OneShots()
         self._one_at_a_time = asyncio.Semaphore(1)
         self._waiting = 0
+        self._wrong = Allowance(WRONG_AT_ONCE, WRONG_EVERY)
         self._changed = asyncio.Event()
         self.book: Book = store.load()
 
@@ -86,7 +95,22 @@ class Keeper:
         while True:
             await self._clock.sleep_until(self._clock.now() + LOOK_EVERY)
             if self._store.exists():
+                await self._write_refusals()
                 await self.refresh()
+
+    async def _write_refusals(self) -> None:
+        due = self.refusals.take(self._clock.now())
+        if not due:
+            return
+        try:
+            await asyncio.to_thread(self._append, due)
+        except (StoreFailed, SQLAlchemyError) as error:
+            log.warning("refusals could not be recorded", count=len(due), reason=str(error))
+
+    def _append(self, events: list[AccessEvent]) -> None:
+        with self._store.writing() as change:
+            for event in events:
+                change.note(event)
 
     async def refresh(self) -> None:
         """Read the book anew if anything was written, and wake who waits for changes."""
@@ -205,7 +229,7 @@ class Keeper:
             session = self._session(principal)
             token = self.book.tokens[session.token_id]
             subject = (f"pin:{token.token_id}",)
-            self._wait(subject)
+            self._wait(subject, principal)
             if not self._passwords.matches(token.pin_hash, pin):
                 self._fail(f"pin of {token.name}", subject, principal.address)
             until = self._clock.now() + sessions.STEP_UP
@@ -221,7 +245,7 @@ class Keeper:
 
         def work() -> None:
             now, subject = self._clock.now(), (f"setup@{address}",)
-            self._wait(subject)
+            self._wait(subject, nobody(address))
             if not self.setup.accepts(code):
                 self._fail("setup code", subject, address)
             self.accounts.add(nobody(address), name, {Role.ADMINISTRATOR}, password, now)
@@ -265,6 +289,10 @@ class Keeper:
         finally:
             self._waiting -= 1
 
+    async def events(self, before: int | None, limit: int) -> list[Recorded]:
+        """Return what happened to users, sessions, tokens and the network, newest first."""
+        return await asyncio.to_thread(self._store.newest_events, before, limit)
+
     def close(self) -> None:
         """Close the database."""
         self._store.close()
@@ -279,19 +307,23 @@ class Keeper:
         here = f"{account}@{address}"[:120]
         elsewhere = (f"address:{address}"[:120], f"account:{account}"[:120])
         subjects = (here,) if self._knows(account, address) else (here, *elsewhere)
-        self._wait(subjects, first=here)
+        self._wait(subjects, nobody(address), first=here)
         user = self.book.users.get(account)
         if not self._passwords.matches(user.password_hash if user else None, password):
             self._fail(account, subjects, address)
         with self._store.writing() as change:
             change.forgive((here,))
 
-    def _wait(self, subjects: tuple[str, ...], *, first: str = "") -> None:
+    def _wait(self, subjects: tuple[str, ...], who: Principal, *, first: str = "") -> None:
         found = self._store.failures(subjects)
         judged = [one for name, one in found.items() if first in found or not name.startswith("account:")]
         wait = wait_left(judged, self._clock.now())
         if wait > timedelta():
-            raise Throttled(wait)
+            throttled = Throttled(wait)
+            self.refusals.note(
+                "refused_log_in", who, subjects[0].partition("@")[0], str(throttled), self._clock.now()
+            )
+            raise throttled
 
     def _fail(self, account: str, subjects: tuple[str, ...], address: str) -> None:
         now = self._clock.now()
@@ -299,7 +331,10 @@ class Keeper:
             before: dict[str, Failures] = change.failures(subjects)
             for subject in subjects:
                 change.put_failures(subject, one_more(before.get(subject), now))
-            note(change, nobody(address), "log_in", account, now, "wrong")
+            if self._wrong.take(now):
+                note(change, nobody(address), "log_in", account, now, "wrong")
+            else:
+                self.refusals.leave_out()
         log.warning("a password was wrong", account=account, address=address)
         raise WrongPassword(WRONG)
 

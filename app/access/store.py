@@ -10,7 +10,7 @@ from sqlalchemy import Connection, Engine, Table, delete, insert, inspect, selec
 
 from app.access import tables
 from app.access.book import Book
-from app.access.events import AccessEvent, chained, covered
+from app.access.events import AccessEvent, Recorded, chained, covered
 from app.access.migrations import upgrade
 from app.access.roles import Role
 from app.access.sessions import Session
@@ -94,6 +94,18 @@ class AccessStore:
         with transaction(self._engine) as connection:
             rows = connection.execute(select(tables.events).order_by(tables.events.c.number)).mappings()
             return [_event(dict(row)) for row in rows]
+
+    def newest_events(self, before: int | None, limit: int) -> list[Recorded]:
+        """Return events with their numbers, newest first; `before` is the number of the last one known."""
+        if not self.exists():
+            return []
+        columns = tables.events.c
+        wanted = select(tables.events).order_by(columns.number.desc()).limit(limit)
+        if before is not None:
+            wanted = wanted.where(columns.number < before)
+        with transaction(self._engine) as connection:
+            rows = [dict(row) for row in connection.execute(wanted).mappings()]
+        return [Recorded(row["number"], _event(row)[0]) for row in rows]
 
     def links(self) -> list[Link]:
         """Return every event as the chain of hashes sees it, oldest first."""

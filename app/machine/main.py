@@ -12,6 +12,7 @@ from uuid import uuid4
 import structlog
 
 from app.alarms.conditions import MEGABYTE, SITE, Condition
+from app.audit.entry import Entry, told
 from app.build import BUILT_AT, VERSION
 from app.clock import SystemClock
 from app.drives.factory import DriveFactory
@@ -21,7 +22,7 @@ from app.gateway.gateways import Gateways
 from app.link.server import LinkServer
 from app.logs import set_up_logs
 from app.machine.lock import only_instance
-from app.machine.marker import mark_running, mark_stopped
+from app.machine.marker import mark_running, mark_stopped, mark_version, version_before
 from app.machine.memory import MemoryGuard
 from app.machine.process import on_signals, raise_priority
 from app.machine.safe_mode import serve_safely
@@ -55,7 +56,7 @@ def run(settings: Settings) -> None:
     settings.data_dir.mkdir(mode=0o700, parents=True, exist_ok=True)
     clock = SystemClock()
     with only_instance(settings.data_dir, clock.now()):
-        _restore_if_asked(settings)
+        _restore_if_asked(settings, clock.now())
         try:
             upgrade(settings.url)
             writer = open_writer(settings.url)
@@ -63,6 +64,7 @@ def run(settings: Settings) -> None:
             asyncio.run(serve_safely(settings, clock, damage))
             return
         try:
+            audit_version(settings.data_dir, writer, VERSION, clock.now())
             asyncio.run(_serve(settings, clock, writer))
         finally:
             writer.close()
@@ -74,10 +76,23 @@ def _note_zones(site: Site) -> None:
         site.trouble("zones", Condition(NO_ZONES.code, None, SITE, NO_ZONES.message, NO_ZONES.hint))
 
 
-def _restore_if_asked(settings: Settings) -> None:
+def audit_version(data_dir: Path, writer: Writer, version: str, now: datetime) -> None:
+    """Have the audit tell that another version runs from now on: an upgrade, or a step back."""
+    before = version_before(data_dir)
+    if before == version:
+        return
+    if before:
+        given = told({"before": before, "after": version})
+        entry = Entry(now, 0, "", "unknown", "this computer", "console", "", "change_version", "site", given)
+        with writer.audited(entry):
+            log.warning("version_changed", before=before, after=version)
+    mark_version(data_dir, version)
+
+
+def _restore_if_asked(settings: Settings, now: datetime) -> None:
     """Bring back a backup that was handed over; one that cannot be used is put aside and logged."""
     try:
-        restored = apply_pending_restore(settings.data_dir, settings.url)
+        restored = apply_pending_restore(settings.data_dir, settings.url, now)
     except StoreFailed as error:
         log.error("restore_refused", reason=str(error))
         return

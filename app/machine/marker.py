@@ -1,10 +1,11 @@
-"""A file that exists while the machine runs: found at a start, it tells that the last life ended badly."""
+"""Files that tell the next life of the machine how this one ended, and which version it was."""
 
 import os
 from datetime import datetime
 from pathlib import Path
 
 MARKER_NAME = "machine.running"
+VERSION_NAME = "machine.version"
 
 
 def mark_running(data_dir: Path, now: datetime) -> datetime | None:
@@ -23,6 +24,21 @@ def mark_running(data_dir: Path, now: datetime) -> datetime | None:
 def mark_stopped(data_dir: Path) -> None:
     """Take the mark away: this life ended properly."""
     (data_dir / MARKER_NAME).unlink(missing_ok=True)
+
+
+def version_before(data_dir: Path) -> str:
+    """Return the version that ran here last, empty where none did."""
+    try:
+        return (data_dir / VERSION_NAME).read_text(encoding="utf-8").strip()
+    except OSError:
+        return ""
+
+
+def mark_version(data_dir: Path, version: str) -> None:
+    """Remember the version that runs here."""
+    fresh = data_dir / f"{VERSION_NAME}.new"
+    fresh.write_text(version, encoding="utf-8")
+    fresh.replace(data_dir / VERSION_NAME)
 
 
 def _began_at(path: Path) -> datetime | None:

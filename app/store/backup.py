@@ -2,11 +2,11 @@
 
 import sqlite3
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from urllib.parse import quote
 
-from sqlalchemy import Connection, func, insert, select, text
+from sqlalchemy import Connection, func, insert, inspect, select, text
 
 from app.store import tables
 from app.store.connections import (
@@ -36,6 +36,8 @@ class BackupInfo:
     trackers: int
     events: int
     recordings: int
+    audit_head: str = ""
+    """The last entry of the audit as `SEQ:HASH`, empty without one: whoever keeps it can prove it later."""
 
 
 def backup(url: str, target: Path) -> BackupInfo:
@@ -53,7 +55,7 @@ def backup(url: str, target: Path) -> BackupInfo:
         raise StoreFailed(f"The backup {target} could not be written: {error.strerror}.") from error
     finally:
         remove_sqlite(unfinished)
-    return BackupInfo(target, target.stat().st_size, found.revision, *_content(found))
+    return replace(found, path=target, size_bytes=target.stat().st_size)
 
 
 def inspect_backup(path: Path) -> BackupInfo:
@@ -68,11 +70,24 @@ def inspect_backup(path: Path) -> BackupInfo:
             revision = revision_of(connection)
             if revision is None:
                 raise StoreFailed(f"{path} is not a backup of Heliopanel. Give the path of a backup.")
-            return BackupInfo(path, path.stat().st_size, revision, *_count(connection))
+            counted = _count(connection)
+            return BackupInfo(
+                path, path.stat().st_size, revision, *counted, audit_head=audit_head(connection)
+            )
     except StoreFailed as failure:
         raise StoreFailed(f"The backup {path} cannot be used. {failure}") from failure
     finally:
         engine.dispose()
+
+
+def audit_head(connection: Connection) -> str:
+    """Return the last entry of the audit as `SEQ:HASH`, empty where there is none."""
+    if not inspect(connection).has_table(tables.audit.name):
+        return ""
+    columns = tables.audit.c
+    last = select(columns.seq, columns.hash).order_by(columns.seq.desc()).limit(1)
+    found = connection.execute(last).one_or_none()
+    return f"{found.seq}:{found.hash}" if found else ""
 
 
 def copy_database(source: Connection, target: Connection) -> None:
@@ -117,7 +132,3 @@ def _count(connection: Connection) -> tuple[str, int, int, int]:
         for table in (tables.trackers, tables.events, tables.recordings)
     ]
     return name, counts[0], counts[1], counts[2]
-
-
-def _content(found: BackupInfo) -> tuple[str, int, int, int]:
-    return found.site_name, found.trackers, found.events, found.recordings

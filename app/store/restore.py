@@ -5,12 +5,15 @@ import sqlite3
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 
 from sqlalchemy import Connection, func, select
 
+from app.audit.entry import Entry, told
 from app.store import tables
-from app.store.backup import BackupInfo, backup, copy_database, inspect_backup
+from app.store.auditing import append
+from app.store.backup import BackupInfo, audit_head, backup, copy_database, inspect_backup
 from app.store.connections import reading_engine, revision_of, sqlite_path, transaction, writing_engine
 from app.store.files import (
     copy_sqlite,
@@ -53,7 +56,7 @@ class RestorePending:
     path: Path
 
 
-def request_restore(source: Path, url: str, data_dir: Path) -> Restored | RestorePending:
+def request_restore(source: Path, url: str, data_dir: Path, now: datetime) -> Restored | RestorePending:
     """Hand a checked backup over and restore it if no machine runs; else the machine does at its next start.
 
     Handing over comes first, so that the next start finishes a restore that a power cut interrupted.
@@ -62,12 +65,12 @@ def request_restore(source: Path, url: str, data_dir: Path) -> Restored | Restor
     pending = data_dir / PENDING_NAME
     put_in_place(_stage(source, data_dir / f"{PENDING_NAME}.staged"), pending)
     with _machine_kept_out(data_dir) as stopped:
-        if stopped and (restored := apply_pending_restore(data_dir, url)) is not None:
+        if stopped and (restored := apply_pending_restore(data_dir, url, now)) is not None:
             return Restored(found, restored.kept)
     return RestorePending(found, pending)
 
 
-def apply_pending_restore(data_dir: Path, url: str) -> Restored | None:
+def apply_pending_restore(data_dir: Path, url: str, now: datetime) -> Restored | None:
     """Restore what was handed over, None if nothing was; the machine calls this before it opens the store.
 
     A file that cannot be restored is put aside as `restore.refused` and raises `StoreFailed`; the database is
@@ -77,7 +80,7 @@ def apply_pending_restore(data_dir: Path, url: str) -> Restored | None:
     if not pending.exists():
         return None
     try:
-        restored = restore(pending, url)
+        restored = restore(pending, url, now)
     except StoreFailed:
         pending.replace(data_dir / REFUSED_NAME)
         raise
@@ -85,20 +88,57 @@ def apply_pending_restore(data_dir: Path, url: str) -> Restored | None:
     return restored
 
 
-def restore(source: Path, url: str) -> Restored:
+def restore(source: Path, url: str, now: datetime) -> Restored:
     """Make a database what a backup holds, or raise `StoreFailed`; the machine must not run.
 
     An older backup is brought up to date on the way. The old database is kept: beside itself for SQLite, as a
-    backup beside `source` for PostgreSQL.
+    backup beside `source` for PostgreSQL. The restored audit goes on with an entry that says so, and with the
+    head of the audit that it takes the place of.
     """
     found = inspect_backup(source)
     path = sqlite_path(url)
     staged = _stage(source, (path or source).with_name(f"{(path or source).name}.restoring"))
     try:
+        _record(staged, found, _head_of(url), now)
         kept = _swap_file(staged, path) if path else _replace_rows(staged, url, source)
     finally:
         remove_sqlite(staged)
     return Restored(found, kept)
+
+
+def _record(staged: Path, found: BackupInfo, head: str, now: datetime) -> None:
+    """Append to the audit of a backup that is about to be restored that it is."""
+    given = {
+        "site_name": found.site_name,
+        "revision": found.revision,
+        "audit_head": found.audit_head,
+        "replaced_audit_head": head,
+    }
+    entry = Entry(
+        now, 0, "", "unknown", "this computer", "console", "", "restore_backup", "site", told(given)
+    )
+    engine = writing_engine(f"sqlite:///{staged}")
+    try:
+        with transaction(engine) as connection:
+            append(connection, entry)
+    finally:
+        engine.dispose()
+    make_portable(staged)
+
+
+def _head_of(url: str) -> str:
+    """Return the head of the audit that is replaced, empty where the database is missing or damaged."""
+    path = sqlite_path(url)
+    if path is not None and not path.exists():
+        return ""
+    engine = reading_engine(url)
+    try:
+        with transaction(engine) as connection:
+            return audit_head(connection)
+    except StoreFailed:
+        return ""
+    finally:
+        engine.dispose()
 
 
 def _stage(source: Path, staged: Path) -> Path:

@@ -82,6 +82,7 @@ class Frame:
     forward: Forward | None
     who: Who = field(default_factory=Who)
     is_bare: bool = False
+    mark: str = ""
 
     @property
     def name(self) -> str:

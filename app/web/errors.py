@@ -26,6 +26,7 @@ from app.sun.spa import AlgorithmMissing
 from app.tracker.commands import CommandRejected
 from app.tracker.control import ControlHeld, ControlLost
 from app.tracker.reason import Reason
+from app.web.edition import PageOutdated
 from app.web.network import NetworkBusy, NotOnTrial
 from app.web.network_check import NetworkRefused
 from app.web.security import add_headers
@@ -50,6 +51,10 @@ class NotFound(Exception):
 
 class Busy(Exception):
     """The panel does as much as it can; the text says when to come back."""
+
+
+class NotSetUp(Exception):
+    """Nobody manages this panel yet; the text says how to begin."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,12 +156,14 @@ PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
     UnknownPaper: lambda error: Problem(404, str(error)),
     AlgorithmMissing: lambda error: Problem(422, str(error)),
     NotAcceptable: lambda error: Problem(422, str(error)),
+    PageOutdated: lambda error: Problem(409, str(error), headers={"Page-Outdated": "1"}),
     NetworkRefused: _wrong_fields,
     NetworkBusy: lambda error: Problem(409, str(error)),
     NotOnTrial: lambda error: Problem(409, str(error)),
     Busy: lambda error: Problem(429, str(error), headers={"Retry-After": "5"}),
     StudyUnknown: lambda error: Problem(404, str(error)),
     WeatherFileRefused: lambda error: Problem(422, str(error)),
+    NotSetUp: lambda error: Problem(503, str(error)),
     NotFound: lambda error: Problem(404, str(error)),
     RequestValidationError: invalid,
     HTTPException: refused_by_http,

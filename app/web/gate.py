@@ -2,6 +2,7 @@
 
 import asyncio
 from collections import OrderedDict, deque
+from collections.abc import Callable
 from datetime import datetime, timedelta
 from hmac import compare_digest
 from http.cookies import CookieError, SimpleCookie
@@ -14,11 +15,12 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.access.keeper import Credentials, Keeper
-from app.access.principal import NotAllowed, Principal, ProofNeeded, SignInNeeded, Via
+from app.access.principal import NotAllowed, Principal, ProofNeeded, SignInNeeded, Via, nobody
 from app.access.roles import Permission
 from app.access.sessions import is_proven
+from app.access.tokens import token_id_of
 from app.clock import Clock
-from app.web.errors import FOR_PROGRAMS, Busy, answer_to
+from app.web.errors import FOR_PROGRAMS, Busy, NotSetUp, answer_to
 from app.web.route_permissions import PROVEN, ROUTES, STREAMS, TICKETED
 from app.web.routes import STATIC, Guarded, key_of
 from app.web.security import SAFE_METHODS
@@ -38,6 +40,13 @@ WHILE_CLOSED = frozenset(
 )
 STOPS_WINDOW, MOST_STOPS = timedelta(seconds=1), 10
 MOST_ADDRESSES = 1000
+REFUSED = {NotAllowed: "refused", Busy: "refused_stops"}
+"""What a refusal is called in the record of access."""
+
+NOT_SET_UP = (
+    "This panel has no administrator yet and serves only its set-up page. Open /setup with the code "
+    "from its console, or run: heliopanel users add NAME --role administrator"
+)
 OLD_PAGE = "This page is too old to change anything. Load it again, then repeat what you did."
 
 
@@ -64,14 +73,26 @@ class Gate:
             route, path_parameters = key_of(self._routes, scope)
             who = self._admit(scope, route, path_parameters)
         except (NotAllowed, ProofNeeded, SignInNeeded, Busy) as error:
+            self._record(scope, error)
             await _turn_away(scope, receive, send, error)
             return
         if self._keeper.is_closed and route not in WHILE_CLOSED:
-            await _answer(scope, receive, send, RedirectResponse("/setup", 303))
+            await _answer(scope, receive, send, _not_set_up(Request(scope, receive)))
             return
         if is_activity(scope, route):
             await self._keeper.used(who)
         await (self._while_allowed if route in STREAMS else self._pass)(scope, receive, send, who)
+
+    def _record(self, scope: Scope, error: Exception) -> None:
+        """Have it recorded that somebody was turned away; who has only to sign in was not."""
+        action = REFUSED.get(type(error))
+        bearer = credentials(scope, "").bearer
+        if action is None and not bearer:
+            return
+        who = scope.get("state", {}).get("principal") or nobody(_address(scope))
+        token = f" Its id is {found}." if (found := token_id_of(bearer)) and action is None else ""
+        refusals, now = self._keeper.refusals, self._clock.now()
+        refusals.note(action or "refused_token", who, asked(scope), f"{error}{token}", now)
 
     def _admit(self, scope: Scope, route: str, path_parameters: dict[str, str]) -> Principal:
         given = credentials(scope, route)
@@ -140,10 +161,28 @@ class StopLimit:
         return True
 
 
+def asked(scope: Scope) -> str:
+    """Return what was asked for, for the record: method and path."""
+    return f"{scope.get('method', 'WS')} {scope['path']}"
+
+
+def record_foreign(keeper: Keeper, clock: Clock) -> Callable[[Scope, str], None]:
+    """Return what records that the guard turned a request away, before anybody knew whose it is."""
+
+    def record(scope: Scope, why: str) -> None:
+        keeper.refusals.note("refused_foreign", nobody(_address(scope)), asked(scope), why, clock.now())
+
+    return record
+
+
+def _address(scope: Scope) -> str:
+    client = scope.get("client")
+    return client[0] if client else ""
+
+
 def credentials(scope: Scope, route: str) -> Credentials:
     """Return what a request brings along; one with a bearer token is judged by nothing else."""
-    client, headers, query = scope.get("client"), Headers(scope=scope), _query(scope)
-    address = client[0] if client else ""
+    headers, query, address = Headers(scope=scope), _query(scope), _address(scope)
     scheme, _, bearer = headers.get("authorization", "").partition(" ")
     if scheme.lower() == "bearer":
         return Credentials(address, bearer=bearer.strip() or "none")
@@ -210,6 +249,12 @@ async def _turn_away(scope: Scope, receive: Receive, send: Send, error: Exceptio
         return
     request = Request(scope, receive)
     await _answer(scope, receive, send, way_in(request, error) or answer_to(request, error))
+
+
+def _not_set_up(request: Request) -> Response:
+    """Return the way to the set-up page, for programs what is wrong."""
+    for_programs = request.url.path.startswith(FOR_PROGRAMS)
+    return answer_to(request, NotSetUp(NOT_SET_UP)) if for_programs else RedirectResponse("/setup", 303)
 
 
 def way_in(request: Request, error: Exception) -> Response | None:

@@ -15,6 +15,7 @@ import structlog
 from app.clock import Clock
 from app.link.messages import Machine, Update
 from app.tracker.snapshot import Event, SiteSnapshot
+from app.web.edition import edition
 from app.web.presses import Dead
 from app.web.viewers import Message, Viewer, Wanted
 
@@ -164,6 +165,7 @@ class Hub:
             "type": "state",
             "rev": snapshot.sequence,
             "boot": snapshot.boot_id,
+            "build": edition(),
             "at": snapshot.at,
             "age_ms": round((self._clock.now() - self._heard_at) / timedelta(milliseconds=1)),
             "snapshot": snapshot,

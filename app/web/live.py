@@ -18,6 +18,7 @@ from app.tracker.axes import Axis, JogSpeed
 from app.tracker.commands import CommandRejected, EndJog, Jog, Stop
 from app.tracker.reason import Reason
 from app.web.deps import Panel, order_of, principal
+from app.web.edition import PageOutdated, refuse_outdated
 from app.web.errors import machine_problem
 from app.web.hub import TooManyViewers
 from app.web.presses import Heartbeat, LinkDelay, Presses, Verdict
@@ -29,6 +30,9 @@ router = APIRouter()
 MOST_IN_FLIGHT = 4
 STAY_EVERY = timedelta(seconds=3)
 DEAD_PRESS = Reason("press_dead", "This press has ended.", "Let the key go and press it again.")
+OLD_PAGE = Reason(
+    "page_outdated", "This page is outdated.", "It is loaded again now; then press the key again."
+)
 SLOW_LINK = Reason(
     "link_too_slow",
     "The connection is too slow for hold-to-run.",
@@ -98,13 +102,14 @@ _incoming: TypeAdapter[Incoming] = TypeAdapter(Incoming)
 class Session:
     """What one page asks for over its WebSocket."""
 
-    def __init__(self, panel: Panel, viewer: Viewer, who: Principal) -> None:
+    def __init__(self, panel: Panel, viewer: Viewer, who: Principal, mark: str = "") -> None:
         self._machine = panel.machine
         self._clock = panel.clock
         self._hub = panel.hub
         self._keeper = panel.keeper
         self._viewer = viewer
         self._who = who
+        self._mark = mark
         self._delay = LinkDelay()
         self._presses = Presses(self._delay, panel.hub.dead)
         self._in_flight = 0
@@ -170,11 +175,14 @@ class Session:
     async def _renew(self, beat: JogBeat, lease: timedelta) -> None:
         jog = Jog(beat.press_id, beat.axis, beat.direction, beat.speed, beat.sequence, lease)
         try:
+            refuse_outdated(self._mark, self._machine.latest())
             who = self._keeper.current(self._who)
             await self._machine.execute(order_of(who, jog, beat.tracker_id, epoch=beat.epoch))
             await self._keeper.used(who)
         except CommandRejected as error:
             self._refuse(beat.press_id, *error.reasons)
+        except PageOutdated:
+            self._refuse(beat.press_id, OLD_PAGE)
         except FORBIDDEN as error:
             self._refuse(beat.press_id, Reason("not_allowed", str(error), ""))
         except (MachineUnreachable, UnknownTracker, ValueError) as error:
@@ -223,7 +231,7 @@ class Session:
 
 
 @router.websocket("/live")
-async def live(websocket: WebSocket, tracker: str | None = None) -> None:
+async def live(websocket: WebSocket, tracker: str | None = None, page: str = "") -> None:
     """Serve one page until it goes, or until it does not take what it is sent."""
     panel: Panel = websocket.app.state.panel
     who = principal(websocket)
@@ -232,7 +240,7 @@ async def live(websocket: WebSocket, tracker: str | None = None) -> None:
     except TooManyViewers:
         await websocket.close(1013, "too many viewers")
         return
-    session = Session(panel, viewer, who)
+    session = Session(panel, viewer, who, page)
     try:
         await websocket.accept()
         await _serve(websocket, session, viewer, panel.hub.patience)

@@ -32,7 +32,7 @@ from app.web.api.router import api_router
 from app.web.assets import Assets
 from app.web.deps import Panel
 from app.web.documented import DocumentedApp
-from app.web.gate import Gate
+from app.web.gate import Gate, record_foreign
 from app.web.hub import Hub
 from app.web.limits import StreamLimit
 from app.web.mdns import announced
@@ -103,7 +103,7 @@ def create_app(
     app.add_middleware(GZipMiddleware, minimum_size=SMALLEST_COMPRESSED)
     app.add_middleware(Gate, panel_app=app, keeper=keeper, clock=clock, routes=app.state.routes)
     app.add_middleware(StreamLimit, clock=clock)
-    app.add_middleware(Guard, hosts=host_names(settings))
+    app.add_middleware(Guard, hosts=host_names(settings), on_refusal=record_foreign(keeper, clock))
     app.add_middleware(SecurityHeaders)
     return app
 

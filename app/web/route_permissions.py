@@ -301,7 +301,9 @@ _TABLE: dict[Permission, str] = {
     """,
     Permission.ADMINISTER: """
         GET /audit
+        GET /audit/access
         GET /api/v1/audit
+        GET /api/v1/audit/access
         GET /network
         POST /network
         GET /api/v1/network

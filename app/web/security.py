@@ -2,6 +2,7 @@
 
 import ipaddress
 import re
+from collections.abc import Callable
 from http import HTTPStatus
 from urllib.parse import urlsplit
 
@@ -70,13 +71,21 @@ def add_headers(headers: MutableHeaders, *, is_secure: bool = False) -> None:
 class Guard:
     """Turns away requests for foreign host names, and changes and WebSockets that foreign pages ask for."""
 
-    def __init__(self, app: ASGIApp, hosts: frozenset[str] = LOOPBACK_NAMES) -> None:
+    def __init__(
+        self,
+        app: ASGIApp,
+        hosts: frozenset[str] = LOOPBACK_NAMES,
+        on_refusal: Callable[[Scope, str], None] | None = None,
+    ) -> None:
         self._app = app
         self._hosts = hosts
+        self._on_refusal = on_refusal
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on, or answer 403 with the sentence that says why."""
         if scope["type"] in ("http", "websocket") and (refusal := self._refusal(scope)):
+            if self._on_refusal is not None:
+                self._on_refusal(scope, refusal)
             await _refuse(scope, send, 403, refusal)
             return
         if scope["type"] == "http" and _body_size(scope) > largest_body(scope):

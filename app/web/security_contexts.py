@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+from app.access.events import Recorded
 from app.audit.entry import Sealed
 from app.network import Network
 from app.web.contexts import Form, Frame
@@ -20,6 +21,17 @@ class AuditPage:
     entries: tuple[Sealed, ...]
     head: Sealed | None
     actor: str
+    older: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class AccessRecordPage:
+    """What happened at the panel's door, newest first."""
+
+    template: ClassVar[str] = "audit_access.html"
+
+    frame: Frame
+    entries: tuple[Recorded, ...]
     older: str | None
 
 

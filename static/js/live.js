@@ -12,6 +12,7 @@ export const live = {
   trackerId: root.dataset.tracker ?? null,
   zone: root.dataset.zone ?? "UTC",
   site: null,
+  build: null,
   tracker: null,
   link: "starting",
   roundTripMs: null,
@@ -48,6 +49,7 @@ function connect() {
   if (leaving) return;
   const asked = new URLSearchParams();
   if (live.trackerId) asked.set("tracker", live.trackerId);
+  if (root.dataset.page) asked.set("page", root.dataset.page);
   if (root.dataset.stopTicket) asked.set("stop_ticket", root.dataset.stopTicket);
   const scheme = location.protocol === "https:" ? "wss" : "ws";
   const mine = new WebSocket(`${scheme}://${location.host}/live?${asked}`);
@@ -66,6 +68,7 @@ const HEARD = {
   state(message) {
     heardAt = stateAt = performance.now();
     live.site = message.snapshot;
+    live.build = message.build;
     live.tracker = live.trackerOf(live.trackerId);
     setLink("live");
     tell("state", live);

@@ -16,6 +16,7 @@ function prepare(event) {
     return;
   }
   if (document.documentElement.dataset.csrf) ctx.request.headers["X-CSRF-Token"] = document.documentElement.dataset.csrf;
+  ctx.request.headers["X-Page"] = document.documentElement.dataset.page ?? "";
   const body = ctx.request.body;
   if (body?.has?.("issued_at")) body.set("issued_at", live.machineNow() ?? "");
   if (body?.has?.("key")) body.set("key", randomId());

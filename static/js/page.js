@@ -4,6 +4,7 @@ import { start as startControl } from "./control.js";
 import { start as startAlarms } from "./alarms.js";
 import { start as startLive } from "./live.js";
 import { start as startOrders } from "./orders.js";
+import { start as startOutdated } from "./outdated.js";
 import { start as startSteps } from "./steps.js";
 import { start as startStop } from "./stop.js";
 import { start as startTheme } from "./theme.js";
@@ -14,6 +15,7 @@ startOrders();
 startSteps();
 startControl();
 startAlarms();
+startOutdated();
 startLive();
 
 const heading = document.getElementById("heading");

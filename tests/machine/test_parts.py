@@ -20,12 +20,16 @@ import structlog
 from app.clock import SystemClock, VirtualClock
 from app.logs import set_up_logs
 from app.machine.lock import LOCK_NAME, AlreadyRunning, holder, only_instance
+from app.machine.main import audit_version
 from app.machine.marker import mark_running, mark_stopped
 from app.machine.supervisor import WRONG_SETTINGS, Child, Supervisor
 from app.machine.systemd import notify
 from app.machine.watchdog import EXIT_CODE, LoopWatchdog
 from app.settings import SettingsWrong, read_settings
 from app.site.ntp import kernel_clock
+from app.store.engine import open_writer
+from app.store.migrations import upgrade
+from app.store.store import AuditFilter
 from tests.machine.service import eventually
 
 NOW = datetime(2026, 11, 21, 9, 0, tzinfo=UTC)
@@ -241,3 +245,37 @@ def test_settings_come_from_the_environment_before_the_file(
     file.write_text("colour = 1\n")
     with pytest.raises(SettingsWrong, match="HELIOPANEL_COLOUR"):
         read_settings()
+
+
+@pytest.mark.usefixtures("written")
+async def test_settings_that_worked_once_and_do_not_any_more_end_nobody_else(written: Path) -> None:
+    (written / "later.py").write_text(f"import sys; sys.exit({WRONG_SETTINGS})")
+    clock, child, other = (
+        VirtualClock(NOW),
+        Child("later", ("later",), has_worked=True),
+        Child("stays", ("stays",)),
+    )
+    supervisor = Supervisor(clock, child, other)
+    running = asyncio.create_task(supervisor.run())
+    await eventually(partial(waits, child, timedelta(milliseconds=200)))
+    await asyncio.sleep(0.1)
+    clock.advance(timedelta(milliseconds=200))
+    await eventually(partial(waits, child, timedelta(milliseconds=400)))
+
+    assert other.process is not None
+    assert other.process.returncode is None
+    supervisor.stop()
+    assert await running == 0
+
+
+def test_another_version_is_in_the_audit_from_its_first_start(tmp_path: Path) -> None:
+    url = f"sqlite:///{tmp_path}/heliopanel.db"
+    upgrade(url)
+    writer = open_writer(url)
+    for version in ("1.2.0", "1.2.0", "1.1.0"):
+        audit_version(tmp_path, writer, version, NOW)
+    found = writer.audit(AuditFilter())
+    writer.close()
+    assert [(one.entry.action, json.loads(one.entry.given)) for one in found] == [
+        ("change_version", {"before": "1.2.0", "after": "1.1.0"})
+    ]

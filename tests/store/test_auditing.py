@@ -114,17 +114,26 @@ def test_text_that_databases_cannot_hold_is_kept_readable(writer: DatabaseWriter
 
 
 def test_a_backup_takes_the_chain_along(audited: DatabaseWriter, url: str, tmp_path: Path) -> None:
-    backup(url, tmp_path / "kept.db")
+    made = backup(url, tmp_path / "kept.db")
+    head = audited.audit(AuditFilter(limit=1))[0]
+    assert made.audit_head == f"{head.seq}:{head.hash}"
     with audited.audited(ENTRY):
         audited.save_site(SITE)
     audited.close()
-    restore(tmp_path / "kept.db", url)
+    restore(tmp_path / "kept.db", url, ENTRY.utc)
     again = open_writer(url)
     with again.audited(replace(ENTRY, action="restore")):
         again.save_site(SITE)
     everything = again.audit(AuditFilter(after=0))
     again.close()
-    assert [one.seq for one in everything] == [1, 2, 3, 4, 5, 6]
+    assert [one.seq for one in everything] == [1, 2, 3, 4, 5, 6, 7]
+    told = everything[5].entry
+    assert (told.action, told.via, json.loads(told.given)["audit_head"]) == (
+        "restore_backup",
+        "console",
+        made.audit_head,
+    )
+    assert json.loads(told.given)["replaced_audit_head"].startswith("6:")
     assert first_break(one.link() for one in everything) is None
     reader = open_reader(url)
     assert reader.audit(AuditFilter(limit=1))[0].entry.action == "restore"

@@ -98,7 +98,7 @@ def test_a_backup_restores_into_either_database(url: str, other: Empty, into: st
     assert (made.revision, made.size_bytes) == (REVISION, made.path.stat().st_size)
     target = other(into)
     replaced = fill(target, "other")
-    restored = restore(made.path, target)
+    restored = restore(made.path, target, MIDNIGHT)
     assert content(target) == before
     assert restored.kept is not None
     assert content(f"sqlite:///{restored.kept}") == replaced
@@ -106,7 +106,7 @@ def test_a_backup_restores_into_either_database(url: str, other: Empty, into: st
 
 def test_what_is_written_after_a_restore_goes_on_counting(url: str, tmp_path: Path) -> None:
     fill(url)
-    restore(backup(url, tmp_path / "backup.db").path, url)
+    restore(backup(url, tmp_path / "backup.db").path, url, MIDNIGHT)
     writer = open_writer(url)
     writer.append_events([event(450)])
     writer.save_tracker(tracker("T0"))
@@ -133,7 +133,7 @@ def test_restoring_into_nothing_makes_the_database(url: str, tmp_path: Path) -> 
     before = fill(url)
     made = backup(url, tmp_path / "backup.db")
     fresh = f"sqlite:///{tmp_path / 'fresh' / 'heliopanel.db'}"
-    assert restore(made.path, fresh).kept is None
+    assert restore(made.path, fresh, MIDNIGHT).kept is None
     assert content(fresh) == before
 
 
@@ -144,7 +144,7 @@ def test_a_damaged_database_is_kept_and_replaced(sqlite_url: str, tmp_path: Path
     made = backup(sqlite_url, tmp_path / "backup.db")
     path = tmp_path / "heliopanel.db"
     path.write_bytes(b"rubbish" * 1000)
-    restored = restore(made.path, sqlite_url)
+    restored = restore(made.path, sqlite_url, MIDNIGHT)
     assert content(sqlite_url) == before
     assert restored.kept is not None
     assert restored.kept.read_bytes() == b"rubbish" * 1000
@@ -158,7 +158,7 @@ def test_an_open_reader_sees_the_restored_database(url: str, tmp_path: Path) -> 
     writer.close()
     reader = open_reader(url)
     assert reader.site() == SiteState("Later")
-    restore(made.path, url)
+    restore(made.path, url, MIDNIGHT)
     assert reader.site() == SITE
     reader.close()
 
@@ -219,9 +219,9 @@ def test_what_is_not_a_good_backup_is_refused(
     made = backup(url, tmp_path / "backup.db")
     spoil(made.path)
     with pytest.raises(StoreFailed, match=sentence):
-        restore(made.path, url)
+        restore(made.path, url, MIDNIGHT)
     with pytest.raises(StoreFailed, match=sentence):
-        request_restore(made.path, url, tmp_path)
+        request_restore(made.path, url, tmp_path, MIDNIGHT)
     assert content(url) == before
     assert list(tmp_path.glob("*restoring*")) == []
     assert not (tmp_path / PENDING_NAME).exists()
@@ -232,9 +232,9 @@ def test_a_restore_is_done_at_once_while_no_machine_runs(url: str, tmp_path: Pat
     made = backup(url, tmp_path / "backup.db")
     (tmp_path / LOCK_NAME).write_text("an old lock file that nobody holds")
     open_and_forget(url)
-    assert isinstance(request_restore(made.path, url, tmp_path), Restored)
+    assert isinstance(request_restore(made.path, url, tmp_path, MIDNIGHT), Restored)
     assert content(url) == before
-    assert apply_pending_restore(tmp_path, url) is None
+    assert apply_pending_restore(tmp_path, url, MIDNIGHT) is None
 
 
 def open_and_forget(url: str) -> None:
@@ -249,12 +249,12 @@ def test_a_running_machine_restores_at_its_next_start(url: str, tmp_path: Path) 
     open_and_forget(url)
     with (tmp_path / LOCK_NAME).open("w") as held_by_the_machine:
         fcntl.flock(held_by_the_machine, fcntl.LOCK_EX)
-        handed_over = request_restore(made.path, url, tmp_path)
+        handed_over = request_restore(made.path, url, tmp_path, MIDNIGHT)
         assert isinstance(handed_over, RestorePending)
         assert handed_over.backup.site_name == SITE.name
         assert content(url) != before
         assert (tmp_path / PENDING_NAME).exists()
-        restored = apply_pending_restore(tmp_path, url)
+        restored = apply_pending_restore(tmp_path, url, MIDNIGHT)
     assert restored is not None
     assert content(url) == before
     assert not list(tmp_path.glob(f"{PENDING_NAME}*"))
@@ -267,7 +267,7 @@ def test_a_restore_that_a_power_cut_interrupted_is_finished(sqlite_url: str, tmp
     (tmp_path / "heliopanel.db").replace(tmp_path / "heliopanel.db.before-restore-1")
     (tmp_path / "heliopanel.db.restoring").write_bytes(b"half a file")
     (tmp_path / "heliopanel.db.restoring-wal").write_bytes(b"half a log")
-    assert apply_pending_restore(tmp_path, sqlite_url) is not None
+    assert apply_pending_restore(tmp_path, sqlite_url, MIDNIGHT) is not None
     assert content(sqlite_url) == before
     assert not list(tmp_path.glob("*restoring*"))
 
@@ -276,9 +276,9 @@ def test_a_pending_file_that_went_bad_is_put_aside(url: str, tmp_path: Path) -> 
     before = fill(url)
     (tmp_path / PENDING_NAME).write_bytes(b"rubbish" * 1000)
     with pytest.raises(StoreFailed, match="cannot be used"):
-        apply_pending_restore(tmp_path, url)
+        apply_pending_restore(tmp_path, url, MIDNIGHT)
     assert (tmp_path / REFUSED_NAME).exists()
-    assert apply_pending_restore(tmp_path, url) is None
+    assert apply_pending_restore(tmp_path, url, MIDNIGHT) is None
     assert content(url) == before
 
 

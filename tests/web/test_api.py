@@ -259,6 +259,7 @@ async def test_simulation_and_backups_against_the_real_store(tmp_path: Path) -> 
     assert frames["frame_count"] == made.json()["frame_count"] == 1441
     assert (tmp_path / "backups" / backup.json()["file"]).stat().st_size == backup.json()["size_bytes"]
     assert backup.json()["recordings"] == 1
+    assert backup.json()["audit_head"] == download.headers["audit-head"]
     assert download.content.startswith(b"SQLite format 3")
 
 

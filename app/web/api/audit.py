@@ -1,6 +1,7 @@
 """Who ordered what, with what came of it; for administrators."""
 
 import json
+from dataclasses import asdict
 from datetime import datetime
 from typing import Annotated, Any
 
@@ -11,7 +12,7 @@ from app.audit.entry import Sealed
 from app.instants import Instant
 from app.store.store import AuditFilter
 from app.web.api.base import Output
-from app.web.deps import ReaderDep
+from app.web.deps import PanelDep, ReaderDep
 
 router = APIRouter(tags=["history"])
 
@@ -42,6 +43,42 @@ class AuditPage(Output):
 
     entries: list[AuditEntry]
     next_before: int | None = Field(description="Give this as `before` for older entries; None: no more.")
+
+
+class AccessEntry(Output):
+    """Something that was done or tried at the door: users, sessions, tokens, network, refusals."""
+
+    number: int
+    at: datetime
+    actor: str
+    via: str
+    address: str
+    action: str
+    object: str
+    result: str
+
+
+class AccessPage(Output):
+    """Entries, newest first, and where the next page begins."""
+
+    entries: list[AccessEntry]
+    next_before: int | None = Field(description="Give this as `before` for older entries; None: no more.")
+
+
+@router.get("/audit/access", summary="Log-ins, users, tokens, network and refusals, newest first")
+async def read_access(
+    built: PanelDep,
+    before: Annotated[
+        int | None, Query(ge=1, le=2**63 - 1, description="Cursor: entries before this.")
+    ] = None,
+    limit: Annotated[int, Query(ge=1, le=1000)] = 100,
+) -> AccessPage:
+    """Return what happened at the panel's door; the same refusal is recorded once a minute, with a count."""
+    found = await built.keeper.events(before, limit)
+    return AccessPage(
+        entries=[AccessEntry(number=one.number, **asdict(one.event)) for one in found],
+        next_before=found[-1].number if len(found) == limit else None,
+    )
 
 
 @router.get("/audit", summary="Who ordered what, newest first")

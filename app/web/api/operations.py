@@ -67,6 +67,9 @@ class Backup(Output):
     trackers: int
     events: int
     recordings: int
+    audit_head: str = Field(
+        description="The last entry of the audit, SEQ:HASH; `heliopanel audit verify --head` finds it again."
+    )
 
 
 @router.get("/health", summary="Does the panel answer?")
@@ -113,9 +116,12 @@ def download_backup(panel: PanelDep) -> FileResponse:
     """Write a checked backup of the whole store while everything runs, and send it."""
     folder = tempfile.TemporaryDirectory(prefix="heliopanel-backup-")
     path = Path(folder.name) / _backup_name(panel.clock.now())
-    backup(panel.settings.url, path)
+    info = backup(panel.settings.url, path)
     remove = BackgroundTask(folder.cleanup)
-    return FileResponse(path, media_type="application/vnd.sqlite3", filename=path.name, background=remove)
+    headers = {"Audit-Head": info.audit_head} if info.audit_head else None
+    return FileResponse(
+        path, headers=headers, media_type="application/vnd.sqlite3", filename=path.name, background=remove
+    )
 
 
 @router.post("/backup", status_code=201, summary="Write a backup")
@@ -130,6 +136,7 @@ def write_backup(panel: PanelDep) -> Backup:
         trackers=info.trackers,
         events=info.events,
         recordings=info.recordings,
+        audit_head=info.audit_head,
     )
 
 

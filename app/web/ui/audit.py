@@ -7,13 +7,26 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.store.store import AuditFilter
-from app.web.deps import ReaderDep
-from app.web.security_contexts import AuditPage
+from app.web.deps import PanelDep, ReaderDep
+from app.web.security_contexts import AccessRecordPage, AuditPage
 from app.web.ui.frame import site_frame
 from app.web.ui.render import page
 
 router = APIRouter(prefix="/audit")
 A_PAGE = 60
+
+
+@router.get("/access")
+async def access(request: Request, built: PanelDep, before: int | None = None) -> Response:
+    """Show one page of what happened at the panel's door."""
+    cursor = before if before is not None and 0 < before < 2**63 else None
+    found = await built.keeper.events(cursor, A_PAGE)
+    context = AccessRecordPage(
+        frame=site_frame(request, "Audit"),
+        entries=tuple(found),
+        older=f"/audit/access?before={found[-1].number}" if len(found) == A_PAGE else None,
+    )
+    return page(request, context)
 
 
 @router.get("")

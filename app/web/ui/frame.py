@@ -12,6 +12,7 @@ from app.tracker.memory import StepName
 from app.tracker.snapshot import SiteSnapshot, Snapshot
 from app.web.contexts import Forward, Frame, Link, StepMark
 from app.web.deps import panel, principal
+from app.web.edition import mark_of
 from app.web.who import Who
 from app.zones import shown_zone
 
@@ -135,6 +136,7 @@ def _frame(
         forward=forward,
         who=who_looks(request),
         is_bare=panel(request).settings.is_bare,
+        mark=mark_of(panel(request).machine.latest()),
     )
 
 

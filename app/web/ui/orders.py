@@ -3,15 +3,17 @@
 from datetime import datetime
 from typing import Annotated
 
-from fastapi import Depends, Form
+from fastapi import Depends, Form, Header
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
+from app.access.roles import ORDERS, Permission
 from app.instants import without_leap_second
 from app.link.messages import SiteCommand
 from app.tracker.commands import Command
 from app.web.contexts import Outcome
 from app.web.deps import order_of, panel, principal
+from app.web.edition import refuse_outdated
 from app.web.errors import NotAcceptable
 from app.web.ui.paths import own_path
 from app.web.ui.render import page, wants_block
@@ -27,16 +29,21 @@ class Press:
         issued_at: Annotated[str, Form(max_length=40)] = "",
         back: Annotated[str, Form(max_length=300)] = "/",
         epoch: Annotated[str, Form(max_length=20)] = "",
+        page: Annotated[str, Form(max_length=100)] = "",
+        x_page: Annotated[str, Header(max_length=100)] = "",
     ) -> None:
         self.request = request
         self.key = key or None
         self.issued_at = _instant(issued_at)
         self.back = own_path(back)
+        self.mark = x_page or page
         self.epoch = int(epoch) if epoch.isascii() and epoch.isdigit() else None
 
     async def send(self, command: Command | SiteCommand, tracker_id: str | None = None) -> None:
-        """Send one order to the machine; every refusal is raised."""
+        """Send one order to the machine; every refusal is raised. A page that is outdated may only stop."""
         who = principal(self.request)
+        if ORDERS.get(command.kind) is not Permission.STOP:
+            refuse_outdated(self.mark, panel(self.request).machine.latest())
         order = order_of(who, command, tracker_id, self.key, self.issued_at, self.epoch)
         try:
             await panel(self.request).machine.execute(order)

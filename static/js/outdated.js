@@ -1,0 +1,38 @@
+// A page of another build, or from before the controller's last start: it says so and is loaded again in place.
+
+import { live } from "./live.js";
+
+const SHOW_MS = 1500;
+const LOOP_MS = 5000;
+const banner = document.getElementById("outdated-banner");
+const mark = document.documentElement.dataset.page ?? "";
+let touched = false;
+let told = false;
+
+// Whoever has typed something loads the page when it suits; a page that has just been loaded again waits, too.
+function tell({ ordered }) {
+  if (told && !ordered) return;
+  told = true;
+  banner.hidden = false;
+  const justLoaded = performance.getEntriesByType("navigation")[0]?.type === "reload" && performance.now() < LOOP_MS;
+  if ((ordered || !touched) && !justLoaded) setTimeout(() => location.reload(), SHOW_MS);
+}
+
+function heard() {
+  const [build, life] = mark.split(".");
+  const changed = live.build !== null && live.build !== build;
+  const restarted = life && live.site && live.site.boot_id !== life;
+  if (changed || restarted) tell({ ordered: false });
+}
+
+export function start() {
+  addEventListener("input", () => { touched = true; });
+  document.addEventListener("htmx:after:request", (event) => {
+    if (event.detail?.ctx?.response?.headers?.get("Page-Outdated")) tell({ ordered: true });
+  });
+  document.getElementById("outdated-load").addEventListener("click", () => location.reload());
+  live.on("state", heard);
+  live.on("jog", (message) => {
+    if (message.reasons?.some((reason) => reason.code === "page_outdated")) tell({ ordered: true });
+  });
+}

@@ -1,0 +1,43 @@
+"""A page from before the controller's last start says so and is loaded again in place."""
+
+import re
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import Opened, Plant
+
+LATER = re.compile(r"\.second-boot$")
+
+
+@pytest.mark.fault(61)
+def test_a_page_from_before_a_restart_is_loaded_again_in_place(
+    plant: Plant, opened: Opened, picture: Callable[[Page, str], None]
+) -> None:
+    page = opened("/trackers/T1", allow=("WebGL",))
+    typing = opened("/trackers/T1/settings")
+    typing.locator("input[type=text]").first.fill("North field 7")
+    plant.do(plant.machine.start_again)
+    expect(page.locator("#outdated-banner")).to_be_visible()
+    picture(page, "page-outdated")
+    expect(page.locator("html")).to_have_attribute("data-page", LATER)
+    expect(page.locator("#outdated-banner")).to_be_hidden()
+
+    expect(typing.locator("#outdated-banner")).to_be_visible()
+    typing.wait_for_timeout(2000)
+    expect(typing.locator("input[type=text]").first).to_have_value("North field 7")
+    typing.locator("#outdated-load").click()
+    expect(typing.locator("html")).to_have_attribute("data-page", LATER)
+
+
+@pytest.mark.fault(61)
+def test_an_order_of_an_outdated_page_is_refused_and_the_page_is_loaded_again(
+    plant: Plant, opened: Opened
+) -> None:
+    page = opened("/trackers/T1", allow=("409", "WebGL"))
+    page.evaluate("document.documentElement.dataset.page = '0123456789ab.fake-boot'")
+    page.locator('form[action="/trackers/T1/park"] button').click()
+    expect(page.locator('form[action="/trackers/T1/park"] .outcome')).to_contain_text("This page is outdated")
+    expect(page.locator("html")).not_to_have_attribute("data-page", "0123456789ab.fake-boot")
+    assert plant.orders("park") == []
