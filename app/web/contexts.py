@@ -15,6 +15,7 @@ from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import SiteSnapshot, Snapshot
 from app.web.standing import Standing, standing
 from app.web.ui.drawings import DayChart, Scene, SunDiagram
+from app.web.ui.glances import Glance
 from app.web.who import Who
 
 Arc = tuple[tuple[float, float], ...]
@@ -144,14 +145,14 @@ Form = dict[str, Field]
 
 @dataclass(frozen=True, slots=True)
 class OverviewPage:
-    """All trackers of the site."""
+    """All trackers of the site, as cards or in rows."""
 
     template: ClassVar[str] = "overview.html"
 
     frame: Frame
-    trackers: tuple[Snapshot, ...]
+    glances: tuple[Glance, ...]
+    layout: str
     form: Form
-    progress: dict[str, tuple[int, str]]
 
 
 @dataclass(frozen=True, slots=True)

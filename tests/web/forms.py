@@ -43,10 +43,12 @@ START = (
     "/users",
     "/tokens",
 )
-LEFT_OUT = re.compile(r"/(s/|api/|logout|setup|backup|diagnostics)|\.csv$|\.crt$|\.zip$|\?(show|ready)=")
+LEFT_OUT = re.compile(
+    r"/(s/|api/|guide/|search|logout|setup|backup|diagnostics)|\.csv$|\.crt$|\.zip$|\?(show|ready|span|layout)="
+)
 """Files, what signs out, and what is worked out for seconds and holds no further form."""
 
-MOST_PAGES = 90
+MOST_PAGES = 150
 
 
 @dataclass(frozen=True, slots=True)

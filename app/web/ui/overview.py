@@ -1,5 +1,6 @@
 """The site: its trackers at a glance, a new tracker, the site's name, and STOP for all."""
 
+from enum import StrEnum
 from typing import Annotated
 
 from fastapi import APIRouter, Form
@@ -9,20 +10,31 @@ from starlette.responses import Response
 from app.link.messages import AddTracker, RenameSite, SiteDetail, StopAll
 from app.tracker.commissioning import StepStatus
 from app.tracker.config import TrackerConfig
+from app.tracker.snapshot import SiteSnapshot
 from app.web.contexts import Field, OverviewPage
 from app.web.contexts import Form as Fields
 from app.web.deps import MachineDep
 from app.web.ui.frame import STEP_LABELS, site_frame
+from app.web.ui.glances import Glance, glance
 from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
 
 router = APIRouter()
+MANY = 5
+"""From so many trackers on they are shown in rows."""
+
+
+class Layout(StrEnum):
+    """How the trackers are laid out."""
+
+    CARDS = "cards"
+    ROWS = "rows"
 
 
 @router.get("/")
-async def overview(request: Request, machine: MachineDep) -> Response:
-    """Show every tracker of the site."""
-    return _answer(request, await machine.detail())
+async def overview(request: Request, machine: MachineDep, layout: Layout | None = None) -> Response:
+    """Show every tracker of the site; many of them in rows."""
+    return _answer(request, await machine.detail(), layout=layout)
 
 
 @router.post("/trackers")
@@ -68,6 +80,7 @@ def _answer(
     typed: tuple[str, str] | None = None,
     errors: dict[str, str] | None = None,
     status: int = 200,
+    layout: Layout | None = None,
 ) -> Response:
     frame = site_frame(request, "Trackers")
     errors = errors or {}
@@ -75,15 +88,30 @@ def _answer(
     form: Fields = {name: Field(name, text, errors.get(name)) for name, text in texts.items()}
     context = OverviewPage(
         frame=frame,
-        trackers=frame.site.trackers if frame.site else (),
+        glances=(glances := _glances(frame.site, detail)),
+        layout=layout or (Layout.ROWS if len(glances) >= MANY else Layout.CARDS),
         form=form,
-        progress=_progress(detail),
     )
     return page(request, context, block="add", status=status)
 
 
 def _free_id(detail: SiteDetail) -> str:
     return next(f"T{n}" for n in range(1, len(detail.trackers) + 2) if f"T{n}" not in detail.trackers)
+
+
+def _glances(site: SiteSnapshot | None, detail: SiteDetail) -> tuple[Glance, ...]:
+    if site is None:
+        return ()
+    progress = _progress(detail)
+    return tuple(
+        glance(one, _config(detail, one.tracker_id), site.alarms, progress.get(one.tracker_id, (0, "")))
+        for one in site.trackers
+    )
+
+
+def _config(detail: SiteDetail, tracker_id: str) -> TrackerConfig | None:
+    tracker = detail.trackers.get(tracker_id)
+    return None if tracker is None else tracker.state.config
 
 
 def _progress(detail: SiteDetail) -> dict[str, tuple[int, str]]:

@@ -1,0 +1,38 @@
+// The overview: moves the bars of every tracker and counts its alarms.
+
+import { live } from "./live.js";
+
+const WIDTH = 200;
+const QUIET = ["shelved", "suppressed", "out_of_service"];
+
+// Where an angle, or its like a turn away, lies on the bar; app/web/ui/glances.py says the same on the server.
+export function placeOn(angle, least, most) {
+  if (angle === null || angle === undefined) return null;
+  let turned = angle;
+  while (turned > most && turned - 360 >= least) turned -= 360;
+  while (turned < least && turned + 360 <= most) turned += 360;
+  return WIDTH * Math.min(1, Math.max(0, (turned - least) / (most - least)));
+}
+
+function paintBar(svg, one) {
+  const [least, most] = [Number(svg.dataset.least), Number(svg.dataset.most)];
+  for (const name of ["setpoint", "measured"]) {
+    const mark = svg.querySelector(`[data-at="${name}"]`);
+    const at = placeOn(one?.[name]?.[`${svg.dataset.bar}_deg`], least, most);
+    mark.setAttribute("visibility", at === null ? "hidden" : "visible");
+    if (at !== null) mark.setAttribute("transform", `translate(${at.toFixed(1)} 0)`);
+  }
+}
+
+function paintAlarms(holder) {
+  const mine = live.site.alarms.filter((alarm) => alarm.tracker_id === holder.dataset.alarms && !QUIET.includes(alarm.state));
+  const worst = Math.min(...mine.map((alarm) => alarm.priority));
+  holder.hidden = !mine.length;
+  holder.querySelector("b").textContent = String(mine.length);
+  for (const shape of holder.querySelectorAll("[data-priority]")) shape.hidden = Number(shape.dataset.priority) !== worst;
+}
+
+live.on("state", () => {
+  for (const svg of document.querySelectorAll("[data-bar]")) paintBar(svg, live.trackerOf(svg.closest("[data-tracker]").dataset.tracker));
+  document.querySelectorAll("[data-alarms]").forEach(paintAlarms);
+});
