@@ -179,9 +179,9 @@ class LocationPreview:
     set: str
     noon_elevation: str
     polar: str
-
     sun_now: str
     if_swapped: str
+
 
 @dataclass(frozen=True, slots=True)
 class LocationPage:
@@ -360,10 +360,10 @@ class SimulatePage:
     form: Form
     trackers: tuple[tuple[str, str], ...]
     modes: tuple[tuple[str, str], ...]
+    weathers: tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True, slots=True)
-    weathers: tuple[tuple[str, str], ...]
 class SettingsPage:
     """What an engineer sets for one tracker."""
 
