@@ -101,6 +101,7 @@ ORDERS: dict[str, Permission] = {
     "answer_scale": Permission.CONFIGURE,
     "set_soft_limit": Permission.CONFIGURE,
     "restore_drive": Permission.CONFIGURE,
+    "undo_settings": Permission.CONFIGURE,
     "check_connection": Permission.CONFIGURE,
     "set_location": Permission.CONFIGURE,
     "set_horizon": Permission.CONFIGURE,

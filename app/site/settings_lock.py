@@ -15,6 +15,7 @@ from app.link.messages import (
     SetSoftLimit,
     SiteCommand,
 )
+from app.link.settings_orders import UndoSettings
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
 from app.tracker.commands import CommandRejected
@@ -48,6 +49,7 @@ def refuse_locked(model: SiteModel, command: SiteCommand) -> None:
             | AnswerScale()
             | SetSoftLimit()
             | RestoreDrive()
+            | UndoSettings()
         ):
             reasons = (_locked(model.loops.get(command.tracker_id)),)
         case _:

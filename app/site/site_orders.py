@@ -33,6 +33,7 @@ from app.link.messages import (
     UnknownRecording,
 )
 from app.link.place_orders import SetHorizon
+from app.link.settings_orders import UndoSettings
 from app.link.weather_orders import (
     ReportWeather,
     SetMetStation,
@@ -62,7 +63,7 @@ log = structlog.get_logger(__name__)
 SiteOrder = (
     SetLocation | SetHorizon | SetClock | RenameSite | ConfirmStep | AddTracker | ConfigureTracker
     | RemoveTracker | TakeSighting | ApplySightings | SavePlan | SaveRecording | DeleteRecording | DriveOrder
-    | StopAll | WeatherOrder | PlayFault | ClearFaults
+    | StopAll | UndoSettings | WeatherOrder | PlayFault | ClearFaults
 )  # fmt: skip
 
 
@@ -79,7 +80,7 @@ async def carry_out(model: SiteModel, command: SiteOrder, actor: str) -> tuple[E
             return await _change_recordings(model, command, actor)
         case (
             AnswerDirection() | AnswerScale() | SetSoftLimit() | RestoreDrive() | CheckConnection()
-            | PlayFault() | ClearFaults()
+            | UndoSettings() | PlayFault() | ClearFaults()
         ):  # fmt: skip
             return await _set_up_drive(model, command, actor)
         case StopAll():
@@ -141,7 +142,7 @@ async def _note(
 
 
 async def _set_up_drive(
-    model: SiteModel, command: DriveOrder | PlayFault | ClearFaults, actor: str
+    model: SiteModel, command: DriveOrder | UndoSettings | PlayFault | ClearFaults, actor: str
 ) -> tuple[Event, ...]:
     match command:
         case PlayFault() | ClearFaults():
@@ -152,6 +153,8 @@ async def _set_up_drive(
             return await proving.answer_scale(model, command, actor)
         case SetSoftLimit():
             return await proving.set_soft_limit(model, command, actor)
+        case UndoSettings():
+            return await tracker_setup.undo(model, command.tracker_id, actor)
         case RestoreDrive():
             return await proving.restore_drive(model, command, actor)
         case CheckConnection():

@@ -13,6 +13,9 @@ from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind
 
 MOST_TRACKERS = 100
+NOTHING_TO_UNDO = Reason(
+    "nothing_to_undo", "The settings have not been changed since they are kept.", "Nothing has to be done."
+)
 
 
 async def add(model: SiteModel, config: TrackerConfig, actor: str) -> tuple[Event, ...]:
@@ -68,7 +71,23 @@ async def configure(model: SiteModel, config: TrackerConfig, actor: str) -> tupl
         loop.controller.configure(config, loop.drive.capabilities)
     if loop.memory != memory:
         await model.ledger.save_tracker(loop.state, ())
+    if replace(old, drive=config.drive) != config:
+        await _keep_former(model, {**model.state.former, config.tracker_id: old})
     return (event,)
+
+
+async def undo(model: SiteModel, tracker_id: str, actor: str) -> tuple[Event, ...]:
+    """Set a tracker as it was before its last change, its drive aside; once more goes forth again."""
+    config = model.tracker(tracker_id).config
+    former = model.state.former.get(tracker_id)
+    if former is None:
+        raise CommandRejected(NOTHING_TO_UNDO)
+    return await configure(model, replace(former, drive=config.drive), actor)
+
+
+async def _keep_former(model: SiteModel, former: dict[str, TrackerConfig]) -> None:
+    await model.ledger.save_site(replace(model.state, former=former), ())
+    model.state = replace(model.state, former=former)
 
 
 async def _rebuild(model: SiteModel, loop: TrackerLoop, config: TrackerConfig, at: datetime) -> TrackerLoop:
@@ -145,6 +164,10 @@ async def remove(model: SiteModel, tracker_id: str, actor: str) -> tuple[Event, 
     await loop.close()
     if loop.memory is not memory:
         await model.ledger.remove_tracker(tracker_id, ())
+    if tracker_id in model.state.former:
+        await _keep_former(
+            model, {name: one for name, one in model.state.former.items() if name != tracker_id}
+        )
     return (event,)
 
 

@@ -156,7 +156,8 @@ class MetStation:
 class SiteState:
     """Everything stored about the site that its trackers share; it has one weather station at most.
 
-    `weather_windows` None are the usual ones, with the age that the machine was set up with.
+    `weather_windows` None are the usual ones, with the age that the machine was set up with. `former` are the
+    settings of trackers before their last change, their drives aside, so that it can be undone.
     """
 
     name: str = "Solar site"
@@ -170,3 +171,4 @@ class SiteState:
     simulated_weather: SimulatedStation | None = None
     weather_windows: WeatherWindows | None = None
     horizon: Horizon = FLAT
+    former: dict[str, TrackerConfig] = field(default_factory=dict)

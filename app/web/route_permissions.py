@@ -266,6 +266,7 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/settings-lock
         POST /trackers/{tracker_id}/settings-lock/open
         POST /trackers/{tracker_id}/settings/remove
+        POST /trackers/{tracker_id}/settings/undo
         POST /trackers/{tracker_id}/strategy
         POST /trackers/{tracker_id}/strategy/hybrid
         POST /trackers/{tracker_id}/strategy/program
@@ -287,6 +288,7 @@ _TABLE: dict[Permission, str] = {
         POST /api/v1/trackers/{tracker_id}/drive/restore
         PUT /api/v1/trackers/{tracker_id}/program
         PUT /api/v1/trackers/{tracker_id}/settings-lock
+        POST /api/v1/trackers/{tracker_id}/undo
         PUT /api/v1/trackers/{tracker_id}/program.csv
         POST /api/v1/trackers/{tracker_id}/proofs/direction
         POST /api/v1/trackers/{tracker_id}/records

@@ -1,13 +1,16 @@
-"""The lock on what was commissioned."""
+"""The lock on what was commissioned, and undoing the last change of it."""
 
 from fastapi import APIRouter
 from pydantic import Field
 
 from app.link.messages import LockSettings, UnlockSettings
+from app.link.settings_orders import UndoSettings
+from app.tracker.config import TrackerConfig
 from app.tracker.memory import CommissioningLock
 from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, TrackerId
 from app.web.api.orders import SenderDep, tracker_of
-from app.web.deps import SnapshotDep
+from app.web.api.trackers import detail_of
+from app.web.deps import MachineDep, SnapshotDep
 
 router = APIRouter(tags=["commissioning"])
 
@@ -48,3 +51,15 @@ async def change(tracker_id: TrackerId, said: LockInput, sender: SenderDep) -> L
     order = LockSettings(tracker_id) if said.locked else UnlockSettings(tracker_id, said.reason)
     site = await sender.send(order)
     return LockOutput(tracker_id=tracker_id, locked=tracker_of(site, tracker_id).settings_lock)
+
+
+@router.post(
+    "/trackers/{tracker_id}/undo",
+    operation_id="undo_settings",
+    summary="Undo the last change of the settings",
+    responses=NOT_FOUND | REFUSED,
+)
+async def undo(tracker_id: TrackerId, sender: SenderDep, machine: MachineDep) -> TrackerConfig:
+    """Set the tracker as it was before its settings were changed last, its drive aside; once more redoes."""
+    await sender.send(UndoSettings(tracker_id))
+    return (await detail_of(machine, tracker_id)).state.config

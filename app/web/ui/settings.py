@@ -9,6 +9,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.link.messages import ConfigureTracker, RemoveTracker, TrackerDetail
+from app.link.settings_orders import UndoSettings
 from app.sun.position import Algorithm
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import DriveConfig, DriveKind, NightBehaviour, Orientation, TrackerConfig
@@ -76,6 +77,13 @@ async def save(
         return _answer(press.request, tracker, found, status=422)
     await press.send(ConfigureTracker(wanted))
     return press.answer("The settings are saved.")
+
+
+@router.post("/undo")
+async def undo(tracker_id: str, press: PressDep) -> Response:
+    """Set the tracker as it was before its settings were changed last."""
+    await press.send(UndoSettings(tracker_id))
+    return go(press.request, f"/trackers/{tracker_id}/settings")
 
 
 @router.post("/remove")

@@ -1,0 +1,12 @@
+"""Orders about settings that go back to what was."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+
+@dataclass(frozen=True, slots=True)
+class UndoSettings:
+    """Set a tracker as it was before its settings were changed last, its drive aside."""
+
+    tracker_id: str
+    kind: Literal["undo_settings"] = "undo_settings"
