@@ -83,6 +83,7 @@ class Frame:
     forward: Forward | None
     who: Who = field(default_factory=Who)
     is_bare: bool = False
+    theme_choice: str = "day"
     mark: str = ""
 
     @property

@@ -53,10 +53,18 @@ def picture(name: str) -> Path | None:
 @cache
 def sections(document: str) -> tuple[GuideSection, ...]:
     """Return the sections of a document."""
-    text = (DOCS / f"{document}.md").read_text()
-    parser = MarkdownIt("commonmark", renderer_cls=_Pages).enable("table")
-    tokens = parser.parse(text)
+    parser = _parser()
+    tokens = parser.parse((DOCS / f"{document}.md").read_text())
     return tuple(_section(parser, part) for part in _parts(tokens))
+
+
+def rendered(text: str) -> str:
+    """Return Markdown as HTML."""
+    return str(_parser().render(text))
+
+
+def _parser() -> MarkdownIt:
+    return MarkdownIt("commonmark", renderer_cls=_Pages).enable("table")
 
 
 def found(wanted: str) -> list[tuple[str, GuideSection]]:
@@ -121,7 +129,7 @@ class _Pages(RendererHTML):
 
     def table_open(self, tokens: Sequence[Token], at: int, options: OptionsDict, env: EnvType) -> str:
         """Return a table that may be wider than the page."""
-        return '<div class="table-wide" tabindex="0" role="region" aria-label="Table"><table class="table">'
+        return '<div class="table-wide" tabindex="0" role="group" aria-label="Table"><table class="table">'
 
     def table_close(self, tokens: Sequence[Token], at: int, options: OptionsDict, env: EnvType) -> str:
         """Return the end of a table."""
@@ -130,7 +138,7 @@ class _Pages(RendererHTML):
     def fence(self, tokens: Sequence[Token], at: int, options: OptionsDict, env: EnvType) -> str:
         """Return code that may be wider than the page."""
         code = escape(tokens[at].content)
-        return f'<pre tabindex="0" role="region" aria-label="Commands"><code>{code}</code></pre>'
+        return f'<pre tabindex="0" role="group" aria-label="Commands"><code>{code}</code></pre>'
 
     def image(self, tokens: Sequence[Token], at: int, options: OptionsDict, env: EnvType) -> str:
         """Return a picture, loaded when it comes into view."""

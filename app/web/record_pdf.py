@@ -62,6 +62,8 @@ class _Sheets(FPDF):
         """Set the photos side by side, two in a row, each above what it shows."""
         if not self._paper.photos:
             return
+        if self.will_page_break(PHOTO_MM[1] + 15):
+            self.add_page()
         self._heading("Photos")
         for place, photo in enumerate(self._paper.photos):
             if place % 2 == 0 and self.will_page_break(PHOTO_MM[1]):

@@ -11,6 +11,7 @@ _TABLE: dict[Permission, str] = {
         GET /certificate
         GET /certificate/ca.crt
         GET /api/v1/certificate
+        GET /manifest.webmanifest
         GET /login
         POST /login
         GET /setup
@@ -220,6 +221,7 @@ _TABLE: dict[Permission, str] = {
         POST /api/v1/trackers/{tracker_id}/shows/{show_id}/{action}
     """,
     Permission.CONFIGURE: """
+        GET /components
         POST /recordings/{recording_id}/delete
         POST /site/horizon
         POST /site/name

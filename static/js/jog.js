@@ -6,6 +6,8 @@ import { randomId } from "./orders.js";
 const BEAT_MS = 50;
 const SLIDE_PX = 24;
 const SLOW_LINK_MS = 120;
+const LEVELS = [40, SLOW_LINK_MS, Infinity];
+const LEVEL_WORDS = ["not measured yet", "good", "fair", "too slow"];
 const KEYS = new Set([" ", "Enter"]);
 const said = document.getElementById("jog-words");
 
@@ -22,13 +24,14 @@ function beat() {
   const message = { type: "jog", tracker_id: live.trackerId, press_id: press.id, axis: press.axis, direction: press.direction,
     speed: press.speed, sequence: press.sequence, tc: performance.now(), epoch: press.epoch };
   if (live.roundTripMs !== null) message.rtt_ms = live.roundTripMs;
+  press.beats += 1;
   // A heartbeat that cannot leave now is not sent at all: silence stops the axis, a backlog would move it late.
   if (live.send(message)) press.sequence += 1;
 }
 
 function begin(key, pointer) {
   if (press || key.disabled || live.link !== "live") return;
-  press = { id: randomId(), key, pointer, axis: key.dataset.jog, direction: Number(key.dataset.direction), speed: speed(), sequence: 0,
+  press = { id: randomId(), key, pointer, axis: key.dataset.jog, direction: Number(key.dataset.direction), speed: speed(), sequence: 0, beats: 0,
     epoch: live.tracker.control.epoch };
   press.box = key.getBoundingClientRect();
   key.dataset.held = "";
@@ -40,7 +43,8 @@ function begin(key, pointer) {
 
 function end(why = "") {
   if (!press) return;
-  const { id, key, timer, pointer } = press;
+  const { id, key, timer, pointer, beats, sequence } = press;
+  paintBeats(beats - sequence, beats);
   press = null;
   clearInterval(timer);
   delete key.dataset.held;
@@ -96,10 +100,18 @@ function judged(message) {
   if (message.status !== "ok") end(message.reasons?.map((reason) => `${reason.message} ${reason.hint ?? ""}`).join(" ") || "The machine ended the movement.");
 }
 
+// How many of the last press's heartbeats could not leave in time.
+function paintBeats(lost, all) {
+  document.getElementById("lost-beats").textContent = all ? `, ${lost} of ${all} beats lost` : "";
+}
+
 function paintLink() {
   const trip = live.roundTripMs;
   const slow = trip !== null && trip > SLOW_LINK_MS;
-  document.getElementById("round-trip").textContent = trip === null ? "–" : `${Math.max(1, Math.round(trip))} ms`;
+  const level = trip === null ? 0 : LEVELS.findIndex((most) => trip <= most) + 1;
+  document.getElementById("link-quality").dataset.level = level;
+  document.getElementById("link-words-jog").textContent = LEVEL_WORDS[level];
+  document.getElementById("round-trip").textContent = trip === null ? "" : `${Math.max(1, Math.round(trip))} ms there and back`;
   document.getElementById("link-verdict").textContent = slow ? "Link too slow for hold-to-run: use the small steps." : "";
 }
 

@@ -2,21 +2,25 @@
 
 import { start as startControl } from "./control.js";
 import { start as startAlarms } from "./alarms.js";
+import { start as startKeeping } from "./keep.js";
 import { start as startLive } from "./live.js";
 import { start as startOrders } from "./orders.js";
 import { start as startOutdated } from "./outdated.js";
 import { start as startSteps } from "./steps.js";
 import { start as startStop } from "./stop.js";
 import { start as startTheme } from "./theme.js";
+import { start as stayAwake } from "./wake.js";
 
 startStop();
 startTheme();
+startKeeping();
 startOrders();
 startSteps();
 startControl();
 startAlarms();
 startOutdated();
 startLive();
+stayAwake();
 
 const heading = document.getElementById("heading");
 if (document.getElementById("steps") && heading && !document.querySelector("[data-focus]")) heading.focus();

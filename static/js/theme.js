@@ -1,18 +1,48 @@
-// Day, sun and night at one tap, without loading the page again.
+// Day, sun and night at one tap, without loading the page again; or by the sun's elevation, as it moves.
 
-const THEMES = ["day", "sun", "night"];
+import { live } from "./live.js";
+
+const CHOICES = ["day", "sun", "night", "auto"];
+const GLARE_ABOVE_DEG = 15;
+const NIGHT_BELOW_DEG = -3;
 const A_YEAR_S = 31536000;
+const root = document.documentElement;
+
+// The same as theme_of in app/web/ui/themes.py.
+function themeOf(choice) {
+  if (choice !== "auto") return choice;
+  const elevation = live.site?.sun?.apparent_elevation_deg;
+  if (elevation === undefined || elevation === null) return root.dataset.theme;
+  if (elevation < NIGHT_BELOW_DEG) return "night";
+  return elevation > GLARE_ABOVE_DEG ? "sun" : "day";
+}
+
+function show() {
+  const theme = themeOf(root.dataset.choice);
+  if (root.dataset.theme === theme) return;
+  root.dataset.theme = theme;
+  paintBrowser();
+  dispatchEvent(new CustomEvent("theme"));
+}
+
+function paintBrowser() {
+  const colour = getComputedStyle(root).getPropertyValue("--panel").trim();
+  document.querySelector('meta[name="theme-color"]')?.setAttribute("content", colour);
+}
 
 export function start() {
   const form = document.getElementById("theme-form");
   form.addEventListener("submit", (event) => {
-    const root = document.documentElement;
-    const next = THEMES[(THEMES.indexOf(root.dataset.theme) + 1) % THEMES.length];
+    const next = CHOICES[(CHOICES.indexOf(root.dataset.choice) + 1) % CHOICES.length];
     event.preventDefault();
-    root.dataset.theme = next;
+    root.dataset.choice = next;
     document.cookie = `theme=${next}; path=/; max-age=${A_YEAR_S}; samesite=lax`;
-    form.querySelector("button span").textContent = next.charAt(0).toUpperCase() + next.slice(1);
-    form.querySelector("button").setAttribute("aria-label", `Theme: ${next}. Change to the next of day, sun, night.`);
-    dispatchEvent(new CustomEvent("theme"));
+    const [key, words] = [form.querySelector("button"), form.querySelector("button span")];
+    words.textContent = next.charAt(0).toUpperCase() + next.slice(1);
+    key.setAttribute("aria-label", `${words.textContent}: change to the next theme of day, sun, night and auto.`);
+    for (const icon of key.querySelectorAll("[data-choice-icon]")) icon.hidden = icon.dataset.choiceIcon !== next;
+    show();
   });
+  paintBrowser();
+  live.on("state", show);
 }

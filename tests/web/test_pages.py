@@ -248,11 +248,11 @@ async def test_tracker_is_removed_only_after_its_id_was_typed(
 
 async def test_theme_goes_round(client: httpx.AsyncClient) -> None:
     seen = []
-    for _ in range(3):
+    for _ in range(4):
         answer = await client.post("/theme", data={"back": "/journal"})
         assert answer.headers["location"] == "/journal"
         seen.append(client.cookies["theme"])
-    assert seen == ["sun", "night", "day"]
+    assert seen == ["sun", "night", "auto", "day"]
 
 
 @pytest.mark.parametrize("back", ["//elsewhere.example", "https://elsewhere.example", "/\\elsewhere"])

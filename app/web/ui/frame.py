@@ -13,10 +13,10 @@ from app.tracker.snapshot import SiteSnapshot, Snapshot
 from app.web.contexts import Forward, Frame, Link, StepMark
 from app.web.deps import panel, principal
 from app.web.edition import mark_of
+from app.web.ui.themes import choice_of, theme_of
 from app.web.who import Who
 from app.zones import shown_zone
 
-THEMES = ("day", "sun", "night")
 STEP_LABELS = {
     StepName.LOCATION: "Location",
     StepName.CLOCK: "Clock",
@@ -119,13 +119,14 @@ def _frame(
     back: Link | None = None,
     forward: Forward | None = None,
 ) -> Frame:
-    theme = request.cookies.get("theme", "day")
+    chosen = choice_of(request.cookies.get("theme"))
     current = next((mark for mark in steps if mark.current), None)
     return Frame(
         title=title,
         where=f"Step {current.number} of {len(steps)} · {current.label}" if current else title,
         path=request.url.path,
-        theme=theme if theme in THEMES else "day",
+        theme=theme_of(chosen, site),
+        theme_choice=chosen,
         zone=shown_zone(site.time_zone) if site else "UTC",
         site=site,
         tracker=snapshot_of(site, tracker_id),

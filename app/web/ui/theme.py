@@ -1,4 +1,4 @@
-"""Day, sun and night: the next theme at one tap, kept in a cookie."""
+"""Day, sun, night or by the sun: the next theme at one tap, kept in a cookie."""
 
 from typing import Annotated
 
@@ -6,8 +6,8 @@ from fastapi import APIRouter, Form
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
-from app.web.ui.frame import THEMES
 from app.web.ui.paths import own_path
+from app.web.ui.themes import CHOICES, choice_of
 
 router = APIRouter()
 A_YEAR_S = 31_536_000
@@ -16,8 +16,7 @@ A_YEAR_S = 31_536_000
 @router.post("/theme")
 def next_theme(request: Request, back: Annotated[str, Form()] = "/") -> Response:
     """Switch to the next theme and return to the page."""
-    now = request.cookies.get("theme", THEMES[0])
-    at = THEMES.index(now) if now in THEMES else 0
+    at = CHOICES.index(choice_of(request.cookies.get("theme")))
     response = RedirectResponse(own_path(back), 303)
-    response.set_cookie("theme", THEMES[(at + 1) % len(THEMES)], max_age=A_YEAR_S, samesite="lax")
+    response.set_cookie("theme", CHOICES[(at + 1) % len(CHOICES)], max_age=A_YEAR_S, samesite="lax")
     return response

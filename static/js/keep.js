@@ -1,0 +1,89 @@
+// What was typed outlives a reload, in this tab: it comes back with a word about it, until it is saved or discarded.
+
+const SKIPPED = new Set(["password", "file", "submit", "button"]);
+const ORDER_FIELDS = new Set(["back", "issued_at", "key", "epoch"]);
+const DRAWN = /_drawn$/;
+
+const placeOf = (form) => `typed:${location.pathname}:${form.id || form.getAttribute("action")}`;
+
+const kept = (field) => field.name && !SKIPPED.has(field.type) && !ORDER_FIELDS.has(field.name)
+  && (field.type !== "hidden" || DRAWN.test(field.name));
+
+function standsAt(field) {
+  if (field.type === "checkbox" || field.type === "radio") return field.defaultChecked;
+  if (field.tagName === "SELECT") return [...field.options].find((one) => one.defaultSelected)?.value ?? field.options[0]?.value ?? "";
+  return field.type === "hidden" ? field.dataset.served ?? "" : field.defaultValue;
+}
+
+const nowOf = (field) => (field.type === "checkbox" || field.type === "radio" ? field.checked : field.value);
+const nameOf = (field) => (field.type === "radio" ? `${field.name}=${field.value}` : field.name);
+
+function changes(form) {
+  const found = {};
+  for (const field of form.elements) {
+    if (kept(field) && nowOf(field) !== standsAt(field)) found[nameOf(field)] = { from: standsAt(field), to: nowOf(field) };
+  }
+  return found;
+}
+
+function keep(form) {
+  const found = changes(form);
+  if (Object.keys(found).length) sessionStorage.setItem(placeOf(form), JSON.stringify(found));
+  else sessionStorage.removeItem(placeOf(form));
+}
+
+function put(field, value) {
+  if (field.type === "checkbox" || field.type === "radio") field.checked = value;
+  else field.value = value;
+}
+
+// A field whose stored value has changed meanwhile keeps the new one: what was typed belonged to the old.
+function bringBack(form) {
+  const stored = JSON.parse(sessionStorage.getItem(placeOf(form)) ?? "{}");
+  const back = [...form.elements].filter((field) => kept(field) && stored[nameOf(field)]?.from === standsAt(field));
+  for (const field of back) put(field, stored[nameOf(field)].to);
+  return back.length;
+}
+
+function tell(form) {
+  const note = document.createElement("div");
+  note.className = "kept-note";
+  note.setAttribute("role", "status");
+  const words = document.createElement("span");
+  words.textContent = "The page was loaded again. What you had typed is back, and not saved yet.";
+  const key = document.createElement("button");
+  key.type = "button";
+  key.className = "key";
+  key.textContent = "Discard it";
+  key.addEventListener("click", () => {
+    sessionStorage.removeItem(placeOf(form));
+    location.reload();
+  });
+  note.append(words, key);
+  form.prepend(note);
+}
+
+function watch(form) {
+  for (const field of form.elements) if (field.type === "hidden") field.dataset.served = field.value;
+  if (bringBack(form)) {
+    tell(form);
+    form.dispatchEvent(new Event("input", { bubbles: true }));
+  }
+}
+
+const formsWorthIt = () => document.querySelectorAll("main form.form[method=post]:not(.action)");
+
+export function start() {
+  formsWorthIt().forEach(watch);
+  for (const kind of ["input", "change"]) {
+    document.addEventListener(kind, (event) => {
+      const form = event.target.closest?.("main form.form[method=post]:not(.action)");
+      if (form) keep(form);
+    });
+  }
+  document.addEventListener("htmx:after:request", (event) => {
+    const { sourceElement, response } = event.detail?.ctx ?? {};
+    const form = sourceElement?.closest?.("form");
+    if (form && response && (response.status ?? 500) < 400) sessionStorage.removeItem(placeOf(form));
+  });
+}
