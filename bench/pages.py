@@ -1,4 +1,4 @@
-"""Pages: what each weighs with everything it loads, and when the first can be used, in Chromium"""
+"""Pages: what each weighs, when the first can be used, and how fast the moving picture runs, in Chromium"""
 
 import statistics
 import tempfile
@@ -26,6 +26,9 @@ PAGES = {
     "sun check": f"{T1}/sun-check",
     "record": f"{T1}/record",
     "settings": f"{T1}/settings",
+    "sun path": f"{T1}/sun-path",
+    "trends": f"{T1}/trends",
+    "horizon": "/site/horizon",
     "show": f"{T1}/show?date=2027-06-21&start=05:07&end=20:19&minutes=3",
     "recordings": "/recordings",
     "simulate": "/simulate",
@@ -38,6 +41,17 @@ new MutationObserver((_, seen) => {
   seen.disconnect();
 }).observe(document, {attributes: true, subtree: true, attributeFilter: ['data-link']});
 """
+PLAYED = 3
+LEAST_RATE = 60.0
+PLAY = """(async () => {
+  const frames = () => Number(document.querySelector('.scene').dataset.frames);
+  document.querySelector('input[name="player-speed"][value="3600"]').click();
+  document.getElementById('player-play').click();
+  await new Promise((done) => setTimeout(done, 500));
+  const [before, begin] = [frames(), performance.now()];
+  await new Promise((done) => setTimeout(done, 3000));
+  return (frames() - before) / (performance.now() - begin) * 1000;
+})()"""
 LOADED = "document.readyState === 'complete' && window.liveAt !== undefined"
 WEIGHT = """[...performance.getEntriesByType('navigation'), ...performance.getEntriesByType('resource')]
   .filter(one => !one.name.includes('/api/')).reduce((sum, one) => sum + one.transferSize, 0)"""
@@ -52,10 +66,11 @@ def measure() -> list[Row]:
             with chromium() as browser:
                 weights = {name: _weight(browser, product.url + path) for name, path in pages.items()}
                 times_ms = [_usable_ms(browser, product.url) for _ in range(COLD_STARTS)]
+                rates = [_frames_a_second(browser, product.url + pages["player"]) for _ in range(PLAYED)]
         finally:
             product.stop()
     rows = [_weight_row(name, size) for name, size in sorted(weights.items(), key=lambda one: -one[1])]
-    return [*rows, _time_row(times_ms)]
+    return [*rows, _time_row(times_ms), _rate_row(rates)]
 
 
 def _simulated_day(url: str) -> str:
@@ -91,6 +106,26 @@ def _usable_ms(browser: Chromium, url: str) -> float:
     usable_ms = float(tab.evaluate("window.liveAt"))
     browser.send("Target.disposeBrowserContext", browserContextId=context)
     return usable_ms
+
+
+def _frames_a_second(browser: Chromium, url: str) -> float:
+    """Play a recorded day at full speed and count what is painted; without a graphics card, in software."""
+    tab, context = _cold(browser, url)
+    tab.until("document.querySelector('#angles canvas') !== null", "the curves are drawn")
+    rate = float(tab.evaluate(PLAY))
+    browser.send("Target.disposeBrowserContext", browserContextId=context)
+    return rate
+
+
+def _rate_row(rates: list[float]) -> Row:
+    slowest = min(rates)
+    return Row(
+        f"moving picture of a day played at 3,600 times the sun's speed, WebGL in software, {PLAYED} times",
+        f"at least {slowest:.0f} frames/s",
+        f"{LEAST_RATE:.0f} frames/s",
+        f"{slowest / LEAST_RATE:.2f}",
+        COMMAND,
+    )
 
 
 def _weight_row(name: str, size: int) -> Row:

@@ -203,7 +203,8 @@ async def _set_location(model: SiteModel, command: SetLocation, actor: str) -> t
 
 async def _set_horizon(model: SiteModel, command: SetHorizon, actor: str) -> tuple[Event, ...]:
     count = len(command.horizon.points)
-    message = f"The horizon was set: {count} points." if count else "The horizon was set: flat."
+    told = "flat" if not count else f"{count} {'point' if count == 1 else 'points'}"
+    message = f"The horizon was set: {told}."
     event = model.event(EventKind.HORIZON_SET, message, actor)
     return await _keep(model, replace(model.state, horizon=command.horizon), event)
 

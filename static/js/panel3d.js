@@ -11,6 +11,7 @@ const TILT_DEG = 11;
 const SETTLE_MS = 90;
 const SETTLED_DEG = 0.01;
 const LEAP_DEG = 60;
+const ALIKE_DEG = 0.02;
 
 export class PanelScene {
   // `settle`: whether the panel glides to what is new, or is there at once (a recording that plays is smooth by itself).
@@ -32,7 +33,10 @@ export class PanelScene {
   // Directions {azimuth, elevation} in degrees, or null for what is not known.
   show({ sun, panel, target }) {
     const on = (direction) => direction && anglesOf(this.view.mount, direction);
-    this.wanted = { sun: sun && { first: sun.azimuth, second: sun.elevation }, panel: on(panel), target: on(target) };
+    const wanted = { sun: sun && { first: sun.azimuth, second: sun.elevation }, panel: on(panel), target: on(target) };
+    const same = Object.entries(wanted).every(([name, direction]) => alike(direction, this.wanted[name]));
+    if (same && this.paintedAt) return;
+    this.wanted = wanted;
     this.draw();
   }
 
@@ -134,6 +138,12 @@ export class PanelScene {
     this.holder.dataset.frames = String(Number(this.holder.dataset.frames ?? 0) + 1);
     if (moving) this.draw();
   }
+}
+
+// Whether two directions look the same in the picture: the sun creeps on all day, and nobody sees a hundredth of a degree.
+function alike(a, b) {
+  if (!a || !b) return !a && !b;
+  return Math.abs(a.first - b.first) + Math.abs(a.second - b.second) < ALIKE_DEG;
 }
 
 const KEYS = { ArrowLeft: [-TURN_DEG, 0], ArrowRight: [TURN_DEG, 0], ArrowUp: [0, TILT_DEG], ArrowDown: [0, -TILT_DEG], Home: [0, 0] };
