@@ -6,8 +6,10 @@ from datetime import datetime
 from app.site.checks import check_config, check_name
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
+from app.tracker.axes import Axis
 from app.tracker.commands import CommandRejected
 from app.tracker.config import DriveKind, TrackerConfig
+from app.tracker.limit_change import Standing, review
 from app.tracker.memory import Pointing, StepName, TrackerMemory, TrackerState
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind
@@ -51,6 +53,7 @@ async def configure(model: SiteModel, config: TrackerConfig, actor: str) -> tupl
     config = replace(config, name=check_name(config.name))
     check_config(config)
     refuse_while_busy(model, loop)
+    _refuse_unsafe_limits(loop, config)
     _refuse_shared_drive(model, config)
     model.check_drive(config)
     event = model.event(
@@ -169,6 +172,17 @@ async def remove(model: SiteModel, tracker_id: str, actor: str) -> tuple[Event, 
             model, {name: one for name, one in model.state.former.items() if name != tracker_id}
         )
     return (event,)
+
+
+def _refuse_unsafe_limits(loop: TrackerLoop, config: TrackerConfig) -> None:
+    """Raise `CommandRejected` if the axes stand outside the new soft limits, unless the zero is another."""
+    seen, same_zero = loop.feedback, _zeroed(loop.config) == _zeroed(config)
+    if seen is None or not same_zero:
+        return
+    stands: dict[Axis, Standing] = {Axis.AZIMUTH: seen.azimuth, Axis.ELEVATION: seen.elevation}
+    found = review(loop.config, config, stands, trusted=loop.memory.home is not None)
+    if found.against:
+        raise CommandRejected(*found.against)
 
 
 def refuse_while_busy(model: SiteModel, loop: TrackerLoop) -> None:

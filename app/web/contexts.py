@@ -6,6 +6,7 @@ from typing import Any, ClassVar, Protocol
 from app.sun.algorithms import PUBLISHED
 from app.tracker.config import MountConfig, TrackerConfig
 from app.tracker.control import ControlState
+from app.tracker.limit_change import LimitReview
 from app.tracker.memory import ClockSetting, HomeTrust, Pointing, Sighting, StepName, TrackerMemory
 from app.tracker.mode import Mode
 from app.tracker.motion import DriveCapabilities
@@ -196,8 +197,8 @@ class LocationPage:
     zones: tuple[str, ...]
     by_place: str
     revision: int
-
     doubts: tuple[str, ...] = ()
+
 
 @dataclass(frozen=True, slots=True)
 class ClockPage:
@@ -374,6 +375,7 @@ class SettingsPage:
     form: Form
     mount: MountConfig
     hints: dict[str, str]
+    review: LimitReview | None = None
     algorithms: tuple[tuple[str, str], ...] = ALGORITHMS
 
 

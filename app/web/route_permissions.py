@@ -166,6 +166,7 @@ _TABLE: dict[Permission, str] = {
         GET /api/v1/trackers/{tracker_id}/shows/{show_id}
         GET /api/v1/trackers/{tracker_id}/sightings
         GET /api/v1/trackers/{tracker_id}/snapshot
+        POST /api/v1/trackers/{tracker_id}/review
         POST /api/v1/trackers/{tracker_id}/strategy/day
         GET /api/v1/weather-files
     """,
@@ -263,6 +264,7 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/record/photos/{number}/remove
         POST /trackers/{tracker_id}/training/clear
         POST /trackers/{tracker_id}/training/play
+        POST /trackers/{tracker_id}/training/weather
         POST /trackers/{tracker_id}/protections
         POST /trackers/{tracker_id}/settings
         POST /trackers/{tracker_id}/settings-lock
@@ -273,7 +275,6 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/strategy/hybrid
         POST /trackers/{tracker_id}/strategy/program
         POST /trackers/{tracker_id}/sun-check/apply
-        POST /trackers/{tracker_id}/training/weather
         POST /trackers/{tracker_id}/sun-check/forget
         POST /trackers/{tracker_id}/sun-check/take
         POST /trackers/{tracker_id}/zero
@@ -314,12 +315,12 @@ _TABLE: dict[Permission, str] = {
         PUT /api/v1/network
         GET /backup
         POST /backup
+        GET /restore
+        POST /restore
         GET /diagnostics.zip
         GET /users
         POST /users
         POST /users/{name}/roles
-        GET /restore
-        POST /restore
         POST /users/{name}/password
         POST /users/{name}/remove
         POST /users/sessions/{digest}/end
@@ -328,12 +329,12 @@ _TABLE: dict[Permission, str] = {
         POST /tokens/{token_id}/revoke
         GET /api/v1/backup
         POST /api/v1/backup
+        GET /api/v1/backups
+        POST /api/v1/restore
         GET /api/v1/diagnostics.zip
         GET /api/v1/users
         POST /api/v1/users
         PATCH /api/v1/users/{name}
-        GET /api/v1/backups
-        POST /api/v1/restore
         DELETE /api/v1/users/{name}
         GET /api/v1/sessions
         DELETE /api/v1/sessions/{digest}
@@ -364,12 +365,12 @@ PROVEN = frozenset(
     POST /trackers/{tracker_id}/drive
     POST /trackers/{tracker_id}/drive/restore
     POST /backup
+    POST /restore
+    POST /api/v1/restore
     POST /api/v1/users
     PATCH /api/v1/users/{name}
     DELETE /api/v1/users/{name}
     POST /api/v1/tokens
-    POST /restore
-    POST /api/v1/restore
     POST /api/v1/trackers/{tracker_id}/drive/restore
     POST /api/v1/backup
     """.strip()

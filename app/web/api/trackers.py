@@ -10,6 +10,7 @@ from app.link.messages import AddTracker, ConfigureTracker, RemoveTracker, Track
 from app.sun.position import Algorithm
 from app.tracker.axes import Axis
 from app.tracker.config import DriveKind, NightBehaviour, Parity, TrackerConfig
+from app.tracker.limit_change import LimitReview
 from app.tracker.motion import DriveCapabilities
 from app.tracker.mounts.abilities import MountAbilities, abilities
 from app.tracker.mounts.usual import mounted
@@ -23,6 +24,7 @@ from app.web.api.orders import SenderDep, tracker_of
 from app.web.api.protection_inputs import ProtectionChange, kept_azimuths
 from app.web.deps import MachineDep, SnapshotDep
 from app.web.errors import NotAcceptable, NotFound
+from app.web.limit_review import limit_review
 
 router = APIRouter(prefix="/trackers", tags=["trackers"])
 
@@ -184,6 +186,17 @@ async def change_tracker(
     before = (await detail_of(machine, tracker_id)).state.config
     await sender.send(ConfigureTracker(_changed(before, change, await _latitude_deg(machine))))
     return (await detail_of(machine, tracker_id)).state.config
+
+
+@router.post(
+    "/{tracker_id}/review", summary="What a change would do to limits and speeds", responses=NOT_FOUND
+)
+async def review_change(
+    tracker_id: TrackerId, change: TrackerChange, site: SnapshotDep, machine: MachineDep
+) -> LimitReview:
+    """Return what would differ, what forbids it where the axes stand, and what to be sure of."""
+    tracker = await detail_of(machine, tracker_id)
+    return limit_review(site, tracker, _changed(tracker.state.config, change, await _latitude_deg(machine)))
 
 
 @router.delete("/{tracker_id}", status_code=204, summary="Remove a tracker", responses=NOT_FOUND | REFUSED)

@@ -13,10 +13,12 @@ from app.link.settings_orders import UndoSettings
 from app.sun.position import Algorithm
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import DriveConfig, DriveKind, NightBehaviour, Orientation, TrackerConfig
+from app.tracker.limit_change import LimitReview
 from app.tracker.mounts.abilities import axis_title
 from app.web.contexts import SettingsPage
-from app.web.deps import MachineDep
+from app.web.deps import MachineDep, panel
 from app.web.errors import NotAcceptable
+from app.web.limit_review import limit_review, must_ask
 from app.web.ui.forms import Typed, Unreadable
 from app.web.ui.frame import tracker_frame
 from app.web.ui.orders import PressDep
@@ -75,6 +77,9 @@ async def save(
     wanted = _read(found, tracker.state.config)
     if wanted is None:
         return _answer(press.request, tracker, found, status=422)
+    asked = limit_review(panel(press.request).machine.latest(), tracker, wanted)
+    if await must_ask(press.request, asked):
+        return _answer(press.request, tracker, found, block="review", asked=asked)
     await press.send(ConfigureTracker(wanted))
     return press.answer("The settings are saved.")
 
@@ -215,10 +220,18 @@ def _drive_kind(text: str) -> DriveKind:
     return DriveKind(text)
 
 
-def _answer(request: Request, tracker: TrackerDetail, typed: Typed, *, status: int = 200) -> Response:
+def _answer(
+    request: Request,
+    tracker: TrackerDetail,
+    typed: Typed,
+    *,
+    block: str = "form",
+    asked: LimitReview | None = None,
+    status: int = 200,
+) -> Response:
     frame = tracker_frame(request, tracker.state.config.tracker_id, "Settings")
     mount = tracker.state.config.mount
     form = typed.form(SettingsForm.model_fields)
     hints = {name: words.hint for name, words in SETTINGS.items()}
-    context = SettingsPage(frame=frame, form=form, mount=mount, hints=hints)
-    return page(request, context, block="form", status=status)
+    context = SettingsPage(frame=frame, form=form, mount=mount, hints=hints, review=asked)
+    return page(request, context, block=block, status=status)
