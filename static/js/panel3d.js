@@ -101,7 +101,7 @@ export class PanelScene {
     holder.addEventListener("keydown", (event) => this.#key(event));
     addEventListener("theme", () => { this.painter.repaint(); this.draw(); });
     new ResizeObserver(() => this.draw()).observe(holder);
-    new IntersectionObserver(([one]) => { this.seen = one.isIntersecting; this.draw(); }).observe(holder);
+    new IntersectionObserver((seen) => { this.seen = seen.at(-1).isIntersecting; this.draw(); }).observe(holder);
   }
 
   #key(event) {

@@ -9,12 +9,12 @@ const said = document.getElementById("trends-state");
 const SPAN_S = Number(said.dataset.seconds);
 const EVERY_S = Math.max(1, SPAN_S / POINTS);
 const cursor = { lock: false, sync: { key: "trends" } };
-const PAIR = (unit) => [{ label: `Measured`, colour: "blue", width: 2.5, unit }, { label: "Setpoint", colour: "text", width: 1.5, dash: [7, 5] }, { label: "Target", colour: "line", width: 1.5, dash: [2, 4] }];
+const ANGLES = [{ label: "Measured", colour: "blue", width: 2.5 }, { label: "Set-point", colour: "text", width: 1.5, dash: [7, 5] }, { label: "Target", colour: "line", width: 1.5, dash: [2, 4] }];
 
 // What each chart shows: its columns, and how a snapshot tells the same.
 const CHARTS = {
-  azimuth: { columns: ["measured_azimuth_deg", "setpoint_azimuth_deg", "target_azimuth_deg"], series: PAIR(), turns: true },
-  elevation: { columns: ["measured_elevation_deg", "setpoint_elevation_deg", "target_elevation_deg"], series: PAIR() },
+  azimuth: { columns: ["measured_azimuth_deg", "setpoint_azimuth_deg", "target_azimuth_deg"], series: ANGLES, turns: true },
+  elevation: { columns: ["measured_elevation_deg", "setpoint_elevation_deg", "target_elevation_deg"], series: ANGLES },
   error: { columns: ["off_target_deg"], digits: 3, fromZero: 0.1, series: [{ label: "Off the target", colour: "text", width: 2 }] },
   wind: { columns: ["wind_mps", "wind_mean_mps"], unit: " m/s", digits: 1, fromZero: 5, series: [{ label: "Gust", colour: "text", width: 1.5 }, { label: "Mean", colour: "blue", width: 2.5, dash: [8, 4] }] },
   light: { columns: ["light_wm2"], unit: " W/m²", digits: 0, fromZero: 100, series: [{ label: "Light", colour: "text", width: 2 }] },
@@ -26,14 +26,14 @@ const NAMES = [...new Set(Object.values(CHARTS).flatMap(({ columns }) => columns
 const table = { time: [], ...Object.fromEntries(NAMES.map((name) => [name, []])) };
 const plots = new Map();
 let loaded = false;
-let lost = false;
+let asked = false;
 
 async function load() {
   const end = live.machineNow() ?? live.site.at;
   const begin = new Date(Date.parse(end) - SPAN_S * 1000).toISOString();
-  const asked = new URLSearchParams({ tracker_id: live.trackerId, begin, end, points: String(POINTS) });
-  document.getElementById("trends-csv").href = `/api/v1/telemetry?${asked}&format=csv`;
-  const answer = await fetch(`/api/v1/telemetry?${asked}`);
+  const query = new URLSearchParams({ tracker_id: live.trackerId, begin, end, points: String(POINTS) });
+  document.getElementById("trends-csv").href = `/api/v1/telemetry?${query}&format=csv`;
+  const answer = await fetch(`/api/v1/telemetry?${query}`);
   if (!answer.ok) throw new Error((await answer.json()).detail);
   const { columns } = await answer.json();
   const beginS = Date.parse(begin) / 1000;
@@ -101,8 +101,8 @@ function rowOf(one, weather) {
 }
 
 function begin() {
-  if (loaded || lost || !live.tracker) return;
-  lost = true;
+  if (asked || !live.tracker) return;
+  asked = true;
   load().catch((error) => { said.textContent = `The curves could not be read: ${error.message}`; });
 }
 

@@ -1,13 +1,10 @@
 // The drawn view, where there is no WebGL: the same scene on a plain canvas, faces sorted from back to front.
 
 import { colour } from "../colours.js";
+import { CELLS, CIRCLE, LOOKS } from "./looks.js";
 import { paintMark } from "./marks.js";
 import { MESHES } from "./solids.js";
-import { add, clipped, dot, moved, towards } from "./space.js";
-
-const LOOKS = { panel: "metal", metal: "metal", dark: "key-border" };
-const CELLS = [8, 5];
-const CIRCLE = Array.from({ length: 73 }, (_, index) => towards(index * 5, 0));
+import { add, clipped, dot, moved } from "./space.js";
 
 export class DrawnPainter {
   constructor(canvas) {
@@ -15,6 +12,7 @@ export class DrawnPainter {
     this.pen = canvas.getContext("2d");
   }
 
+  // Keeps nothing of a theme: colours are read at every painting.
   repaint() {}
 
   paint(stage, camera, ratio) {

@@ -1,19 +1,17 @@
 // The WebGL2 painter: bodies with light, their shadow, lines of a width in pixels, and marks that face the eye.
 
 import { colour } from "../colours.js";
+import { CELLS, CIRCLE, LOOKS } from "./looks.js";
 import { paintMark } from "./marks.js";
 import { programs } from "./shaders.js";
 import { MESHES } from "./solids.js";
 import { clipped, towards, unit } from "./space.js";
 
-const LOOKS = { panel: "metal", metal: "metal", dark: "key-border" };
-const CELLS = [8, 5];
 const OVERCAST = unit(towards(200, 55));
 const LINE_FLOATS = 11;
 const MARK_FLOATS = 6;
 const CELL_PX = 64;
 const SHEET_CELLS = 8;
-const CIRCLE = Array.from({ length: 73 }, (_, index) => towards(index * 5, 0));
 
 export class GlPainter {
   // Throws where the browser has no WebGL2, or none just now.
