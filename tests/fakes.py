@@ -90,7 +90,13 @@ KINDS = {
 
 
 GATEWAYS = (
-    GatewayMetrics("SunSpec over Modbus TCP", GatewayStatus.LISTENING, "127.0.0.1:5021", 2),
+    GatewayMetrics(
+        "SunSpec over Modbus TCP",
+        GatewayStatus.LISTENING,
+        "127.0.0.1:5021",
+        2,
+        writes="10.0.0.5 may write; everybody else only reads.",
+    ),
     GatewayMetrics(
         "MQTT",
         GatewayStatus.CONNECTING,

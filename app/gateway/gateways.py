@@ -14,7 +14,7 @@ from app.gateway.notices import post_webhook, send_mail
 from app.gateway.notifier import Deliver, Notifier
 from app.gateway.outbox import Outbox
 from app.gateway.sunspec import RTU, TCP, SunSpecRtu, SunSpecTcp
-from app.gateway.sunspec_device import SunSpecDevice
+from app.gateway.sunspec_device import SERIAL, SunSpecDevice
 from app.link.messages import Order, SiteDetail, Update
 from app.link.metrics import GatewayMetrics, GatewayStatus, MachineMetrics
 from app.settings import Settings
@@ -59,6 +59,7 @@ class Gateways:
             machine, clock, unit=settings.sunspec_unit, write_hosts=settings.sunspec_write_hosts
         )
         self._sunspec = device
+        self._writes = writes(settings)
         self._open: list[Gateway] = []
         self._off: list[GatewayMetrics] = []
         self._notifiers: list[Notifier] = []
@@ -119,8 +120,23 @@ class Gateways:
     async def metrics(self) -> MachineMetrics:
         """Return the machine's counters and how its doors are doing."""
         sent = tuple(notifier.metrics() for notifier in self._notifiers)
-        gateways = (*(gateway.metrics() for gateway in self._open), *self._off, *sent)
+        doors = (gateway.metrics() for gateway in self._open)
+        told = (replace(door, writes=self._writes.get(door.name, "")) for door in doors)
+        gateways = (*told, *self._off, *sent)
         return replace(await self._machine.metrics(), gateways=gateways)
+
+
+def writes(settings: Settings) -> dict[str, str]:
+    """Return for every door that takes orders who may give them."""
+    hosts = [host for host in settings.sunspec_write_hosts if host != SERIAL]
+    commands = f"Whoever may publish below {settings.mqtt_topic} at the broker may give commands."
+    return {
+        TCP: f"{', '.join(hosts)} may write; everybody else only reads." if hosts else "Nobody may write.",
+        RTU: "The master on the line may write."
+        if SERIAL in settings.sunspec_write_hosts
+        else "Nobody may write.",
+        MQTT: commands if settings.mqtt_commands else "No commands are taken.",
+    }
 
 
 def _log_end(task: asyncio.Task[None]) -> None:

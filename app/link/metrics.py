@@ -34,7 +34,7 @@ class GatewayStatus(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class GatewayMetrics:
-    """One other door: where it is, who uses it, what went wrong last, what waits to be sent."""
+    """One other door: where it is, who uses it, what went wrong last, what waits, who may write."""
 
     name: str
     status: GatewayStatus
@@ -42,6 +42,7 @@ class GatewayMetrics:
     clients: int = 0
     error: str = ""
     waiting: int = 0
+    writes: str = ""
 
 
 @dataclass(frozen=True, slots=True)

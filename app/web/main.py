@@ -187,7 +187,7 @@ def _serve(stage: Stage, clock: Clock | None) -> Stage | None:
     settings = stage.settings
     app = create_app(settings, clock=clock, stage=stage)
     panel: Panel = app.state.panel
-    server = PanelServer(_configured(app, settings), panel.hub.closing.set)
+    server = PanelServer(configured(app, settings), panel.hub.closing.set)
     panel.network.restart = server.leave
     gc.collect()
     gc.freeze()
@@ -197,7 +197,8 @@ def _serve(stage: Stage, clock: Clock | None) -> Stage | None:
     return panel.network.following
 
 
-def _configured(app: FastAPI, settings: Settings) -> uvicorn.Config:
+def configured(app: FastAPI, settings: Settings) -> uvicorn.Config:
+    """Return how uvicorn serves a panel: its limits, its certificate, the proxies that it believes."""
     certificate = settings.certificate
     return uvicorn.Config(
         app,

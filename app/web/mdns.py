@@ -18,7 +18,10 @@ NAME = "heliopanel.local."
 async def announced(settings: Settings) -> AsyncIterator[None]:
     """Announce the panel for as long as this lasts, or raise `SettingsWrong` without the library for it."""
     try:
-        from zeroconf import ServiceInfo  # noqa: PLC0415 - an extra that need not be installed
+        from zeroconf import (  # noqa: PLC0415 - an extra that need not be installed
+            InterfaceChoice,
+            ServiceInfo,
+        )
         from zeroconf.asyncio import AsyncZeroconf  # noqa: PLC0415 - as above
     except ImportError as error:
         raise SettingsWrong(
@@ -28,7 +31,8 @@ async def announced(settings: Settings) -> AsyncIterator[None]:
     info = ServiceInfo(
         kind, f"Heliopanel.{kind}", addresses=addresses(settings.host), port=settings.port, server=NAME
     )
-    async with AsyncZeroconf() as announcing:
+    where = InterfaceChoice.All if _everywhere(settings.host) else [settings.host]
+    async with AsyncZeroconf(interfaces=where) as announcing:
         await announcing.async_register_service(info, allow_name_change=True)
         log.info("announced", name=NAME.rstrip("."), port=settings.port)
         yield

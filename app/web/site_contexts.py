@@ -11,7 +11,8 @@ from app.web.contexts import Form, Frame
 class SitePage:
     """The site's weather, where it comes from, and its other doors; `gateways` None where it does not tell.
 
-    `is_known` says that the machine told its settings; `real_trackers` are those that forbid made-up weather.
+    `is_known` says that the machine told its settings; `real_trackers` are those that forbid made-up weather;
+    `held` has the trackers that each gateway has control of.
     """
 
     template: ClassVar[str] = "site.html"
@@ -26,3 +27,4 @@ class SitePage:
     real_trackers: tuple[str, ...]
     windows: Form
     window_hints: dict[str, str]
+    held: dict[str, tuple[str, ...]]

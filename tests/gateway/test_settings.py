@@ -2,12 +2,13 @@
 
 import asyncio
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from app.gateway.gateways import Gateways
+from app.gateway.gateways import Gateways, writes
 from app.link.metrics import GatewayStatus
-from app.settings import SettingsWrong, read_settings
+from app.settings import Settings, SettingsWrong, read_settings
 from tests.gateway.rigs import HurriedClock, kept_plant
 
 
@@ -79,3 +80,21 @@ async def test_a_taken_port_is_told_and_the_machine_goes_on(
     await taken.wait_closed()
     assert "choose another with HELIOPANEL_SUNSPEC_PORT" in tcp.error
     assert "Check that the adapter" in rtu.error
+
+
+@pytest.mark.parametrize(
+    ("given", "sentences"),
+    [
+        ({}, ("Nobody may write.", "Nobody may write.", "No commands are taken.")),
+        (
+            {"sunspec_write_hosts": ("10.0.0.5", "serial"), "mqtt_commands": True},
+            (
+                "10.0.0.5 may write; everybody else only reads.",
+                "The master on the line may write.",
+                "Whoever may publish below heliopanel at the broker may give commands.",
+            ),
+        ),
+    ],
+)
+def test_every_door_says_who_may_write(given: dict[str, Any], sentences: tuple[str, ...]) -> None:
+    assert tuple(writes(Settings(**given)).values()) == sentences

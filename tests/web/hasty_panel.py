@@ -1,4 +1,4 @@
-"""`python -m tests.web.hasty_panel FOLDER PORT`: a panel alone, whose clock runs twelve times as fast."""
+"""`python -m tests.web.hasty_panel FOLDER PORT`: a panel alone, whose clock runs fifteen times as fast."""
 
 import asyncio
 import sys
@@ -9,7 +9,7 @@ from app.clock import SystemClock
 from app.settings import Settings
 from app.web.main import run
 
-FASTER = 12
+FASTER = 15
 
 
 class HastyClock(SystemClock):

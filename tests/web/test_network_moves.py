@@ -112,7 +112,7 @@ def test_what_is_confirmed_there_is_kept(moving: Moving) -> None:
     assert action is not None
     assert "The panel stays here" in moving.ask("POST", tried, action[1]).text
     moving.port = tried
-    time.sleep(5.3)
+    time.sleep(4.3)
     assert moving.is_there(tried)
     assert not moving.is_there(before)
     assert (moving.state()["confirm_until"], moving.state()["last_rollback"]) == (None, "")

@@ -1,5 +1,6 @@
 """Weather and integrations, on pages and over the API."""
 
+import re
 from collections.abc import AsyncIterator
 from dataclasses import asdict, replace
 
@@ -7,7 +8,9 @@ import httpx
 import pytest
 
 from app.tracker.config import DriveConfig, DriveKind
+from app.tracker.control import ControlState
 from app.tracker.simulated_weather import Scenario, SimulatedStation
+from app.tracker.snapshot import SiteSnapshot
 from app.tracker.weather import Weather, WeatherNow
 from app.tracker.weather_windows import WeatherWindows
 from tests.fakes import FakeMachine, fake_app, serving
@@ -195,3 +198,24 @@ async def test_without_the_machine_no_settings_are_offered(
     text = (await panel.get("/site")).text
     assert "its settings are not known here" in text
     assert "station-form" not in text
+
+
+class HeldMachine(FakeMachine):
+    """A machine of whose trackers SunSpec has control of the second."""
+
+    def _snapshot(self) -> SiteSnapshot:
+        site = super()._snapshot()
+        held = replace(site.trackers[1], control=ControlState(3, holder="SunSpec", via="sunspec"))
+        return replace(site, trackers=(site.trackers[0], held))
+
+
+async def test_the_site_says_who_may_write_and_what_a_gateway_has_control_of() -> None:
+    async with serving(fake_app(HeldMachine())) as client:
+        page = (await client.get("/site")).text
+        told = (await client.get("/api/v1/site/integrations")).json()
+        overview = (await client.get("/")).text
+    assert "10.0.0.5 may write; everybody else only reads. It has control of T2." in page
+    assert told[0]["writes"] == "10.0.0.5 may write; everybody else only reads."
+    assert re.search(r'data-live="control.holder"[^>]*>SunSpec<', overview)
+    async with serving(fake_app(FakeMachine())) as client:
+        assert "It has control of no tracker now" in (await client.get("/site")).text

@@ -11,6 +11,7 @@ from app.link.messages import MachineUnreachable, SiteDetail
 from app.link.weather_orders import SetMetStation, SetWeatherWindows, SimulateWeather
 from app.tracker.config import DriveKind
 from app.tracker.memory import SiteState
+from app.tracker.snapshot import SiteSnapshot
 from app.web.deps import MachineDep
 from app.web.metrics import counted
 from app.web.site_contexts import SitePage
@@ -21,6 +22,9 @@ from app.web.ui.orders import Press, PressDep
 from app.web.ui.render import go, page
 
 router = APIRouter(prefix="/site")
+
+HOLDERS = {"SunSpec over Modbus TCP": "sunspec", "SunSpec over Modbus RTU": "sunspec", "MQTT": "mqtt"}
+"""How control tells who holds it, for every gateway that takes orders."""
 
 
 class StationForm(BaseModel):
@@ -141,8 +145,18 @@ async def _answer(
         real_trackers=() if detail is None else _real(detail),
         windows=shown["windows"].form(forms.WINDOW_NAMES),
         window_hints=forms.window_hints(),
+        held=_held(machine.latest()),
     )
     return page(request, context, block=block, status=status)
+
+
+def _held(site: SiteSnapshot | None) -> dict[str, tuple[str, ...]]:
+    """Return which trackers each gateway has control of."""
+    trackers = site.trackers if site else ()
+    return {
+        name: tuple(one.tracker_id for one in trackers if one.control.holder and one.control.via == via)
+        for name, via in HOLDERS.items()
+    }
 
 
 def _real(detail: SiteDetail) -> tuple[str, ...]:
