@@ -62,6 +62,8 @@ from app.tracker.shelter import look
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
 from app.tracker.transitions import leave, lose_home
 
+ANNOUNCED = (Tracking, Showing, Moving, Stowing)
+"""Activities whose first motion may have to wait for its warning."""
 RESUME_WITHIN = timedelta(seconds=10)
 """After a restart the drive must answer within this time; later it is a drive that came back."""
 
@@ -178,6 +180,8 @@ class Controller:
         mind.config, mind.capabilities = config, capabilities
         mind.setpoint, mind.target, mind.watches = NOWHERE, None, {}
         mind.corrected = None
+        if mind.memory.rejected:
+            mind.remember(rejected=())
 
     def set_pointing(self, pointing: Pointing) -> None:
         """Take over a correction from sightings; what the light sensors found goes with the old one."""
@@ -264,7 +268,7 @@ class Controller:
     def _step(self, feedback: Feedback, seen: Observation) -> Turn:
         """Return the activity's turn; a motion that is being announced waits."""
         mind = self._mind
-        if not isinstance(mind.activity, Tracking | Showing | Moving | Stowing):
+        if not isinstance(mind.activity, ANNOUNCED):
             mind.warning = None
         elif is_announced(mind):
             return Turn(mind.activity, HALTED, mind.target, seen.sun)

@@ -98,8 +98,7 @@ def correct(
         pair, on_place = _pair(feedback.light, axis), _on_place(off_deg, sun_target, axis)
         axes.append(axis_correction(was, config.hybrid, pair, now, elapsed_s, on_place=on_place))
     azimuth, elevation = axes
-    summed = replace(
-        target,
+    summed = target._replace(
         azimuth_deg=_sum_deg(config.azimuth, target.azimuth_deg, azimuth),
         elevation_deg=_sum_deg(second_axis(config), target.elevation_deg, elevation),
     )

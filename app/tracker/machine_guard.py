@@ -43,6 +43,8 @@ def watch_machine(mind: Mind, before: Feedback | None, feedback: Feedback) -> No
         leave(mind, slow.message)
     told, was_told = mind.command, mind.told_before
     mind.told_before = told
+    if before is feedback and mind.supply_since is None:
+        return
     if before is not None and before is not feedback:
         exempt = _is_exempt(mind, before, feedback)
         mind.guards = {} if exempt else _watched(mind, before, feedback, was_told, told)

@@ -1,7 +1,7 @@
 """From a direction of the sky to axis angles within limits, and back, for every mount."""
 
-from dataclasses import dataclass
 from math import ceil, cos, radians, sin
+from typing import NamedTuple
 
 from app.angles import separation_deg, wrap180, wrap360
 from app.sun.position import SunPosition
@@ -16,8 +16,7 @@ PLAIN = MountConfig()
 UNLIMITED = AxisConfig(-360.0, 360.0, 360.0, 360.0, 1.0, 1.0)
 
 
-@dataclass(frozen=True, slots=True)
-class AxisTarget:
+class AxisTarget(NamedTuple):
     """Angles of first and second axis to go to; `limited`: the soft limits forbid the direction asked for."""
 
     azimuth_deg: float

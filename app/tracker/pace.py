@@ -9,13 +9,10 @@ from app.tracker.mind import Mind
 
 def paced(mind: Mind) -> TrackerConfig:
     """Return the configuration with the speeds that are allowed now; unchanged where nothing limits them."""
-    slow = [axis for axis in Axis if is_slow(mind, axis)]
-    if not slow:
-        return mind.config
     config = mind.config
-    if Axis.AZIMUTH in slow:
+    if is_slow(mind, Axis.AZIMUTH):
         config = replace(config, azimuth=_slowed(config.azimuth))
-    if Axis.ELEVATION in slow:
+    if is_slow(mind, Axis.ELEVATION):
         config = replace(config, elevation=_slowed(config.elevation))
     return config
 

@@ -87,11 +87,15 @@ def _both_if(due: bool, target: AxisTarget) -> AxisPair:
 
 def _off_target(config: TrackerConfig, feedback: Feedback, target: AxisTarget) -> bool:
     """Return whether the panel is about to leave the deadband, or stands a turn of the cable away."""
-    measured = Orientation(feedback.azimuth.position_deg, feedback.elevation.position_deg)
-    if abs(measured.azimuth_deg - target.azimuth_deg) > UNWIND_DEG:
+    azimuth_deg, elevation_deg = feedback.azimuth.position_deg, feedback.elevation.position_deg
+    turn_deg = abs(azimuth_deg - target.azimuth_deg)
+    if turn_deg > UNWIND_DEG:
         return True
+    allowed_deg = trigger_deg(config)
+    if turn_deg + abs(elevation_deg - target.elevation_deg) <= allowed_deg:
+        return False  # no great circle is longer than the way along azimuth and elevation
     place = Orientation(target.azimuth_deg, target.elevation_deg)
-    return needs_move(config, measured, place, trigger_deg(config))
+    return needs_move(config, Orientation(azimuth_deg, elevation_deg), place, allowed_deg)
 
 
 def _off_place(config: TrackerConfig, feedback: Feedback, target: AxisTarget) -> bool:

@@ -19,6 +19,8 @@ def recover(mind: Mind, feedback: Feedback) -> None:
     """Clear a fault that its policy lets clear by itself, and go on tracking after one that was cleared."""
     _go_on(mind)
     code = _fault(mind)
+    if code is None and mind.ailing is None:
+        return
     if code != mind.ailing:
         mind.ailing, mind.ailing_since = code, mind.now
     policy = _policy(mind, code)

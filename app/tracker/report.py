@@ -19,10 +19,12 @@ from app.tracker.mounts.abilities import default_mode
 from app.tracker.progress import step_progress
 from app.tracker.protections.words import WarningState
 from app.tracker.reason import Reason
+from app.tracker.rejected import accepted
 from app.tracker.runs import arrived, at_rest, close_to
 from app.tracker.sensors import sensors
 from app.tracker.shelter import doubts, hold_reason, protection_state, reason
 from app.tracker.snapshot import ActivityName, AxisState, HybridState, Pair, ShowProgress, Snapshot
+from app.tracker.weather import NOTHING_SENSED
 from app.tracker.words import activity_text
 
 _INDEX = {kind: float(list(ActivityName).index(name)) for kind, name in NAMES.items()}
@@ -77,6 +79,7 @@ def snapshot(mind: Mind, at: datetime, now: datetime) -> Snapshot:
         home=mind.memory.home,
         home_lost=mind.memory.home_lost,
         home_lost_at=mind.memory.home_lost_at,
+        rejected=mind.memory.rejected,
     )
 
 
@@ -108,7 +111,7 @@ def _drive(feedback: Feedback | None) -> tuple[float, float, float]:
 
 def _weather(mind: Mind) -> tuple[float, float, float]:
     """Return gust, mean wind and light of this tick, to what a station resolves; NaN what is not good."""
-    if mind.seen is None:
+    if mind.seen is None or mind.seen.weather is NOTHING_SENSED:
         return nan, nan, nan
     told = mind.seen.weather
     values = (told.wind.good, told.wind_mean_mps, told.light.good)
@@ -273,7 +276,8 @@ def _notices(mind: Mind) -> tuple[Reason, ...]:
         (mind.capabilities.watchdog_s is None, _NO_WATCHDOG),
         (not mind.capabilities.verified, _UNVERIFIED),
     )
-    told = () if mind.aftermath is None else (mind.aftermath,)
+    refused = accepted(mind)
+    told = tuple(reason for reason in (refused, mind.aftermath) if reason is not None)
     if mind.memory.home is None and mind.memory.home_lost:
         told = (*told, _zero_lost(mind))
     return (

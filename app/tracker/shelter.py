@@ -156,7 +156,8 @@ def _learnt(mind: Mind, sensed: Sensed) -> tuple[Quantity, ...]:
 def _expected(mind: Mind) -> bool:
     """Return whether there should be a sensor."""
     config = mind.config.protection
-    return bool(mind.memory.sensors) or any(limits_of(config, one).required for one in Quantity)
+    required = config.wind.required or config.snow.required or config.light.required
+    return required or bool(mind.memory.sensors)
 
 
 def _is_night(mind: Mind, seen: Observation) -> bool:

@@ -320,7 +320,7 @@ def test_a_frame_is_the_tick_as_numbers() -> None:
     assert row[:2] == [shown.sun.azimuth_deg, shown.sun.apparent_elevation_deg]
     assert row[2:4] == row[:2]
     assert row[6:8] == [plant.azimuth_deg, plant.elevation_deg]
-    assert list(ActivityName)[int(row[10])] is ActivityName.TRACKING
+    assert list(ActivityName)[int(row[-1])] is ActivityName.TRACKING
     empty = Plant(location=None)
     assert all(value != value for value in empty.controller.frame()[2:10])
 

@@ -4,7 +4,6 @@ With a deadband the target is judged against the deadband less a margin, so that
 deadband: the sun moves 0.0042 degrees a second, and a run takes a second or two.
 """
 
-from dataclasses import replace
 from math import cos, radians, sin
 from typing import assert_never
 
@@ -164,7 +163,7 @@ def _corrected(mind: Mind, followed: Followed, moment: Moment, wanted: Aimed, fe
     mind.corrected = correct(
         mind.corrected, mind.config, followed.mode, sun_target, wanted.target, feedback, mind.now
     )
-    return replace(wanted, target=mind.corrected.target)
+    return wanted._replace(target=mind.corrected.target)
 
 
 def _night_place(strategy: Strategy, followed: Followed, moment: Moment, seen: Observation) -> Aimed | None:

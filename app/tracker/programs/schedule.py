@@ -1,9 +1,8 @@
 """Strategies that go by the time alone: where the panel faces at an instant, wherever it stands before."""
 
-from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from math import asin, atan2, cos, degrees, hypot, radians, sin
-from typing import assert_never
+from typing import NamedTuple, assert_never
 
 from app.angles import wrap360
 from app.sun.events import hour_angle_deg
@@ -19,8 +18,7 @@ HOUR_DEG = 15.0
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 
-@dataclass(frozen=True, slots=True)
-class Moment:
+class Moment(NamedTuple):
     """An instant at a place, with the sun there and then."""
 
     at: datetime
@@ -28,8 +26,7 @@ class Moment:
     location: Location
 
 
-@dataclass(frozen=True, slots=True)
-class Followed:
+class Followed(NamedTuple):
     """What a tracker follows, and how its panel is mounted."""
 
     config: TrackerConfig
@@ -43,8 +40,7 @@ class Followed:
         return mode_direction(self.mode, self.held, sun, refraction=config.refraction, mount=config.mount)
 
 
-@dataclass(frozen=True, slots=True)
-class Aimed:
+class Aimed(NamedTuple):
     """A direction of the sky, and the axis angles at which the panel faces it, as nearly as it can."""
 
     direction: Orientation
