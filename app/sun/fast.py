@@ -5,7 +5,7 @@ turned as a vector from the ecliptic to the horizon, so that right ascension and
 formed. A test holds both forms together to 1e-9 degrees; the numbers in brackets are the papers' equations.
 """
 
-from math import atan2, cos, hypot, radians, sin, sqrt
+from math import atan2, cos, hypot, sin, sqrt
 
 from app.sun.koblick import DAY_ZERO_UNIX_S
 from app.sun.psa import J2000_UNIX_S, PARALLAX
@@ -22,8 +22,8 @@ def psa(unix_s: float, latitude_deg: float, longitude_deg: float) -> tuple[float
     tilt = 0.4090928 - 6.2140e-9 * n + 0.0000396 * cos(node)  # (7)
     sidereal_h = 6.6974243242 + 0.0657098283 * n + unix_s % 86400.0 / 3600.0  # (10)
     sidereal = (sidereal_h * 15.0 + longitude_deg) * PER_DEGREE  # (11)
-    azimuth, zenith = _horizon(longitude, tilt, sidereal, radians(latitude_deg))
-    return azimuth * PER_RADIAN, 90.0 - (zenith + PARALLAX * sin(zenith)) * PER_RADIAN  # (16)
+    azimuth, zenith, level = _horizon(longitude, tilt, sidereal, latitude_deg * PER_DEGREE)
+    return azimuth * PER_RADIAN, 90.0 - (zenith + PARALLAX * level) * PER_RADIAN  # (16)
 
 
 def psa_plus(unix_s: float, latitude_deg: float, longitude_deg: float) -> tuple[float, float]:
@@ -37,8 +37,8 @@ def psa_plus(unix_s: float, latitude_deg: float, longitude_deg: float) -> tuple[
     tilt = 4.090904909e-1 - 6.213605399e-9 * n + 4.418094944e-5 * cos(node)  # (7)
     sidereal_h = 6.697096103 + 6.570984737e-2 * n + unix_s % 86400.0 / 3600.0  # (10)
     sidereal = (sidereal_h * 15.0 + longitude_deg) * PER_DEGREE  # (11)
-    azimuth, zenith = _horizon(longitude, tilt, sidereal, radians(latitude_deg))
-    return azimuth * PER_RADIAN, 90.0 - (zenith + PARALLAX * sin(zenith)) * PER_RADIAN  # (16)
+    azimuth, zenith, level = _horizon(longitude, tilt, sidereal, latitude_deg * PER_DEGREE)
+    return azimuth * PER_RADIAN, 90.0 - (zenith + PARALLAX * level) * PER_RADIAN  # (16)
 
 
 def koblick(unix_s: float, latitude_deg: float, longitude_deg: float) -> tuple[float, float]:
@@ -52,12 +52,12 @@ def koblick(unix_s: float, latitude_deg: float, longitude_deg: float) -> tuple[f
     longitude = atan2(sin(anomaly) * sqrt(1.0 - e * e), cos(anomaly) - e) + w * PER_DEGREE  # (9 to 13)
     tilt = (23.4393 - 3.563e-7 * day) * PER_DEGREE  # (7)
     sidereal_deg = w + m_deg + 180.0 + unix_s % 86400.0 / 240.0 + longitude_deg  # (6, 24, 25)
-    azimuth, zenith = _horizon(longitude, tilt, sidereal_deg * PER_DEGREE, radians(latitude_deg))
+    azimuth, zenith, _ = _horizon(longitude, tilt, sidereal_deg * PER_DEGREE, latitude_deg * PER_DEGREE)
     return azimuth * PER_RADIAN, 90.0 - zenith * PER_RADIAN
 
 
-def _horizon(longitude: float, tilt: float, sidereal: float, latitude: float) -> tuple[float, float]:
-    """Return azimuth in (-pi, pi] and zenith distance of a sun at an ecliptic longitude, radians."""
+def _horizon(longitude: float, tilt: float, sidereal: float, latitude: float) -> tuple[float, float, float]:
+    """Return azimuth in (-pi, pi], zenith distance and its sine for an ecliptic longitude, all in radians."""
     x, y_ecliptic = cos(longitude), sin(longitude)
     y, z = cos(tilt) * y_ecliptic, sin(tilt) * y_ecliptic
     cos_sidereal, sin_sidereal = cos(sidereal), sin(sidereal)
@@ -65,4 +65,5 @@ def _horizon(longitude: float, tilt: float, sidereal: float, latitude: float) ->
     east = y * cos_sidereal - x * sin_sidereal
     cos_lat, sin_lat = cos(latitude), sin(latitude)
     north = z * cos_lat - equator * sin_lat
-    return atan2(east, north), atan2(hypot(east, north), z * sin_lat + equator * cos_lat)
+    level = hypot(east, north)
+    return atan2(east, north), atan2(level, z * sin_lat + equator * cos_lat), level
