@@ -6,13 +6,16 @@ from pathlib import Path
 import pytest
 
 from app.alarms.catalogue import ENTRIES, Entry
+from app.tracker.protections.fault_classes import CLASSES
+from app.tracker.protections.machine_config import FaultClass
 
 ROOT = Path(__file__).resolve().parents[2]
 GUIDE = (ROOT / "docs" / "operators-guide.md").read_text()
-FAULTS = ("guards.py", "protect.py", "activities/faulted.py")
+FAULTS = ("guards.py", "machine_guard.py", "protect.py", "activities/faulted.py")
 WHERE = ROOT / "app" / "tracker"
-EVENTS_ONLY = {"drive_back", "not_homed"}
-"""A drive that came back in order asks for nothing; a lost zero is told by `home_lost`."""
+EVENTS_ONLY = {"drive_back", "not_homed", "at_limit_switch"}
+"""A drive that came back in order asks for nothing; a lost zero is told by `home_lost`, a switch that was run
+into by `limit_switch`: that one is on says which way is free."""
 
 
 @pytest.mark.parametrize("entry", ENTRIES, ids=lambda one: one.code)
@@ -28,6 +31,11 @@ def test_every_fault_of_the_guards_is_an_alarm() -> None:
     assert found - {one.code for one in ENTRIES} - EVENTS_ONLY == set(), (
         "write an entry for each in app/alarms/catalogue.py and in docs/operators-guide.md, chapter Alarms"
     )
+
+
+def test_every_fault_with_a_class_of_recovery_is_an_alarm() -> None:
+    assert CLASSES.keys() - {one.code for one in ENTRIES} == set()
+    assert set(CLASSES.values()) == set(FaultClass)
 
 
 def _codes(path: Path) -> set[str]:
