@@ -21,8 +21,8 @@ from app.tracker.snapshot import ActivityName, EventKind
 from tests.machine.service import DriveSimulator, Service, eventually
 from tests.machine.stories import WATCHDOG_AND_RAMP_S, kill_mid_show, kill_panel
 
-KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "5"))
-PANEL_KILLS = 3
+KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "3"))
+PANEL_KILLS = 2
 
 
 @pytest.fixture
