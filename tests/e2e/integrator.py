@@ -78,7 +78,11 @@ class Integrator:
             last.update(self.snapshot())
             return reached(last)
 
-        eventually(is_so, what, within_s=within_s)
+        try:
+            eventually(is_so, what, within_s=within_s)
+        except TimeoutError as error:
+            told = [one["message"] for one in (*last["waiting"], *last["notices"])]
+            raise TimeoutError(f"{error} It says: {last['activity_text']}. {told}") from error
         return last
 
     def until_allowed(self, action: str) -> None:
