@@ -25,7 +25,8 @@ from app.store.failures import explained
 from app.store.store import StoreFailed
 from app.store.tables import REVISION
 
-BUSY_MS = 5000
+BUSY_MS = 3000
+"""Below the 5 s for which the panel waits for an answer, so that it hears why nothing was stored."""
 WRITER_PRAGMAS = (
     f"PRAGMA busy_timeout = {BUSY_MS}",
     "PRAGMA journal_mode = WAL",

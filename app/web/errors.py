@@ -33,7 +33,7 @@ from app.web.security import add_headers
 
 log = structlog.get_logger()
 
-UNREACHABLE_CODES = frozenset({"drive_lost", "drive_unreachable", "drive_silent"})
+UNREACHABLE_CODES = frozenset({"drive_lost", "drive_unreachable", "drive_silent", "not_stored"})
 OWN_MISTAKE = "The panel made a mistake; its log has the details. The machine goes on as it was."
 FOR_PROGRAMS = ("/api/", "/health", "/ready", "/metrics", "/stream", "/diagnostics.zip", "/backup")
 RETRY_LATER = {"Retry-After": "1"}
@@ -77,7 +77,7 @@ ErrorPage = Callable[[Request, Problem], Response]
 
 
 def rejected(error: CommandRejected) -> Problem:
-    """Return 409, or 503 where the drive cannot be reached, with every unmet condition."""
+    """Return 409, or 503 where drive or database cannot be reached, with every unmet condition."""
     silent = any(reason.code in UNREACHABLE_CODES for reason in error.reasons)
     return Problem(503 if silent else 409, str(error), error.reasons, headers=RETRY_LATER if silent else {})
 

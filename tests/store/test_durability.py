@@ -175,7 +175,7 @@ def test_after_damage_nothing_more_is_written(sqlite_url: str, on_sqlite: Databa
 
 @pytest.mark.parametrize(
     ("pragma", "value"),
-    [("journal_mode", "wal"), ("synchronous", 2), ("foreign_keys", 1), ("busy_timeout", 5000)],
+    [("journal_mode", "wal"), ("synchronous", 2), ("foreign_keys", 1), ("busy_timeout", 3000)],
 )
 def test_the_writer_is_set_up_for_power_cuts(on_sqlite: DatabaseWriter, pragma: str, value: object) -> None:
     with on_sqlite._writing.connect() as connection:
