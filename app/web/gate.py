@@ -6,10 +6,9 @@ from collections.abc import Callable
 from datetime import datetime, timedelta
 from hmac import compare_digest
 from http.cookies import CookieError, SimpleCookie
-from urllib.parse import parse_qs
 
 from fastapi import FastAPI
-from starlette.datastructures import Headers
+from starlette.datastructures import Headers, QueryParams
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
@@ -20,7 +19,7 @@ from app.access.roles import Permission
 from app.access.sessions import is_proven
 from app.access.tokens import token_id_of
 from app.clock import Clock
-from app.web.errors import FOR_PROGRAMS, Busy, NotSetUp, answer_to
+from app.web.errors import FOR_PROGRAMS, Busy, NotAcceptable, NotSetUp, answer_to
 from app.web.route_permissions import PROVEN, ROUTES, STREAMS, TICKETED
 from app.web.routes import STATIC, Guarded, key_of
 from app.web.security import SAFE_METHODS
@@ -47,6 +46,8 @@ NOT_SET_UP = (
     "This panel has no administrator yet and serves only its set-up page. Open /setup with the code "
     "from its console, or run: heliopanel users add NAME --role administrator"
 )
+MOST_FIELDS = 50
+TOO_MANY_FIELDS = f"The address of a request has at most {MOST_FIELDS} fields: leave out the others."
 OLD_PAGE = "This page is too old to change anything. Load it again, then repeat what you did."
 
 
@@ -72,6 +73,9 @@ class Gate:
         try:
             route, path_parameters = key_of(self._routes, scope)
             who = self._admit(scope, route, path_parameters)
+        except NotAcceptable as error:
+            await _turn_away(scope, receive, send, error)
+            return
         except (NotAllowed, ProofNeeded, SignInNeeded, Busy) as error:
             self._record(scope, error)
             await _turn_away(scope, receive, send, error)
@@ -102,10 +106,12 @@ class Gate:
         if route == STATIC:
             return who
         query = _query(scope)
-        tracker_id = path_parameters.get("tracker_id") or query.get("tracker") or None
+        told = (path_parameters.get("tracker_id"), query.get("tracker_id"), query.get("tracker"))
+        named = {name for name in told if name}
         if self._keeper.is_closed:
             return who
-        who.require(ROUTES.get(route, Permission.READ), tracker_id)
+        for tracker_id in named or {None}:
+            who.require(ROUTES.get(route, Permission.READ), tracker_id)
         if who.via in (Via.SESSION, Via.KIOSK):
             self._check_session(scope, route, who, given)
         if who.via is Via.STOP_TICKET and not self._stops.admit(who.address, self._clock.now()):
@@ -210,9 +216,12 @@ def _cookie(headers: Headers, name: str) -> str:
     return found.value if found else ""
 
 
-def _query(scope: Scope) -> dict[str, str]:
-    found = parse_qs(scope.get("query_string", b"").decode("latin-1"), max_num_fields=50) if scope else {}
-    return {name: values[0] for name, values in found.items()}
+def _query(scope: Scope) -> QueryParams:
+    """Return the fields of the address as the routes read them; of one that is repeated the last counts."""
+    given: bytes = scope.get("query_string", b"")
+    if given.count(b"&") >= MOST_FIELDS:
+        raise NotAcceptable(TOO_MANY_FIELDS)
+    return QueryParams(given)
 
 
 def check_origin(scope: Scope, csrf: str) -> None:
@@ -259,7 +268,7 @@ def _not_set_up(request: Request) -> Response:
 
 def way_in(request: Request, error: Exception) -> Response | None:
     """Return the way to the page where one signs in or types the password again; None for programs."""
-    if request.url.path.startswith(FOR_PROGRAMS) or isinstance(error, NotAllowed | Busy):
+    if request.url.path.startswith(FOR_PROGRAMS) or isinstance(error, NotAllowed | Busy | NotAcceptable):
         return None
     is_form = request.method not in SAFE_METHODS
     back = _page_of(request, "/") if is_form else str(request.url.path)

@@ -54,7 +54,7 @@ async def test_the_place_of_a_show_is_told_whatever_its_tracker_is_called(
     machine.trackers[name] = FakeTracker(replace(state, config=config), machine.trackers["T1"].position)
     answer = await api.post(f"{V1}/recordings/show-1/rerun", json={"tracker_id": name, "duration_s": 9000})
     assert answer.status_code == 202, answer.text
-    assert answer.headers["location"].startswith("/api/v1/trackers/%C3%87at%C4%B1%2F%F3%B4%B8%B9/shows/")
+    assert answer.headers["location"].startswith("/api/v1/trackers/%C3%87at%C4%B1%2F%F2%B4%B8%B9/shows/")
 
 
 async def test_too_few_points_are_refused(api: httpx.AsyncClient) -> None:
@@ -69,3 +69,17 @@ async def test_examples_of_a_tracker_that_is_not_there_are_documented_as_missing
     assert (await api.get(f"{V1}/trackers/T9/program/examples")).status_code == 404
     described = (await api.get(f"{V1}/openapi.json")).json()["paths"]
     assert "404" in described[f"{V1}/trackers/{{tracker_id}}/program/examples"]["get"]["responses"]
+
+
+@pytest.mark.parametrize("path", ["/api/v1/site", "/journal", "/api/v1/nothing"])
+async def test_an_address_of_very_many_fields_is_refused(api: httpx.AsyncClient, path: str) -> None:
+    answer = await api.get(f"{path}?" + "&".join(f"a{number}={number}" for number in range(51)))
+    assert answer.status_code == 422
+    assert "at most 50 fields" in answer.text
+
+
+async def test_two_points_of_the_horizon_in_one_direction_are_refused(api: httpx.AsyncClient) -> None:
+    point = {"azimuth_deg": 90.0, "elevation_deg": 3.0}
+    answer = await api.put(f"{V1}/site/horizon", json={"points": [point, point]})
+    assert answer.status_code == 422
+    assert "rising order" in answer.json()["detail"]

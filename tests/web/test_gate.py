@@ -74,6 +74,18 @@ async def test_a_token_for_one_tracker_does_not_reach_another(office: Office) ->
     assert "T2" in refused.json()["detail"]
 
 
+@pytest.mark.parametrize(
+    "query", ["tracker_id=T2", "tracker=T2", "tracker_id=T1&tracker_id=T2", "tracker=T1&tracker_id=T2"]
+)
+async def test_a_token_for_one_tracker_reaches_no_other_by_the_fields_of_an_address(
+    office: Office, query: str
+) -> None:
+    headers = {"authorization": f"Bearer {await made(office, Scope.READ, trackers=frozenset({'T1'}))}"}
+    async with office.browser() as browser:
+        assert (await browser.get("/api/v1/journal?tracker_id=T1", headers=headers)).status_code == 200
+        assert (await browser.get(f"/api/v1/journal?{query}", headers=headers)).status_code == 403
+
+
 async def test_foreign_pages_and_old_pages_change_nothing(office: Office) -> None:
     session = await office.session(Role.OPERATOR)
     csrf = office.keeper.csrf(session)

@@ -8,6 +8,7 @@ from app.sun.horizon import MOST_POINTS, Horizon
 from app.web.api.base import REFUSED, Input, Output
 from app.web.api.orders import SenderDep
 from app.web.deps import MachineDep, SnapshotDep
+from app.web.errors import NotAcceptable
 
 router = APIRouter(prefix="/site/horizon", tags=["site"])
 
@@ -43,7 +44,10 @@ async def read_horizon(machine: MachineDep, snapshot: SnapshotDep) -> SkylineNow
 async def set_horizon(skyline: Skyline, sender: SenderDep) -> SkylineNow:
     """Keep these points; pictures show them and the site tells when the sun is behind them."""
     points = sorted((one.azimuth_deg, one.elevation_deg) for one in skyline.points)
-    horizon = Horizon(tuple(points))
+    try:
+        horizon = Horizon(tuple(points))
+    except ValueError as error:
+        raise NotAcceptable(str(error)) from error
     snapshot = await sender.send(SetHorizon(horizon))
     return _told(horizon, sun_behind_horizon=snapshot.sun_behind_horizon)
 
