@@ -5,7 +5,9 @@
 
 import asyncio
 import contextlib
+import shutil
 import tempfile
+import weakref
 from collections.abc import AsyncIterator
 from dataclasses import replace
 from datetime import datetime, timedelta
@@ -312,10 +314,17 @@ def _check_zone(name: str) -> None:
 
 
 def fake_app(machine: FakeMachine | None = None, reader: FakeReader | None = None) -> FastAPI:
-    """Return the whole panel on the fakes."""
-    settings = Settings(data_dir=Path(tempfile.gettempdir()) / "heliopanel-fakes", port=PORT)
+    """Return the whole panel on the fakes, with a data folder of its own that goes with it."""
+    folder = Path(tempfile.mkdtemp(prefix="heliopanel-fakes-"))
     machine = machine or FakeMachine()
-    return create_app(settings, machine=machine, reader=reader or machine.store, clock=machine.clock)
+    app = create_app(
+        Settings(data_dir=folder, port=PORT),
+        machine=machine,
+        reader=reader or machine.store,
+        clock=machine.clock,
+    )
+    weakref.finalize(app, shutil.rmtree, folder, ignore_errors=True)
+    return app
 
 
 @contextlib.asynccontextmanager

@@ -23,7 +23,7 @@ from app.tracker.snapshot import SiteSnapshot
 from tests.fakes import FakeMachine, fake_app
 from tests.web.test_forms import fuzz
 
-EXAMPLES = 110
+EXAMPLES = 125
 FORM_ROUNDS = 60
 SEED = 3
 SCHEMATHESIS = Path(sys.executable).with_name("st")
