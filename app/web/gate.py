@@ -107,7 +107,7 @@ class Gate:
             return who
         query = _query(scope)
         told = (path_parameters.get("tracker_id"), query.get("tracker_id"), query.get("tracker"))
-        named = {name for name in told if name}
+        named: set[str | None] = {name for name in told if name}
         if self._keeper.is_closed:
             return who
         for tracker_id in named or {None}:
