@@ -7,6 +7,7 @@ import { separation, unbroken } from "./sphere.js";
 import { place } from "./sunpath.js";
 
 const POINTS = 6000;
+const TELL_EVERY_MS = 60;
 const ANGLES = ["sun", "target", "setpoint", "measured"];
 const head = document.getElementById("player").dataset;
 const scene = new PanelScene(document.getElementById("player-scene"), { settle: false });
@@ -22,6 +23,7 @@ let plots = [];
 let at = 0;
 let playing = false;
 let tickAt = 0;
+let toldAt = 0;
 
 async function read(id, begin, zone) {
   const answer = await fetch(`/api/v1/recordings/${encodeURIComponent(id)}/frames?points=${POINTS}`);
@@ -95,12 +97,30 @@ function direction(name, row) {
   return azimuth === null ? null : { azimuth, elevation: tape.columns[`${name}_elevation_deg`][row] };
 }
 
+// A direction between this row and the next one, so that a slow recording moves as smoothly as a fast one.
+function between(name, row) {
+  const [from, to] = [direction(name, row), row + 1 < tape.time.length ? direction(name, row + 1) : null];
+  if (!from || !to) return from;
+  const times = tape.columns.elapsed_s;
+  const share = Math.min(1, Math.max(0, (at - times[row]) / (times[row + 1] - times[row])));
+  const turn = ((to.azimuth - from.azimuth + 540) % 360) - 180;
+  return { azimuth: from.azimuth + turn * share, elevation: from.elevation + (to.elevation - from.elevation) * share };
+}
+
 function show() {
   const row = rowOf(tape.columns.elapsed_s, at);
   const [sun, panel] = [direction("sun", row), direction("measured", row)];
-  scene.show({ sun, panel, target: direction("target", row) });
+  scene.show({ sun: between("sun", row), panel: between("measured", row), target: between("target", row) });
+  // The picture moves with every frame of the screen; numbers and cursors that nobody can read so fast do not.
+  const now = performance.now();
+  if (playing && now - toldAt < TELL_EVERY_MS) return;
+  toldAt = now;
   place(diagram, "sun", sun);
   place(diagram, "panel", panel);
+  tell(row);
+}
+
+function tell(row) {
   document.getElementById("player-clock").textContent = `${dateIn(tape.time[row] * 1000, head.playerZone)} ${clockTime(tape.time[row] * 1000, head.playerZone)}`;
   for (const name of ANGLES) {
     for (const axis of ["azimuth", "elevation"]) {
@@ -134,7 +154,10 @@ function play(wanted) {
   playing = wanted;
   key.querySelector("span").textContent = playing ? "Pause" : "Play";
   key.querySelector("path").setAttribute("d", playing ? "M7 4h4v16H7zM14 4h4v16h-4z" : "M7 4.5v15l12-7.5z");
-  if (!playing) return;
+  if (!playing) {
+    show();
+    return;
+  }
   if (at >= tape.columns.elapsed_s[tape.columns.elapsed_s.length - 1]) at = 0;
   tickAt = performance.now();
   requestAnimationFrame(step);

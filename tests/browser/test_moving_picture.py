@@ -306,6 +306,15 @@ def test_every_mount_has_its_picture(panel: Panel) -> None:
         assert share(page, CELL) > 0.01, kind
 
 
+def test_a_recording_from_before_limits_were_kept_plays_in_the_picture(panel: Panel) -> None:
+    page = panel.open("/recordings/show-1")
+    page.wait_for_selector("#angles canvas")
+    before = settled(page)
+    assert share(page, CELL) > 0.01
+    page.get_by_role("button", name="Play").click()
+    until(page, lambda: frames(page) > before + 20)
+
+
 @pytest.mark.parametrize("path", PAGES)
 def test_pages_fit_at_four_sizes(path: str, panel: Panel) -> None:
     page = panel.open(path)

@@ -54,7 +54,9 @@ function scale(centre, at, [least, most], radius) {
 
 const degrees = (value) => `${Math.round(value)}°`.replace("-", "−");
 
+// The scale of the first axis; of a recording from before limits were kept there is none.
 function firstScale(view) {
+  if (!view.first) return null;
   const turned = (angle) => outward(view.frame, angle);
   switch (view.mount.kind) {
     case "azimuth-elevation": case "vertical-single-axis": return scale([0, 0, 2 * GROUND_Z], turned, view.first, 0.74);
@@ -67,12 +69,12 @@ function firstScale(view) {
 const lowEnd = ({ frame }) => times(frame.axis, -frame.hand);
 
 function fixedLimits(view) {
-  return firstScale(view).lines;
+  return firstScale(view)?.lines ?? [];
 }
 
 function moving(view, angles) {
   const first = firstScale(view);
-  const drawn = { lines: [first.pointer(angles.first)], marks: [...first.marks] };
+  const drawn = { lines: first ? [first.pointer(angles.first)] : [], marks: first?.marks ?? [] };
   if (!view.second) return drawn;
   const out = outward(view.frame, angles.first);
   const lifted = (angle) => add(times(out, Math.cos(angle * RAD)), view.frame.axis, Math.sin(angle * RAD));
@@ -132,7 +134,7 @@ function wanted(view, panel, target, middle) {
 export function stageOf(view, now) {
   const path = daysPath(view);
   const machineNow = now.panel && panelOf(view, now.panel);
-  const limits = now.panel ? moving(view, now.panel) : { lines: [], marks: firstScale(view).marks };
+  const limits = now.panel ? moving(view, now.panel) : { lines: [], marks: firstScale(view)?.marks ?? [] };
   const light = now.sun ? sunlight(view, now.sun, machineNow?.middle) : { lines: [], marks: [] };
   const rays = now.sun && now.sun.elevation > LOWEST_SHADOW_DEG ? towards(now.sun.azimuth, now.sun.elevation) : null;
   return {
