@@ -1,0 +1,108 @@
+"""What was typed outlives a reload; the link's quality stands beside the keys; the theme follows the sun."""
+
+from dataclasses import replace
+from datetime import timedelta
+from functools import partial
+
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import Opened, Plant
+from tests.fakes import FakeMachine
+
+SETTINGS = "/trackers/T1/settings"
+NOTE = ".kept-note"
+
+
+def reloaded(page: Page) -> None:
+    page.reload()
+    page.wait_for_selector('html[data-link="live"]')
+
+
+def test_what_was_typed_is_back_after_a_reload_until_it_is_saved(plant: Plant, opened: Opened) -> None:
+    page = opened(SETTINGS)
+    expect(page.locator(NOTE)).to_have_count(0)
+    page.locator("#f-deadband").fill("0,9")
+    page.locator("#f-night").select_option("park")
+    page.locator('[name="refraction"]').uncheck()
+    reloaded(page)
+    expect(page.locator(NOTE)).to_contain_text("not saved yet")
+    expect(page.locator("#f-deadband")).to_have_value("0,9")
+    expect(page.locator("#f-night")).to_have_value("park")
+    expect(page.locator('[name="refraction"]')).not_to_be_checked()
+    page.get_by_role("button", name="Save settings").click()
+    expect(page.locator("#settings-outcome")).to_contain_text("saved")
+    reloaded(page)
+    expect(page.locator(NOTE)).to_have_count(0)
+    expect(page.locator("#f-deadband")).to_have_value("0.9")
+
+
+def test_what_was_typed_can_be_discarded_and_gives_way_to_a_newer_value(plant: Plant, opened: Opened) -> None:
+    page = opened("/trackers/T1/commissioning/location")
+    page.locator("#f-latitude").fill("12.5")
+    reloaded(page)
+    expect(page.locator("#f-latitude")).to_have_value("12.5")
+    page.get_by_role("button", name="Discard it").click()
+    expect(page.locator(NOTE)).to_have_count(0)
+    expect(page.locator("#f-latitude")).to_have_value("41.2867")
+
+
+def test_a_drawn_signature_outlives_a_reload(plant: Plant, opened: Opened) -> None:
+    page = opened("/trackers/T1/record")
+    pad = page.locator('[data-sign-pad="technician"]')
+    pad.scroll_into_view_if_needed()
+    box = pad.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 20, box["y"] + 20)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 120, box["y"] + 60, steps=5)
+    page.mouse.up()
+    drawn = page.locator('[name="technician_drawn"]').input_value()
+    assert drawn.startswith("[[[")
+    page.locator("#f-technician").fill("Ada")
+    reloaded(page)
+    expect(page.locator('[name="technician_drawn"]')).to_have_value(drawn)
+    inked = "pad => pad.getContext('2d').getImageData(0, 0, 1000, 300).data.some(value => value > 0)"
+    assert pad.evaluate(inked)
+    page.get_by_role("button", name="Sign and keep").click()
+    expect(page.get_by_role("img", name="Signature of Ada")).to_be_visible()
+    assert len(plant.orders("sign_record")) == 1
+
+
+def test_a_plan_worked_out_for_other_values_cannot_be_started(plant: Plant, opened: Opened) -> None:
+    page = opened("/trackers/T1/show?date=2026-06-21&start=05:07&end=20:19&minutes=9")
+    key = page.get_by_role("button", name="Go to start position")
+    expect(key).to_be_visible()
+    page.locator("#f-minutes").fill("12")
+    assert page.locator("#verdict").evaluate("one => one.inert")
+    key.click()
+    page.wait_for_url("**/shows/**")
+    (planned,) = plant.orders("save_plan")
+    assert planned.plan.duration == timedelta(minutes=12)
+
+
+def test_the_quality_of_the_link_stands_beside_the_keys(plant: Plant, opened: Opened) -> None:
+    page = opened("/trackers/T1/commissioning/homing")
+    expect(page.locator("#link-words-jog")).to_have_text("good")
+    expect(page.locator("#round-trip")).to_contain_text("ms there and back")
+    key = page.locator('[data-jog="azimuth"][data-direction="1"]')
+    key.focus()
+    page.keyboard.down(" ")
+    page.wait_for_timeout(300)
+    page.keyboard.up(" ")
+    expect(page.locator("#lost-beats")).to_contain_text("beats lost")
+
+
+def test_auto_follows_the_sun(plant: Plant, opened: Opened) -> None:
+    machine = plant.machine
+    page = opened("/", theme="auto")
+    offset = machine.site.clock.offset_s
+    for hours, theme in ((9.5, "sun"), (21.5, "night")):
+        now = machine.clock.now()
+        at = now.replace(hour=0, minute=0, second=0) + timedelta(hours=hours)
+        plant.do(partial(set_clock, machine, offset + (at - now).total_seconds()))
+        page.wait_for_selector(f'html[data-theme="{theme}"]')
+    assert page.locator(".theme-key").inner_text().strip() == "Auto"
+
+
+def set_clock(machine: FakeMachine, offset_s: float) -> None:
+    machine.site = replace(machine.site, clock=replace(machine.site.clock, offset_s=offset_s))
