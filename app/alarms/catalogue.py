@@ -71,6 +71,11 @@ ENTRIES = (
         "Reset the fault; if it comes again, stow the panel by hand and send the diagnostics file.",
     ),
     Entry(
+        "config_rejected", 2, Group.MOTION, "Stored settings rejected",
+        "The tracker stands still and does not stow; usual values stand where stored ones did not fit.",
+        "Compare both on the tracker's Settings page, correct them, save, and set the zero again.",
+    ),
+    Entry(
         "wrong_direction", 2, Group.MOTION, "Axis moves the wrong way",
         "The panel turns away from where it should go and may reach its end.",
         "Check the motor's phases and the direction set in the drive, clear the fault, set the zero again.",

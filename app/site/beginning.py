@@ -1,13 +1,14 @@
 """How a life of the machine begins: what is stored, what the last life left behind, what to say about it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 
 from app.alarms.alarm import Alarm
 from app.build import VERSION
-from app.store.store import Writer
+from app.site.checks import check_config
+from app.store.store import StoreFailed, Writer
 from app.tracker.config import TrackerConfig
-from app.tracker.memory import SiteState, TrackerMemory, TrackerState
+from app.tracker.memory import RejectedSetting, SiteState, TrackerMemory, TrackerState
 from app.tracker.recording import RecordingInfo, RecordingKind
 from app.tracker.snapshot import Event, EventKind
 
@@ -44,7 +45,42 @@ def begin(store: Writer, now: datetime, *, unclean_since: datetime | None) -> Be
             "cut_off": [info.recording_id for info in cut],
         },
     )
-    return Beginning(site, tuple(store.trackers()), (event,), tuple(store.standing_alarms()))
+    return Beginning(site, _trackers(store, event.at), (event,), tuple(store.standing_alarms()))
+
+
+def _trackers(store: Writer, at: datetime) -> tuple[TrackerState, ...]:
+    """Return the trackers; where stored settings do not fit, others are stored in their place, and told."""
+    try:
+        found = store.trackers()
+    except StoreFailed:
+        found = store.mended_trackers()
+    judged = tuple(map(_judged, found))
+    for one in judged:
+        if one.memory.rejected:
+            store.save_tracker(one, (_rejected(one, at),))
+    return judged
+
+
+def _judged(state: TrackerState) -> TrackerState:
+    """Return the tracker; one whose settings do not go together says so and stands still."""
+    if state.memory.rejected:
+        return state
+    try:
+        check_config(state.config)
+    except ValueError as error:
+        why = RejectedSetting("settings together", "as below", "the same", str(error))
+        return replace(state, memory=replace(state.memory, rejected=(why,), tracking_on=False))
+    return state
+
+
+def _rejected(state: TrackerState, at: datetime) -> Event:
+    values = "; ".join(
+        f"{one.what} was {one.stored}, used is {one.used} ({one.why})" for one in state.memory.rejected
+    )
+    text = f"Stored settings of {state.config.name} were rejected at the start: {values}"
+    return Event(
+        at, EventKind.CONFIG_REJECTED, state.config.tracker_id, text, data={"code": "config_rejected"}
+    )
 
 
 def _message(unclean_since: datetime | None, cut: list[RecordingInfo]) -> str:

@@ -106,6 +106,7 @@ def _memory_for(memory: TrackerMemory, old: TrackerConfig, new: TrackerConfig, a
 
     The last three have no trusted zero, and a move that nobody has judged yet was made with the former one.
     """
+    memory = replace(memory, rejected=())
     if _zeroed(old) == _zeroed(new):
         return replace(memory, tracking_on=False)
     memory = replace(memory, proofs=replace(memory.proofs, move=None), home_lost_at=at)

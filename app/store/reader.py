@@ -13,6 +13,7 @@ from app.store import alarming, auditing, signed, tables
 from app.store.chunks import ChunkDamaged, decode_all
 from app.store.connections import require_revision, transaction
 from app.store.documents import EVENT_DATA, PLAN, RECORDING, SITE, TRACKER
+from app.store.mending import mended
 from app.store.store import (
     AlarmFilter,
     AuditFilter,
@@ -67,6 +68,17 @@ class DatabaseReader:
                 select(columns.tracker_id, columns.document).order_by(columns.number)
             ).all()
         return [TRACKER.read(row.document, row.tracker_id) for row in rows]
+
+    def mended_trackers(self) -> list[TrackerState]:
+        """Return the stored trackers, usual values in the place of those that do not fit."""
+        columns = tables.trackers.c
+        with self._read() as connection:
+            rows = connection.execute(
+                select(columns.tracker_id, columns.document).order_by(columns.number)
+            ).all()
+        return [
+            mended(row.document, row.tracker_id) or TRACKER.read(row.document, row.tracker_id) for row in rows
+        ]
 
     def journal(self, wanted: JournalFilter) -> list[JournalEntry]:
         """Return entries, newest first; with `after` oldest first."""

@@ -191,6 +191,9 @@ class Writer(Reader, Protocol):
         The entry gets the changed values; with `only_changes` it is left out where none changed.
         """
 
+    def mended_trackers(self) -> list[TrackerState]:
+        """Return the stored trackers with usual values where stored ones do not fit; each tells which."""
+
     def save_site(self, site: SiteState, events: Sequence[Event] = ()) -> None:
         """Store the site and the events that belong to the change, together."""
 

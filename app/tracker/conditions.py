@@ -14,6 +14,7 @@ from app.tracker.protections.fault_classes import CLASSES
 from app.tracker.protections.machine_config import Recovery
 from app.tracker.protections.words import StowName
 from app.tracker.reason import Reason
+from app.tracker.rejected import accepted
 from app.tracker.runs import at_rest
 from app.tracker.snapshot import ActivityName, ShowPhase
 
@@ -383,15 +384,15 @@ _SHOW_HINT = {
 _HOLD, _JOG, _MOVE = ActivityName.HOLDING, ActivityName.JOGGING, ActivityName.MOVING
 _TRACK, _SHOW, _STOPPING = ActivityName.TRACKING, ActivityName.SHOWING, ActivityName.STOPPING
 _STOW, _STOWED = ActivityName.STOWING, ActivityName.STOWED
-_CAN_MOVE = (reachable, sound, remote, homed, unlocked)
+_CAN_MOVE = (accepted, reachable, sound, remote, homed, unlocked)
 _BY_ITSELF = (*_CAN_MOVE, unserved)
-_CAN_PROVE = (reachable, sound, remote, cleared, while_(_HOLD), resting)
+_CAN_PROVE = (accepted, reachable, sound, remote, cleared, while_(_HOLD), resting)
 
 REQUIRED: dict[Action, tuple[Condition, ...]] = {
-    Action.JOG: (reachable, sound, remote, cleared, prompt, while_(_HOLD, _JOG)),
-    Action.STEP: (reachable, sound, remote, cleared, while_(_HOLD)),
+    Action.JOG: (accepted, reachable, sound, remote, cleared, prompt, while_(_HOLD, _JOG)),
+    Action.STEP: (accepted, reachable, sound, remote, cleared, while_(_HOLD)),
     Action.ZERO: (reachable, sound, settings_open, while_(_HOLD), resting),
-    Action.HOME: (reachable, sound, remote, cleared, unlocked, self_homing, while_(_HOLD), resting),
+    Action.HOME: (accepted, reachable, sound, remote, cleared, unlocked, self_homing, while_(_HOLD), resting),
     Action.SET_MODE: (while_(_HOLD, _JOG, _MOVE, _STOPPING),),
     Action.MOVE: (*_CAN_MOVE, cleared, sheltered, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
     Action.PARK: (*_BY_ITSELF, sheltered, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),

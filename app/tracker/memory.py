@@ -79,6 +79,16 @@ class CommissioningLock:
 
 
 @dataclass(frozen=True, slots=True)
+class RejectedSetting:
+    """A stored value that was not accepted at the start, what is used in its place, and why, for people."""
+
+    what: str
+    stored: str
+    used: str
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
 class TrackerMemory:
     """The latches of one tracker: on disk before the command that changes them is acknowledged.
 
@@ -87,6 +97,8 @@ class TrackerMemory:
     the place it was sent to by command and stays in until it is resumed or commanded otherwise; `protection`
     is the one that holds, which must be seen good before tracking goes on; `sensors` are those that were ever
     seen, so that they can be missed. `control_epoch` is the newest number that orders were fenced with.
+    `rejected` are the stored settings that were not accepted at the start; nothing moves until somebody has
+    saved the settings.
     """
 
     mode: Mode | None = None
@@ -110,6 +122,7 @@ class TrackerMemory:
     service: ServiceMode | None = None
     control_epoch: int = 0
     settings_lock: CommissioningLock | None = None
+    rejected: tuple[RejectedSetting, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

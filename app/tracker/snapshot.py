@@ -10,7 +10,7 @@ from app.tracker.alarm_words import AlarmCounts, AlarmNow
 from app.tracker.config import Orientation
 from app.tracker.control import ControlState
 from app.tracker.hybrid import HybridPhase
-from app.tracker.memory import CommissioningLock, HomeTrust
+from app.tracker.memory import CommissioningLock, HomeTrust, RejectedSetting
 from app.tracker.mode import Mode
 from app.tracker.motion import LightReading
 from app.tracker.protections.words import (
@@ -196,6 +196,7 @@ class Snapshot:
     home: HomeTrust | None = None
     home_lost: str = ""
     home_lost_at: datetime | None = None
+    rejected: tuple[RejectedSetting, ...] = ()
 
 
 class EventKind(StrEnum):
@@ -243,6 +244,7 @@ class EventKind(StrEnum):
     RECORDING_DELETED = "recording_deleted"
     REMOTE_WRITTEN = "remote_written"
     REMOTE_REFUSED = "remote_refused"
+    CONFIG_REJECTED = "config_rejected"
     PROTECTION_BEGAN = "protection_began"
     PROTECTION_ENDED = "protection_ended"
     STOW_STARTED = "stow_started"

@@ -25,6 +25,9 @@ PAGES = {
     "drive": f"{T1}/drive",
     "proofs": f"{T1}/proofs",
     "protections": f"{T1}/protections",
+    "service": f"{T1}/service",
+    "machine": f"{T1}/machine",
+    "training": f"{T1}/training",
     "show": SHOW,
     "recordings": "/recordings",
     "player": "/recordings/show-1",
@@ -34,6 +37,8 @@ PAGES = {
     "step-program": "/studies/program?date=2026-06-21",
     "journal": "/journal",
     "site": "/site",
+    "alarms": "/alarms",
+    "notifications": "/site/notifications",
 }
 LEAST_TARGET_PX = 60
 MOST_BYTES = 150_000

@@ -1,21 +1,25 @@
 """Faults played on a tracker whose simulated drive runs in another process, over its training registers."""
 
-from collections.abc import Sequence
+from collections.abc import Awaitable, Callable, Sequence
+from dataclasses import replace
+from datetime import timedelta
 
 import pytest
 
-from app.clock import VirtualClock
+from app.clock import SystemClock, VirtualClock
 from app.drives.bus import Priority
-from app.drives.drive import DriveRefused
+from app.drives.drive import DriveError, DriveRefused, DriveSilent
+from app.drives.factory import DriveFactory
 from app.drives.faults import Fault, FaultKind
 from app.drives.modbus_server import Refusal
 from app.drives.plc import PlcDrive
 from app.drives.profile import load_profile
 from app.drives.sim_plc import SimulatedPlc
+from app.drives.sim_server import serve
 from app.drives.simulated import SimulatedDrive
 from app.drives.trained import TRAINED_PROFILE, trainer_of
 from app.tracker.axes import Axis
-from app.tracker.config import TrackerConfig
+from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
 from tests.site.plant import SUMMER_NOON
 
 CONFIG = TrackerConfig("T1", "North")
@@ -84,6 +88,38 @@ async def test_a_device_without_training_registers_is_never_written() -> None:
     with pytest.raises(DriveRefused):
         await trainer.play([Fault(FaultKind.SLIP, Axis.AZIMUTH, 1.0)])
     assert link.written == []
+
+
+async def test_over_a_socket_silence_begins_and_ends() -> None:
+    clock = SystemClock()
+    machine = SimulatedDrive(CONFIG, clock)
+    server, port = await serve("127.0.0.1", 0, load_profile(TRAINED_PROFILE), machine, clock)
+    reached = DriveConfig(DriveKind.MODBUS_TCP, TRAINED_PROFILE, host="127.0.0.1", port=port)
+    drive = DriveFactory(clock).make(replace(CONFIG, drive=reached))
+    trainer = trainer_of(drive)
+    assert trainer is not None
+    assert not (await drive.read()).local
+    await trainer.play([Fault(FaultKind.SILENCE), Fault(FaultKind.LOCAL_SWITCH)])
+    with pytest.raises(DriveSilent):
+        await drive.read()
+    await repeated(clock, trainer.clear)
+    await repeated(clock, drive.read)
+    assert not (await drive.read()).local
+    await drive.close()
+    await server.close()
+
+
+async def repeated(clock: SystemClock, work: Callable[[], Awaitable[object]]) -> None:
+    """Do it again while the connection is being made anew, for five seconds at most."""
+    give_up = clock.now() + timedelta(seconds=5)
+    while True:
+        try:
+            await work()
+        except DriveError:
+            assert clock.now() < give_up
+            await clock.sleep_until(clock.now() + timedelta(milliseconds=100))
+        else:
+            return
 
 
 def test_only_the_profile_of_the_simulator_is_trained() -> None:

@@ -30,7 +30,7 @@ NAMES = ("tracker", "date", "mode", "azimuth", "elevation", "weather", "begins",
 STEP = timedelta(seconds=1)
 NO_WEATHER, BY_STEPS = "none", "steps"
 WEATHERS = (
-    (NO_WEATHER, "No weather: no protection acts"),
+    (NO_WEATHER, "None"),
     (Scenario.CALM.value, "A calm day"),
     (Scenario.STORM.value, "A storm that comes and goes"),
     (Scenario.SNOWFALL.value, "A snowfall that slides off"),

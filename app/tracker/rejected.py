@@ -1,0 +1,17 @@
+"""Stored settings that were not accepted at the start: nothing moves until a person has looked at them."""
+
+from app.tracker.mind import Mind
+from app.tracker.reason import Reason
+
+
+def accepted(mind: Mind) -> Reason | None:
+    """Return that stored settings were rejected and others are used in their place."""
+    rejected = mind.memory.rejected
+    if not rejected:
+        return None
+    values = "; ".join(f"{one.what} was {one.stored}, used is {one.used}" for one in rejected)
+    return Reason(
+        "config_rejected",
+        f"The stored settings of {mind.config.name} were rejected at the start: {values}.",
+        "Compare them on the tracker's Settings page, correct them and save; then it may move again.",
+    )

@@ -1,0 +1,141 @@
+"""Stored settings that do not fit at the start: usual ones in their place, and nothing moves."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sqlalchemy import update
+
+from app.link.messages import ConfigureTracker
+from app.settings import Settings
+from app.site.beginning import begin
+from app.store import tables
+from app.store.connections import transaction, writing_engine
+from app.store.documents import TRACKER
+from app.store.engine import open_writer
+from app.store.migrations import upgrade
+from app.store.store import JournalFilter, StoreFailed
+from app.store.writer import DatabaseWriter
+from app.tracker.axes import Axis
+from app.tracker.commands import CommandRejected, Jog, Stop, Track
+from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.memory import HomeTrust, TrackerMemory, TrackerState
+from app.tracker.snapshot import EventKind
+from tests.site.plant import Plant, make_plant
+
+NOW = datetime(2027, 6, 21, 9, 0, tzinfo=UTC)
+KEPT = TrackerState(
+    TrackerConfig("T1", "North", deadband_deg=0.7),
+    TrackerMemory(tracking_on=True, home=HomeTrust(NOW, "Ada", "set by hand", 3)),
+)
+
+
+def stored(
+    folder: Path, *changes: Callable[[dict[str, Any]], object], state: TrackerState = KEPT
+) -> DatabaseWriter:
+    url = Settings(data_dir=folder).url
+    upgrade(url)
+    writer = open_writer(url)
+    begin(writer, NOW, unclean_since=None)
+    writer.save_tracker(state)
+    document = json.loads(TRACKER.write(state))
+    for change in changes:
+        change(document)
+    rewrite(url, json.dumps(document))
+    return writer
+
+
+def rewrite(url: str, document: str) -> None:
+    """Do what a person could do to the file with an editor."""
+    engine = writing_engine(url)
+    with transaction(engine) as connection:
+        connection.execute(update(tables.trackers).values(document=document))
+    engine.dispose()
+
+
+def spoil(path: str, value: object) -> Callable[[dict[str, Any]], object]:
+    *names, last = path.split(".")
+
+    def change(document: dict[str, Any]) -> None:
+        place = document
+        for name in names:
+            place = place[name]
+        place[last] = value
+
+    return change
+
+
+@pytest.mark.fault(52)
+def test_values_that_do_not_fit_give_way_to_the_usual_and_are_told(tmp_path: Path) -> None:
+    writer = stored(
+        tmp_path,
+        spoil("config.in_position_deg", "wide"),
+        spoil("config.azimuth.minimum_deg", 999),
+        spoil("config.strategy.kind", "guess"),
+        spoil("memory.sightings", 5),
+    )
+    with pytest.raises(StoreFailed):
+        writer.trackers()
+    (found,) = begin(writer, NOW, unclean_since=None).trackers
+    assert found.config.deadband_deg == 0.7, "what fits stays"
+    assert found.config.in_position_deg == 0.05
+    assert found.config.azimuth.minimum_deg == 0.0
+    told = {one.what: (one.stored, one.used) for one in found.memory.rejected}
+    assert told["in position deg"] == ("wide", "0.05")
+    assert set(told) == {"in position deg", "azimuth", "strategy", "memory sightings"}
+    assert found.memory.home is None
+    assert not found.memory.tracking_on
+    assert writer.trackers() == [found], "the next start finds what is used"
+    (entry,) = (
+        one for one in writer.journal(JournalFilter(limit=50)) if one.event.kind is EventKind.CONFIG_REJECTED
+    )
+    assert "in position deg was wide, used is 0.05" in entry.event.message
+    writer.close()
+
+
+@pytest.mark.fault(52)
+def test_settings_that_do_not_go_together_are_told_too(tmp_path: Path) -> None:
+    odd = replace(KEPT, config=replace(KEPT.config, park=Orientation(180.0, 45.0), deadband_deg=99.0))
+    writer = stored(tmp_path, state=odd)
+    (found,) = begin(writer, NOW, unclean_since=None).trackers
+    assert "The deadband must lie between 0.02 and 10.0 degrees." in found.memory.rejected[0].why
+    assert found.memory.home is not None, "the zero has nothing to do with it"
+    writer.close()
+
+
+@pytest.mark.parametrize("document", ["not json", "{}", "[]", '{"config": {}}'])
+def test_what_is_no_tracker_at_all_cannot_be_mended(tmp_path: Path, document: str) -> None:
+    writer = stored(tmp_path)
+    rewrite(Settings(data_dir=tmp_path).url, document)
+    with pytest.raises(StoreFailed, match="stored tracker"):
+        begin(writer, NOW, unclean_since=None)
+    writer.close()
+
+
+async def rejected_plant(tmp_path: Path) -> Plant:
+    writer = stored(tmp_path, spoil("config.in_position_deg", "wide"))
+    beginning = begin(writer, NOW, unclean_since=None)
+    writer.close()
+    plant = make_plant(trackers=beginning.trackers)
+    await plant.start()
+    return plant
+
+
+@pytest.mark.fault(52)
+async def test_nothing_moves_until_the_settings_were_saved(tmp_path: Path) -> None:
+    plant = await rejected_plant(tmp_path)
+    await plant.forward(seconds=1.0)
+    for command in (Jog("p1", Axis.AZIMUTH, 1), Track()):
+        with pytest.raises(CommandRejected, match=r"in position deg was wide, used is 0\.05"):
+            await plant.ask(command)
+    assert "config_rejected" in {reason.code for reason in plant.tracker().notices}
+    await plant.ask(Stop())
+    await plant.forward(seconds=1.0)
+    await plant.ask(ConfigureTracker(plant.site.model.tracker("T1").config))
+    assert plant.tracker().rejected == ()
+    await plant.ask(Jog("p2", Axis.AZIMUTH, 1))
+    await plant.close()
