@@ -26,6 +26,8 @@ def make(name: Names = None) -> None:
         f"The authority's fingerprint (SHA-256) is {read(settings.tls_dir / AUTHORITY).fingerprint}.\n"
         "Start the panel again, then open /certificate on each tablet and install the authority there."
     )
+    if settings.tls is False:
+        typer.echo("https is switched off on the page Network: switch it on there, instead of starting again.")
 
 
 @tls.command()

@@ -26,6 +26,7 @@ FAREWELL = timedelta(seconds=2)
 """The page that says where to go needs a moment to load what it shows."""
 
 NOT_CONFIRMED = "Nobody confirmed them at the new address within 60 s."
+NOT_WRITTEN = "They could not be written to the disk."
 NOT_SERVED = "The panel could not be served there."
 
 log = structlog.get_logger()
@@ -89,6 +90,7 @@ class NetworkDesk:
         self._keeper = keeper
         self._until = clock.now() + CONFIRM_WITHIN
         self._changed = asyncio.Event()
+        self._busy = False
 
     @property
     def in_force(self) -> Network:
@@ -115,13 +117,16 @@ class NetworkDesk:
 
         What is in force is written down first, so that no crash and no power cut can leave anything else.
         """
-        if self._stage.trial is not None or self.following is not None:
+        if self._stage.trial is not None or self._busy:
             raise NetworkBusy("A change of the network is being tried. Confirm it, or wait until it is over.")
-        before = self._stage.settings
-        trying = await asyncio.to_thread(self._prepare, wanted, before)
-        trial = Trial(wanted, before, by, secrets.token_urlsafe(32))
-        await self._note("network_tried", by, told(before.network, wanted))
-        self.following = Stage(trying, self._stage.fixed, trial)
+        before, self._busy = self._stage.settings, True
+        try:
+            trying = await asyncio.to_thread(self._prepare, wanted, before)
+            trial = Trial(wanted, before, by, secrets.token_urlsafe(32))
+            await self._note("network_tried", by, told(before.network, wanted))
+            self.following = Stage(trying, self._stage.fixed, trial)
+        finally:
+            self._busy = self.following is not None
         self._changed.set()
         return trial
 
@@ -138,9 +143,14 @@ class NetworkDesk:
             raise NotOnTrial("There is nothing to confirm here: it was confirmed already, or it is over.")
         if not hmac.compare_digest(ticket.encode(), trial.ticket.encode()):
             raise NotOnTrial("This is not the address that the page Network gave. Open that one.")
-        settings = self._stage.settings
-        await asyncio.to_thread(write_network, settings.data_dir, settings.network)
-        self._stage = Stage(settings, self._stage.fixed)
+        tried, settings = self._stage, self._stage.settings
+        self._stage = Stage(settings, tried.fixed)
+        try:
+            await asyncio.to_thread(write_network, settings.data_dir, settings.network)
+        except OSError as error:
+            self.following = tried.back(NOT_WRITTEN)
+            self.restart()
+            raise NotOnTrial(f"{NOT_WRITTEN} The panel goes back to where it was.") from error
         self._changed.set()
         log.info("network_kept", actor=trial.by.name, address=address)
         await self._note("network_kept", trial.by, told(trial.before.network, trial.wanted))
@@ -159,8 +169,9 @@ class NetworkDesk:
         if self._stage.trial is not None:
             self.following = self._stage.back(NOT_CONFIRMED)
         else:
-            self._changed.clear()
-            await self._changed.wait()
+            while self.following is None:
+                self._changed.clear()
+                await self._changed.wait()
             await self._clock.sleep_until(self._clock.now() + FAREWELL)
         self.restart()
 

@@ -8,6 +8,7 @@ from collections.abc import AsyncIterator
 from contextlib import suppress
 from pathlib import Path
 
+import httpx
 import pytest
 
 from app.link.messages import MachineUnreachable, RenameSite
@@ -55,6 +56,32 @@ async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service, dri
     seen = service.tracker()
     assert seen is not None
     assert seen.tracking_on
+
+
+async def test_the_panel_moves_and_the_machine_misses_no_tick(service: Service) -> None:
+    async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{service.port}") as browser:
+        before = await service.link.metrics()
+        change = {
+            "host": "127.0.0.1",
+            "port": service.port,
+            "tls": False,
+            "allowed_hosts": ["tracker.example"],
+        }
+        tried = await browser.put("/api/v1/network", json=change)
+        assert tried.status_code == 202, tried.text
+        kept = 0
+        while kept != 200:
+            await asyncio.sleep(0.1)
+            with suppress(httpx.TransportError):
+                ticket = {"ticket": tried.json()["ticket"]}
+                kept = (await browser.post("/api/v1/network/confirmation", json=ticket)).status_code
+        foreign = {"host": "tracker.example"}
+        assert (await browser.get("/health", headers=foreign)).status_code == 200
+    after = await service.link.metrics()
+    assert after.boot_id == before.boot_id
+    ticks = after.trackers["T1"].ticks - before.trackers["T1"].ticks
+    assert ticks >= int((after.uptime_s - before.uptime_s) * 10) - 1
+    assert len(service.starts("web")) == len(service.starts("machine")) == 1
 
 
 @pytest.mark.timeout(60 + 15 * KILLS)

@@ -15,7 +15,7 @@ from app.access.store import AccessStore
 from app.network import Network, read_network
 from app.settings import Settings
 from app.web.main import create_app
-from app.web.network import Stage, told, ways
+from app.web.network import Stage, Trial, told, ways
 from tests.fakes import FakeMachine, FakeReader, serving
 from tests.web.office import HERE, PORT, Office
 
@@ -158,3 +158,18 @@ def test_the_ways_are_those_that_lead_there() -> None:
     assert ways(outside, "localhost") == ("https://10.0.0.5", "https://tracker.example")
     assert ways(replace(outside, host="::", port=8443), "fd00::9")[0] == "https://[fd00::9]:8443"
     assert told(inside, replace(inside, tls=True)) == "tls false -> true"
+
+
+async def test_what_cannot_be_written_is_not_kept(tmp_path: Path) -> None:
+    before = Settings(data_dir=tmp_path, port=PORT)
+    wanted = Network("127.0.0.1", 8443, (), (), tls=False)
+    trial = Trial(wanted, before, HERE, "ticket")
+    stage = Stage(before.model_copy(update={"port": 8443}), trial=trial)
+    app = create_app(stage.settings, machine=FakeMachine(), reader=FakeReader(), stage=stage)
+    async with serving(app) as client:
+        (tmp_path / "network.toml.unfinished").mkdir()
+        answer = await client.post("/api/v1/network/confirmation", json={"ticket": "ticket"})
+        assert answer.status_code == 409
+        assert "could not be written to the disk" in answer.json()["detail"]
+    following = app.state.panel.network.following
+    assert (following.settings.port, following.trial) == (PORT, None)

@@ -1,12 +1,13 @@
 """A page of another build or from before the machine's last start orders nothing but Stop, and is told so."""
 
 import re
+from collections.abc import Callable
 from typing import Any
 
 import httpx
 import pytest
 
-from app.web.edition import edition, mark_of
+from app.web.edition import PageOutdated, edition, mark_of
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
 from tests.web.sockets import connected
 
@@ -21,7 +22,9 @@ def mark_in(page: httpx.Response) -> str:
 
 
 @pytest.mark.fault(61)
-async def test_a_page_from_before_a_restart_orders_nothing_but_stop() -> None:
+async def test_a_page_from_before_a_restart_orders_nothing_but_stop(
+    record_property: Callable[[str, object], None],
+) -> None:
     machine = FakeMachine()
     async with serving(fake_app(machine, FakeReader())) as client:
         mark = mark_in(await client.get("/trackers/T1"))
@@ -31,7 +34,8 @@ async def test_a_page_from_before_a_restart_orders_nothing_but_stop() -> None:
         for sent in ({"data": {"page": mark}}, {"headers": {"X-Page": mark, "HX-Request": "true"}}):
             refused = await client.post("/trackers/T1/park", **sent)
             assert (refused.status_code, refused.headers["page-outdated"]) == (409, "1")
-            assert "This page is outdated" in refused.text
+            assert str(PageOutdated()) in refused.text
+        record_property("shown", str(PageOutdated()))
         assert (await client.post("/trackers/T1/stop", data={"page": mark})).status_code == 303
         again = mark_in(await client.get("/trackers/T1"))
         assert (await client.post("/trackers/T1/park", data={"page": again})).status_code == 303

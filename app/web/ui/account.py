@@ -54,6 +54,8 @@ async def step_up(request: Request, built: PanelDep, who: PrincipalDep, pin: Sec
     """Let a cabinet's panel operate for 5 minutes."""
     try:
         await built.keeper.step_up(who, pin)
+    except WrongPassword:
+        return _answer(request, error=WrongPassword("The PIN is wrong."))
     except REFUSALS as error:
         return _answer(request, error=error)
     return RedirectResponse("/", 303)
