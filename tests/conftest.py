@@ -1,4 +1,4 @@
-"""What all tests share: drawn examples are the same in every run, new ones in the long proofs; none is timed."""
+"""What all tests share: the same drawn examples in every run, new ones in the long proofs; none is timed."""
 
 import os
 

@@ -319,8 +319,8 @@ class SiteSnapshot:
     """The whole site at one instant, full every time.
 
     `boot_id` changes when the machine restarts; `sequence` grows by one with every snapshot. `alarms` are at
-    most 50, the most urgent first; `alarm_counts` tells of all. `sun_behind_horizon` says that the sun is up, but
-    behind the horizon that was entered.
+    most 50, the most urgent first; `alarm_counts` tells of all. `sun_behind_horizon` says that the sun is up,
+    but behind the horizon that was entered.
     """
 
     boot_id: str

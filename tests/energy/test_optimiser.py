@@ -68,7 +68,7 @@ def test_never_below_it_under_any_sky_and_price(
 def test_no_instants_are_better_than_the_midpoints(
     latitude_deg: float, day_of_year: int, angles: list[float], data: st.DataObject
 ) -> None:
-    """The rule itself: shifting the steps never helps, whatever the angles, but for the integral's own error."""
+    """The rule itself: shifting the steps never helps, whatever the angles, within the integral's error."""
     day = clear_day(latitude_deg, day_of_year, declination_deg(day_of_year))
     falling = tuple(sorted(angles, reverse=True))
     tilt_deg = latitude_deg - day.declination_deg
