@@ -20,7 +20,7 @@ class MadeUpWeather:
         self._reported_at: datetime | None = None
         self._sensed = NOTHING_SENSED
 
-    def sensed(self, site_time: datetime, sun: SunPosition, now: datetime) -> Sensed:
+    def sensed(self, site_time: datetime, sun: SunPosition | None, now: datetime) -> Sensed:
         """Return what one tick of the tracker is told."""
         if self._reported_at is None or now - self._reported_at >= EVERY:
             self._reported_at = now

@@ -93,7 +93,7 @@ class Rehearsal:
         self.stands = isinstance(command.azimuth, Halt) and isinstance(command.elevation, Halt)
         return events
 
-    def _sensed(self, sun: SunPosition) -> Sensed:
+    def _sensed(self, sun: SunPosition | None) -> Sensed:
         return (
             NOTHING_SENSED
             if self.weather is None

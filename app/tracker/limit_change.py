@@ -63,7 +63,9 @@ def review(
 
     `trusted` says that the zero is, so that angles mean something; `stands` lacks an axis that is not known.
     """
-    differences, against, doubts = [], [], []
+    differences: list[Difference] = []
+    against: list[Reason] = []
+    doubts: list[Reason] = []
     for axis in new.mount.axes:
         differences.extend(_differences(new, axis, old.axis(axis), new.axis(axis)))
         if trusted and axis in stands and _range(old.axis(axis)) != _range(new.axis(axis)):

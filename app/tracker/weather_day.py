@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta, tzinfo
 from itertools import pairwise
+from typing import Any
 
 from app.sun.position import SunPosition
 from app.tracker.simulated_weather import SPANS, Scenario, SimulatedStation, weather_at
@@ -79,7 +80,8 @@ def stepped_day(
     parts = []
     for step in steps:
         station = replace(station, light_wm2=None)
-        station = replace(station, **step.values)
+        given: dict[str, Any] = dict(step.values)
+        station = replace(station, **given)
         parts.append((instant_of(step.after_midnight, midnight, zone), station))
     return WeatherDay(tuple(parts))
 
