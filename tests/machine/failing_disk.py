@@ -1,10 +1,12 @@
 """A disk that fails under a running process: strace makes its calls fail, and lets go of it again."""
 
 import asyncio
+import os
 import shutil
 import signal
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+import subprocess
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager, suppress
 from enum import StrEnum
 from pathlib import Path
 
@@ -18,6 +20,38 @@ class DiskFault(StrEnum):
     READ_ONLY = "pwrite64:error=EROFS"
     NO_SYNC = "fdatasync:error=EIO"
     STALLED = "fdatasync:delay_enter=2000000"
+
+
+SMALL_DISK = "size=96m,mode=0700"
+BLOCK = bytes(1 << 20)
+
+
+@contextmanager
+def small_disk(folder: Path) -> Iterator[Path]:
+    """Yield a folder that is a disk of 96 MB where one can be mounted, else the folder as it is."""
+    mounted = os.geteuid() == 0 and _run("mount", "-t", "tmpfs", "-o", SMALL_DISK, "tmpfs", str(folder))
+    try:
+        yield folder
+    finally:
+        if mounted:
+            _run("umount", "--lazy", str(folder))
+
+
+@contextmanager
+def filled(disk: Path) -> Iterator[None]:
+    """Have a disk full to the last byte while the block runs."""
+    filler = disk / "filler"
+    try:
+        with filler.open("wb", buffering=0) as file, suppress(OSError):
+            while file.write(BLOCK):
+                pass
+        yield
+    finally:
+        filler.unlink()
+
+
+def _run(*words: str) -> bool:
+    return subprocess.run(words, capture_output=True, check=False).returncode == 0
 
 
 @asynccontextmanager

@@ -1,9 +1,10 @@
 """The disk fails under a running service: tracking goes on, everybody is told, nothing is half written."""
 
+import asyncio
 import signal
 import sqlite3
-from collections.abc import AsyncIterator
-from contextlib import closing
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, closing
 from pathlib import Path
 
 import pytest
@@ -16,20 +17,30 @@ from app.tracker.alarm_words import AlarmState
 from app.tracker.commands import CommandRejected, SelectMode, SetZero, Stop, Track
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName
-from tests.machine.failing_disk import DiskFault, failing
+from tests.machine.failing_disk import DiskFault, failing, filled, small_disk
 from tests.machine.service import SAMSUN, Service, eventually
+from tests.soak import amount
 
 LATEST_TICK_S = 1.0
-WATCHED_S = 2.5
+WATCHED_S = 1.5
+LOCKED_ON_S = amount(0.0, 7.0)
+"""How much longer than 3 s, for which a write waits, the database stays locked."""
 GONE = (AlarmState.RETURNED, AlarmState.NORMAL)
 
 pytestmark = pytest.mark.asyncio(loop_scope="module")
 
 
+@pytest.fixture(scope="module")
+def disk(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A small disk of its own where this computer lets one be mounted, else a folder."""
+    with small_disk(tmp_path_factory.mktemp("disk")) as folder:
+        yield folder
+
+
 @pytest_asyncio.fixture(scope="module", loop_scope="module")
-async def service(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Service]:
+async def service(disk: Path) -> AsyncIterator[Service]:
     """A service whose simulated tracker tracks, for all stories of this module, one after the other."""
-    started = await Service.start(tmp_path_factory.mktemp("disk") / "data")
+    started = await Service.start(disk / "data")
     await started.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
     await started.ask(SetClock("system"))
     await begin_to_track(started)
@@ -101,17 +112,55 @@ async def test_a_stalled_card_delays_what_is_stored_and_no_tick(service: Service
 
 @pytest.mark.fault(49)
 async def test_a_full_disk_stops_no_tracking_and_what_waited_is_stored_once_there_is_room(
-    service: Service, tmp_path: Path
+    service: Service, disk: Path, tmp_path: Path
 ) -> None:
     await service.ask(RenameSite("Before"))
-    async with failing(service.starts("machine")[-1], DiskFault.FULL, tmp_path / "log"):
+    async with full(service, disk, tmp_path / "log"):
         assert "The disk is full" in await refused(service, "Not stored")
         await watch_ticks(service)
         await eventually(lambda: "store_behind" in alarms(service))
-    check_database(service, "Before")
+        await service.ask(Stop())
+        check_database(service, "Before")
     await eventually(lambda: "store_behind" not in alarms(service))
     await service.ask(RenameSite("After"))
     check_database(service, "After")
+    await service.until(lambda seen: not seen.actions["track"])
+    await service.ask(Track())
+
+
+@asynccontextmanager
+async def full(service: Service, disk: Path, log: Path) -> AsyncIterator[None]:
+    """Have the disk full: to the last byte where it is one of its own, else by the calls of the machine."""
+    if await asyncio.to_thread(disk.is_mount):
+        await asyncio.to_thread(fold_log, service)
+        with filled(disk):
+            yield
+    else:
+        async with failing(service.starts("machine")[-1], DiskFault.FULL, log):
+            yield
+
+
+def fold_log(service: Service) -> None:
+    """Bring the write-ahead log into the database and shorten it, so that the next write needs room."""
+    with closing(sqlite3.connect(service.data_dir / "heliopanel.db")) as connection:
+        connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+
+
+@pytest.mark.fault(48)
+async def test_a_database_that_is_locked_holds_up_no_tick_and_what_waited_is_stored(service: Service) -> None:
+    await service.ask(RenameSite("Free"))
+    path = service.data_dir / "heliopanel.db"
+    with closing(sqlite3.connect(path, isolation_level=None)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        asking = asyncio.create_task(refused(service, "Not stored"))
+        await watch_ticks(service)
+        assert "locked by another program" in await asking
+        await asyncio.sleep(LOCKED_ON_S)
+        other.execute("ROLLBACK")
+    check_database(service, "Free")
+    await eventually(lambda: "store_behind" not in alarms(service))
+    await service.ask(RenameSite("Free again"))
+    check_database(service, "Free again")
 
 
 @pytest.mark.fault(50)
