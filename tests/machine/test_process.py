@@ -19,7 +19,7 @@ from app.tracker.axes import Axis, JogSpeed
 from app.tracker.commands import Jog, SelectMode, Track
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName, EventKind
-from tests.machine.service import DriveSimulator, Service, eventually
+from tests.machine.service import LONGEST_WAIT_S, LOOK_EVERY_S, DriveSimulator, Service, eventually
 from tests.machine.stories import WATCHDOG_AND_RAMP_S, kill_mid_show, kill_panel
 
 KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "3"))
@@ -58,8 +58,19 @@ async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service, dri
     assert seen.tracking_on
 
 
+async def until_answered(browser: httpx.AsyncClient) -> None:
+    """Return once the panel answers."""
+    async with asyncio.timeout(LONGEST_WAIT_S):
+        while True:
+            with suppress(httpx.TransportError):
+                if (await browser.get("/health")).status_code == 200:
+                    return
+            await asyncio.sleep(LOOK_EVERY_S)
+
+
 async def test_the_panel_moves_and_the_machine_misses_no_tick(service: Service) -> None:
     async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{service.port}") as browser:
+        await until_answered(browser)
         before = await service.link.metrics()
         change = {
             "host": "127.0.0.1",
