@@ -36,9 +36,9 @@ from app.web.ui import (
     record,
     recordings,
     records,
+    restore,
     run,
     service,
-    restore,
     settings,
     show,
     sign_in,
@@ -106,11 +106,11 @@ ROUTERS = (
     audit.router,
     certificate.router,
     network.router,
+    restore.router,
     site.router,
     horizon.router,
     sun_paths.router,
     trends.router,
-    restore.router,
     wizard.router,
 )
 

@@ -23,6 +23,7 @@ FURTHER = (
     ("Tokens", "/tokens", "Access tokens for programs, cabinet panels and their PIN"),
     ("Audit", "/audit", "Who ordered what"),
     ("Certificate", "/certificate", "HTTPS on tablets"),
+    ("Restore a backup", "/restore", "When the database is damaged: safe mode"),
     ("At a glance", "/studies/glance", "What tracking gains here"),
     ("Best step program", "/studies/program", "When to step and to which angles"),
     ("The five papers", "/papers", "Where the methods come from"),
