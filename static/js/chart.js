@@ -6,7 +6,8 @@ import { clockTime, dateIn } from "./format.js";
 
 const tzDate = (zone) => (seconds) => uPlot.tzDate(new Date(seconds * 1000), zone);
 
-// `wanted`: series [{label, colour, width, dash}], zone for a time axis or `xText` for another one, unit, cursor.
+// `wanted`: series [{label, colour, width, dash}], zone for a time axis or `xText` for another one, unit, cursor;
+// `tickUnit` where the unit stands in the title and not at every tick.
 export function chart(holder, wanted) {
   const size = () => ({ width: Math.max(200, holder.clientWidth), height: wanted.height ?? 260 });
   const digits = wanted.digits ?? 2;
@@ -22,7 +23,7 @@ export function chart(holder, wanted) {
     scales: { x: { time: Boolean(wanted.zone) }, y: { range: wanted.range ?? padded } },
     axes: [
       { ...axis, values: wanted.zone ? (_, ticks) => ticks.map((at) => timeOf(at, wanted)) : wanted.xTicks },
-      { ...axis, size: 58, values: (_, ticks) => ticks.map((value) => `${value}${unit}`) },
+      { ...axis, size: 58, values: (_, ticks) => ticks.map((value) => `${value}${wanted.tickUnit ?? unit}`) },
     ],
     series: [
       { label: wanted.xLabel ?? "Time", value: (_, at) => (at === null ? "–" : wanted.zone ? timeOf(at, { ...wanted, seconds: true }) : wanted.xText?.(at) ?? at) },

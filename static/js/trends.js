@@ -65,7 +65,7 @@ function draw() {
 
 function plotOf(holder, wanted) {
   const range = wanted.fromZero ? (_, __, most) => [0, Math.max(wanted.fromZero, (most ?? 0) * 1.1)] : undefined;
-  return chart(holder, { height: 200, zone: live.zone, days: SPAN_S > 86_400, data: dataOf(wanted), cursor, range, unit: wanted.unit, digits: wanted.digits, series: wanted.series });
+  return chart(holder, { height: 200, zone: live.zone, days: SPAN_S > 86_400, data: dataOf(wanted), cursor, range, unit: wanted.unit, tickUnit: wanted.unit ? "" : undefined, digits: wanted.digits, series: wanted.series });
 }
 
 function refresh() {
