@@ -174,7 +174,7 @@ async function open() {
   said.textContent = other ? `Laid over it, in red: ${head.otherTitle}.` : "";
   draw();
   key.addEventListener("click", () => play(!playing));
-  scrubber.addEventListener("input", () => { play(false); seek(Number(scrubber.value)); });
+  scrubber.addEventListener("input", () => { at = Number(scrubber.value); play(false); });
   addEventListener("theme", draw);
 }
 
