@@ -76,7 +76,8 @@ def _api(only: str, examples: int) -> int:
         str(SCHEMATHESIS), "--config-file", str(CONFIG), "run", _begin(), "-n", str(examples), "-w", "2",
         "--seed", str(SEED), "--suppress-health-check", "all", "--include-path-regex", only,
         "--exclude-path-regex", LEFT_OUT, "--exclude-checks", NOT_CHECKED, "--continue-on-failure",
-        "--phases", "examples,fuzzing,stateful", "--generation-database", "none", "--warnings", "off", "--request-timeout", "60",
+        "--phases", "examples,fuzzing,stateful", "--generation-database", "none", "--warnings", "off",
+        "--request-timeout", "60",
     ]  # fmt: skip
     return subprocess.run(command, check=False).returncode
 
