@@ -2,12 +2,14 @@
 
 import re
 from collections.abc import AsyncIterator
+from dataclasses import replace
+from datetime import datetime
 
 import httpx
 import pytest
 
 from app.tracker.config import MountConfig, MountKind, TrackerConfig
-from app.tracker.memory import Pointing
+from app.tracker.memory import Pointing, RejectedSetting, TrackerState
 from app.tracker.protections.machine_config import (
     GUARDED,
     Corner,
@@ -16,8 +18,10 @@ from app.tracker.protections.machine_config import (
     RecoveryPolicy,
     Region,
 )
+from app.tracker.snapshot import Snapshot
 from app.web.ui.machine_forms import texts
 from app.web.ui.region_picture import region_picture
+from tests.fake_tracker import FakeTracker
 from tests.fakes import FakeMachine, fake_app, serving
 
 ROOT = "/trackers/T1"
@@ -157,6 +161,28 @@ async def test_a_single_axis_keeps_its_regions_and_draws_none(
     await client.post(PAGE, data=without | {"creep_deg": "3"})
     assert kept(machine).creep_deg == 3.0
     assert kept(machine).regions == (WALL,)
+
+
+class RejectedTracker(FakeTracker):
+    """One whose stored settings did not fit at the start."""
+
+    def snapshot(self, at: datetime, tick: int) -> Snapshot:
+        told = RejectedSetting("in position deg", "wide", "0.05", "It should be a number.")
+        return replace(super().snapshot(at, tick), rejected=(told,))
+
+
+@pytest.mark.fault(52)
+async def test_rejected_settings_are_shown_beside_those_that_are_used(
+    client: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    assert "Rejected at the start" not in (await client.get(f"{ROOT}/settings")).text
+    sound = machine.trackers["T1"]
+    state = TrackerState(sound.config, sound.memory)
+    machine.trackers["T1"] = RejectedTracker(state, sound.position)
+    machine.emit()
+    page = (await client.get(f"{ROOT}/settings")).text
+    assert "<td>In position deg</td><td>wide</td><td><b>0.05</b></td><td>It should be a number.</td>" in page
+    assert 'data-when="rejected">' in (await client.get(ROOT)).text, "the band is on every page"
 
 
 async def test_the_api_does_what_the_page_does(client: httpx.AsyncClient, machine: FakeMachine) -> None:
