@@ -27,7 +27,9 @@ def make(name: Names = None) -> None:
         "Start the panel again, then open /certificate on each tablet and install the authority there."
     )
     if settings.tls is False:
-        typer.echo("https is switched off on the page Network: switch it on there, instead of starting again.")
+        typer.echo(
+            "https is switched off on the page Network: switch it on there, instead of starting again."
+        )
 
 
 @tls.command()

@@ -100,9 +100,7 @@ async def test_a_pressed_switch_is_named_with_the_way_out_on_the_page(desk: Desk
     await desk.forward(1.0)
     seen = (await desk.ask("GET", "/api/v1/trackers/T1/snapshot")).json()
     told = {reason["code"]: reason["message"] for reason in seen["notices"]}
-    sentence = (
-        "The upper limit switch of the azimuth axis of Tracker 1 is on although it stands within"
-    )
+    sentence = "The upper limit switch of the azimuth axis of Tracker 1 is on although it stands within"
     assert told["at_limit_switch"].startswith(sentence)
     assert told["at_limit_switch"].endswith("it moves west (anticlockwise) only.")
     assert sentence in (await desk.ask("GET", "/trackers/T1/training")).text
