@@ -294,10 +294,9 @@ def test_a_lost_context_is_bridged_and_taken_back(panel: Panel) -> None:
 def test_every_mount_has_its_picture(panel: Panel) -> None:
     tracker = panel.machine.trackers["T1"]
     page = panel.open(T1)
-    for kind in MountKind:
+    for kind in sorted(set(MountKind) - {MountKind.AZIMUTH_ELEVATION}):
         tracker.config = mounted(TrackerConfig("T1", "North field"), kind, 41.3)
-        first_deg = 150.0 if kind is MountKind.AZIMUTH_ELEVATION else -30.0
-        azimuth_deg, elevation_deg = direction(tracker.config.mount, first_deg, 10.0, SCALAR)
+        azimuth_deg, elevation_deg = direction(tracker.config.mount, -30.0, 10.0, SCALAR)
         tracker.position = Pair(azimuth_deg % 360.0, elevation_deg)
         page.reload()
         page.wait_for_selector('html[data-link="live"]')
