@@ -112,7 +112,7 @@ class Page:
         now_s = asyncio.get_running_loop().time()
         await self._send(
             type="jog", press_id=press_id, axis="azimuth", direction=direction, speed="slow",
-            sequence=sequence, tc=now_s * 1000.0,
+            sequence=sequence, tc=now_s * 1000.0, rtt_ms=1.0,
         )  # fmt: skip
         return now_s
 

@@ -38,6 +38,11 @@ SLOW_LINK = Reason(
     "The connection is too slow for hold-to-run.",
     "Go nearer to the access point, or use the small steps.",
 )
+UNMEASURED_LINK = Reason(
+    "link_unmeasured",
+    "The connection was not measured before this key was pressed.",
+    "Let the key go and press it again.",
+)
 STATUS_OF_CODE = {"press_dead": "dead", "busy": "busy"}
 FORBIDDEN = (NotAllowed, ProofNeeded, SignInNeeded)
 SIGNED_OUT = Message("signed_out", '{"type":"signed_out"}')
@@ -163,9 +168,10 @@ class Session:
                 pass
             case Verdict.DEAD:
                 self._answer(beat.press_id, "dead", DEAD_PRESS)
-            case Verdict.TOO_SLOW:
+            case Verdict.TOO_SLOW | Verdict.UNMEASURED:
                 self._presses.end(beat.press_id)
-                self._answer(beat.press_id, "refused", SLOW_LINK)
+                slow = verdict is Verdict.TOO_SLOW
+                self._answer(beat.press_id, "refused", SLOW_LINK if slow else UNMEASURED_LINK)
             case _:
                 assert_never(verdict)
 

@@ -62,6 +62,7 @@ class Verdict(StrEnum):
     IGNORE = "ignore"
     DEAD = "dead"
     TOO_SLOW = "too_slow"
+    UNMEASURED = "unmeasured"
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,13 +86,19 @@ class Presses:
         self._live: dict[str, tuple[str, int]] = {}
 
     def judge(self, beat: Heartbeat) -> tuple[Verdict, timedelta]:
-        """Return what to do with a heartbeat, and for `RENEW` the lease that is left of it."""
+        """Return what to do with a heartbeat, and for `RENEW` the lease that is left of it.
+
+        A press begins only once the page knows a round trip: then a message of this connection has come
+        quickly, and what a frozen link delivers late is known by that. Before, all may be equally late.
+        """
         extra = self._delay.beyond_best(beat.sent_ms, beat.arrived)
         if beat.press_id in self._dead:
             return Verdict.DEAD, timedelta()
         known = self._live.get(beat.press_id)
         if known is not None and beat.sequence <= known[1]:
             return Verdict.IGNORE, timedelta()
+        if known is None and beat.round_trip is None:
+            return Verdict.UNMEASURED, timedelta()
         if extra > LATEST_HEARTBEAT or _too_slow(beat.round_trip):
             return (Verdict.TOO_SLOW if known is None else Verdict.IGNORE), timedelta()
         self._live[beat.press_id] = (beat.tracker_id, beat.sequence)

@@ -30,7 +30,7 @@ function beat() {
 }
 
 function begin(key, pointer) {
-  if (press || key.disabled || live.link !== "live") return;
+  if (press || key.disabled || live.link !== "live" || live.roundTripMs === null) return;
   press = { id: randomId(), key, pointer, axis: key.dataset.jog, direction: Number(key.dataset.direction), speed: speed(), sequence: 0, beats: 0,
     epoch: live.tracker.control.epoch };
   press.box = key.getBoundingClientRect();

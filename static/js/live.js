@@ -43,6 +43,8 @@ let stateAt = 0;
 let openedAt = 0;
 let leaving = false;
 
+const ping = () => live.send({ type: "ping", tc: performance.now(), visible: !document.hidden });
+
 const tell = (kind, detail) => listeners[kind].forEach((listener) => listener(detail));
 
 function connect() {
@@ -55,6 +57,8 @@ function connect() {
   const mine = new WebSocket(`${scheme}://${location.host}/live?${asked}`);
   socket = mine;
   openedAt = performance.now();
+  live.roundTripMs = null;
+  mine.onopen = ping;
   mine.onmessage = (message) => mine === socket && hear(JSON.parse(message.data));
   mine.onclose = () => {
     if (mine !== socket) return;
@@ -87,7 +91,9 @@ const HEARD = {
   stopped: (message) => tell("stopped", message),
   event: (message) => tell("event", message),
   pong(message) {
+    const first = live.roundTripMs === null;
     live.roundTripMs = performance.now() - message.tc;
+    if (first) paintActions();
     tell("pong", live);
   },
 };
@@ -161,7 +167,9 @@ const reasonsFor = (element, action) => scopeOf(element)?.actions?.[action] ?? [
 
 function paintActions() {
   for (const key of document.querySelectorAll("[data-action]")) {
-    key.disabled = live.link !== "live" || reasonsFor(key, key.dataset.action).length > 0;
+    // A key that moves while it is held waits until the connection was measured.
+    const unmeasured = "jog" in key.dataset && live.roundTripMs === null;
+    key.disabled = live.link !== "live" || unmeasured || reasonsFor(key, key.dataset.action).length > 0;
   }
   for (const list of document.querySelectorAll("[data-reasons]")) fillReasons(list, reasonsFor(list, list.dataset.reasons));
   for (const list of document.querySelectorAll("[data-list]")) fillReasons(list, scopeOf(list)?.[list.dataset.list] ?? []);
@@ -236,6 +244,6 @@ export function start() {
   addEventListener("pageshow", (shownAgain) => { if (shownAgain.persisted) location.reload(); });
   document.addEventListener("htmx:after:swap", paint);
   setInterval(judge, 250);
-  setInterval(() => live.send({ type: "ping", tc: performance.now(), visible: !document.hidden }), 1000);
+  setInterval(ping, 1000);
   connect();
 }

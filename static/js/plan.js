@@ -4,14 +4,20 @@ const form = document.getElementById("plan-form");
 
 const verdict = () => document.getElementById("verdict");
 
+let changed = false;
+
 function outdate() {
   verdict().inert = true;
   verdict().setAttribute("aria-busy", "true");
 }
 
-form.addEventListener("input", outdate);
-form.addEventListener("change", outdate);
+form.addEventListener("input", () => { changed = true; outdate(); });
+document.addEventListener("htmx:before:request", (event) => {
+  if (event.detail?.ctx?.sourceElement === form) changed = false;
+});
+// An answer that comes after more was typed is already out of date.
+document.addEventListener("htmx:after:swap", () => { if (changed) outdate(); });
 document.addEventListener("htmx:finally:request", (event) => {
-  if (event.detail?.ctx?.sourceElement !== form || event.detail.ctx.response?.status) return;
+  if (event.detail?.ctx?.sourceElement !== form || changed || event.detail.ctx.response?.status) return;
   verdict().querySelector("h2").textContent = "No answer: press Check when the connection is back.";
 });

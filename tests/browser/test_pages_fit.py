@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import httpx
 import pytest
-from playwright.sync_api import Page
+from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Opened, Plant
 
@@ -49,10 +49,16 @@ TOO_SMALL = """least => [...document.querySelectorAll('a, button, input:not([typ
   .map(([e, box]) => `${e.tagName} ${e.className} ${e.textContent.trim()} ${box.width}x${box.height}`)"""
 
 
+def whole(page: Page) -> None:
+    """Wait until what the page asks for by itself has come."""
+    expect(page.locator('[hx-trigger="load"]')).to_have_count(0, timeout=60_000)
+
+
 @pytest.mark.parametrize("size", ["desk", "tablet", "phone"])
 @pytest.mark.parametrize("name", PAGES)
 def test_page_fits(name: str, size: str, opened: Opened, picture: Callable[[Page, str], None]) -> None:
     page = opened(PAGES[name], size)
+    whole(page)
     picture(page, f"{name}-{size}")
     assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
     assert page.evaluate(TOO_SMALL, LEAST_TARGET_PX) == []
@@ -87,7 +93,7 @@ def test_no_page_is_heavier_than_150_kilobytes(plant: Plant, opened: Opened) -> 
         asked: list[str] = []
         page.on("request", lambda request, seen=asked: seen.append(request.url))
         page.goto(plant.url + path)
-        page.wait_for_load_state("load")
+        whole(page)
         with httpx.Client(headers={"accept-encoding": "gzip"}) as client:
             answers = [client.get(url) for url in asked if url.startswith(plant.url) and "/api/" not in url]
         weight = sum(answer.num_bytes_downloaded for answer in answers)

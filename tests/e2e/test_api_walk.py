@@ -109,7 +109,8 @@ def check_frames(integrator: Integrator, info: dict[str, Any]) -> dict[str, np.n
     assert answer["frame_count"] == info["frame_count"] >= SHOW["duration_s"] * 9
     assert frames["sun_time_s"][0] == pytest.approx(0.0, abs=60.0)
     assert frames["sun_time_s"][-1] == pytest.approx(75 * 60, abs=80.0)
-    assert not np.isnan(np.stack(list(frames.values()))).any()
+    unknown = {name for name, values in frames.items() if np.isnan(values).any()}
+    assert unknown <= {"supply_v", "wind_mps", "wind_mean_mps", "light_wm2"}
     assert off_spa_deg(info, frames).max() < SPA_LIMIT_DEG
     assert off_sun_deg(frames).max() <= DEADBAND_DEG
     return frames

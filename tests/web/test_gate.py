@@ -168,6 +168,7 @@ async def test_a_socket_ends_within_a_second_of_revocation_and_comes_back_only_t
         await again.next("signed_out")
         await again.send(
             type="jog",
+            rtt_ms=5.0,
             tracker_id="T1",
             press_id="p",
             axis="azimuth",
@@ -191,6 +192,7 @@ async def test_a_viewer_cannot_jog_over_the_socket(office: Office) -> None:
     async with connected(office.app, "tracker=T1", headers) as socket:
         await socket.send(
             type="jog",
+            rtt_ms=5.0,
             tracker_id="T1",
             press_id="p",
             axis="azimuth",

@@ -38,7 +38,7 @@ async def app(machine: FakeMachine) -> AsyncIterator[FastAPI]:
 async def beat(socket: Socket, press: str, sequence: int, tc: float, **more: Any) -> None:
     fields = {
         "tracker_id": "T1", "press_id": press, "axis": "azimuth", "direction": 1, "speed": "slow",
-        "sequence": sequence, "tc": tc,
+        "sequence": sequence, "tc": tc, "rtt_ms": 5.0,
     }  # fmt: skip
     await socket.send(type="jog", **(fields | more))
 
@@ -173,6 +173,22 @@ async def test_slow_round_trip_does_not_start_motion(app: FastAPI, machine: Fake
     async with connected(app) as page:
         await beat(page, "p1", 0, 1000.0, rtt_ms=600.0)
         assert (await page.next("jog"))["status"] == "refused"
+    assert jogs(machine) == []
+
+
+@pytest.mark.fault(59)
+async def test_a_key_pressed_before_the_link_was_measured_moves_nothing(
+    app: FastAPI, machine: FakeMachine
+) -> None:
+    """On a link that is frozen from the start all messages come equally late, and none looks late."""
+    async with connected(app) as page:
+        await page.send(type="ping", tc=99_000.0)
+        await page.next("pong")
+        for sequence in range(4):
+            await beat(page, "p1", sequence, 99_300.0 + 50 * sequence, rtt_ms=None)
+        answers = [await page.next("jog") for _ in range(4)]
+    assert [answer["status"] for answer in answers] == ["refused"] + ["dead"] * 3
+    assert answers[0]["reasons"][0]["code"] == "link_unmeasured"
     assert jogs(machine) == []
 
 

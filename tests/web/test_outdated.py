@@ -11,7 +11,15 @@ from app.web.edition import PageOutdated, edition, mark_of
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
 from tests.web.sockets import connected
 
-JOG = {"type": "jog", "tracker_id": "T1", "press_id": "p", "axis": "azimuth", "direction": 1, "speed": "slow"}
+JOG = {
+    "type": "jog",
+    "tracker_id": "T1",
+    "press_id": "p",
+    "axis": "azimuth",
+    "direction": 1,
+    "speed": "slow",
+    "rtt_ms": 5,
+}
 
 
 def mark_in(page: httpx.Response) -> str:
