@@ -68,3 +68,14 @@ class VirtualClock:
         woken = asyncio.Event()
         self._sleepers.append((at, woken))
         await woken.wait()
+
+
+async def set_or_at(event: asyncio.Event, clock: Clock, until: datetime) -> None:
+    """Return once an event is set, or at an instant, whichever comes first."""
+    waits = {asyncio.create_task(event.wait()), asyncio.ensure_future(clock.sleep_until(until))}
+    try:
+        await asyncio.wait(waits, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for wait in waits:
+            wait.cancel()
+        await asyncio.gather(*waits, return_exceptions=True)

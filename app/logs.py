@@ -1,12 +1,23 @@
 """One structured log for both processes: JSON lines or readable text, on standard error."""
 
 import logging
+import re
 import sys
 from typing import Literal, TextIO
 
 import structlog
 
+SECRET = re.compile(r"\b((?:stop_)?ticket|token)=[^&\s\"']+")
+
+
+def _masked(_: object, __: str, told: structlog.typing.EventDict) -> structlog.typing.EventDict:
+    """Leave tickets out of the addresses that servers log: whoever reads the log shall not use them."""
+    told["event"] = SECRET.sub(r"\1=...", str(told["event"]))
+    return told
+
+
 SHARED = (
+    _masked,
     structlog.contextvars.merge_contextvars,
     structlog.processors.add_log_level,
     structlog.processors.TimeStamper(fmt="iso", utc=True),

@@ -4,7 +4,7 @@ import asyncio
 from collections import deque
 from collections.abc import Coroutine, Iterator
 from dataclasses import replace
-from datetime import datetime, timedelta
+from datetime import timedelta
 from itertools import islice
 from typing import Any
 from uuid import uuid4
@@ -12,7 +12,7 @@ from uuid import uuid4
 import orjson
 import structlog
 
-from app.clock import Clock
+from app.clock import Clock, set_or_at
 from app.link.messages import Machine, Update
 from app.tracker.snapshot import Event, SiteSnapshot
 from app.web.edition import edition
@@ -126,23 +126,12 @@ class Hub:
     async def _pace(self) -> None:
         """Hand out what changed; with very many viewers less often, so that half of the time is others'."""
         while True:
-            await self._changed_or(self._clock.now() + LATEST)
+            await set_or_at(self._changed, self._clock, self._clock.now() + LATEST)
             self._changed.clear()
             begun = self._clock.now()
             await self._hand_out()
             ended = self._clock.now()
             await self._clock.sleep_until(ended + max(SOONEST, ended - begun))
-
-    async def _changed_or(self, until: datetime) -> None:
-        waits = {
-            asyncio.create_task(self._changed.wait()),
-            asyncio.ensure_future(self._clock.sleep_until(until)),
-        }
-        try:
-            await asyncio.wait(waits, return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            for wait in waits:
-                wait.cancel()
 
     async def _hand_out(self) -> None:
         rendered: dict[str | None, Message] = {}

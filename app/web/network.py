@@ -16,7 +16,7 @@ import structlog
 
 from app.access.keeper import Keeper
 from app.access.principal import Principal
-from app.clock import Clock
+from app.clock import Clock, set_or_at
 from app.network import Network, write_network
 from app.settings import LOOPBACK, Settings
 from app.web.network_check import addresses_here, prepared, refuse_impossible
@@ -165,7 +165,7 @@ class NetworkDesk:
 
     async def _watch(self) -> None:
         if self._stage.trial is not None:
-            await self._changed_or(self._until)
+            await set_or_at(self._changed, self._clock, self._until)
         if self._stage.trial is not None:
             self.following = self._stage.back(NOT_CONFIRMED)
         else:
@@ -180,18 +180,6 @@ class NetworkDesk:
             log.warning("network_rolled_back", why=outcome.why)
             what = f"{told(None, outcome.wanted)}: {outcome.why}"
             await self._note("network_rolled_back", outcome.by, what)
-
-    async def _changed_or(self, until: datetime) -> None:
-        waits = {
-            asyncio.create_task(self._changed.wait()),
-            asyncio.ensure_future(self._clock.sleep_until(until)),
-        }
-        try:
-            await asyncio.wait(waits, return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            for wait in waits:
-                wait.cancel()
-            await asyncio.gather(*waits, return_exceptions=True)
 
     async def _note(self, action: str, by: Principal, result: str) -> None:
         now = self._clock.now()

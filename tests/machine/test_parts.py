@@ -231,6 +231,17 @@ def test_logs_are_json_lines_with_the_process_in_them() -> None:
     assert lines[0]["tracker"] == "T1"
 
 
+@pytest.mark.usefixtures("_logs_as_before")
+def test_tickets_in_logged_addresses_are_masked() -> None:
+    stream = io.StringIO()
+    set_up_logs("web", log_format="json", log_level="info", stream=stream)
+    logging.getLogger("uvicorn.error").info(
+        '"WebSocket %s" [accepted]', "/live?tracker=T1&stop_ticket=MTc5.aW&x=1"
+    )
+    told = json.loads(stream.getvalue())["event"]
+    assert told == '"WebSocket /live?tracker=T1&stop_ticket=...&x=1" [accepted]'
+
+
 def test_settings_come_from_the_environment_before_the_file(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -36,11 +36,6 @@ async def desk(tmp_path: Path) -> AsyncIterator[Desk]:
 
 
 @pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
 async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
     async with serving(fake_app(machine, FakeReader())) as browser:
         yield browser

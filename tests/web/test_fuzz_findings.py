@@ -17,11 +17,6 @@ INSTANT: TypeAdapter[object] = TypeAdapter(Instant)
 
 
 @pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
 async def api(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
     async with serving(fake_app(machine)) as client:
         yield client

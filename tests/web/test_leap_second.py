@@ -1,26 +1,13 @@
 """23:59:60 comes in from clocks that count leap seconds: it is taken as 23:59:59, at every door."""
 
-from collections.abc import AsyncIterator
-
 import httpx
 import pytest
 
 from app.instants import without_leap_second
 from app.link.messages import SetClock
-from tests.fakes import FakeMachine, fake_app, serving
+from tests.fakes import FakeMachine
 
 CLOCK = "/trackers/T1/commissioning/clock"
-
-
-@pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
-async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
-    async with serving(fake_app(machine)) as client:
-        yield client
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,6 @@
 """The machine's protections as a page: limits, what follows each class of fault, forbidden regions."""
 
 import re
-from collections.abc import AsyncIterator
 from dataclasses import replace
 from datetime import datetime
 
@@ -22,22 +21,11 @@ from app.tracker.snapshot import Snapshot
 from app.web.ui.machine_forms import texts
 from app.web.ui.region_picture import region_picture
 from tests.fake_tracker import FakeTracker
-from tests.fakes import FakeMachine, fake_app, serving
+from tests.fakes import FakeMachine
 
 ROOT = "/trackers/T1"
 PAGE = f"{ROOT}/machine"
 WALL = Region("Wall", (Corner(170.0, 0.0), Corner(190.0, 0.0), Corner(190.0, 30.0)))
-
-
-@pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
-async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
-    async with serving(fake_app(machine)) as browser:
-        yield browser
 
 
 def kept(machine: FakeMachine) -> MachineProtection:

@@ -27,11 +27,6 @@ SIZES = {"at": "0", "retracted": "745", "travel": "385", "speed": "25"}
 
 
 @pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
 async def browser(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
     async with serving(fake_app(machine)) as client:
         yield client

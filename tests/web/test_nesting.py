@@ -8,20 +8,9 @@ import pytest
 
 from app.web.nesting import DEEPEST, is_too_deep
 from app.web.security import LARGEST_BODY
-from tests.fakes import FakeMachine, fake_app, serving
+from tests.fakes import FakeMachine
 
 JSON = {"content-type": "application/json"}
-
-
-@pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
-async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
-    async with serving(fake_app(machine)) as client:
-        yield client
 
 
 @pytest.mark.parametrize(

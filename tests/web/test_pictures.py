@@ -34,11 +34,6 @@ LEFT, BOTTOM, PER_DEGREE, RISE = 56.0, 286.0, 2.0, 3.0
 
 
 @pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
 async def panel(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
     async with serving(fake_app(machine)) as client:
         yield client

@@ -1,6 +1,6 @@
 """A location that is likely to be mistaken: the page shows where its sun would be now, and asks."""
 
-from collections.abc import AsyncIterator, Callable
+from collections.abc import Callable
 from datetime import UTC, datetime
 
 import httpx
@@ -9,23 +9,12 @@ import pytest
 from app.link.messages import SetLocation
 from app.sun.position import Location
 from app.web.place import place_doubts
-from tests.fakes import FakeMachine, fake_app, serving
+from tests.fakes import FakeMachine
 
 SUMMER = datetime(2027, 6, 21, 9, tzinfo=UTC)
 SAMSUN = Location(41.2867, 36.33)
 PAGE = "/trackers/T1/commissioning/location"
 HTMX = {"HX-Request": "true"}
-
-
-@pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
-async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
-    async with serving(fake_app(machine)) as client:
-        yield client
 
 
 def saved(machine: FakeMachine) -> list[SetLocation]:

@@ -1,7 +1,5 @@
 """The protections page: what is set, what is refused with what was typed, stows and the maintenance lock."""
 
-from collections.abc import AsyncIterator
-
 import httpx
 import pytest
 
@@ -10,22 +8,11 @@ from app.tracker.memory import MetStation
 from app.tracker.protections.config import PROTECTED, ProtectionConfig, StowPlace
 from app.tracker.protections.words import Facing, Reaction, StowName
 from app.web.ui.protection_forms import texts
-from tests.fakes import FakeMachine, fake_app, serving
+from tests.fakes import FakeMachine
 
 ROOT = "/trackers/T1"
 PAGE = f"{ROOT}/protections"
 API = "/api/v1/trackers/T1"
-
-
-@pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
-async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
-    async with serving(fake_app(machine)) as browser:
-        yield browser
 
 
 def kept(machine: FakeMachine) -> ProtectionConfig:

@@ -19,11 +19,6 @@ NAME = "heliopanel-20261121-120000-000000.backup"
 
 
 @pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
 def app(machine: FakeMachine) -> FastAPI:
     return fake_app(machine)
 

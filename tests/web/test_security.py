@@ -1,7 +1,7 @@
 """Nobody else's page moves a tracker: every changing route stands behind the guard."""
 
 import functools
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import Iterator
 
 import httpx
 import pytest
@@ -9,7 +9,7 @@ from fastapi import FastAPI
 from starlette.routing import BaseRoute
 
 from app.web.security import CONTENT_SECURITY_POLICY
-from tests.fakes import FakeMachine, fake_app, serving
+from tests.fakes import FakeMachine, fake_app
 
 OWN = {"host": "127.0.0.1:8010"}
 FOREIGN = (
@@ -22,17 +22,6 @@ FOREIGN = (
     {"host": "[bad"},
     {"host": ""},
 )
-
-
-@pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
-async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
-    async with serving(fake_app(machine)) as client:
-        yield client
 
 
 def routes(app: FastAPI) -> Iterator[tuple[str, str]]:

@@ -19,11 +19,6 @@ API = "/api/v1/site"
 
 
 @pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
 async def panel(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
     async with serving(fake_app(machine)) as client:
         yield client

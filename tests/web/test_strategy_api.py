@@ -14,11 +14,6 @@ TRACKER = "/trackers/T1"
 
 
 @pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
 async def api(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
     async with serving(fake_app(machine)) as client:
         client.base_url = httpx.URL("http://127.0.0.1:8010/api/v1")

@@ -1,7 +1,5 @@
 """The strategy page: choose one, try it, make a program by hand or import it, set the correction."""
 
-from collections.abc import AsyncIterator
-
 import httpx
 import pytest
 
@@ -9,21 +7,10 @@ from app.tracker.programs.examples import ALEXANDRU_TABLE_3
 from app.tracker.programs.step_table import to_table
 from app.tracker.programs.stepped import ProgramStep, StepFrame
 from app.tracker.strategy import Continuous, Interval, IntervalAim, Stepped
-from tests.fakes import FakeMachine, fake_app, serving
+from tests.fakes import FakeMachine
 
 PAGE = "/trackers/T1/strategy"
 HYBRID = {"threshold": "200", "gain": "1", "bound": "1.5", "decay": "0"}
-
-
-@pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
-async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
-    async with serving(fake_app(machine)) as browser:
-        yield browser
 
 
 def kept(machine: FakeMachine) -> object:

@@ -16,11 +16,6 @@ from tests.web.asgi import streaming
 
 
 @pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
 async def app(machine: FakeMachine) -> AsyncIterator[FastAPI]:
     app = fake_app(machine)
     async with serving(app):

@@ -20,11 +20,6 @@ DAY = {"date": "2026-06-21", "span": "day", "step_min": 60}
 
 
 @pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
 async def client(machine: FakeMachine, tmp_path: Path) -> AsyncIterator[httpx.AsyncClient]:
     app = create_app(Settings(data_dir=tmp_path), machine=machine, reader=FakeReader(), clock=machine.clock)
     async with serving(app) as browser:

@@ -38,11 +38,6 @@ STUDY_ID = "20260621T120000-0a1b2c"
 
 
 @pytest.fixture
-def machine() -> FakeMachine:
-    return FakeMachine()
-
-
-@pytest.fixture
 async def client(machine: FakeMachine, tmp_path: Path) -> AsyncIterator[httpx.AsyncClient]:
     app = create_app(Settings(data_dir=tmp_path), machine=machine, reader=FakeReader(), clock=machine.clock)
     async with serving(app) as browser:
