@@ -14,6 +14,7 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from app.tracker.mounts.abilities import abilities
+from app.web import languages
 from app.web.contexts import Context
 from app.web.deps import panel, principal
 from app.web.help import help_for
@@ -30,6 +31,7 @@ FILTERS = {
     "words": formats.words,
     "local": formats.local,
     "zone_offset": formats.offset,
+    "said": languages.said,
 }
 VARY = {"Vary": "HX-Request, HX-Request-Type"}
 
@@ -42,6 +44,15 @@ def environment() -> Environment:
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,
+        extensions=["jinja2.ext.i18n"],
+    )
+    env.policies["ext.i18n.trimmed"] = True
+    env.install_gettext_callables(  # type: ignore[attr-defined] # the extension adds it
+        languages.gettext,
+        languages.ngettext,
+        newstyle=True,
+        pgettext=languages.pgettext,
+        npgettext=languages.npgettext,
     )
     env.filters |= FILTERS
     env.globals |= {"help_for": help_for, "live": live, "world": world(), "abilities": abilities}

@@ -1,0 +1,33 @@
+"""The language of a page: which catalogue serves this request, and what a sentence is called in it."""
+
+from contextvars import ContextVar
+from gettext import NullTranslations
+
+ENGLISH = NullTranslations()
+CATALOGUE: ContextVar[NullTranslations] = ContextVar("catalogue", default=ENGLISH)
+"""The catalogue of the request that is being answered."""
+
+
+def gettext(message: str) -> str:
+    """Return a text of a template in the language of the request."""
+    return CATALOGUE.get().gettext(message)
+
+
+def ngettext(one: str, many: str, count: int) -> str:
+    """Return a text of a template for a number of things in the language of the request."""
+    return CATALOGUE.get().ngettext(one, many, count)
+
+
+def pgettext(where: str, message: str) -> str:
+    """Return a text whose meaning depends on where it stands in the language of the request."""
+    return CATALOGUE.get().pgettext(where, message)
+
+
+def npgettext(where: str, one: str, many: str, count: int) -> str:
+    """Return a text for a number of things whose meaning depends on where it stands."""
+    return CATALOGUE.get().npgettext(where, one, many, count)
+
+
+def said(sentence: str) -> str:
+    """Return what the program says in English (a label, a reason) in the language of the request."""
+    return CATALOGUE.get().gettext(sentence) if sentence else ""
