@@ -1,5 +1,6 @@
 """Templates and how a declared context becomes a page, or the one block of it that htmx asked for."""
 
+from collections.abc import Iterable
 from dataclasses import fields
 from functools import cache
 from pathlib import Path
@@ -21,6 +22,12 @@ from app.web.help import help_for
 from app.web.ui import formats
 from app.web.ui.allowed import shut
 
+
+def options_said(options: Iterable[tuple[object, str]]) -> tuple[tuple[object, str], ...]:
+    """Return what a list offers, its texts in the language of the request."""
+    return tuple((value, languages.said(text)) for value, text in options)
+
+
 TEMPLATES = Path(__file__).resolve().parents[3] / "templates"
 FILTERS = {
     "angle": formats.angle,
@@ -32,6 +39,7 @@ FILTERS = {
     "local": formats.local,
     "zone_offset": formats.offset,
     "said": languages.said,
+    "options_said": options_said,
 }
 VARY = {"Vary": "HX-Request, HX-Request-Type"}
 
