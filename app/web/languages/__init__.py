@@ -1,10 +1,12 @@
 """The language of a page: which catalogue serves this request, and what a sentence is called in it."""
 
 from contextvars import ContextVar
-from gettext import NullTranslations
 
-ENGLISH = NullTranslations()
-CATALOGUE: ContextVar[NullTranslations] = ContextVar("catalogue", default=ENGLISH)
+from app.web.languages.catalogue import Catalogue, catalogue_of
+from app.web.languages.known import ENGLISH
+
+IN_ENGLISH = catalogue_of(ENGLISH.code)
+CATALOGUE: ContextVar[Catalogue] = ContextVar("catalogue", default=IN_ENGLISH)
 """The catalogue of the request that is being answered."""
 
 
@@ -30,4 +32,4 @@ def npgettext(where: str, one: str, many: str, count: int) -> str:
 
 def said(sentence: str) -> str:
     """Return what the program says in English (a label, a reason) in the language of the request."""
-    return CATALOGUE.get().gettext(sentence) if sentence else ""
+    return CATALOGUE.get().said(sentence) if sentence else ""

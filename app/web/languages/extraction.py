@@ -1,0 +1,92 @@
+"""Every text of the project that a page can show, found in templates, Python and JavaScript."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from babel.messages.extract import DEFAULT_KEYWORDS, extract
+
+from app.web.languages.python_texts import python_texts
+
+ROOT = Path(__file__).resolve().parents[3]
+JINJA = {
+    "extensions": "jinja2.ext.i18n",
+    "trimmed": "true",
+    "newstyle_gettext": "true",
+    "trim_blocks": "true",
+    "lstrip_blocks": "true",
+    "silent": "false",
+}
+KEYWORDS = {**DEFAULT_KEYWORDS, "_": None}
+SCRIPT_TEXT = re.compile(r"(?<![\w.])_\(\s*\"((?:[^\"\\\n]|\\.)*)\"")
+SCRIPT_MEANT = re.compile(r"(?<![\w.])_in\(\s*\"([^\"\\\n]*)\",\s*\"((?:[^\"\\\n]|\\.)*)\"")
+
+_SPEAKING = """
+    app/tracker app/alarms app/web app/site app/drives app/show app/access app/store app/studies app/energy
+    app/sun app/link"""
+"""The folders whose texts reach a page, in the order in which their texts are listed."""
+
+_SILENT = """
+    app/web/languages app/web/metrics.py app/web/route_permissions.py app/web/routes.py app/web/openapi.py
+    app/web/documented.py app/web/main.py app/web/server.py app/web/presses.py app/web/record_files.py
+    app/web/record_pdf.py app/web/guide.py app/web/journal_files.py app/web/mdns.py app/web/qr.py
+    app/web/api/base.py app/web/api/operations.py app/web/api/router.py app/web/ui/components.py
+    app/web/ui/papers.py app/web/components_context.py app/link/codec.py app/link/metrics.py
+    app/drives/wire_faults.py app/drives/write_frame.py app/drives/sim_server.py app/drives/sim_training.py
+    app/drives/profile_text.py app/drives/profile_needs.py app/drives/profile.py app/drives/register.py
+    app/drives/rtu_frame.py app/drives/sunspec.py app/drives/sunspec_models.py app/drives/faulty.py
+    app/drives/devices app/drives/cia402.py app/store/connections.py app/store/migrations.py
+    app/store/tables.py app/store/decimate.py app/store/chunks.py app/sun/accuracy_table.py
+    app/show/export.py"""
+"""What speaks to programs, to the journal's files or to who writes a drive profile: it stays English."""
+
+SPEAKING, SILENT = tuple(_SPEAKING.split()), tuple(_SILENT.split())
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """One text: where it stands (file and line), what it is called in English, its plural and its context."""
+
+    path: str
+    line: int
+    one: str
+    many: str = ""
+    context: str = ""
+
+
+def texts(root: Path = ROOT) -> Iterator[Text]:
+    """Return all texts, those of templates first."""
+    for path in sorted((root / "templates").glob("*.html")):
+        yield from _of_template(path, root)
+    for path in sorted((root / "static" / "js").glob("*.js")):
+        yield from _of_script(path, root)
+    for folder in SPEAKING:
+        for path in sorted((root / folder).rglob("*.py")):
+            name = str(path.relative_to(root))
+            if not name.startswith(SILENT):
+                for line, text in python_texts(path.read_text()):
+                    yield Text(name, line, text)
+
+
+def _of_template(path: Path, root: Path) -> Iterator[Text]:
+    with path.open("rb") as source:
+        for line, message, _, context in extract("jinja2", source, KEYWORDS, (), JINJA):
+            one, many = message if isinstance(message, tuple) else (message, "")
+            yield Text(str(path.relative_to(root)), line, one, many, context or "")
+
+
+def _of_script(path: Path, root: Path) -> Iterator[Text]:
+    source, name = path.read_text(), str(path.relative_to(root))
+    for found in SCRIPT_TEXT.finditer(source):
+        yield Text(name, _line(source, found), _unescaped(found[1]))
+    for found in SCRIPT_MEANT.finditer(source):
+        yield Text(name, _line(source, found), _unescaped(found[2]), context=found[1])
+
+
+def _line(source: str, found: re.Match[str]) -> int:
+    return source.count("\n", 0, found.start()) + 1
+
+
+def _unescaped(text: str) -> str:
+    return text.replace('\\"', '"').replace("\\\\", "\\")
