@@ -9,6 +9,7 @@ import LANG FILE take translations from such lines, with msgstr added
 
 import sys
 from collections.abc import Iterable, Iterator
+from datetime import UTC, datetime
 from hashlib import sha256
 from io import BytesIO
 from pathlib import Path
@@ -24,6 +25,8 @@ from app.web.languages.known import LOCALE, TRANSLATED
 
 HEADER = "# Heliopanel's texts. The .mo file beside this one is made from it: see docs/languages.md."
 WIDTH = 108
+NO_DATE = datetime(2000, 1, 1, tzinfo=UTC)
+"""Stands for the dates of a catalogue, so that the same texts make the same file."""
 
 
 def template() -> Catalog:
@@ -85,6 +88,7 @@ def po_text(catalog: Catalog) -> bytes:
 def mo_bytes(catalog: Catalog) -> bytes:
     """Return a catalogue as gettext reads it; a text that is not translated is not in it."""
     written = BytesIO()
+    catalog.creation_date = catalog.revision_date = NO_DATE
     write_mo(written, catalog)
     return written.getvalue()
 

@@ -31,8 +31,8 @@ GAP = re.compile(r"\{([a-z][a-z0-9_]*)\}")
 WORD = re.compile(r"[^\W\d_]{2,}")
 LABEL = re.compile(r"[A-Z][a-z]{2,}[a-z]*\.?|[A-Z]{2,5}s?")
 MACHINE = re.compile(
-    r"^[\s<#./\[{&;]*<|://|^/|^\w+/[\w.+-]+|^#|^--|^(GET|POST|PUT|DELETE|WS) |[\x00-\x08]|%[YmdHMS]|charset=|</"
-    r"|\b(SELECT|INSERT|UPDATE|DELETE FROM|CREATE|PRAGMA|ALTER|DROP)\b|\bviewBox\b|^[MLHVZ][\d{]"
+    r"^[\s<#./\[{&;]*<|://|^/|^\w+/[\w.+-]+|^#|^--|^(GET|POST|PUT|DELETE|WS) |[\x00-\x08]|%[YmdHMS]|charset="
+    r"|</|\b(SELECT|INSERT|UPDATE|DELETE FROM|CREATE|PRAGMA|ALTER|DROP)\b|\bviewBox\b|^[MLHVZ][\d{]"
     r"|^[a-z0-9_.:;=\-/ ]*[_=;][a-z0-9_.:;=\-/ %]*$|^attachment;"
 )
 
