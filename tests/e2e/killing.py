@@ -19,6 +19,8 @@ from tests.e2e.sky import columns
 
 SEED = int(os.environ.get("HELIOPANEL_TEST_SEED", "20270621"))
 WATCHDOG_S = 0.5
+LATEST_FEED_S = 0.15
+"""A command on its way when the machine dies feeds the watchdog once more."""
 RAMP_S = AZIMUTH_DEFAULT.speed_dps / AZIMUTH_DEFAULT.acceleration_dps2
 AWAY_DEG = 8.0
 LONGEST_INSTANT_S = 1.2
@@ -71,7 +73,10 @@ class Killing:
         """Go to the start of the show and run it."""
         show_id = self.integrator.post("/shows", {**SHOW, "duration_s": seconds})["show_id"]
         self.integrator.post(f"/shows/{show_id}/go-to-start")
-        self._until(lambda seen: seen["show"] and seen["show"]["phase"] == "ready", "the show is ready")
+        seen = self.integrator.until(
+            lambda seen: not seen["show"] or seen["show"]["phase"] == "ready", "the show is ready"
+        )
+        assert seen["show"], self.integrator.journal("show_ended")[0]["message"]
         self.integrator.post(f"/shows/{show_id}/run")
 
     def kill_panel(self) -> None:

@@ -16,6 +16,8 @@ from pathlib import Path
 
 import httpx
 
+from app.machine.process import FIFO_PRIORITY
+
 DRIVE_SIM = (sys.executable, "-c", "import typer; from app.cli_drives import drive_sim; typer.run(drive_sim)")
 """The command `heliopanel drive-sim` alone, without the panel and machine that `heliopanel` imports."""
 COMMAND = str(Path(sys.executable).with_name("heliopanel"))
@@ -62,10 +64,15 @@ class DriveSim:
 
     @classmethod
     def start(cls, port: int | None = None, memory: Path | None = None) -> "DriveSim":
-        """Return once it listens; with a memory it knows its position after a power cut at rest."""
+        """Return once it listens; with a memory it knows its position after a power cut at rest.
+
+        A real drive has a computer of its own: other programs must not make this one answer late.
+        """
         port = port or free_port()
         kept = [] if memory is None else ["--memory", str(memory)]
         process = subprocess.Popen([*DRIVE_SIM, "--tcp", f"127.0.0.1:{port}", *kept], stdout=subprocess.PIPE)
+        with suppress(PermissionError):
+            os.sched_setscheduler(process.pid, os.SCHED_FIFO, os.sched_param(FIFO_PRIORITY + 1))
         assert process.stdout is not None
         assert process.stdout.readline(), "drive-sim did not start"
         return cls(port, process)

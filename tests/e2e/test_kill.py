@@ -8,13 +8,11 @@ import pytest
 
 from tests.e2e.eyes import Eyes
 from tests.e2e.integrator import Integrator
-from tests.e2e.killing import RAMP_S, TICKS_A_SECOND, WATCHDOG_S, Killing
+from tests.e2e.killing import LATEST_FEED_S, RAMP_S, TICKS_A_SECOND, WATCHDOG_S, Killing
 from tests.e2e.product import DriveSim, Product
 
-KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "3"))
+KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "2"))
 PANEL_KILLS_TRACKING, PANEL_KILLS_SHOWING = 2, 1
-LATEST_FEED_S = 0.15
-"""A command on its way when the machine dies feeds the watchdog once more."""
 LONGEST_SHOW_S = 90.0
 TICK_S = 0.1
 LATEST_S = 0.25

@@ -1,0 +1,219 @@
+"""A machine that is killed while its axes turn, and what has to be so after each kill."""
+
+import asyncio
+import random
+import sqlite3
+from collections import Counter
+from collections.abc import Callable
+from contextlib import closing, suppress
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime, timedelta
+from enum import StrEnum
+from typing import Any, Literal, assert_never
+from uuid import uuid4
+
+from app.audit.chain import first_break
+from app.link.messages import ConfigureTracker, MachineUnreachable, RenameSite, SetClock, SetLocation
+from app.store.engine import open_reader
+from app.store.reader import DatabaseReader
+from app.store.store import AuditFilter, JournalFilter
+from app.tracker.axes import Axis, JogSpeed
+from app.tracker.commands import GoToStart, Jog, Move, RunShow, SelectMode, SetZero, Stop, Track
+from app.tracker.config import Orientation
+from app.tracker.mode import Mode
+from app.tracker.programs.show import ShowPlan
+from app.tracker.recording import RecordingKind
+from app.tracker.snapshot import ActivityName, EventKind, ShowPhase, Snapshot
+from tests.e2e.eyes import Eyes
+from tests.machine.lives import Machine
+from tests.machine.service import SAMSUN, config_for, eventually
+
+MORNING = datetime(2027, 6, 21, 3, 0, tzinfo=UTC)
+SHOW = ShowPlan("morning", MORNING, MORNING + timedelta(minutes=90), timedelta(seconds=20), SAMSUN)
+FAR_DEG = 10.0
+LONGEST_INSTANT_S = 1.0
+LATEST_RENAMING_S = 0.01
+SIDES = (Orientation(50.0, 10.0), Orientation(92.0, 25.0))
+SETTLED_S = 0.3
+LOOKED_AT = 50
+PUSH_S = 0.06
+
+
+class Motion(StrEnum):
+    """What the machine is killed in the middle of."""
+
+    MOVE = "move"
+    TRACK = "track"
+    GO_TO_START = "go_to_start"
+    SHOW = "show"
+    JOG = "jog"
+
+
+@dataclass
+class Killing:
+    """One machine, one drive in another process, eyes on it, and the dice."""
+
+    machine: Machine
+    eyes: Eyes
+    dice: random.Random
+    names: list[str] = field(default_factory=list)
+    promised: int = 0
+    counted: Counter[str] = field(default_factory=Counter)
+
+    async def commission(self, port: int) -> None:
+        """Start it, point it at the drive, give it a place, a clock and a zero."""
+        await self.machine.start()
+        await self.machine.ask(ConfigureTracker(config_for(port)))
+        await self.machine.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
+        await self.machine.ask(SetClock("manual", MORNING))
+        await self._until(lambda seen: not seen.actions["zero"], "the zero can be set")
+        await self.machine.ask(SetZero())
+        await self._until(lambda seen: seen.home_trusted, "the zero is trusted")
+        await self.machine.ask(SelectMode(Mode.DUAL))
+
+    async def kill(self) -> float:
+        """Kill it at an instant of a motion; return after how long the axes stood, all else checked."""
+        motion = self.dice.choice(list(Motion))
+        self.counted[motion] += 1
+        pressing = await self._begin(motion)
+        await asyncio.to_thread(self.eyes.until_moving)
+        await asyncio.sleep(self.dice.uniform(0.0, LONGEST_INSTANT_S))
+        renaming = await self._rename()
+        at = self.machine.kill()
+        await _over(pressing, renaming)
+        rested_s = await asyncio.to_thread(self.eyes.first_rest_after, at)
+        await self.machine.forget()
+        assert not self.eyes.moved_after(at + rested_s)
+        await self.machine.start()
+        await self._until(lambda seen: seen.measured is not None, "the drive is found again")
+        await self._check_motion(at + rested_s, motion)
+        self._check_kept()
+        return rested_s
+
+    async def _begin(self, motion: "Motion") -> "asyncio.Task[None] | None":
+        await self.machine.ask(Stop())
+        await self._until(lambda seen: not seen.actions["jog"], "motion is allowed")
+        side = self._far_side()
+        match motion:
+            case Motion.MOVE:
+                await self.machine.ask(Move(side))
+            case Motion.TRACK:
+                await self._away_from_the_sun()
+                await self.machine.ask(Track())
+            case Motion.GO_TO_START:
+                await self._away_from_the_sun()
+                await self.machine.ask(GoToStart(SHOW))
+            case Motion.SHOW:
+                await self._stand_at_the_start()
+                await self.machine.ask(RunShow(SHOW))
+            case Motion.JOG:
+                direction: Literal[-1, 1] = 1 if side is SIDES[1] else -1
+                press = Jog(uuid4().hex, Axis.AZIMUTH, direction, JogSpeed.FAST)
+                return asyncio.create_task(self._hold(press))
+            case _:
+                assert_never(motion)
+        return None
+
+    def _far_side(self) -> Orientation:
+        seen = self.machine.tracker.measured
+        assert seen is not None
+        return max(SIDES, key=lambda side: abs(side.azimuth_deg - seen.azimuth_deg))
+
+    async def _stand_at_the_start(self) -> None:
+        """Go to the start, again where the drive answered too late on the way, which ends a show."""
+        while not _is_ready(self.machine.tracker):
+            await self.machine.ask(GoToStart(SHOW))
+            await self._until(lambda seen: seen.show is None or _is_ready(seen), "the show is ready")
+
+    async def _away_from_the_sun(self) -> None:
+        """Turn away where a motion to the sun, or to the show's start beside it, would be over at once."""
+        seen = self.machine.tracker.measured
+        assert seen is not None
+        if abs(seen.azimuth_deg - self.machine.tracker.sun.azimuth_deg) > FAR_DEG:
+            return
+        await self.machine.ask(Move(SIDES[1]))
+        await self._until(lambda now: now.activity is ActivityName.HOLDING, "the panel is away from the sun")
+
+    async def _hold(self, press: Jog) -> None:
+        """Hold a key for as long as somebody answers."""
+        with suppress(MachineUnreachable):
+            while True:
+                await self.machine.ask(press)
+                press = replace(press, sequence=press.sequence + 1)
+                await asyncio.sleep(PUSH_S)
+
+    async def _rename(self) -> "asyncio.Task[object]":
+        """Give the site a name that is acknowledged, and every second time one that may be cut off."""
+        await self.machine.ask(RenameSite(self._name()))
+        self.promised = len(self.names)
+        late = asyncio.create_task(self.machine.ask(RenameSite(self._name())))
+        await asyncio.sleep(self.dice.uniform(0.0, LATEST_RENAMING_S))
+        return late
+
+    def _name(self) -> str:
+        self.names.append(f"Run {len(self.names)}")
+        return self.names[-1]
+
+    async def _check_motion(self, rested_at: float, motion: "Motion") -> None:
+        """Fail if anything turns after the restart that nobody asked for; tracking goes on by itself."""
+        if motion is Motion.TRACK:
+            await self._until(lambda seen: seen.activity is ActivityName.TRACKING, "tracking goes on")
+            return
+        await asyncio.sleep(SETTLED_S)
+        assert not self.eyes.moved_after(rested_at)
+        assert self.machine.tracker.activity is ActivityName.HOLDING
+        assert not self.machine.tracker.tracking_on
+
+    def _check_kept(self) -> None:
+        """Fail if anything acknowledged is lost, anything is there by half, or the database is not whole."""
+        path = self.machine.settings.data_dir / "heliopanel.db"
+        with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
+            assert database.execute("PRAGMA quick_check").fetchall() == [("ok",)]
+        with closing(open_reader(f"sqlite:///{path}")) as reader:
+            self._check_names(reader)
+            self._check_lives(reader)
+            shows = reader.recordings(kind=RecordingKind.SHOW)
+            chain = reader.audit(AuditFilter(limit=LOOKED_AT))
+        assert all(show.ended_at is not None for show in shows)
+        assert first_break([one.link() for one in chain[-2::-1]], after=chain[-1].link()) is None
+
+    def _check_names(self, reader: DatabaseReader) -> None:
+        site = reader.site()
+        assert site is not None
+        kinds = (EventKind.TRACKER_CHANGED,)
+        entries = reader.journal(JournalFilter(limit=LOOKED_AT, kinds=kinds))
+        told = [entry.event.message for entry in reversed(entries)]
+        if site.name != self.names[-1]:
+            self.names.pop()
+        assert len(self.names) >= self.promised
+        expected = [f"The site is now called {name}." for name in self.names]
+        assert site.name == self.names[-1]
+        assert [one for one in told if one in expected] == expected[-len(told) :]
+
+    def _check_lives(self, reader: DatabaseReader) -> None:
+        starts = reader.journal(JournalFilter(limit=LOOKED_AT, kinds=(EventKind.MACHINE_STARTED,)))
+        assert len(starts) == min(LOOKED_AT, len(self.machine.lives)), self.machine.log()
+        assert starts[0].event.data["clean"] is False
+        assert "without warning" in starts[0].event.message
+
+    async def _until(self, reached: Callable[[Snapshot], bool], what: str) -> None:
+        def is_so() -> bool:
+            latest = self.machine.link.latest()
+            return latest is not None and reached(latest.trackers[0])
+
+        try:
+            await eventually(is_so)
+        except TimeoutError as error:
+            raise TimeoutError(f"{error} Waited for: {what}. {self.machine.tracker}") from error
+
+
+def _is_ready(seen: Snapshot) -> bool:
+    return seen.show is not None and seen.show.phase is ShowPhase.READY
+
+
+async def _over(*tasks: "asyncio.Task[Any] | None") -> None:
+    """Wait for tasks that the kill may have cut off."""
+    for task in tasks:
+        if task is not None:
+            with suppress(MachineUnreachable):
+                await task

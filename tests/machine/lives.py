@@ -1,0 +1,87 @@
+"""Many short lives of the controller service: each is forked from a process that has loaded its code."""
+
+import multiprocessing
+import os
+import time
+from dataclasses import dataclass, field
+from multiprocessing.context import ForkServerProcess
+from pathlib import Path
+
+from app.link.client import LinkClient
+from app.link.messages import Order, SiteCommand
+from app.machine.main import run
+from app.machine.supervisor import end_with_parent
+from app.settings import Settings
+from app.tracker.commands import Command
+from app.tracker.snapshot import SiteSnapshot, Snapshot
+from tests.machine.service import eventually
+
+FORKING = multiprocessing.get_context("forkserver")
+FORKING.set_forkserver_preload([__name__])
+
+
+def live(settings: Settings) -> None:
+    """Be the controller service, with its log beside its data."""
+    end_with_parent(os.getppid())
+    log = os.open(settings.data_dir / "machine.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+    os.dup2(log, 2)
+    run(settings)
+
+
+@dataclass
+class Machine:
+    """The controller service in one data folder, without a panel, started and killed again and again."""
+
+    settings: Settings
+    link: LinkClient
+    lives: list[ForkServerProcess] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, data_dir: Path) -> "Machine":
+        data_dir.mkdir(parents=True)
+        settings = Settings(data_dir=data_dir, log_format="json")
+        return cls(settings, LinkClient(settings.link_path))
+
+    async def start(self) -> None:
+        """Begin the next life; return once it answers."""
+        life = FORKING.Process(target=live, args=(self.settings,), daemon=True)
+        life.start()
+        self.lives.append(life)
+        await self.link.start()
+        await eventually(lambda: self.link.latest() is not None or not life.is_alive())
+        assert life.is_alive(), self.log()
+
+    def kill(self) -> float:
+        """Kill it, as nothing can prevent, and return when."""
+        life = self.lives[-1]
+        life.kill()
+        at = time.monotonic()
+        life.join(5)
+        return at
+
+    async def forget(self) -> None:
+        """Wait until it is known that the machine has gone."""
+        await eventually(lambda: self.link.latest() is None)
+
+    async def ask(self, command: Command | SiteCommand) -> SiteSnapshot:
+        """Give an order once."""
+        addressed = None if isinstance(command, SiteCommand) else "T1"
+        return await self.link.execute(Order(command, "technician", addressed))
+
+    @property
+    def tracker(self) -> Snapshot:
+        """Return what is known of the tracker now."""
+        latest = self.link.latest()
+        assert latest is not None, self.log()
+        return latest.trackers[0]
+
+    def log(self) -> str:
+        """Return the end of what it wrote."""
+        return (self.settings.data_dir / "machine.log").read_text()[-2000:]
+
+    async def stop(self) -> None:
+        """End it properly."""
+        await self.link.close()
+        for life in self.lives[-1:]:
+            life.terminate()
+            life.join(10)

@@ -1,0 +1,44 @@
+"""The machine killed again and again while its axes turn: nothing is lost, and the drive stops by itself."""
+
+import os
+import random
+from collections.abc import AsyncIterator
+from pathlib import Path
+from time import monotonic
+
+import pytest
+
+from tests.e2e.eyes import Eyes
+from tests.e2e.killing import RAMP_S
+from tests.e2e.product import DriveSim
+from tests.e2e.test_kill import LATEST_FEED_S, WATCHDOG_S
+from tests.machine.killing import Killing
+from tests.machine.lives import Machine
+
+KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "4"))
+SEED = int(os.environ.get("HELIOPANEL_TEST_SEED", "1"))
+
+
+@pytest.fixture
+async def killing(tmp_path: Path) -> AsyncIterator[Killing]:
+    drive = DriveSim.start()
+    eyes = Eyes(drive.port)
+    machine = Machine.of(tmp_path / "data")
+    killing = Killing(machine, eyes, random.Random(SEED))
+    await killing.commission(drive.port)
+    yield killing
+    eyes.close()
+    await machine.stop()
+    drive.stop()
+
+
+@pytest.mark.timeout(60 + 15 * KILLS)
+@pytest.mark.fault(43)
+async def test_killed_in_motion_nothing_is_lost_and_nothing_moves_on(killing: Killing) -> None:
+    begun, latest_s = monotonic(), 0.0
+    for _ in range(KILLS):
+        rested_s = await killing.kill()
+        latest_s = max(latest_s, rested_s)
+        assert rested_s <= WATCHDOG_S + LATEST_FEED_S + RAMP_S
+    counted = ", ".join(f"{motion} {times}" for motion, times in sorted(killing.counted.items()))
+    print(f"{KILLS} kills in {monotonic() - begun:.0f} s ({counted}), at rest after at most {latest_s:.2f} s")
