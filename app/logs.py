@@ -9,6 +9,9 @@ import structlog
 
 SECRET = re.compile(r"\b((?:stop_)?ticket|token)=[^&\s\"']+")
 
+EACH_SOCKET = frozenset({"connection open", '%s - "WebSocket %s" [accepted]'})
+"""What uvicorn and websockets tell of every live page that opens: nobody reads it, and it holds up others."""
+
 
 def _masked(_: object, __: str, told: structlog.typing.EventDict) -> structlog.typing.EventDict:
     """Leave tickets out of the addresses that servers log: whoever reads the log shall not use them."""
@@ -47,6 +50,11 @@ def set_up_logs(
     root.setLevel(_number(log_level))
     for chatty in ("pymodbus", "alembic", "asyncio"):
         logging.getLogger(chatty).setLevel(max(logging.WARNING, _number(log_level)))
+    logging.getLogger("uvicorn.error").addFilter(_is_no_mere_socket)
+
+
+def _is_no_mere_socket(record: logging.LogRecord) -> bool:
+    return record.msg not in EACH_SOCKET
 
 
 def _formatter(log_format: Literal["json", "text"], target: TextIO) -> structlog.stdlib.ProcessorFormatter:

@@ -48,7 +48,10 @@ class Hub:
         self._number = 0
         self._events: deque[tuple[int, Event]] = deque(maxlen=EVENTS_KEPT)
         self._snapshot: SiteSnapshot | None = None
-        self._heard_at = clock.now()
+        self._rendered: dict[str | None, Message] = {}
+        self._rendered_of: SiteSnapshot | None = None
+        self._rendered_at = self._heard_at = clock.now()
+        self._build = edition()
         self._changed = asyncio.Event()
         self._viewers: set[Viewer] = set()
         self._tasks: set[asyncio.Task[Any]] = set()
@@ -72,7 +75,7 @@ class Hub:
         if len(self._viewers) >= MOST_VIEWERS:
             raise TooManyViewers
         viewer = Viewer(wanted)
-        viewer.show(self._render(wanted.tracker_id))
+        viewer.show(self._present(wanted.tracker_id))
         self._viewers.add(viewer)
         return viewer
 
@@ -134,14 +137,19 @@ class Hub:
             await self._clock.sleep_until(ended + max(SOONEST, ended - begun))
 
     async def _hand_out(self) -> None:
-        rendered: dict[str | None, Message] = {}
         for batch in _batches(tuple(self._viewers)):
             for viewer in batch:
-                wanted = viewer.wanted.tracker_id
-                if wanted not in rendered:
-                    rendered[wanted] = self._render(wanted)
-                viewer.show(rendered[wanted])
+                viewer.show(self._present(viewer.wanted.tracker_id))
             await self._clock.sleep_until(self._clock.now())
+
+    def _present(self, tracker_id: str | None) -> Message:
+        """Return the present state as text, rendered once for all who are shown it within a moment."""
+        now = self._clock.now()
+        if self._rendered_of is not self._snapshot or now - self._rendered_at > SOONEST:
+            self._rendered, self._rendered_of, self._rendered_at = {}, self._snapshot, now
+        if tracker_id not in self._rendered:
+            self._rendered[tracker_id] = self._render(tracker_id)
+        return self._rendered[tracker_id]
 
     def _render(self, tracker_id: str | None) -> Message:
         snapshot = self._snapshot
@@ -154,7 +162,7 @@ class Hub:
             "type": "state",
             "rev": snapshot.sequence,
             "boot": snapshot.boot_id,
-            "build": edition(),
+            "build": self._build,
             "at": snapshot.at,
             "age_ms": round((self._clock.now() - self._heard_at) / timedelta(milliseconds=1)),
             "snapshot": snapshot,

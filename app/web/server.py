@@ -4,7 +4,7 @@ import asyncio
 import re
 import resource
 import socket
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable
 from enum import Enum
 from typing import Any, Protocol, assert_never
@@ -141,6 +141,30 @@ class Connections:
             del self._held[client]
 
 
+class Turnstile:
+    """Does what came at once one by one; between two of them everybody else gets a turn."""
+
+    def __init__(self) -> None:
+        self._waiting: deque[Callable[[], None]] = deque()
+
+    def __len__(self) -> int:
+        return len(self._waiting)
+
+    def add(self, work: Callable[[], None]) -> None:
+        """Do this after what waits already."""
+        self._waiting.append(work)
+        if len(self._waiting) == 1:
+            asyncio.get_running_loop().call_soon(self._turn)
+
+    def _turn(self) -> None:
+        try:
+            self._waiting[0]()
+        finally:
+            self._waiting.popleft()
+            if self._waiting:
+                asyncio.get_running_loop().call_soon(self._turn)
+
+
 class CautiousHttp(HttpToolsProtocol):
     """HTTP that gives a request 8 s to arrive, and a client no more connections than its share."""
 
@@ -152,10 +176,12 @@ class CautiousHttp(HttpToolsProtocol):
         _loop: asyncio.AbstractEventLoop | None = None,
         *,
         connections: Connections,
+        turnstile: Turnstile,
         deadline_s: float = REQUEST_DEADLINE_S,
     ) -> None:
         super().__init__(config, server_state, app_state, _loop)
         self._counted = connections
+        self._turnstile = turnstile
         self._deadline_s = deadline_s
         self._deadline: asyncio.TimerHandle | None = None
         self._name = ""
@@ -226,9 +252,19 @@ class CautiousHttp(HttpToolsProtocol):
         super().on_message_complete()
 
     def handle_websocket_upgrade(self) -> None:
-        """The connection becomes a WebSocket, which is counted elsewhere."""
+        """The connection becomes a WebSocket, which is counted elsewhere, when its turn comes.
+
+        500 that come at once took a quarter of a second of the loop, in which no Stop was read.
+        """
         self._settle()
         self._release()
+        self.transport.pause_reading()
+        self._turnstile.add(self._upgrade)
+
+    def _upgrade(self) -> None:
+        if self.transport.is_closing():
+            return
+        self.transport.resume_reading()
         super().handle_websocket_upgrade()
 
     def _expect(self) -> None:
@@ -264,6 +300,7 @@ class PanelServer(uvicorn.Server):
 
 def cautious(connections: Connections, deadline_s: float = REQUEST_DEADLINE_S) -> type[HttpToolsProtocol]:
     """Return the protocol with its limits, as uvicorn wants it: a class."""
+    turnstile = Turnstile()
 
     class Limited(CautiousHttp):
         def __init__(
@@ -274,7 +311,13 @@ def cautious(connections: Connections, deadline_s: float = REQUEST_DEADLINE_S) -
             _loop: asyncio.AbstractEventLoop | None = None,
         ) -> None:
             super().__init__(
-                config, server_state, app_state, _loop, connections=connections, deadline_s=deadline_s
+                config,
+                server_state,
+                app_state,
+                _loop,
+                connections=connections,
+                turnstile=turnstile,
+                deadline_s=deadline_s,
             )
 
     return Limited

@@ -213,6 +213,7 @@ def _logs_as_before() -> Iterator[None]:
     yield
     root.handlers[:] = handlers
     root.setLevel(level)
+    logging.getLogger("uvicorn.error").filters.clear()
     structlog.reset_defaults()
 
 
@@ -236,10 +237,21 @@ def test_tickets_in_logged_addresses_are_masked() -> None:
     stream = io.StringIO()
     set_up_logs("web", log_format="json", log_level="info", stream=stream)
     logging.getLogger("uvicorn.error").info(
-        '"WebSocket %s" [accepted]', "/live?tracker=T1&stop_ticket=MTc5.aW&x=1"
+        '%s - "WebSocket %s" 403', "192.0.2.7:51000", "/live?tracker=T1&stop_ticket=MTc5.aW&x=1"
     )
     told = json.loads(stream.getvalue())["event"]
-    assert told == '"WebSocket /live?tracker=T1&stop_ticket=...&x=1" [accepted]'
+    assert told == '192.0.2.7:51000 - "WebSocket /live?tracker=T1&stop_ticket=...&x=1" 403'
+
+
+@pytest.mark.usefixtures("_logs_as_before")
+def test_live_pages_that_open_are_not_told_of() -> None:
+    stream = io.StringIO()
+    set_up_logs("web", log_format="json", log_level="info", stream=stream)
+    servers = logging.getLogger("uvicorn.error")
+    servers.info('%s - "WebSocket %s" [accepted]', "192.0.2.7:51000", "/live")
+    servers.info("connection open")
+    servers.info("Uvicorn running")
+    assert [json.loads(line)["event"] for line in stream.getvalue().splitlines()] == ["Uvicorn running"]
 
 
 def test_settings_come_from_the_environment_before_the_file(
