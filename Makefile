@@ -1,6 +1,6 @@
 # make run  : sets everything up and serves the panel with a simulated tracker at http://127.0.0.1:8000
 # make test : sets up what tests need and runs them all, browser tests included
-# make check: formatting, lint, types, import contracts, migrations, vendored files
+# make check: formatting, lint, types, import contracts, migrations, vendored files, catalogues of languages
 # make fuzz : 10,000 cases against the API and hostile values for every form; takes minutes
 # make soak : the long proofs: millions of random ticks, 1,000 kills, 300 power cuts, a day of 20 trackers
 # make mutants: changes the guards' code in a copy, one place at a time, and counts what their tests notice
@@ -12,7 +12,7 @@ BIN := $(VENV)/bin
 ON_PROCESSES := tests/drives/timed tests/machine tests/browser tests/e2e
 
 .DEFAULT_GOAL := help
-.PHONY: help setup fast run test check fuzz bench format lock browser system-packages clean
+.PHONY: help setup fast run test check translations fuzz bench format lock browser system-packages clean
 
 help: ## Show what each command does
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-10s %s\n", $$1, $$2}'
@@ -71,6 +71,10 @@ check: $(VENV)/.dev ## Formatting, lint, types, import contracts, migrations, ve
 	@$(BIN)/python static/vendor/vendor.py check
 	@$(BIN)/python -m app.store.migrations check
 	@$(BIN)/python -m app.access.migrations
+	@$(BIN)/python -m app.web.languages.catalogues check
+
+translations: $(VENV)/.dev ## Bring the catalogues of all languages up to date with the texts of the sources
+	@$(BIN)/python -m app.web.languages.catalogues update
 
 fuzz: $(VENV)/.dev ## Send 10,000 bad requests to the API, and hostile values into every form
 	@$(BIN)/python -m tests.fuzz

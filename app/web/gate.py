@@ -35,6 +35,7 @@ WHILE_CLOSED = frozenset(
         "GET /health",
         "GET /ready",
         "POST /theme",
+        "POST /language",
     }
 )
 STOPS_WINDOW, MOST_STOPS = timedelta(seconds=1), 10

@@ -34,6 +34,8 @@ from app.web.deps import Panel
 from app.web.documented import DocumentedApp
 from app.web.gate import Gate, record_foreign
 from app.web.hub import Hub
+from app.web.languages import read_all
+from app.web.languages.choice import Speech
 from app.web.limits import StreamLimit
 from app.web.mdns import announced
 from app.web.nesting import NestingLimit
@@ -74,6 +76,7 @@ def create_app(
 
     `stage` says whether these settings are on trial; without one they are for good.
     """
+    read_all()
     clock = clock or SystemClock()
     machine = machine or LinkClient(settings.link_path, clock)
     reader = reader or open_reader(settings.url)
@@ -105,6 +108,7 @@ def create_app(
     app.add_middleware(StreamLimit, clock=clock)
     app.add_middleware(Guard, hosts=host_names(settings), on_refusal=record_foreign(keeper, clock))
     app.add_middleware(SecurityHeaders)
+    app.add_middleware(Speech)
     return app
 
 

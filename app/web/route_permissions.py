@@ -1,7 +1,8 @@
 """What every route needs, by method and path; a route that is not here keeps the panel from starting.
 
 To add a route: write it below the permission that it needs, and into `PROVEN` if it changes users, tokens,
-drives or network settings, for which the password is asked for again.
+drives, limits or network settings, for which the password is asked for again. Where limits or the drive are
+part of a larger form, `app/web/limit_review.py` asks.
 """
 
 from app.access.roles import Permission
@@ -22,6 +23,7 @@ _TABLE: dict[Permission, str] = {
         GET /kiosk
         POST /kiosk
         POST /theme
+        POST /language
         GET /health
         GET /ready
         GET /api/v1/health
@@ -364,6 +366,8 @@ PROVEN = frozenset(
     PUT /api/v1/network
     POST /trackers/{tracker_id}/drive
     POST /trackers/{tracker_id}/drive/restore
+    POST /trackers/{tracker_id}/mount/kind
+    POST /trackers/{tracker_id}/settings/undo
     POST /backup
     POST /restore
     POST /api/v1/restore

@@ -1,7 +1,7 @@
 """What a language has for each English text, sentences with gaps included."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from gettext import GNUTranslations, NullTranslations
 from typing import IO
@@ -31,6 +31,7 @@ class Catalogue(GNUTranslations):
 
     def __init__(self, language: Language, stored: IO[bytes] | None = None) -> None:
         self._catalog: dict[object, str] = {}
+        self.plural: Callable[[int], int] = lambda count: int(count != 1)
         self.language = language
         if stored is None:
             NullTranslations.__init__(self)

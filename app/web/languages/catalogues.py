@@ -88,6 +88,9 @@ def po_text(catalog: Catalog) -> bytes:
 def mo_bytes(catalog: Catalog) -> bytes:
     """Return a catalogue as gettext reads it; a text that is not translated is not in it."""
     written = BytesIO()
+    for text in catalog:
+        if isinstance(text.string, tuple) and not all(text.string):
+            text.string = ""
     catalog.creation_date = catalog.revision_date = NO_DATE
     write_mo(written, catalog)
     return written.getvalue()

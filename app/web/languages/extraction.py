@@ -1,6 +1,5 @@
 """Every text of the project that a page can show, found in templates, Python and JavaScript."""
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,6 +7,7 @@ from pathlib import Path
 from babel.messages.extract import DEFAULT_KEYWORDS, extract
 
 from app.web.languages.python_texts import python_texts
+from app.web.languages.script_texts import texts_of
 
 ROOT = Path(__file__).resolve().parents[3]
 JINJA = {
@@ -19,8 +19,6 @@ JINJA = {
     "silent": "false",
 }
 KEYWORDS = {**DEFAULT_KEYWORDS, "_": None}
-SCRIPT_TEXT = re.compile(r"(?<![\w.])_\(\s*\"((?:[^\"\\\n]|\\.)*)\"")
-SCRIPT_MEANT = re.compile(r"(?<![\w.])_in\(\s*\"([^\"\\\n]*)\",\s*\"((?:[^\"\\\n]|\\.)*)\"")
 
 _SPEAKING = """
     app/tracker app/alarms app/web app/site app/drives app/show app/access app/store app/studies app/energy
@@ -77,16 +75,6 @@ def _of_template(path: Path, root: Path) -> Iterator[Text]:
 
 
 def _of_script(path: Path, root: Path) -> Iterator[Text]:
-    source, name = path.read_text(), str(path.relative_to(root))
-    for found in SCRIPT_TEXT.finditer(source):
-        yield Text(name, _line(source, found), _unescaped(found[1]))
-    for found in SCRIPT_MEANT.finditer(source):
-        yield Text(name, _line(source, found), _unescaped(found[2]), context=found[1])
-
-
-def _line(source: str, found: re.Match[str]) -> int:
-    return source.count("\n", 0, found.start()) + 1
-
-
-def _unescaped(text: str) -> str:
-    return text.replace('\\"', '"').replace("\\\\", "\\")
+    source = path.read_text()
+    for at, text in texts_of(source):
+        yield Text(str(path.relative_to(root)), source.count("\n", 0, at) + 1, text)

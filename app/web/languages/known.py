@@ -8,25 +8,38 @@ LOCALE = Path(__file__).resolve().parents[1] / "locale"
 
 @dataclass(frozen=True, slots=True)
 class Language:
-    """One language: its code for files, its tag for browsers, its own name, its numbers and dates."""
+    """One language: its code for files, its tag for browsers, its name, numbers, dates and compass."""
 
     code: str
     tag: str
     name: str
-    point: str = "."
-    date: str = "%Y-%m-%d"
+    point: str
+    date: str
+    compass: tuple[str, ...]
 
 
-ENGLISH = Language("en", "en", "English")
+def _points(north: str, east: str, south: str, west: str) -> tuple[str, ...]:
+    """Return the sixteen points of a compass whose letters are put together as in English."""
+    letters = {"N": north, "E": east, "S": south, "W": west}
+    return tuple("".join(letters[letter] for letter in point) for point in ENGLISH_POINTS)
+
+
+_ENGLISH_POINTS = "N NNE NE ENE E ESE SE SSE S SSW SW WSW W WNW NW NNW"
+ENGLISH_POINTS = tuple(_ENGLISH_POINTS.split())
+CHINESE_POINTS = (
+    "北", "东北偏北", "东北", "东北偏东", "东", "东南偏东", "东南", "东南偏南",
+    "南", "西南偏南", "西南", "西南偏西", "西", "西北偏西", "西北", "西北偏北",
+)  # fmt: skip
+ENGLISH = Language("en", "en", "English", ".", "%Y-%m-%d", ENGLISH_POINTS)
 LANGUAGES = {
     language.code: language
     for language in (
         ENGLISH,
-        Language("tr", "tr", "Türkçe", ",", "%d.%m.%Y"),
-        Language("de", "de", "Deutsch", ",", "%d.%m.%Y"),
-        Language("es", "es", "Español", ",", "%d/%m/%Y"),
-        Language("ro", "ro", "Română", ",", "%d.%m.%Y"),
-        Language("zh_Hans", "zh-Hans", "简体中文", ".", "%Y/%m/%d"),
+        Language("tr", "tr", "Türkçe", ",", "%d.%m.%Y", _points("K", "D", "G", "B")),
+        Language("de", "de", "Deutsch", ",", "%d.%m.%Y", _points("N", "O", "S", "W")),
+        Language("es", "es", "Español", ",", "%d/%m/%Y", _points("N", "E", "S", "O")),
+        Language("ro", "ro", "Română", ",", "%d.%m.%Y", _points("N", "E", "S", "V")),
+        Language("zh_Hans", "zh-Hans", "简体中文", ".", "%Y/%m/%d", CHINESE_POINTS),
     )
 }
 TRANSLATED = tuple(code for code in LANGUAGES if code != ENGLISH.code)

@@ -4,20 +4,24 @@ from collections.abc import Callable
 from datetime import datetime, timedelta
 from typing import Any
 
+from app.web.languages import CATALOGUE
 from app.zones import zone_of
 
 UNKNOWN = "–"
-POINTS = (
-    "N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW",
-)  # fmt: skip
+ISO_DATE = "%Y-%m-%d"
 
 
 def decimals(value: float, digits: int) -> str:
-    """Return a number without the minus sign that a rounded zero would carry, with a true minus sign."""
+    """Return a number as the language writes it, with a true minus sign, and none before a rounded zero."""
     text = f"{value:.{digits}f}"
     if float(text) == 0.0:
         text = text.lstrip("-")
-    return text.replace("-", "−")
+    return text.replace("-", "−").replace(".", CATALOGUE.get().language.point)
+
+
+def formatted(pattern: str, *values: object) -> str:
+    """Return numbers in a pattern such as `%g s`, as the language writes them."""
+    return CATALOGUE.get().number(pattern % values)
 
 
 def angle(value: float, digits: int = 2) -> str:
@@ -27,7 +31,7 @@ def angle(value: float, digits: int = 2) -> str:
 
 def compass(azimuth_deg: float) -> str:
     """Return the nearest of the sixteen points of the compass."""
-    return POINTS[round(azimuth_deg / 22.5) % 16]
+    return CATALOGUE.get().language.compass[round(azimuth_deg / 22.5) % 16]
 
 
 def duration(value: timedelta | float) -> str:
@@ -54,6 +58,11 @@ def local(at: datetime, zone: str, pattern: str) -> str:
     return at.astimezone(zone_of(zone)).strftime(pattern)
 
 
+def read_local(at: datetime, zone: str, pattern: str) -> str:
+    """Return an instant in the civil time of a zone, its date as the language writes it."""
+    return local(at, zone, pattern.replace(ISO_DATE, CATALOGUE.get().language.date))
+
+
 def offset(at: datetime, zone: str) -> str:
     """Return the zone's distance from UTC at an instant, such as `UTC+3` or `UTC−3:30`."""
     delta = at.astimezone(zone_of(zone)).utcoffset() or timedelta()
@@ -65,13 +74,13 @@ def offset(at: datetime, zone: str) -> str:
 
 
 def words(value: object) -> str:
-    """Return a word that travels, such as `going_to_start`, as people write it."""
+    """Return a word that travels, such as `going_to_start`, as people write it in their language."""
     text = str(value).replace("_", " ").replace("-", " ")
-    return text[:1].upper() + text[1:]
+    return CATALOGUE.get().said(text[:1].upper() + text[1:])
 
 
 FORMATS: dict[str, Callable[[Any, str], str]] = {
-    "text": lambda value, _: str(value),
+    "text": lambda value, _: CATALOGUE.get().said(str(value)),
     "words": lambda value, _: words(value),
     "angle2": lambda value, _: angle(value, 2),
     "angle0": lambda value, _: angle(value, 0),
@@ -87,12 +96,12 @@ FORMATS: dict[str, Callable[[Any, str], str]] = {
     "hpa": lambda value, _: f"{decimals(value, 0)} hPa",
     "mm": lambda value, _: f"{decimals(value, 1)} mm",
     "kg": lambda value, _: f"{decimals(value, 1)} kg",
-    "freshness": lambda value, _: "Stale, not used" if value else "Current",
+    "freshness": lambda value, _: CATALOGUE.get().said("Stale, not used" if value else "Current"),
     "factor": lambda value, _: f"{value:,.0f} ×".replace(",", " "),
     "clock": lambda value, zone: local(value, zone, "%H:%M:%S"),
     "minute": lambda value, zone: local(value, zone, "%H:%M"),
-    "date": lambda value, zone: local(value, zone, "%Y-%m-%d"),
-    "moment": lambda value, zone: local(value, zone, "%Y-%m-%d %H:%M:%S"),
+    "date": lambda value, zone: read_local(value, zone, ISO_DATE),
+    "moment": lambda value, zone: read_local(value, zone, f"{ISO_DATE} %H:%M:%S"),
     "offset": offset,
 }
 

@@ -22,6 +22,7 @@ from app.web.ui import (
     installed,
     journal,
     label,
+    language,
     location,
     machine,
     mode,
@@ -62,6 +63,7 @@ from app.web.ui.render import page, wants_block
 
 ROUTERS = (
     overview.router,
+    language.router,
     theme.router,
     installed.router,
     sign_in.router,

@@ -19,6 +19,8 @@ from app.web import languages
 from app.web.contexts import Context
 from app.web.deps import panel, principal
 from app.web.help import help_for
+from app.web.languages.known import LANGUAGES
+from app.web.languages.script_texts import for_page
 from app.web.ui import formats
 from app.web.ui.allowed import shut
 
@@ -36,12 +38,13 @@ FILTERS = {
     "signed_seconds": formats.signed_seconds,
     "decimals": formats.decimals,
     "words": formats.words,
-    "local": formats.local,
+    "local": formats.read_local,
+    "format": formats.formatted,
     "zone_offset": formats.offset,
     "said": languages.said,
     "options_said": options_said,
 }
-VARY = {"Vary": "HX-Request, HX-Request-Type"}
+VARY = {"Vary": "HX-Request, HX-Request-Type, Cookie, Accept-Language"}
 
 
 def environment() -> Environment:
@@ -64,6 +67,8 @@ def environment() -> Environment:
     )
     env.filters |= FILTERS
     env.globals |= {"help_for": help_for, "live": live, "world": world(), "abilities": abilities}
+    env.globals |= {"languages": tuple(LANGUAGES.values())}
+    env.globals |= {"spoken": languages.spoken, "script_texts": for_page}
     for shared in (
         "_icons.html",
         "_parts.html",

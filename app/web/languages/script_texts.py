@@ -1,0 +1,58 @@
+"""The texts that the scripts of a page write, in the language of the page."""
+
+import re
+from collections.abc import Iterable, Iterator
+from functools import cache
+from pathlib import Path
+
+import orjson
+from markupsafe import Markup
+
+from app.tracker.hybrid import HybridPhase
+from app.tracker.mode import Mode
+from app.tracker.protections.words import Protection
+from app.tracker.snapshot import ActivityName, ShowPhase
+from app.web.languages.catalogue import Catalogue, catalogue_of
+
+SCRIPTS = Path(__file__).resolve().parents[3] / "static" / "js"
+SCRIPT_TEXT = re.compile(r"(?<![\w.])_\(\s*\"((?:[^\"\\\n]|\\.)*)\"")
+LIVE_WORDS = (ActivityName, HybridPhase, Mode, Protection, ShowPhase)
+"""What a script shows as words: the same as `words` in app/web/ui/formats.py."""
+
+
+def texts_of(source: str) -> Iterator[tuple[int, str]]:
+    """Return place and text of everything that a script marks as `_("...")`."""
+    for found in SCRIPT_TEXT.finditer(source):
+        yield found.start(), found[1].replace('\\"', '"').replace("\\\\", "\\")
+
+
+@cache
+def script_texts() -> tuple[str, ...]:
+    """Return every text of the scripts, and the words of live values."""
+    marked = (text for path in sorted(SCRIPTS.glob("*.js")) for _, text in texts_of(path.read_text()))
+    return tuple(dict.fromkeys((*marked, *_live_words())))
+
+
+def _live_words() -> Iterable[str]:
+    for words in LIVE_WORDS:
+        for word in words:
+            text = word.value.replace("_", " ").replace("-", " ")
+            yield text[:1].upper() + text[1:]
+
+
+@cache
+def for_page(code: str) -> Markup:
+    """Return what the scripts of a page need as JSON, nothing where they speak English."""
+    catalogue = catalogue_of(code)
+    return Markup("") if not catalogue.texts else Markup(_json(catalogue))  # noqa: S704 - escaped below
+
+
+def _json(catalogue: Catalogue) -> str:
+    language = catalogue.language
+    told = {
+        "point": language.point,
+        "date": language.date,
+        "compass": language.compass,
+        "texts": {text: wanted for text in script_texts() if (wanted := catalogue.gettext(text)) != text},
+    }
+    return orjson.dumps(told).decode().replace("<", "\\u003c")
