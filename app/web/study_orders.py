@@ -76,15 +76,19 @@ class NewStudy(Place):
     transposition: Transposition = Transposition.HAY_DAVIES
     albedo: float = Field(0.2, ge=0, le=1)
     power_w: float = Field(
-        1000.0, gt=0, description="Power of the panels at 1000 W/m2 and 25 degrees Celsius."
+        1000.0, ge=1, le=1e9, description="Power of the panels at 1000 W/m2 and 25 degrees Celsius."
     )
     per_kelvin: float = Field(-0.0035, ge=-0.02, le=0, description="Change of power a kelvin.")
     losses_percent: float = Field(14.0, ge=0, lt=100)
     air_degc: float = Field(20.0, ge=-60, le=60, description="Air, where no weather file says it.")
     wind_mps: float = Field(1.0, ge=0, le=50, description="Wind, where no weather file says it.")
-    degree_wh: float = Field(0.02, ge=0, description="What the drives take for a degree of travel, Wh.")
-    start_wh: float = Field(0.005, ge=0, description="What the drives take for a start of an axis, Wh.")
-    standby_w: float = Field(0.5, ge=0, description="What the drives take all day and night, W.")
+    degree_wh: float = Field(
+        0.02, ge=0, le=1e4, description="What the drives take for a degree of travel, Wh."
+    )
+    start_wh: float = Field(
+        0.005, ge=0, le=1e4, description="What the drives take for a start of an axis, Wh."
+    )
+    standby_w: float = Field(0.5, ge=0, le=1e4, description="What the drives take all day and night, W.")
     deadband_deg: float = Field(1.0, ge=0.05, le=30)
     interval_min: int = Field(20, ge=1, le=240)
     program: StepProgram | None = Field(None, description="Left out: the tracker's own.")
@@ -151,10 +155,10 @@ class NewProgram(Place):
     turbidity: float = Field(3.0, ge=1, le=10, description="For Meliss's model.")
     window: bool = Field(False, description="Count energy from 6 h to 18 h solar time only.")
     tilt_deg: float | None = Field(None, ge=-90, le=90, description="Towards the south; left out: the best.")
-    area_m2: float = Field(1.26, gt=0)
-    efficiency: float = Field(0.15, gt=0, le=1)
-    degree_wh: float = Field(0.0, ge=0, description="What a degree of travel takes, Wh.")
-    move_wh: float = Field(0.0, ge=0, description="What a move takes, Wh.")
+    area_m2: float = Field(1.26, ge=0.01, le=1e6)
+    efficiency: float = Field(0.15, ge=0.001, le=1)
+    degree_wh: float = Field(0.0, ge=0, le=1e4, description="What a degree of travel takes, Wh.")
+    move_wh: float = Field(0.0, ge=0, le=1e5, description="What a move takes, Wh.")
     steps: int | None = Field(None, ge=1, le=48, description="Which one to use; left out: the best number.")
     use_on: str | None = Field(None, max_length=64, description="Id of the tracker that is to run it.")
 

@@ -78,3 +78,17 @@ async def test_two_points_of_the_horizon_in_one_direction_are_refused(api: httpx
     answer = await api.put(f"{V1}/site/horizon", json={"points": [point, point]})
     assert answer.status_code == 422
     assert "rising order" in answer.json()["detail"]
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"degree_wh": 1.7e307}, {"start_wh": 1e5}, {"standby_w": 1e300}, {"power_w": 1e308}, {"power_w": 1e-9}],
+)
+async def test_a_study_whose_energy_is_beyond_all_numbers_is_not_begun(
+    api: httpx.AsyncClient, given: dict[str, float]
+) -> None:
+    answer = await api.post(f"{V1}/studies", json={"date": "2026-06-21", "span": "day", **given})
+    assert answer.status_code == 422
+    (told,) = answer.json()["errors"]
+    assert next(iter(given)) in str(told)
+    assert (await api.get(f"{V1}/studies")).json() == []
