@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from gettext import GNUTranslations, NullTranslations
+from itertools import chain
 from typing import IO
 
 from app.web.languages.known import ENGLISH, LANGUAGES, LOCALE, Language
@@ -23,7 +24,8 @@ NAMES = frozenset(_NAMES.split())
 
 NUMBER = re.compile(r"(?<![\w.])(\d+)\.(\d+)(?![\w.]*\.\d|\d)")
 SENTENCE_END = re.compile(r"(?<=[.!?]) (?=[A-Z])")
-LIST = re.compile(r"(, | and |; | or )")
+JOINT = re.compile(r"(: |, | and |; | or | · )")
+MOST_PARTS, MOST_NAME_WORDS = 40, 8
 
 
 class Catalogue(GNUTranslations):
@@ -38,7 +40,7 @@ class Catalogue(GNUTranslations):
         else:
             super().__init__(stored)
         self._patterns = Patterns(text for text in self._catalog if isinstance(text, str))
-        self.said = lru_cache(maxsize=KEPT)(self._said)
+        self.said: Callable[[str], str] = lru_cache(maxsize=KEPT)(self._said)
 
     @property
     def texts(self) -> Mapping[object, str]:
@@ -57,7 +59,7 @@ class Catalogue(GNUTranslations):
         """Return a sentence of the program in this language; one that is not known stays English."""
         if not self._catalog or len(sentence) > LONGEST:
             return sentence
-        return self._known(sentence) or self._by_sentences(sentence) or sentence
+        return self._known(sentence) or self._by_sentences(sentence) or self._in_parts(sentence) or sentence
 
     def _known(self, sentence: str, depth: int = 2) -> str | None:
         if found := self._catalog.get(sentence):
@@ -66,11 +68,8 @@ class Catalogue(GNUTranslations):
         if matched is None:
             return None
         pattern, values = matched
-        wanted = self._catalog.get(pattern.text)
-        if wanted is None:
-            return None
         said = {name: self._value(name, value, depth) for name, value in values.items()}
-        return GAP.sub(lambda gap: said.get(gap[1], gap[0]), wanted)
+        return GAP.sub(lambda gap: said.get(gap[1], gap[0]), self._catalog[pattern.text])
 
     def _value(self, name: str, value: str, depth: int) -> str:
         """Return what stands in a gap: words in this language, names and what is not known as they are."""
@@ -79,28 +78,47 @@ class Catalogue(GNUTranslations):
         if not any(letter.isalpha() for letter in value):
             return self.number(value)
         known = self._known(value, depth - 1) if depth else self._catalog.get(value)
-        return known or self._by_list(value) or self.number(value)
+        return known or self._in_parts(value) or self._word(value) or self.number(value)
 
-    def _by_list(self, value: str) -> str | None:
-        """Return an enumeration such as `azimuth and elevation`, its members each for itself."""
-        parts = LIST.split(value)
-        if len(parts) == 1:
-            return self._catalog.get(_capital(value)) if value.islower() and " " not in value else None
-        return "".join(self._catalog.get(part) or self.number(part) for part in parts)
+    def _word(self, value: str) -> str | None:
+        """Return a word that is known at the beginning of a label only, such as `azimuth`."""
+        return (
+            self._catalog.get(value[:1].upper() + value[1:]) if value.islower() and " " not in value else None
+        )
 
     def _by_sentences(self, text: str) -> str | None:
         """Return several sentences, each for itself, None where none is known."""
         sentences = SENTENCE_END.split(text)
         if len(sentences) == 1:
             return None
-        known = [self._known(sentence) for sentence in sentences]
+        known = [self._known(sentence) or self._in_parts(sentence) for sentence in sentences]
         if not any(known):
             return None
         return " ".join(found or sentence for found, sentence in zip(known, sentences, strict=True))
 
+    def _in_parts(self, text: str) -> str | None:
+        """Return a list such as `azimuth and elevation` part by part; None where no part is known."""
+        parts = JOINT.split(text)[: 2 * MOST_PARTS]
+        if len(parts) == 1:
+            return self._of_subject(text)
+        known = [self._catalog.get(part) or self._of_subject(part) or self._word(part) for part in parts[::2]]
+        if not any(known):
+            return None
+        said = [found or self.number(part) for found, part in zip(known, parts[::2], strict=True)]
+        joints = [self.language.joints.get(joint, joint) for joint in parts[1::2]]
+        return "".join(chain.from_iterable(zip(said, [*joints, ""], strict=True)))
 
-def _capital(word: str) -> str:
-    return word[:1].upper() + word[1:]
+    def _of_subject(self, text: str) -> str | None:
+        """Return what is said of a name, such as `T07 is busy with a show.`; None where that is not known."""
+        words = text.split(" ", MOST_NAME_WORDS)
+        for count in range(1, len(words)):
+            rest = text[sum(len(word) + 1 for word in words[:count]) :]
+            found = self._catalog.get(rest) if rest[:1].islower() else None
+            ended = self._catalog.get(rest[:-1]) if rest[:1].islower() and rest.endswith(".") else None
+            if found or ended:
+                name = " ".join(words[:count])
+                return f"{self._catalog.get(name) or name} {found or f'{ended}{self.language.stop}'}"
+        return None
 
 
 def load(language: Language) -> Catalogue:
