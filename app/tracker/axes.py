@@ -53,6 +53,8 @@ class AxisConfig:
 
     def clamp(self, angle_deg: float) -> float:
         """Return the nearest angle within the soft limits."""
+        if self.minimum_deg <= angle_deg <= self.maximum_deg:
+            return angle_deg
         return min(self.maximum_deg, max(self.minimum_deg, angle_deg))
 
     def beyond_deg(self, angle_deg: float) -> float:

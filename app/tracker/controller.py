@@ -58,7 +58,7 @@ from app.tracker.reason import Reason
 from app.tracker.recovery import recover
 from app.tracker.regions import bar
 from app.tracker.runs import at_rest
-from app.tracker.shelter import look
+from app.tracker.shelter import guarding, look
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
 from app.tracker.transitions import leave, lose_home
 
@@ -142,7 +142,8 @@ class Controller:
         command = self._blind(seen) if seen.feedback is None else self._see(seen, seen.feedback)
         command = for_drive(mind.config, command)
         mind.command = command
-        self._note_not_stowed()
+        if mind.alarmed is not None or guarding(mind).stow is not None:
+            self._note_not_stowed()
         horn = mind.warning is not None and mind.feedback is not None
         return Tick(replace(command, horn=True) if horn else command, mind.drain())
 
@@ -235,9 +236,8 @@ class Controller:
         if mind.misses:
             found(mind, feedback)
         mind.feedback, mind.feedback_at = feedback, seen.now
-        elapsed_s = (seen.now - before_at).total_seconds() if before_at else 0.0
         watch_local(mind, before, feedback)
-        protect(mind, before, feedback, elapsed_s)
+        protect(mind, before, feedback, seen.now - (before_at or seen.now))
         watch_service(mind)
         watch_machine(mind, before, feedback)
         if mind.watches or mind.command is not HALTED:
@@ -268,14 +268,8 @@ class Controller:
     def _step(self, feedback: Feedback, seen: Observation) -> Turn:
         """Return the activity's turn; a motion that is being announced waits."""
         mind = self._mind
-        if not isinstance(mind.activity, ANNOUNCED):
-            mind.warning = None
-        elif is_announced(mind):
+        if mind.warning is not None and self._waits():
             return Turn(mind.activity, HALTED, mind.target, seen.sun)
-        return self._act(feedback, seen)
-
-    def _act(self, feedback: Feedback, seen: Observation) -> Turn:
-        mind = self._mind
         activity = mind.activity
         match activity:
             case Tracking():
@@ -291,6 +285,13 @@ class Controller:
             case Faulted():
                 return faulted.step(mind, activity, feedback)
         assert_never(activity)
+
+    def _waits(self) -> bool:
+        """Return whether the motion is still being announced; what does not move needs no warning."""
+        if isinstance(self._mind.activity, ANNOUNCED):
+            return is_announced(self._mind)
+        self._mind.warning = None
+        return False
 
     def _note(self, command: DriveCommand) -> DriveCommand:
         """Keep in mind where the axes were told to go."""

@@ -3,7 +3,7 @@
 from math import ceil, cos, radians, sin
 from typing import NamedTuple
 
-from app.angles import separation_deg, wrap180, wrap360
+from app.angles import wrap180, wrap360
 from app.sun.position import SunPosition
 from app.sun.trigonometry import PER_DEGREE, PER_RADIAN, SCALAR, T, Trigonometry
 from app.tracker.axes import AxisConfig
@@ -62,14 +62,13 @@ def to_axes(
 
     Offsets are added on every mount; only on an azimuth-elevation mount a mast leans.
     """
+    first_deg, second_deg = azimuth_deg, elevation_deg
     if mount.kind is not MountKind.AZIMUTH_ELEVATION:
         first_deg, second_deg = angles(mount, azimuth_deg, elevation_deg, trig)
+        if mount.single_axis:
+            return first_deg + pointing.azimuth_offset_deg, second_deg
     elif pointing.lean_north_deg or pointing.lean_east_deg:
         first_deg, second_deg = _leaning(pointing, azimuth_deg, elevation_deg, trig)
-    else:
-        first_deg, second_deg = azimuth_deg, elevation_deg
-    if mount.single_axis:
-        return first_deg + pointing.azimuth_offset_deg, second_deg
     return first_deg + pointing.azimuth_offset_deg, second_deg + pointing.elevation_offset_deg
 
 
@@ -156,18 +155,3 @@ def upright(wanted: Orientation | None) -> Orientation | None:
     if wanted is None or wanted.elevation_deg <= 90.0:
         return wanted
     return Orientation(wrap360(wanted.azimuth_deg + 180.0), 180.0 - wanted.elevation_deg)
-
-
-def needs_move(
-    config: TrackerConfig, measured: Orientation, target: Orientation, deadband_deg: float | None = None
-) -> bool:
-    """Return whether the panel is off its target by more than the deadband, judged on the sphere.
-
-    There an azimuth error counts times the cosine of the elevation: near the zenith, where the sun's azimuth
-    races, the axis does not turn for nothing. Without `deadband_deg` the tracker's own deadband counts.
-    """
-    allowed_deg = config.deadband_deg if deadband_deg is None else deadband_deg
-    off_deg = separation_deg(
-        measured.azimuth_deg, measured.elevation_deg, target.azimuth_deg, target.elevation_deg
-    )
-    return off_deg > allowed_deg

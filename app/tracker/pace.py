@@ -10,6 +10,8 @@ from app.tracker.mind import Mind
 def paced(mind: Mind) -> TrackerConfig:
     """Return the configuration with the speeds that are allowed now; unchanged where nothing limits them."""
     config = mind.config
+    if mind.memory.service is None and not mind.guards:
+        return config
     if is_slow(mind, Axis.AZIMUTH):
         config = replace(config, azimuth=_slowed(config.azimuth))
     if is_slow(mind, Axis.ELEVATION):

@@ -64,13 +64,13 @@ def found(mind: Mind, feedback: Feedback) -> None:
     mind.say(EventKind.DRIVE_FOUND, mind.aftermath.message, code=mind.aftermath.code)
 
 
-def protect(mind: Mind, before: Feedback | None, feedback: Feedback, elapsed_s: float) -> None:
-    """End what must not go on in the light of a new reading."""
+def protect(mind: Mind, before: Feedback | None, feedback: Feedback, elapsed: timedelta) -> None:
+    """End what must not go on in the light of a reading, so long after the one before."""
     suspicious = feedback.fault_code or feedback.azimuth.at_upper_limit or feedback.elevation.at_upper_limit
     if suspicious and not is_silent(mind):
         _refuse_fault(mind, feedback)
     if before is not None and before is not feedback:
-        _compare(mind, before, feedback, elapsed_s)
+        _compare(mind, before, feedback, elapsed.total_seconds())
     home = mind.memory.home
     if home is not None and not isinstance(mind.activity, Zeroing):
         doubt = guards.home_doubt(mind.config, home, feedback)

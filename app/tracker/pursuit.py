@@ -4,11 +4,12 @@ from dataclasses import replace
 from datetime import datetime
 from typing import assert_never
 
+from app.angles import separation_deg
 from app.tracker.activity import AxisPair, Run
 from app.tracker.axes import AxisConfig
-from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.config import TrackerConfig
 from app.tracker.motion import AxisCommand, AxisFeedback, DriveCommand, Feedback, Position
-from app.tracker.mount import AxisTarget, needs_move
+from app.tracker.mount import AxisTarget
 from app.tracker.runs import new_run
 from app.tracker.strategy import Continuous, Deadband, EncoderDeadband, Interval, Stepped, Strategy
 
@@ -23,12 +24,18 @@ def trigger_deg(config: TrackerConfig) -> float:
     return config.deadband_deg - min(MARGIN_DEG, MARGIN_SHARE * config.deadband_deg)
 
 
-def next_run(
-    strategy: Strategy, config: TrackerConfig, feedback: Feedback, target: AxisTarget, now: datetime
-) -> Run | None:
-    """Return the run that a strategy begins now; None while the panel stands where the strategy lets it."""
-    pair = _due(strategy, config, feedback, target)
-    return None if pair == _NONE else new_run(config, feedback, pair, now)
+def due(strategy: Strategy, config: TrackerConfig, feedback: Feedback, target: AxisTarget) -> AxisPair | None:
+    """Return the target of each axis that has to move now; None while the panel stands where it may."""
+    match strategy:
+        case Deadband():
+            return _both_if(_off_target(config, feedback, target), target)
+        case EncoderDeadband():
+            return _due_in_counts(strategy, config, feedback, target)
+        case Stepped(program) if not program.complete:
+            return _both_if(_off_target(config, feedback, target), target)
+        case Continuous() | Interval() | Stepped():
+            return _both_if(_off_place(config, feedback, target), target)
+    assert_never(strategy)
 
 
 def widened(
@@ -42,10 +49,12 @@ def widened(
     """Return a run under way with the axis that has become due meanwhile: in counts axes are independent."""
     if not isinstance(strategy, EncoderDeadband) or None not in _both(run.target):
         return run
-    due = _due(strategy, config, feedback, target)
+    more = due(strategy, config, feedback, target)
+    if more is None:
+        return run
     pair = AxisPair(
-        due.azimuth_deg if run.target.azimuth_deg is None else run.target.azimuth_deg,
-        due.elevation_deg if run.target.elevation_deg is None else run.target.elevation_deg,
+        more.azimuth_deg if run.target.azimuth_deg is None else run.target.azimuth_deg,
+        more.elevation_deg if run.target.elevation_deg is None else run.target.elevation_deg,
     )
     if pair == run.target:
         return run
@@ -64,29 +73,16 @@ def _follow(axis: AxisConfig, target_deg: float) -> AxisCommand:
     return Position(target_deg, axis.speed_dps)
 
 
-def _due(strategy: Strategy, config: TrackerConfig, feedback: Feedback, target: AxisTarget) -> AxisPair:
-    """Return the target of each axis that has to move now, None for one that may stand."""
-    match strategy:
-        case Deadband():
-            return _both_if(_off_target(config, feedback, target), target)
-        case EncoderDeadband():
-            return AxisPair(
-                _counted(strategy, config.azimuth, feedback.azimuth, target.azimuth_deg),
-                _counted(strategy, config.elevation, feedback.elevation, target.elevation_deg),
-            )
-        case Stepped(program) if not program.complete:
-            return _both_if(_off_target(config, feedback, target), target)
-        case Continuous() | Interval() | Stepped():
-            return _both_if(_off_place(config, feedback, target), target)
-    assert_never(strategy)
-
-
-def _both_if(due: bool, target: AxisTarget) -> AxisPair:
-    return AxisPair(target.azimuth_deg, target.elevation_deg) if due else _NONE
+def _both_if(off: bool, target: AxisTarget) -> AxisPair | None:
+    return AxisPair(target.azimuth_deg, target.elevation_deg) if off else None
 
 
 def _off_target(config: TrackerConfig, feedback: Feedback, target: AxisTarget) -> bool:
-    """Return whether the panel is about to leave the deadband, or stands a turn of the cable away."""
+    """Return whether the panel is about to leave the deadband, or stands a turn of the cable away.
+
+    The deadband is judged on the sphere. There an azimuth error counts times the cosine of the elevation:
+    near the zenith, where the sun's azimuth races, the axis does not turn for nothing.
+    """
     azimuth_deg, elevation_deg = feedback.azimuth.position_deg, feedback.elevation.position_deg
     turn_deg = abs(azimuth_deg - target.azimuth_deg)
     if turn_deg > UNWIND_DEG:
@@ -94,8 +90,8 @@ def _off_target(config: TrackerConfig, feedback: Feedback, target: AxisTarget) -
     allowed_deg = trigger_deg(config)
     if turn_deg + abs(elevation_deg - target.elevation_deg) <= allowed_deg:
         return False  # no great circle is longer than the way along azimuth and elevation
-    place = Orientation(target.azimuth_deg, target.elevation_deg)
-    return needs_move(config, Orientation(azimuth_deg, elevation_deg), place, allowed_deg)
+    off_deg = separation_deg(azimuth_deg, elevation_deg, target.azimuth_deg, target.elevation_deg)
+    return off_deg > allowed_deg
 
 
 def _off_place(config: TrackerConfig, feedback: Feedback, target: AxisTarget) -> bool:
@@ -105,6 +101,15 @@ def _off_place(config: TrackerConfig, feedback: Feedback, target: AxisTarget) ->
         abs(feedback.elevation.position_deg - target.elevation_deg),
     )
     return away_deg > config.in_position_deg
+
+
+def _due_in_counts(
+    strategy: EncoderDeadband, config: TrackerConfig, feedback: Feedback, target: AxisTarget
+) -> AxisPair | None:
+    """Return where each axis that is off by too many counts has to run; each axis is judged by itself."""
+    azimuth_deg = _counted(strategy, config.azimuth, feedback.azimuth, target.azimuth_deg)
+    elevation_deg = _counted(strategy, config.elevation, feedback.elevation, target.elevation_deg)
+    return None if azimuth_deg is elevation_deg is None else AxisPair(azimuth_deg, elevation_deg)
 
 
 def _counted(
@@ -118,6 +123,3 @@ def _counted(
 
 def _both(pair: AxisPair) -> tuple[float | None, float | None]:
     return pair.azimuth_deg, pair.elevation_deg
-
-
-_NONE = AxisPair(None, None)

@@ -17,7 +17,8 @@ HOUR = timedelta(hours=1)
 
 def recover(mind: Mind, feedback: Feedback) -> None:
     """Clear a fault that its policy lets clear by itself, and go on tracking after one that was cleared."""
-    _go_on(mind)
+    if mind.recovering:
+        _go_on(mind)
     code = _fault(mind)
     if code is None and mind.ailing is None:
         return
@@ -44,8 +45,9 @@ def _fault(mind: Mind) -> str | None:
     """Return the code of the latched fault, or that the drive was lost and tracking waits for that."""
     if isinstance(mind.activity, Faulted):
         return mind.activity.reason.code
-    waits = isinstance(mind.activity, Holding) and mind.wait is not None
-    return mind.wait.code if waits and mind.wait is not None and mind.wait.code == "drive_lost" else None
+    if mind.wait is None or mind.wait.code != "drive_lost" or not isinstance(mind.activity, Holding):
+        return None
+    return mind.wait.code
 
 
 def _policy(mind: Mind, code: str | None) -> RecoveryPolicy | None:
@@ -63,7 +65,7 @@ def _asks_already(mind: Mind) -> bool:
 
 def _go_on(mind: Mind) -> None:
     """Track again once the fault that was being left is gone; the motion is announced."""
-    if not mind.recovering or isinstance(mind.activity, Faulted):
+    if isinstance(mind.activity, Faulted):
         return
     mind.recovering = False
     if isinstance(mind.activity, Holding):

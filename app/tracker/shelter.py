@@ -32,11 +32,10 @@ REACTS = {
 
 def look(mind: Mind, seen: Observation) -> None:
     """Take in the weather: run every timer, latch what holds, and say what begins and ends."""
-    sensed = seen.weather
-    before = guarding(mind)
-    begun = _sobered(mind, before, sensed)
-    if begun is before is OFF_GUARD and sensed is NOTHING_SENSED and not _expected(mind):
+    sensed, before = seen.weather, guarding(mind)
+    if before is OFF_GUARD and sensed is NOTHING_SENSED and not mind.made_up and not _expected(mind):
         return
+    begun = _sobered(mind, before, sensed)
     config, known = mind.config.protection, _learnt(mind, sensed)
     after = step(begun, config, sensed, known, seen.now, night=_is_night(mind, seen))
     mind.guarding = after
@@ -58,10 +57,10 @@ def guarding(mind: Mind) -> Guarding:
 def demanded_stow(mind: Mind) -> StowName | None:
     """Return where the panel belongs: wind wins over a command, a command over snow, snow over park."""
     by_weather, by_command = guarding(mind).stow, mind.memory.stow
+    if by_weather is None:
+        return by_command
     parked = by_command in (None, StowName.PARK)
-    if by_weather is StowName.WIND or (by_weather is not None and parked):
-        return by_weather
-    return by_command
+    return by_weather if parked or by_weather is StowName.WIND else by_command
 
 
 def hold_reason(mind: Mind) -> Reason | None:

@@ -12,7 +12,7 @@ from app.tracker.axes import AxisConfig
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
-from app.tracker.mount import aim, mode_direction, needs_move, sky
+from app.tracker.mount import aim, mode_direction, sky
 
 LEVEL = Pointing()
 PLAIN = TrackerConfig("t01", "T01")
@@ -136,15 +136,3 @@ def test_each_mode_follows_the_sun_on_its_axes_and_holds_the_others() -> None:
     assert mode_direction(Mode.ELEVATION, held, sun, refraction=True) == Orientation(10.0, 40.1)
     assert mode_direction(Mode.DUAL, held, sun, refraction=True) == Orientation(150.0, 40.1)
     assert mode_direction(Mode.DUAL, held, sun, refraction=False) == Orientation(150.0, 40.0)
-
-
-def test_an_azimuth_error_counts_less_the_higher_the_panel_looks() -> None:
-    assert needs_move(PLAIN, Orientation(100.0, 10.0), Orientation(101.0, 10.0), 0.5)
-    assert not needs_move(PLAIN, Orientation(100.0, 70.0), Orientation(101.0, 70.0), 0.5)
-    assert not needs_move(PLAIN, Orientation(90.0, 89.9), Orientation(270.0, 89.9), 0.5)
-
-
-def test_without_a_deadband_given_the_trackers_own_counts() -> None:
-    measured, target = Orientation(100.0, 0.0), Orientation(100.4, 0.0)
-    assert not needs_move(PLAIN, measured, target)
-    assert needs_move(replace(PLAIN, deadband_deg=0.3), measured, target)

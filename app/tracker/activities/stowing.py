@@ -40,6 +40,7 @@ from app.tracker.transitions import end_show, fail, interrupt, leave
 HAND_GRACE = timedelta(seconds=5)
 """For so long a motion by hand goes on when the weather demands a stow."""
 BY_HAND = (MoveKind.MOVE, MoveKind.STEP)
+STOW_ACTIVITIES = (Stowing, Stowed)
 MOVES_BY_ITSELF = (ShowPhase.GOING_TO_START, ShowPhase.RUNNING)
 
 
@@ -66,7 +67,11 @@ def resume(mind: Mind) -> None:
 
 def guard(mind: Mind, feedback: Feedback) -> None:
     """Let the weather and the commanded stow have their way before the activity's own step."""
-    activity, by_weather = mind.activity, guarding(mind).stow
+    activity, wanted = mind.activity, demanded_stow(mind)
+    if wanted is None and not isinstance(activity, STOW_ACTIVITIES):
+        mind.hand_until = None
+        return
+    by_weather = guarding(mind).stow
     if isinstance(activity, Jogging) or (isinstance(activity, Moving) and activity.kind in BY_HAND):
         _end_by_hand(mind, by_weather)
         return
@@ -75,8 +80,7 @@ def guard(mind: Mind, feedback: Feedback) -> None:
         if by_weather is not None:
             _end_show(mind, activity, by_weather)
         return
-    wanted = demanded_stow(mind)
-    if isinstance(activity, Stowing | Stowed):
+    if isinstance(activity, STOW_ACTIVITIES):
         _keep_stowed(mind, feedback, activity, wanted)
     elif wanted is not None and _is_automatic(mind, wanted):
         _begin_by_itself(mind, feedback, wanted)

@@ -21,9 +21,9 @@ from app.tracker.mounts.kinematics import FIRST_FOLLOWS
 from app.tracker.observation import Observation
 from app.tracker.pace import paced
 from app.tracker.programs.schedule import Aimed, Followed, Moment, aimed, scheduled, scheduled_dawn
-from app.tracker.pursuit import next_run, pursue, widened
+from app.tracker.pursuit import due, pursue, widened
 from app.tracker.reason import Reason
-from app.tracker.runs import arrived
+from app.tracker.runs import arrived, new_run
 from app.tracker.shelter import TWILIGHT_DEG, guarding, hold_reason
 from app.tracker.snapshot import EventKind
 from app.tracker.strategy import (
@@ -117,13 +117,13 @@ def _begin(
         if _must_wait(mind, tracking, phase):
             return Turn(TRACKING[phase], HALTED, wanted.direction, sun)
         return Turn(TRACKING[phase], pursue(paced(mind), wanted.target), wanted.direction, sun)
-    run = next_run(strategy, paced(mind), feedback, wanted.target, mind.now)
-    if run is None:
-        return Turn(
-            RESTED[phase] if _has_rested(tracking) else TRACKING[phase], HALTED, wanted.direction, sun
-        )
+    place = due(strategy, mind.config, feedback, wanted.target)
+    if place is None:
+        stands = RESTED if _has_rested(tracking) else TRACKING
+        return Turn(stands[phase], HALTED, wanted.direction, sun)
     if _must_wait(mind, tracking, phase):
         return Turn(TRACKING[phase], HALTED, wanted.direction, sun)
+    run = new_run(paced(mind), feedback, place, mind.now)
     return Turn(Tracking(phase, run), run.command, wanted.direction, sun)
 
 
@@ -150,10 +150,10 @@ def _paused(mind: Mind, tracking: Tracking) -> Tracking:
 def _day_place(strategy: Strategy, followed: Followed, moment: Moment, near_deg: float) -> Aimed:
     """Return where the panel shall face while the sun is up."""
     match strategy:
+        case Deadband() | Continuous() | EncoderDeadband():
+            return aimed(followed, followed.direction(moment.sun), near_deg)
         case Interval() | Stepped():
             return scheduled(strategy, followed, moment, near_deg)
-        case Continuous() | Deadband() | EncoderDeadband():
-            return aimed(followed, followed.direction(moment.sun), near_deg)
     assert_never(strategy)
 
 

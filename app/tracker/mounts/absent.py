@@ -42,6 +42,6 @@ def mode_absent(config: TrackerConfig, mode: Mode) -> Reason | None:
 
 def for_drive(config: TrackerConfig, command: DriveCommand) -> DriveCommand:
     """Return a command that does not send an axis anywhere that the mount does not have."""
-    if config.mount.single_axis and isinstance(command.elevation, Position):
+    if isinstance(command.elevation, Position) and config.mount.single_axis:
         return replace(command, elevation=HALT)
     return command
