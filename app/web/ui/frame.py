@@ -74,7 +74,7 @@ def tracker_frame(
     """Return the frame of a page about one tracker; with steps there are no tabs."""
     site = shown_site(request)
     root, here = f"/trackers/{tracker_id}", request.url.path
-    tabs = () if steps else tuple(Link(name, root + end, here == root + end) for name, end in TRACKER_TABS)
+    tabs = () if steps else tuple(Link(name, root + end, _is_under(here, root, end)) for name, end in TRACKER_TABS)
     overview = Link("Trackers", "/")
     return _frame(
         request,
@@ -164,6 +164,11 @@ def who_looks(request: Request) -> Who:
 
 def _is_current(here: str, href: str) -> bool:
     return here == href if href == "/" else here.startswith(href)
+
+
+def _is_under(here: str, root: str, end: str) -> bool:
+    """Return whether a page of a tracker belongs to a tab, as a running show does to Show."""
+    return here.startswith(root + end) if end else here == root
 
 
 def step_marks(tracker: TrackerDetail, current: StepName | None) -> tuple[StepMark, ...]:
