@@ -74,7 +74,11 @@ def tracker_frame(
     """Return the frame of a page about one tracker; with steps there are no tabs."""
     site = shown_site(request)
     root, here = f"/trackers/{tracker_id}", request.url.path
-    tabs = () if steps else tuple(Link(name, root + end, _is_under(here, root, end)) for name, end in TRACKER_TABS)
+    tabs = (
+        ()
+        if steps
+        else tuple(Link(name, root + end, _is_under(here, root, end)) for name, end in TRACKER_TABS)
+    )
     overview = Link("Trackers", "/")
     return _frame(
         request,
