@@ -1,11 +1,14 @@
 """The three ways to use a page: mouse, finger and keyboard, behind one small set of words."""
 
+import re
 from dataclasses import dataclass
 from typing import Protocol
 
-from playwright.sync_api import Locator, Page
+from playwright.sync_api import Locator, Page, TimeoutError
 
 HOLD_MS = 700
+TOLD = '[role="alert"], .reasons, .field-error, .outcome, .kept-note, #link-words, #place-doubts, h1'
+"""Where a page says how things stand, and why something is refused."""
 
 
 class Hands(Protocol):
@@ -15,6 +18,24 @@ class Hands(Protocol):
     def choose(self, radio: Locator) -> None: ...
     def write(self, field: Locator, text: str) -> None: ...
     def hold(self, key: Locator) -> None: ...
+
+
+def shown(page: Page) -> str:
+    """Return what a page says now: its address, what has the focus, every refusal that is seen."""
+    said = [
+        text for one in page.locator(TOLD).all() if one.is_visible() and (text := one.inner_text().strip())
+    ]
+    focus = page.evaluate("document.activeElement?.outerHTML.slice(0, 160)")
+    return f"{page.url} shows {[text for text in said if text]}; the focus is on {focus}"
+
+
+def arrive(page: Page, to: str) -> None:
+    """Return once the page's address ends like this and its values are live, or fail with what it shows."""
+    try:
+        page.wait_for_url(re.compile(f"{to}$"))
+        page.wait_for_selector('html[data-link="live"]')
+    except TimeoutError as error:
+        raise AssertionError(f"The page did not come to {to}: {shown(page)}.") from error
 
 
 def middle(thing: Locator) -> tuple[float, float]:

@@ -14,7 +14,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from tests.browser.conftest import SIZES
-from tests.browser.hands import Finger, Hands, Keyboard, Mouse
+from tests.browser.hands import Finger, Hands, Keyboard, Mouse, arrive
 
 READY_S = 60
 HANDS: dict[str, Callable[[Page], Hands]] = {"mouse": Mouse, "finger": Finger, "keyboard": Keyboard}
@@ -77,8 +77,7 @@ def walker(browser: Browser) -> Iterator[Callable[[str, str], Page]]:
 
 def onwards(page: Page, hands: Hands, to: str) -> None:
     hands.press(page.locator("#forward .key"))
-    page.wait_for_url(re.compile(to + "$"))
-    page.wait_for_selector('html[data-link="live"]')
+    arrive(page, to)
 
 
 def add_tracker(page: Page, hands: Hands, url: str, tracker_id: str) -> None:
@@ -86,7 +85,7 @@ def add_tracker(page: Page, hands: Hands, url: str, tracker_id: str) -> None:
     hands.write(page.locator("#f-tracker_id"), tracker_id)
     hands.write(page.locator("#f-name"), "Walked")
     hands.press(page.locator("#add-form button"))
-    page.wait_for_url(re.compile("/settings$"))
+    arrive(page, "/settings")
 
 
 def say_where(page: Page, hands: Hands) -> None:
@@ -163,7 +162,7 @@ def test_solstice_is_shown_and_replayed(
     hands.press(page.locator("#verdict a.key-primary"))
     expect(page.locator("#verdict")).to_contain_text("This works")
     hands.press(page.locator('[data-action="go_to_start"]'))
-    page.wait_for_url(re.compile("/shows/"))
+    arrive(page, "/shows/.*")
     expect(page.locator("#show-phase")).to_have_text("Ready at the start", timeout=60000)
     hands.press(page.locator('[data-action="run_show"]'))
     expect(page.locator("#show-phase")).to_have_text("Running")
