@@ -3,6 +3,7 @@
 import { live } from "./live.js";
 import { clockTime } from "./format.js";
 import { mute, mutedUntil, soundIsOn, switchSound } from "./alarms.js";
+import { _ } from "./said.js";
 
 const soundKey = document.getElementById("sound-key");
 const muteKey = document.getElementById("mute-key");
@@ -31,11 +32,11 @@ function reopen() {
 function paintKeys() {
   const on = soundIsOn();
   soundKey.setAttribute("aria-pressed", String(on));
-  soundKey.textContent = on ? "Sound on" : "Sound off";
+  soundKey.textContent = on ? _("Sound on") : _("Sound off");
   const muted = mutedUntil() > Date.now();
   muteKey.hidden = !on;
   muteKey.setAttribute("aria-pressed", String(muted));
-  muteKey.textContent = muted ? `Muted until ${clockTime(new Date(mutedUntil()).toISOString(), live.zone, false)}` : "Mute 10 min";
+  muteKey.textContent = muted ? _("Muted until {time}", { time: clockTime(new Date(mutedUntil()).toISOString(), live.zone, false) }) : _("Mute 10 min");
 }
 
 soundKey.addEventListener("click", () => {

@@ -2,6 +2,7 @@
 
 import { live } from "./live.js";
 import { clockTime } from "./format.js";
+import { _ } from "./said.js";
 
 const CALLS = ["unacknowledged", "returned"];
 const SOUND = "heliopanel-sound";
@@ -15,7 +16,7 @@ const TONE_S = 0.18;
 const calls = (alarm) => CALLS.includes(alarm.state);
 const one = (id) => document.getElementById(id);
 
-const UNKNOWN = "Alarms are not known now";
+const UNKNOWN = _("Alarms are not known now");
 
 // Without the machine nothing is known: what was shown last is no longer the truth.
 function paintUnknown() {
@@ -23,7 +24,7 @@ function paintUnknown() {
   if (!one("alarm-strip").hasAttribute("data-unknown")) return;
   const last = live.site?.alarms.find((alarm) => calls(alarm) && !alarm.collapsed);
   setText("alarm-first-title", UNKNOWN);
-  setText("alarm-first-where", last ? `Last known: ${last.title}, ${last.where}` : "There is no connection to the machine.");
+  setText("alarm-first-where", last ? _("Last known: {title}, {where}", last) : _("There is no connection to the machine."));
   for (const shape of document.querySelectorAll("[data-first-shape]")) shape.hidden = true;
   for (const item of document.querySelectorAll("[data-count] b")) item.textContent = "?";
   one("alarm-ack").querySelector("button").disabled = true;
@@ -39,7 +40,7 @@ function paintFirst(site) {
     shape.hidden = Number(shape.dataset.firstShape) !== first?.priority;
   }
   const standing = site.alarm_counts.standing.reduce((sum, count) => sum + count, 0);
-  const title = first?.title ?? (standing ? "No new alarm" : "No alarms");
+  const title = first?.title ?? (standing ? _("No new alarm") : _("No alarms"));
   const where = first ? `${first.where} · ${clockTime(first.since, live.zone)}` : "";
   setText("alarm-first-title", title);
   setText("alarm-first-where", where);

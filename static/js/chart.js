@@ -2,7 +2,8 @@
 
 /* global uPlot */
 import { colour } from "./colours.js";
-import { clockTime, dateIn } from "./format.js";
+import { clockTime, dayIn, numberOf } from "./format.js";
+import { _ } from "./said.js";
 
 const tzDate = (zone) => (seconds) => uPlot.tzDate(new Date(seconds * 1000), zone);
 
@@ -12,7 +13,7 @@ export function chart(holder, wanted) {
   const size = () => ({ width: Math.max(200, holder.clientWidth), height: wanted.height ?? 260 });
   const digits = wanted.digits ?? 2;
   const unit = wanted.unit ?? "°";
-  const text = (value) => (value === null || value === undefined ? "–" : `${value.toFixed(digits)}${unit}`);
+  const text = (value) => (value === null || value === undefined ? "–" : `${numberOf(value.toFixed(digits))}${unit}`);
   const font = `14px ${getComputedStyle(document.body).fontFamily}`;
   const axis = { stroke: colour("text"), grid: { stroke: colour("hair"), width: 1 }, ticks: { show: false }, font };
   const plot = new uPlot({
@@ -23,10 +24,10 @@ export function chart(holder, wanted) {
     scales: { x: { time: Boolean(wanted.zone) }, y: { range: wanted.range ?? padded } },
     axes: [
       { ...axis, values: wanted.zone ? (_, ticks) => ticks.map((at) => timeOf(at, wanted)) : wanted.xTicks },
-      { ...axis, size: 58, values: (_, ticks) => ticks.map((value) => `${value}${wanted.tickUnit ?? unit}`) },
+      { ...axis, size: 58, values: (_, ticks) => ticks.map((value) => `${numberOf(value)}${wanted.tickUnit ?? unit}`) },
     ],
     series: [
-      { label: wanted.xLabel ?? "Time", value: (_, at) => (at === null ? "–" : wanted.zone ? timeOf(at, { ...wanted, seconds: true }) : wanted.xText?.(at) ?? at) },
+      { label: wanted.xLabel ?? _("Time"), value: (_, at) => (at === null ? "–" : wanted.zone ? timeOf(at, { ...wanted, seconds: true }) : wanted.xText?.(at) ?? at) },
       ...wanted.series.map((one) => ({ label: one.label, stroke: colour(one.colour), width: one.width ?? 2, dash: one.dash, points: { show: false }, value: (_, value) => text(value), spanGaps: false })),
     ],
     hooks: wanted.hooks,
@@ -39,7 +40,7 @@ export function chart(holder, wanted) {
 // The time of day, and with `days` the month and day before it.
 function timeOf(seconds, { zone, days, seconds: fine = false }) {
   const time = clockTime(seconds * 1000, zone, fine);
-  return days ? `${dateIn(seconds * 1000, zone).slice(5)} ${time}` : time;
+  return days ? `${dayIn(seconds * 1000, zone)} ${time}` : time;
 }
 
 function padded(_, least, most) {

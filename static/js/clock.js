@@ -2,6 +2,7 @@
 
 import { clockTime, compass, decimals, signedSeconds } from "./format.js";
 import { live } from "./live.js";
+import { _ } from "./said.js";
 
 const zone = Intl.DateTimeFormat().resolvedOptions().timeZone;
 const CLOSE_S = 5;
@@ -9,7 +10,7 @@ const CLOSE_S = 5;
 function tick() {
   const device = new Date();
   document.getElementById("device-clock").textContent = clockTime(device, live.zone);
-  document.getElementById("device-zone").textContent = `set to ${zone}, shown in ${live.zone}`;
+  document.getElementById("device-zone").textContent = _("set to {zone}, shown in {shown}", { zone, shown: live.zone });
   const now = live.machineNow();
   const seconds = now === null ? null : (Date.parse(now) - device.getTime()) / 1000;
   document.getElementById("clock-difference").textContent = seconds === null ? "–" : signedSeconds(seconds);
@@ -17,8 +18,8 @@ function tick() {
 }
 
 function verdict(seconds) {
-  if (Math.abs(seconds) < CLOSE_S) return "the clocks agree";
-  return seconds > 0 ? "the controller is ahead" : "the controller is behind";
+  if (Math.abs(seconds) < CLOSE_S) return _("the clocks agree");
+  return seconds > 0 ? _("the controller is ahead") : _("the controller is behind");
 }
 
 function shadow() {
@@ -30,13 +31,16 @@ function shadow() {
   arrow.setAttribute("visibility", up ? "visible" : "hidden");
   arrow.setAttribute("transform", `rotate(${away.toFixed(1)})`);
   document.getElementById("shadow-words").textContent = up
-    ? `The shadow of an upright pole must point to ${away.toFixed(0)}° (${compass(away)}), ${length(sun.apparent_elevation_deg)} its height. Look: does it?`
-    : `The sun is ${decimals(-sun.apparent_elevation_deg, 1)}° below the horizon now: it must be night outside.`;
+    ? shadowWords(away, 1 / Math.tan((sun.apparent_elevation_deg * Math.PI) / 180))
+    : _("The sun is {below}° below the horizon now: it must be night outside.", { below: decimals(-sun.apparent_elevation_deg, 1) });
 }
 
-function length(elevationDeg) {
-  const times = 1 / Math.tan((elevationDeg * Math.PI) / 180);
-  return times > 20 ? "more than 20 times as long as" : `${decimals(times, 1)} times`;
+// `times` is how many times as long as its pole a shadow is.
+function shadowWords(away, times) {
+  const values = { away: away.toFixed(0), point: compass(away), times: decimals(times, 1) };
+  return times > 20
+    ? _("The shadow of an upright pole must point to {away}° ({point}), more than 20 times as long as its height. Look: does it?", values)
+    : _("The shadow of an upright pole must point to {away}° ({point}), {times} times its height. Look: does it?", values);
 }
 
 document.addEventListener("htmx:config:request", (event) => {

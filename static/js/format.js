@@ -1,15 +1,19 @@
 // How values read on a page; app/web/ui/formats.py says the same on the server.
 
-const POINTS = ["N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"];
+import { _, spoken } from "./said.js";
+
 const UNKNOWN = "–";
 
 export function decimals(value, digits) {
   const text = value.toFixed(digits);
-  return (Number(text) === 0 ? text.replace("-", "") : text).replace("-", "−");
+  return numberOf((Number(text) === 0 ? text.replace("-", "") : text).replace("-", "−"));
 }
 
+// A number as the language of the page writes it.
+export const numberOf = (value) => String(value).replace(".", spoken.point);
+
 export const angle = (value, digits = 2) => `${decimals(value, digits)}°`;
-export const compass = (azimuthDeg) => POINTS[Math.round(azimuthDeg / 22.5) % 16];
+export const compass = (azimuthDeg) => spoken.compass[Math.round(azimuthDeg / 22.5) % 16];
 
 export function duration(seconds) {
   const total = Math.round(Math.abs(seconds));
@@ -44,11 +48,21 @@ export function clockTime(iso, zone, seconds = true) {
   return inZone(zone, seconds ? { ...minutes, second } : minutes).format(new Date(iso));
 }
 
-export const dateIn = (iso, zone) => inZone(zone, DATE).format(new Date(iso));
+const isoDateIn = (iso, zone) => inZone(zone, DATE).format(new Date(iso));
+
+function written(pattern, iso, zone) {
+  const [year, month, day] = isoDateIn(iso, zone).split("-");
+  return pattern.replace("%Y", year).replace("%m", month).replace("%d", day);
+}
+
+export const dateIn = (iso, zone) => written(spoken.date, iso, zone);
+
+// Month and day, in the order and with the signs of the language.
+export const dayIn = (iso, zone) => written(spoken.date.replace(/^%Y\W|\W?%Y$/, ""), iso, zone);
 
 export function words(value) {
   const text = String(value).replace(/[_-]/g, " ");
-  return text.charAt(0).toUpperCase() + text.slice(1);
+  return _(text.charAt(0).toUpperCase() + text.slice(1));
 }
 
 const FORMS = {
@@ -68,7 +82,7 @@ const FORMS = {
   hpa: (value) => `${decimals(value, 0)} hPa`,
   mm: (value) => `${decimals(value, 1)} mm`,
   kg: (value) => `${decimals(value, 1)} kg`,
-  freshness: (value) => (value ? "Stale, not used" : "Current"),
+  freshness: (value) => (value ? _("Stale, not used") : _("Current")),
   factor: (value) => `${Math.round(value).toLocaleString("en").replace(/,/g, " ")} ×`,
   clock: (value, zone) => clockTime(value, zone),
   minute: (value, zone) => clockTime(value, zone, false),

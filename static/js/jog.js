@@ -2,12 +2,13 @@
 
 import { live } from "./live.js";
 import { randomId } from "./orders.js";
+import { _ } from "./said.js";
 
 const BEAT_MS = 50;
 const SLIDE_PX = 24;
 const SLOW_LINK_MS = 120;
 const LEVELS = [40, SLOW_LINK_MS, Infinity];
-const LEVEL_WORDS = ["not measured yet", "good", "fair", "too slow"];
+const LEVEL_WORDS = [_("not measured yet"), _("good"), _("fair"), _("too slow")];
 const KEYS = new Set([" ", "Enter"]);
 const said = document.getElementById("jog-words");
 
@@ -18,7 +19,7 @@ const speed = () => document.querySelector('input[name="speed"]:checked')?.value
 function beat() {
   if (!press) return;
   if (live.link !== "live") {
-    end("The connection was lost.");
+    end(_("The connection was lost."));
     return;
   }
   const message = { type: "jog", tracker_id: live.trackerId, press_id: press.id, axis: press.axis, direction: press.direction,
@@ -70,13 +71,13 @@ function watch(key) {
   key.addEventListener("pointerdown", (event) => {
     event.preventDefault();
     key.focus({ preventScroll: true });
-    if (press) return end("Two keys were touched.");
+    if (press) return end(_("Two keys were touched."));
     if (event.button !== 0 || !event.isPrimary) return undefined;
     key.setPointerCapture(event.pointerId);
     return begin(key, event.pointerId);
   });
   key.addEventListener("pointermove", (event) => {
-    if (press?.key === key && event.pointerId === press.pointer && slidOff(event)) end("The finger slid off the key.");
+    if (press?.key === key && event.pointerId === press.pointer && slidOff(event)) end(_("The finger slid off the key."));
   });
   for (const name of ["pointerup", "pointercancel", "lostpointercapture"]) {
     key.addEventListener(name, (event) => { if (press?.key === key && event.pointerId === press.pointer) end(); });
@@ -97,12 +98,12 @@ function judged(message) {
     if (message.status === "refused") said.textContent = message.reasons?.map((reason) => reason.message).join(" ") ?? "";
     return;
   }
-  if (message.status !== "ok") end(message.reasons?.map((reason) => `${reason.message} ${reason.hint ?? ""}`).join(" ") || "The machine ended the movement.");
+  if (message.status !== "ok") end(message.reasons?.map((reason) => `${reason.message} ${reason.hint ?? ""}`).join(" ") || _("The machine ended the movement."));
 }
 
 // How many of the last press's heartbeats could not leave in time.
 function paintBeats(lost, all) {
-  document.getElementById("lost-beats").textContent = all ? `, ${lost} of ${all} beats lost` : "";
+  document.getElementById("lost-beats").textContent = all ? _(", {lost} of {all} beats lost", { lost, all }) : "";
 }
 
 function paintLink() {
@@ -111,12 +112,12 @@ function paintLink() {
   const level = trip === null ? 0 : LEVELS.findIndex((most) => trip <= most) + 1;
   document.getElementById("link-quality").dataset.level = level;
   document.getElementById("link-words-jog").textContent = LEVEL_WORDS[level];
-  document.getElementById("round-trip").textContent = trip === null ? "" : `${Math.max(1, Math.round(trip))} ms there and back`;
-  document.getElementById("link-verdict").textContent = slow ? "Link too slow for hold-to-run: use the small steps." : "";
+  document.getElementById("round-trip").textContent = trip === null ? "" : _("{time} ms there and back", { time: Math.max(1, Math.round(trip)) });
+  document.getElementById("link-verdict").textContent = slow ? _("Link too slow for hold-to-run: use the small steps.") : "";
 }
 
 document.querySelectorAll("[data-jog]").forEach(watch);
-document.addEventListener("pointerdown", (event) => { if (press && event.pointerId !== press.pointer) end("A second finger touched the screen."); }, true);
+document.addEventListener("pointerdown", (event) => { if (press && event.pointerId !== press.pointer) end(_("A second finger touched the screen.")); }, true);
 document.addEventListener("visibilitychange", () => { if (document.hidden) end(); });
 addEventListener("blur", () => end());
 addEventListener("pagehide", () => end());
@@ -127,6 +128,6 @@ document.addEventListener("htmx:before:swap", (event) => {
 });
 live.on("jog", judged);
 live.on("pong", paintLink);
-live.on("stopped", () => end("Stopped."));
-live.on("link", () => { if (live.link !== "live") end("The connection was lost."); });
+live.on("stopped", () => end(_("Stopped.")));
+live.on("link", () => { if (live.link !== "live") end(_("The connection was lost.")); });
 live.on("state", () => { if (press?.key.disabled) end(); });

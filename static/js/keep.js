@@ -1,5 +1,7 @@
 // What was typed outlives a reload, in this tab: it comes back with a word about it, until it is saved or discarded.
 
+import { _ } from "./said.js";
+
 const SKIPPED = new Set(["password", "file", "submit", "button"]);
 const ORDER_FIELDS = new Set(["back", "issued_at", "key", "epoch"]);
 const DRAWN = /_drawn$/;
@@ -50,11 +52,11 @@ function tell(form) {
   note.className = "kept-note";
   note.setAttribute("role", "status");
   const words = document.createElement("span");
-  words.textContent = "The page was loaded again. What you had typed is back, and not saved yet.";
+  words.textContent = _("The page was loaded again. What you had typed is back, and not saved yet.");
   const key = document.createElement("button");
   key.type = "button";
   key.className = "key";
-  key.textContent = "Discard it";
+  key.textContent = _("Discard it");
   key.addEventListener("click", () => {
     sessionStorage.removeItem(placeOf(form));
     location.reload();

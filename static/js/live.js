@@ -1,6 +1,7 @@
 // One WebSocket a page: state in, jog and stop out. Nothing is kept for later: what cannot be sent now is dropped.
 
 import { shown } from "./format.js";
+import { _ } from "./said.js";
 
 const OLD_MS = 1500;
 const DEAD_MS = 3000;
@@ -51,6 +52,7 @@ function connect() {
   if (leaving) return;
   const asked = new URLSearchParams();
   if (live.trackerId) asked.set("tracker", live.trackerId);
+  if (root.lang !== "en") asked.set("language", root.lang);
   if (root.dataset.page) asked.set("page", root.dataset.page);
   if (root.dataset.stopTicket) asked.set("stop_ticket", root.dataset.stopTicket);
   const scheme = location.protocol === "https:" ? "wss" : "ws";
@@ -200,12 +202,13 @@ function paintLocal() {
 }
 
 function lastSeen(one) {
-  if (!one.last_measured) return "The drive has not told its position yet.";
+  if (!one.last_measured) return _("The drive has not told its position yet.");
   const { azimuth_deg: azimuth, elevation_deg: elevation } = one.last_measured;
-  return `Last reading ${shown(one.position_age_s, "age")} ago: azimuth ${shown(azimuth, "angle2")}, elevation ${shown(elevation, "angle2")}.`;
+  return _("Last reading {age} ago: azimuth {azimuth}, elevation {elevation}.",
+    { age: shown(one.position_age_s, "age"), azimuth: shown(azimuth, "angle2"), elevation: shown(elevation, "angle2") });
 }
 
-const LINK_WORDS = { "signed-out": "signed out", live: "live", stale: "no connection", lost: "no controller", starting: "connecting" };
+const LINK_WORDS = { "signed-out": _("signed out"), live: _("live"), stale: _("no connection"), lost: _("no controller"), starting: _("connecting") };
 
 function paintLink() {
   const words = document.getElementById("link-words");
@@ -214,16 +217,16 @@ function paintLink() {
   document.getElementById("link-banner").hidden = !off;
   if (off) {
     const age = ageSeconds();
-    const since = age === null ? "" : ` Values are ${Math.round(age)} s old.`;
+    const since = age === null ? "" : ` ${_("Values are {age} s old.", { age: Math.round(age) })}`;
     document.getElementById("link-banner-words").textContent = `${OFF_WORDS[live.link]}${since}`;
   }
   if (live.link !== "live") paintActions();
 }
 
 const OFF_WORDS = {
-  lost: "The controller service does not answer.",
-  stale: "No connection to the panel.",
-  "signed-out": "Your session has ended: load the page again to sign in. STOP still works.",
+  lost: _("The controller service does not answer."),
+  stale: _("No connection to the panel."),
+  "signed-out": _("Your session has ended: load the page again to sign in. STOP still works."),
 };
 
 export function paint() {

@@ -1,5 +1,7 @@
 // Step 1: the cross on the map, and the device's own position where the browser gives it.
 
+import { _ } from "./said.js";
+
 const cross = document.getElementById("map-cross");
 const preview = document.getElementById("preview");
 
@@ -23,14 +25,14 @@ function take(position, words) {
   put("latitude", latitude, "NS");
   put("longitude", longitude, "EW");
   if (altitude !== null) document.getElementById("f-altitude").value = Math.round(altitude);
-  words.textContent = `Taken, accurate to ${Math.round(accuracy)} m. Check it, then save.`;
+  words.textContent = _("Taken, accurate to {metres} m. Check it, then save.", { metres: Math.round(accuracy) });
   document.body.dispatchEvent(new CustomEvent("location-typed"));
 }
 
 const REFUSED = {
-  1: "The browser was not allowed to tell its position. Allow it in the browser, or type the numbers.",
-  2: "This device does not know its position now. Type the numbers.",
-  3: "This device found no position in 20 s. Try again under the open sky, or type the numbers.",
+  1: _("The browser was not allowed to tell its position. Allow it in the browser, or type the numbers."),
+  2: _("This device does not know its position now. Type the numbers."),
+  3: _("This device found no position in 20 s. Try again under the open sky, or type the numbers."),
 };
 
 function offerDevicePlace() {
@@ -38,13 +40,13 @@ function offerDevicePlace() {
   if (!holder) return;
   const [key, words] = [holder.querySelector("button"), holder.querySelector("p")];
   if (!window.isSecureContext || !navigator.geolocation) {
-    words.textContent = "This browser gives its position only to pages over HTTPS or on the same computer. Type the numbers, or paste them as “41.2867, 36.3300”.";
+    words.textContent = _("This browser gives its position only to pages over HTTPS or on the same computer. Type the numbers, or paste them as “41.2867, 36.3300”.");
     return;
   }
   words.textContent = "";
   key.disabled = false;
   key.addEventListener("click", () => {
-    words.textContent = "Looking for the position …";
+    words.textContent = _("Looking for the position …");
     navigator.geolocation.getCurrentPosition((found) => take(found, words), (error) => { words.textContent = REFUSED[error.code] ?? error.message; },
       { enableHighAccuracy: true, timeout: 20000, maximumAge: 0 });
   });

@@ -5,6 +5,7 @@ import { PITCH, cameraAt } from "./view3d/camera.js";
 import { DrawnPainter } from "./view3d/drawn.js";
 import { GlPainter } from "./view3d/gl.js";
 import { anglesOf, stageOf, viewOf } from "./view3d/stage.js";
+import { _ } from "./said.js";
 
 const TURN_DEG = 15;
 const TILT_DEG = 11;
@@ -147,7 +148,7 @@ function alike(a, b) {
 }
 
 const KEYS = { ArrowLeft: [-TURN_DEG, 0], ArrowRight: [TURN_DEG, 0], ArrowUp: [0, TILT_DEG], ArrowDown: [0, -TILT_DEG], Home: [0, 0] };
-const KEY_WORDS = [["Turn the view left", "⟲", "ArrowRight"], ["Look from lower", "▽", "ArrowDown"], ["Look from higher", "△", "ArrowUp"], ["Turn the view right", "⟳", "ArrowLeft"]];
+const KEY_WORDS = [[_("Turn the view left"), "⟲", "ArrowRight"], [_("Look from lower"), "▽", "ArrowDown"], [_("Look from higher"), "△", "ArrowUp"], [_("Turn the view right"), "⟳", "ArrowLeft"]];
 
 // Keys that do what dragging does, for fingers in gloves.
 export function turnKeys(scene) {

@@ -1,5 +1,7 @@
 // The plan of a show: what was worked out for other values than those typed now cannot be started.
 
+import { _ } from "./said.js";
+
 const form = document.getElementById("plan-form");
 
 const verdict = () => document.getElementById("verdict");
@@ -19,5 +21,5 @@ document.addEventListener("htmx:before:request", (event) => {
 document.addEventListener("htmx:after:swap", () => { if (changed) outdate(); });
 document.addEventListener("htmx:finally:request", (event) => {
   if (event.detail?.ctx?.sourceElement !== form || changed || event.detail.ctx.response?.status) return;
-  verdict().querySelector("h2").textContent = "No answer: press Check when the connection is back.";
+  verdict().querySelector("h2").textContent = _("No answer: press Check when the connection is back.");
 });

@@ -5,6 +5,7 @@ import { angle, clockTime, dateIn, words } from "./format.js";
 import { PanelScene, turnKeys } from "./panel3d.js";
 import { separation, unbroken } from "./sphere.js";
 import { place } from "./sunpath.js";
+import { _ } from "./said.js";
 
 const POINTS = 6000;
 const TELL_EVERY_MS = 60;
@@ -53,25 +54,25 @@ function curves(mine) {
 }
 
 const SERIES = [
-  { label: "Azimuth planned", colour: "second", dash: [7, 5], width: 1.5 },
-  { label: "commanded", colour: "line", dash: [2, 4], width: 1.5 },
-  { label: "measured", colour: "text", width: 2.5 },
-  { label: "Elevation planned", colour: "blue", dash: [7, 5], width: 1.5 },
-  { label: "commanded", colour: "line", dash: [2, 4], width: 1.5 },
-  { label: "measured", colour: "blue", width: 2.5 },
+  { label: _("Azimuth planned"), colour: "second", dash: [7, 5], width: 1.5 },
+  { label: _("commanded"), colour: "line", dash: [2, 4], width: 1.5 },
+  { label: _("measured"), colour: "text", width: 2.5 },
+  { label: _("Elevation planned"), colour: "blue", dash: [7, 5], width: 1.5 },
+  { label: _("commanded"), colour: "line", dash: [2, 4], width: 1.5 },
+  { label: _("measured"), colour: "blue", width: 2.5 },
 ];
 
 function draw() {
   plots.forEach((plot) => plot.destroy());
   const cursor = { lock: false, sync: { key: "player" } };
-  const withOther = other ? [{ label: "Other azimuth", colour: "p1", width: 1.5 }, { label: "Other elevation", colour: "p1", width: 1.5, dash: [4, 3] }] : [];
+  const withOther = other ? [{ label: _("Other azimuth"), colour: "p1", width: 1.5 }, { label: _("Other elevation"), colour: "p1", width: 1.5, dash: [4, 3] }] : [];
   const base = [tape.time, ...curves(tape)];
   const angles = other ? window.uPlot.join([base, [shifted(other), unbroken(other.columns.measured_azimuth_deg), other.columns.measured_elevation_deg]]) : base;
   const errors = other ? window.uPlot.join([[tape.time, tape.error], [shifted(other), other.error]]) : [tape.time, tape.error];
   plots = [
     chart(document.getElementById("angles"), { zone: head.playerZone, data: angles, range: [0, 360], cursor, series: [...SERIES, ...withOther] }),
     chart(document.getElementById("errors"), { height: 180, zone: head.playerZone, data: errors, cursor, digits: 3,
-      range: (_, least, most) => [0, Math.max(0.1, (most ?? 0) * 1.1)], series: [{ label: "Tracking error", colour: "text" }, ...(other ? [{ label: "Other", colour: "p1", width: 1.5 }] : [])] }),
+      range: (_, least, most) => [0, Math.max(0.1, (most ?? 0) * 1.1)], series: [{ label: _("Tracking error"), colour: "text" }, ...(other ? [{ label: _("Other"), colour: "p1", width: 1.5 }] : [])] }),
   ];
   for (const plot of plots) {
     plot.over.addEventListener("click", () => { if (plot.cursor.left >= 0) seek(elapsedAt(plot.posToVal(plot.cursor.left, "x"))); });
@@ -152,7 +153,7 @@ function step(now) {
 
 function play(wanted) {
   playing = wanted;
-  key.querySelector("span").textContent = playing ? "Pause" : "Play";
+  key.querySelector("span").textContent = playing ? _("Pause") : _("Play");
   key.querySelector("path").setAttribute("d", playing ? "M7 4h4v16H7zM14 4h4v16h-4z" : "M7 4.5v15l12-7.5z");
   if (!playing) {
     show();
@@ -166,16 +167,16 @@ function play(wanted) {
 async function open() {
   tape = await read(head.recording, head.begin, head.playerZone);
   if (!tape.time.length) {
-    said.textContent = "This recording has no frames.";
+    said.textContent = _("This recording has no frames.");
     return;
   }
   if (head.other) other = await read(head.other, head.otherBegin, head.otherZone);
   scrubber.max = String(tape.columns.elapsed_s[tape.columns.elapsed_s.length - 1]);
-  said.textContent = other ? `Laid over it, in red: ${head.otherTitle}.` : "";
+  said.textContent = other ? _("Laid over it, in red: {title}.", { title: head.otherTitle }) : "";
   draw();
   key.addEventListener("click", () => play(!playing));
   scrubber.addEventListener("input", () => { at = Number(scrubber.value); play(false); });
   addEventListener("theme", draw);
 }
 
-open().catch((error) => { said.textContent = `The frames could not be read: ${error.message}`; });
+open().catch((error) => { said.textContent = _("The frames could not be read: {why}", { why: error.message }); });

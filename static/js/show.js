@@ -7,11 +7,12 @@ import { PanelScene, turnKeys } from "./panel3d.js";
 import { targetOf } from "./scene.js";
 import { unbroken } from "./sphere.js";
 import { panelOf, place, sunOf } from "./sunpath.js";
+import { _ } from "./said.js";
 
 const showId = document.querySelector("[data-show]").dataset.show;
 const scene = new PanelScene(document.getElementById("show-scene"));
 const diagram = document.querySelector(".sunpath");
-const PHASES = { going_to_start: "Going to the start", ready: "Ready at the start", running: "Running", paused: "Paused" };
+const PHASES = { going_to_start: _("Going to the start"), ready: _("Ready at the start"), running: _("Running"), paused: _("Paused") };
 turnKeys(scene);
 
 let table = null;
@@ -38,10 +39,10 @@ function draw() {
   plots?.forEach((plot) => plot.destroy());
   plots = [
     chart(document.getElementById("angles"), { zone: live.zone, range: [0, 360], data: anglesData(), series: [
-      { label: "Azimuth planned", colour: "second", dash: [6, 5], width: 1.5 }, { label: "Azimuth measured", colour: "text", width: 3 },
-      { label: "Elevation planned", colour: "blue", dash: [6, 5], width: 1.5 }, { label: "Elevation measured", colour: "blue", width: 3 }] }),
+      { label: _("Azimuth planned"), colour: "second", dash: [6, 5], width: 1.5 }, { label: _("Azimuth measured"), colour: "text", width: 3 },
+      { label: _("Elevation planned"), colour: "blue", dash: [6, 5], width: 1.5 }, { label: _("Elevation measured"), colour: "blue", width: 3 }] }),
     chart(document.getElementById("errors"), { height: 180, zone: live.zone, data: errorData(), range: (_, least, most) => [0, Math.max(0.5, (most ?? 0) * 1.1)],
-      series: [{ label: "Off the sun", colour: "text", width: 2 }] }),
+      series: [{ label: _("Off the sun"), colour: "text", width: 2 }] }),
   ];
 }
 
@@ -68,6 +69,13 @@ function fillUpTo(index, values) {
   lastIndex = index;
 }
 
+function progressOf(show) {
+  const values = { elapsed: duration(show.elapsed_s), all: duration(show.duration_s), times: Math.round(show.acceleration) };
+  return show.sun_is_up
+    ? _("{elapsed} of {all} · {times} × the sun", values)
+    : _("{elapsed} of {all} · {times} × the sun; the sun is down, the panel holds", values);
+}
+
 function paint() {
   const show = mine();
   const phase = document.getElementById("show-phase");
@@ -75,14 +83,14 @@ function paint() {
   place(diagram, "sun", sunOf(live.tracker));
   place(diagram, "panel", panelOf(live.tracker));
   if (!show) {
-    phase.textContent = begun ? "Ended" : "Not on the machine";
+    phase.textContent = begun ? _("Ended") : _("Not on the machine");
     return;
   }
   begun = true;
   phase.textContent = PHASES[show.phase] ?? words(show.phase);
   document.getElementById("show-clock").textContent = clockTime(show.sun_time, live.zone);
   document.getElementById("show-progress").value = show.elapsed_s / show.duration_s;
-  document.getElementById("show-elapsed").textContent = `${duration(show.elapsed_s)} of ${duration(show.duration_s)} · ${Math.round(show.acceleration)} × the sun${show.sun_is_up ? "" : "; the sun is down, the panel holds"}`;
+  document.getElementById("show-elapsed").textContent = progressOf(show);
   note(show);
 }
 

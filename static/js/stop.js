@@ -1,6 +1,7 @@
 // STOP: one touch, by the WebSocket and by POST at the same time, without a question.
 
 import { live } from "./live.js";
+import { _ } from "./said.js";
 
 const words = (text) => { document.getElementById("stopped-words").textContent = text; };
 
@@ -9,8 +10,8 @@ export function stop(form) {
   live.send(told);
   words("");
   return fetch(form.action, { method: "POST", body: new URLSearchParams({ back: "/" }), headers: { "HX-Request": "true" }, keepalive: true })
-    .then((answer) => words(answer.ok ? "Stopped." : "STOP was not confirmed. Use the emergency stop at the cabinet."))
-    .catch(() => words("STOP was not confirmed: no connection. Use the emergency stop at the cabinet."));
+    .then((answer) => words(answer.ok ? _("Stopped.") : _("STOP was not confirmed. Use the emergency stop at the cabinet.")))
+    .catch(() => words(_("STOP was not confirmed: no connection. Use the emergency stop at the cabinet.")));
 }
 
 export function start() {
@@ -29,6 +30,6 @@ export function start() {
   key.addEventListener("pointerdown", press);
   form.addEventListener("submit", press);
   addEventListener("keydown", (event) => { if (event.key === "Escape" && !event.repeat) press(event); });
-  live.on("stopped", () => words("Stopped."));
+  live.on("stopped", () => words(_("Stopped.")));
   live.on("problem", (problem) => words(problem.detail));
 }

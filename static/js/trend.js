@@ -2,6 +2,7 @@
 
 import { chart } from "./chart.js";
 import { live } from "./live.js";
+import { _ } from "./said.js";
 
 const SPAN_S = 600;
 const EVERY_MS = 500;
@@ -24,10 +25,10 @@ function take() {
 function paint() {
   plot ??= chart(holder, {
     series: [
-      { label: "Azimuth", colour: "text", width: 2.5 },
-      { label: "Azimuth target", colour: "second", dash: [6, 5] },
-      { label: "Elevation", colour: "blue", width: 2.5 },
-      { label: "Elevation target", colour: "blue", dash: [6, 5], width: 1.5 },
+      { label: _("Azimuth"), colour: "text", width: 2.5 },
+      { label: _("Azimuth target"), colour: "second", dash: [6, 5] },
+      { label: _("Elevation"), colour: "blue", width: 2.5 },
+      { label: _("Elevation target"), colour: "blue", dash: [6, 5], width: 1.5 },
     ],
     zone: live.zone,
   });

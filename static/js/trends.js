@@ -3,23 +3,24 @@
 import { chart } from "./chart.js";
 import { live } from "./live.js";
 import { separation, unbroken } from "./sphere.js";
+import { _ } from "./said.js";
 
 const POINTS = 1500;
 const said = document.getElementById("trends-state");
 const SPAN_S = Number(said.dataset.seconds);
 const EVERY_S = Math.max(1, SPAN_S / POINTS);
 const cursor = { lock: false, sync: { key: "trends" } };
-const ANGLES = [{ label: "Measured", colour: "blue", width: 2.5 }, { label: "Set-point", colour: "text", width: 1.5, dash: [7, 5] }, { label: "Target", colour: "line", width: 1.5, dash: [2, 4] }];
+const ANGLES = [{ label: _("Measured"), colour: "blue", width: 2.5 }, { label: _("Set-point"), colour: "text", width: 1.5, dash: [7, 5] }, { label: _("Target"), colour: "line", width: 1.5, dash: [2, 4] }];
 
 // What each chart shows: its columns, and how a snapshot tells the same.
 const CHARTS = {
   azimuth: { columns: ["measured_azimuth_deg", "setpoint_azimuth_deg", "target_azimuth_deg"], series: ANGLES, turns: true },
   elevation: { columns: ["measured_elevation_deg", "setpoint_elevation_deg", "target_elevation_deg"], series: ANGLES },
-  error: { columns: ["off_target_deg"], digits: 3, fromZero: 0.1, series: [{ label: "Off the target", colour: "text", width: 2 }] },
-  wind: { columns: ["wind_mps", "wind_mean_mps"], unit: " m/s", digits: 1, fromZero: 5, series: [{ label: "Gust", colour: "text", width: 1.5 }, { label: "Mean", colour: "blue", width: 2.5, dash: [8, 4] }] },
-  light: { columns: ["light_wm2"], unit: " W/m²", digits: 0, fromZero: 100, series: [{ label: "Light", colour: "text", width: 2 }] },
-  speed: { columns: ["azimuth_dps", "elevation_dps"], unit: " °/s", series: [{ label: "Azimuth axis", colour: "text", width: 2 }, { label: "Elevation axis", colour: "blue", width: 2, dash: [8, 4] }] },
-  supply: { columns: ["supply_v"], unit: " V", digits: 1, series: [{ label: "Supply", colour: "text", width: 2 }] },
+  error: { columns: ["off_target_deg"], digits: 3, fromZero: 0.1, series: [{ label: _("Off the target"), colour: "text", width: 2 }] },
+  wind: { columns: ["wind_mps", "wind_mean_mps"], unit: " m/s", digits: 1, fromZero: 5, series: [{ label: _("Gust"), colour: "text", width: 1.5 }, { label: _("Mean"), colour: "blue", width: 2.5, dash: [8, 4] }] },
+  light: { columns: ["light_wm2"], unit: " W/m²", digits: 0, fromZero: 100, series: [{ label: _("Light"), colour: "text", width: 2 }] },
+  speed: { columns: ["azimuth_dps", "elevation_dps"], unit: " °/s", series: [{ label: _("Azimuth axis"), colour: "text", width: 2 }, { label: _("Elevation axis"), colour: "blue", width: 2, dash: [8, 4] }] },
+  supply: { columns: ["supply_v"], unit: " V", digits: 1, series: [{ label: _("Supply"), colour: "text", width: 2 }] },
 };
 const NAMES = [...new Set(Object.values(CHARTS).flatMap(({ columns }) => columns))];
 
@@ -41,7 +42,7 @@ async function load() {
   columns.off_target_deg = columns.measured_azimuth_deg.map((azimuth, row) => apart(azimuth, columns.measured_elevation_deg[row], columns.target_azimuth_deg[row], columns.target_elevation_deg[row]));
   for (const name of NAMES) table[name] = columns[name];
   loaded = true;
-  said.textContent = table.time.length ? "" : "Nothing was recorded in this span; the curves begin now.";
+  said.textContent = table.time.length ? "" : _("Nothing was recorded in this span; the curves begin now.");
   draw();
 }
 
@@ -103,7 +104,7 @@ function rowOf(one, weather) {
 function begin() {
   if (asked || !live.tracker) return;
   asked = true;
-  load().catch((error) => { said.textContent = `The curves could not be read: ${error.message}`; });
+  load().catch((error) => { said.textContent = _("The curves could not be read: {why}", { why: error.message }); });
 }
 
 live.on("state", begin);

@@ -29,7 +29,7 @@ def texts_of(source: str) -> Iterator[tuple[int, str]]:
 @cache
 def script_texts() -> tuple[str, ...]:
     """Return every text of the scripts, and the words of live values."""
-    marked = (text for path in sorted(SCRIPTS.glob("*.js")) for _, text in texts_of(path.read_text()))
+    marked = (text for path in sorted(SCRIPTS.rglob("*.js")) for _, text in texts_of(path.read_text()))
     return tuple(dict.fromkeys((*marked, *_live_words())))
 
 

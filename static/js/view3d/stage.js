@@ -2,10 +2,11 @@
 
 import { hubOf, bare, machine, outlineOf } from "./machines.js";
 import { anglesOf, frameOf, outward } from "./mounts.js";
+import { spoken } from "../said.js";
 import { RAD, add, times, towards } from "./space.js";
 
 export const SKY = 1;
-const LETTERS = ["N", "E", "S", "W"];
+const LETTERS = [0, 4, 8, 12].map((point) => spoken.compass[point]);
 const LOWEST_SHADOW_DEG = 1.5;
 const SET_DEG = -0.9;
 const GROUND_Z = 0.003;
