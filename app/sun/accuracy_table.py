@@ -10,15 +10,17 @@ HEAD = (
 
 def title(survey: Survey) -> str:
     """Return in a sentence what was measured."""
-    asked = survey.question
-    if asked.location is None:
-        low, high = asked.latitudes
-        where = f"latitude {low:g} to {high:g}"
-    else:
-        where = f"latitude {asked.location.latitude_deg:g}, longitude {asked.location.longitude_deg:g}"
+    asked, at = survey.question, survey.question.location
+    low, high = asked.latitudes
+    if at is None:
+        return (
+            f"Separation from NREL SPA, degrees: latitude {low:g} to {high:g}, {asked.from_year} to "
+            f"{asked.to_year}, {survey.sun_up:,} of {asked.samples:,} instants with the sun up."
+        )
     return (
-        f"Separation from NREL SPA, degrees: {where}, {asked.from_year} to {asked.to_year}, "
-        f"{survey.sun_up:,} of {asked.samples:,} instants with the sun up."
+        f"Separation from NREL SPA, degrees: latitude {at.latitude_deg:g}, longitude {at.longitude_deg:g}, "
+        f"{asked.from_year} to {asked.to_year}, {survey.sun_up:,} of {asked.samples:,} instants with the "
+        "sun up."
     )
 
 

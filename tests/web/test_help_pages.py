@@ -98,7 +98,7 @@ async def test_search_finds_pages_settings_alarms_and_documents(
     words: str, kind: str, title: str, client: httpx.AsyncClient
 ) -> None:
     text = (await client.get("/search", params={"q": words})).text
-    assert re.search(rf'<span class="chip">{kind}</span><span><b>{re.escape(title)}</b>', text)
+    assert re.search(rf'<span class="chip">{kind}</span><span[^>]*><b>{re.escape(title)}</b>', text)
 
 
 async def test_search_says_when_nothing_fits(client: httpx.AsyncClient) -> None:

@@ -39,6 +39,7 @@ class Catalogue(GNUTranslations):
             NullTranslations.__init__(self)
         else:
             super().__init__(stored)
+            self._catalog.pop("", None)
         self._patterns = Patterns(text for text in self._catalog if isinstance(text, str))
         self.said: Callable[[str], str] = lru_cache(maxsize=KEPT)(self._said)
 
@@ -81,10 +82,8 @@ class Catalogue(GNUTranslations):
         return known or self._in_parts(value) or self._word(value) or self.number(value)
 
     def _word(self, value: str) -> str | None:
-        """Return a word that is known at the beginning of a label only, such as `azimuth`."""
-        return (
-            self._catalog.get(value[:1].upper() + value[1:]) if value.islower() and " " not in value else None
-        )
+        """Return words that are known as a label only, such as `azimuth` or `stow at a gust of`."""
+        return self._catalog.get(value[:1].upper() + value[1:]) if value[:1].islower() else None
 
     def _by_sentences(self, text: str) -> str | None:
         """Return several sentences, each for itself, None where none is known."""

@@ -8,6 +8,7 @@ from app.alarms.catalogue import ENTRIES
 from app.web import guide
 from app.web.guide_contexts import Hit
 from app.web.help import help_for
+from app.web.languages import said
 from app.web.ui.frame import SITE_TABS, TRACKER_TABS, shown_site
 from app.web.ui.protection_forms import NUMBERS, TITLES, field_name
 from app.web.ui.settings_words import SETTINGS
@@ -106,5 +107,5 @@ def _start(section: guide.GuideSection) -> str:
 
 
 def _fits(hit: Hit, needles: list[str]) -> bool:
-    text = f"{hit.title} {hit.text}".lower()
+    text = f"{hit.title} {hit.text} {said(hit.title)} {said(hit.text)}".lower()
     return all(needle in text for needle in needles)

@@ -211,11 +211,16 @@ def _played(hybrid: HybridConfig) -> str:
     if not hybrid.enabled:
         return ""
     light = hybrid.simulated
-    cloud = f" and a cloud that takes {light.cloud * 100.0:.0f} % of the direct light" if light.cloud else ""
+    azimuth, elevation = angle(light.azimuth_deg), angle(light.elevation_deg)
+    if light.cloud:
+        return (
+            "Corrected by simulated light sensors on a panel that is misaligned by "
+            f"{azimuth} and {elevation} and a cloud that takes {light.cloud * 100.0:.0f} % of the direct "
+            "light. Errors and curves tell where the panel really faces."
+        )
     return (
-        "Corrected by simulated light sensors on a panel that is misaligned by "
-        f"{angle(light.azimuth_deg)} and {angle(light.elevation_deg)}{cloud}. Errors and curves tell where "
-        "the panel really faces."
+        f"Corrected by simulated light sensors on a panel that is misaligned by {azimuth} and {elevation}. "
+        "Errors and curves tell where the panel really faces."
     )
 
 

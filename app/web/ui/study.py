@@ -13,6 +13,7 @@ from app.studies.result import CaseResult, StudyResult, curves_csv, table_csv
 from app.web.contexts import Link
 from app.web.deps import PanelDep
 from app.web.study_contexts import StudyPage, StudyView
+from app.web.ui.dates import day_and_month, spelled
 from app.web.ui.formats import UNKNOWN, decimals, words
 from app.web.ui.frame import site_frame
 from app.web.ui.heatmap import heat_map
@@ -76,15 +77,14 @@ def _settings(asked: StudyRequest, result: StudyResult | None) -> tuple[tuple[st
     place = result.location if result else asked.location
     module, costs = asked.module, asked.costs
     light = asked.weather_file if asked.light is LightModel.WEATHER else CLEAR_SKIES[asked.light]
-    north = "north" if place.latitude_deg >= 0.0 else "south"
-    east = "east" if place.longitude_deg >= 0.0 else "west"
     sky = dict(TRANSPOSITIONS)[asked.around.transposition]
     step = result.step_min if result else asked.step_min
     fidelity = "ideal drives" if asked.fidelity is Fidelity.IDEAL else "as the controller does it"
     return (
         (
             "Place",
-            f"{abs(place.latitude_deg):.4f}° {north}, {abs(place.longitude_deg):.4f}° {east}, "
+            f"{abs(place.latitude_deg):.4f}° {'north' if place.latitude_deg >= 0.0 else 'south'}, "
+            f"{abs(place.longitude_deg):.4f}° {'east' if place.longitude_deg >= 0.0 else 'west'}, "
             f"{place.altitude_m:g} m",
         ),
         ("Days", f"{words(asked.span)}, {asked.on}, a value every {step} min, {fidelity}"),
@@ -106,7 +106,9 @@ def _view(study_id: str, result: StudyResult, case: int, day: int | None) -> Stu
     brightest = max(range(len(dates)), key=lambda index: sum(shown.curves[index].plane_wm2))
     at = brightest if day is None else min(day, len(dates) - 1)
     root = f"/studies/{study_id}?case={chosen}"
-    days = tuple(Link(f"{on:%d %b}", f"{root}&day={index}", index == at) for index, on in enumerate(dates))
+    days = tuple(
+        Link(day_and_month(on), f"{root}&day={index}", index == at) for index, on in enumerate(dates)
+    )
     return StudyView(
         chosen=chosen,
         case=shown,
@@ -114,7 +116,7 @@ def _view(study_id: str, result: StudyResult, case: int, day: int | None) -> Stu
         curves=_curves(result, shown, at),
         panel=_panel(result, shown, at),
         months=_months(result, shown) if shown.months_kwh else None,
-        heads=tuple(f"{on:%d %b}" for on in result.days) if len(result.days) == len(MONTHS) else MONTHS,
+        heads=tuple(day_and_month(on) for on in result.days) if len(result.days) == len(MONTHS) else MONTHS,
         gains=_gains(result),
         heat=heat_map(f"In the plane of the panel, {shown.label}", result.days, shown.heat_wm2)
         if shown.heat_wm2
@@ -150,7 +152,7 @@ def _curves(result: StudyResult, shown: CaseResult, at: int) -> Plot:
         (one.label, result.hours, [float(value) for value in one.curves[at].plane_wm2])
         for one in drawn[:MOST_CURVES]
     ]
-    title = f"Light in the plane of the panel, {shown.curves[at].on:%d %B %Y}"
+    title = f"Light in the plane of the panel, {spelled(shown.curves[at].on)}"
     return line_plot(title, _hour_axis(result), "W/m²", HOUR_MARKS, lines)
 
 
@@ -162,7 +164,7 @@ def _panel(result: StudyResult, shown: CaseResult, at: int) -> Plot:
         ("azimuth", result.hours, azimuth_deg),
         ("elevation", result.hours, curve.elevation_deg),
     ]
-    title = f"Where the panel faces, {shown.label}, {curve.on:%d %B %Y}"
+    title = f"Where the panel faces, {shown.label}, {spelled(curve.on)}"
     return line_plot(title, _hour_axis(result), "degrees", HOUR_MARKS, lines)
 
 
