@@ -10,6 +10,7 @@ from typer.core import TyperGroup
 from typer.main import get_command, get_group
 
 from app.foreseen import Foreseen
+from app.late import hurry
 
 FAILED = 2
 COMMANDS = {
@@ -75,6 +76,7 @@ def heliopanel() -> None:
 
 def main() -> None:
     """Run the command line; what was foreseen to fail is one sentence and exit code 2."""
+    hurry()
     try:
         cli()
     except (Foreseen, ValueError, OSError) as error:

@@ -4,40 +4,36 @@ import sys
 import tempfile
 from pathlib import Path
 
-from alembic.autogenerate import compare_metadata
-from alembic.config import Config
-from alembic.migration import MigrationContext
-from alembic.script import ScriptDirectory
-from sqlalchemy import Connection, Engine
+from sqlalchemy import Connection, Engine, column, table
 
-from alembic import command
-from app.access.tables import VERSION_TABLE, metadata
-from app.store.connections import sharing_engine, transaction
+from app.access.tables import REVISION, VERSION_TABLE, metadata
+from app.late import late
+from app.store.connections import revision_of, sharing_engine, transaction
 from app.store.store import StoreFailed
 
 SCRIPTS = Path(__file__).parents[2] / "alembic" / "access"
+VERSIONS = table(VERSION_TABLE, column("version_num"))
 
 
 def upgrade(engine: Engine) -> None:
     """Bring the tables up to date in one transaction, making them if there are none."""
     with transaction(engine) as connection:
-        config = Config()
-        config.set_main_option("script_location", str(SCRIPTS).replace("%", "%%"))
-        config.attributes["connection"] = connection
-        found, directory = revision_of(connection), ScriptDirectory(str(SCRIPTS))
-        if found not in {None, *(script.revision for script in directory.walk_revisions())}:
-            raise StoreFailed(
-                f"The users were written by a newer version of Heliopanel (revision {found}). Install that "
-                "version, or begin with new users: docs/operators-guide.md, Users, tells how."
-            )
-        if found != directory.get_current_head():
-            command.upgrade(config, "head")
+        found = revision_of(connection, VERSIONS)
+        if found != REVISION:
+            _migrate(connection, found)
 
 
-def revision_of(connection: Connection) -> str | None:
-    """Return which migration the tables of access are at, None where there are none."""
-    context = MigrationContext.configure(connection, opts={"version_table": VERSION_TABLE})
-    return context.get_current_revision()
+def _migrate(connection: Connection, found: str | None) -> None:
+    directory = late("alembic.script").ScriptDirectory(str(SCRIPTS))
+    if found not in {None, *(script.revision for script in directory.walk_revisions())}:
+        raise StoreFailed(
+            f"The users were written by a newer version of Heliopanel (revision {found}). Install that "
+            "version, or begin with new users: docs/operators-guide.md, Users, tells how."
+        )
+    config = late("alembic.config").Config()
+    config.set_main_option("script_location", str(SCRIPTS).replace("%", "%%"))
+    config.attributes["connection"] = connection
+    late("alembic.command").upgrade(config, "head")
 
 
 def differences(connection: Connection) -> list[object]:
@@ -48,7 +44,8 @@ def differences(connection: Connection) -> list[object]:
         "version_table": VERSION_TABLE,
         "include_name": lambda name, kind, _: kind != "table" or name in own,
     }
-    return list(compare_metadata(MigrationContext.configure(connection, opts=options), metadata))
+    context = late("alembic.migration").MigrationContext.configure(connection, opts=options)
+    return list(late("alembic.autogenerate").compare_metadata(context, metadata))
 
 
 def check() -> list[object]:

@@ -2,8 +2,8 @@
 
 import sys
 
+from app.late import hurry, late
 from app.machine.lock import AlreadyRunning
-from app.machine.main import run
 from app.machine.supervisor import WRONG_SETTINGS, end_with_parent
 from app.settings import SettingsWrong, read_settings
 from app.store.store import StoreFailed
@@ -16,8 +16,9 @@ def main() -> int:
     for argument in sys.argv[1:]:
         if argument.startswith(SUPERVISED):
             end_with_parent(int(argument.removeprefix(SUPERVISED)))
+    hurry()
     try:
-        run(read_settings())
+        late("app.machine.main").run(read_settings())
     except (SettingsWrong, AlreadyRunning, StoreFailed) as error:
         sys.stderr.write(f"{error}\n")
         return WRONG_SETTINGS

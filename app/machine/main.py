@@ -1,7 +1,6 @@
 """The controller service: put together from settings to link server, and taken down again in order."""
 
 import asyncio
-import gc
 import shutil
 import sqlite3
 from datetime import datetime, timedelta
@@ -19,6 +18,7 @@ from app.drives.factory import DriveFactory
 from app.drives.met_station import met_reader
 from app.drives.probe import DriveProbe
 from app.gateway.gateways import Gateways
+from app.late import settle
 from app.link.server import LinkServer
 from app.logs import set_up_logs
 from app.machine.lock import only_instance
@@ -116,8 +116,7 @@ async def _serve(settings: Settings, clock: SystemClock, writer: Writer) -> None
         LoopWatchdog(clock, alive=lambda: site.alive, stop_drives=site.stop_drives).run()
     )
     guarding = asyncio.create_task(_memory_guard(settings, clock, site, stopped).run(), name="memory guard")
-    gc.collect()
-    gc.freeze()
+    settle()
     log.info("machine_ready", version=VERSION, link=str(settings.link_path), sqlite=sqlite3.sqlite_version)
     notice = sqlite_notice()
     if notice is not None:

@@ -11,6 +11,7 @@ from sqlalchemy import (
     Connection,
     Engine,
     NullPool,
+    TableClause,
     create_engine,
     event,
     inspect,
@@ -135,11 +136,11 @@ def transaction(engine: Engine) -> Iterator[Connection]:
         raise explained(error) from error
 
 
-def revision_of(connection: Connection) -> str | None:
+def revision_of(connection: Connection, versions: TableClause = VERSION_TABLE) -> str | None:
     """Return which migration the tables are at, None for a database without tables."""
-    if not inspect(connection).has_table(VERSION_TABLE.name):
+    if not inspect(connection).has_table(versions.name):
         return None
-    return connection.execute(select(VERSION_TABLE.c.version_num)).scalar_one_or_none()
+    return connection.execute(select(versions.c.version_num)).scalar_one_or_none()
 
 
 def require_revision(connection: Connection) -> None:

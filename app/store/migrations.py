@@ -1,22 +1,22 @@
-"""Tables come from migrations: brought up to date when the machine starts, checked by `make check`."""
+"""Tables come from migrations: brought up to date when the machine starts, checked by `make check`.
+
+Alembic is loaded where there is something to migrate; most starts find the newest tables.
+"""
 
 import sys
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
-from alembic.autogenerate import compare_metadata
-from alembic.config import Config
-from alembic.migration import MigrationContext
-from alembic.script import ScriptDirectory
 from sqlalchemy import Connection
 
-from alembic import command
+from app.late import late
 from app.store.connections import revision_of, sqlite_path, transaction, writing_engine
 from app.store.files import copy_sqlite, make_folder
 from app.store.integrity import check_file
 from app.store.store import StoreFailed
-from app.store.tables import metadata
+from app.store.tables import REVISION, metadata
 
 SCRIPTS = Path(__file__).parents[2] / "alembic"
 
@@ -35,6 +35,8 @@ def upgrade(url: str, *, scripts: Path = SCRIPTS) -> str | None:
     try:
         with transaction(engine) as connection:
             found = revision_of(connection)
+        if (found, scripts) == (REVISION, SCRIPTS):
+            return found
         newest = _newest(scripts, found)
         if found != newest:
             if found is not None and path is not None:
@@ -48,25 +50,24 @@ def upgrade(url: str, *, scripts: Path = SCRIPTS) -> str | None:
 
 def run_migrations(connection: Connection, *, scripts: Path = SCRIPTS) -> None:
     """Run what leads to the newest tables inside the transaction that is open on this connection."""
-    command.upgrade(_config(connection, scripts), "head")
+    late("alembic.command").upgrade(_config(connection, scripts), "head")
 
 
 def drop_tables(connection: Connection) -> None:
     """Remove every table inside the transaction that is open on this connection."""
-    command.downgrade(_config(connection, SCRIPTS), "base")
+    late("alembic.command").downgrade(_config(connection, SCRIPTS), "base")
 
 
 def differences(connection: Connection) -> list[object]:
     """Return in what the tables of a database differ from `tables.py`."""
-    return list(
-        compare_metadata(MigrationContext.configure(connection, opts={"compare_type": True}), metadata)
-    )
+    context = late("alembic.migration").MigrationContext.configure(connection, opts={"compare_type": True})
+    return list(late("alembic.autogenerate").compare_metadata(context, metadata))
 
 
 def _newest(scripts: Path, found: str | None) -> str | None:
     """Return the newest revision, or raise `StoreFailed` if the database is at one that is not known."""
-    directory = ScriptDirectory(str(scripts))
-    newest = directory.get_current_head()
+    directory = late("alembic.script").ScriptDirectory(str(scripts))
+    newest: str | None = directory.get_current_head()
     known = {script.revision for script in directory.walk_revisions()}
     if found is not None and found not in known:
         raise StoreFailed(
@@ -76,8 +77,8 @@ def _newest(scripts: Path, found: str | None) -> str | None:
     return newest
 
 
-def _config(connection: Connection, scripts: Path) -> Config:
-    config = Config()
+def _config(connection: Connection, scripts: Path) -> Any:
+    config = late("alembic.config").Config()
     config.set_main_option("script_location", str(scripts).replace("%", "%%"))
     config.attributes["connection"] = connection
     return config

@@ -11,6 +11,7 @@ from pathlib import Path
 import structlog
 import uvicorn
 from fastapi import APIRouter, FastAPI
+from fastapi.routing import APIRoute
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.routing import BaseRoute
@@ -19,6 +20,7 @@ from app.access.opening import open_keeper
 from app.access.passwords import Hasher
 from app.clock import Clock, SystemClock
 from app.foreseen import Foreseen
+from app.late import settle
 from app.link.client import LinkClient
 from app.link.messages import Machine
 from app.logs import set_up_logs
@@ -28,7 +30,7 @@ from app.store.reader import DatabaseReader
 from app.store.store import Reader
 from app.web import errors, live
 from app.web.api.operations import router as operations
-from app.web.api.router import api_router
+from app.web.api.router import api_routes
 from app.web.assets import Assets
 from app.web.deps import Panel
 from app.web.documented import DocumentedApp
@@ -113,8 +115,8 @@ def create_app(
 
 
 NOWHERE = {"type": "http", "method": "GET", "path": "/-", "root_path": "", "headers": []}
-"""A request that no route answers. FastAPI works a router's routes out at the first request that comes by;
-left to the first one in service, that held up a heartbeat of hold-to-run for 250 ms."""
+"""A request that no route answers. FastAPI works an included router's routes out at the first request that
+comes by; left to the first one in service, that held up a heartbeat of hold-to-run for 250 ms."""
 
 DESCRIPTION = """Everything that the browser can do, through the same calls.
 
@@ -127,16 +129,17 @@ is refused. The live socket of the pages is `/live`; for programs there is `/api
 
 @cache
 def _doors() -> tuple[BaseRoute, ...]:
-    """Return all ways in, shared by every panel of the process: FastAPI needs a second to work them out."""
-    inner = APIRouter()
-    inner.include_router(live.router)
-    inner.include_router(api_router())
-    inner.include_router(operations, include_in_schema=False)
-    for pages in ROUTERS:
-        inner.include_router(pages, include_in_schema=False)
-    for door in inner.routes:
+    """Return all ways in, shared by every panel of the process; the document tells of the API alone."""
+    root = APIRouter()
+    root.include_router(operations, include_in_schema=False)
+    pages = [route for router in ROUTERS for route in router.routes]
+    for page in pages:
+        if isinstance(page, APIRoute):
+            page.include_in_schema = False
+    doors = (*live.router.routes, *api_routes(), *root.routes, *pages)
+    for door in doors:
         door.matches(NOWHERE)
-    return tuple(inner.routes)
+    return doors
 
 
 @cache
@@ -193,8 +196,7 @@ def _serve(stage: Stage, clock: Clock | None) -> Stage | None:
     panel: Panel = app.state.panel
     server = PanelServer(configured(app, settings), panel.hub.closing.set)
     panel.network.restart = server.leave
-    gc.collect()
-    gc.freeze()
+    settle()
     server.run()
     if stage.trial is not None and not server.started:
         return stage.back(NOT_SERVED)

@@ -2,18 +2,17 @@
 
 from datetime import datetime
 
-from fastapi import APIRouter
 from pydantic import Field, SecretStr
 from starlette.requests import Request
 from starlette.responses import Response
 
 from app.access.principal import NotAllowed, Via
 from app.access.roles import Permission, Role
-from app.web.api.base import TOO_MANY, Input, Output
+from app.web.api.base import TOO_MANY, Input, Output, api_router
 from app.web.deps import PanelDep, PrincipalDep
 from app.web.sign_ins import forget_session, set_session, whence
 
-router = APIRouter(tags=["access"])
+router = api_router(tags=["access"])
 
 
 class SignIn(Input):

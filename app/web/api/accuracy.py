@@ -3,7 +3,7 @@
 from typing import Annotated, Self
 
 import numpy as np
-from fastapi import APIRouter, Query
+from fastapi import Query
 from pydantic import Field
 
 from app.sun.accuracy import AlgorithmError, Profile, Question, Sight, Spread, Survey, survey
@@ -11,12 +11,12 @@ from app.sun.accuracy_table import title
 from app.sun.algorithms import PUBLISHED, Algorithm
 from app.sun.position import Location
 from app.sun.trigonometry import Array
-from app.web.api.base import REFUSED, TOO_MANY, Output
+from app.web.api.base import REFUSED, TOO_MANY, Output, api_router
 from app.web.api.sun import location_of
 from app.web.deps import PanelDep, SnapshotDep
 from app.web.errors import NotAcceptable
 
-router = APIRouter(prefix="/sun", tags=["sun"])
+router = api_router(prefix="/sun", tags=["sun"])
 
 Degrees = list[float | None]
 

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Query
+from fastapi import Path, Query
 from pydantic import Field
 
 from app.alarms.catalogue import ENTRIES
@@ -10,11 +10,11 @@ from app.alarms.view import told
 from app.link.messages import AcknowledgeAlarm, AlarmOrder, ShelveAlarm, UnshelveAlarm
 from app.store.store import AlarmFilter, KeptAlarm
 from app.tracker.alarm_words import AlarmCounts, AlarmNow
-from app.web.api.base import NOT_FOUND, Input, Output
+from app.web.api.base import NOT_FOUND, Input, Output, api_router
 from app.web.api.orders import Sender, SenderDep
 from app.web.deps import ReaderDep, SnapshotDep
 
-router = APIRouter(prefix="/alarms", tags=["alarms"])
+router = api_router(prefix="/alarms", tags=["alarms"])
 AlarmId = Annotated[
     str, Path(min_length=1, max_length=120, description="Name of the alarm.", examples=["drive_lost@T1"])
 ]

@@ -5,16 +5,16 @@ from dataclasses import asdict
 from datetime import datetime
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from pydantic import Field
 
 from app.audit.entry import Sealed
 from app.instants import Instant
 from app.store.store import AuditFilter
-from app.web.api.base import Output
+from app.web.api.base import Output, api_router
 from app.web.deps import PanelDep, ReaderDep
 
-router = APIRouter(tags=["history"])
+router = api_router(tags=["history"])
 
 
 class AuditEntry(Output):

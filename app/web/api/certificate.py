@@ -2,14 +2,13 @@
 
 from datetime import datetime
 
-from fastapi import APIRouter
 from pydantic import Field
 
-from app.web.api.base import Output
+from app.web.api.base import Output, api_router
 from app.web.deps import PanelDep
 from app.web.trust import trusted
 
-router = APIRouter(tags=["site"])
+router = api_router(tags=["site"])
 
 
 class Certificate(Output):

@@ -4,14 +4,14 @@ from enum import StrEnum
 from typing import Annotated
 from urllib.parse import quote
 
-from fastapi import APIRouter, Path
+from fastapi import Path
 from fastapi.responses import Response
 from pydantic import Field
 
 from app.link.messages import ApplySightings, ConfirmStep, TakeSighting
 from app.tracker.commissioning import Step
 from app.tracker.memory import Pointing, Sighting, StepName
-from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, Responses, TrackerId
+from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, Responses, TrackerId, api_router
 from app.web.api.orders import SenderDep
 from app.web.api.trackers import detail_of
 from app.web.deps import MachineDep, PanelDep
@@ -19,7 +19,7 @@ from app.web.errors import NotAcceptable
 from app.web.record import CommissioningRecord, read_record
 from app.web.record_files import draft, record_html, record_pdf
 
-router = APIRouter(prefix="/trackers/{tracker_id}", tags=["commissioning"])
+router = api_router(prefix="/trackers/{tracker_id}", tags=["commissioning"])
 
 FILES: Responses = {
     200: {

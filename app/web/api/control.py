@@ -2,17 +2,16 @@
 
 from enum import StrEnum
 
-from fastapi import APIRouter
 from pydantic import Field
 
 from app.link.messages import AnswerControl, ReleaseControl, RequestControl, SiteCommand
 from app.tracker.control import ControlState
 from app.tracker.snapshot import SiteSnapshot
-from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, TrackerId
+from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, TrackerId, api_router
 from app.web.api.orders import SenderDep, tracker_of
 from app.web.deps import PrincipalDep, SnapshotDep
 
-router = APIRouter(tags=["control"])
+router = api_router(tags=["control"])
 
 
 class ControlAction(StrEnum):

@@ -1,16 +1,15 @@
 """The horizon of the site as it was entered by hand."""
 
-from fastapi import APIRouter
 from pydantic import Field
 
 from app.link.place_orders import SetHorizon
 from app.sun.horizon import MOST_POINTS, Horizon
-from app.web.api.base import REFUSED, Input, Output
+from app.web.api.base import REFUSED, Input, Output, api_router
 from app.web.api.orders import SenderDep
 from app.web.deps import MachineDep, SnapshotDep
 from app.web.errors import NotAcceptable
 
-router = APIRouter(prefix="/site/horizon", tags=["site"])
+router = api_router(prefix="/site/horizon", tags=["site"])
 
 
 class HorizonPoint(Input):

@@ -1,13 +1,12 @@
 """How the machine's other doors are doing: SunSpec and MQTT."""
 
-from fastapi import APIRouter
-
 from app.link.messages import MachineUnreachable
 from app.link.metrics import GatewayMetrics
+from app.web.api.base import api_router
 from app.web.deps import MachineDep
 from app.web.metrics import counted
 
-router = APIRouter(prefix="/site/integrations", tags=["site"])
+router = api_router(prefix="/site/integrations", tags=["site"])
 
 
 @router.get("", summary="The state of every integration")

@@ -3,18 +3,18 @@
 from dataclasses import replace
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Query
+from fastapi import Depends, Query
 from pydantic import Field
 from starlette.responses import Response
 
 from app.instants import Instant
 from app.store.store import JournalEntry, JournalFilter
 from app.tracker.snapshot import EventKind
-from app.web.api.base import Output, Responses
+from app.web.api.base import Output, Responses, api_router
 from app.web.deps import ReaderDep
 from app.web.journal_files import JournalFormat, journal_file
 
-router = APIRouter(tags=["history"])
+router = api_router(tags=["history"])
 
 
 class JournalPage(Output):

@@ -2,7 +2,6 @@
 
 from typing import Annotated, Literal
 
-from fastapi import APIRouter
 from pydantic import Field
 
 from app.instants import Instant
@@ -38,11 +37,11 @@ from app.tracker.mode import Mode
 from app.tracker.proofs import StopSpeed
 from app.tracker.protections.words import StowName
 from app.tracker.snapshot import SiteSnapshot, Snapshot
-from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, TrackerId
+from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, TrackerId, api_router
 from app.web.api.orders import SenderDep, tracker_of
 from app.web.deps import SnapshotDep
 
-router = APIRouter(tags=["motion"])
+router = api_router(tags=["motion"])
 
 PressId = Annotated[
     str, Field(min_length=1, max_length=64, description="New for every press of the key.", examples=["p-1"])

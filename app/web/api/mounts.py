@@ -1,6 +1,5 @@
 """Mounts: what each kind can do, how a tracker is mounted, and what of the sun it can face."""
 
-from fastapi import APIRouter
 from starlette.concurrency import run_in_threadpool
 
 from app.tracker.config import MountKind
@@ -8,11 +7,11 @@ from app.tracker.mechanisms import MECHANISMS
 from app.tracker.mounts.abilities import ABILITIES, MountAbilities, abilities
 from app.tracker.mounts.reach import Reach, reach
 from app.tracker.transmission import LinearActuator
-from app.web.api.base import NOT_FOUND, Output, TrackerId
+from app.web.api.base import NOT_FOUND, Output, TrackerId, api_router
 from app.web.api.trackers import detail_of
 from app.web.deps import MachineDep
 
-router = APIRouter(tags=["trackers"])
+router = api_router(tags=["trackers"])
 
 
 class MountState(Output):

@@ -3,16 +3,15 @@
 from datetime import datetime
 from typing import Annotated
 
-from fastapi import APIRouter
 from pydantic import Field
 from starlette.requests import Request
 
 from app.network import Network
-from app.web.api.base import REFUSED, Input, Output
+from app.web.api.base import REFUSED, Input, Output, api_router
 from app.web.deps import PanelDep, PrincipalDep
 from app.web.network import CONFIRM_WITHIN, ways
 
-router = APIRouter(prefix="/network", tags=["site"])
+router = api_router(prefix="/network", tags=["site"])
 
 Name = Annotated[str, Field(min_length=1, max_length=253)]
 

@@ -1,16 +1,15 @@
 """Where alarms are sent."""
 
-from fastapi import APIRouter
 from pydantic import Field
 
 from app.link.messages import SetNotifications, TestNotification
 from app.tracker.notifications import Channel, Notifications
-from app.web.api.base import REFUSED, Input
+from app.web.api.base import REFUSED, Input, api_router
 from app.web.api.orders import SenderDep
 from app.web.deps import MachineDep
 from app.web.errors import NotAcceptable
 
-router = APIRouter(prefix="/site/notifications", tags=["alarms"])
+router = api_router(prefix="/site/notifications", tags=["alarms"])
 
 
 class NotificationsIn(Input):

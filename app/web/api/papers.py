@@ -2,14 +2,14 @@
 
 from typing import Annotated, Self
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 
 from app.papers.library import papers
 from app.papers.result import Erratum, Figure, Gap, Group, Paper, Standing
-from app.web.api.base import TOO_MANY, Output
+from app.web.api.base import TOO_MANY, Output, api_router
 from app.web.deps import PanelDep
 
-router = APIRouter(prefix="/papers", tags=["papers"])
+router = api_router(prefix="/papers", tags=["papers"])
 
 
 class FigureReport(Output):

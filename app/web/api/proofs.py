@@ -2,7 +2,6 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter
 from pydantic import Field, TypeAdapter
 
 from app.link.messages import AnswerDirection, AnswerScale, CheckConnection, RestoreDrive, SetSoftLimit
@@ -11,13 +10,13 @@ from app.tracker.config import DriveConfig, TrackerConfig
 from app.tracker.drive_check import DriveCheck, DriveChoices
 from app.tracker.proof_states import ProofState
 from app.tracker.proofs import AxisEnd, Proofs
-from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, TrackerId
+from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, TrackerId, api_router
 from app.web.api.orders import SenderDep
 from app.web.api.trackers import DriveChange, detail_of, merged
 from app.web.deps import MachineDep
 from app.web.errors import NotFound
 
-router = APIRouter(prefix="/trackers/{tracker_id}", tags=["drive"])
+router = api_router(prefix="/trackers/{tracker_id}", tags=["drive"])
 _drive: TypeAdapter[DriveConfig] = TypeAdapter(DriveConfig)
 
 

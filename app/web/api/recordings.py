@@ -7,7 +7,7 @@ from uuid import uuid4
 
 import numpy as np
 import orjson
-from fastapi import APIRouter, Query
+from fastapi import Query
 from fastapi.responses import Response, StreamingResponse
 from pydantic import Field
 from starlette.concurrency import run_in_threadpool
@@ -22,14 +22,14 @@ from app.tracker.config import Orientation
 from app.tracker.programs.show import ShowPlan
 from app.tracker.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
 from app.tracker.snapshot import ActivityName, Snapshot
-from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, RecordingId, Responses
+from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, RecordingId, Responses, api_router
 from app.web.api.orders import SenderDep
 from app.web.api.shows import place_of_show
 from app.web.api.trackers import detail_of
 from app.web.deps import MachineDep, ReaderDep
 from app.web.errors import NotAcceptable
 
-router = APIRouter(prefix="/recordings", tags=["recordings"])
+router = api_router(prefix="/recordings", tags=["recordings"])
 
 ACTIVITIES = [name.value for name in ActivityName]
 Seconds = Annotated[float, Query(ge=0, le=1e9, description="Seconds since the recording began.")]

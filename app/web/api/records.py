@@ -2,12 +2,12 @@
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, File, Form, Path, Query, UploadFile
+from fastapi import File, Form, Path, Query, UploadFile
 from fastapi.responses import Response
 from pydantic import Field
 
 from app.store.store import RecordHead
-from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, Responses, TrackerId
+from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, Responses, TrackerId, api_router
 from app.web.api.commissioning import FILES, RecordFormat, written
 from app.web.api.orders import SenderDep
 from app.web.deps import PanelDep, PrincipalDep, ReaderDep
@@ -25,7 +25,7 @@ from app.web.record_orders import (
 )
 from app.web.signatures import HEIGHT, LONGEST_NAME, MOST_STROKES, WIDTH, Signature, SignatureRole
 
-router = APIRouter(tags=["commissioning records"])
+router = api_router(tags=["commissioning records"])
 
 RecordNumber = Annotated[int, Path(ge=1, le=2**53, description="Number of the record.")]
 PhotoNumber = Annotated[int, Path(ge=1, le=2**53, description="Number of the photo.")]

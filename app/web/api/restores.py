@@ -2,15 +2,14 @@
 
 from datetime import datetime
 
-from fastapi import APIRouter
 from pydantic import Field
 from starlette.concurrency import run_in_threadpool
 
-from app.web.api.base import NOT_FOUND, REFUSED, Input, Output
+from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, api_router
 from app.web.deps import PanelDep
 from app.web.restoring import choice, restore
 
-router = APIRouter(tags=["operations"])
+router = api_router(tags=["operations"])
 
 
 class BackupOnDisk(Output):

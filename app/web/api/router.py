@@ -1,6 +1,7 @@
 """All of REST v1."""
 
 from fastapi import APIRouter
+from starlette.routing import BaseRoute
 
 from app.web.api import (
     access,
@@ -38,7 +39,7 @@ from app.web.api import (
     weather,
     weather_sources,
 )
-from app.web.api.base import COMMON
+from app.web.api.base import COMMON, ROOT
 
 ROUTERS = (
     access.router,
@@ -73,14 +74,12 @@ ROUTERS = (
     network.router,
     telemetry.router,
     stream.router,
-    operations.router,
     restores.router,
 )
 
 
-def api_router() -> APIRouter:
-    """Return the routes below /api/v1."""
-    router = APIRouter(prefix="/api/v1", responses=COMMON)
-    for part in ROUTERS:
-        router.include_router(part)
-    return router
+def api_routes() -> list[BaseRoute]:
+    """Return the routes below /api/v1; those of operations stand at the root too, and are included here."""
+    shared = APIRouter(prefix=ROOT, responses=COMMON)
+    shared.include_router(operations.router)
+    return [*(route for part in ROUTERS for route in part.routes), *shared.routes]

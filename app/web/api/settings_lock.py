@@ -1,18 +1,17 @@
 """The lock on what was commissioned, and undoing the last change of it."""
 
-from fastapi import APIRouter
 from pydantic import Field
 
 from app.link.messages import LockSettings, UnlockSettings
 from app.link.settings_orders import UndoSettings
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import CommissioningLock
-from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, TrackerId
+from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, TrackerId, api_router
 from app.web.api.orders import SenderDep, tracker_of
 from app.web.api.trackers import detail_of
 from app.web.deps import MachineDep, SnapshotDep
 
-router = APIRouter(tags=["commissioning"])
+router = api_router(tags=["commissioning"])
 
 
 class LockInput(Input):

@@ -6,7 +6,6 @@ from typing import Self
 from urllib.parse import quote
 from uuid import uuid4
 
-from fastapi import APIRouter
 from fastapi.responses import Response
 from pydantic import Field, model_validator
 from starlette.concurrency import run_in_threadpool
@@ -30,14 +29,14 @@ from app.tracker.mode import Mode
 from app.tracker.programs.show import ShowCheck, ShowPlan, check_show, schedule_of
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ShowProgress, SiteSnapshot, Snapshot
-from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, Output, TrackerId
+from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, Output, TrackerId, api_router
 from app.web.api.orders import SenderDep, tracker_of
 from app.web.api.sun import location_of, midnights
 from app.web.api.trackers import detail_of
 from app.web.deps import MachineDep, ReaderDep, SnapshotDep
 from app.web.errors import NotAcceptable, NotFound
 
-router = APIRouter(prefix="/trackers/{tracker_id}/shows", tags=["shows"])
+router = api_router(prefix="/trackers/{tracker_id}/shows", tags=["shows"])
 
 CivilDate = date
 OTHER_SHOW = Reason(

@@ -4,7 +4,6 @@ from dataclasses import replace
 from datetime import date, datetime, timedelta, tzinfo
 from typing import Self
 
-from fastapi import APIRouter
 from fastapi.responses import Response
 from pydantic import Field, model_validator
 
@@ -26,7 +25,7 @@ from app.tracker.weather_day import (
     read_steps,
     stepped_day,
 )
-from app.web.api.base import NOT_FOUND, REFUSED, TOO_MANY, Azimuth, Elevation, Input
+from app.web.api.base import NOT_FOUND, REFUSED, TOO_MANY, Azimuth, Elevation, Input, api_router
 from app.web.api.orders import SenderDep
 from app.web.api.sun import location_of, midnights
 from app.web.api.trackers import detail_of
@@ -35,7 +34,7 @@ from app.web.errors import NotAcceptable
 from app.web.simulations import SimulationRequest
 from app.zones import zone_of
 
-router = APIRouter(tags=["recordings"])
+router = api_router(tags=["recordings"])
 
 CivilDate = date
 

@@ -3,7 +3,6 @@
 from datetime import datetime, timedelta
 from typing import Literal, Self
 
-from fastapi import APIRouter
 from pydantic import Field, model_validator
 
 from app.instants import Instant
@@ -11,13 +10,13 @@ from app.link.messages import RenameSite, SetClock, SetLocation
 from app.sun.position import Location
 from app.tracker.reason import Reason
 from app.tracker.snapshot import SiteSnapshot
-from app.web.api.base import REFUSED, Input, Output
+from app.web.api.base import REFUSED, Input, Output, api_router
 from app.web.api.orders import SenderDep
 from app.web.deps import MachineDep, PanelDep, SnapshotDep
 from app.web.errors import NotAcceptable
 from app.web.place import place_doubts
 
-router = APIRouter(prefix="/site", tags=["site"])
+router = api_router(prefix="/site", tags=["site"])
 
 
 class SiteName(Input):

@@ -5,7 +5,7 @@ from datetime import date
 from enum import StrEnum
 from typing import Annotated
 
-from fastapi import APIRouter, Body
+from fastapi import Body
 from fastapi.responses import PlainTextResponse, Response
 from pydantic import Field, TypeAdapter
 from starlette.requests import Request
@@ -16,7 +16,7 @@ from app.tracker.programs.examples import EXAMPLES
 from app.tracker.programs.step_table import TableWrong, from_table, to_table
 from app.tracker.programs.stepped import StepProgram
 from app.tracker.strategy import Stepped, Strategy
-from app.web.api.base import NOT_FOUND, REFUSED, TOO_MANY, Input, TrackerId
+from app.web.api.base import NOT_FOUND, REFUSED, TOO_MANY, Input, TrackerId, api_router
 from app.web.api.orders import SenderDep
 from app.web.api.sun import location_of, midnights
 from app.web.api.trackers import detail_of
@@ -24,7 +24,7 @@ from app.web.deps import MachineDep, PanelDep, SnapshotDep
 from app.web.errors import NotAcceptable
 from app.web.strategies import asked_day, day_of, kept_program
 
-router = APIRouter(prefix="/trackers/{tracker_id}", tags=["trackers"])
+router = api_router(prefix="/trackers/{tracker_id}", tags=["trackers"])
 
 CivilDate = date
 CSV = "text/csv; charset=utf-8"

@@ -5,19 +5,19 @@ from contextlib import suppress
 from typing import Annotated
 
 import structlog
-from fastapi import APIRouter, Header, Query
+from fastapi import Header, Query
 from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
 
 from app.link.messages import MachineUnreachable
 from app.tracker.snapshot import EventKind
-from app.web.api.base import Responses
+from app.web.api.base import Responses, api_router
 from app.web.deps import PanelDep
 from app.web.hub import Hub, TooManyViewers
 from app.web.viewers import Message, TooSlow, Viewer, Wanted, pump
 
 log = structlog.get_logger()
-router = APIRouter(tags=["stream"])
+router = api_router(tags=["stream"])
 
 RESYNC = Message("resync", '{"type":"resync","detail":"Events were missed; read /api/v1/journal for them."}')
 STREAM: Responses = {

@@ -4,7 +4,7 @@ from dataclasses import replace
 from enum import StrEnum
 from typing import Annotated
 
-from fastapi import APIRouter, File, Path, Query, UploadFile
+from fastapi import File, Path, Query, UploadFile
 from fastapi.responses import Response, StreamingResponse
 from pydantic import Field
 from starlette.concurrency import run_in_threadpool
@@ -17,14 +17,14 @@ from app.studies.request import FIRST_YEAR, LAST_YEAR, StudyRequest
 from app.studies.result import StudyResult, curves_csv, table_csv
 from app.tracker.programs.stepped import StepProgram
 from app.tracker.strategy import Stepped
-from app.web.api.base import NOT_FOUND, REFUSED, TOO_MANY, Output, Responses
+from app.web.api.base import NOT_FOUND, REFUSED, TOO_MANY, Output, Responses, api_router
 from app.web.api.orders import SenderDep
 from app.web.api.trackers import detail_of
 from app.web.deps import MachineDep, PanelDep
 from app.web.errors import NotAcceptable
 from app.web.study_orders import NewProgram, NewStudy, chosen_program, glance_question
 
-router = APIRouter(tags=["studies"])
+router = api_router(tags=["studies"])
 
 StudyId = Annotated[str, Path(min_length=1, max_length=64, description="Id of the study.")]
 FileName = Annotated[str, Path(min_length=1, max_length=80, description="Name of the weather file.")]

@@ -8,7 +8,7 @@ from enum import StrEnum
 from typing import Annotated
 
 import numpy as np
-from fastapi import APIRouter, Query
+from fastapi import Query
 from fastapi.responses import Response
 from pydantic import Field
 
@@ -19,11 +19,11 @@ from app.sun.position import Algorithm, Location, sun_path, sun_position
 from app.tracker.commands import CommandRejected
 from app.tracker.reason import Reason
 from app.tracker.snapshot import SiteSnapshot
-from app.web.api.base import REFUSED, Output, Responses
+from app.web.api.base import REFUSED, Output, Responses, api_router
 from app.web.deps import SnapshotDep
 from app.zones import zone_of
 
-router = APIRouter(prefix="/sun", tags=["sun"])
+router = api_router(prefix="/sun", tags=["sun"])
 
 NO_LOCATION = Reason(
     "location_not_set", "The site's location is not known.", "Set it in step 1: PUT /api/v1/site/location."

@@ -4,7 +4,7 @@ from datetime import UTC, datetime, timedelta
 from typing import Annotated, Literal
 
 import numpy as np
-from fastapi import APIRouter, Query
+from fastapi import Query
 from fastapi.responses import Response, StreamingResponse
 
 from app.instants import Instant
@@ -12,12 +12,12 @@ from app.store.decimate import FEWEST_POINTS, decimate
 from app.store.exports import measured_csv
 from app.store.store import Reader
 from app.tracker.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
-from app.web.api.base import Output
+from app.web.api.base import Output, api_router
 from app.web.api.recordings import ACTIVITIES
 from app.web.deps import ReaderDep
 from app.web.errors import NotAcceptable
 
-router = APIRouter(tags=["history"])
+router = api_router(tags=["history"])
 
 LONGEST = timedelta(days=31)
 Points = Annotated[int, Query(ge=FEWEST_POINTS, le=100_000, description="At most so many; extremes stay.")]

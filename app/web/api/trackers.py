@@ -3,7 +3,6 @@
 from dataclasses import dataclass, fields
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter
 from pydantic import Field, TypeAdapter, ValidationError
 
 from app.link.messages import AddTracker, ConfigureTracker, RemoveTracker, TrackerDetail, UnknownTracker
@@ -17,7 +16,7 @@ from app.tracker.mounts.usual import mounted
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Snapshot
 from app.tracker.strategy import Strategy
-from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, Output, TrackerId
+from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, Output, TrackerId, api_router
 from app.web.api.machine_inputs import MachineChange
 from app.web.api.mount_inputs import ActuatorIn, MountChange
 from app.web.api.orders import SenderDep, tracker_of
@@ -26,7 +25,7 @@ from app.web.deps import MachineDep, SnapshotDep
 from app.web.errors import NotAcceptable, NotFound
 from app.web.limit_review import limit_review
 
-router = APIRouter(prefix="/trackers", tags=["trackers"])
+router = api_router(prefix="/trackers", tags=["trackers"])
 
 _config: TypeAdapter[TrackerConfig] = TypeAdapter(TrackerConfig)
 Positive = Annotated[float, Field(gt=0, le=1000)]

@@ -1,14 +1,13 @@
 """Training: faults played on a simulated tracker."""
 
-from fastapi import APIRouter
 from pydantic import Field
 
 from app.link.messages import ClearFaults, PlayFault
 from app.tracker.training import LESSONS, Lesson
-from app.web.api.base import NOT_FOUND, REFUSED, Input, TrackerId
+from app.web.api.base import NOT_FOUND, REFUSED, Input, TrackerId, api_router
 from app.web.api.orders import SenderDep
 
-router = APIRouter(prefix="/trackers/{tracker_id}/training", tags=["training"])
+router = api_router(prefix="/trackers/{tracker_id}/training", tags=["training"])
 
 
 class PlayedFault(Input):

@@ -3,7 +3,7 @@
 from datetime import datetime, timedelta
 from typing import Annotated
 
-from fastapi import APIRouter, Path
+from fastapi import Path
 from pydantic import Field, SecretStr
 
 from app.access.accounts import TokenWish
@@ -11,11 +11,11 @@ from app.access.roles import Role
 from app.access.sessions import Session
 from app.access.tokens import Scope, Token
 from app.access.users import User
-from app.web.api.base import NOT_FOUND, Input, Output
+from app.web.api.base import NOT_FOUND, Input, Output, api_router
 from app.web.deps import PanelDep, PrincipalDep
 from app.web.errors import NotFound
 
-router = APIRouter(tags=["access"])
+router = api_router(tags=["access"])
 
 UserName = Annotated[str, Path(min_length=1, max_length=64, description="Name of the user.")]
 Digest = Annotated[str, Path(min_length=1, max_length=64, description="Digest of the session.")]

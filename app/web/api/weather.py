@@ -2,19 +2,18 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter
 from pydantic import Field
 
 from app.instants import Instant
 from app.link.weather_orders import ReportWeather, SetMetStation
 from app.tracker.memory import MetStation
 from app.tracker.weather import RANGES, Weather, WeatherNow
-from app.web.api.base import NOT_FOUND, REFUSED, Input
+from app.web.api.base import NOT_FOUND, REFUSED, Input, api_router
 from app.web.api.orders import SenderDep
 from app.web.deps import MachineDep, SnapshotDep
 from app.web.errors import NotAcceptable, NotFound
 
-router = APIRouter(prefix="/site/weather", tags=["site"])
+router = api_router(prefix="/site/weather", tags=["site"])
 
 
 def _measured(name: str, example: float) -> object:

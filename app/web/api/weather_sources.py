@@ -2,18 +2,17 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter
 from pydantic import Field
 
 from app.instants import Instant
 from app.link.weather_orders import SetWeatherWindows, SimulateWeather
 from app.tracker.simulated_weather import MOST_SEED, SPANS, Scenario, SimulatedStation
 from app.tracker.weather_windows import LIMITS, WeatherWindows
-from app.web.api.base import REFUSED, Input
+from app.web.api.base import REFUSED, Input, api_router
 from app.web.api.orders import SenderDep
 from app.web.deps import MachineDep
 
-router = APIRouter(prefix="/site/weather", tags=["site"])
+router = api_router(prefix="/site/weather", tags=["site"])
 USUAL, STATION = WeatherWindows(), SimulatedStation()
 
 

@@ -1,0 +1,22 @@
+"""A quick start: the collector rests while modules are loaded, and works as usual afterwards."""
+
+import gc
+
+from app.late import hurry, late, settle
+
+
+def test_the_collector_rests_until_everything_is_loaded() -> None:
+    usual = gc.get_threshold()
+    try:
+        hurry()
+        assert gc.get_threshold()[0] > usual[0]
+        settle()
+        assert gc.get_threshold() == usual
+        assert gc.get_freeze_count() > 0
+    finally:
+        gc.unfreeze()
+        gc.set_threshold(*usual)
+
+
+def test_a_late_module_is_the_same_one_every_time() -> None:
+    assert late("colorsys") is late("colorsys")
