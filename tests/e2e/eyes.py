@@ -5,6 +5,7 @@ import threading
 import time
 from collections import deque
 from dataclasses import dataclass
+from itertools import pairwise
 from struct import pack, unpack_from
 
 from app.drives.sim_training import TRUE_AZIMUTH
@@ -113,6 +114,11 @@ class Eyes:
             assert self.now.at < give_up, "the panel still turns"
             time.sleep(JUDGE_EVERY_S)
         return rest.at - at
+
+    def longest_blink_s(self, at: float) -> float:
+        """Return the longest time after an instant for which a busy computer kept it from looking."""
+        seen = [at, *(sight.at for sight in self._since(at))]
+        return max(after - before for before, after in pairwise(seen))
 
     def _since(self, at: float) -> list[Sight]:
         return [sight for sight in list(self.sights) if sight.at >= at]
