@@ -49,7 +49,7 @@ class Unit:
         self._link = link
         self._taken: dict[int, int] = {}
         self._to_confirm: dict[str, float] = {}
-        self._absent: set[str] = set()
+        self._refused: dict[str, int] = {}
         self._ticket: int | None = None
 
     @property
@@ -63,11 +63,14 @@ class Unit:
         return self._ticket is not None
 
     def has(self, name: str) -> bool:
-        """Return whether the profile has a register and the device did not refuse it."""
-        return name in self.profile.registers and name not in self._absent
+        """Return whether the profile has a register and the device did not refuse it when last asked."""
+        return name in self.profile.registers and name not in self._refused
 
     async def poll(self, *names: str) -> dict[str, float]:
-        """Return the values of those registers that there are, neighbours of a block in one frame."""
+        """Return the values of those registers that there are, neighbours of a block in one frame.
+
+        What was refused is asked for again under the next ticket: the refusal may have been of the moment.
+        """
         values: dict[str, float] = {}
         for block, members in self._frames(names):
             try:
@@ -75,9 +78,10 @@ class Unit:
             except DriveRefused:
                 if not all(self.profile.registers[name].optional for name in members):
                     raise
-                self._absent.update(members)
+                self._refused |= dict.fromkeys(members, self._link.ticket)
                 continue
             for name in members:
+                self._refused.pop(name, None)
                 values[name] = self.profile.registers[name].value(words, block.address)
         return values
 
@@ -171,11 +175,14 @@ class Unit:
     def _frames(self, names: Sequence[str]) -> list[tuple[Block, list[str]]]:
         """Return what has to be read for some registers: a block of the profile, or the register alone."""
         frames: dict[str, tuple[Block, list[str]]] = {}
-        for name in filter(self.has, names):
+        for name in filter(self._is_asked, names):
             register = self.profile.registers[name]
             block = self.profile.block_of(register) or Block(name, register.address, register.count)
             frames.setdefault(block.name, (block, []))[1].append(name)
         return list(frames.values())
+
+    def _is_asked(self, name: str) -> bool:
+        return name in self.profile.registers and self._refused.get(name) != self._link.ticket
 
     def _what(self, name: str) -> str:
         return f"{name} of profile {self.profile.name}"
