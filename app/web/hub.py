@@ -1,4 +1,4 @@
-"""From one machine to many readers: each state is rendered once and handed out in batches."""
+"""From one machine to many readers: each state is rendered once a language and handed out in batches."""
 
 import asyncio
 from collections import deque
@@ -16,6 +16,8 @@ from app.clock import Clock, set_or_at
 from app.link.messages import Machine, Update
 from app.tracker.snapshot import Event, SiteSnapshot
 from app.web.edition import edition
+from app.web.languages.catalogue import catalogue_of
+from app.web.languages.live_texts import in_language
 from app.web.presses import Dead
 from app.web.viewers import Message, Viewer, Wanted
 
@@ -48,7 +50,7 @@ class Hub:
         self._number = 0
         self._events: deque[tuple[int, Event]] = deque(maxlen=EVENTS_KEPT)
         self._snapshot: SiteSnapshot | None = None
-        self._rendered: dict[str | None, Message] = {}
+        self._rendered: dict[tuple[str | None, str], Message] = {}
         self._rendered_of: SiteSnapshot | None = None
         self._rendered_at = self._heard_at = clock.now()
         self._build = edition()
@@ -75,7 +77,7 @@ class Hub:
         if len(self._viewers) >= MOST_VIEWERS:
             raise TooManyViewers
         viewer = Viewer(wanted)
-        viewer.show(self._present(wanted.tracker_id))
+        viewer.show(self._present(wanted))
         self._viewers.add(viewer)
         return viewer
 
@@ -90,7 +92,7 @@ class Hub:
         if run != self._run or not number.isdigit() or not oldest - 1 <= int(number) <= self._number:
             return None
         return [
-            self._message(place, event)
+            self._message(place, event, wanted.language)
             for place, event in self._events
             if place > int(number) and wanted.includes(event.kind, event.tracker_id)
         ]
@@ -121,10 +123,13 @@ class Hub:
         for event in update.events:
             self._number += 1
             self._events.append((self._number, event))
-            message = self._message(self._number, event)
+            messages: dict[str, Message] = {}
             for viewer in self._viewers:
                 if viewer.wanted.includes(event.kind, event.tracker_id):
-                    viewer.tell(message)
+                    language = viewer.wanted.language
+                    if language not in messages:
+                        messages[language] = self._message(self._number, event, language)
+                    viewer.tell(messages[language])
 
     async def _pace(self) -> None:
         """Hand out what changed; with very many viewers less often, so that half of the time is others'."""
@@ -139,19 +144,20 @@ class Hub:
     async def _hand_out(self) -> None:
         for batch in _batches(tuple(self._viewers)):
             for viewer in batch:
-                viewer.show(self._present(viewer.wanted.tracker_id))
+                viewer.show(self._present(viewer.wanted))
             await self._clock.sleep_until(self._clock.now())
 
-    def _present(self, tracker_id: str | None) -> Message:
+    def _present(self, wanted: Wanted) -> Message:
         """Return the present state as text, rendered once for all who are shown it within a moment."""
         now = self._clock.now()
         if self._rendered_of is not self._snapshot or now - self._rendered_at > SOONEST:
             self._rendered, self._rendered_of, self._rendered_at = {}, self._snapshot, now
-        if tracker_id not in self._rendered:
-            self._rendered[tracker_id] = self._render(tracker_id)
-        return self._rendered[tracker_id]
+        alike = wanted.tracker_id, wanted.language
+        if alike not in self._rendered:
+            self._rendered[alike] = self._render(*alike)
+        return self._rendered[alike]
 
-    def _render(self, tracker_id: str | None) -> Message:
+    def _render(self, tracker_id: str | None, language: str) -> Message:
         snapshot = self._snapshot
         if snapshot is None:
             return LOST
@@ -167,10 +173,10 @@ class Hub:
             "age_ms": round((self._clock.now() - self._heard_at) / timedelta(milliseconds=1)),
             "snapshot": snapshot,
         }
-        return Message("snapshot", orjson.dumps(state).decode(), self.mark)
+        return Message("snapshot", in_language(catalogue_of(language), state), self.mark)
 
-    def _message(self, number: int, event: Event) -> Message:
-        text = orjson.dumps({"type": "event", **_fields(event)}).decode()
+    def _message(self, number: int, event: Event, language: str) -> Message:
+        text = in_language(catalogue_of(language), {"type": "event", **_fields(event)})
         return Message("event", text, f"{self._run}-{number}")
 
 

@@ -5,7 +5,6 @@ from contextlib import suppress
 from datetime import timedelta
 from typing import Annotated, Any, Literal, assert_never
 
-import orjson
 import structlog
 from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, TypeAdapter, ValidationError
@@ -21,6 +20,9 @@ from app.web.deps import Panel, order_of, principal
 from app.web.edition import PageOutdated, refuse_outdated
 from app.web.errors import machine_problem
 from app.web.hub import TooManyViewers
+from app.web.languages.catalogue import catalogue_of
+from app.web.languages.known import ENGLISH, code_of
+from app.web.languages.live_texts import in_language
 from app.web.presses import Heartbeat, LinkDelay, Presses, Verdict
 from app.web.viewers import Message, TooSlow, Viewer, Wanted, pump
 
@@ -152,7 +154,8 @@ class Session:
             self._hub.spawn(self._end(tracker_id, press_id))
 
     def _tell(self, kind: str, **fields: Any) -> None:
-        self._viewer.tell(Message(kind, orjson.dumps({"type": kind, **fields}).decode()))
+        told = {"type": kind, **fields}
+        self._viewer.tell(Message(kind, in_language(catalogue_of(self._viewer.wanted.language), told)))
 
     def _beat(self, beat: JogBeat) -> None:
         round_trip = None if beat.rtt_ms is None else timedelta(milliseconds=beat.rtt_ms)
@@ -237,12 +240,14 @@ class Session:
 
 
 @router.websocket("/live")
-async def live(websocket: WebSocket, tracker: str | None = None, page: str = "") -> None:
+async def live(
+    websocket: WebSocket, tracker: str | None = None, page: str = "", language: str = ENGLISH.tag
+) -> None:
     """Serve one page until it goes, or until it does not take what it is sent."""
     panel: Panel = websocket.app.state.panel
     who = principal(websocket)
     try:
-        viewer = _viewer(panel, who, Wanted(tracker))
+        viewer = _viewer(panel, who, Wanted(tracker, language=code_of(language)))
     except TooManyViewers:
         await websocket.close(1013, "too many viewers")
         return

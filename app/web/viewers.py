@@ -6,6 +6,8 @@ from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from datetime import timedelta
 
+from app.web.languages.known import ENGLISH
+
 MOST_TOLD = 1000
 
 
@@ -24,10 +26,11 @@ class Message:
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What a reader asked for: one tracker or all (None), these kinds or all (empty)."""
+    """What a reader asked for: one tracker or all (None), these kinds or all (empty), its language."""
 
     tracker_id: str | None = None
     kinds: frozenset[str] = frozenset()
+    language: str = ENGLISH.code
 
     def includes(self, kind: str, tracker_id: str | None) -> bool:
         """Return whether something of this kind, about this tracker or the site (None), is wanted."""

@@ -23,9 +23,9 @@ NAMES = frozenset(_NAMES.split())
 """Gaps in which something stands that people or machines named: it is not translated."""
 
 NUMBER = re.compile(r"(?<![\w.])(\d+)\.(\d+)(?![\w.]*\.\d|\d)")
-SENTENCE_END = re.compile(r"(?<=[.!?]) (?=[A-Z])")
+SENTENCE_END = re.compile(r"(?<=[.!?]) (?=[A-Z0-9])")
 JOINT = re.compile(r"(: |, | and |; | or | · )")
-MOST_PARTS, MOST_NAME_WORDS = 40, 8
+MOST_PARTS, MOST_NAME_WORDS, MOST_TOGETHER, MOST_SPACES = 40, 8, 4, 2
 
 
 class Catalogue(GNUTranslations):
@@ -60,7 +60,7 @@ class Catalogue(GNUTranslations):
         """Return a sentence of the program in this language; one that is not known stays English."""
         if not self._catalog or len(sentence) > LONGEST:
             return sentence
-        return self._known(sentence) or self._by_sentences(sentence) or self._in_parts(sentence) or sentence
+        return self._known(sentence) or self._by_sentences(sentence) or self._piece(sentence) or sentence
 
     def _known(self, sentence: str, depth: int = 2) -> str | None:
         if found := self._catalog.get(sentence):
@@ -79,33 +79,50 @@ class Catalogue(GNUTranslations):
         if not any(letter.isalpha() for letter in value):
             return self.number(value)
         known = self._known(value, depth - 1) if depth else self._catalog.get(value)
-        return known or self._in_parts(value) or self._word(value) or self.number(value)
-
-    def _word(self, value: str) -> str | None:
-        """Return words that are known as a label only, such as `azimuth` or `stow at a gust of`."""
-        return self._catalog.get(value[:1].upper() + value[1:]) if value[:1].islower() else None
+        return known or self._piece(value) or self.number(value)
 
     def _by_sentences(self, text: str) -> str | None:
         """Return several sentences, each for itself, None where none is known."""
-        sentences = SENTENCE_END.split(text)
+        sentences = SENTENCE_END.split(text)[:MOST_PARTS]
         if len(sentences) == 1:
             return None
-        known = [self._known(sentence) or self._in_parts(sentence) for sentence in sentences]
-        if not any(known):
-            return None
-        return " ".join(found or sentence for found, sentence in zip(known, sentences, strict=True))
+        said, is_known = [], False
+        while sentences:
+            count, found = self._first_known(sentences)
+            said.append(found or sentences[0])
+            is_known = is_known or found is not None
+            sentences = sentences[count:]
+        return " ".join(said) if is_known else None
+
+    def _first_known(self, sentences: list[str]) -> tuple[int, str | None]:
+        """Return how many of the sentences stand together as one text, and what that is in this language."""
+        for count in range(min(len(sentences), MOST_TOGETHER), 1, -1):
+            if found := self._catalog.get(" ".join(sentences[:count])):
+                return count, found
+        return 1, self._known(sentences[0]) or self._piece(sentences[0])
+
+    def _piece(self, text: str) -> str | None:
+        """Return what is no text of its own: a list, something said of a name, one word."""
+        return self._in_parts(text) or self._word(text)
 
     def _in_parts(self, text: str) -> str | None:
-        """Return a list such as `azimuth and elevation` part by part; None where no part is known."""
+        """Return a list such as `azimuth and elevation` part by part."""
         parts = JOINT.split(text)[: 2 * MOST_PARTS]
         if len(parts) == 1:
             return self._of_subject(text)
         known = [self._catalog.get(part) or self._of_subject(part) or self._word(part) for part in parts[::2]]
-        if not any(known):
+        pairs = list(zip(known, parts[::2], strict=True))
+        if not any(known) or any(not found and part.count(" ") > MOST_SPACES for found, part in pairs):
             return None
-        said = [found or self.number(part) for found, part in zip(known, parts[::2], strict=True)]
+        said = [found or self.number(part) for found, part in pairs]
         joints = [self.language.joints.get(joint, joint) for joint in parts[1::2]]
         return "".join(chain.from_iterable(zip(said, [*joints, ""], strict=True)))
+
+    def _word(self, value: str) -> str | None:
+        """Return what is known as a label only, as `azimuth` is, or without its stop, as `Holding.` is."""
+        if value.endswith(".") and (label := self._catalog.get(value[:-1])):
+            return label + self.language.stop
+        return self._catalog.get(value[:1].upper() + value[1:]) if value[:1].islower() else None
 
     def _of_subject(self, text: str) -> str | None:
         """Return what is said of a name, such as `T07 is busy with a show.`; None where that is not known."""

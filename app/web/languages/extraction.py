@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from http import HTTPStatus
 from pathlib import Path
 
 from babel.messages.extract import DEFAULT_KEYWORDS, extract
@@ -22,15 +23,25 @@ KEYWORDS = {**DEFAULT_KEYWORDS, "_": None}
 
 _SPEAKING = """
     app/tracker app/alarms app/web app/site app/drives app/show app/access app/store app/studies app/energy
-    app/sun app/link"""
-"""The folders whose texts reach a page, in the order in which their texts are listed."""
+    app/sun app/link app/gateway/gateways.py app/gateway/notices.py app/gateway/notifier.py
+    app/gateway/mqtt.py app/gateway/sunspec_controls.py"""
+"""What has texts that reach a page, in the order in which they are listed."""
+
+_PHRASES = (400, 401, 403, 404, 405, 409, 413, 422, 423, 429, 500, 503)
+MORE = {
+    "app/web/errors.py": tuple(HTTPStatus(status).phrase for status in _PHRASES),
+    "app/web/ui/search.py": ("{least} to {most} {unit}.",),
+    "app/web/ui/machine_forms.py": ("times",),
+    "app/site/recorder.py": ("Completed", "Stopped", "Interrupted"),
+}
+"""What no rule finds: phrases of HTTP, parts of sentences, and words that travel."""
 
 _SILENT = """
     app/web/languages app/web/metrics.py app/web/route_permissions.py app/web/routes.py app/web/openapi.py
     app/web/documented.py app/web/main.py app/web/server.py app/web/presses.py app/web/record_files.py
     app/web/record_pdf.py app/web/guide.py app/web/journal_files.py app/web/mdns.py app/web/qr.py
     app/web/api/base.py app/web/api/operations.py app/web/api/router.py app/web/ui/components.py
-    app/web/ui/papers.py app/web/components_context.py app/link/codec.py app/link/metrics.py
+    app/web/ui/papers.py app/web/components_context.py app/link/codec.py
     app/drives/wire_faults.py app/drives/write_frame.py app/drives/sim_server.py app/drives/sim_training.py
     app/drives/profile_text.py app/drives/profile_needs.py app/drives/profile.py app/drives/register.py
     app/drives/rtu_frame.py app/drives/sunspec.py app/drives/sunspec_models.py app/drives/faulty.py
@@ -57,14 +68,19 @@ def texts(root: Path = ROOT) -> Iterator[Text]:
     """Return all texts, those of templates first."""
     for path in sorted((root / "templates").glob("*.html")):
         yield from _of_template(path, root)
-    for path in sorted((root / "static" / "js").glob("*.js")):
+    for path in sorted((root / "static" / "js").rglob("*.js")):
         yield from _of_script(path, root)
-    for folder in SPEAKING:
-        for path in sorted((root / folder).rglob("*.py")):
-            name = str(path.relative_to(root))
-            if not name.startswith(SILENT):
-                for line, text in python_texts(path.read_text()):
-                    yield Text(name, line, text)
+    for named in SPEAKING:
+        for path in sorted((root / named).rglob("*.py")) or (root / named,):
+            yield from _of_module(path, str(path.relative_to(root)))
+    for name, more in MORE.items():
+        yield from (Text(name, 0, text) for text in more)
+
+
+def _of_module(path: Path, name: str) -> Iterator[Text]:
+    if not name.startswith(SILENT):
+        for line, text in python_texts(path.read_text()):
+            yield Text(name, line, text)
 
 
 def _of_template(path: Path, root: Path) -> Iterator[Text]:

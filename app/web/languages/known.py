@@ -82,3 +82,8 @@ LANGUAGES = {
     )
 }
 TRANSLATED = tuple(code for code in LANGUAGES if code != ENGLISH.code)
+
+
+def code_of(tag: str) -> str:
+    """Return the code of a browser's tag; of one that is not ours, English."""
+    return next((code for code, language in LANGUAGES.items() if language.tag == tag), ENGLISH.code)

@@ -15,6 +15,10 @@ MOST_TRIED = 40
 """So many patterns are tried for one sentence, those with the longest fixed text first."""
 
 
+THIN = 4
+"""A pattern with fewer letters of its own fits too much that is something else."""
+
+
 @dataclass(frozen=True, slots=True)
 class Pattern:
     """An English text taken apart at its gaps: there is one part more than there are gaps."""
@@ -37,9 +41,20 @@ class Pattern:
                 return None
             values.append(sentence[at:found])
             at = found + len(part)
-        if at >= end:
+        values.append(sentence[at:end])
+        if at >= end or (self.is_thin and not all(map(_is_measure, values))):
             return None
-        return dict(zip(self.gaps, (*values, sentence[at:end]), strict=True))
+        return dict(zip(self.gaps, values, strict=True))
+
+    @property
+    def is_thin(self) -> bool:
+        """Return whether hardly a word stands between the gaps, as in `{low} to {high}`."""
+        return sum(map(len, WORD.findall(" ".join(self.parts)))) < THIN
+
+
+def _is_measure(value: str) -> bool:
+    """Return whether something is a number or a unit."""
+    return " " not in value and (len(value) < THIN or any(letter.isdigit() for letter in value))
 
 
 def pattern_of(text: str) -> Pattern | None:

@@ -16,7 +16,7 @@ _SILENT_CALLS = """
     literal_column mapped_column namedtuple ContextVar add_api_route open echo AssertionError TypeError
     KeyError NotImplementedError RuntimeError"""
 _SILENT_KEYWORDS = """
-    description summary responses media_type tags encoding pattern response_description alias examples
+    responses media_type tags encoding pattern response_description alias examples
     deprecated template prefix key id code kind picture guide href name_of drawing icon"""
 _PLAIN_CALLS = "abs str round len sorted float int repr max min map getattr"
 SILENT_CALLS, SILENT_KEYWORDS = frozenset(_SILENT_CALLS.split()), frozenset(_SILENT_KEYWORDS.split())
@@ -24,12 +24,14 @@ PLAIN_CALLS = frozenset(_PLAIN_CALLS.split())
 SILENT_NAMES = re.compile(
     r"^_?(SQL|DDL|DESCRIPTION|STREAM|HEADERS|HTML|SVG|COLOUR|MEDIA|PATTERN|SCHEMA|TRIGGER)|_(SQL|DDL|HTML|PATTERN)$"
 )
-SILENT_ENUMS = re.compile(r"^(EventKind|PointType|Framing|Verdict)$|Format$")
-"""Words of these reach no page, or are the machine codes of the journal."""
+SILENT_ENUMS = re.compile(r"^(PointType|Framing|Verdict)$|Format$")
+"""Words of these reach no page."""
+SILENT_FIELDS = frozenset(("description", "summary"))
+"""What an API documents under these names."""
 
 GAP = re.compile(r"\{([a-z][a-z0-9_]*)\}")
 WORD = re.compile(r"[^\W\d_]{2,}")
-LABEL = re.compile(r"[A-Z][a-z]{2,}[a-z]*\.?|[A-Z]{2,5}s?")
+LABEL = re.compile(r"[A-Z][a-z]{2,}(-[a-z]+)*\.?|[A-Z]{2,5}s?|\d+ [A-Z][a-z]{2,}")
 MACHINE = re.compile(
     r"^[\s<#./\[{&;]*<|://|^/|^\w+/[\w.+-]+|^#|^--|^(GET|POST|PUT|DELETE|WS) |[\x00-\x08]|%[YmdHMS]|charset="
     r"|</|\b(SELECT|INSERT|UPDATE|DELETE FROM|CREATE|PRAGMA|ALTER|DROP)\b|\bviewBox\b|^[MLHVZ][\d{]"
@@ -131,9 +133,10 @@ class _Reader(ast.NodeVisitor):
                 self.visit(statement)
 
     def visit_Dict(self, node: ast.Dict) -> None:
-        """Leave out keys."""
-        for value in node.values:
-            self.visit(value)
+        """Leave out keys, and what describes an API."""
+        for name, value in zip(node.keys, node.values, strict=True):
+            if not (isinstance(name, ast.Constant) and name.value in SILENT_FIELDS):
+                self.visit(value)
 
     def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
         """Read an f-string as one sentence, or one for each choice of words in it."""
@@ -173,8 +176,9 @@ def is_for_people(text: str) -> bool:
         return False
     if " " not in text:
         return LABEL.fullmatch(text) is not None
+    shortest = 2 if literal != text else 3
     words = WORD.findall(literal)
-    return any(word.islower() and len(word) > 2 for word in words) or LABEL.match(text) is not None
+    return any(word.islower() and len(word) >= shortest for word in words) or LABEL.match(text) is not None
 
 
 def _is_word(text: str) -> bool:

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from starlette.requests import Request
 
-from app.access.principal import Via
+from app.access.principal import Principal, Via
 from app.access.roles import Permission, Role
 from app.link.messages import TrackerDetail, UnknownTracker
 from app.tracker.commissioning import Step, StepStatus
@@ -13,6 +13,7 @@ from app.tracker.snapshot import SiteSnapshot, Snapshot
 from app.web.contexts import Forward, Frame, Link, StepMark
 from app.web.deps import panel, principal
 from app.web.edition import mark_of
+from app.web.languages import said
 from app.web.ui.themes import choice_of, theme_of
 from app.web.who import Who
 from app.zones import shown_zone
@@ -151,7 +152,7 @@ def who_looks(request: Request) -> Who:
     session_id = request.scope.get("state", {}).get("session_id", "")
     session = keeper.book.sessions.get(who.credential)
     return Who(
-        name=who.name if who.is_known else "",
+        name=_name(who) if who.is_known else "",
         roles=" and ".join(sorted(role.value for role in who.roles)),
         signed_in=who.via in (Via.SESSION, Via.KIOSK),
         is_kiosk=who.via is Via.KIOSK,
@@ -164,6 +165,11 @@ def who_looks(request: Request) -> Who:
         via=who.via.value,
         weight=who.rank,
     )
+
+
+def _name(who: Principal) -> str:
+    """Return a user's name; what sits at this computer has none, and is told in the language of the page."""
+    return said(who.name) if who.via is Via.LOOPBACK else who.name
 
 
 def _is_current(here: str, href: str) -> bool:
