@@ -104,14 +104,18 @@ class Killing:
         return rested_s
 
     async def _turning(self, motion: "Motion") -> "asyncio.Task[None] | None":
-        """Return once the axes turn; a motion that a lost drive ended at once is begun again."""
+        """Return once the axes turn; a motion that a lost drive ended at once is begun again.
+
+        So is one that was over before a busy computer looked.
+        """
         while True:
-            losses = self._losses()
+            losses, begun_at = self._losses(), self.eyes.now.at
             pressing = await self._begin(motion)
             try:
                 await asyncio.to_thread(self.eyes.until_moving)
             except AssertionError:
-                assert self._losses() > losses, f"{motion} did not begin: {self.machine.tracker}"
+                seen = self._losses() > losses or self.eyes.moved_after(begun_at)
+                assert seen, f"{motion} did not begin: {self.machine.tracker}"
                 self.counted["begun again"] += 1
             else:
                 return pressing
