@@ -7,8 +7,17 @@ export function randomId() {
   return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 
+let leftAt = -1;
+
+// Whoever has gone on to another page is not brought back by the answer to an order that was given before.
+function stayAway(event) {
+  const { ctx } = event.detail;
+  if (ctx.hx?.redirect && ctx.askedAt < leftAt) delete ctx.hx.redirect;
+}
+
 function prepare(event) {
   const { ctx } = event.detail;
+  ctx.askedAt = performance.now();
   const form = ctx.sourceElement.closest("form");
   if (!form || ctx.request.method?.toUpperCase() !== "POST") return;
   if (form.hasAttribute("data-moves") && live.link !== "live") {
@@ -30,6 +39,8 @@ function focusSummary() {
 
 export function start() {
   document.addEventListener("htmx:config:request", prepare);
+  document.addEventListener("htmx:before:response", stayAway);
+  addEventListener("beforeunload", () => { leftAt = performance.now(); });
   document.addEventListener("htmx:after:swap", focusSummary);
   focusSummary();
 }

@@ -1,0 +1,64 @@
+"""The key forward works whatever else is under way: the step bar is renewed, an order is not answered yet."""
+
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import Locator, Page, Route, expect
+
+from tests.browser.conftest import Opened, Plant
+from tests.browser.hands import arrive
+
+LOCATION = "/trackers/T1/commissioning/location"
+PROGRESS = "/trackers/T1/commissioning/progress/location?here=/trackers/T1/commissioning/location"
+RENEWED = f"""() => new Promise((resolve) => {{
+  document.addEventListener("htmx:finally:request", () => setTimeout(resolve, 50), {{ once: true }});
+  window.htmx.ajax("GET", "{PROGRESS}", {{ swap: "none" }});
+}})"""
+
+
+def by_keyboard(page: Page, key: Locator) -> None:
+    key.focus()
+    page.evaluate(RENEWED)
+    page.keyboard.press("Enter")
+
+
+def by_mouse(page: Page, key: Locator) -> None:
+    key.hover()
+    page.mouse.down()
+    page.evaluate(RENEWED)
+    page.mouse.up()
+
+
+@pytest.mark.parametrize("press", [by_keyboard, by_mouse])
+def test_a_press_outlives_the_renewal_of_the_step_bar(
+    plant: Plant, opened: Opened, press: Callable[[Page, Locator], None]
+) -> None:
+    page = opened(LOCATION)
+    press(page, page.locator("#forward .key"))
+    arrive(page, "/commissioning/clock")
+    assert len(plant.orders("set_location")) == 1
+
+
+def test_a_link_of_the_step_bar_keeps_the_focus(plant: Plant, opened: Opened) -> None:
+    page = opened(LOCATION)
+    link = page.locator("#steps a").nth(1)
+    link.focus()
+    page.evaluate(RENEWED)
+    expect(link).to_be_focused()
+
+
+def test_an_answer_that_comes_late_brings_nobody_back(plant: Plant, opened: Opened) -> None:
+    page = opened("/trackers/T1/commissioning/clock")
+    order: list[Route] = []
+    going: list[Route] = []
+    page.route("**/clock/system", lambda route: order.append(route))
+    page.route("**/commissioning/homing", lambda route: going.append(route))
+    page.locator('form[action$="/clock/system"] button').click()
+    page.locator("#forward a.key").click(no_wait_after=True)
+    while not (order and going):
+        page.wait_for_timeout(20)
+    with page.expect_response("**/clock/system"):
+        order[0].continue_()
+    page.wait_for_timeout(200)
+    going[0].continue_()
+    arrive(page, "/commissioning/homing")
