@@ -32,9 +32,6 @@ class MovableClock(SystemClock):
     def now(self) -> datetime:
         return super().now() + self.ahead
 
-    async def sleep_until(self, until: datetime) -> None:
-        await super().sleep_until(until - self.ahead)
-
 
 class Office:
     """A panel, its machine, and browsers in front of it."""
