@@ -2,11 +2,14 @@
 
 from starlette.requests import Request
 
+from app.access.principal import ProofNeeded, Via
+from app.access.sessions import is_proven
 from app.link.messages import TrackerDetail
 from app.tracker.axes import Axis
 from app.tracker.config import TrackerConfig
 from app.tracker.limit_change import LimitReview, Standing, review
 from app.tracker.snapshot import SiteSnapshot
+from app.web.deps import panel, principal
 
 CONFIRMED = "confirmed"
 """The field that holds the differences which somebody was sure of; others are asked for again."""
@@ -25,3 +28,15 @@ def limit_review(site: SiteSnapshot | None, tracker: TrackerDetail, wanted: Trac
 async def must_ask(request: Request, found: LimitReview) -> bool:
     """Return whether somebody has to be sure of these differences before they are saved."""
     return bool(found.doubts) and (await request.form()).get(CONFIRMED) != found.digest
+
+
+def require_proof(request: Request, config: TrackerConfig, wanted: TrackerConfig) -> None:
+    """Raise `ProofNeeded` where limits, speeds or the drive change and the password was not typed just now.
+
+    Other settings of the same form or call need no password.
+    """
+    who = principal(request)
+    if who.via is not Via.SESSION or is_proven(who.proven_at, panel(request).clock.now()):
+        return
+    if config.drive != wanted.drive or review(config, wanted, {}, trusted=True).differences:
+        raise ProofNeeded("Limits, speeds and the drive are of weight: they were not saved.")

@@ -376,6 +376,7 @@ PROVEN = frozenset(
     DELETE /api/v1/users/{name}
     POST /api/v1/tokens
     POST /api/v1/trackers/{tracker_id}/drive/restore
+    POST /api/v1/trackers/{tracker_id}/undo
     POST /api/v1/backup
     """.strip()
     .replace("    ", "")

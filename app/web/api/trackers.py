@@ -4,6 +4,7 @@ from dataclasses import dataclass, fields
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, TypeAdapter, ValidationError
+from starlette.requests import Request
 
 from app.link.messages import AddTracker, ConfigureTracker, RemoveTracker, TrackerDetail, UnknownTracker
 from app.sun.position import Algorithm
@@ -23,7 +24,7 @@ from app.web.api.orders import SenderDep, tracker_of
 from app.web.api.protection_inputs import ProtectionChange, kept_azimuths
 from app.web.deps import MachineDep, SnapshotDep
 from app.web.errors import NotAcceptable, NotFound
-from app.web.limit_review import limit_review
+from app.web.limit_review import limit_review, require_proof
 
 router = api_router(prefix="/trackers", tags=["trackers"])
 
@@ -179,11 +180,16 @@ async def read_tracker(tracker_id: TrackerId, machine: MachineDep) -> TrackerCon
 
 @router.patch("/{tracker_id}", summary="Configure or rename a tracker", responses=NOT_FOUND | REFUSED)
 async def change_tracker(
-    tracker_id: TrackerId, change: TrackerChange, sender: SenderDep, machine: MachineDep
+    request: Request, tracker_id: TrackerId, change: TrackerChange, sender: SenderDep, machine: MachineDep
 ) -> TrackerConfig:
-    """Change what is given and keep the rest; refused while the tracker moves."""
+    """Change what is given and keep the rest; refused while the tracker moves.
+
+    In a browser's session another limit, speed or drive wants the password of the last five minutes.
+    """
     before = (await detail_of(machine, tracker_id)).state.config
-    await sender.send(ConfigureTracker(_changed(before, change, await _latitude_deg(machine))))
+    wanted = _changed(before, change, await _latitude_deg(machine))
+    require_proof(request, before, wanted)
+    await sender.send(ConfigureTracker(wanted))
     return (await detail_of(machine, tracker_id)).state.config
 
 

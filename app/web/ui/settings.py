@@ -18,7 +18,7 @@ from app.tracker.mounts.abilities import axis_title
 from app.web.contexts import SettingsPage
 from app.web.deps import MachineDep, panel
 from app.web.errors import NotAcceptable
-from app.web.limit_review import limit_review, must_ask
+from app.web.limit_review import limit_review, must_ask, require_proof
 from app.web.ui.forms import Typed, Unreadable
 from app.web.ui.frame import tracker_frame
 from app.web.ui.orders import PressDep
@@ -77,6 +77,7 @@ async def save(
     wanted = _read(found, tracker.state.config)
     if wanted is None:
         return _answer(press.request, tracker, found, status=422)
+    require_proof(press.request, tracker.state.config, wanted)
     asked = limit_review(panel(press.request).machine.latest(), tracker, wanted)
     if await must_ask(press.request, asked):
         return _answer(press.request, tracker, found, block="review", asked=asked)
