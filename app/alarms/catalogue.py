@@ -72,7 +72,7 @@ ENTRIES = (
     ),
     Entry(
         "config_rejected", 2, Group.MOTION, "Stored settings rejected",
-        "The tracker stands still and does not stow; usual values stand where stored ones did not fit.",
+        "The tracker stands still and does not stow; others stand where stored ones did not fit.",
         "Compare both on the tracker's Settings page, correct them, save, and set the zero again.",
     ),
     Entry(

@@ -6,6 +6,7 @@ from datetime import datetime, timedelta
 from app.alarms.alarm import Alarm
 from app.build import VERSION
 from app.site.checks import check_config
+from app.store.mending import fallen_back
 from app.store.store import StoreFailed, Writer
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import RejectedSetting, SiteState, TrackerMemory, TrackerState
@@ -54,23 +55,38 @@ def _trackers(store: Writer, at: datetime) -> tuple[TrackerState, ...]:
         found = store.trackers()
     except StoreFailed:
         found = store.mended_trackers()
-    judged = tuple(map(_judged, found))
+    judged = tuple(_judged(one, store) for one in found)
     for one in judged:
         if one.memory.rejected:
             store.save_tracker(one, (_rejected(one, at),))
     return judged
 
 
-def _judged(state: TrackerState) -> TrackerState:
-    """Return the tracker; one whose settings do not go together says so and stands still."""
-    if state.memory.rejected:
+def _judged(state: TrackerState, store: Writer) -> TrackerState:
+    """Return the tracker; one whose settings do not go together runs with those accepted last and stands.
+
+    Where those are not known, or do not go together either, it keeps what is stored, and stands all the same.
+    """
+    wrong = _wrong(state.config)
+    if not wrong:
         return state
+    accepted = store.accepted_settings(state.config.tracker_id)
+    if accepted is not None and accepted != state.config and not _wrong(accepted):
+        return fallen_back(state, accepted, why=wrong)
+    why = RejectedSetting("settings together", "as below", "the same", wrong)
+    if why in state.memory.rejected:
+        return state
+    rejected = (*state.memory.rejected, why)
+    return replace(state, memory=replace(state.memory, rejected=rejected, tracking_on=False))
+
+
+def _wrong(config: TrackerConfig) -> str:
+    """Return what is wrong with settings together, empty where nothing is."""
     try:
-        check_config(state.config)
+        check_config(config)
     except ValueError as error:
-        why = RejectedSetting("settings together", "as below", "the same", str(error))
-        return replace(state, memory=replace(state.memory, rejected=(why,), tracking_on=False))
-    return state
+        return str(error)
+    return ""
 
 
 def _rejected(state: TrackerState, at: datetime) -> Event:

@@ -7,6 +7,7 @@ from pydantic_core import PydanticSerializationError
 
 from app.alarms.alarm import Alarm
 from app.store.store import StoreFailed
+from app.tracker.config import TrackerConfig
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.programs.show import ShowPlan
 from app.tracker.recording import RecordingInfo
@@ -42,6 +43,7 @@ class Documents(Generic[T]):
 
 
 SITE = Documents(SiteState, "site")
+CONFIG = Documents(TrackerConfig, "settings")
 TRACKER = Documents(TrackerState, "tracker")
 PLAN = Documents(ShowPlan, "show")
 RECORDING = Documents(RecordingInfo, "recording")

@@ -1,4 +1,4 @@
-"""A stored tracker with values that do not fit: each gives way to the usual one, and every change is told."""
+"""A stored tracker with values that do not fit: it gets the settings accepted last, else usual values."""
 
 import json
 from dataclasses import replace
@@ -6,28 +6,76 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from app.audit.difference import difference
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import RejectedSetting, TrackerMemory, TrackerState
 
 MOST_MENDED = 50
 LONGEST_TOLD = 60
 OF_THE_CONFIG = ("config",)
+BESIDE = "The settings that were accepted last belong together; this one is not among them."
+NO_TRACKER = "What is stored is not a tracker."
+MEMORY = "memory "
 Place = tuple[str | int, ...]
+Rejected = tuple[RejectedSetting, ...]
 
 _tracker: TypeAdapter[TrackerState] = TypeAdapter(TrackerState)
+_config: TypeAdapter[TrackerConfig] = TypeAdapter(TrackerConfig)
 
 
-def mended(text: str, tracker_id: str) -> TrackerState | None:
-    """Return the tracker with usual values where the stored ones do not fit, None where that cannot be.
+def mended(text: str, tracker_id: str, accepted: TrackerConfig | None = None) -> TrackerState | None:
+    """Return the tracker with other values where the stored ones do not fit, None where that cannot be.
 
-    Such a tracker neither tracks nor believes its zero, until somebody has looked at what was rejected.
+    With `accepted`, the settings that it ran with last, these are used as a whole; without them each value
+    that does not fit gives way to the usual one. Such a tracker neither tracks nor believes its zero, until
+    somebody has looked at what was rejected.
     """
+    document = _document(text)
+    stored = None if document is None else document["config"]
+    found = None if document is None else _piecewise(json.loads(text), tracker_id)
+    if accepted is None or accepted.tracker_id != tracker_id:
+        return None if found is None else _halted(*found)
+    if found is None:
+        why = RejectedSetting("all settings", _told(text), "the last accepted", NO_TRACKER, True)
+        return _halted(TrackerState(accepted, TrackerMemory()), (why,))
+    state, rejected = found
+    return fallen_back(state, accepted, stored, rejected) if rejected else state
+
+
+def fallen_back(
+    state: TrackerState,
+    accepted: TrackerConfig,
+    stored: Any = None,
+    rejected: Rejected = (),
+    why: str = BESIDE,
+) -> TrackerState:
+    """Return the tracker with the settings accepted last; each stored value that differs is told.
+
+    `stored` are the settings as they were stored, where they are not those of `state`; `rejected` are the
+    values that do not fit, with their reasons; `why` is told of the others.
+    """
+    told = [one for one in rejected if one.what.startswith(MEMORY)]
+    before = _config.dump_python(state.config, mode="json") if stored is None else stored
+    old, new = difference(before, _config.dump_python(accepted, mode="json"))
+    for path in sorted(old | new):
+        name = _name(path.split("."))
+        reason = next((one.why for one in rejected if _is_within(name, one.what)), why)
+        used = _told(new[path]) if path in new else "none"
+        told.append(RejectedSetting(name, _told(old.get(path, "missing")), used, reason, True))
+    return _halted(replace(state, config=accepted), tuple(told[:MOST_MENDED]))
+
+
+def _document(text: str) -> dict[str, Any] | None:
     try:
         document = json.loads(text)
     except ValueError:
         return None
-    if not isinstance(document, dict) or not isinstance(document.get("config"), dict):
-        return None
+    is_tracker = isinstance(document, dict) and isinstance(document.get("config"), dict)
+    return document if is_tracker else None
+
+
+def _piecewise(document: dict[str, Any], tracker_id: str) -> tuple[TrackerState, Rejected] | None:
+    """Return the tracker with usual values where stored ones do not fit, and which; None: it cannot be."""
     usual = _tracker.dump_python(
         TrackerState(TrackerConfig(tracker_id, tracker_id), TrackerMemory()), mode="json"
     )
@@ -42,11 +90,11 @@ def mended(text: str, tracker_id: str) -> TrackerState | None:
                 return None
             rejected.append(change)
         else:
-            return _halted(found, tuple(rejected)) if found.config.tracker_id == tracker_id else None
+            return (found, tuple(rejected)) if found.config.tracker_id == tracker_id else None
     return None
 
 
-def _halted(found: TrackerState, rejected: tuple[RejectedSetting, ...]) -> TrackerState:
+def _halted(found: TrackerState, rejected: Rejected) -> TrackerState:
     if not rejected:
         return found
     memory = replace(
@@ -70,8 +118,17 @@ def _give_way(document: dict[str, Any], usual: Any, where: Place, why: str) -> R
         return None
     stored = holder.get(str(last), "missing")
     holder[str(last)] = usual_holder[last]
-    name = " ".join(str(part) for part in place if part != "config").replace("_", " ")
+    name = _name([str(part) for part in place if part != "config"])
     return RejectedSetting(name, _told(stored), _told(usual_holder[last]), why)
+
+
+def _name(path: list[str]) -> str:
+    return " ".join(path).replace("_", " ")
+
+
+def _is_within(name: str, other: str) -> bool:
+    """Return whether one of two settings is the other, or a part of it."""
+    return f"{name} ".startswith(f"{other} ") or f"{other} ".startswith(f"{name} ")
 
 
 def _known(document: Any, usual: Any, where: Place) -> Place:

@@ -1,7 +1,7 @@
 """Reading: aggregates in domain types, the journal, recordings and their frames."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from typing import Any
 
@@ -12,7 +12,7 @@ from app.audit.entry import Sealed
 from app.store import alarming, auditing, signed, tables
 from app.store.chunks import ChunkDamaged, decode_all
 from app.store.connections import require_revision, transaction
-from app.store.documents import EVENT_DATA, PLAN, RECORDING, SITE, TRACKER
+from app.store.documents import CONFIG, EVENT_DATA, PLAN, RECORDING, SITE, TRACKER
 from app.store.mending import mended
 from app.store.store import (
     AlarmFilter,
@@ -26,6 +26,7 @@ from app.store.store import (
     SignedRecord,
     StoreFailed,
 )
+from app.tracker.config import TrackerConfig
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.recording import Frames, RecordingInfo, RecordingKind
 from app.tracker.snapshot import Event, EventKind
@@ -70,15 +71,27 @@ class DatabaseReader:
         return [TRACKER.read(row.document, row.tracker_id) for row in rows]
 
     def mended_trackers(self) -> list[TrackerState]:
-        """Return the stored trackers, usual values in the place of those that do not fit."""
+        """Return the stored trackers; settings that do not fit give way to those accepted last, or usual."""
         columns = tables.trackers.c
         with self._read() as connection:
             rows = connection.execute(
                 select(columns.tracker_id, columns.document).order_by(columns.number)
             ).all()
         return [
-            mended(row.document, row.tracker_id) or TRACKER.read(row.document, row.tracker_id) for row in rows
+            mended(row.document, row.tracker_id, self.accepted_settings(row.tracker_id))
+            or TRACKER.read(row.document, row.tracker_id)
+            for row in rows
         ]
+
+    def accepted_settings(self, tracker_id: str) -> TrackerConfig | None:
+        """Return the settings with which a tracker ran last; None: not known, or they do not fit any more."""
+        columns = tables.trackers.c
+        with self._read() as connection:
+            mine = select(columns.accepted).where(columns.tracker_id == tracker_id)
+            document = connection.execute(mine).scalar_one_or_none()
+        with suppress(StoreFailed):
+            return None if document is None else CONFIG.read(document, tracker_id)
+        return None
 
     def journal(self, wanted: JournalFilter) -> list[JournalEntry]:
         """Return entries, newest first; with `after` oldest first."""

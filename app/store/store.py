@@ -9,6 +9,7 @@ from typing import Protocol
 from app.alarms.alarm import Alarm
 from app.audit.entry import Entry, Sealed
 from app.foreseen import Foreseen
+from app.tracker.config import TrackerConfig
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.programs.show import ShowPlan
 from app.tracker.recording import Frames, RecordingInfo, RecordingKind
@@ -191,8 +192,11 @@ class Writer(Reader, Protocol):
         The entry gets the changed values; with `only_changes` it is left out where none changed.
         """
 
+    def accepted_settings(self, tracker_id: str) -> TrackerConfig | None:
+        """Return the settings with which a tracker ran last; None: not known, or they do not fit any more."""
+
     def mended_trackers(self) -> list[TrackerState]:
-        """Return the stored trackers with usual values where stored ones do not fit; each tells which."""
+        """Return the stored trackers with other settings where stored ones do not fit; each tells which."""
 
     def save_site(self, site: SiteState, events: Sequence[Event] = ()) -> None:
         """Store the site and the events that belong to the change, together."""

@@ -21,7 +21,7 @@ from sqlalchemy import (
     UniqueConstraint,
 )
 
-REVISION = "0004"
+REVISION = "0005"
 """The newest migration: what the tables of a database must be for this software to use them."""
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
@@ -67,6 +67,7 @@ trackers = Table(
     Column("number", Number, Identity(), primary_key=True),
     Column("tracker_id", String(200), nullable=False, unique=True),
     Column("document", Text, nullable=False),
+    Column("accepted", Text),
     sqlite_autoincrement=True,
 )
 

@@ -11,7 +11,7 @@ from app.audit.entry import Entry
 from app.store import alarming, auditing, signed, tables
 from app.store.chunks import CHUNK_FRAMES, ChunkDamaged, decode, encode_all, join
 from app.store.connections import require_revision
-from app.store.documents import EVENT_DATA, PLAN, RECORDING, SITE, TRACKER, plain
+from app.store.documents import CONFIG, EVENT_DATA, PLAN, RECORDING, SITE, TRACKER, plain
 from app.store.failures import explained, is_lasting
 from app.store.reader import HEAD, DatabaseReader, head
 from app.store.store import KeptAlarm, Photo, PlannedShow, RecordHead, StoreFailed
@@ -81,13 +81,17 @@ class DatabaseWriter(DatabaseReader):
             _append(connection, events)
 
     def save_tracker(self, tracker: TrackerState, events: Sequence[Event] = ()) -> None:
-        """Store a tracker and the events that belong to the change, together."""
+        """Store a tracker and the events that belong to the change, together.
+
+        While its settings are the stored ones or were saved since, they are the last that were accepted.
+        """
         key = {"tracker_id": tracker.config.tracker_id}
         mine = tables.trackers.c.tracker_id == key["tracker_id"]
         with self._write() as connection:
             document = TRACKER.write(tracker)
             self._note(connection, tables.trackers, mine, document)
-            _put(connection, tables.trackers, key, {"document": document})
+            accepted = {} if tracker.memory.rejected else {"accepted": CONFIG.write(tracker.config)}
+            _put(connection, tables.trackers, key, {"document": document, **accepted})
             _append(connection, events)
 
     def remove_tracker(self, tracker_id: str, events: Sequence[Event] = ()) -> None:

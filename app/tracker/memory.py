@@ -80,12 +80,17 @@ class CommissioningLock:
 
 @dataclass(frozen=True, slots=True)
 class RejectedSetting:
-    """A stored value that was not accepted at the start, what is used in its place, and why, for people."""
+    """A stored value that was not accepted at the start, what is used in its place, and why, for people.
+
+    `is_last_accepted` says that the value in use is the one with which the tracker ran before; else it is the
+    usual one.
+    """
 
     what: str
     stored: str
     used: str
     why: str
+    is_last_accepted: bool = False
 
 
 @dataclass(frozen=True, slots=True)

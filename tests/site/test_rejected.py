@@ -17,6 +17,7 @@ from app.store import tables
 from app.store.connections import transaction, writing_engine
 from app.store.documents import TRACKER
 from app.store.engine import open_writer
+from app.store.mending import BESIDE
 from app.store.migrations import upgrade
 from app.store.store import JournalFilter, StoreFailed
 from app.store.writer import DatabaseWriter
@@ -45,15 +46,15 @@ def stored(
     document = json.loads(TRACKER.write(state))
     for change in changes:
         change(document)
-    rewrite(url, json.dumps(document))
+    rewrite(url, document=json.dumps(document))
     return writer
 
 
-def rewrite(url: str, document: str) -> None:
+def rewrite(url: str, **columns: str | None) -> None:
     """Do what a person could do to the file with an editor."""
     engine = writing_engine(url)
     with transaction(engine) as connection:
-        connection.execute(update(tables.trackers).values(document=document))
+        connection.execute(update(tables.trackers).values(columns))
     engine.dispose()
 
 
@@ -70,30 +71,67 @@ def spoil(path: str, value: object) -> Callable[[dict[str, Any]], object]:
 
 
 @pytest.mark.fault(52)
-def test_values_that_do_not_fit_give_way_to_the_usual_and_are_told(tmp_path: Path) -> None:
+def test_the_settings_accepted_last_are_used_where_stored_ones_do_not_fit(tmp_path: Path) -> None:
+    ran = replace(KEPT, config=replace(KEPT.config, in_position_deg=0.2, park=Orientation(90.0, 45.0)))
+    writer = stored(
+        tmp_path,
+        spoil("config.in_position_deg", "wide"),
+        spoil("config.azimuth.minimum_deg", 999),
+        spoil("config.deadband_deg", 0.9),
+        spoil("memory.sightings", 5),
+        state=ran,
+    )
+    with pytest.raises(StoreFailed):
+        writer.trackers()
+    (found,) = begin(writer, NOW, unclean_since=None).trackers
+    assert found.config == ran.config, "a set that ran together, not a mixture"
+    told = {one.what: (one.stored, one.used, one.is_last_accepted) for one in found.memory.rejected}
+    assert told == {
+        "in position deg": ("wide", "0.2", True),
+        "azimuth minimum deg": ("999", "0.0", True),
+        "deadband deg": ("0.9", "0.7", True),
+        "memory sightings": ("5", "[]", False),
+    }
+    why = {one.what: one.why for one in found.memory.rejected}
+    assert "valid number" in why["in position deg"]
+    assert why["deadband deg"] == BESIDE
+    assert found.memory.home is None
+    assert not found.memory.tracking_on
+    assert writer.trackers() == [found], "the next start finds what is used"
+    assert begin(writer, NOW, unclean_since=None).trackers == (found,), "and it still waits for somebody"
+    (entry, _) = (
+        one for one in writer.journal(JournalFilter(limit=50)) if one.event.kind is EventKind.CONFIG_REJECTED
+    )
+    assert "in position deg was wide, used is 0.2" in entry.event.message
+    writer.close()
+
+
+@pytest.mark.fault(52)
+def test_values_that_do_not_fit_give_way_to_the_usual_where_no_others_are_known(tmp_path: Path) -> None:
     writer = stored(
         tmp_path,
         spoil("config.in_position_deg", "wide"),
         spoil("config.azimuth.minimum_deg", 999),
         spoil("config.strategy.kind", "guess"),
-        spoil("memory.sightings", 5),
     )
-    with pytest.raises(StoreFailed):
-        writer.trackers()
+    rewrite(Settings(data_dir=tmp_path).url, accepted="an older version's")
     (found,) = begin(writer, NOW, unclean_since=None).trackers
     assert found.config.deadband_deg == 0.7, "what fits stays"
     assert found.config.in_position_deg == 0.05
     assert found.config.azimuth.minimum_deg == 0.0
-    told = {one.what: (one.stored, one.used) for one in found.memory.rejected}
-    assert told["in position deg"] == ("wide", "0.05")
-    assert set(told) == {"in position deg", "azimuth", "strategy", "memory sightings"}
-    assert found.memory.home is None
-    assert not found.memory.tracking_on
-    assert writer.trackers() == [found], "the next start finds what is used"
-    (entry,) = (
-        one for one in writer.journal(JournalFilter(limit=50)) if one.event.kind is EventKind.CONFIG_REJECTED
-    )
-    assert "in position deg was wide, used is 0.05" in entry.event.message
+    assert {one.what for one in found.memory.rejected} == {"in position deg", "azimuth", "strategy"}
+    assert not any(one.is_last_accepted for one in found.memory.rejected)
+    writer.close()
+
+
+@pytest.mark.fault(52)
+def test_only_the_tracker_whose_settings_do_not_fit_falls_back(tmp_path: Path) -> None:
+    writer = stored(tmp_path, spoil("config.in_position_deg", "wide"))
+    other = TrackerState(TrackerConfig("T2", "South", deadband_deg=0.3), KEPT.memory)
+    writer.save_tracker(other)
+    north, south = begin(writer, NOW, unclean_since=None).trackers
+    assert north.memory.rejected
+    assert south == other
     writer.close()
 
 
@@ -107,10 +145,26 @@ def test_settings_that_do_not_go_together_are_told_too(tmp_path: Path) -> None:
     writer.close()
 
 
+@pytest.mark.fault(52)
+def test_settings_that_do_not_go_together_give_way_to_those_accepted_last(tmp_path: Path) -> None:
+    writer = stored(tmp_path, spoil("config.deadband_deg", 99.0))
+    (found,) = begin(writer, NOW, unclean_since=None).trackers
+    assert found.config == KEPT.config
+    (told,) = found.memory.rejected
+    assert (told.what, told.stored, told.used, told.is_last_accepted) == ("deadband deg", "99.0", "0.7", True)
+    assert "The deadband must lie between 0.02 and 10.0 degrees." in told.why
+    writer.close()
+
+
 @pytest.mark.parametrize("document", ["not json", "{}", "[]", '{"config": {}}'])
-def test_what_is_no_tracker_at_all_cannot_be_mended(tmp_path: Path, document: str) -> None:
+def test_what_is_no_tracker_gives_way_to_the_settings_accepted_last(tmp_path: Path, document: str) -> None:
     writer = stored(tmp_path)
-    rewrite(Settings(data_dir=tmp_path).url, document)
+    rewrite(Settings(data_dir=tmp_path).url, document=document)
+    (found,) = begin(writer, NOW, unclean_since=None).trackers
+    assert found.config == KEPT.config
+    assert found.memory.home is None
+    assert found.memory.rejected[0].what in ("all settings", "tracker id")
+    rewrite(Settings(data_dir=tmp_path).url, document=document, accepted=None)
     with pytest.raises(StoreFailed, match="stored tracker"):
         begin(writer, NOW, unclean_since=None)
     writer.close()
