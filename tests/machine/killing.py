@@ -43,6 +43,7 @@ from tests.machine.service import SAMSUN, config_for, eventually
 MORNING = datetime(2027, 6, 21, 3, 0, tzinfo=UTC)
 SHOW = ShowPlan("morning", MORNING, MORNING + timedelta(minutes=90), timedelta(seconds=20), SAMSUN)
 FAR_DEG = 10.0
+AWAY_WITHIN_DEG = 1.0
 LONGEST_INSTANT_S = 1.0
 LONGEST_S = WATCHDOG_S + LATEST_FEED_S + RAMP_S
 LATEST_RENAMING_S = 0.01
@@ -175,7 +176,7 @@ class Killing:
         if abs(seen.azimuth_deg - self.machine.tracker.sun.azimuth_deg) > FAR_DEG:
             return
         await self.machine.ask(Move(SIDES[1]))
-        await self._until(lambda now: now.activity is ActivityName.HOLDING, "the panel is away from the sun")
+        await self._until(_is_away, "the panel is away from the sun")
 
     async def _hold(self, press: Jog) -> None:
         """Hold a key until the machine is dead; where a busy computer renewed it too late, press it again."""
@@ -252,6 +253,13 @@ class Killing:
             await eventually(is_so)
         except TimeoutError as error:
             raise TimeoutError(f"{error} Waited for: {what}. {self.machine.tracker}") from error
+
+
+def _is_away(seen: Snapshot) -> bool:
+    far = (
+        seen.measured is not None and abs(seen.measured.azimuth_deg - SIDES[1].azimuth_deg) < AWAY_WITHIN_DEG
+    )
+    return far and seen.activity is ActivityName.HOLDING
 
 
 def _is_ready(seen: Snapshot) -> bool:
