@@ -1,27 +1,12 @@
 """A survey of accuracy as a table of text."""
 
 from app.sun.accuracy import Sight, Survey
+from app.sun.accuracy_words import title
 from app.sun.algorithms import PUBLISHED
 
 HEAD = (
     f"{'algorithm':<20}{'expected':>9}{'max':>9}{'rms':>9}{'seen, max':>11}{'seen, rms':>11}{'no refr.':>10}"
 )
-
-
-def title(survey: Survey) -> str:
-    """Return in a sentence what was measured."""
-    asked, at = survey.question, survey.question.location
-    low, high = asked.latitudes
-    if at is None:
-        return (
-            f"Separation from NREL SPA, degrees: latitude {low:g} to {high:g}, {asked.from_year} to "
-            f"{asked.to_year}, {survey.sun_up:,} of {asked.samples:,} instants with the sun up."
-        )
-    return (
-        f"Separation from NREL SPA, degrees: latitude {at.latitude_deg:g}, longitude {at.longitude_deg:g}, "
-        f"{asked.from_year} to {asked.to_year}, {survey.sun_up:,} of {asked.samples:,} instants with the "
-        "sun up."
-    )
 
 
 def table(survey: Survey) -> str:

@@ -7,7 +7,7 @@ from fastapi import Query
 from pydantic import Field
 
 from app.sun.accuracy import AlgorithmError, Profile, Question, Sight, Spread, Survey, survey
-from app.sun.accuracy_table import title
+from app.sun.accuracy_words import title
 from app.sun.algorithms import PUBLISHED, Algorithm
 from app.sun.position import Location
 from app.sun.trigonometry import Array

@@ -8,7 +8,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.sun.accuracy import FIRST_YEAR, LAST_YEAR, AlgorithmError, Question, Sight, Survey, survey
-from app.sun.accuracy_table import title
+from app.sun.accuracy_words import title
 from app.sun.algorithms import PUBLISHED
 from app.sun.position import Location
 from app.web.deps import PanelDep
