@@ -9,7 +9,10 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-ON_PROCESSES := tests/drives/timed tests/machine tests/browser tests/e2e
+# Tests that judge how punctual things are, each with the computer to itself; the others share the cores.
+ALONE := tests/drives/timed $(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk kills process)) \
+	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop two_operators)) \
+	$(addprefix tests/e2e/test_,$(addsuffix .py,drive_lost first_time hold_to_run kill shows stop_and_tabs))
 
 .DEFAULT_GOAL := help
 .PHONY: help setup fast run test check translations fuzz bench format lock browser system-packages clean
@@ -45,9 +48,9 @@ system-packages:
 
 test: $(VENV)/.dev system-packages ## Set up what tests need and run them all, browser tests included
 	@echo "Running the tests that share the computer's cores ..."
-	@$(BIN)/python -m pytest -n 2 --dist loadfile $(ON_PROCESSES:%=--ignore=%)
-	@echo "Running the tests on real sockets, processes and in the browser, one at a time, as they measure ..."
-	@$(BIN)/python -m pytest $(ON_PROCESSES)
+	@$(BIN)/python -m pytest -n 2 --dist loadfile $(ALONE:%=--ignore=%)
+	@echo "Running the tests that judge how punctual things are, one at a time ..."
+	@$(BIN)/python -m pytest $(ALONE)
 
 soak: $(VENV)/.dev system-packages ## Run the long proofs (hours): random operation, kills, power cuts, a day of a field
 	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/store/test_power_cut.py tests/tracker/test_stateful.py tests/site/test_field.py
