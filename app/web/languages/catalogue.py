@@ -129,8 +129,10 @@ class Catalogue(GNUTranslations):
         words = text.split(" ", MOST_NAME_WORDS)
         for count in range(1, len(words)):
             rest = text[sum(len(word) + 1 for word in words[:count]) :]
-            found = self._catalog.get(rest) if rest[:1].islower() else None
-            ended = self._catalog.get(rest[:-1]) if rest[:1].islower() and rest.endswith(".") else None
+            if not rest[:1].islower() or " " not in rest:
+                continue
+            found = self._catalog.get(rest)
+            ended = self._catalog.get(rest[:-1]) if rest.endswith(".") else None
             if found or ended:
                 name = " ".join(words[:count])
                 return f"{self._catalog.get(name) or name} {found or f'{ended}{self.language.stop}'}"
