@@ -55,7 +55,8 @@ test: $(VENV)/.dev system-packages ## Set up what tests need and run them all, b
 soak: $(VENV)/.dev system-packages ## Run the long proofs (hours): random operation, kills, power cuts, a day of a field
 	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/store/test_power_cut.py tests/tracker/test_stateful.py tests/site/test_field.py
 	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/machine/test_clock_jump.py tests/machine/test_viewers.py tests/browser/test_axe.py
-	@HELIOPANEL_TEST_KILLS=$${HELIOPANEL_TEST_KILLS:-1000} $(BIN)/python -m pytest -s tests/e2e/test_kill.py
+	@HELIOPANEL_TEST_KILLS=$${HELIOPANEL_TEST_KILLS:-1000} $(BIN)/python -m pytest -s tests/machine/test_kills.py
+	@HELIOPANEL_TEST_KILLS=20 $(BIN)/python -m pytest -s tests/e2e/test_kill.py tests/machine/test_process.py
 
 mutants: $(VENV)/.dev ## Change the guards' code place by place, in a copy, and count what their tests notice
 	@$(BIN)/mutmut run --max-children 2 >mutants.log 2>&1 || { tail -n 20 mutants.log; exit 1; }
