@@ -52,11 +52,10 @@ def read(code: str) -> Catalog:
         return read_po(source, locale=code)
 
 
-def renewed(code: str, fresh: Catalog) -> Catalog:
+def renewed(stored: Catalog, fresh: Catalog) -> Catalog:
     """Return a language's catalogue with the texts of the sources; what was translated once comes back."""
-    stored = read(code)
     known = {(one.context, one.id): one.string for one in (*stored.obsolete.values(), *stored) if one.id}
-    catalog = Catalog(locale=code, project="Heliopanel", charset="utf-8", header_comment=HEADER)
+    catalog = Catalog(locale=stored.locale, project="Heliopanel", charset="utf-8", header_comment=HEADER)
     for text in fresh:
         if text.id:
             string = known.pop((text.context, text.id), None)
@@ -100,10 +99,7 @@ def update() -> None:
     """Bring every .po file up to date, then every .mo file."""
     fresh = template()
     for code in TRANSLATED:
-        path = path_of(code)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(po_text(renewed(code, fresh)))
-    compile_all()
+        write(code, renewed(read(code), fresh))
 
 
 def compile_all() -> None:
@@ -145,26 +141,33 @@ def listed() -> Iterator[dict[str, Any]]:
             }
 
 
-def take(code: str, lines: Iterable[dict[str, Any]]) -> tuple[int, int]:
-    """Put translations into a .po file; return how many were taken and how many are not known."""
-    catalog = renewed(code, template())
+def take(catalog: Catalog, lines: Iterable[dict[str, Any]]) -> tuple[Catalog, int]:
+    """Put translations into a catalogue; return it, and how many belong to no text."""
     by_identity = {identity(text.context, text.id): text for text in catalog if text.id}
-    taken = unknown = 0
+    unknown = 0
     for line in lines:
-        text = by_identity.get(str(line.get("id"))) or catalog.get(
-            line.get("msgid", ""), line.get("context") or None
-        )
-        string = line.get("msgstr")
-        if text is None or not string:
+        text = by_identity.get(str(line.get("id")))
+        text = text or catalog.get(line.get("msgid", ""), line.get("context") or None)
+        if text is None or not line.get("msgstr"):
             unknown += 1
             continue
-        text.string = _string(text, string, catalog.num_plurals)
-        taken += 1
-    path = path_of(code)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(po_text(catalog))
+        text.string = _string(text, line["msgstr"], catalog.num_plurals)
+    return catalog, unknown
+
+
+def write(code: str, catalog: Catalog) -> None:
+    """Store a language's catalogue, and what gettext reads of it."""
+    path_of(code).parent.mkdir(parents=True, exist_ok=True)
+    path_of(code).write_bytes(po_text(catalog))
     path_of(code, "mo").write_bytes(mo_bytes(read(code)))
-    return taken, unknown
+
+
+def import_lines(code: str, file: Path) -> None:
+    """Take translations from lines of JSON."""
+    lines = [orjson.loads(line) for line in file.read_text().splitlines() if line.strip()]
+    catalog, unknown = take(renewed(read(code), template()), lines)
+    write(code, catalog)
+    sys.stdout.write(f"{len(lines) - unknown} translations taken, {unknown} belong to no text.\n")
 
 
 def _string(text: Message, given: str | list[str], forms: int) -> str | tuple[str, ...]:
@@ -188,9 +191,7 @@ def main(asked: list[str]) -> int:
         case ["list"]:
             sys.stdout.writelines(f"{orjson.dumps(line).decode()}\n" for line in listed())
         case ["import", code, file] if code in TRANSLATED:
-            lines = (orjson.loads(line) for line in Path(file).read_text().splitlines() if line.strip())
-            taken, unknown = take(code, lines)
-            sys.stdout.write(f"{taken} translations taken, {unknown} belong to no text.\n")
+            import_lines(code, Path(file))
         case _:
             sys.stderr.write(__doc__ or "")
             return 2
