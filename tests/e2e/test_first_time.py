@@ -1,0 +1,170 @@
+"""Somebody sees the panel for the first time: from an empty database to tracking, a show, a replay, a record.
+
+Nothing but visible words is used: no ids, no addresses but the first. The taps are counted, and
+`HELIOPANEL_DOCS=1` writes them and the pictures to docs/first-time.md.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect, sync_playwright
+
+from tests.browser.conftest import CHROMIUM, FLAGS
+from tests.e2e.newcomer import DOCS, WRITES_DOCS, Newcomer
+from tests.e2e.product import Product
+
+
+@dataclass(frozen=True)
+class Town:
+    """Where it is day, all year, until an hour of UTC and since the hour of the town before it."""
+
+    until: int
+    zone: str
+    latitude: tuple[str, str]
+    longitude: tuple[str, str]
+
+
+MOST_TAPS = 40
+TABLET = {"width": 1024, "height": 768}
+TOWNS = (
+    Town(6, "Australia/Brisbane", ("27.4698", "S"), ("153.0251", "E")),
+    Town(12, "Europe/Istanbul", ("41.2867", "N"), ("36.33", "E")),
+    Town(18, "America/Fortaleza", ("5.7945", "S"), ("35.211", "W")),
+    Town(22, "America/Tijuana", ("32.6245", "N"), ("115.4523", "W")),
+    Town(24, "Pacific/Honolulu", ("21.3069", "N"), ("157.8583", "W")),
+)
+ABOUT = """# The first time
+
+What somebody does who sees the panel for the first time, from an empty database to tracking, a show, a
+replay and a signed record, using only what the pages say. A test does exactly this on the real service with
+its simulated tracker and made the pictures: `HELIOPANEL_DOCS=1 pytest tests/e2e/test_first_time.py`.
+
+"""
+
+
+def where_the_sun_is_up() -> Town:
+    return next(town for town in TOWNS if datetime.now(UTC).hour < town.until)
+
+
+@pytest.fixture(scope="module")
+def page(product: Product) -> Iterator[Page]:
+    complaints: list[str] = []
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        context = browser.new_context(viewport=TABLET, locale="en-GB", timezone_id=where_the_sun_is_up().zone)
+        context.set_default_timeout(15_000)
+        opened = context.new_page()
+        opened.on("pageerror", lambda error: complaints.append(str(error)))
+        opened.goto(product.url)
+        opened.wait_for_selector('html[data-link="live"]')
+        yield opened
+        browser.close()
+    assert complaints == []
+
+
+def commission(person: Newcomer) -> None:
+    page = person.page
+    person.begin("Commissioning")
+    person.picture("overview", "The first page, of a panel with nothing in its database")
+    person.link("Go on: Location")
+    person.sees("Where is the tracker?")
+    town = where_the_sun_is_up()
+    for label, (value, side) in (("Latitude", town.latitude), ("Longitude", town.longitude)):
+        person.write(label, value)
+        person.choose(side)
+    expect(page.get_by_text("Does it agree with the sky?")).to_be_visible()
+    person.picture("location", "The location typed in, and what it means for the sun")
+    person.key("Save, next")
+    person.sees("Is the controller's clock right?")
+    person.picture("clock", "The clock page")
+    person.key("Keep the system clock")
+    person.link("Next")
+    person.sees("Turn the panel to north")
+    person.picture("homing", "The homing page")
+    person.key("Set as zero")
+    expect(page.get_by_text("Both axes are zeroed and read back.")).to_be_visible()
+    person.link("Next")
+    person.sees("How shall it work?")
+    person.choose("Dual-axis tracking")
+    person.picture("mode", "The mode page")
+    person.key("Save, next")
+    person.sees("Start tracking, or show the movement")
+
+
+def track(person: Newcomer) -> None:
+    person.begin("Tracking")
+    person.key("Start tracking")
+    expect(person.page.get_by_label("State")).to_contain_text(re.compile("Tracking|sunrise"))
+    person.picture("tracking", "Tracking")
+
+
+def show(person: Newcomer) -> None:
+    page = person.page
+    person.begin("A show")
+    person.link("Show tracking movement")
+    person.sees("Show tracking movement")
+    person.write("Date", "2026-06-21")
+    person.write("From", "07:30")
+    person.write("To", "07:45")
+    person.write("In how many minutes", "0.2")
+    expect(page.get_by_role("heading", name="This works: 12 s")).to_be_visible()
+    person.picture("plan", "The plan of a show that works")
+    person.key("Go to start position")
+    person.sees("2026-06-21")
+    expect(page.get_by_text("Ready at the start", exact=True)).to_be_visible(timeout=45_000)
+    person.picture("ready", "At the start")
+    person.key("Show tracking movement")
+    expect(page.get_by_text("Running", exact=True).first).to_be_visible()
+    person.picture("show", "The show under way")
+    expect(page.get_by_role("link", name="Replay")).to_be_visible(timeout=30_000)
+    person.picture("ended", "The show has ended")
+
+
+def replay(person: Newcomer) -> None:
+    page = person.page
+    person.begin("A replay")
+    person.link("Replay")
+    person.sees("Recordings")
+    person.picture("recordings", "The list of recordings")
+    person.tap(page.get_by_role("main").get_by_role("link", name=re.compile("07:30")).first, "the show")
+    person.sees("Replay:")
+    person.key("Play")
+    expect(page.get_by_text("Nothing moves")).to_be_visible()
+    person.picture("replay", "The replay")
+
+
+def sign(person: Newcomer) -> None:
+    page = person.page
+    person.begin("A signed record")
+    person.link("Trackers")
+    person.link("Open")
+    person.picture("live", "The tracker's page")
+    person.link("Record")
+    person.sees("Commissioning record")
+    person.picture("unsigned", "The record, not signed yet")
+    person.write("Name of the technician", "A. Technician")
+    person.draw(page.get_by_role("img", name=re.compile("Signature")).first)
+    person.picture("sign", "The signature drawn")
+    person.key("Sign and keep the record")
+    person.sees("Commissioning record: Tracker 1")
+    expect(page.get_by_role("img", name="Signature of A. Technician")).to_be_visible()
+    person.picture("record", "The signed record")
+    with page.expect_download() as download:
+        person.link("PDF")
+    assert Path(download.value.path()).read_bytes().startswith(b"%PDF-")
+
+
+@pytest.mark.timeout(180)
+def test_a_newcomer_gets_from_an_empty_database_to_a_signed_record(page: Page) -> None:
+    person = Newcomer(page)
+    for part in (commission, track, show, replay, sign):
+        part(person)
+    assert person.taps <= MOST_TAPS
+    told = f"{ABOUT}**{person.taps} taps** in all, one for each field that is typed into.\n\n{person.story()}"
+    if WRITES_DOCS:
+        (DOCS / "first-time.md").write_text(told)
+    assert f"**{person.taps} taps**" in (DOCS / "first-time.md").read_text()
