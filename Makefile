@@ -48,7 +48,7 @@ system-packages:
 
 test: $(VENV)/.dev system-packages ## Set up what tests need and run them all, browser tests included
 	@echo "Running the tests that share the computer's cores ..."
-	@$(BIN)/python -m pytest -n 2 --dist loadfile $(ALONE:%=--ignore=%)
+	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder $(ALONE:%=--ignore=%)
 	@echo "Running the tests that judge how punctual things are, one at a time ..."
 	@$(BIN)/python -m pytest $(ALONE)
 
