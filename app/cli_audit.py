@@ -2,15 +2,16 @@
 
 import csv
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, fields
 from datetime import UTC, datetime
 from enum import StrEnum
 from pathlib import Path
-from typing import IO, Annotated
+from typing import IO, Annotated, assert_never
 
 import typer
 
+from app.access.events import AccessEvent, covered
 from app.access.opening import open_store
 from app.audit.chain import Break, Link, first_break
 from app.audit.entry import Entry, Sealed
@@ -21,11 +22,23 @@ from app.store.store import AuditFilter, Reader
 
 audit = typer.Typer(name="audit", help="Who did what: check it, take it along.", no_args_is_help=True)
 
+Row = Mapping[str, object]
+
 AT_ONCE = 500
 BROKEN = 1
 COLUMNS = ("seq", *(field.name for field in fields(Entry)), "prev_hash", "hash")
 
 Since = Annotated[str, typer.Option(help="Only entries from this day or instant on, ISO 8601, UTC.")]
+
+
+ACCESS_COLUMNS = ("number", *(field.name for field in fields(AccessEvent)), "prev_hash", "hash")
+
+
+class Kept(StrEnum):
+    """The two records: what was ordered, and who came through the door or was turned away."""
+
+    ORDERS = "orders"
+    ACCESS = "access"
 
 
 class Format(StrEnum):
@@ -41,6 +54,9 @@ def verify(
     head: Annotated[
         str, typer.Option(help="A SEQ:HASH that a log or a backup told; it must be in the chain.")
     ] = "",
+    access_head: Annotated[
+        str, typer.Option(help="The same for the record of users, sessions and tokens.")
+    ] = "",
 ) -> None:
     """Check the chain of hashes; name the first entry that was changed, removed or added since."""
     settings, begin = read_settings(), _instant(since)
@@ -49,7 +65,7 @@ def verify(
         found = _verify_orders(reader, begin, head)
     finally:
         reader.close()
-    found = _verify_access(settings) or found
+    found = _verify_access(settings, access_head) or found
     if found:
         raise typer.Exit(BROKEN)
 
@@ -58,16 +74,44 @@ def verify(
 def export(
     out: Annotated[Path, typer.Argument(help="File to write.")],
     as_format: Annotated[Format, typer.Option("--format", help="How to write it.")] = Format.CSV,
+    kept: Annotated[
+        Kept, typer.Option("--of", help="Orders and settings, or log-ins, users, tokens and refusals.")
+    ] = Kept.ORDERS,
     since: Since = "",
 ) -> None:
-    """Write the audit into a file: CSV with a head line, or JSON with one entry a line."""
-    reader = open_reader(read_settings().url)
+    """Write one of the two records into a file: CSV with a head line, or JSON with one entry a line."""
+    settings, begin = read_settings(), _instant(since)
+    match kept:
+        case Kept.ORDERS:
+            _export_orders(settings, out, as_format, begin)
+        case Kept.ACCESS:
+            _export_access(settings, out, as_format, begin)
+        case _:
+            assert_never(kept)
+
+
+def _export_orders(settings: Settings, out: Path, as_format: Format, begin: datetime | None) -> None:
+    reader = open_reader(settings.url)
     try:
-        with out.open("w", newline="", encoding="utf-8") as file:
-            count = _write(file, as_format, entries(reader, _instant(since)))
+        count = _write(out, as_format, COLUMNS, map(row, entries(reader, begin)))
     finally:
         reader.close()
     typer.echo(f"{count} entries of the audit are in {out}.")
+
+
+def _export_access(settings: Settings, out: Path, as_format: Format, begin: datetime | None) -> None:
+    store = open_store(settings)
+    try:
+        events = store.events()
+    finally:
+        store.close()
+    rows = (
+        {"number": number, **covered(event), "prev_hash": previous, "hash": own}
+        for number, (event, previous, own) in enumerate(events, start=1)
+        if begin is None or event.at >= begin
+    )
+    count = _write(out, as_format, ACCESS_COLUMNS, rows)
+    typer.echo(f"{count} entries of the record of users and tokens are in {out}.")
 
 
 def entries(reader: Reader, since: datetime | None = None, *, after: int = 0) -> Iterator[Sealed]:
@@ -77,7 +121,7 @@ def entries(reader: Reader, since: datetime | None = None, *, after: int = 0) ->
         after = found[-1].seq
 
 
-def row(one: Sealed) -> dict[str, object]:
+def row(one: Sealed) -> Row:
     """Return an entry as one flat row."""
     return {
         "seq": one.seq,
@@ -120,7 +164,7 @@ def _is_missing(head: str, seen: dict[int, str]) -> bool:
     return True
 
 
-def _verify_access(settings: Settings) -> bool:
+def _verify_access(settings: Settings, head: str) -> bool:
     """Print what holds of the record of users, sessions and tokens, and return whether it is broken."""
     store = open_store(settings)
     try:
@@ -130,8 +174,9 @@ def _verify_access(settings: Settings) -> bool:
     broken = first_break(links)
     if broken is not None:
         return _tell("record of users and tokens", broken)
-    typer.echo(f"The record of users and tokens holds: {len(links)} entries.")
-    return False
+    last = f", the last is {links[-1].number}:{links[-1].hash}" if links else ""
+    typer.echo(f"The record of users and tokens holds: {len(links)} entries{last}.")
+    return bool(head) and _is_missing(head, {one.number: one.hash for one in links})
 
 
 def _tell(what: str, broken: Break) -> bool:
@@ -139,21 +184,23 @@ def _tell(what: str, broken: Break) -> bool:
     return True
 
 
-def _write(file: IO[str], as_format: Format, found: Iterator[Sealed]) -> int:
+def _write(out: Path, as_format: Format, columns: Sequence[str], rows: Iterable[Row]) -> int:
+    """Write rows and return how many there were."""
     count = 0
-    put = _put_csv(file) if as_format is Format.CSV else _put_json(file)
-    for count, one in enumerate(found, start=1):  # noqa: B007 - the last number is the count
-        put(row(one))
+    with out.open("w", newline="", encoding="utf-8") as file:
+        put = _put_csv(file, columns) if as_format is Format.CSV else _put_json(file)
+        for count, one in enumerate(rows, start=1):  # noqa: B007 - the last number is the count
+            put(one)
     return count
 
 
-def _put_csv(file: IO[str]) -> Callable[[dict[str, object]], object]:
-    writer = csv.DictWriter(file, COLUMNS)
+def _put_csv(file: IO[str], columns: Sequence[str]) -> Callable[[Row], object]:
+    writer = csv.DictWriter(file, columns)
     writer.writeheader()
     return lambda values: writer.writerow({name: _harmless(value) for name, value in values.items()})
 
 
-def _put_json(file: IO[str]) -> Callable[[dict[str, object]], object]:
+def _put_json(file: IO[str]) -> Callable[[Row], object]:
     return lambda values: file.write(json.dumps(values, ensure_ascii=False) + "\n")
 
 

@@ -56,7 +56,7 @@ def test_what_nobody_touched_holds(ask: Ask) -> None:
     told = ask("verify")
     assert told.exit_code == 0, told.output
     assert "The audit holds: 5 entries" in told.output
-    assert "The record of users and tokens holds: 2 entries." in told.output
+    assert "The record of users and tokens holds: 2 entries, the last is 2:" in told.output
 
 
 def test_the_first_broken_entry_is_named(ask: Ask, tmp_path: Path) -> None:
@@ -99,6 +99,29 @@ def test_the_audit_is_taken_along(ask: Ask, tmp_path: Path) -> None:
     lines = (tmp_path / "audit.json").read_text().splitlines()
     assert [json.loads(line)["seq"] for line in lines] == [1, 2, 3, 4, 5]
     assert json.loads(lines[0])["actor"] == ENTRY.actor
+
+
+def test_the_record_of_users_is_taken_along(ask: Ask, tmp_path: Path) -> None:
+    told = ask("export", str(tmp_path / "access.csv"), "--of", "access")
+    assert "2 entries of the record of users and tokens are in" in told.output
+    with (tmp_path / "access.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [(row["number"], row["action"]) for row in rows] == [("1", "add_user"), ("2", "log_in")]
+    assert rows[1]["prev_hash"] == rows[0]["hash"]
+    ask("export", str(tmp_path / "later.json"), "--of", "access", "--format", "json", "--since", "2030-01-01")
+    assert (tmp_path / "later.json").read_text() == ""
+
+
+def test_a_removed_end_of_the_record_of_users_is_seen_by_its_head(ask: Ask, tmp_path: Path) -> None:
+    head = ask("verify").output.partition("tokens holds: 2 entries, the last is ")[2].split(".")[0]
+    assert ask("verify", "--access-head", head).exit_code == 0
+    forge(
+        tmp_path / "access.db", "access_events_DELETE_refused", "DELETE FROM access_events WHERE number = 2"
+    )
+    assert ask("verify").exit_code == 0
+    told = ask("verify", "--access-head", head)
+    assert told.exit_code == 1
+    assert "is not in the chain" in told.output
 
 
 def test_an_empty_audit_says_so(ask: Ask) -> None:
