@@ -11,6 +11,7 @@ from app.sun.trigonometry import ARRAY
 from app.tracker.config import MountKind, TrackerConfig
 from app.tracker.mounts.kinematics import direction
 from app.web.ui.drawings import Cartesian, Curve, HourLabel, Tick
+from app.web.ui.formats import compass
 from app.web.ui.sunpath import MONTHS, broken, day_path, hour_path, hours_of
 
 LEFT, TOP, WIDTH, HEIGHT = 56.0, 16.0, 720.0, 270.0
@@ -18,7 +19,6 @@ BOTTOM = TOP + HEIGHT
 PER_DEGREE = WIDTH / 360.0
 RISE = HEIGHT / 90.0
 TICK_DEG = 30
-POINTS = {0: "N", 90: "E", 180: "S", 270: "W"}
 OUTLINE_POINTS = 73
 LABEL_RISE_DEG = 3.5
 SET_DEG = -0.9
@@ -101,7 +101,7 @@ def _columns(centre_deg: float) -> tuple[Tick, ...]:
     ticks = []
     for aside in range(-180, 181, TICK_DEG):
         azimuth = int(centre_deg + aside) % 360
-        letter = f" {POINTS[azimuth]}" if azimuth in POINTS else ""
+        letter = f" {compass(azimuth)}" if azimuth % 90 == 0 else ""
         ticks.append(Tick(LEFT + (aside + 180.0) * PER_DEGREE, f"{azimuth}°{letter}"))
     return tuple(ticks)
 
