@@ -20,7 +20,7 @@ _NAMES = """
     name names name2 name3 tracker_id site_name actor holder by who user path file zone where link host
     address port version code url recording_id show_id id given key"""
 NAMES = frozenset(_NAMES.split())
-"""Gaps in which something stands that people or machines named: it is not translated."""
+"""Gaps in which something stands that people or machines named: a word there is not translated."""
 
 NUMBER = re.compile(r"(?<![\w.])(\d+)\.(\d+)(?![\w.]*\.\d|\d)")
 SENTENCE_END = re.compile(r"(?<=[.!?]) (?=[A-Z0-9])")
@@ -75,7 +75,7 @@ class Catalogue(GNUTranslations):
     def _value(self, name: str, value: str, depth: int) -> str:
         """Return what stands in a gap: words in this language, names and what is not known as they are."""
         if name in NAMES:
-            return value
+            return self._catalog.get(value, value) if " " in value else value
         if not any(letter.isalpha() for letter in value):
             return self.number(value)
         known = self._known(value, depth - 1) if depth else self._catalog.get(value)

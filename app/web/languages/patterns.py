@@ -15,7 +15,7 @@ MOST_TRIED = 40
 """So many patterns are tried for one sentence, those with the longest fixed text first."""
 
 
-THIN = 4
+THIN, LONGEST_UNIT = 3, 3
 """A pattern with fewer letters of its own fits too much that is something else."""
 
 
@@ -36,13 +36,13 @@ class Pattern:
             return None
         at, end, values = len(first), len(sentence) - len(last), []
         for part in self.parts[1:-1]:
-            found = sentence.find(part, at + 1, end) if part else -1
+            found = sentence.find(part, at, end) if part else at
             if found < 0:
                 return None
             values.append(sentence[at:found])
             at = found + len(part)
         values.append(sentence[at:end])
-        if at >= end or (self.is_thin and not all(map(_is_measure, values))):
+        if at > end or (self.is_thin and not all(map(_is_measure, values))):
             return None
         return dict(zip(self.gaps, values, strict=True))
 
@@ -54,7 +54,8 @@ class Pattern:
 
 def _is_measure(value: str) -> bool:
     """Return whether something is a number or a unit."""
-    return " " not in value and (len(value) < THIN or any(letter.isdigit() for letter in value))
+    has_digit = any(letter.isdigit() for letter in value)
+    return " " not in value and (has_digit or 0 < len(value) <= LONGEST_UNIT)
 
 
 def pattern_of(text: str) -> Pattern | None:
