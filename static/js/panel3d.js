@@ -13,6 +13,9 @@ const SETTLE_MS = 90;
 const SETTLED_DEG = 0.01;
 const LEAP_DEG = 60;
 const ALIKE_DEG = 0.02;
+const SHARPEST = 2;
+const SLOW_MS = 24;
+const AWAY_MS = 1000;
 
 export class PanelScene {
   // `settle`: whether the panel glides to what is new, or is there at once (a recording that plays is smooth by itself).
@@ -27,6 +30,8 @@ export class PanelScene {
     this.frame = 0;
     this.paintedAt = 0;
     this.seen = true;
+    this.sharpness = SHARPEST;
+    this.pacedMs = 0;
     this.#begin();
     this.#listen();
   }
@@ -129,14 +134,28 @@ export class PanelScene {
     return moving;
   }
 
+  #sharp() {
+    return Math.min(this.sharpness, devicePixelRatio || 1);
+  }
+
+  // A device that cannot keep up with a fine picture gets a coarser one, down to one point for each of the page's.
+  #pace(tookMs) {
+    if (tookMs > AWAY_MS) return;
+    this.pacedMs += (tookMs - this.pacedMs) / 16;
+    if (this.pacedMs <= SLOW_MS) return;
+    this.sharpness = Math.max(1, this.#sharp() - 0.5);
+    this.pacedMs = 0;
+  }
+
   #paint(at) {
     this.frame = 0;
     const { clientWidth: width, clientHeight: height } = this.holder;
     if (!width || !height) return;
     const moving = this.#approach(Math.min(100, Math.max(8, at - this.paintedAt)));
     this.paintedAt = at;
-    this.painter.paint(this.stage(), cameraAt(this.turned, width, height), Math.min(2, devicePixelRatio || 1));
+    this.painter.paint(this.stage(), cameraAt(this.turned, width, height), this.#sharp());
     this.holder.dataset.frames = String(Number(this.holder.dataset.frames ?? 0) + 1);
+    if (this.#sharp() > 1) requestAnimationFrame((next) => this.#pace(next - at));
     if (moving) this.draw();
   }
 }

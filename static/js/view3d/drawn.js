@@ -25,7 +25,7 @@ export class DrawnPainter {
     this.#trace(CIRCLE, true);
     this.#fill("sunken");
     if (stage.rays) this.#shadow(stage);
-    const lines = this.#sorted(stage.lines);
+    const lines = this.#sorted([...stage.fixed, ...stage.lines]);
     lines.far.forEach((line) => this.#stroke(line));
     const marks = this.#sorted(stage.marks.map((mark) => ({ ...mark, points: [mark.at] })));
     marks.far.forEach((mark) => this.#mark(mark));
@@ -79,7 +79,7 @@ export class DrawnPainter {
         const normal = turnedNormal(matrix, face.normal);
         const towardsEye = add(this.camera.eye, points[0], -1);
         if (dot(normal, towardsEye) <= 0) continue;
-const front = look === "panel" && face.normal[2] > 0;
+        const front = look === "panel" && face.normal[2] > 0;
         // A wide panel's middle says little of what lies before it: its front goes later, its back sooner.
         const sooner = look === "panel" ? (front ? -0.2 : 0.2) : 0;
         seen.push({ points, matrix, look, front, far: Math.hypot(...add(this.camera.eye, middle(points), -1)) + sooner });

@@ -23,6 +23,7 @@ export class GlPainter {
     this.programs = programs(gl);
     this.meshes = Object.fromEntries(Object.entries(MESHES).map(([name, faces]) => [name, this.#mesh(faces)]));
     this.lines = this.#stream([[4, 0], [4, 4], [3, 8]], LINE_FLOATS);
+    this.still = { ...this.#stream([[4, 0], [4, 4], [3, 8]], LINE_FLOATS), of: null, seen: [], count: 0 };
     this.marks = this.#stream([[4, 0], [2, 4]], MARK_FLOATS);
     this.sheet = { canvas: document.createElement("canvas"), texture: gl.createTexture(), cells: new Map() };
     this.rgba = new Map();
@@ -34,6 +35,7 @@ export class GlPainter {
   repaint() {
     this.rgba.clear();
     this.sheet.cells.clear();
+    this.still.of = null;
   }
 
   paint(stage, camera, ratio) {
@@ -49,6 +51,7 @@ export class GlPainter {
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     this.#solids(stage, camera);
+    this.#stillness(stage.fixed, camera);
     this.#strokes(stage.lines, camera);
     this.#sprites(stage.marks, camera, ratio);
   }
@@ -145,6 +148,22 @@ export class GlPainter {
     const values = [];
     for (const line of lines) stroke(values, line, this.#rgba(line.colour), camera);
     this.#flush("line", this.lines, values);
+  }
+
+  // What never moves is measured out anew only when the eye has moved, or the colours are others.
+  #stillness(lines, camera) {
+    const { gl, still } = this;
+    const seen = [...camera.matrix, camera.width, camera.height];
+    if (still.of !== lines || seen.some((value, index) => value !== still.seen[index])) {
+      const values = [];
+      for (const line of lines) stroke(values, line, this.#rgba(line.colour), camera);
+      gl.bindBuffer(gl.ARRAY_BUFFER, still.buffer);
+      gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(values), gl.STATIC_DRAW);
+      Object.assign(still, { of: lines, seen, count: values.length / LINE_FLOATS });
+    }
+    gl.useProgram(this.programs.line.made);
+    gl.bindVertexArray(still.array);
+    gl.drawArrays(gl.TRIANGLES, 0, still.count);
   }
 
   #sprites(marks, { matrix, width, height }, ratio) {

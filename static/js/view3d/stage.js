@@ -15,7 +15,9 @@ const onGround = ([x, y]) => [x, y, GROUND_Z];
 // What stays: the mount, its limits, the day's path and hours, the horizon; directions are azimuth and elevation.
 export function viewOf(data) {
   const view = { ...data, hub: hubOf(data.mount), frame: frameOf(data.mount) };
-  return { ...view, fixed: [...compass(), ...fixedLimits(view), ...skyline(view)], letters: letters() };
+  const [path, scaled] = [daysPath(view), firstScale(view)];
+  return { ...view, scaled, fixed: [...compass(), ...(scaled?.lines ?? []), ...skyline(view), ...path.lines],
+    marks: [...letters(), ...path.marks, ...(scaled?.marks ?? [])] };
 }
 
 export { anglesOf };
@@ -69,18 +71,13 @@ function firstScale(view) {
 // The end of the first axis that dips, or the one that it is named after.
 const lowEnd = ({ frame }) => times(frame.axis, -frame.hand);
 
-function fixedLimits(view) {
-  return firstScale(view)?.lines ?? [];
-}
-
 function moving(view, angles) {
-  const first = firstScale(view);
-  const drawn = { lines: first ? [first.pointer(angles.first)] : [], marks: first?.marks ?? [] };
+  const drawn = { lines: view.scaled ? [view.scaled.pointer(angles.first)] : [], marks: [] };
   if (!view.second) return drawn;
   const out = outward(view.frame, angles.first);
   const lifted = (angle) => add(times(out, Math.cos(angle * RAD)), view.frame.axis, Math.sin(angle * RAD));
   const second = scale(view.hub, lifted, view.second, 0.62);
-  return { lines: [...drawn.lines, ...second.lines, second.pointer(angles.second)], marks: [...drawn.marks, ...second.marks] };
+  return { lines: [...drawn.lines, ...second.lines, second.pointer(angles.second)], marks: second.marks };
 }
 
 function daysPath(view) {
@@ -131,18 +128,18 @@ function wanted(view, panel, target, middle) {
   return [{ points: [...outline, outline[0]], colour: "second", width: 2, dash: [7, 6] }];
 }
 
-// `now`: the sun as {azimuth, elevation}, panel and target as {first, second}; null is what is not known.
+// What never moves is `fixed`, always the same list. `now`: the sun as {azimuth, elevation}, panel and target as {first, second}; null is what is not known.
 export function stageOf(view, now) {
-  const path = daysPath(view);
   const machineNow = now.panel && panelOf(view, now.panel);
-  const limits = now.panel ? moving(view, now.panel) : { lines: [], marks: firstScale(view)?.marks ?? [] };
+  const limits = now.panel ? moving(view, now.panel) : { lines: [], marks: [] };
   const light = now.sun ? sunlight(view, now.sun, machineNow?.middle) : { lines: [], marks: [] };
   const rays = now.sun && now.sun.elevation > LOWEST_SHADOW_DEG ? towards(now.sun.azimuth, now.sun.elevation) : null;
   return {
     solids: machineNow ? machineNow.solids : bare(view),
-    lines: [...view.fixed, ...path.lines, ...limits.lines, ...light.lines, ...(machineNow?.lines ?? []),
+    fixed: view.fixed,
+    lines: [...limits.lines, ...light.lines, ...(machineNow?.lines ?? []),
       ...(machineNow ? wanted(view, now.panel, now.target, machineNow.middle) : [])],
-    marks: [...view.letters, ...path.marks, ...limits.marks, ...light.marks],
+    marks: [...view.marks, ...limits.marks, ...light.marks],
     rays,
     normal: machineNow?.normal ?? null,
   };
