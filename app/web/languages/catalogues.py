@@ -108,9 +108,8 @@ def compile_all() -> None:
         path_of(code, "mo").write_bytes(mo_bytes(read(code)))
 
 
-def faults() -> Iterator[str]:
+def faults(fresh: Catalog) -> Iterator[str]:
     """Return what is not current, as sentences."""
-    fresh = template()
     wanted = {(text.context, text.id) for text in fresh if text.id}
     for code in TRANSLATED:
         stored = read(code)
@@ -185,7 +184,7 @@ def main(asked: list[str]) -> int:
         case ["compile"]:
             compile_all()
         case ["check"]:
-            found = list(faults())
+            found = list(faults(template()))
             sys.stderr.writelines(f"{fault}\n" for fault in found)
             return 1 if found else 0
         case ["list"]:

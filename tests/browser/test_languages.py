@@ -1,0 +1,98 @@
+"""A language is chosen from the list; values that the browser writes read as those of the server."""
+
+from collections.abc import Callable
+from contextvars import copy_context
+from datetime import UTC, datetime
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from app.web.languages import CATALOGUE
+from app.web.languages.catalogue import catalogue_of
+from app.web.languages.known import LANGUAGES
+from app.web.ui.formats import shown
+from tests.browser.conftest import Opened, Plant
+
+Picture = Callable[[Page, str], None]
+ZONE = "Europe/Istanbul"
+AT = datetime(2026, 6, 20, 21, 30, 5, tzinfo=UTC)
+VALUES: tuple[tuple[Any, str], ...] = (
+    (102.404, "angle2"),
+    (-0.001, "angle2"),
+    (-12.5, "angle1"),
+    (359.6, "angle0"),
+    (18.25, "mps"),
+    (-3.14, "degc"),
+    (1013.2, "hpa"),
+    (0.4, "age"),
+    (1234.0, "factor"),
+    (65.0, "duration"),
+    (-23.0, "signed_seconds"),
+    (247.6, "compass"),
+    (78.0, "compass"),
+    ("tracking", "words"),
+    ("stowing", "words"),
+    (True, "freshness"),
+    (AT, "date"),
+    (AT, "moment"),
+    (AT, "minute"),
+    (None, "angle2"),
+)
+IN_THE_BROWSER = """async (cases) => {
+  const { src } = document.querySelector('script[src*="js/page.js"]');
+  const { shown } = await import(src.replace("page.js", "format.js"));
+  return cases.map(([value, form]) => shown(value, form, "Europe/Istanbul"));
+}"""
+
+
+def speak(page: Page, code: str) -> None:
+    """Choose a language from the list in the header."""
+    page.locator(".language summary").click()
+    page.locator(f'.language button[value="{code}"]').click()
+    page.wait_for_selector(f'html[lang="{LANGUAGES[code].tag}"][data-link="live"]')
+
+
+def on_the_server(code: str) -> list[str]:
+    """Return the values as the server writes them in a language."""
+
+    def written() -> list[str]:
+        CATALOGUE.set(catalogue_of(code))
+        return [shown(value, form, ZONE) for value, form in VALUES]
+
+    return copy_context().run(written)
+
+
+def test_both_sides_write_values_alike_in_every_language(opened: Opened) -> None:
+    page = opened("/")
+    cases = [[value.isoformat() if isinstance(value, datetime) else value, form] for value, form in VALUES]
+    for code in reversed(LANGUAGES):
+        speak(page, code)
+        assert page.evaluate(IN_THE_BROWSER, cases) == on_the_server(code), code
+
+
+def test_live_values_stay_in_the_language_of_the_page(opened: Opened, plant: Plant) -> None:
+    page = opened("/trackers/T1")
+    speak(page, "de")
+    german = catalogue_of("de")
+    said = page.locator(".strip-activity [data-live]")
+    site = plant.machine.latest()
+    assert site is not None
+    words = site.trackers[0].activity_text
+    expect(said).to_have_text(german.said(words))
+    page.evaluate("document.querySelector('.strip-activity [data-live]').textContent = ''")
+    expect(said).to_have_text(german.said(words))
+    assert german.said(words) != words
+
+
+@pytest.mark.parametrize("size", ["desk", "phone"])
+def test_the_list_of_languages_is_reached_at_every_size(size: str, opened: Opened, picture: Picture) -> None:
+    page = opened("/journal", size)
+    page.locator(".language summary").evaluate("list => list.parentElement.open = true")
+    picture(page, f"languages-{size}")
+    if size == "phone":
+        page.locator('.languages-foot button[value="tr"]').click()
+    else:
+        page.locator('.language button[value="tr"]').click()
+    expect(page.locator("html")).to_have_attribute("lang", "tr")
+    assert page.url.endswith("/journal")

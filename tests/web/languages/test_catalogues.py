@@ -1,0 +1,117 @@
+"""The catalogues: current, whole, and true to the gaps and tags of the English texts."""
+
+import re
+from collections import Counter
+from collections.abc import Iterator
+
+import pytest
+from babel.messages.catalog import Catalog, Message
+
+from app.web.languages.catalogue import catalogue_of
+from app.web.languages.catalogues import faults, identity, mo_bytes, read, renewed, take, template
+from app.web.languages.known import LANGUAGES, TRANSLATED
+
+GAPS = re.compile(r"\{[a-z][a-z0-9_]*\}|%\([a-z_0-9]+\)[sd]")
+TAGS = re.compile(r"</?[a-z][a-z0-9]*[^>]*>")
+CEDILLA = re.compile("[şţŞŢ]")
+PLURAL_FORMS = {"tr": 1, "de": 2, "es": 2, "ro": 3, "zh_Hans": 1}
+
+
+@pytest.fixture(scope="module", params=TRANSLATED)
+def stored(request: pytest.FixtureRequest) -> Catalog:
+    return read(request.param)
+
+
+@pytest.fixture(scope="module")
+def fresh() -> Catalog:
+    return template()
+
+
+def translated(catalog: Catalog) -> Iterator[tuple[Message, str, str]]:
+    """Return every translated text with its English form and its form in the language."""
+    for text in catalog:
+        if not text.id:
+            continue
+        forms = text.string if isinstance(text.string, tuple) else (text.string,)
+        english = text.id if isinstance(text.id, tuple) else (text.id,)
+        for number, form in enumerate(forms):
+            if form:
+                yield text, english[-1] if number or len(forms) == 1 else english[0], form
+
+
+def test_catalogues_have_the_texts_of_the_sources_and_are_compiled(fresh: Catalog) -> None:
+    assert list(faults(fresh)) == []
+
+
+def test_every_text_is_translated(stored: Catalog) -> None:
+    missing = [text.id for text in stored if text.id and not all(text.string or ("",))]
+    assert missing == []
+
+
+def test_gaps_are_those_of_the_english_text(stored: Catalog) -> None:
+    for text, english, form in translated(stored):
+        if isinstance(text.id, tuple):
+            assert set(GAPS.findall(form)) <= set(GAPS.findall(english)), form
+        else:
+            assert Counter(GAPS.findall(form)) == Counter(GAPS.findall(english)), form
+
+
+def test_tags_are_those_of_the_english_text(stored: Catalog) -> None:
+    for _, english, form in translated(stored):
+        assert Counter(TAGS.findall(form)) == Counter(TAGS.findall(english)), form
+
+
+def test_per_cent_signs_format_as_in_english(stored: Catalog) -> None:
+    for _, english, form in translated(stored):
+        assert form.count("%%") == english.count("%%"), form
+
+
+def test_letters_are_those_of_the_language(stored: Catalog) -> None:
+    wrong = [form for _, _, form in translated(stored) if CEDILLA.search(form)]
+    assert str(stored.locale) == "tr" or wrong == [], "write ș and ț with a comma below"
+
+
+def test_plural_forms_are_those_of_the_language(stored: Catalog) -> None:
+    assert stored.num_plurals == PLURAL_FORMS[str(stored.locale)]
+
+
+def test_a_translation_is_taken_by_its_identity_and_comes_back_after_a_change() -> None:
+    fresh = Catalog(locale="de")
+    fresh.add("Save it")
+    fresh.add(("%(num)s key", "%(num)s keys"))
+    lines = [
+        {"id": identity(None, "Save it"), "msgstr": "Speichern"},
+        {"msgid": "%(num)s key", "msgstr": ["%(num)s Taste", "%(num)s Tasten"]},
+        {"id": "gone", "msgstr": "weg"},
+    ]
+    catalog, unknown = take(renewed(Catalog(locale="de"), fresh), lines)
+    assert unknown == 1
+    assert [text.string for text in catalog if text.id] == ["Speichern", ("%(num)s Taste", "%(num)s Tasten")]
+    without = renewed(catalog, Catalog(locale="de"))
+    assert [text.string for text in renewed(without, fresh) if text.id] == [
+        "Speichern",
+        ("%(num)s Taste", "%(num)s Tasten"),
+    ]
+
+
+def test_what_is_not_translated_is_not_compiled() -> None:
+    catalog = Catalog(locale="de")
+    catalog.add("Nothing yet", "")
+    catalog.add(("one", "many"), ("", ""))
+    assert b"Nothing yet" not in mo_bytes(catalog)
+    assert b"many" not in mo_bytes(catalog)
+
+
+def test_the_same_texts_make_the_same_bytes(stored: Catalog) -> None:
+    assert mo_bytes(stored) == mo_bytes(stored)
+    assert b"2000-01-01" in mo_bytes(stored)
+
+
+def test_texts_have_identities_of_their_own(fresh: Catalog) -> None:
+    names = [identity(text.context, text.id) for text in fresh if text.id]
+    assert len(names) == len(set(names))
+
+
+@pytest.mark.parametrize("code", LANGUAGES)
+def test_sixteen_points_make_a_compass(code: str) -> None:
+    assert len(set(catalogue_of(code).language.compass)) == 16

@@ -1,0 +1,83 @@
+"""A page speaks what its cookie says, else what its browser asks for, else English."""
+
+from collections.abc import AsyncIterator
+
+import httpx
+import pytest
+
+from app.web.languages.choice import asked_for
+from app.web.languages.known import LANGUAGES, code_of
+from tests.fakes import FakeMachine, FakeReader, fake_app, serving
+
+
+@pytest.fixture
+async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
+    async with serving(fake_app(machine, FakeReader())) as browser:
+        yield browser
+
+
+@pytest.mark.parametrize(
+    ("accepted", "code"),
+    [
+        ("de-AT,de;q=0.9,en;q=0.8", "de"),
+        ("zh-CN,zh;q=0.9", "zh_Hans"),
+        ("zh-TW", "zh_Hans"),
+        ("ja,ro;q=0.3,tr;q=0.7", "tr"),
+        ("fr-FR, fr", "en"),
+        ("de;q=0, es;q=0.1", "es"),
+        ("*", "en"),
+        ("", "en"),
+        ("de;q=much", "en"),
+        ("," * 100_000, "en"),
+    ],
+)
+def test_a_browser_is_asked_for_its_languages(accepted: str, code: str) -> None:
+    assert asked_for(accepted) == code
+
+
+def test_every_tag_leads_back_to_its_language() -> None:
+    assert [code_of(language.tag) for language in LANGUAGES.values()] == list(LANGUAGES)
+    assert code_of("tlh") == "en"
+
+
+async def test_a_page_tells_which_language_it_speaks(client: httpx.AsyncClient) -> None:
+    page = await client.get("/", headers={"Accept-Language": "ro-RO"})
+    assert '<html lang="ro"' in page.text
+    assert {"Cookie", "Accept-Language"} <= set(page.headers["vary"].split(", "))
+    assert '<html lang="en"' in (await client.get("/")).text
+
+
+async def test_the_list_keeps_the_choice_for_a_year(client: httpx.AsyncClient) -> None:
+    page = await client.get("/journal")
+    assert all(f'value="{code}" lang="{one.tag}"' in page.text for code, one in LANGUAGES.items())
+    answer = await client.post("/language", data={"language": "zh_Hans", "back": "/journal"})
+    assert (answer.status_code, answer.headers["location"]) == (303, "/journal")
+    assert "Max-Age=31536000" in answer.headers["set-cookie"]
+    assert '<html lang="zh-Hans"' in (await client.get("/", headers={"Accept-Language": "de"})).text
+
+
+@pytest.mark.parametrize("back", ["https://example.com/", "//example.com"])
+async def test_the_list_leads_to_no_other_host(back: str, client: httpx.AsyncClient) -> None:
+    answer = await client.post("/language", data={"language": "de", "back": back})
+    assert answer.headers["location"] == "/"
+
+
+async def test_a_language_that_is_not_spoken_is_refused(client: httpx.AsyncClient) -> None:
+    answer = await client.post("/language", data={"language": "../etc"})
+    assert answer.status_code == 422
+    assert "set-cookie" not in answer.headers
+    client.cookies.set("language", "../../etc")
+    assert '<html lang="en"' in (await client.get("/")).text
+
+
+async def test_an_error_page_speaks_the_language_too(client: httpx.AsyncClient) -> None:
+    page = await client.get("/nothing/here", headers={"Accept-Language": "es"})
+    assert page.status_code == 404
+    assert '<html lang="es"' in page.text
+
+
+async def test_programs_are_answered_in_english(client: httpx.AsyncClient) -> None:
+    asked = {"Accept-Language": "de"}
+    assert (await client.get("/api/v1/trackers/T9", headers=asked)).json()[
+        "detail"
+    ] == "There is no tracker T9."

@@ -1,0 +1,94 @@
+"""What the program says in English is found in another language: whole, by its pattern, or piece by piece."""
+
+from time import perf_counter
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.web.languages.catalogue import LONGEST, Catalogue, catalogue_of
+from app.web.languages.patterns import Patterns, pattern_of
+from tests.web.languages.made_up import GERMAN, catalogue
+
+
+@pytest.mark.parametrize(
+    ("english", "german"),
+    [
+        ("Azimuth", "Azimut"),
+        ("The wind at T7 is too strong: 18.2 m/s.", "Der Wind bei T7 ist zu stark: 18,2 m/s."),
+        (
+            "Stopped by a fault: The drive of T7 does not answer.",
+            "Durch eine Störung angehalten: Der Antrieb von T7 antwortet nicht.",
+        ),
+        ("The azimuth axis is measured.", "Die Achse Azimut wird gemessen."),
+        ("The azimuth axis of T7", "T7, Achse Azimut"),
+        ("azimuth and elevation", "Azimut und Höhe"),
+        ("T7 North field is busy with a show.", "T7 North field ist mit einer Vorführung beschäftigt."),
+        (
+            "The drive of T7 does not answer. Nothing moves. Nothing is recorded.",
+            "Der Antrieb von T7 antwortet nicht. Nichts bewegt sich. Nichts wird aufgezeichnet.",
+        ),
+        ("Holding.", "Steht."),
+        ("0.5 to 12", "0,5 bis 12"),
+    ],
+)
+def test_a_sentence_is_found(english: str, german: str) -> None:
+    assert catalogue().said(english) == german
+
+
+@pytest.mark.parametrize(
+    "unknown",
+    ["Go to the page of the drive", "Ankara, Izmir", "", "192.168.1.20", "Version 1.2 of the panel"],
+)
+def test_what_is_not_known_stays_as_it_is(unknown: str) -> None:
+    assert catalogue().said(unknown) == unknown
+
+
+def test_a_name_is_not_translated_as_if_it_were_a_word() -> None:
+    assert (
+        catalogue().said("The drive of Azimuth does not answer.")
+        == "Der Antrieb von Azimuth antwortet nicht."
+    )
+
+
+def test_the_pattern_with_the_longest_text_of_its_own_wins() -> None:
+    patterns = Patterns(("The {what} stands.", "The drive of {name} stands."))
+    matched = patterns.match("The drive of T7 stands.")
+    assert matched is not None
+    assert matched[0].text == "The drive of {name} stands."
+
+
+def test_english_says_what_it_is_told() -> None:
+    english = catalogue_of("en")
+    assert (
+        english.said("The wind at T7 is too strong: 18.2 m/s.") == "The wind at T7 is too strong: 18.2 m/s."
+    )
+    assert english.ngettext("one key", "keys", 2) == "keys"
+
+
+@given(st.lists(st.text(alphabet="abc .:,{}[]", min_size=1, max_size=12), min_size=2, max_size=4))
+def test_what_was_put_into_a_pattern_comes_out_again(values: list[str]) -> None:
+    names = [f"gap{number}" for number in range(len(values))]
+    pattern = pattern_of(" quartz ".join(f"{{{name}}}" for name in names))
+    assert pattern is not None
+    assert pattern.filled(" quartz ".join(values)) == dict(zip(names, values, strict=True))
+
+
+@given(st.text(max_size=LONGEST + 10))
+def test_no_text_is_refused(text: str) -> None:
+    assert isinstance(_GERMAN.said(text), str)
+
+
+_GERMAN: Catalogue = catalogue()
+
+
+def test_hostile_text_takes_no_longer_than_its_length_allows() -> None:
+    many = catalogue(
+        GERMAN | {f"The {{a}} of the {{b}} in the {{c}} number {n}": f"{{a}} {n}" for n in range(500)}
+    )
+    hostile = "the of in number The " * (LONGEST // 21)
+    begun = perf_counter()
+    for place in range(20):
+        many.said(f"{place}{hostile}"[:LONGEST])
+    assert (perf_counter() - begun) / 20 < 0.02
+    assert many.said("x" * (LONGEST + 1)) == "x" * (LONGEST + 1)

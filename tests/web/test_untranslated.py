@@ -1,0 +1,89 @@
+"""No page shows a text that no language can have: in a language of brackets all but data stands in them."""
+
+import re
+
+import httpx
+import pytest
+
+from app.web.languages.catalogue import Catalogue
+from app.web.languages.patterns import GAP
+from app.web.route_permissions import ROUTES
+from tests.fakes import FakeMachine, FakeReader, fake_app, serving
+from tests.web.pseudo import pseudo_catalogue, speaking, untranslated
+
+FILLED = {
+    "{tracker_id}": "T1",
+    "{recording_id}": "show-1",
+    "{step}": "run",
+    "{number}": "1",
+    "{study_id}": "none",
+    "{show_id}": "none",
+}
+NO_PAGES = re.compile(
+    r"/(api|guide|papers|components|backup|diagnostics|metrics|health|ready|manifest)\b|\.csv"
+)
+"""What is for programs or a file, and the pages that stay English."""
+
+MORE = ("/search?q=wind", "/recordings/show-1?with=day-1", "/journal?tracker=T1", "/nothing", "/trackers/T9")
+DATA = re.compile(
+    r"Samsun solar field|T[12] (North|South) field|North field|Heliopanel( [\d.]+)?|UTC([+−]\d+)?"
+    r"|simulated-plc|SunSpec over Modbus (TCP|RTU)|Modbus TCP|JSON|CSV|Parquet|https?(://\S+)?"
+    r"|broker\.example:8883|psa|ada|operator|min|Simulated drive|Alexandru 2024, Table 3"
+    r"|Summer solstice in 3 minutes( began\.)?|A simulated day( began\.)?|[A-Z][\w-]+/[\w/-]+"
+    r"|time,wind_mps,snow_kg( [\d:,]+)*"
+    r"|Step run is not done yet\.|[\d.,: ]+|\d+ h|T[12]|·|,|[NOSW]{1,3}"
+)
+"""Names that people gave, units, formats, time zones, citations, and what the fake machine says."""
+
+
+def pages() -> list[str]:
+    """Return the address of every page, filled in for the fake machine."""
+    found = []
+    for route in ROUTES:
+        method, _, path = route.partition(" ")
+        for gap, value in FILLED.items():
+            path = path.replace(gap, value)
+        if method == "GET" and not NO_PAGES.search(path):
+            found.append(path)
+    return [*found, *MORE]
+
+
+def left_over(page: str) -> set[str]:
+    """Return what a page shows that is neither translated nor data."""
+    return {text for text in untranslated(page) if re.search(r"[^\W\d_]{3,}", DATA.sub("", text))}
+
+
+@pytest.fixture(scope="module")
+def brackets() -> Catalogue:
+    return pseudo_catalogue()
+
+
+@pytest.fixture
+async def answers(brackets: Catalogue) -> dict[str, httpx.Response]:
+    app = speaking(fake_app(FakeMachine(), FakeReader()), brackets)
+    async with serving(app) as client:
+        found = {path: await client.get(path) for path in pages()}
+    return {path: one for path, one in found.items() if "text/html" in one.headers.get("content-type", "")}
+
+
+async def test_every_text_of_every_page_can_be_translated(answers: dict[str, httpx.Response]) -> None:
+    assert len(answers) > 50
+    assert sum("⟦" in answer.text for answer in answers.values()) == len(answers)
+    found = {path: left for path, answer in answers.items() if (left := left_over(answer.text))}
+    assert found == {}
+
+
+def test_every_sentence_with_gaps_is_found_again(brackets: Catalogue) -> None:
+    sentences = {
+        GAP.sub("12.5", text) for text in brackets.texts if isinstance(text, str) and GAP.search(text)
+    }
+    assert len(sentences) > 500
+    said = {sentence: brackets.said(sentence) for sentence in sentences}
+    assert {one: other for one, other in said.items() if not re.fullmatch("⟦[^⟦]*⟧", other)} == {}
+
+
+def test_what_is_not_translated_is_found() -> None:
+    page = (
+        '<p>⟦Since <b>3 min</b>.⟧ Moving <i translate="no">run.sh now</i></p><a title="To the end">⟦Go⟧</a>'
+    )
+    assert left_over(page) == {"Moving", "To the end"}
