@@ -22,7 +22,7 @@ VALUES: tuple[tuple[Any, str], ...] = (
     (-0.001, "angle2"),
     (-12.5, "angle1"),
     (359.6, "angle0"),
-    (18.25, "mps"),
+    (18.27, "mps"),
     (-3.14, "degc"),
     (1013.2, "hpa"),
     (0.4, "age"),
