@@ -6,8 +6,11 @@ import pytest
 
 from app.tracker import guards
 from app.tracker.axes import Axis, AxisConfig
+from app.tracker.config import MountKind
 from app.tracker.follow import AxisWatch
 from app.tracker.motion import AxisCommand, AxisFeedback, Feedback, Halt, Position, Velocity
+from app.tracker.mounts.abilities import axis_words
+from app.tracker.mounts.usual import mounted
 from app.tracker.reason import Reason
 from tests.tracker.plant import CONFIG, MORNING, TRUST
 
@@ -44,6 +47,32 @@ def test_two_switches_at_once_are_a_fault_of_the_wiring(axis: Axis) -> None:
         assert guards.wiring_fault(CONFIG, turned(axis, **one)) is None
     apart = replace(turned(axis, at_lower_limit=True), azimuth=replace(STANDS, at_upper_limit=True))
     assert guards.wiring_fault(CONFIG, apart) is None or axis is Axis.AZIMUTH
+
+
+@pytest.mark.parametrize("axis", list(Axis))
+def test_a_switch_that_is_on_alone_is_told_with_the_one_way_that_is_free(axis: Axis) -> None:
+    words = axis_words(CONFIG.mount, axis)
+    assert words is not None
+    ends = {"at_lower_limit": ("lower", words.grows), "at_upper_limit": ("upper", words.falls)}
+    for switch, (end, free) in ends.items():
+        (reason,) = guards.pressed_switches(CONFIG, turned(axis, **{switch: True}))
+        assert reason.code == "at_limit_switch"
+        on = f"The {end} limit switch of the {axis} axis of Tracker 1 is on"
+        assert reason.message == f"{on} although it stands within its soft limits: it moves {free} only."
+        (outside,) = guards.pressed_switches(CONFIG, turned(axis, **{switch: True}, position_deg=-5.0))
+        assert outside.message == f"{on}: it moves {free} only."
+    assert guards.pressed_switches(CONFIG, SOUND) == ()
+    both = turned(axis, at_lower_limit=True, at_upper_limit=True)
+    assert guards.pressed_switches(CONFIG, both) == (), "that is a fault of the wiring"
+
+
+def test_every_switch_that_is_on_is_told_and_none_of_an_axis_that_is_not_there() -> None:
+    on = replace(STANDS, at_upper_limit=True)
+    both = replace(SOUND, azimuth=on, elevation=on)
+    assert len(guards.pressed_switches(CONFIG, both)) == 2
+    single = mounted(CONFIG, MountKind.HORIZONTAL_SINGLE_AXIS, 41.0)
+    (reason,) = guards.pressed_switches(single, both)
+    assert "rotation axis" in reason.message
 
 
 def test_a_restart_between_two_readings_is_seen_by_the_count_alone() -> None:

@@ -5,13 +5,18 @@ from datetime import timedelta
 
 import pytest
 
-from app.tracker.axes import Axis
+from app.tracker import guards
+from app.tracker.axes import Axis, AxisConfig
 from app.tracker.commands import Jog, Move, Track
 from app.tracker.config import Orientation
+from app.tracker.controller import Controller
 from app.tracker.motion import Feedback
 from app.tracker.snapshot import ActivityName, EventKind
-from tests.tracker.plant import BLANK, READY
-from tests.tracker.scripted import Scripted
+from tests.tracker.plant import BLANK, CONFIG, READY
+from tests.tracker.scripted import CAPABILITIES, Scripted
+
+ALONE = [(Axis.AZIMUTH, Orientation(90.0, 0.0)), (Axis.ELEVATION, Orientation(0.0, 45.0))]
+"""A move that turns one axis alone, from where both are zero."""
 
 
 @pytest.fixture
@@ -161,3 +166,34 @@ def test_a_switch_that_is_reached_is_told_with_its_axis(script: Scripted, axis: 
     (told,) = script.happened(EventKind.LIMIT_REACHED)
     assert told.data["axis"] is axis
     assert str(axis) in told.message
+
+
+@pytest.mark.parametrize(("axis", "target"), ALONE)
+def test_a_switch_stops_the_axis_that_heads_for_it_and_no_other(
+    script: Scripted, axis: Axis, target: Orientation
+) -> None:
+    script.ask(Move(target))
+    sound = reading(script)
+    other = Axis.ELEVATION if axis is Axis.AZIMUTH else Axis.AZIMUTH
+    beside = replace(guards.axis_feedback(sound, other), at_upper_limit=True)
+    script.reading = replace(sound, **{str(other): beside})
+    script.tick()
+    assert script.controller.activity is ActivityName.MOVING
+    ahead = replace(guards.axis_feedback(sound, axis), at_upper_limit=True)
+    script.reading = replace(sound, **{str(axis): ahead})
+    script.tick()
+    assert script.controller.activity is ActivityName.HOLDING
+    assert [event.data["axis"] for event in script.happened(EventKind.LIMIT_REACHED)] == [axis]
+
+
+@pytest.mark.parametrize(("axis", "target"), ALONE)
+def test_an_axis_is_judged_by_its_own_speed_and_told_by_its_name(axis: Axis, target: Orientation) -> None:
+    slow = AxisConfig(0.0, 90.0, 0.1, 1.0, 0.05, 0.1)
+    config = replace(CONFIG, elevation=slow) if axis is Axis.AZIMUTH else replace(CONFIG, azimuth=slow)
+    script = Scripted(READY)
+    script.controller = Controller(config, READY, CAPABILITIES)
+    script.forward(0.5)
+    script.ask(Move(target))
+    script.forward(10.0)
+    assert script.controller.memory.fault_code == "following_error", "the other axis would need 20 s"
+    assert f"{axis} axis" in script.controller.memory.fault_text
