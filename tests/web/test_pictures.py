@@ -22,7 +22,7 @@ from app.tracker.snapshot import Pair
 from app.web.ui.cartesian import cartesian
 from app.web.ui.glances import bars
 from app.web.ui.scene import scene_on, scene_recorded
-from app.web.ui.sunpath import hours_of
+from app.web.ui.sunpath import hours_of, skyline
 from tests.fake_data import NOON, SAMSUN, TIME_ZONE, commissioned, recording
 from tests.fake_tracker import FakeTracker
 from tests.fakes import FakeMachine, fake_app, serving
@@ -59,6 +59,16 @@ def test_the_skyline_is_as_high_as_the_horizon() -> None:
     assert tops[LEFT + 250.0 * PER_DEGREE] == pytest.approx(BOTTOM - 22.0 * RISE)
     assert tops[LEFT + 175.0 * PER_DEGREE] == pytest.approx(BOTTOM - 17.0 * RISE, abs=0.1)
     assert cartesian(CONFIG, SAMSUN, TIME_ZONE, JUNE, Horizon()).skyline == ""
+
+
+def test_the_polar_picture_has_the_skyline_at_its_rim() -> None:
+    drawn = skyline(HILLS)
+    rim, ring = drawn.split("ZM")
+    spots = [tuple(map(float, spot.split())) for spot in ring.removesuffix("Z").split("L")]
+    heights = {round(90.0 - 0.9 * np.hypot(x, y), 1) for x, y in spots}
+    assert rim.startswith("M0 -100A100 100 0 1 1")
+    assert (min(heights), max(heights)) == (12.0, 22.0)
+    assert skyline(Horizon()) == ""
 
 
 def test_south_of_the_equator_north_is_in_the_middle() -> None:

@@ -27,7 +27,10 @@ class HourLabel:
 
 @dataclass(frozen=True, slots=True)
 class SunDiagram:
-    """The polar sun path, north up, on a circle of radius 100 about the origin."""
+    """The polar sun path, north up, on a circle of radius 100 about the origin.
+
+    `skyline` is what the entered horizon hides; it is empty where the horizon is flat.
+    """
 
     months: tuple[Curve, ...]
     hours: tuple[Curve, ...]
@@ -35,6 +38,7 @@ class SunDiagram:
     today: Curve
     reachable: str
     title: str
+    skyline: str = ""
 
 
 @dataclass(frozen=True, slots=True)

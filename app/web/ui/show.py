@@ -282,7 +282,7 @@ def _run_page(
         plan=wanted,
         minutes=minutes,
         again=f"{root}?{urlencode(again)}",
-        diagram=diagram_of(wanted.location, zone, on, wanted.algorithm, outline(config)),
+        diagram=diagram_of(wanted.location, zone, on, wanted.algorithm, outline(config), detail.site.horizon),
         scene=scene_on(config, wanted.location, zone, on, wanted.algorithm, detail.site.horizon),
     )
     return page(request, context)

@@ -32,5 +32,6 @@ def _answer(request: Request, tracker_id: str, detail: SiteDetail) -> Response:
         zone = frame.site.time_zone
         today = frame.site.at.astimezone(zone_of(zone)).date()
         drawn = cartesian(config, frame.site.location, zone, today, detail.site.horizon)
-    context = SunPathPage(frame=frame, config=config, polar=diagram(frame.site, config), cartesian=drawn)
+    polar = diagram(frame.site, config, detail.site.horizon)
+    context = SunPathPage(frame=frame, config=config, polar=polar, cartesian=drawn)
     return page(request, context)

@@ -7,6 +7,7 @@ from math import cos, radians, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from app.sun.horizon import FLAT, Horizon
 from app.sun.position import Algorithm, Location, SunPath, sun_path
 from app.sun.trigonometry import ARRAY
 from app.tracker.axes import AxisConfig
@@ -34,12 +35,12 @@ LOWEST_HOUR_DEG = 1.5
 OUTLINE_POINTS = 73
 
 
-def diagram(site: SiteSnapshot | None, config: TrackerConfig) -> SunDiagram | None:
+def diagram(site: SiteSnapshot | None, config: TrackerConfig, horizon: Horizon) -> SunDiagram | None:
     """Return the diagram of the site for today, None while the location is not known."""
     if site is None or site.location is None:
         return None
     today = site.at.astimezone(zone_of(site.time_zone)).date()
-    return diagram_of(site.location, site.time_zone, today, config.algorithm, outline(config))
+    return diagram_of(site.location, site.time_zone, today, config.algorithm, outline(config), horizon)
 
 
 def arc(algorithm: Algorithm, location: Location, on: date) -> Arc:
@@ -56,6 +57,7 @@ def diagram_of(
     today: date,
     algorithm: Algorithm,
     reachable: str,
+    horizon: Horizon = FLAT,
 ) -> SunDiagram:
     """Return the diagram of a place for a day; `reachable` is what `outline` returns for a tracker."""
     now_path = day_path(algorithm, location, today)
@@ -75,7 +77,17 @@ def diagram_of(
         today=Curve(today.isoformat(), _drawn(now_path), strong=True),
         reachable=reachable,
         title=f"Sun path of {today.isoformat()}, seen from above, north up",
+        skyline=skyline(horizon),
     )
+
+
+def skyline(horizon: Horizon) -> str:
+    """Return what the entered horizon hides as SVG path data, a ring at the rim; empty where it is flat."""
+    if not horizon.points:
+        return ""
+    spots = [point(azimuth_deg, elevation_deg) for azimuth_deg, elevation_deg in horizon.outline()]
+    inner = "L".join(f"{x:.1f} {y:.1f}" for x, y in spots)
+    return f"M0 {-HORIZON:g}A{HORIZON:g} {HORIZON:g} 0 1 1 -.01 {-HORIZON:g}ZM{inner}Z"
 
 
 def point(azimuth_deg: float, elevation_deg: float) -> tuple[float, float]:

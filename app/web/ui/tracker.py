@@ -97,7 +97,7 @@ def _answer(
         choice=choice(config, memory.mode) if memory.mode else None,
         form=typed.form(("azimuth", "elevation")),
         limits=limits_text(config),
-        diagram=diagram(frame.site, config),
+        diagram=diagram(frame.site, config, detail.site.horizon),
         scene=scene_now(frame.site, config, detail.site.horizon),
         blocked=blocked_without_zero(),
     )
