@@ -1,8 +1,12 @@
-"""`python -m tests.web.hasty_panel FOLDER PORT`: a panel alone, whose clock runs fifteen times as fast."""
+"""`python -m tests.web.hasty_panel FOLDER PORT`: a panel alone, whose clock runs fifteen times as fast.
+
+At each SIGUSR1 a minute more has passed.
+"""
 
 import asyncio
+import signal
 import sys
-from datetime import datetime
+from datetime import datetime, timedelta
 from pathlib import Path
 
 from app.clock import SystemClock
@@ -10,20 +14,28 @@ from app.settings import Settings
 from app.web.main import run
 
 FASTER = 15
+LOOK_EVERY_S = 0.02
 
 
 class HastyClock(SystemClock):
-    """The system's clock, faster."""
+    """The system's clock, faster, and moved on by a minute when it is told to."""
 
     def __init__(self) -> None:
         super().__init__()
         self._began = super().now()
+        self._skipped = timedelta()
+        signal.signal(signal.SIGUSR1, lambda *_: self._skip())
+
+    def _skip(self) -> None:
+        self._skipped += timedelta(minutes=1)
 
     def now(self) -> datetime:
-        return self._began + (super().now() - self._began) * FASTER
+        return self._began + (super().now() - self._began) * FASTER + self._skipped
 
     async def sleep_until(self, at: datetime) -> None:
-        await asyncio.sleep(max(0.0, (at - self.now()).total_seconds() / FASTER))
+        # A signal is no event of the loop: looking now and then is what is left.
+        while (left_s := (at - self.now()).total_seconds()) > 0:  # noqa: ASYNC110
+            await asyncio.sleep(min(LOOK_EVERY_S, left_s / FASTER))
 
 
 if __name__ == "__main__":
