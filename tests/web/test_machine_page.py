@@ -169,7 +169,8 @@ async def test_rejected_settings_are_shown_beside_those_that_are_used(
     machine.trackers["T1"] = RejectedTracker(state, sound.position)
     machine.emit()
     page = (await client.get(f"{ROOT}/settings")).text
-    assert "<td>In position deg</td><td>wide</td><td><b>0.05</b></td><td>It should be a number.</td>" in page
+    assert "<td>In position deg</td><td>wide</td><td><b>0.05</b> <small>usual value</small></td>" in page
+    assert "<td>It should be a number.</td>" in page
     assert 'data-when="rejected">' in (await client.get(ROOT)).text, "the band is on every page"
 
 
