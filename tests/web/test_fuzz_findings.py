@@ -92,3 +92,16 @@ async def test_a_study_whose_energy_is_beyond_all_numbers_is_not_begun(
     (told,) = answer.json()["errors"]
     assert next(iter(given)) in str(told)
     assert (await api.get(f"{V1}/studies")).json() == []
+
+
+async def test_measured_values_are_kept_as_a_file_whatever_their_tracker_is_called(
+    api: httpx.AsyncClient,
+) -> None:
+    asked = {"begin": "2026-06-21T00:00:00Z", "end": "2026-06-22T00:00:00Z", "format": "csv"}
+    answer = await api.get(f"{V1}/telemetry", params={**asked, "tracker_id": 'Çatı"\r\nX-Forged: 1'})
+    assert answer.status_code == 200, answer.text
+    assert "x-forged" not in answer.headers
+    named = answer.headers["content-disposition"]
+    assert named.startswith('attachment; filename="-at-X-Forged-1-20260621T000000Z.csv"; filename*=UTF-8')
+    described = (await api.get(f"{V1}/openapi.json")).json()["paths"][f"{V1}/telemetry"]["get"]
+    assert answer.headers["content-type"].partition(";")[0] in described["responses"]["200"]["content"]

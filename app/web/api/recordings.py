@@ -26,6 +26,7 @@ from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, RecordingId, Res
 from app.web.api.orders import SenderDep
 from app.web.api.shows import place_of_show
 from app.web.api.trackers import detail_of
+from app.web.attachments import kept_as
 from app.web.deps import MachineDep, ReaderDep
 from app.web.errors import NotAcceptable
 
@@ -191,4 +192,4 @@ def columns_json(info: RecordingInfo, frames: Frames) -> bytes:
 
 
 def _named(info: RecordingInfo, ending: str) -> dict[str, str]:
-    return {"Content-Disposition": f'attachment; filename="{info.kind}-{info.recording_id}.{ending}"'}
+    return kept_as(f"{info.kind}-{info.recording_id}.{ending}")

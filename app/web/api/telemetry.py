@@ -12,8 +12,9 @@ from app.store.decimate import FEWEST_POINTS, decimate
 from app.store.exports import measured_csv
 from app.store.store import Reader
 from app.tracker.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
-from app.web.api.base import Output, api_router
+from app.web.api.base import Output, Responses, api_router
 from app.web.api.recordings import ACTIVITIES
+from app.web.attachments import kept_as
 from app.web.deps import ReaderDep
 from app.web.errors import NotAcceptable
 
@@ -35,7 +36,17 @@ class Telemetry(Output):
     columns: dict[str, list[float | None]]
 
 
-@router.get("/telemetry", summary="Angles, drive and weather over time", response_model=Telemetry)
+FILE: Responses = {
+    200: {
+        "description": "As columns in JSON, or as a file.",
+        "content": {"text/csv": {"schema": {"type": "string"}}},
+    }
+}
+
+
+@router.get(
+    "/telemetry", summary="Angles, drive and weather over time", response_model=Telemetry, responses=FILE
+)
 def read_telemetry(
     reader: ReaderDep,
     tracker_id: Annotated[str, Query(min_length=1, max_length=64)],
@@ -66,8 +77,7 @@ def read_telemetry(
 
 def _csv(tracker_id: str, begin: datetime, frames: Frames) -> Response:
     name = f"{tracker_id}-{begin.astimezone(UTC):%Y%m%dT%H%M%SZ}.csv"
-    headers = {"Content-Disposition": f'attachment; filename="{name}"'}
-    return StreamingResponse(measured_csv(begin, frames), media_type="text/csv", headers=headers)
+    return StreamingResponse(measured_csv(begin, frames), media_type="text/csv", headers=kept_as(name))
 
 
 def _between(reader: Reader, tracker_id: str, begin: datetime, end: datetime, points: int) -> Frames:

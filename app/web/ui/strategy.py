@@ -15,6 +15,7 @@ from app.tracker.programs.examples import EXAMPLES
 from app.tracker.programs.step_table import TableWrong, from_table, to_table
 from app.tracker.programs.stepped import StepProgram
 from app.tracker.strategy import Deadband, HybridConfig, Stepped
+from app.web.attachments import kept_as
 from app.web.contexts import Link
 from app.web.deps import MachineDep, PanelDep
 from app.web.errors import NotAcceptable
@@ -132,7 +133,7 @@ async def program(
 async def export(tracker_id: str, machine: MachineDep) -> Response:
     """Hand the kept program out as a table."""
     kept = kept_program(tracker_of(await machine.detail(), tracker_id))
-    named = {"Content-Disposition": f'attachment; filename="{tracker_id}-program.csv"'}
+    named = kept_as(f"{tracker_id}-program.csv")
     return PlainTextResponse(to_table(kept), headers=named, media_type="text/csv; charset=utf-8")
 
 
