@@ -58,6 +58,12 @@ class Settings(BaseSettings):
         False, description="Listen beyond loopback without a certificate; every page warns of it."
     )
     mdns: bool = Field(False, description="Announce the panel as heliopanel.local (needs the extra mdns).")
+    login_notice: str = Field(
+        "",
+        max_length=1000,
+        description="What stands above the form to sign in, for example who may use this system and that it "
+        "is recorded.",
+    )
     port: int = Field(8000, ge=1, le=65535, description="TCP port of the panel.")
     data_dir: Path = Field(
         Path("data"), description="Folder of the database, the lock, the link and backups."

@@ -21,6 +21,7 @@ class SignInPage:
     form: Form
     back: str
     problem: str
+    notice: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,11 +36,15 @@ class MovableClock(SystemClock):
 class Office:
     """A panel, its machine, and browsers in front of it."""
 
-    def __init__(self, folder: Path, *, host: str = "127.0.0.1", clock: Clock | None = None) -> None:
+    def __init__(
+        self, folder: Path, *, host: str = "127.0.0.1", clock: Clock | None = None, notice: str = ""
+    ) -> None:
         self.clock = clock or MovableClock()
         self.machine = FakeMachine(self.clock)
         self.hasher = FakeHasher()
-        self.settings = Settings(data_dir=folder, port=PORT).model_copy(update={"host": host})
+        self.settings = Settings(data_dir=folder, port=PORT).model_copy(
+            update={"host": host, "login_notice": notice}
+        )
         self.app: FastAPI = create_app(
             self.settings,
             machine=self.machine,

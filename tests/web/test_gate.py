@@ -48,6 +48,24 @@ def test_the_table_has_every_route_and_no_other(tmp_path: Path) -> None:
     assert set(ROUTES) >= PROVEN
 
 
+async def test_a_notice_of_use_stands_before_the_log_in_and_nowhere_else(tmp_path: Path) -> None:
+    office = Office(tmp_path, notice="For <staff> alone.\nUse is recorded.")
+    async with office.app.router.lifespan_context(office.app):
+        await office.hire(Role.VIEWER)
+        async with office.browser() as stranger:
+            assert "For &lt;staff&gt; alone.\nUse is recorded." in (await stranger.get("/login")).text
+            assert "alone." in (await stranger.get("/kiosk")).text
+        async with office.browser(await office.session("viewer")) as viewer:
+            assert "alone." not in (await viewer.get("/prove")).text
+
+
+async def test_without_a_notice_the_log_in_has_none(office: Office) -> None:
+    async with office.browser() as stranger:
+        found = await stranger.get("/login")
+    assert found.status_code == 200
+    assert "sign-in-notice" not in found.text
+
+
 def test_a_route_without_an_entry_keeps_the_panel_from_starting(tmp_path: Path) -> None:
     app: FastAPI = Office(tmp_path).app
 

@@ -26,6 +26,9 @@ TITLES = {
     "setup": "First administrator",
     "kiosk": "Bind this cabinet's panel",
 }
+BEFORE = ("login", "kiosk")
+"""Forms before which nobody is known: these show the notice of use."""
+
 REFUSALS = (WrongPassword, Throttled, TooManyAtOnce, AccessRefused)
 Secret = Annotated[str, Form(max_length=300)]
 Text = Annotated[str, Form(max_length=300)]
@@ -141,6 +144,7 @@ def _form(
         form={name: Field(name, text) for name, text in typed.items()},
         back=own_path(back),
         problem=_words(request, problem.detail) if problem else "",
+        notice=panel(request).settings.login_notice if purpose in BEFORE else "",
     )
     response = page(request, context, status=problem.status if problem else 200)
     response.headers.update(problem.headers if problem else {})
