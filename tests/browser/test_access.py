@@ -19,7 +19,7 @@ from app.clock import SystemClock
 from app.settings import Settings
 from app.web.main import create_app
 from tests.access.fake_hasher import FakeHasher
-from tests.browser.conftest import SIZES, Opened, Served
+from tests.browser.conftest import PATIENCE_MS, SIZES, Opened, Served
 from tests.fakes import FakeMachine, FakeReader
 from tests.web.office import HERE, PASSWORD
 
@@ -65,7 +65,7 @@ class Door:
         """Open a page in a browser of its own."""
         width, height = SIZES[size]
         context = self.browser.new_context(viewport={"width": width, "height": height})
-        context.set_default_timeout(8000)
+        context.set_default_timeout(PATIENCE_MS)
         self.contexts.append(context)
         page = context.new_page()
         page.goto(self.url + path)
@@ -190,6 +190,7 @@ def test_stop_works_on_a_page_whose_session_was_ended(
     expect(page.locator("#link-banner-words")).to_contain_text("Your session has ended")
     page.locator("#stop-key").click()
     expect(page.locator("#stopped-words")).to_have_text("Stopped.")
+    page.evaluate("scrollTo(0, 0)")
     picture(page, "session-ended")
     assert ("stop", "vera (stop ticket)") in door.kinds()
     page.goto(f"{door.url}/trackers/T2")
