@@ -8,7 +8,7 @@ from itertools import chain
 from typing import IO
 
 from app.web.languages.known import ENGLISH, LANGUAGES, LOCALE, Language
-from app.web.languages.patterns import GAP, Patterns
+from app.web.languages.patterns import GAP, Pattern, Patterns
 
 LONGEST = 600
 """Longer texts are no sentences of ours: they stay as they are."""
@@ -17,7 +17,7 @@ KEPT = 4096
 """So many sentences are remembered, as the same ones come with every state."""
 
 _NAMES = """
-    name names name2 name3 tracker_id site_name actor holder by who user path file zone where link host
+    name names tracker_id site_name actor holder by who user path file zone where link host
     address port version code url recording_id show_id id given key"""
 NAMES = frozenset(_NAMES.split())
 """Gaps in which something stands that people or machines named: a word there is not translated."""
@@ -65,12 +65,22 @@ class Catalogue(GNUTranslations):
     def _known(self, sentence: str, depth: int = 2) -> str | None:
         if found := self._catalog.get(sentence):
             return found
-        matched = self._patterns.match(sentence)
-        if matched is None:
+        matches = self._patterns.matches(sentence)
+        if not matches:
             return None
-        pattern, values = matched
+        pattern, values = max(matches, key=self._likelihood)
         said = {name: self._value(name, value, depth) for name, value in values.items()}
         return GAP.sub(lambda gap: said.get(gap[1], gap[0]), self._catalog[pattern.text])
+
+    def _likelihood(self, match: tuple[Pattern, Mapping[str, str]]) -> int:
+        """Return how well a pattern explains a sentence; unknown words in a gap count against it."""
+        pattern, values = match
+        return pattern.fixed_length + sum(map(self._weight, values.values()))
+
+    def _weight(self, value: str) -> int:
+        if value in self._catalog:
+            return len(value)
+        return -len(value) if " " in value else int(value[:1].isdigit())
 
     def _value(self, name: str, value: str, depth: int) -> str:
         """Return what stands in a gap: words in this language, names and what is not known as they are."""

@@ -13,6 +13,7 @@ GAP = re.compile(r"\{([a-z][a-z0-9_]*)\}")
 WORD = re.compile(r"[^\W\d_]+")
 MOST_TRIED = 40
 """So many patterns are tried for one sentence, those with the longest fixed text first."""
+MOST_FOUND = 6
 
 
 THIN, LONGEST_UNIT = 3, 3
@@ -27,29 +28,55 @@ class Pattern:
     parts: tuple[str, ...]
     gaps: tuple[str, ...]
 
-    def filled(self, sentence: str) -> dict[str, str] | None:
-        """Return what stands in the gaps of a sentence, None where it is not of this pattern."""
+    def fillings(self, sentence: str) -> list[dict[str, str]]:
+        """Return what may stand in the gaps of a sentence, read from either end; else nothing."""
         first, last = self.parts[0], self.parts[-1]
-        if len(sentence) < len(first) + len(last) or not (
-            sentence.startswith(first) and sentence.endswith(last)
-        ):
-            return None
-        at, end, values = len(first), len(sentence) - len(last), []
-        for part in self.parts[1:-1]:
-            found = sentence.find(part, at, end) if part else at
-            if found < 0:
-                return None
-            values.append(sentence[at:found])
-            at = found + len(part)
-        values.append(sentence[at:end])
-        if at > end or (self.is_thin and not all(map(_is_measure, values))):
-            return None
-        return dict(zip(self.gaps, values, strict=True))
+        inner = sentence[len(first) : len(sentence) - len(last)]
+        if len(sentence) < len(first) + len(last) or sentence != f"{first}{inner}{last}":
+            return []
+        fixed = self.parts[1:-1]
+        found = [_from_left(inner, fixed)]
+        if found[0] is not None and fixed:
+            found.append(_from_right(inner, fixed))
+        return [
+            dict(zip(self.gaps, values, strict=True))
+            for values in found
+            if values is not None and not (self.is_thin and not all(map(_is_measure, values)))
+        ]
+
+    @property
+    def fixed_length(self) -> int:
+        """Return how many letters and signs are the pattern's own."""
+        return sum(map(len, self.parts))
 
     @property
     def is_thin(self) -> bool:
         """Return whether hardly a word stands between the gaps, as in `{low} to {high}`."""
         return sum(map(len, WORD.findall(" ".join(self.parts)))) < THIN
+
+
+def _from_left(text: str, fixed: tuple[str, ...]) -> list[str] | None:
+    """Return what stands between fixed parts, each found as early as can be; None where one is missing."""
+    values, at = [], 0
+    for part in fixed:
+        found = text.find(part, at)
+        if found < 0:
+            return None
+        values.append(text[at:found])
+        at = found + len(part)
+    return [*values, text[at:]]
+
+
+def _from_right(text: str, fixed: tuple[str, ...]) -> list[str] | None:
+    """Return what stands between fixed parts, each found as late as can be; None where one is missing."""
+    values, end = [], len(text)
+    for part in reversed(fixed):
+        found = text.rfind(part, 0, end)
+        if found < 0:
+            return None
+        values.append(text[found + len(part) : end])
+        end = found
+    return [text[:end], *reversed(values)]
 
 
 def _is_measure(value: str) -> bool:
@@ -77,17 +104,18 @@ class Patterns:
                 by_word[min(found, key=lambda word: (how_many[word], word))].append(pattern)
         self._by_word: Mapping[str, list[Pattern]] = by_word
 
-    def match(self, sentence: str) -> tuple[Pattern, dict[str, str]] | None:
-        """Return the pattern of a sentence and what stands in its gaps; the longest one fits best."""
+    def matches(self, sentence: str) -> list[tuple[Pattern, dict[str, str]]]:
+        """Return the patterns that a sentence may be made from, each with what stands in its gaps."""
         tried: list[Pattern] = []
         for word in dict.fromkeys(WORD.findall(sentence)):
             tried += self._by_word.get(word, ())
-        tried.sort(key=lambda pattern: -len("".join(pattern.parts)))
+        tried.sort(key=lambda pattern: -pattern.fixed_length)
+        found: list[tuple[Pattern, dict[str, str]]] = []
         for pattern in tried[:MOST_TRIED]:
-            values = pattern.filled(sentence)
-            if values is not None:
-                return pattern, values
-        return None
+            found += ((pattern, values) for values in pattern.fillings(sentence))
+            if len(found) >= MOST_FOUND:
+                break
+        return found
 
 
 def _whole_words(pattern: Pattern) -> set[str]:

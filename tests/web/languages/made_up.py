@@ -14,6 +14,8 @@ GERMAN = {
     "The drive of {name} does not answer.": "Der Antrieb von {name} antwortet nicht.",
     "The {axis} axis is measured.": "Die Achse {axis} wird gemessen.",
     "The {axis} axis of {name}": "{name}, Achse {axis}",
+    "{meaning} {least} to {most}, usual {default}.": "{meaning} {least} bis {most}, üblich {default}.",
+    "Time to stand.": "Zeit zu stehen.",
     "{low} to {high}": "{low} bis {high}",
     "is busy with a show": "ist mit einer Vorführung beschäftigt",
     "Nothing moves. Nothing is recorded.": "Nichts bewegt sich. Nichts wird aufgezeichnet.",
