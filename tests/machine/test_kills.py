@@ -3,6 +3,7 @@
 import os
 import random
 from collections.abc import AsyncIterator
+from contextlib import AsyncExitStack
 from pathlib import Path
 from time import monotonic
 
@@ -19,15 +20,16 @@ SEED = int(os.environ.get("HELIOPANEL_TEST_SEED", "1"))
 
 @pytest.fixture
 async def killing(tmp_path: Path) -> AsyncIterator[Killing]:
-    drive = DriveSim.start()
-    eyes = Eyes(drive.port)
     machine = Machine.of(tmp_path / "data")
-    killing = Killing(machine, eyes, random.Random(SEED))
-    await killing.commission(drive.port)
-    yield killing
-    eyes.close()
-    await machine.stop()
-    drive.stop()
+    async with AsyncExitStack() as started:
+        drive = DriveSim.start()
+        started.callback(drive.stop)
+        eyes = Eyes(drive.port)
+        started.push_async_callback(machine.stop)
+        started.callback(eyes.close)
+        killing = Killing(machine, eyes, random.Random(SEED))
+        await killing.commission(drive.port)
+        yield killing
 
 
 @pytest.mark.timeout(60 + 15 * KILLS)
