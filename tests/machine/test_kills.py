@@ -14,7 +14,7 @@ from tests.e2e.product import DriveSim
 from tests.machine.killing import Killing
 from tests.machine.lives import Machine
 
-KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "4"))
+KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "3"))
 SEED = int(os.environ.get("HELIOPANEL_TEST_SEED", "1"))
 
 
