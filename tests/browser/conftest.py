@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 import uvicorn
 from fastapi import FastAPI
-from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, expect, sync_playwright
 
 from tests.fakes import FakeMachine, fake_app
 
@@ -27,6 +27,8 @@ SIZES = {"desk": (1280, 800), "tablet": (1024, 768), "phone": (390, 844)}
 SOFTWARE_NOTE = "GPU stall due to ReadPixels"
 """Chromium's remark on WebGL without a graphics card, when a page is photographed; it says nothing of it."""
 BEAT = timedelta(milliseconds=100)
+PATIENCE_MS = 30_000
+"""How long a busy computer may take; tests that judge how quick something is say so themselves."""
 
 
 @dataclass
@@ -76,8 +78,9 @@ class Served:
             await self.machine.clock.sleep_until(self.machine.clock.now() + BEAT)
 
 
-@pytest.fixture
-def plant() -> Iterator[Plant]:
+@contextlib.contextmanager
+def running() -> Iterator[Plant]:
+    """Serve a panel on a free port for as long as the block lasts."""
     served = Served(FakeMachine())
     thread = threading.Thread(target=lambda: asyncio.run(served.run()), daemon=True)
     thread.start()
@@ -91,11 +94,18 @@ def plant() -> Iterator[Plant]:
     assert not thread.is_alive(), "the panel did not stop"
 
 
+@pytest.fixture
+def plant() -> Iterator[Plant]:
+    with running() as served:
+        yield served
+
+
 @pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
     """Run one browser for this folder; Playwright's loop must have ended before other tests run theirs."""
     if not Path(CHROMIUM).exists():
         pytest.fail("These tests need Chromium: apt-get install -y chromium")
+    expect.set_options(timeout=PATIENCE_MS)
     with sync_playwright() as playwright:
         started = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         yield started
@@ -129,7 +139,7 @@ def opened(browser: Browser, plant: Plant) -> Iterator[Opened]:
         contexts.append(context)
         allowed.extend(allow)
         context.add_cookies([{"name": "theme", "value": theme, "url": plant.url}])
-        context.set_default_timeout(8000)
+        context.set_default_timeout(PATIENCE_MS)
         page = context.new_page()
         page.on("console", complain)
         page.on("pageerror", lambda error: complaints.append(f"uncaught: {error}"))

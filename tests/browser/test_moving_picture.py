@@ -19,7 +19,7 @@ from app.tracker.config import MountKind, TrackerConfig
 from app.tracker.mounts.kinematics import direction
 from app.tracker.mounts.usual import mounted
 from app.tracker.snapshot import Pair
-from tests.browser.conftest import SCREENS, SOFTWARE_NOTE, Served
+from tests.browser.conftest import PATIENCE_MS, SCREENS, SOFTWARE_NOTE, Served
 from tests.fakes import FakeMachine
 
 T1 = "/trackers/T1"
@@ -96,7 +96,7 @@ class Panel:
             viewport={"width": 1280, "height": 800}, timezone_id="Europe/Istanbul", **options
         )
         self.contexts.append(context)
-        context.set_default_timeout(8000)
+        context.set_default_timeout(PATIENCE_MS)
         page = context.new_page()
         if init:
             page.add_init_script(init)

@@ -13,7 +13,7 @@ import httpx
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.browser.conftest import SIZES
+from tests.browser.conftest import PATIENCE_MS, SIZES
 from tests.browser.hands import Finger, Hands, Keyboard, Mouse, arrive
 
 READY_S = 60
@@ -63,7 +63,7 @@ def walker(browser: Browser) -> Iterator[Callable[[str, str], Page]]:
             viewport={"width": width, "height": height}, has_touch=hand == "finger", locale="en-GB"
         )
         contexts.append(context)
-        context.set_default_timeout(15000)
+        context.set_default_timeout(PATIENCE_MS)
         page = context.new_page()
         page.on("console", lambda one: complaints.append(one.text) if one.type == "error" else None)
         page.on("pageerror", lambda error: complaints.append(str(error)))
