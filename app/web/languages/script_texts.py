@@ -13,6 +13,7 @@ from app.tracker.mode import Mode
 from app.tracker.protections.words import Protection
 from app.tracker.snapshot import ActivityName, ShowPhase
 from app.web.languages.catalogue import Catalogue, catalogue_of
+from app.web.languages.known import ENGLISH
 
 SCRIPTS = Path(__file__).resolve().parents[3] / "static" / "js"
 SCRIPT_TEXT = re.compile(r"(?<![\w.])_\(\s*\"((?:[^\"\\\n]|\\.)*)\"")
@@ -44,7 +45,7 @@ def _live_words() -> Iterable[str]:
 def for_page(code: str) -> Markup:
     """Return what the scripts of a page need as JSON, nothing where they speak English."""
     catalogue = catalogue_of(code)
-    return Markup("") if not catalogue.texts else Markup(_json(catalogue))  # noqa: S704 - escaped below
+    return Markup("") if catalogue.language is ENGLISH else Markup(_json(catalogue))  # noqa: S704 - escaped below
 
 
 def _json(catalogue: Catalogue) -> str:
