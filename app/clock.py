@@ -52,6 +52,8 @@ class VirtualClock:
         if at < self._now:
             raise ValueError(f"A clock never goes backwards: it shows {self._now}, asked for {at}.")
         self._now = at
+        if not self._sleepers:
+            return
         for until, woken in self._sleepers:
             if until <= at:
                 woken.set()

@@ -264,17 +264,16 @@ class SimulatedMachine:
     def _advance(self) -> float:
         """Let everything happen that the time since the last call brings, and return the time in seconds."""
         now_s = (self._clock.now() - self._started_at).total_seconds()
-        self._watch(now_s)
+        if self._watchdog_s is not None and self._fed_at_s is not None and not self._tripped:
+            self._watch(now_s, self._fed_at_s + self._watchdog_s)
         if self._homing is not None and self._resting(now_s):
             self._finish_homing(now_s)
         if not self._kept_trusted:
             self._keep(now_s)
         return now_s
 
-    def _watch(self, now_s: float) -> None:
-        if self._watchdog_s is None or self._fed_at_s is None or self._tripped:
-            return
-        deadline_s = self._fed_at_s + self._watchdog_s
+    def _watch(self, now_s: float, deadline_s: float) -> None:
+        """Stop both axes at the deadline if no command has come until then."""
         if now_s <= deadline_s:
             return
         self._tripped = True

@@ -14,10 +14,10 @@ from app.tracker.commands import Command, Home
 from app.tracker.config import TrackerConfig
 from app.tracker.controller import Controller
 from app.tracker.memory import Pointing, TrackerMemory
-from app.tracker.motion import Halt
+from app.tracker.motion import DriveCommand, Halt
 from app.tracker.observation import Observation
 from app.tracker.snapshot import ActivityName, Event, Snapshot
-from app.tracker.weather import NOTHING_SENSED, Sensed
+from app.tracker.weather import NOTHING_SENSED
 
 SHORT_STEP = timedelta(milliseconds=100)
 STEADY_TICKS = 10
@@ -31,8 +31,8 @@ class RehearsalFailed(ValueError):
 class Rehearsal:
     """One simulated tracker whose sun stands still until it is homed and in place; it warns nobody.
 
-    The machine's time starts at `begin` and always goes on; `site_time` moves only when told to. `stands`
-    says that the last tick halted both axes. `weather` is none until it is given some.
+    The machine's time starts at `begin` and always goes on; `site_time` moves only when told to. `weather` is
+    none until it is given some.
     """
 
     def __init__(
@@ -48,8 +48,13 @@ class Rehearsal:
         unwarned = replace(config, protection=replace(config.protection, warning_s=0.0))
         self.controller = Controller(unwarned, TrackerMemory(pointing=pointing), self.drive.capabilities)
         self._sky = Sky()
-        self.stands = True
+        self._told = DriveCommand()
         self.weather: MadeUpWeather | None = None
+
+    @property
+    def stands(self) -> bool:
+        """Return whether the last tick halted both axes."""
+        return isinstance(self._told.azimuth, Halt) and isinstance(self._told.elevation, Halt)
 
     def home(self) -> None:
         """Search the origin switches until the zero is trusted."""
@@ -75,30 +80,15 @@ class Rehearsal:
 
     def tick(self, sun: SunPosition | None = None) -> tuple[Event, ...]:
         """Read, decide and write once at the present instant; the sun may come worked out in advance."""
-        config, location, at = self.config, self.location, self.site_time
-        self._lit = sun or self._sky.sun(location, config.algorithm, at)
-        observation = Observation(
-            self.clock.now(),
-            at,
-            self._lit,
-            self._sky.dawn(location, config.algorithm, at),
-            self.drive.observe(),
-            True,
-            location,
-            1,
-            weather=self._sensed(self._lit),
-        )
-        command, events = self.controller.tick(observation)
-        self.drive.obey(command)
-        self.stands = isinstance(command.azimuth, Halt) and isinstance(command.elevation, Halt)
+        location, algorithm = self.location, self.config.algorithm
+        now, at = self.clock.now(), self.site_time
+        self._lit = sun = sun or self._sky.sun(location, algorithm, at)
+        dawn, reading = self._sky.dawn(location, algorithm, at), self.drive.observe()
+        weather = NOTHING_SENSED if self.weather is None else self.weather.sensed(at, sun, now)
+        seen = Observation(now, at, sun, dawn, reading, True, location, 1, weather)
+        self._told, events = self.controller.tick(seen)
+        self.drive.obey(self._told)
         return events
-
-    def _sensed(self, sun: SunPosition | None) -> Sensed:
-        return (
-            NOTHING_SENSED
-            if self.weather is None
-            else self.weather.sensed(self.site_time, sun, self.clock.now())
-        )
 
     def _rests(self, seen: Snapshot) -> bool:
         return seen.activity is ActivityName.HOLDING

@@ -1,5 +1,6 @@
 """A day, or a show, simulated at controller fidelity on a virtual clock, as a recording."""
 
+from array import array
 from base64 import b64encode
 from dataclasses import replace
 from datetime import UTC, date, datetime, time, timedelta
@@ -58,9 +59,8 @@ def simulate(
     rehearsal.ask(Move(orientation) if mode is Mode.FIXED else Track())
     rehearsal.prepare_until(_settled, "it was in place")
     rehearsal.weather = None if weather is None else MadeUpWeather(weather)
-    elapsed_s, rows = _run(rehearsal, begin, end, step, sparing=sparing)
+    frames = _run(rehearsal, begin, end, step, sparing=sparing)
     info = _info(config, location, time_zone, mode, orientation, begin, end)
-    frames = _frames(rows, elapsed_s)
     return _finished(info, title or _day_title(config, time_zone, begin), frames), frames
 
 
@@ -158,10 +158,8 @@ def _ready_for_show(seen: Snapshot) -> bool:
     return seen.show is not None and seen.show.phase is ShowPhase.READY
 
 
-def _run(
-    rehearsal: Rehearsal, begin: datetime, end: datetime, step: timedelta, *, sparing: bool
-) -> tuple[NDArray[np.float64], list[tuple[float, ...]]]:
-    """Tick through the span and return when and what the frames are."""
+def _run(rehearsal: Rehearsal, begin: datetime, end: datetime, step: timedelta, *, sparing: bool) -> Frames:
+    """Tick through the span and return the frames."""
     ticks_a_frame = ceil(step / SECOND)
     tick_step = step / ticks_a_frame
     count = int((end - begin) / step) * ticks_a_frame + 1
@@ -169,16 +167,16 @@ def _run(
     path = sun_path(rehearsal.config.algorithm, rehearsal.location, begin.timestamp() + elapsed_s)
     columns = (path.azimuth_deg, path.elevation_deg, path.apparent_elevation_deg)
     tick, frame, advance = rehearsal.tick, rehearsal.controller.frame, rehearsal.clock.advance
-    rows = []
+    rows = array("d")
     for number, sun in enumerate(zip(*(column.tolist() for column in columns), strict=True)):
         advance(tick_step)
         framed = number % ticks_a_frame == 0
         if framed or not (sparing and rehearsal.stands):
             tick(SunPosition(*sun))
         if framed:
-            rows.append(frame())
+            rows.extend(frame())
         rehearsal.site_time += tick_step
-    return elapsed_s[::ticks_a_frame], rows
+    return _frames(np.frombuffer(rows, dtype=np.float64), elapsed_s[::ticks_a_frame])
 
 
 def _run_show(rehearsal: Rehearsal, plan: ShowPlan, step: timedelta) -> list[tuple[float, ...]]:
@@ -196,8 +194,8 @@ def _run_show(rehearsal: Rehearsal, plan: ShowPlan, step: timedelta) -> list[tup
     raise RehearsalFailed("The simulated show did not end in its time.")
 
 
-def _frames(rows: list[tuple[float, ...]], elapsed_s: NDArray[np.float64]) -> Frames:
-    values = np.array(rows, dtype=np.float64).reshape(-1, len(COLUMNS))
+def _frames(rows: NDArray[np.float64], elapsed_s: NDArray[np.float64]) -> Frames:
+    values = rows.reshape(-1, len(COLUMNS))
     values[:, 0] = elapsed_s
     values[:, 1] = elapsed_s
     return Frames(values)

@@ -202,7 +202,7 @@ class TrackerLoop:
         unheard = self._write_failed
         self.feedback = await self._read()
         seen = self._surroundings.observe(self.config, self.feedback)
-        seen = replace(seen, link=self.round_trips.quality(self._within_s))
+        seen = seen._replace(link=self.round_trips.quality(self._within_s))
         tick = self.controller.tick(seen)
         if not self.controller.is_silent:
             await self._write(_unmoved(tick.command) if unheard or self._ending else tick.command)

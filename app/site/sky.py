@@ -21,6 +21,11 @@ class _Dawn:
     until: datetime
     sun: SunPosition | None
 
+    def answers(self, location: Location, at: datetime) -> bool:
+        """Return whether this is also the next sunrise of a place at an instant."""
+        same_place = location is self.location or location == self.location
+        return same_place and self.since <= at < self.until
+
 
 class Sky:
     """Works out sun and next sunrise; a sunrise is kept until it is over or the question changes."""
@@ -42,7 +47,7 @@ class Sky:
         if location is None:
             return None
         known = self._dawns.get(algorithm)
-        if known is None or known.location != location or not known.since <= at < known.until:
+        if known is None or not known.answers(location, at):
             known = _next_dawn(location, algorithm, at)
             self._dawns[algorithm] = known
         return known.sun

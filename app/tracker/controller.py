@@ -132,7 +132,7 @@ class Controller:
         """Return what the drive shall do from now on and what happened since the last tick."""
         mind = self._mind
         if mind.config.mount.single_axis:
-            seen = replace(seen, feedback=as_mounted(mind.config, seen.feedback))
+            seen = seen._replace(feedback=as_mounted(mind.config, seen.feedback))
         mind.now, mind.site_time, mind.seen, mind.actor = seen.now, seen.site_time, seen, "machine"
         mind.via = ""
         mind.ticks += 1
@@ -140,8 +140,7 @@ class Controller:
             self._start(seen.now)
         look(mind, seen)
         command = self._blind(seen) if seen.feedback is None else self._see(seen, seen.feedback)
-        command = for_drive(mind.config, command)
-        mind.command = command
+        mind.command = command = for_drive(mind.config, command)
         if mind.alarmed is not None or guarding(mind).stow is not None:
             self._note_not_stowed()
         horn = mind.warning is not None and mind.feedback is not None

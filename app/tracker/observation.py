@@ -1,7 +1,7 @@
 """What a tracker is shown at one tick: instants, the sun and the drive's reading, all as arguments."""
 
-from dataclasses import dataclass
 from datetime import datetime
+from typing import NamedTuple
 
 from app.sun.position import Location, SunPosition
 from app.tracker.motion import Feedback
@@ -9,8 +9,7 @@ from app.tracker.protections.words import LinkQuality
 from app.tracker.weather import NOTHING_SENSED, Sensed
 
 
-@dataclass(frozen=True, slots=True)
-class Observation:
+class Observation(NamedTuple):
     """Everything from outside that one tick may depend on.
 
     `now` is the machine's steady time: leases, time-outs and speeds are judged on it. `site_time` is what

@@ -79,6 +79,7 @@ class Stepped:
 
 Strategy = Continuous | Deadband | EncoderDeadband | Interval | Stepped
 Schedule = Interval | Stepped
+SCHEDULES = (Interval, Stepped)
 """Strategies that go by the time alone: where the panel faces does not depend on where it stands."""
 DEADBAND = Deadband()
 

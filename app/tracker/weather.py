@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, fields
 from datetime import datetime
 from enum import StrEnum
 from math import isfinite
+from typing import assert_never
 
 from app.tracker.reason import Reason
 
@@ -112,7 +113,14 @@ class Sensed:
 
     def reading(self, quantity: Quantity) -> Reading:
         """Return one quantity."""
-        return {Quantity.WIND: self.wind, Quantity.SNOW: self.snow, Quantity.LIGHT: self.light}[quantity]
+        match quantity:
+            case Quantity.WIND:
+                return self.wind
+            case Quantity.SNOW:
+                return self.snow
+            case Quantity.LIGHT:
+                return self.light
+        assert_never(quantity)
 
 
 NOTHING_SENSED = Sensed()

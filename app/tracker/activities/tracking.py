@@ -28,6 +28,7 @@ from app.tracker.shelter import TWILIGHT_DEG, guarding, hold_reason
 from app.tracker.snapshot import EventKind
 from app.tracker.strategy import (
     DEADBAND,
+    SCHEDULES,
     Continuous,
     Deadband,
     EncoderDeadband,
@@ -177,7 +178,7 @@ def _night_place(strategy: Strategy, followed: Followed, moment: Moment, seen: O
         case NightBehaviour.SUNRISE:
             if seen.dawn is None:
                 return None
-            if isinstance(strategy, Interval | Stepped):
+            if isinstance(strategy, SCHEDULES):
                 return scheduled_dawn(strategy, followed, moment, seen.dawn, near_deg)
             return aimed(followed, followed.direction(seen.dawn), near_deg)
     assert_never(followed.config.night)

@@ -45,11 +45,14 @@ class Guarding:
 
     def doubt(self, quantity: Quantity) -> Doubt:
         """Return the doubt about one sensor."""
-        return {
-            Quantity.WIND: self.wind_doubt,
-            Quantity.SNOW: self.snow_doubt,
-            Quantity.LIGHT: self.light_doubt,
-        }[quantity]
+        match quantity:
+            case Quantity.WIND:
+                return self.wind_doubt
+            case Quantity.SNOW:
+                return self.snow_doubt
+            case Quantity.LIGHT:
+                return self.light_doubt
+        assert_never(quantity)
 
     @property
     def stow(self) -> StowName | None:
