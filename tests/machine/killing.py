@@ -108,11 +108,15 @@ class Killing:
     async def _turning(self, motion: "Motion") -> "asyncio.Task[None] | None":
         """Return once the axes turn; a motion that a lost drive ended at once is begun again.
 
-        So is one that was over before a busy computer looked.
+        So is one that was over before a busy computer looked, and an order that was answered too late.
         """
         while True:
             losses, begun_at = self._losses(), self.eyes.now.at
-            pressing = await self._begin(motion)
+            try:
+                pressing = await self._begin(motion)
+            except MachineUnreachable:
+                self.counted["answered too late"] += 1
+                continue
             try:
                 await asyncio.to_thread(self.eyes.until_moving)
             except AssertionError:
