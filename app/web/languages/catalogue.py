@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Mapping
-from functools import lru_cache
+from functools import cache, lru_cache
 from gettext import GNUTranslations, NullTranslations
 from itertools import chain
 from typing import IO
@@ -162,3 +162,9 @@ def load(language: Language) -> Catalogue:
 def catalogue_of(code: str) -> Catalogue:
     """Return the catalogue of a language by its code; each is read once."""
     return load(LANGUAGES.get(code, ENGLISH))
+
+
+@cache
+def offered() -> tuple[Language, ...]:
+    """Return the languages that a page can be shown in: English, and those that are translated."""
+    return tuple(one for code, one in LANGUAGES.items() if one is ENGLISH or catalogue_of(code).texts)

@@ -1,13 +1,13 @@
 """Which language a request is answered in: what its cookie says, else what its browser asks for."""
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from http.cookies import CookieError, SimpleCookie
 
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.web.languages import CATALOGUE
-from app.web.languages.catalogue import catalogue_of
+from app.web.languages.catalogue import catalogue_of, offered
 from app.web.languages.known import ENGLISH, LANGUAGES
 
 COOKIE = "language"
@@ -35,8 +35,8 @@ class Speech:
 
 def chosen(headers: Headers) -> str:
     """Return the code of the language that a request wants; English where it wants none of ours."""
-    kept = _kept(headers.get("cookie", ""))
-    return kept if kept in LANGUAGES else asked_for(headers.get("accept-language", ""))
+    kept, codes = _kept(headers.get("cookie", "")), frozenset(one.code for one in offered())
+    return kept if kept in codes else asked_for(headers.get("accept-language", ""), codes)
 
 
 def _kept(cookies: str) -> str:
@@ -47,10 +47,10 @@ def _kept(cookies: str) -> str:
     return found.value if found else ""
 
 
-def asked_for(accepted: str) -> str:
-    """Return the language of ours that a browser likes best, by the weights of its `Accept-Language`."""
+def asked_for(accepted: str, codes: Container[str] = LANGUAGES) -> str:
+    """Return which of these languages a browser likes best, by the weights of its `Accept-Language`."""
     weighed = sorted(_weighed(accepted[:LONGEST_HEADER]), key=lambda one: -one[0])
-    return next((code for _, code in weighed), ENGLISH.code)
+    return next((code for _, code in weighed if code in codes), ENGLISH.code)
 
 
 def _weighed(accepted: str) -> Iterator[tuple[float, str]]:

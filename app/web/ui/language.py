@@ -6,8 +6,8 @@ from fastapi import APIRouter, Form
 from starlette.responses import RedirectResponse, Response
 
 from app.web.errors import NotAcceptable
+from app.web.languages.catalogue import offered
 from app.web.languages.choice import COOKIE
-from app.web.languages.known import LANGUAGES
 from app.web.ui.paths import own_path
 from app.web.ui.theme import A_YEAR_S
 
@@ -18,7 +18,7 @@ UNKNOWN_LANGUAGE = "The panel does not speak this language. Choose one from the 
 @router.post("/language")
 def choose_language(language: Annotated[str, Form()] = "", back: Annotated[str, Form()] = "/") -> Response:
     """Keep the language for a year and return to the page."""
-    if language not in LANGUAGES:
+    if language not in {one.code for one in offered()}:
         raise NotAcceptable(UNKNOWN_LANGUAGE)
     response = RedirectResponse(own_path(back), 303)
     response.set_cookie(COOKIE, language, max_age=A_YEAR_S, samesite="lax")

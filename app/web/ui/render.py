@@ -19,7 +19,7 @@ from app.web import languages
 from app.web.contexts import Context
 from app.web.deps import panel, principal
 from app.web.help import help_for
-from app.web.languages.known import LANGUAGES
+from app.web.languages.catalogue import offered
 from app.web.languages.script_texts import for_page
 from app.web.ui import formats
 from app.web.ui.allowed import shut
@@ -71,7 +71,7 @@ def environment() -> Environment:
     )
     env.filters |= FILTERS
     env.globals |= {"help_for": help_for, "live": live, "world": world(), "abilities": abilities}
-    env.globals |= {"languages": tuple(LANGUAGES.values())}
+    env.globals |= {"languages": offered()}
     env.globals |= {"spoken": languages.spoken, "script_texts": for_page}
     for shared in (
         "_icons.html",
