@@ -19,6 +19,11 @@ def _masked(_: object, __: str, told: structlog.typing.EventDict) -> structlog.t
     return told
 
 
+WITHOUT_VALUES = structlog.processors.ExceptionRenderer(
+    structlog.tracebacks.ExceptionDictTransformer(show_locals=False)
+)
+"""Tracebacks without the values of variables: passwords and cookies are among them."""
+
 SHARED = (
     _masked,
     structlog.contextvars.merge_contextvars,
@@ -60,9 +65,10 @@ def _is_no_mere_socket(record: logging.LogRecord) -> bool:
 def _formatter(log_format: Literal["json", "text"], target: TextIO) -> structlog.stdlib.ProcessorFormatter:
     tail: list[structlog.typing.Processor] = [structlog.stdlib.ProcessorFormatter.remove_processors_meta]
     if log_format == "json":
-        tail += [structlog.processors.dict_tracebacks, structlog.processors.JSONRenderer()]
+        tail += [WITHOUT_VALUES, structlog.processors.JSONRenderer()]
     else:
-        tail += [structlog.dev.ConsoleRenderer(colors=target.isatty())]
+        plain = structlog.dev.plain_traceback
+        tail += [structlog.dev.ConsoleRenderer(colors=target.isatty(), exception_formatter=plain)]
     return structlog.stdlib.ProcessorFormatter(foreign_pre_chain=list(SHARED), processors=tail)
 
 

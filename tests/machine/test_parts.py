@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from functools import partial
 from pathlib import Path
+from typing import Literal
 
 import pytest
 import structlog
@@ -241,6 +242,22 @@ def test_tickets_in_logged_addresses_are_masked() -> None:
     )
     told = json.loads(stream.getvalue())["event"]
     assert told == '192.0.2.7:51000 - "WebSocket /live?tracker=T1&stop_ticket=...&x=1" 403'
+
+
+@pytest.mark.usefixtures("_logs_as_before")
+@pytest.mark.parametrize("log_format", ["json", "text"])
+def test_a_traceback_tells_no_values(log_format: Literal["json", "text"]) -> None:
+    def fail(password: str) -> None:
+        raise RuntimeError(f"a password of {len(password)} characters")
+
+    stream = io.StringIO()
+    set_up_logs("web", log_format=log_format, log_level="info", stream=stream)
+    try:
+        fail("violet-" + "anvil")
+    except RuntimeError:
+        logging.getLogger("uvicorn.error").exception("Exception in ASGI application")
+    assert "a password of 12 characters" in stream.getvalue()
+    assert "violet-anvil" not in stream.getvalue()
 
 
 @pytest.mark.usefixtures("_logs_as_before")
