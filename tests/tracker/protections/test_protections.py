@@ -205,9 +205,10 @@ def test_what_a_bad_snow_sensor_does_is_set(bad: Reaction, kind: Protection, hel
     assert (state.kind, state.held, state.doubt(Quantity.SNOW).ripe) == (kind, held, True)
 
 
-def test_a_light_sensor_that_failed_for_good_ends_the_rest() -> None:
+@pytest.mark.parametrize("bad", [Reaction.IGNORE, Reaction.WARN])
+def test_a_light_sensor_that_failed_for_good_ends_the_rest(bad: Reaction) -> None:
     dark, failed = Sensed(wind=told(1.0), light=told(0.0)), Sensed(wind=told(1.0))
-    config = ProtectionConfig(light=LightProtection(hold_s=5.0, bad_after_s=4.0))
+    config = ProtectionConfig(light=LightProtection(hold_s=5.0, bad=bad, bad_after_s=4.0))
     states = run([Sensed(wind=told(1.0), light=told(100.0)), *[dark] * 8, *[failed] * 6], config)
     assert states[8].kind is Protection.HIBERNATE
     assert states[11].kind is Protection.HIBERNATE
