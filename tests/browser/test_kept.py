@@ -100,7 +100,7 @@ def test_auto_follows_the_sun(plant: Plant, opened: Opened) -> None:
         at = now.replace(hour=0, minute=0, second=0) + timedelta(hours=hours)
         plant.do(partial(set_clock, machine, offset + (at - now).total_seconds()))
         page.wait_for_selector(f'html[data-theme="{theme}"]')
-    assert page.locator(".theme-key").inner_text().strip() == "Auto"
+    assert page.locator("#theme-form .theme-key").inner_text().strip() == "Auto"
 
 
 def set_clock(machine: FakeMachine, offset_s: float) -> None:
