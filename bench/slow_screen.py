@@ -1,0 +1,135 @@
+"""Slow screens: first paint and answers to touches at a quarter of the CPU's speed, in Chromium"""
+
+import statistics
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from bench.pages import PAGES
+from bench.table import Row
+from tests.e2e.chromium import Chromium, Tab, chromium
+from tests.e2e.integrator import Integrator
+from tests.e2e.product import Product
+
+COMMAND = "python -m bench slow_screen"
+SLOWER = 4
+PAINT_LIMIT_MS = 1000.0
+INTERACTION_LIMIT_MS = 100.0
+TIMES = 2
+LOADED = "document.readyState === 'complete' && document.documentElement.dataset.link === 'live'"
+WATCH = """
+window.slowest = 0;
+new PerformanceObserver((seen) => {
+  for (const one of seen.getEntries()) {
+    if (one.interactionId) window.slowest = Math.max(window.slowest, one.duration);
+  }
+}).observe({ type: 'event', durationThreshold: 16, buffered: true });
+"""
+FIRST_PAINT = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? 0"
+SETTLED = "new Promise((done) => setTimeout(done, 250))"
+
+
+@dataclass(frozen=True)
+class Touch:
+    """Something a person does on a page: what is tapped, and what is typed there."""
+
+    page: str
+    target: str
+    typed: str = ""
+
+
+TOUCHES = {
+    "theme key": Touch("overview", "#theme-form .theme-key"),
+    "a language's list": Touch("overview", ".language summary"),
+    "typing a latitude": Touch("location", "#f-latitude", "41.2867"),
+    "side of the equator": Touch("location", 'label:has([name="latitude_side"][value="S"])'),
+    "choice of a mode": Touch("mode", 'label:has(input[value="azimuth"])'),
+    "help": Touch("homing", ".help summary"),
+    "turning the picture": Touch("live", ".scene-keys .key:last-child"),
+    "a line of the journal's filter": Touch("journal", "#f-text", "wind"),
+    "typing the minutes of a show": Touch("show", "#f-minutes", "0.25"),
+}
+
+
+def measure() -> list[Row]:
+    """Return the slowest first paint of every page, and the slowest answer to each touch."""
+    with tempfile.TemporaryDirectory() as folder:
+        product = Product.start(Path(folder) / "data")
+        try:
+            _commission(product.url)
+            with chromium() as browser:
+                answers = {name: _answer_ms(browser, product.url, touch) for name, touch in TOUCHES.items()}
+                paints = {name: _first_paints(browser, product.url + path) for name, path in PAGES.items()}
+        finally:
+            product.stop()
+    return [_paint_row(paints), *(_answer_row(name, took) for name, took in answers.items())]
+
+
+def _commission(url: str) -> None:
+    calling = Integrator(url)
+    calling.place_and_time()
+    calling.until_allowed("zero")
+    calling.zero()
+    calling.close()
+
+
+def _slow_tab(browser: Chromium, url: str) -> tuple[Tab, str]:
+    """Open a page on a slow processor in a profile that has never seen it."""
+    context = str(browser.send("Target.createBrowserContext")["browserContextId"])
+    target = browser.send("Target.createTarget", url="about:blank", browserContextId=context)["targetId"]
+    session = browser.send("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+    tab = Tab(browser, str(target), str(session))
+    tab.send("Page.enable")
+    tab.send("Emulation.setCPUThrottlingRate", rate=SLOWER)
+    tab.send("Page.addScriptToEvaluateOnNewDocument", source=WATCH)
+    tab.send("Page.navigate", url=url)
+    tab.until(LOADED, f"{url} is loaded and live", within_s=30.0)
+    return tab, context
+
+
+def _first_paints(browser: Chromium, url: str) -> list[float]:
+    paints = []
+    for _ in range(TIMES):
+        tab, context = _slow_tab(browser, url)
+        tab.until(f"({FIRST_PAINT}) > 0", "something is painted")
+        paints.append(float(tab.evaluate(FIRST_PAINT)))
+        browser.send("Target.disposeBrowserContext", browserContextId=context)
+    return paints
+
+
+def _answer_ms(browser: Chromium, url: str, touch: Touch) -> float:
+    """Return how long the slowest of a few touches waited for its next paint."""
+    tab, context = _slow_tab(browser, url + PAGES[touch.page])
+    for _ in range(TIMES):
+        tab.until(f"document.querySelector({touch.target!r}) !== null", f"{touch.target} is there")
+        tab.click(touch.target)
+        for letter in touch.typed:
+            tab.key("keyDown", letter, "", 0)
+            tab.key("keyUp", letter, "", 0)
+        tab.evaluate(SETTLED)
+    slowest_ms = float(tab.evaluate("window.slowest"))
+    browser.send("Target.disposeBrowserContext", browserContextId=context)
+    return slowest_ms
+
+
+def _paint_row(paints: dict[str, list[float]]) -> Row:
+    medians = {name: statistics.median(times) for name, times in paints.items()}
+    slowest = max(medians, key=lambda name: medians[name])
+    worst_ms = max(max(times) for times in paints.values())
+    return Row(
+        f"first contentful paint at 1/{SLOWER} of the CPU, cold cache, {len(paints)} pages {TIMES} times",
+        f"slowest median {medians[slowest]:.0f} ms ({slowest}), slowest of all {worst_ms:.0f} ms",
+        f"{PAINT_LIMIT_MS:.0f} ms",
+        f"{medians[slowest] / PAINT_LIMIT_MS:.2f}",
+        COMMAND,
+    )
+
+
+def _answer_row(name: str, took_ms: float) -> Row:
+    return Row(
+        f"interaction to next paint at 1/{SLOWER} of the CPU: {name}, slowest of {TIMES}",
+        "at most 16 ms" if took_ms == 0.0 else f"{took_ms:.0f} ms",
+        f"{INTERACTION_LIMIT_MS:.0f} ms",
+        f"{took_ms / INTERACTION_LIMIT_MS:.2f}",
+        COMMAND,
+    )
