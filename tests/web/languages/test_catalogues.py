@@ -14,7 +14,7 @@ from app.web.languages.known import LANGUAGES, TRANSLATED
 GAPS = re.compile(r"\{[a-z][a-z0-9_]*\}|%\([a-z_0-9]+\)[sd]")
 TAGS = re.compile(r"</?[a-z][a-z0-9]*[^>]*>")
 CEDILLA = re.compile("[şţŞŢ]")
-UNFINISHED = frozenset({"tr", "ro", "zh_Hans"})
+UNFINISHED = frozenset({"ro", "zh_Hans"})
 """Languages with texts that are still shown in English; this list only becomes shorter."""
 
 PLURAL_FORMS = {"tr": 1, "de": 2, "es": 2, "ro": 3, "zh_Hans": 1}
