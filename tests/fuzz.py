@@ -1,7 +1,8 @@
 """`python -m tests.fuzz`: at least 10,000 cases against the whole API, and hostile values for every form.
 
 The panel is the real one on a machine in memory that keeps its two trackers and its recordings. Parts run
-alone with `forms`, or with `api` and `--only REGEX` of paths; the exit code is 1 after any failure.
+alone with `forms`, or with `api` and `--only REGEX` of paths, `--without REGEX` of others; the exit code is 1
+after any failure.
 """
 
 import argparse
@@ -71,11 +72,11 @@ def _begin() -> str:
     return f"http://127.0.0.1:{port}/api/v1/openapi.json"
 
 
-def _api(only: str, examples: int) -> int:
+def _api(only: str, without: str, examples: int) -> int:
     command = [
         str(SCHEMATHESIS), "--config-file", str(CONFIG), "run", _begin(), "-n", str(examples), "-w", "2",
         "--seed", str(SEED), "--suppress-health-check", "all", "--include-path-regex", only,
-        "--exclude-path-regex", LEFT_OUT, "--exclude-checks", NOT_CHECKED, "--continue-on-failure",
+        "--exclude-path-regex", without, "--exclude-checks", NOT_CHECKED, "--continue-on-failure",
         "--phases", "examples,fuzzing,stateful", "--generation-database", "none", "--warnings", "off",
         "--request-timeout", "60",
     ]  # fmt: skip
@@ -92,10 +93,11 @@ def main() -> int:
     arguments = argparse.ArgumentParser(prog="python -m tests.fuzz", description=__doc__)
     arguments.add_argument("part", nargs="?", choices=("api", "forms", "all"), default="all")
     arguments.add_argument("--only", default=".", help="regular expression of the API's paths")
+    arguments.add_argument("--without", default=LEFT_OUT, help="regular expression of paths left out")
     arguments.add_argument("--examples", type=int, default=EXAMPLES, help="cases for each operation")
     given = arguments.parse_args()
     forms = 0 if given.part == "api" else _forms()
-    return forms or (0 if given.part == "forms" else _api(given.only, given.examples))
+    return forms or (0 if given.part == "forms" else _api(given.only, given.without, given.examples))
 
 
 if __name__ == "__main__":
