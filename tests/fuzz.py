@@ -18,6 +18,7 @@ import uvicorn
 
 from app.clock import SystemClock
 from app.link.messages import DeleteRecording, Order, RemoveTracker
+from app.store.migrations import upgrade
 from app.tracker.commands import CommandRejected
 from app.tracker.reason import Reason
 from app.tracker.snapshot import SiteSnapshot
@@ -53,7 +54,9 @@ class LastingMachine(FakeMachine):
 
 
 async def _serving(port: int, ready: threading.Event) -> None:
-    server = uvicorn.Server(uvicorn.Config(fake_app(LastingMachine()), port=port, log_level="error"))
+    app = fake_app(LastingMachine())
+    upgrade(app.state.panel.settings.url)
+    server = uvicorn.Server(uvicorn.Config(app, port=port, log_level="error"))
     task = asyncio.create_task(server.serve())
     clock = SystemClock()
     while not server.started:

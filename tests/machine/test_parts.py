@@ -209,11 +209,15 @@ async def test_wrong_settings_of_one_child_end_both() -> None:
 
 @pytest.fixture
 def _logs_as_before() -> Iterator[None]:
-    root = logging.getLogger()
-    handlers, level = list(root.handlers), root.level
+    """Begin with uvicorn's loggers as a new process has them: panels of other tests have set theirs."""
+    loggers = [logging.getLogger(name) for name in (None, "uvicorn", "uvicorn.error")]
+    before = [(one, list(one.handlers), one.level, one.propagate) for one in loggers]
+    for one in loggers[1:]:
+        one.handlers[:], one.level, one.propagate = [], logging.NOTSET, True
     yield
-    root.handlers[:] = handlers
-    root.setLevel(level)
+    for one, handlers, level, propagate in before:
+        one.handlers[:], one.propagate = handlers, propagate
+        one.setLevel(level)
     logging.getLogger("uvicorn.error").filters.clear()
     structlog.reset_defaults()
 

@@ -105,3 +105,9 @@ async def test_measured_values_are_kept_as_a_file_whatever_their_tracker_is_call
     assert named.startswith('attachment; filename="-at-X-Forged-1-20260621T000000Z.csv"; filename*=UTF-8')
     described = (await api.get(f"{V1}/openapi.json")).json()["paths"][f"{V1}/telemetry"]["get"]
     assert answer.headers["content-type"].partition(";")[0] in described["responses"]["200"]["content"]
+
+
+async def test_a_paper_that_is_not_there_is_documented_as_missing(api: httpx.AsyncClient) -> None:
+    assert (await api.get(f"{V1}/papers", params={"paper": "none"})).status_code == 404
+    described = (await api.get(f"{V1}/openapi.json")).json()["paths"]
+    assert "404" in described[f"{V1}/papers"]["get"]["responses"]

@@ -12,6 +12,8 @@ from app.tracker.commands import GoToStart, Move, SelectMode, SetZero, Step
 from app.tracker.mode import Mode
 from app.tracker.reason import Reason
 from app.web import contexts
+from app.web.languages import CATALOGUE
+from app.web.languages.catalogue import catalogue_of
 from app.web.ui import forms
 from app.web.ui.formats import compass, duration, shown
 from app.web.ui.render import environment
@@ -124,6 +126,26 @@ def test_angles_as_people_write_them(text: str, side: str, degrees: float) -> No
 def test_angles_that_mean_nothing_are_refused_with_a_sentence(text: str) -> None:
     with pytest.raises(forms.Unreadable, match=r"^Latitude.*\.$"):
         forms.angle(text, "Latitude", "NS", "N", 90.0)
+
+
+@pytest.mark.parametrize(
+    ("language", "text", "degrees"),
+    [
+        ("es", "36 O", -36.0),
+        ("de", "36 O", 36.0),
+        ("tr", "D 36", 36.0),
+        ("zh_Hans", "西 36", -36.0),
+        ("de", "36 E", 36.0),
+    ],
+)
+def test_the_letter_of_a_side_is_that_of_the_page_or_english(
+    language: str, text: str, degrees: float
+) -> None:
+    before = CATALOGUE.set(catalogue_of(language))
+    try:
+        assert forms.angle(text, "Longitude", "EW", "E", 180.0) == degrees
+    finally:
+        CATALOGUE.reset(before)
 
 
 async def test_clock_is_kept_copied_or_typed(machine: FakeMachine, client: httpx.AsyncClient) -> None:

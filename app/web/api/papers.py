@@ -6,7 +6,7 @@ from fastapi import Query
 
 from app.papers.library import papers
 from app.papers.result import Erratum, Figure, Gap, Group, Paper, Standing
-from app.web.api.base import TOO_MANY, Output, api_router
+from app.web.api.base import NOT_FOUND, TOO_MANY, Output, api_router
 from app.web.deps import PanelDep
 
 router = api_router(prefix="/papers", tags=["papers"])
@@ -78,7 +78,7 @@ class PaperReport(Output):
         )
 
 
-@router.get("", summary="The papers beside our results", responses=TOO_MANY)
+@router.get("", summary="The papers beside our results", responses=NOT_FOUND | TOO_MANY)
 async def read_papers(
     panel: PanelDep,
     paper: Annotated[list[str] | None, Query(description="Keys of papers; left out: all five.")] = None,

@@ -7,6 +7,7 @@ from math import nan
 from typing import TypeVar
 
 from app.web.contexts import Field, Form
+from app.web.languages import pgettext
 from app.zones import zone_of
 
 T = TypeVar("T")
@@ -81,19 +82,31 @@ def whole(text: str, label: str, least: int, most: int) -> int:
 
 def angle(text: str, label: str, sides: str, chosen: str, limit: float) -> float:
     """Return a signed latitude or longitude; `sides` is `NS` or `EW`, `chosen` the key beside the field."""
-    match = ANGLE.fullmatch(text.strip().replace("−", "-"))
+    match = ANGLE.fullmatch(_in_english(text.strip().replace("−", "-"), sides))
     if match is None:
         raise Unreadable(
             f"{label}: type degrees such as 41.2867, or degrees, minutes and seconds such as 41° 17' 12\"."
         )
     before, sign, *parts, after = match.groups()
     letters = {letter.upper() for letter in (before, after) if letter}
+    one, other = (pgettext("compass", side) for side in sides)
     if not letters <= set(sides) or len(letters) > 1:
-        raise Unreadable(f"{label}: the letter must be {sides[0]} or {sides[1]}.")
+        raise Unreadable(f"{label}: the letter must be {one} or {other}.")
     value = _degrees(parts, label)
     if value > limit:
-        raise Unreadable(f"{label} must lie between 0 and {limit:g} degrees, {sides[0]} or {sides[1]}.")
+        raise Unreadable(f"{label} must lie between 0 and {limit:g} degrees, {one} or {other}.")
     return value * _sign(sign, letters.pop() if letters else chosen, sides, label)
+
+
+def _in_english(text: str, sides: str) -> str:
+    """Return an angle whose letter is in the page's language, such as `36° O`, with the English one."""
+    for side in sides:
+        letter = pgettext("compass", side)
+        if text.upper().startswith(letter):
+            return side + text[len(letter) :]
+        if text.upper().endswith(letter):
+            return text[: -len(letter)] + side
+    return text
 
 
 def _degrees(parts: list[str | None], label: str) -> float:
@@ -105,7 +118,8 @@ def _degrees(parts: list[str | None], label: str) -> float:
 
 def _sign(sign: str | None, side: str, sides: str, label: str) -> int:
     if sign == "-" and side == sides[1]:
-        raise Unreadable(f"{label}: leave out the minus sign, {side} says it already.")
+        letter = pgettext("compass", side)
+        raise Unreadable(f"{label}: leave out the minus sign, {letter} says it already.")
     return -1 if sign == "-" or side == sides[1] else 1
 
 
