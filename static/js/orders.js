@@ -1,6 +1,7 @@
 // Forms that send orders: a one-time id for each press, the instant of the press, and no sending while the link is down.
 
 import { live } from "./live.js";
+import { _ } from "./said.js";
 
 export function randomId() {
   const bytes = crypto.getRandomValues(new Uint8Array(12));
@@ -32,6 +33,24 @@ function prepare(event) {
   if (body?.has?.("epoch")) body.set("epoch", live.tracker?.control?.epoch ?? "");
 }
 
+// Says that no answer came, where the answer would have stood; what was typed stays.
+function tellSilence(event) {
+  const { ctx } = event.detail;
+  const form = ctx.sourceElement?.closest("form");
+  if (ctx.response?.status || ctx.request.method?.toUpperCase() !== "POST" || !form || leftAt >= ctx.askedAt) return;
+  let outcome = form.querySelector(".outcome");
+  if (!outcome) {
+    outcome = document.createElement("div");
+    outcome.className = "outcome";
+    outcome.role = "status";
+    form.append(outcome);
+  }
+  const told = document.createElement("p");
+  told.className = "outcome-refused";
+  told.textContent = _("No answer came; it may or may not have been done. Look at the live values, then try again.");
+  outcome.replaceChildren(told);
+}
+
 // After a swap that reports wrong input, the summary of errors has the focus.
 function focusSummary() {
   document.querySelector("[data-focus]")?.focus();
@@ -40,6 +59,7 @@ function focusSummary() {
 export function start() {
   document.addEventListener("htmx:config:request", prepare);
   document.addEventListener("htmx:before:response", stayAway);
+  document.addEventListener("htmx:finally:request", tellSilence);
   addEventListener("beforeunload", () => { leftAt = performance.now(); });
   document.addEventListener("htmx:after:swap", focusSummary);
   focusSummary();

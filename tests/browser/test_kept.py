@@ -1,5 +1,6 @@
 """What was typed outlives a reload; the link's quality stands beside the keys; the theme follows the sun."""
 
+import re
 from dataclasses import replace
 from datetime import timedelta
 from functools import partial
@@ -44,6 +45,19 @@ def test_what_was_typed_can_be_discarded_and_gives_way_to_a_newer_value(plant: P
     page.get_by_role("button", name="Discard it").click()
     expect(page.locator(NOTE)).to_have_count(0)
     expect(page.locator("#f-latitude")).to_have_value("41.2867")
+
+
+def test_an_order_without_an_answer_says_so_and_keeps_what_was_typed(plant: Plant, opened: Opened) -> None:
+    page = opened("/trackers/T1/commissioning/location", allow=("Failed to load resource", "htmx:error"))
+    page.locator("#f-latitude").fill("12.5")
+    page.route("**/commissioning/location", lambda route: route.abort())
+    page.locator("#forward .key").click()
+    expect(page.locator("#step-form .outcome")).to_contain_text("it may or may not have been done")
+    expect(page.locator("#f-latitude")).to_have_value("12.5")
+    page.unroute("**/commissioning/location")
+    page.locator("#f-latitude").fill("41.2867")
+    page.locator("#forward .key").click()
+    expect(page).to_have_url(re.compile("/clock$"))
 
 
 def test_a_drawn_signature_outlives_a_reload(plant: Plant, opened: Opened) -> None:
