@@ -15,6 +15,9 @@ from app.web.ui.settings_words import SETTINGS
 
 MOST_HITS = 60
 LONGEST_TEXT = 160
+SOFT_HYPHEN = "\u00ad"
+"""Where a long word of a translation may be broken on a key; nobody types it."""
+
 FURTHER = (
     ("Commissioning records", "/records", "Signed records: see, compare, PDF"),
     ("What alarms mean", "/alarms/guide", "Every alarm, what follows and what to do"),
@@ -107,5 +110,5 @@ def _start(section: guide.GuideSection) -> str:
 
 
 def _fits(hit: Hit, needles: list[str]) -> bool:
-    text = f"{hit.title} {hit.text} {said(hit.title)} {said(hit.text)}".lower()
+    text = f"{hit.title} {hit.text} {said(hit.title)} {said(hit.text)}".lower().replace(SOFT_HYPHEN, "")
     return all(needle in text for needle in needles)
