@@ -19,6 +19,7 @@ from app.tracker.config import TrackerConfig
 from app.tracker.memory import SiteState, StepName
 from app.web.contexts import LocationPage, LocationPreview
 from app.web.deps import Panel, PanelDep
+from app.web.languages import pgettext
 from app.web.place import place_doubts, swapped
 from app.web.ui import forms
 from app.web.ui.formats import compass, decimals, local
@@ -223,13 +224,18 @@ def normal_form(place: Location) -> str:
 def _dms(value_deg: float, sides: str) -> str:
     total = round(abs(value_deg) * 36000)
     minutes, tenths = divmod(total, 600)
-    return f"{minutes // 60}° {minutes % 60:02d}′ {tenths / 10:04.1f}″ {sides[value_deg < 0]}"
+    side = pgettext("compass", sides[value_deg < 0])
+    return f"{minutes // 60}° {minutes % 60:02d}′ {tenths / 10:04.1f}″ {side}"
 
 
 def _half(place: Location) -> str:
-    north = "northern" if place.latitude_deg >= 0 else "southern"
-    east = "east" if place.longitude_deg >= 0 else "west"
-    return f"{north} half of the Earth, {east} of Greenwich"
+    if place.latitude_deg >= 0:
+        if place.longitude_deg >= 0:
+            return "northern half of the Earth, east of Greenwich"
+        return "northern half of the Earth, west of Greenwich"
+    if place.longitude_deg >= 0:
+        return "southern half of the Earth, east of Greenwich"
+    return "southern half of the Earth, west of Greenwich"
 
 
 def _time(at: datetime | None, zone: str) -> str:
