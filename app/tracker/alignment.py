@@ -148,8 +148,9 @@ def _zero_mistakes(sighting: Sighting, declination_deg: float | None) -> Iterato
         message = f"North was taken from a compass, which is {declination_deg:+.1f} degrees off here."
         yield 0, Cause(Mistake.MAGNETIC_NORTH, f"{message} Repeat step 3 with true north.", residual_deg)
     message = f"The azimuth zero is off: the axis reads {azimuth_deg:+.1f} degrees too much."
-    compass = "" if declination_deg is not None else " If that is the declination here, a compass was used."
-    yield 1, Cause(Mistake.AZIMUTH_ZERO, f"{message}{compass} Repeat step 3.", without_azimuth_deg)
+    if declination_deg is None:
+        message = f"{message} If that is the declination here, a compass was used."
+    yield 1, Cause(Mistake.AZIMUTH_ZERO, f"{message} Repeat step 3.", without_azimuth_deg)
     message = (
         f"The elevation zero is off: the axis reads {elevation_deg:+.1f} degrees too much. Repeat step 3."
     )

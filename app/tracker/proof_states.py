@@ -122,13 +122,12 @@ def _link_loss(
 def _link_loss_words(proof: LinkLossProof) -> str:
     if proof.outcome is LinkLossOutcome.WENT_ON or proof.stopped_after_s is None:
         return "Without commands the drive went on; it was told to stop."
-    reacted = "" if proof.reacted_after_s is None else f"slowed down after {proof.reacted_after_s:.2f} s and "
-    fault = f" It reported fault {proof.fault_code}." if proof.fault_code else ""
     home = "kept its zero" if proof.home_kept else "has no zero"
-    return (
-        f"Without commands the drive {reacted}stood after {proof.stopped_after_s:.2f} s, "
-        f"{proof.overrun_deg:.2f} degrees on; it {home}.{fault}"
-    )
+    stood = f"stood after {proof.stopped_after_s:.2f} s, {proof.overrun_deg:.2f} degrees on; it {home}."
+    text = f"Without commands the drive {stood}"
+    if proof.reacted_after_s is not None:
+        text = f"Without commands the drive slowed down after {proof.reacted_after_s:.2f} s and {stood}"
+    return f"{text} It reported fault {proof.fault_code}." if proof.fault_code else text
 
 
 def _unsafe(proof: LinkLossProof) -> Reason | None:
