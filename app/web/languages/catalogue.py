@@ -25,7 +25,7 @@ NAMES = frozenset(_NAMES.split())
 NUMBER = re.compile(r"(?<![\w.])(\d+)\.(\d+)(?![\w.]*\.\d|\d)")
 SENTENCE_END = re.compile(r"(?<=[.!?]) (?=[A-Z0-9])")
 JOINT = re.compile(r"(: |, | and |; | or | · )")
-MOST_PARTS, MOST_NAME_WORDS, MOST_TOGETHER, MOST_SPACES = 40, 8, 4, 2
+MOST_SENTENCES, MOST_NAME_WORDS, MOST_TOGETHER, MOST_SPACES = 40, 8, 4, 2
 
 
 class Catalogue(GNUTranslations):
@@ -93,7 +93,7 @@ class Catalogue(GNUTranslations):
 
     def _by_sentences(self, text: str) -> str | None:
         """Return several sentences, each for itself, None where none is known."""
-        sentences = SENTENCE_END.split(text)[:MOST_PARTS]
+        sentences = SENTENCE_END.split(text, MOST_SENTENCES - 1)
         if len(sentences) == 1:
             return None
         said, is_known = [], False
@@ -117,7 +117,7 @@ class Catalogue(GNUTranslations):
 
     def _in_parts(self, text: str) -> str | None:
         """Return a list such as `azimuth and elevation` part by part."""
-        parts = JOINT.split(text)[: 2 * MOST_PARTS]
+        parts = JOINT.split(text)
         if len(parts) == 1:
             return self._of_subject(text)
         known = [self._catalog.get(part) or self._of_subject(part) or self._word(part) for part in parts[::2]]

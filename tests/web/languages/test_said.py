@@ -43,6 +43,12 @@ def test_what_is_not_known_stays_as_it_is(unknown: str) -> None:
     assert catalogue().said(unknown) == unknown
 
 
+def test_of_a_long_list_and_of_many_sentences_nothing_is_left_out() -> None:
+    trackers, notes = ", ".join(f"T{number}" for number in range(1, 101)), "Ok. " * 60
+    assert catalogue().said(f"azimuth, {trackers}") == f"Azimut, {trackers}"
+    assert catalogue().said(f"Time to stand. {notes}".strip()) == f"Zeit zu stehen. {notes}".strip()
+
+
 def test_a_name_is_not_translated_as_if_it_were_a_word() -> None:
     assert (
         catalogue().said("The drive of Azimuth does not answer.")
