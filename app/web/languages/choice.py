@@ -1,9 +1,9 @@
 """Which language a request is answered in: what its cookie says, else what its browser asks for."""
 
 from collections.abc import Container, Iterator
-from http.cookies import CookieError, SimpleCookie
 
 from starlette.datastructures import Headers
+from starlette.requests import cookie_parser
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.web.languages import CATALOGUE
@@ -35,16 +35,9 @@ class Speech:
 
 def chosen(headers: Headers) -> str:
     """Return the code of the language that a request wants; English where it wants none of ours."""
-    kept, codes = _kept(headers.get("cookie", "")), frozenset(one.code for one in offered())
+    kept = cookie_parser(headers.get("cookie", "")).get(COOKIE)
+    codes = frozenset(one.code for one in offered())
     return kept if kept in codes else asked_for(headers.get("accept-language", ""), codes)
-
-
-def _kept(cookies: str) -> str:
-    try:
-        found = SimpleCookie(cookies).get(COOKIE)
-    except CookieError:
-        return ""
-    return found.value if found else ""
 
 
 def asked_for(accepted: str, codes: Container[str] = LANGUAGES) -> str:

@@ -57,6 +57,11 @@ async def test_the_list_keeps_the_choice_for_a_year(client: httpx.AsyncClient) -
     assert '<html lang="de"' in (await client.get("/", headers={"Accept-Language": "es"})).text
 
 
+async def test_the_choice_stands_beside_cookies_of_other_programs(client: httpx.AsyncClient) -> None:
+    page = await client.get("/", headers={"Cookie": 'state={"open":[1, 2]}; a b=1; language=de'})
+    assert '<html lang="de"' in page.text
+
+
 @pytest.mark.parametrize("back", ["https://example.com/", "//example.com"])
 async def test_the_list_leads_to_no_other_host(back: str, client: httpx.AsyncClient) -> None:
     answer = await client.post("/language", data={"language": "de", "back": back})
