@@ -19,7 +19,6 @@ JINJA = {
     "lstrip_blocks": "true",
     "silent": "false",
 }
-KEYWORDS = {**DEFAULT_KEYWORDS, "_": None}
 
 _SPEAKING = """
     app/tracker app/alarms app/web app/site app/drives app/show app/access app/store app/studies app/energy
@@ -45,10 +44,9 @@ _SILENT = """
     app/web/ui/papers.py app/web/components_context.py app/link/codec.py
     app/drives/wire_faults.py app/drives/write_frame.py app/drives/sim_server.py app/drives/sim_training.py
     app/drives/profile_text.py app/drives/profile_needs.py app/drives/profile.py app/drives/register.py
-    app/drives/rtu_frame.py app/drives/sunspec.py app/drives/sunspec_models.py app/drives/faulty.py
+    app/drives/rtu_frame.py app/drives/sunspec.py app/drives/sunspec_models.py
     app/drives/devices app/drives/cia402.py app/store/connections.py app/store/migrations.py
-    app/store/tables.py app/store/decimate.py app/store/chunks.py app/sun/accuracy_table.py
-    app/show/export.py"""
+    app/store/tables.py app/store/decimate.py app/store/chunks.py app/sun/accuracy_table.py"""
 """What speaks to programs, to the journal's files or to who writes a drive profile: it stays English."""
 
 SPEAKING, SILENT = tuple(_SPEAKING.split()), tuple(_SILENT.split())
@@ -86,7 +84,7 @@ def _of_module(path: Path, name: str) -> Iterator[Text]:
 
 def _of_template(path: Path, root: Path) -> Iterator[Text]:
     with path.open("rb") as source:
-        for line, message, _, context in extract("jinja2", source, KEYWORDS, (), JINJA):
+        for line, message, _, context in extract("jinja2", source, DEFAULT_KEYWORDS, (), JINJA):
             one, many = message if isinstance(message, tuple) else (message, "")
             yield Text(str(path.relative_to(root)), line, one, many, context or "")
 

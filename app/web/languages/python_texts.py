@@ -5,9 +5,10 @@ import re
 from collections.abc import Iterable, Iterator
 from itertools import islice, product
 
+from app.web.languages.catalogue import LONGEST
+from app.web.languages.patterns import GAP
+
 MOST_VARIANTS = 16
-LONGEST = 600
-"""No sentence is longer; what is, is not looked up either."""
 
 _SILENT_CALLS = """
     debug info warning error exception critical compile match search fullmatch sub split findall execute text
@@ -29,7 +30,6 @@ SILENT_ENUMS = re.compile(r"^(PointType|Framing|Verdict)$|Format$")
 SILENT_FIELDS = frozenset(("description", "summary"))
 """What an API documents under these names."""
 
-GAP = re.compile(r"\{([a-z][a-z0-9_]*)\}")
 WORD = re.compile(r"[^\W\d_]{2,}")
 LABEL = re.compile(r"[A-Z][a-z]{2,}(-[a-z]+)*\.?|[A-Z]{2,5}s?|\d+ [A-Z][a-z]{2,}")
 MACHINE = re.compile(
@@ -141,7 +141,7 @@ class _Reader(ast.NodeVisitor):
     def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
         """Read an f-string as one sentence, or one for each choice of words in it."""
         for text in islice(_variants(node), MOST_VARIANTS):
-            self._keep(node, " ".join(text.split(" ")))
+            self._keep(node, text)
         for part in node.values:
             if isinstance(part, ast.FormattedValue) and not _is_choice(part.value):
                 self._words_within(part.value)
