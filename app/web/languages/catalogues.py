@@ -62,7 +62,8 @@ def renewed(stored: Catalog, fresh: Catalog) -> Catalog:
             catalog.add(text.id, string, _files(text), context=text.context)
     for (context, name), string in known.items():
         if any(string if isinstance(string, tuple) else (string,)):
-            catalog.obsolete[name] = Message(name, string, context=context)
+            key = (name, context) if context else name
+            catalog.obsolete[key] = Message(name, string, context=context)
     return catalog
 
 

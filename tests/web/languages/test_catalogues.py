@@ -95,6 +95,16 @@ def test_a_translation_is_taken_by_its_identity_and_comes_back_after_a_change() 
     ]
 
 
+def test_one_word_in_two_places_comes_back_in_both() -> None:
+    fresh = Catalog(locale="de")
+    fresh.add("Stop")
+    fresh.add("Stop", context="compass")
+    lines = [{"msgid": "Stop", "msgstr": "Halt"}, {"msgid": "Stop", "context": "compass", "msgstr": "S"}]
+    catalog, _ = take(renewed(Catalog(locale="de"), fresh), lines)
+    without = renewed(catalog, Catalog(locale="de"))
+    assert [text.string for text in renewed(without, fresh) if text.id] == ["Halt", "S"]
+
+
 def test_what_is_not_translated_is_not_compiled() -> None:
     catalog = Catalog(locale="de")
     catalog.add("Nothing yet", "")
