@@ -197,7 +197,7 @@ class Killing:
             await asyncio.sleep(PUSH_S)
 
     async def _rename(self) -> "asyncio.Task[object]":
-        """Give the site a name that is acknowledged, and every second time one that may be cut off."""
+        """Give the site a name that is acknowledged, then one that may be cut off."""
         await self.machine.ask(RenameSite(self._name()))
         self.promised = len(self.names)
         late = asyncio.create_task(self.machine.ask(RenameSite(self._name())))
