@@ -87,3 +87,9 @@ TRANSLATED = tuple(code for code in LANGUAGES if code != ENGLISH.code)
 def code_of(tag: str) -> str:
     """Return the code of a browser's tag; of one that is not ours, English."""
     return next((code for code, language in LANGUAGES.items() if language.tag == tag), ENGLISH.code)
+
+
+def in_words(value: object) -> str:
+    """Return a word that travels, such as `going_to_start`, as people write it in English."""
+    text = str(value).replace("_", " ").replace("-", " ")
+    return text[:1].upper() + text[1:]

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from itertools import islice, product
 
 from app.web.languages.catalogue import LONGEST
+from app.web.languages.known import in_words
 from app.web.languages.patterns import GAP
 
 MOST_VARIANTS = 16
@@ -95,9 +96,9 @@ class _Reader(ast.NodeVisitor):
             self.visit(statement)
 
     def _enum_word(self, node: ast.Constant) -> None:
-        text = str(node.value).replace("_", " ").replace("-", " ")
+        text = in_words(node.value)
         if WORD.search(text):
-            self.found.append((node.lineno, text[:1].upper() + text[1:]))
+            self.found.append((node.lineno, text))
 
     def visit_FunctionDef(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
         """Leave out annotations, decorators and the defaults of parameters."""

@@ -13,7 +13,7 @@ from app.tracker.mode import Mode
 from app.tracker.protections.words import Protection
 from app.tracker.snapshot import ActivityName, ShowPhase
 from app.web.languages.catalogue import Catalogue, catalogue_of
-from app.web.languages.known import ENGLISH
+from app.web.languages.known import ENGLISH, in_words
 
 SCRIPTS = Path(__file__).resolve().parents[3] / "static" / "js"
 SCRIPT_TEXT = re.compile(r"(?<![\w.])_\(\s*\"((?:[^\"\\\n]|\\.)*)\"")
@@ -36,9 +36,7 @@ def script_texts() -> tuple[str, ...]:
 
 def _live_words() -> Iterable[str]:
     for words in LIVE_WORDS:
-        for word in words:
-            text = word.value.replace("_", " ").replace("-", " ")
-            yield text[:1].upper() + text[1:]
+        yield from map(in_words, words)
 
 
 @cache

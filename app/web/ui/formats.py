@@ -5,6 +5,7 @@ from datetime import datetime, timedelta
 from typing import Any
 
 from app.web.languages import CATALOGUE
+from app.web.languages.known import in_words
 from app.zones import zone_of
 
 UNKNOWN = "–"
@@ -75,8 +76,7 @@ def offset(at: datetime, zone: str) -> str:
 
 def words(value: object) -> str:
     """Return a word that travels, such as `going_to_start`, as people write it in their language."""
-    text = str(value).replace("_", " ").replace("-", " ")
-    return CATALOGUE.get().said(text[:1].upper() + text[1:])
+    return CATALOGUE.get().said(in_words(value))
 
 
 FORMATS: dict[str, Callable[[Any, str], str]] = {
