@@ -38,9 +38,12 @@ export function start() {
     root.dataset.choice = next;
     document.cookie = `theme=${next}; path=/; max-age=${A_YEAR_S}; samesite=lax`;
     const [key, words] = [form.querySelector("button"), form.querySelector("button span")];
-    words.textContent = next.charAt(0).toUpperCase() + next.slice(1);
-    key.setAttribute("aria-label", `${words.textContent}: change to the next theme of day, sun, night and auto.`);
-    for (const icon of key.querySelectorAll("[data-choice-icon]")) icon.hidden = icon.dataset.choiceIcon !== next;
+    for (const icon of key.querySelectorAll("[data-choice-icon]")) {
+      icon.hidden = icon.dataset.choiceIcon !== next;
+      if (icon.hidden) continue;
+      words.textContent = icon.dataset.name;
+      key.setAttribute("aria-label", icon.dataset.label);
+    }
     show();
   });
   paintBrowser();

@@ -96,3 +96,14 @@ def test_the_list_of_languages_is_reached_at_every_size(size: str, opened: Opene
         page.locator('.language button[value="es"]').click()
     expect(page.locator("html")).to_have_attribute("lang", "es")
     assert page.url.endswith("/journal")
+
+
+def test_the_key_of_the_theme_stays_in_the_language_of_the_page(opened: Opened) -> None:
+    page, german = opened("/journal"), catalogue_of("de")
+    speak(page, "de")
+    key = page.locator("#theme-form .theme-key")
+    key.click()
+    sun = german.pgettext("theme", "Sun")
+    label = german.gettext("%(theme)s: change to the next theme of day, sun, night and auto.")
+    expect(key).to_have_text(sun)
+    expect(key).to_have_attribute("aria-label", label % {"theme": sun})
