@@ -10,7 +10,7 @@ from app.tracker.axes import AxisConfig
 from app.tracker.config import MountConfig, MountKind, Orientation, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
-from app.tracker.mounts.kinematics import angles, direction, fixed_deg, followed
+from app.tracker.mounts.kinematics import angles, direction, followed
 
 PLAIN = MountConfig()
 UNLIMITED = AxisConfig(-360.0, 360.0, 360.0, 360.0, 1.0, 1.0)
@@ -75,11 +75,6 @@ def to_axes(
 def second_axis(config: TrackerConfig) -> AxisConfig:
     """Return limits and speeds of the second axis; where the mount has none, it stands for a fixed angle."""
     return UNLIMITED if config.mount.single_axis else config.elevation
-
-
-def absent_deg(config: TrackerConfig) -> float:
-    """Return the angle for which the second axis stands where the mount has none."""
-    return fixed_deg(config.mount)
 
 
 def _sky_of_mast(pointing: Pointing, azimuth_deg: float, elevation_deg: float) -> Orientation:
