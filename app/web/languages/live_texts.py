@@ -8,6 +8,8 @@ from app.web.languages.catalogue import Catalogue
 
 SENTENCES = frozenset({"message", "hint", "activity_text", "title", "do", "text", "detail", "home_lost"})
 """The fields of a snapshot, an event or an answer that people read; all else is for programs or a name."""
+OF_THE_SITE = SENTENCES | {"where"}
+"""The same of what belongs to no tracker: where it stands is a word then, and no name."""
 
 
 def in_language(catalogue: Catalogue, told: Any) -> str:
@@ -21,14 +23,15 @@ def in_language(catalogue: Catalogue, told: Any) -> str:
 def _said(catalogue: Catalogue, value: Any) -> Any:
     match value:
         case dict():
-            return {name: _field(catalogue, name, inner) for name, inner in value.items()}
+            read = OF_THE_SITE if value.get("tracker_id", "") is None else SENTENCES
+            return {name: _field(catalogue, inner, is_read=name in read) for name, inner in value.items()}
         case list():
             return [_said(catalogue, inner) for inner in value]
         case _:
             return value
 
 
-def _field(catalogue: Catalogue, name: str, value: Any) -> Any:
+def _field(catalogue: Catalogue, value: Any, *, is_read: bool) -> Any:
     if isinstance(value, str):
-        return catalogue.said(value) if name in SENTENCES and value else value
+        return catalogue.said(value) if is_read and value else value
     return _said(catalogue, value)

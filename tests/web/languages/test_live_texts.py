@@ -1,0 +1,19 @@
+"""What a page is sent while it stands: its sentences in another language, names and codes as they are."""
+
+import orjson
+
+from app.web.languages.live_texts import in_language
+from tests.web.languages.made_up import GERMAN, catalogue
+
+ALARM = {"code": "drive_lost", "title": "Azimuth", "message": "The drive of T7 does not answer."}
+
+
+def test_sentences_are_said_and_names_are_not() -> None:
+    german = catalogue(GERMAN | {"Site": "Anlage"})
+    alarms = [{**ALARM, "tracker_id": "T7", "where": "Site"}, {**ALARM, "tracker_id": None, "where": "Site"}]
+    told = orjson.loads(in_language(german, {"type": "state", "site_name": "Azimuth", "alarms": alarms}))
+    assert told["site_name"] == "Azimuth"
+    assert [one["where"] for one in told["alarms"]] == ["Site", "Anlage"]
+    assert {(one["code"], one["title"], one["message"]) for one in told["alarms"]} == {
+        ("drive_lost", "Azimut", "Der Antrieb von T7 antwortet nicht.")
+    }
