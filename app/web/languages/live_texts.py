@@ -6,7 +6,8 @@ import orjson
 
 from app.web.languages.catalogue import Catalogue
 
-SENTENCES = frozenset({"message", "hint", "activity_text", "title", "do", "text", "detail", "home_lost"})
+_SENTENCES = "message hint activity_text title do text detail home_lost how"
+SENTENCES = frozenset(_SENTENCES.split())
 """The fields of a snapshot, an event or an answer that people read; all else is for programs or a name."""
 OF_THE_SITE = SENTENCES | {"where"}
 """The same of what belongs to no tracker: where it stands is a word then, and no name."""

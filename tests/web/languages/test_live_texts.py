@@ -17,3 +17,8 @@ def test_sentences_are_said_and_names_are_not() -> None:
     assert {(one["code"], one["title"], one["message"]) for one in told["alarms"]} == {
         ("drive_lost", "Azimut", "Der Antrieb von T7 antwortet nicht.")
     }
+
+
+def test_how_a_zero_was_set_is_said_and_who_set_it_is_not() -> None:
+    told = orjson.loads(in_language(catalogue(), {"home": {"by": "Holding", "how": "Holding"}}))
+    assert told == {"home": {"by": "Holding", "how": "Steht"}}
