@@ -5,11 +5,10 @@ from collections import OrderedDict, deque
 from collections.abc import Callable
 from datetime import datetime, timedelta
 from hmac import compare_digest
-from http.cookies import CookieError, SimpleCookie
 
 from fastapi import FastAPI
 from starlette.datastructures import Headers, QueryParams
-from starlette.requests import Request
+from starlette.requests import Request, cookie_parser
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
@@ -195,7 +194,7 @@ def credentials(scope: Scope, route: str) -> Credentials:
         return Credentials(address, bearer=bearer.strip() or "none")
     return Credentials(
         address,
-        session_id=_cookie(headers, cookie_name(scope)),
+        session_id=cookie_parser(headers.get("cookie", "")).get(cookie_name(scope), ""),
         ticket=query.get("ticket", "") if route in TICKETED else "",
         stop_ticket=query.get("stop_ticket", ""),
     )
@@ -207,14 +206,6 @@ def cookie_name(scope: Scope) -> str:
         return "__Host-heliopanel"
     server = scope.get("server")
     return f"heliopanel-{server[1] if server else 0}"
-
-
-def _cookie(headers: Headers, name: str) -> str:
-    try:
-        found = SimpleCookie(headers.get("cookie", "")).get(name)
-    except CookieError:
-        return ""
-    return found.value if found else ""
 
 
 def _query(scope: Scope) -> QueryParams:

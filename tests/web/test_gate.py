@@ -168,6 +168,15 @@ async def test_a_page_whose_session_ended_still_stops_and_does_nothing_else(offi
     assert {order.command.kind for order in office.machine.orders} == {"stop"}
 
 
+async def test_a_session_is_found_beside_cookies_of_other_programs(office: Office) -> None:
+    session = await office.session(Role.OPERATOR)
+    cookies = f'layout={{"rows": [1, 2]}}; a b=1; heliopanel-{PORT}={session}'
+    async with connected(
+        office.app, headers={"cookie": cookies, "origin": f"http://127.0.0.1:{PORT}"}
+    ) as socket:
+        await socket.next("state")
+
+
 async def test_a_socket_ends_within_a_second_of_revocation_and_comes_back_only_to_stop(
     office: Office,
 ) -> None:

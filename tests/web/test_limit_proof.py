@@ -1,4 +1,4 @@
-"""Limits, speeds and the drive want the password again, at every door that a browser's session has."""
+"""Limits, speeds and the drive want the password again where a session sets them by a form or the API."""
 
 from collections.abc import AsyncIterator
 from datetime import timedelta
