@@ -2,7 +2,7 @@
 
 The attacker is a process of its own at the lowest priority, as if it had a computer of its own. The bounds:
 ticks at most 50 ms late, a stop answered within 100 ms (p99), the panel's memory within 120 MB. Whoever asks
-has the attacker's address, of which the panel takes 256 connections: beside 500 streams only Stop is answered.
+has its address, of which the panel takes 256 connections: beside 500 streams only Stop is answered.
 """
 
 import asyncio
