@@ -127,6 +127,8 @@ async def office(tmp_path: Path) -> AsyncIterator[Office]:
             smtp_from="panel@example.org",
         )
         async with opened(plant, settings, store) as gateways:
+            begun = [tmp_path / f"{channel}-outbox.json" for channel in Channel]
+            await eventually(lambda: all(path.exists() for path in begun))
             yield Office(plant, gateways, web, post)
 
 
