@@ -1,4 +1,4 @@
-"""Records every show from its first frame, and every tracker's day at one frame a second."""
+"""Records every show from its first frame, and every day at one a second once place and time are set."""
 
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, time, timedelta
@@ -117,7 +117,7 @@ class Recorder:
             self._finish(self._days, tracker_id, seen.site_time, "completed")
             day = None
         if day is None:
-            if site.location is None:
+            if site.location is None or site.clock.source == "unset":
                 return
             day = self._begin(self._days, _day_info(loop, site, site.location, seen.site_time), seen.now)
         if seen.now >= day.due:

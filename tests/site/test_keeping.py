@@ -17,6 +17,7 @@ from app.link.messages import (
     RequestControl,
     SavePlan,
     SaveRecording,
+    SetClock,
     SetLocation,
     UnknownRecording,
 )
@@ -37,6 +38,7 @@ from app.tracker.snapshot import EventKind, ShowPhase, Snapshot
 from tests.site.plant import SAMSUN, SUMMER_NOON, Plant, make_plant
 
 T = TypeVar("T")
+SOLSTICE = datetime(2028, 6, 21, 3, tzinfo=UTC)
 PLAN = ShowPlan(
     "solstice",
     datetime(2026, 6, 21, 2, 10, tzinfo=UTC),
@@ -242,6 +244,20 @@ async def test_days_are_recorded_at_one_frame_a_second_and_change_at_local_midni
     assert older.sun_end_at == midnight
     frames = writer.writer.frames(newest.recording_id)
     assert np.diff(frames.column("elapsed_s")) == pytest.approx(np.ones(len(frames) - 1), abs=0.11)
+
+
+async def test_no_day_is_recorded_before_place_and_time_are_set(
+    kept: tuple[Plant, ImmediateWriter],
+) -> None:
+    plant, writer = kept
+    await plant.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
+    await plant.forward(seconds=3)
+    assert not writer.writer.recordings(kind=RecordingKind.DAY)
+
+    await plant.ask(SetClock("manual", SOLSTICE))
+    await plant.forward(seconds=3)
+    (day,) = writer.writer.recordings(kind=RecordingKind.DAY)
+    assert day.began_at == pytest.approx(SOLSTICE, abs=timedelta(seconds=1))
 
 
 async def test_a_simulation_can_be_saved_and_deleted(kept: tuple[Plant, ImmediateWriter]) -> None:
