@@ -30,6 +30,9 @@ function paintBrowser() {
   document.querySelector('meta[name="theme-color"]')?.setAttribute("content", colour);
 }
 
+// Every element is styled and laid out anew, which takes a slow tablet a while: first it shows that the key was heard.
+const afterPaint = (work) => requestAnimationFrame(() => setTimeout(work));
+
 export function start() {
   const form = document.getElementById("theme-form");
   form.addEventListener("submit", (event) => {
@@ -44,7 +47,7 @@ export function start() {
       words.textContent = icon.dataset.name;
       key.setAttribute("aria-label", icon.dataset.label);
     }
-    show();
+    afterPaint(show);
   });
   paintBrowser();
   live.on("state", show);
