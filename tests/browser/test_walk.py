@@ -3,7 +3,6 @@
 import os
 import re
 import signal
-import socket
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -15,16 +14,11 @@ from playwright.sync_api import Browser, Page, expect
 
 from tests.browser.conftest import PATIENCE_MS, SIZES
 from tests.browser.hands import Finger, Hands, Keyboard, Mouse, arrive
+from tests.ports import free_port
 
 READY_S = 60
 HANDS: dict[str, Callable[[Page], Hands]] = {"mouse": Mouse, "finger": Finger, "keyboard": Keyboard}
 Picture = Callable[[Page, str], None]
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 @pytest.fixture(scope="module")

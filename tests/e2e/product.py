@@ -2,9 +2,7 @@
 
 import json
 import os
-import random
 import signal
-import socket
 import subprocess
 import sys
 import threading
@@ -17,6 +15,7 @@ from pathlib import Path
 import httpx
 
 from app.machine.process import FIFO_PRIORITY
+from tests.ports import free_port
 
 DRIVE_SIM = (sys.executable, "-c", "import typer; from app.cli_drives import drive_sim; typer.run(drive_sim)")
 """The command `heliopanel drive-sim` alone, without the panel and machine that `heliopanel` imports."""
@@ -24,15 +23,6 @@ COMMAND = str(Path(sys.executable).with_name("heliopanel"))
 LONGEST_WAIT_S = 40.0
 LONGEST_START_S = 240.0
 LOOK_EVERY_S = 0.02
-
-
-def free_port() -> int:
-    """Return a port that nobody uses now, below the range of outgoing connections."""
-    while True:
-        port = random.randrange(20_000, 32_000)
-        with socket.socket() as probe, suppress(OSError):
-            probe.bind(("127.0.0.1", port))
-            return port
 
 
 def eventually(found: Callable[[], object], what: str, *, within_s: float = LONGEST_WAIT_S) -> None:

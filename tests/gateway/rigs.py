@@ -1,10 +1,8 @@
 """A site with its other doors: the site on a virtual clock, the doors on real sockets and in a hurry."""
 
 import asyncio
-import random
-import socket
 from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager, suppress
+from contextlib import asynccontextmanager
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -36,15 +34,6 @@ class HurriedClock:
 
     async def sleep_until(self, at: datetime) -> None:
         await asyncio.sleep(max(0.0, (at - self.now()).total_seconds() / 10.0))
-
-
-def free_port() -> int:
-    """Return a port that nobody uses now, below the range of outgoing connections."""
-    while True:
-        port = random.randrange(20_000, 32_000)
-        with socket.socket() as probe, suppress(OSError):
-            probe.bind(("127.0.0.1", port))
-            return port
 
 
 async def eventually(found: Callable[[], object], *, within_s: float = LONGEST_WAIT_S) -> None:

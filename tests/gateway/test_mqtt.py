@@ -24,7 +24,8 @@ from app.store.store import JournalEntry, JournalFilter, Writer
 from app.tracker.commands import Move
 from app.tracker.config import Orientation
 from app.tracker.snapshot import ActivityName, EventKind
-from tests.gateway.rigs import eventually, free_port, gateway, kept_plant, opened
+from tests.gateway.rigs import eventually, gateway, kept_plant, opened
+from tests.ports import free_port
 from tests.site.plant import SAMSUN
 
 MOSQUITTO = shutil.which("mosquitto") or "/usr/sbin/mosquitto"

@@ -3,9 +3,7 @@
 import asyncio
 import json
 import os
-import random
 import signal
-import socket
 import sys
 from collections.abc import Callable
 from contextlib import suppress
@@ -22,19 +20,11 @@ from app.tracker.commands import Command, Home
 from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
 from app.tracker.motion import Feedback
 from app.tracker.snapshot import ActivityName, SiteSnapshot, Snapshot
+from tests.ports import free_port
 
 SAMSUN = Location(41.2867, 36.33, 4.0)
 LONGEST_WAIT_S = 40.0
 LOOK_EVERY_S = 0.02
-
-
-def free_port() -> int:
-    """Return a port that nobody uses now, below the range of outgoing connections."""
-    while True:
-        port = random.randrange(20_000, 32_000)
-        with socket.socket() as probe, suppress(OSError):
-            probe.bind(("127.0.0.1", port))
-            return port
 
 
 async def eventually(found: Callable[[], bool], *, within_s: float = LONGEST_WAIT_S) -> None:

@@ -14,8 +14,8 @@ from app.drives.buses import Buses
 from app.drives.drive import DriveRefused
 from app.drives.wire import Timing
 from app.tracker.config import DriveConfig, DriveKind, Parity, SerialConfig
-from tests.gateway.rigs import free_port
 from tests.peers.processes import HERE, cable, output, program, running
+from tests.ports import free_port
 
 UNIT, REGISTERS = 17, 200
 

@@ -19,7 +19,7 @@ import pytest
 from app.network import read_network
 from app.settings import Settings
 from app.web.network import NOT_CONFIRMED, NOT_SERVED
-from tests.machine.service import free_port
+from tests.ports import free_port
 
 ROOT = Path(__file__).resolve().parents[2]
 SOON_S = 60.0

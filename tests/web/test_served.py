@@ -26,7 +26,8 @@ from app.web.security import HSTS
 from app.web.server import PanelServer
 from tests.access.fake_hasher import FakeHasher
 from tests.fakes import FakeMachine, FakeReader
-from tests.machine.service import eventually, free_port
+from tests.machine.service import eventually
+from tests.ports import free_port
 from tests.web.office import HERE, PASSWORD
 
 

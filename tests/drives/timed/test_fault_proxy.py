@@ -15,7 +15,7 @@ from app.drives.wire import Timing
 from app.drives.wire_faults import ONLY, Framing, WireFault, parse_script
 from app.tracker.config import DriveConfig, DriveKind, SerialConfig
 from tests.drives.timed.proxied import BENCHES, STOP_REGISTER, TIMING, Bench, Registers
-from tests.machine.service import free_port
+from tests.ports import free_port
 
 RECOVERED_WITHIN_S = {"tcp": 0.3, "rtu": 1.0, "rtu-over-tcp": 1.0}
 STOP_WITHIN_S = 0.05
