@@ -115,16 +115,23 @@ def browser() -> Iterator[Browser]:
 Opened = Callable[..., Page]
 
 
+def listen(page: Page, complaints: list[str]) -> None:
+    """Put down every error and warning of a page's console, and what its scripts do not catch."""
+
+    def complain(message: ConsoleMessage) -> None:
+        if message.type in ("error", "warning") and SOFTWARE_NOTE not in message.text:
+            complaints.append(f"{message.type}: {message.text}")
+
+    page.on("console", complain)
+    page.on("pageerror", lambda error: complaints.append(f"uncaught: {error}"))
+
+
 @pytest.fixture
 def opened(browser: Browser, plant: Plant) -> Iterator[Opened]:
     """Open a page; at the end of the test any console error, any uncaught error fails it."""
     contexts: list[BrowserContext] = []
     complaints: list[str] = []
     allowed: list[str] = []
-
-    def complain(message: ConsoleMessage) -> None:
-        if message.type in ("error", "warning") and SOFTWARE_NOTE not in message.text:
-            complaints.append(f"{message.type}: {message.text}")
 
     def open_page(
         path: str, size: str = "desk", *, touch: bool = False, theme: str = "day", allow: tuple[str, ...] = ()
@@ -141,8 +148,7 @@ def opened(browser: Browser, plant: Plant) -> Iterator[Opened]:
         context.add_cookies([{"name": "theme", "value": theme, "url": plant.url}])
         context.set_default_timeout(PATIENCE_MS)
         page = context.new_page()
-        page.on("console", complain)
-        page.on("pageerror", lambda error: complaints.append(f"uncaught: {error}"))
+        listen(page, complaints)
         page.goto(plant.url + path)
         page.wait_for_selector('html[data-link="live"]')
         return page
