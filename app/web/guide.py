@@ -1,17 +1,23 @@
 """The documents as pages: Markdown rendered on the server, with sections, anchors and pictures, offline."""
 
 import re
+import unicodedata
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import lru_cache
 from pathlib import Path
 from urllib.parse import urlsplit
 
 from markdown_it import MarkdownIt
 from markdown_it.renderer import RendererHTML
+from markdown_it.rules_core import StateCore
 from markdown_it.token import Token
 from markdown_it.utils import EnvType, OptionsDict
 from markupsafe import Markup, escape
+
+from app.web.languages import CATALOGUE, IN_ENGLISH
+from app.web.languages.catalogue import Catalogue
+from app.web.languages.known import ENGLISH, TRANSLATED
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 GUIDE = "operators-guide"
@@ -28,14 +34,24 @@ TITLES = {
     "mqtt": "MQTT",
 }
 """The documents that the panel shows, by the name of their file."""
+SPOKEN = (GUIDE, "strategies", "mounts", "studies", "glossary")
+"""Those of them that are shown in the reader's language; the others are for who programs and stay English."""
+MOST_KEPT = len(TITLES) + len(SPOKEN) * len(TRANSLATED)
+TABLE, COMMANDS = "Table", "Commands"
 
 ANCHOR = re.compile(r'<a id="[\w.-]+">|</a>')
 PICTURE = re.compile(r"pictures/([\w-]+\.png)")
+WORD = re.compile("[A-Za-z]{2}")
+UNSEEN = re.compile("[\u0300-\u036f\u00ad]")
+"""Marks on letters, and where a long word may be broken: nobody has to type them."""
 
 
 @dataclass(frozen=True, slots=True)
 class GuideSection:
-    """One section below a heading: its anchor, level (1 to 3), title, HTML, and its words for searching."""
+    """One section below a heading: its anchor, level (1 to 3), title, HTML, and its words for searching.
+
+    Title, HTML and words are in the reader's language; the anchor is the English one, so that links hold.
+    """
 
     anchor: str
     level: int
@@ -50,33 +66,68 @@ def picture(name: str) -> Path | None:
     return path if PICTURE.fullmatch(f"pictures/{name}") and path.is_file() else None
 
 
-@cache
 def sections(document: str) -> tuple[GuideSection, ...]:
-    """Return the sections of a document."""
-    parser = _parser()
-    tokens = parser.parse((DOCS / f"{document}.md").read_text())
-    return tuple(_section(parser, part) for part in _parts(tokens))
+    """Return the sections of a document in the language of the request, in English where it is not spoken."""
+    return _sections(document, CATALOGUE.get() if document in SPOKEN else IN_ENGLISH)
+
+
+def is_foreign(document: str) -> bool:
+    """Return whether a document is English although the reader's language is another."""
+    return document not in SPOKEN and CATALOGUE.get().language is not ENGLISH
+
+
+@lru_cache(maxsize=MOST_KEPT)
+def _sections(document: str, catalogue: Catalogue) -> tuple[GuideSection, ...]:
+    parser, told = _parser(), {"catalogue": catalogue}
+    return tuple(_section(parser, part, told) for part in _parts(parser.parse(_text(document), told)))
 
 
 def rendered(text: str) -> str:
     """Return Markdown as HTML."""
-    return str(_parser().render(text))
+    return str(_parser().render(text, {"catalogue": IN_ENGLISH}))
+
+
+def blocks(document: str) -> Iterator[tuple[int, str]]:
+    """Return line and Markdown of every heading, paragraph, list item and cell that has words."""
+    for token in _parser().disable("inline").parse(_text(document), {"catalogue": IN_ENGLISH}):
+        if token.type == "inline" and WORD.search(token.content):
+            yield token.map[0] + 1 if token.map else 0, token.content
+
+
+def _text(document: str) -> str:
+    return (DOCS / f"{document}.md").read_text()
 
 
 def _parser() -> MarkdownIt:
-    return MarkdownIt("commonmark", renderer_cls=_Pages).enable("table")
+    parser = MarkdownIt("commonmark", renderer_cls=_Pages).enable("table")
+    parser.core.ruler.before("inline", "translation", _translate)
+    return parser
+
+
+def _translate(state: StateCore) -> None:
+    """Say every block in the reader's language before the Markdown in it is read."""
+    catalogue: Catalogue = state.env["catalogue"]
+    for token in state.tokens:
+        if token.type == "inline":
+            token.meta["english"] = token.content
+            token.content = catalogue.block(token.content)
 
 
 def found(wanted: str) -> list[tuple[str, GuideSection]]:
     """Return every section of every document that has all the words, those with a fitting title first."""
-    needles = wanted.lower().split()
+    needles = folded(wanted).split()
     hits = [
         (document, section)
         for document in TITLES
         for section in sections(document)
         if all(needle in section.words for needle in needles)
     ]
-    return sorted(hits, key=lambda hit: not all(needle in hit[1].title.lower() for needle in needles))
+    return sorted(hits, key=lambda hit: not all(needle in folded(hit[1].title) for needle in needles))
+
+
+def folded(text: str) -> str:
+    """Return a text as a search compares it: in small letters, without marks and soft hyphens."""
+    return UNSEEN.sub("", unicodedata.normalize("NFKD", text.casefold())).replace("ı", "i")
 
 
 def slug(title: str) -> str:
@@ -96,14 +147,22 @@ def _parts(tokens: Sequence[Token]) -> Iterator[list[Token]]:
         yield part
 
 
-def _section(parser: MarkdownIt, part: list[Token]) -> GuideSection:
+def _section(parser: MarkdownIt, part: list[Token], told: EnvType) -> GuideSection:
     heading = part[1] if part[0].type == "heading_open" else None
-    title = _plain(heading) if heading else ""
+    anchor, title = (slug(heading.meta["english"]), _plain(heading)) if heading else ("", "")
     body = part[3:] if heading else part
     level = int(part[0].tag[1]) if heading else 1
-    html = Markup(parser.renderer.render(body, parser.options, {}))  # noqa: S704 - our own documents
-    words = " ".join(token.content for token in part if token.type in ("inline", "fence"))
-    return GuideSection(slug(title), level, title, html, words.lower())
+    html = Markup(parser.renderer.render(body, parser.options, told))  # noqa: S704 - our own documents
+    return GuideSection(anchor, level, title, html, folded(" ".join(_words(part))))
+
+
+def _words(part: list[Token]) -> Iterator[str]:
+    """Return what a section can be found by: what it says, and the English of that."""
+    for token in part:
+        if token.type in ("inline", "fence"):
+            yield token.content
+            if token.meta.get("english", token.content) != token.content:
+                yield token.meta["english"]
 
 
 def _plain(token: Token) -> str:
@@ -129,7 +188,8 @@ class _Pages(RendererHTML):
 
     def table_open(self, tokens: Sequence[Token], at: int, options: OptionsDict, env: EnvType) -> str:
         """Return a table that may be wider than the page."""
-        return '<div class="table-wide" tabindex="0" role="group" aria-label="Table"><table class="table">'
+        label = escape(env["catalogue"].gettext(TABLE))
+        return f'<div class="table-wide" tabindex="0" role="group" aria-label="{label}"><table class="table">'
 
     def table_close(self, tokens: Sequence[Token], at: int, options: OptionsDict, env: EnvType) -> str:
         """Return the end of a table."""
@@ -137,8 +197,8 @@ class _Pages(RendererHTML):
 
     def fence(self, tokens: Sequence[Token], at: int, options: OptionsDict, env: EnvType) -> str:
         """Return code that may be wider than the page."""
-        code = escape(tokens[at].content)
-        return f'<pre tabindex="0" role="group" aria-label="Commands"><code>{code}</code></pre>'
+        code, label = escape(tokens[at].content), escape(env["catalogue"].gettext(COMMANDS))
+        return f'<pre tabindex="0" role="group" aria-label="{label}" lang="en"><code>{code}</code></pre>'
 
     def image(self, tokens: Sequence[Token], at: int, options: OptionsDict, env: EnvType) -> str:
         """Return a picture, loaded when it comes into view."""

@@ -9,7 +9,7 @@ from app.web.guide import GuideSection
 
 @dataclass(frozen=True, slots=True)
 class GuidePage:
-    """One document, its sections and the list of all documents by their names."""
+    """One document, its sections and the list of all documents; `is_foreign` where only English is there."""
 
     template: ClassVar[str] = "guide.html"
 
@@ -18,16 +18,22 @@ class GuidePage:
     title: str
     sections: tuple[GuideSection, ...]
     titles: dict[str, str]
+    is_foreign: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Hit:
-    """Something that a search found: what kind of thing, its name, where it is, a few words about it."""
+    """Something that a search found: what kind of thing, its name, where it is, a few words about it.
+
+    A section of a document is told as the document is shown, `is_foreign` where that is English for want of
+    a translation; all else is English and is said in the reader's language by the page.
+    """
 
     kind: str
     title: str
     href: str
     text: str
+    is_foreign: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,12 +1,19 @@
 // Find on the page: sections without the words are put aside.
 
+import { _ } from "./said.js";
+
 const field = document.querySelector("[data-guide-filter]");
 const sections = [...document.querySelectorAll("[data-guide-section]")];
 const links = new Map([...document.querySelectorAll(".guide-contents a")].map((link) => [link.getAttribute("href").slice(1), link]));
-const texts = new Map(sections.map((section) => [section, section.textContent.toLowerCase()]));
+const texts = new Map(sections.map((section) => [section, folded(section.textContent)]));
+
+// Small letters without marks, as the search on the server compares them.
+function folded(text) {
+  return text.toLowerCase().normalize("NFKD").replace(/[\u0300-\u036f\u00ad]/g, "").replaceAll("ı", "i");
+}
 
 function look() {
-  const words = field.value.toLowerCase().split(/\s+/).filter(Boolean);
+  const words = folded(field.value).split(/\s+/).filter(Boolean);
   let shown = 0;
   for (const section of sections) {
     const fits = words.every((word) => texts.get(section).includes(word));
@@ -15,7 +22,7 @@ function look() {
     shown += fits;
   }
   const count = document.getElementById("filter-count");
-  count.textContent = words.length ? `${shown} of ${sections.length} sections have it.` : "";
+  count.textContent = words.length ? _("{shown} of {count} sections have it.", { shown, count: sections.length }) : "";
 }
 
 field.addEventListener("input", look);

@@ -9,13 +9,14 @@ from starlette.middleware import Middleware
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.web.languages import CATALOGUE
-from app.web.languages.catalogue import Catalogue
+from app.web.languages.catalogue import DOCUMENTS, Catalogue
 from app.web.languages.catalogues import mo_bytes, template
 from app.web.languages.known import LANGUAGES
 
 READ_ATTRIBUTES = ("aria-label", "aria-description", "aria-valuetext", "title", "placeholder", "alt", "label")
 VOID = frozenset(("area", "base", "br", "col", "hr", "img", "input", "link", "meta", "source", "wbr"))
 UNREAD = frozenset(("script", "style", "code", "kbd"))
+PICTURE = re.compile(r"!\[([^]]*)\]")
 WORD = re.compile(r"[^\W\d_]{3,}")
 
 
@@ -28,7 +29,8 @@ def pseudo_catalogue() -> Catalogue:
             text.string = tuple(f"⟦{form}⟧" for form in text.id)
         elif text.id:
             text.string = f"⟦{text.id}⟧"
-    return Catalogue(LANGUAGES["de"], BytesIO(mo_bytes(catalog)))
+    blocks = {text.id: PICTURE.sub(r"![⟦\1⟧]", text.string) for text in catalog if text.context == DOCUMENTS}
+    return Catalogue(LANGUAGES["de"], BytesIO(mo_bytes(catalog)), lambda: blocks)
 
 
 class Speaking:

@@ -5,6 +5,7 @@ import re
 import httpx
 import pytest
 
+from app.web.guide import TITLES
 from app.web.languages.catalogue import Catalogue
 from app.web.languages.patterns import GAP
 from app.web.route_permissions import ROUTES
@@ -18,16 +19,24 @@ FILLED = {
     "{number}": "1",
     "{study_id}": "none",
     "{show_id}": "none",
+    "{document}": "glossary",
 }
 NO_PAGES = re.compile(
-    r"/(api|guide|papers|components|backup|diagnostics|metrics|health|ready|manifest)\b|\.csv"
+    r"/(api|guide/pictures|papers|components|backup|diagnostics|metrics|health|ready|manifest)\b|\.csv"
 )
 """What is for programs or a file, and the pages that stay English."""
 
-MORE = ("/search?q=wind", "/recordings/show-1?with=day-1", "/journal?tracker=T1", "/nothing", "/trackers/T9")
+MORE = (
+    "/search?q=wind",
+    "/recordings/show-1?with=day-1",
+    "/journal?tracker=T1",
+    "/nothing",
+    "/trackers/T9",
+    *(f"/guide/{name}" for name in TITLES),
+)
 DATA = re.compile(
     r"Samsun solar field|T[12] (North|South) field|North field|Heliopanel( [\d.]+)?|UTC([+−]\d+)?"
-    r"|simulated-plc|SunSpec over Modbus (TCP|RTU)|Modbus TCP|JSON|CSV|Parquet|https?(://\S+)?"
+    r"|simulated-plc|SunSpec( over Modbus (TCP|RTU))?|Modbus TCP|JSON|CSV|Parquet|https?(://\S+)?"
     r"|broker\.example:8883|psa|ada|operator|min|Simulated drive|Alexandru 2024, Table 3"
     r"|Summer solstice in 3 minutes( began\.)?|A simulated day( began\.)?|[A-Z][\w-]+/[\w/-]+"
     r"|time,wind_mps,snow_kg( [\d:,]+)*"

@@ -2,9 +2,10 @@
 
 import re
 from collections.abc import Callable, Mapping
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from gettext import GNUTranslations, NullTranslations
 from itertools import chain
+from pathlib import Path
 from typing import IO
 
 from app.web.languages.known import ENGLISH, LANGUAGES, LOCALE, Language
@@ -28,18 +29,41 @@ JOINT = re.compile(r"(: |, | and |; | or | · )")
 MOST_SENTENCES, MOST_NAME_WORDS, MOST_TOGETHER, MOST_SPACES = 40, 8, 4, 2
 
 
-class Catalogue(GNUTranslations):
+DOCUMENTS = "guide"
+"""The context of the blocks of the documents, which are read only when somebody opens one."""
+BLOCK = f"{DOCUMENTS}\x04"
+
+
+class _Stored(GNUTranslations):
+    """Everything that the file of a language has."""
+
+    _catalog: dict[object, str]
+
+    def blocks(self) -> dict[str, str]:
+        """Take out the blocks of the documents and return them."""
+        found = [key for key in self._catalog if isinstance(key, str) and key.startswith(BLOCK)]
+        return {key.removeprefix(BLOCK): self._catalog.pop(key) for key in found}
+
+
+class Catalogue(_Stored):
     """The texts of one language; of English nothing is stored, as every text is its own translation."""
 
-    def __init__(self, language: Language, stored: IO[bytes] | None = None) -> None:
-        self._catalog: dict[object, str] = {}
+    def __init__(
+        self,
+        language: Language,
+        stored: IO[bytes] | None = None,
+        read_blocks: Callable[[], Mapping[str, str]] = dict,
+    ) -> None:
+        self._catalog = {}
         self.plural: Callable[[int], int] = lambda count: int(count != 1)
         self.language = language
+        self._read_blocks = read_blocks
         if stored is None:
             NullTranslations.__init__(self)
         else:
             super().__init__(stored)
             self._catalog.pop("", None)
+            self.blocks()
         self._patterns = Patterns(text for text in self._catalog if isinstance(text, str))
         self.said: Callable[[str], str] = lru_cache(maxsize=KEPT)(self._said)
 
@@ -51,6 +75,10 @@ class Catalogue(GNUTranslations):
     def gettext(self, message: str) -> str:
         """Return a text; one that is not translated is returned as it is."""
         return self._catalog.get(message) or message
+
+    def block(self, markdown: str) -> str:
+        """Return a block of a document; one that is not translated is returned as it is."""
+        return self._read_blocks().get(markdown) or markdown
 
     def number(self, text: str) -> str:
         """Return a text with the numbers in it as this language writes them."""
@@ -155,7 +183,14 @@ def load(language: Language) -> Catalogue:
     if not path.exists():
         return Catalogue(language)
     with path.open("rb") as stored:
-        return Catalogue(language, stored)
+        return Catalogue(language, stored, partial(_blocks_of, path))
+
+
+@lru_cache(maxsize=1)
+def _blocks_of(path: Path) -> Mapping[str, str]:
+    """Return the blocks of the documents; those of one language are kept, as pages keep what they show."""
+    with path.open("rb") as stored:
+        return _Stored(stored).blocks()
 
 
 @lru_cache(maxsize=len(LANGUAGES))

@@ -1,4 +1,4 @@
-"""Every text of the project that a page can show, found in templates, Python and JavaScript."""
+"""Every text of the project that a page can show, found in templates, Python, JavaScript and documents."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -7,6 +7,8 @@ from pathlib import Path
 
 from babel.messages.extract import DEFAULT_KEYWORDS, extract
 
+from app.web import guide
+from app.web.languages.catalogue import DOCUMENTS
 from app.web.languages.python_texts import python_texts
 from app.web.languages.script_texts import texts_of
 
@@ -38,7 +40,7 @@ MORE = {
 _SILENT = """
     app/web/languages app/web/metrics.py app/web/route_permissions.py app/web/routes.py app/web/openapi.py
     app/web/documented.py app/web/main.py app/web/server.py app/web/presses.py app/web/record_files.py
-    app/web/record_pdf.py app/web/guide.py app/web/journal_files.py app/web/mdns.py app/web/qr.py
+    app/web/record_pdf.py app/web/journal_files.py app/web/mdns.py app/web/qr.py
     app/web/attachments.py app/web/api/base.py
     app/web/api/operations.py app/web/api/router.py app/web/ui/components.py
     app/web/ui/papers.py app/web/components_context.py app/link/codec.py
@@ -72,6 +74,9 @@ def texts(root: Path = ROOT) -> Iterator[Text]:
     for named in SPEAKING:
         for path in sorted((root / named).rglob("*.py")) or (root / named,):
             yield from _of_module(path, str(path.relative_to(root)))
+    for document in guide.SPOKEN:
+        for line, markdown in guide.blocks(document):
+            yield Text(f"docs/{document}.md", line, markdown, context=DOCUMENTS)
     for name, more in MORE.items():
         yield from (Text(name, 0, text) for text in more)
 

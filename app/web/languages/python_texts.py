@@ -14,9 +14,9 @@ MOST_VARIANTS = 16
 _SILENT_CALLS = """
     debug info warning error exception critical compile match search fullmatch sub split findall execute text
     Field Query Path Header Form Body Column ForeignKey Index CheckConstraint Option Argument getattr setattr
-    hasattr strftime strptime encode startswith endswith removeprefix removesuffix import_module TypeVar
-    literal_column mapped_column namedtuple ContextVar add_api_route open echo AssertionError TypeError
-    KeyError NotImplementedError RuntimeError"""
+    hasattr strftime strptime encode normalize startswith endswith removeprefix removesuffix import_module
+    TypeVar literal_column mapped_column namedtuple ContextVar add_api_route open echo AssertionError
+    TypeError KeyError NotImplementedError RuntimeError"""
 _SILENT_KEYWORDS = """
     responses media_type tags encoding pattern response_description alias examples
     deprecated template prefix key id code kind picture guide href name_of drawing icon"""

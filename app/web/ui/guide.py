@@ -55,5 +55,6 @@ def _show(request: Request, name: str) -> Response:
         title=title,
         sections=documents.sections(name),
         titles=documents.TITLES,
+        is_foreign=documents.is_foreign(name),
     )
     return page(request, context)

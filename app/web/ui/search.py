@@ -15,8 +15,6 @@ from app.web.ui.settings_words import SETTINGS
 
 MOST_HITS = 60
 LONGEST_TEXT = 160
-SOFT_HYPHEN = "\u00ad"
-"""Where a long word of a translation may be broken on a key; nobody types it."""
 
 FURTHER = (
     ("Commissioning records", "/records", "Signed records: see, compare, PDF"),
@@ -52,13 +50,21 @@ PARTS = (
 
 def found(request: Request, words: str) -> tuple[Hit, ...]:
     """Return everything that has all the words: pages first, then settings, alarms and documents."""
-    needles = words.lower().split()
+    needles = guide.folded(words).split()
     hits = (hit for hit in _index(_trackers(request)) if _fits(hit, needles))
-    documents = (
-        Hit("Document", f"{guide.TITLES[name]}: {section.title}", _place(name, section), _start(section))
-        for name, section in guide.found(words)
+    return (*hits, *(_of_document(name, section) for name, section in guide.found(words)))[:MOST_HITS]
+
+
+def _of_document(name: str, section: guide.GuideSection) -> Hit:
+    """Return a section as what was found, in the language that the document is shown in."""
+    is_foreign, title = guide.is_foreign(name), guide.TITLES[name]
+    return Hit(
+        "Document",
+        f"{title if is_foreign else said(title)}: {section.title}",
+        _place(name, section),
+        _start(section),
+        is_foreign=is_foreign,
     )
-    return (*hits, *documents)[:MOST_HITS]
 
 
 def _trackers(request: Request) -> tuple[str, ...]:
@@ -110,5 +116,5 @@ def _start(section: guide.GuideSection) -> str:
 
 
 def _fits(hit: Hit, needles: list[str]) -> bool:
-    text = f"{hit.title} {hit.text} {said(hit.title)} {said(hit.text)}".lower().replace(SOFT_HYPHEN, "")
+    text = guide.folded(f"{hit.title} {hit.text} {said(hit.title)} {said(hit.text)}")
     return all(needle in text for needle in needles)

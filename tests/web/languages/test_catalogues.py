@@ -6,13 +6,16 @@ from collections.abc import Iterator
 
 import pytest
 from babel.messages.catalog import Catalog, Message
+from markdown_it import MarkdownIt
+from markdown_it.token import Token
 
-from app.web.languages.catalogue import catalogue_of
+from app.web.languages.catalogue import DOCUMENTS, catalogue_of
 from app.web.languages.catalogues import faults, identity, mo_bytes, read, renewed, take, template
 from app.web.languages.known import LANGUAGES, TRANSLATED
 
 GAPS = re.compile(r"\{[a-z][a-z0-9_]*\}|%\([a-z_0-9]+\)[sd]")
 TAGS = re.compile(r"</?[a-z][a-z0-9]*[^>]*>")
+IN_PLACE = ("code_inline", "html_inline", "image", "link_open")
 CEDILLA = re.compile("[şţŞŢ]")
 
 PLURAL_FORMS = {"tr": 1, "de": 2, "es": 2, "ro": 3, "zh_Hans": 1}
@@ -60,6 +63,30 @@ def test_gaps_are_those_of_the_english_text(stored: Catalog) -> None:
 def test_tags_are_those_of_the_english_text(stored: Catalog) -> None:
     for _, english, form in translated(stored):
         assert Counter(TAGS.findall(form)) == Counter(TAGS.findall(english)), form
+
+
+def marks(markdown: str) -> Counter[str]:
+    """Return what is no word in a block: links, code, pictures, anchors, and how often it stresses."""
+    children = [
+        child for token in MarkdownIt("commonmark").parseInline(markdown) for child in token.children or ()
+    ]
+    found = Counter(child.type for child in children if child.type in ("strong_open", "em_open"))
+    for child in children:
+        if child.type in IN_PLACE:
+            found[f"{child.attrs.get('href', '')}{child.attrs.get('src', '')} {_own(child)}"] += 1
+    return found
+
+
+def _own(child: Token) -> str:
+    return "" if child.type == "image" else child.content
+
+
+def test_blocks_of_documents_have_the_links_code_pictures_and_anchors_of_the_english_ones(
+    stored: Catalog,
+) -> None:
+    blocks = [(english, form) for text, english, form in translated(stored) if text.context == DOCUMENTS]
+    assert len(blocks) > 500
+    assert [form for english, form in blocks if marks(form) != marks(english)] == []
 
 
 def test_per_cent_signs_format_as_in_english(stored: Catalog) -> None:

@@ -32,7 +32,7 @@ def test_marked_texts_of_scripts_are_found() -> None:
     assert "Tracking" in script_texts()
 
 
-def test_texts_come_from_templates_scripts_and_modules() -> None:
+def test_texts_come_from_templates_scripts_modules_and_documents() -> None:
     found = list(texts())
-    assert {text.path.split("/")[0] for text in found} == {"templates", "static", "app"}
+    assert {text.path.split("/")[0] for text in found} == {"templates", "static", "app", "docs"}
     assert any(text.many for text in found)

@@ -1,0 +1,110 @@
+"""Documents in the reader's language: the same sections, anchors, links, pictures; found by their words."""
+
+import re
+from collections.abc import AsyncIterator, Iterator
+from contextlib import contextmanager
+
+import httpx
+import pytest
+
+from app.web import guide
+from app.web.languages import CATALOGUE
+from app.web.languages.catalogue import BLOCK, catalogue_of
+from app.web.languages.known import ENGLISH, LANGUAGES, TRANSLATED
+from tests.fakes import FakeMachine, FakeReader, fake_app, serving
+
+MOST_BYTES = 40_000
+"""The document itself as it travels; what all pages share comes to it, and 150 kB are for the whole."""
+LINKS = re.compile(r'(?:href|src|id)="([^"]*)"')
+
+
+@contextmanager
+def speaking(code: str) -> Iterator[None]:
+    """Answer in a language."""
+    before = CATALOGUE.set(catalogue_of(code))
+    yield
+    CATALOGUE.reset(before)
+
+
+def sections(document: str, code: str) -> tuple[guide.GuideSection, ...]:
+    with speaking(code):
+        return guide.sections(document)
+
+
+@pytest.fixture
+async def client() -> AsyncIterator[httpx.AsyncClient]:
+    async with serving(fake_app(FakeMachine(), FakeReader())) as browser:
+        yield browser
+
+
+@pytest.mark.parametrize("code", TRANSLATED)
+@pytest.mark.parametrize("document", guide.SPOKEN)
+def test_a_document_has_every_section_with_the_english_anchor(document: str, code: str) -> None:
+    spoken, english = sections(document, code), sections(document, ENGLISH.code)
+    assert [(one.anchor, one.level) for one in spoken] == [(one.anchor, one.level) for one in english]
+    assert [sorted(LINKS.findall(one.html)) for one in spoken] == [
+        sorted(LINKS.findall(one.html)) for one in english
+    ]
+    assert sum(one.html != other.html for one, other in zip(spoken, english, strict=True)) == len(english)
+
+
+@pytest.mark.parametrize("code", TRANSLATED)
+def test_no_mark_of_markdown_is_left_in_the_text(code: str) -> None:
+    for document in guide.SPOKEN:
+        for spoken, english in zip(sections(document, code), sections(document, ENGLISH.code), strict=True):
+            for mark in ("*", "](", "`"):
+                assert spoken.html.count(mark) == english.html.count(mark), spoken.html
+
+
+def test_anchors_are_those_that_links_to_english_headings_have() -> None:
+    anchors = [one.anchor for one in sections(guide.GUIDE, "tr")]
+    assert anchors[:4] == ["operators-guide", "the-screen", "commissioning-five-steps", "1-location"]
+    assert len(anchors) == len(set(anchors))
+
+
+async def test_the_guide_speaks_the_language_of_the_page(client: httpx.AsyncClient) -> None:
+    page = (await client.get("/guide", headers={"Accept-Language": "tr"})).text
+    title = sections(guide.GUIDE, "tr")[0].title
+    assert f'<h1 id="heading" tabindex="-1">{title}</h1>' in page
+    assert '<section class="guide-section" id="the-screen"' in page
+    assert '<article class="panel guide-text">' in page
+
+
+@pytest.mark.parametrize("code", LANGUAGES)
+async def test_the_guide_is_as_light_in_every_language(code: str, client: httpx.AsyncClient) -> None:
+    answer = await client.get("/guide", headers={"Cookie": f"language={code}", "Accept-Encoding": "gzip"})
+    assert f'<html lang="{LANGUAGES[code].tag}"' in answer.text
+    assert answer.num_bytes_downloaded < MOST_BYTES
+
+
+@pytest.mark.parametrize("name", [name for name in guide.TITLES if name not in guide.SPOKEN])
+async def test_a_document_that_is_not_translated_says_so(name: str, client: httpx.AsyncClient) -> None:
+    note = catalogue_of("es").gettext("This document is there in English only.")
+    page = (await client.get(f"/guide/{name}", headers={"Accept-Language": "es"})).text
+    assert note != "This document is there in English only."
+    assert note in page
+    assert '<article class="panel guide-text" lang="en" translate="no">' in page
+    assert "in English only" not in (await client.get(f"/guide/{name}")).text
+
+
+@pytest.mark.parametrize("code", TRANSLATED)
+def test_words_of_the_reader_and_english_ones_find_a_section(code: str) -> None:
+    with speaking(code):
+        english, spoken = guide.sections("glossary")[0].title, catalogue_of(code).block("watchdog")
+        assert ("glossary", guide.sections("glossary")[0]) in guide.found(spoken)
+        assert ("glossary", guide.sections("glossary")[0]) in guide.found("Watchdog")
+        assert ("glossary", guide.sections("glossary")[0]) in guide.found(english.upper())
+
+
+@pytest.mark.parametrize(
+    ("typed", "written"),
+    [("KIZ", "kız"), ("istanbul", "İstanbul"), ("rasarit", "răsărit"), ("STRASSE", "Straße"), ("ano", "año")],
+)
+def test_marks_and_capitals_need_not_be_typed(typed: str, written: str) -> None:
+    assert guide.folded(typed) == guide.folded(written)
+
+
+def test_documents_are_read_only_when_somebody_opens_one() -> None:
+    texts = catalogue_of("de").texts
+    assert [text for text in texts if str(text).startswith(BLOCK)] == []
+    assert catalogue_of("de").block("The screen") != "The screen"
