@@ -102,6 +102,7 @@ ORDERS: dict[str, Permission] = {
     "set_soft_limit": Permission.CONFIGURE,
     "restore_drive": Permission.CONFIGURE,
     "undo_settings": Permission.CONFIGURE,
+    "undo_site_settings": Permission.CONFIGURE,
     "check_connection": Permission.CONFIGURE,
     "set_location": Permission.CONFIGURE,
     "set_horizon": Permission.CONFIGURE,

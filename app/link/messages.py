@@ -7,7 +7,7 @@ from typing import Literal, Protocol
 
 from app.link.place_orders import SetHorizon
 from app.link.record_orders import RecordOrder
-from app.link.settings_orders import UndoSettings
+from app.link.settings_orders import UndoSettings, UndoSiteSettings
 from app.link.weather_orders import ReportWeather, SetMetStation, SetWeatherWindows, SimulateWeather
 from app.sun.position import Location
 from app.tracker.axes import Axis
@@ -328,7 +328,8 @@ SiteCommand = (
     SetLocation | SetHorizon | SetClock | RenameSite | AddTracker | ConfigureTracker | RemoveTracker
     | ConfirmStep | SavePlan | TakeSighting | ApplySightings | StopAll | SaveRecording | DeleteRecording
     | DriveOrder | ReportWeather | SetMetStation | SimulateWeather | SetWeatherWindows | AlarmOrder
-    | NotificationOrder | ControlOrder | LockOrder | RecordOrder | UndoSettings | PlayFault | ClearFaults
+    | NotificationOrder | ControlOrder | LockOrder | RecordOrder | UndoSettings | UndoSiteSettings
+    | PlayFault | ClearFaults
 )  # fmt: skip
 
 

@@ -10,3 +10,10 @@ class UndoSettings:
 
     tracker_id: str
     kind: Literal["undo_settings"] = "undo_settings"
+
+
+@dataclass(frozen=True, slots=True)
+class UndoSiteSettings:
+    """Set what holds for the site, its place and clock aside, as it was before it was changed last."""
+
+    kind: Literal["undo_site_settings"] = "undo_site_settings"

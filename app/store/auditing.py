@@ -15,6 +15,8 @@ from app.store.tables import audit
 
 TEXTS = ("actor", "via", "address", "action", "object", "result")
 LONGEST_VIA = 50
+KEPT_FOR_UNDO = {"former", "former_site"}
+"""What the site keeps beside a change so that it can be undone; nobody decided that."""
 
 
 @dataclass(slots=True)
@@ -78,5 +80,8 @@ def _storable(entry: Entry) -> Entry:
     return Entry(**values | {"via": values["via"][:LONGEST_VIA]})
 
 
-def _loaded(document: str | None) -> object:
-    return {} if document is None else json.loads(document)
+def _loaded(document: str | None) -> dict[str, Any]:
+    if document is None:
+        return {}
+    found = json.loads(document)
+    return {name: value for name, value in found.items() if name not in KEPT_FOR_UNDO}

@@ -171,11 +171,24 @@ class MetStation:
 
 
 @dataclass(frozen=True, slots=True)
+class SiteSettings:
+    """What is set for the whole site, its place and clock aside."""
+
+    name: str
+    horizon: Horizon
+    met_station: MetStation | None
+    simulated_weather: SimulatedStation | None
+    weather_windows: WeatherWindows
+    notifications: Notifications
+
+
+@dataclass(frozen=True, slots=True)
 class SiteState:
     """Everything stored about the site that its trackers share; it has one weather station at most.
 
     `weather_windows` None are the usual ones, with the age that the machine was set up with. `former` are the
-    settings of trackers before their last change, their drives aside, so that it can be undone.
+    settings of trackers before their last change, their drives aside, so that it can be undone; `former_site`
+    are those of the site.
     """
 
     name: str = "Solar site"
@@ -190,3 +203,4 @@ class SiteState:
     weather_windows: WeatherWindows | None = None
     horizon: Horizon = FLAT
     former: dict[str, TrackerConfig] = field(default_factory=dict)
+    former_site: SiteSettings | None = None

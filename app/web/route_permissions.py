@@ -232,6 +232,8 @@ _TABLE: dict[Permission, str] = {
         POST /site/notifications/test
         PUT /api/v1/site/notifications
         POST /api/v1/site/notifications/{channel}/test
+        POST /site/undo
+        POST /api/v1/site/undo
         POST /site/simulated-weather
         POST /site/simulated-weather/end
         POST /site/weather-station

@@ -3,7 +3,7 @@
 import json
 from collections.abc import AsyncIterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from structlog.testing import capture_logs
 
 from app.audit.chain import first_break
 from app.audit.entry import Entry
-from app.link.messages import RenameSite, SetLocation, StopAll
+from app.link.messages import ConfigureTracker, RenameSite, SetLocation, StopAll
 from app.link.weather_orders import ReportWeather
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
@@ -67,6 +67,14 @@ async def test_a_setting_tells_who_what_before_and_after(audited: Audited) -> No
     assert second.clock_quality == "clock_unset"
     assert second.boot_id == "boot"
     assert second.mono_ms >= first.mono_ms
+
+
+async def test_what_is_kept_for_undoing_is_no_change_of_its_own(audited: Audited) -> None:
+    config = audited.plant.site.model.tracker("T1").config
+    await audited.plant.ask(ConfigureTracker(replace(config, deadband_deg=1.5)))
+    (entry,) = audited.entries()
+    assert json.loads(entry.before) == {"config.deadband_deg": config.deadband_deg}
+    assert json.loads(entry.after) == {"config.deadband_deg": 1.5}
 
 
 async def test_commands_tell_what_they_changed_and_refusals_why(audited: Audited) -> None:

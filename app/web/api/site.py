@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 
 from app.instants import Instant
 from app.link.messages import RenameSite, SetClock, SetLocation
+from app.link.settings_orders import UndoSiteSettings
 from app.sun.position import Location
 from app.tracker.reason import Reason
 from app.tracker.snapshot import SiteSnapshot
@@ -83,6 +84,17 @@ async def read_site(snapshot: SnapshotDep) -> SiteSnapshot:
 async def rename_site(change: SiteName, sender: SenderDep) -> SiteSnapshot:
     """Give the site another name."""
     return await sender.send(RenameSite(change.name))
+
+
+@router.post(
+    "/undo",
+    operation_id="undo_site_settings",
+    summary="Undo the last change of the site's settings",
+    responses=REFUSED,
+)
+async def undo_site_settings(sender: SenderDep) -> SiteSnapshot:
+    """Set name, horizon, weather and notifications as they were before the last change; once more redoes."""
+    return await sender.send(UndoSiteSettings())
 
 
 @router.put("/location", summary="Step 1: set the location", responses=REFUSED)

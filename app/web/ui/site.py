@@ -8,6 +8,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.link.messages import MachineUnreachable, SiteDetail
+from app.link.settings_orders import UndoSiteSettings
 from app.link.weather_orders import SetMetStation, SetWeatherWindows, SimulateWeather
 from app.tracker.config import DriveKind
 from app.tracker.memory import SiteState
@@ -111,6 +112,13 @@ async def weather_windows(
         return await _refused(press, machine, "windows", typed)
     await press.send(SetWeatherWindows(windows))
     return press.answer("The weather is judged by these windows and ages from now on.")
+
+
+@router.post("/undo")
+async def undo(press: PressDep) -> Response:
+    """Set the site as it was before its settings were changed last."""
+    await press.send(UndoSiteSettings())
+    return go(press.request, press.back)
 
 
 async def _refused(press: Press, machine: MachineDep, block: str, typed: Typed) -> Response:
