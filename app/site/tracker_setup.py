@@ -3,6 +3,7 @@
 from dataclasses import replace
 from datetime import datetime
 
+from app.site.auditing import as_action
 from app.site.checks import check_config, check_name
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
@@ -89,7 +90,8 @@ async def undo(model: SiteModel, tracker_id: str, actor: str) -> tuple[Event, ..
 
 
 async def _keep_former(model: SiteModel, former: dict[str, TrackerConfig]) -> None:
-    await model.ledger.save_site(replace(model.state, former=former), ())
+    with as_action("keep_former"):
+        await model.ledger.save_site(replace(model.state, former=former), ())
     model.state = replace(model.state, former=former)
 
 
