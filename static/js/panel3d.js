@@ -29,10 +29,10 @@ export class PanelScene {
     this.settle = settle;
     this.frame = 0;
     this.paintedAt = 0;
-    this.seen = true;
+    this.seen = false;
     this.sharpness = SHARPEST;
     this.pacedMs = 0;
-    this.#begin();
+    this.painter = null;
     this.#listen();
   }
 
@@ -105,9 +105,16 @@ export class PanelScene {
     });
     for (const name of ["pointerup", "pointercancel"]) holder.addEventListener(name, () => { from = null; });
     holder.addEventListener("keydown", (event) => this.#key(event));
-    addEventListener("theme", () => { this.painter.repaint(); this.draw(); });
+    addEventListener("theme", () => { this.painter?.repaint(); this.draw(); });
     new ResizeObserver(() => this.draw()).observe(holder);
-    new IntersectionObserver((seen) => { this.seen = seen.at(-1).isIntersecting; this.draw(); }).observe(holder);
+    new IntersectionObserver((seen) => this.#look(seen.at(-1).isIntersecting)).observe(holder);
+  }
+
+  // What is below the screen's edge is not painted, and not even prepared.
+  #look(seen) {
+    this.seen = seen;
+    if (seen && !this.painter) this.#begin();
+    this.draw();
   }
 
   #key(event) {

@@ -210,13 +210,25 @@ def test_the_scene_shows_the_snapshots_direction(panel: Panel) -> None:
 
 def test_it_is_painted_by_webgl_and_only_when_something_changes(panel: Panel) -> None:
     page = panel.open(T1)
-    assert page.locator(".scene").get_attribute("data-painter") == "webgl2"
+    page.wait_for_selector('.scene[data-painter="webgl2"]')
     before = settled(page)
     assert share(page, CELL) > 0.02, "the panel's cells are on the screen"
     page.wait_for_timeout(600)
     assert frames(page) - before <= 1, "it stands still, so nothing is painted"
     panel.machine.trackers["T1"].position = Pair(195.0, 50.0)
     until(page, lambda: frames(page) > before + 4)
+
+
+def test_below_the_screens_edge_nothing_is_painted_or_prepared(panel: Panel) -> None:
+    page = panel.open(T1)
+    page.set_viewport_size({"width": 390, "height": 300})
+    page.reload()
+    page.wait_for_selector('html[data-link="live"]')
+    until(page, lambda: page.locator(".scene-keys").count() == 1)
+    assert page.locator(".scene").get_attribute("data-painter") is None
+    page.locator(".scene").scroll_into_view_if_needed()
+    page.wait_for_selector('.scene[data-painter="webgl2"]')
+    until(page, lambda: frames(page) > 0)
 
 
 def test_it_turns_by_mouse_keyboard_and_keys(panel: Panel) -> None:
@@ -270,7 +282,7 @@ def test_who_wants_no_motion_sees_none(panel: Panel) -> None:
 
 def test_without_webgl_the_same_scene_is_drawn(panel: Panel) -> None:
     page = panel.open(T1, init=NO_WEBGL)
-    assert page.locator(".scene").get_attribute("data-painter") == "drawn"
+    page.wait_for_selector('.scene[data-painter="drawn"]')
     settled(page)
     assert share(page, CELL) > 0.02
     page.locator(".scene").screenshot(path=SCREENS / "scene-drawn.png")
