@@ -71,8 +71,9 @@ async def test_a_setting_tells_who_what_before_and_after(audited: Audited) -> No
 
 async def test_what_is_kept_for_undoing_is_no_change_of_its_own(audited: Audited) -> None:
     config = audited.plant.site.model.tracker("T1").config
+    await audited.plant.ask(RenameSite("South field"))
     await audited.plant.ask(ConfigureTracker(replace(config, deadband_deg=1.5)))
-    (entry,) = audited.entries()
+    _, entry = audited.entries()
     assert json.loads(entry.before) == {"config.deadband_deg": config.deadband_deg}
     assert json.loads(entry.after) == {"config.deadband_deg": 1.5}
 
