@@ -126,36 +126,63 @@ def listen(page: Page, complaints: list[str]) -> None:
     page.on("pageerror", lambda error: complaints.append(f"uncaught: {error}"))
 
 
+@dataclass
+class Visitors:
+    """The browsers of one file's tests, one a kind of screen; each keeps what the pages of a panel share."""
+
+    browser: Browser
+    known: dict[tuple[str, str, bool, str], BrowserContext] = field(default_factory=dict)
+
+    def at(self, url: str, size: str, *, touch: bool, theme: str) -> BrowserContext:
+        """Return the browser with which a panel is visited on such a screen."""
+        kind = (url, size, touch, theme)
+        if kind not in self.known:
+            width, height = SIZES[size]
+            self.known[kind] = self.browser.new_context(
+                viewport={"width": width, "height": height},
+                has_touch=touch,
+                locale="en-GB",
+                timezone_id="Europe/Istanbul",
+            )
+            self.known[kind].add_cookies([{"name": "theme", "value": theme, "url": url}])
+            self.known[kind].set_default_timeout(PATIENCE_MS)
+        return self.known[kind]
+
+    def leave(self, stays: str = "") -> None:
+        """Close the browsers of all panels but one."""
+        for kind in [kind for kind in self.known if kind[0] != stays]:
+            self.known.pop(kind).close()
+
+
+@pytest.fixture(scope="module")
+def visitors(browser: Browser) -> Iterator[Visitors]:
+    found = Visitors(browser)
+    yield found
+    found.leave()
+
+
 @pytest.fixture
-def opened(browser: Browser, plant: Plant) -> Iterator[Opened]:
+def opened(visitors: Visitors, plant: Plant) -> Iterator[Opened]:
     """Open a page; at the end of the test any console error, any uncaught error fails it."""
-    contexts: list[BrowserContext] = []
+    pages: list[Page] = []
     complaints: list[str] = []
     allowed: list[str] = []
+    visitors.leave(plant.url)
 
     def open_page(
         path: str, size: str = "desk", *, touch: bool = False, theme: str = "day", allow: tuple[str, ...] = ()
     ) -> Page:
-        width, height = SIZES[size]
-        context = browser.new_context(
-            viewport={"width": width, "height": height},
-            has_touch=touch,
-            locale="en-GB",
-            timezone_id="Europe/Istanbul",
-        )
-        contexts.append(context)
         allowed.extend(allow)
-        context.add_cookies([{"name": "theme", "value": theme, "url": plant.url}])
-        context.set_default_timeout(PATIENCE_MS)
-        page = context.new_page()
+        page = visitors.at(plant.url, size, touch=touch, theme=theme).new_page()
+        pages.append(page)
         listen(page, complaints)
         page.goto(plant.url + path)
         page.wait_for_selector('html[data-link="live"]')
         return page
 
     yield open_page
-    for context in contexts:
-        context.close()
+    for page in pages:
+        page.close()
     assert [one for one in complaints if not any(words in one for words in allowed)] == []
 
 

@@ -7,6 +7,8 @@ from typing import Protocol
 from playwright.sync_api import Locator, Page, TimeoutError
 
 HOLD_MS = 700
+LINK_MEASURED = '#link-quality:not([data-level="0"])'
+"""Before a page has measured its link, a held key begins nothing."""
 TOLD = '[role="alert"], .reasons, .field-error, .outcome, .kept-note, #link-words, #place-doubts, h1'
 """Where a page says how things stand, and why something is refused."""
 
@@ -60,6 +62,7 @@ class Mouse:
         field.fill(text)
 
     def hold(self, key: Locator) -> None:
+        self.page.wait_for_selector(LINK_MEASURED)
         self.page.mouse.move(*middle(key))
         self.page.mouse.down()
         self.page.wait_for_timeout(HOLD_MS)
@@ -81,6 +84,7 @@ class Finger:
         field.fill(text)
 
     def hold(self, key: Locator) -> None:
+        self.page.wait_for_selector(LINK_MEASURED)
         x, y = middle(key)
         session = self.page.context.new_cdp_session(self.page)
         point = {"x": x, "y": y, "id": 0}
@@ -107,6 +111,7 @@ class Keyboard:
         self.page.keyboard.type(text)
 
     def hold(self, key: Locator) -> None:
+        self.page.wait_for_selector(LINK_MEASURED)
         key.focus()
         self.page.keyboard.down(" ")
         self.page.wait_for_timeout(HOLD_MS)

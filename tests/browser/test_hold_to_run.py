@@ -1,12 +1,13 @@
 """Hold-to-run: the axis moves while the key is held, and every way of letting go ends it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import pytest
 from playwright.sync_api import CDPSession, Page
 
 from app.tracker.snapshot import ActivityName
-from tests.browser.conftest import Opened, Plant
+from tests.browser.conftest import Opened, Plant, running
+from tests.browser.hands import LINK_MEASURED
 
 HOMING = "/trackers/T1/commissioning/homing"
 KEY = '[data-jog="azimuth"][data-direction="1"]'
@@ -14,6 +15,20 @@ JOGGING = ActivityName.JOGGING
 HOLD_MS = 1500
 TRIES = 4
 SETTLE_MS = 400
+
+
+@pytest.fixture(scope="module")
+def panel() -> Iterator[Plant]:
+    """One panel for all: after each test its axes rest."""
+    with running() as served:
+        yield served
+
+
+@pytest.fixture
+def plant(panel: Plant) -> Plant:
+    """The panel as if nothing had been asked of it yet."""
+    panel.machine.orders.clear()
+    return panel
 
 
 def middle(page: Page, selector: str = KEY) -> tuple[float, float]:
@@ -32,6 +47,7 @@ def is_at_rest(plant: Plant, page: Page) -> bool:
 
 def hold(page: Page, plant: Plant, begin: Callable[[], None], release: Callable[[], None]) -> None:
     """Press until the axis moves; a busy computer ends a hold, as it must, and one presses again."""
+    page.wait_for_selector(LINK_MEASURED)
     for _ in range(TRIES):
         sent = len(plant.orders("jog"))
         begin()

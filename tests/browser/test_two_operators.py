@@ -23,7 +23,7 @@ from app.tracker.memory import SiteState
 from app.tracker.snapshot import ActivityName, Event, EventKind
 from app.web.main import create_app
 from tests.access.fake_hasher import FakeHasher
-from tests.browser.hands import middle
+from tests.browser.hands import LINK_MEASURED, middle
 from tests.e2e.proxy import network
 from tests.fake_store import FakeReader
 from tests.site.plant import FIRST
@@ -124,6 +124,7 @@ def until(page: Page, reached: Callable[[], bool], within_ms: int = 12_000) -> N
 
 
 def hold(page: Page, panel: Panel) -> None:
+    page.wait_for_selector(LINK_MEASURED)
     page.mouse.move(*middle(page.locator(KEY)))
     page.mouse.down()
     until(page, lambda: panel.tracker().activity is ActivityName.JOGGING)

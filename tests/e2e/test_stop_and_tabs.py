@@ -127,6 +127,7 @@ def lost_after_s(tab: Tab, at_ms: float) -> float:
 
 def watch_link(tab: Tab) -> None:
     tab.until("document.querySelectorAll('[data-action]:not(:disabled)').length > 0", "keys work")
+    tab.until("(document.getElementById('link-quality')?.dataset.level ?? '1') !== '0'", "held keys do, too")
     tab.evaluate(WATCH_LINK)
 
 
