@@ -73,9 +73,10 @@ async def test_what_is_kept_for_undoing_is_no_change_of_its_own(audited: Audited
     config = audited.plant.site.model.tracker("T1").config
     await audited.plant.ask(RenameSite("South field"))
     await audited.plant.ask(ConfigureTracker(replace(config, deadband_deg=1.5)))
-    _, entry = audited.entries()
-    assert json.loads(entry.before) == {"config.deadband_deg": config.deadband_deg}
-    assert json.loads(entry.after) == {"config.deadband_deg": 1.5}
+    await audited.plant.ask(ConfigureTracker(replace(config, deadband_deg=2.0)))
+    _, _, entry = audited.entries()
+    assert json.loads(entry.before) == {"config.deadband_deg": 1.5}
+    assert json.loads(entry.after) == {"config.deadband_deg": 2.0}
 
 
 async def test_commands_tell_what_they_changed_and_refusals_why(audited: Audited) -> None:
