@@ -72,7 +72,7 @@ ENTRIES = (
     ),
     Entry(
         "config_rejected", 2, Group.MOTION, "Stored settings rejected",
-        "The tracker stands still and does not stow; others stand where stored ones did not fit.",
+        "The tracker stands still and does not stow; where stored settings did not fit, others hold.",
         "Compare both on the tracker's Settings page, correct them, save, and set the zero again.",
     ),
     Entry(
@@ -282,7 +282,7 @@ ENTRIES = (
         "memory_high", 3, Group.LOAD, "Memory runs short",
         "At twice its limit the system may end the controller service; drives stop then, tracking goes on "
         "after its restart.",
-        "Press Stop when the site can do without tracking for seconds: it starts again by itself then.",
+        "Press Stop when the site can do without tracking for seconds: the controller service then starts again by itself. Afterwards start tracking again.",
         SHORT, LONG,
     ),
     Entry(
