@@ -195,6 +195,14 @@ class _Pages(RendererHTML):
         """Return the end of a table."""
         return "</table></div>"
 
+    def th_open(self, tokens: Sequence[Token], at: int, options: OptionsDict, env: EnvType) -> str:
+        """Return a heading of a column; which columns are numbers is said by a class, not by a style."""
+        return _cell(tokens[at])
+
+    def td_open(self, tokens: Sequence[Token], at: int, options: OptionsDict, env: EnvType) -> str:
+        """Return a cell as the heading of its column."""
+        return _cell(tokens[at])
+
     def fence(self, tokens: Sequence[Token], at: int, options: OptionsDict, env: EnvType) -> str:
         """Return code that may be wider than the page."""
         code, label = escape(tokens[at].content), escape(env["catalogue"].gettext(COMMANDS))
@@ -208,6 +216,11 @@ class _Pages(RendererHTML):
         if match is None:
             return str(words)
         return f'<img src="/guide/pictures/{match[1]}" loading="lazy" alt="{words}">'
+
+
+def _cell(token: Token) -> str:
+    aligned = "right" in str(token.attrs.get("style", ""))
+    return f'<{token.tag} class="number">' if aligned else f"<{token.tag}>"
 
 
 def here(href: str) -> str:

@@ -144,3 +144,8 @@ async def test_components_stand_in_every_theme(client: httpx.AsyncClient) -> Non
     page = (await client.get("/components")).text
     assert re.findall(r'class="specimen" data-theme="(\w+)"', page) == ["day", "sun", "night"]
     assert page.count('aria-invalid="true"') == 3
+
+
+@pytest.mark.parametrize("document", guide.TITLES)
+def test_no_document_has_a_style_that_the_policy_of_the_pages_forbids(document: str) -> None:
+    assert not [part.anchor for part in guide.sections(document) if "style=" in part.html]
