@@ -12,7 +12,7 @@ BIN := $(VENV)/bin
 # Tests that judge how punctual things are, each with the computer to itself; the others share the cores.
 ALONE := tests/drives/timed $(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk kills process)) \
 	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop two_operators walk)) \
-	$(addprefix tests/e2e/test_,$(addsuffix .py,drive_lost first_time hold_to_run kill shows stop_and_tabs))
+	$(addprefix tests/e2e/test_,$(addsuffix .py,drive_lost hold_to_run kill stop_and_tabs))
 
 .DEFAULT_GOAL := help
 .PHONY: help setup fast run test check translations fuzz bench format lock browser system-packages clean

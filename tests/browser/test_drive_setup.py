@@ -1,17 +1,17 @@
 """A technician connects a drive over Modbus TCP and proves it on the real service, by mouse and by finger."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import httpx
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.hands import Finger, Hands, Mouse
-from tests.browser.test_walk import Picture, add_tracker, service, walker
+from tests.browser.walking import Picture, Walker, add_tracker, rooms, service, walker
 from tests.e2e.product import DriveSim
 
-__all__ = ["service", "walker"]
+__all__ = ["rooms", "service", "walker"]
 
 
 @pytest.fixture
@@ -114,7 +114,7 @@ def arrive(page: Page, hands: Hands, service: str, tracker_id: str) -> str:
 
 @pytest.mark.timeout(180)
 def test_a_drive_is_connected_and_proven_with_a_mouse(
-    walker: Callable[[str, str], Page], service: str, sim_port: int, picture: Picture
+    walker: Walker, service: str, sim_port: int, picture: Picture
 ) -> None:
     page = walker("desk", "mouse")
     hands = Mouse(page)
@@ -135,7 +135,7 @@ def test_a_drive_is_connected_and_proven_with_a_mouse(
 
 @pytest.mark.timeout(180)
 def test_a_drive_is_connected_and_its_watchdog_tested_with_a_finger(
-    walker: Callable[[str, str], Page], service: str, sim_port: int, picture: Picture
+    walker: Walker, service: str, sim_port: int, picture: Picture
 ) -> None:
     page = walker("phone", "finger")
     hands = Finger(page)

@@ -41,7 +41,7 @@ class Newcomer:
 
     def tap(self, thing: Locator, words: str) -> None:
         """Tap what can be tapped."""
-        expect(thing).to_be_enabled(timeout=20_000)
+        expect(thing).to_be_enabled()
         thing.click()
         self.taps += 1
         self.tell(f"Tap *{words}*.")
