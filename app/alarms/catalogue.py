@@ -282,7 +282,8 @@ ENTRIES = (
         "memory_high", 3, Group.LOAD, "Memory runs short",
         "At twice its limit the system may end the controller service; drives stop then, tracking goes on "
         "after its restart.",
-        "Press Stop when the site can do without tracking for seconds: the controller service then starts again by itself. Afterwards start tracking again.",
+        "Press Stop when the site can do without tracking for seconds: the controller service then starts "
+        "again by itself. Afterwards start tracking again.",
         SHORT, LONG,
     ),
     Entry(

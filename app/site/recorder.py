@@ -190,6 +190,7 @@ def _day_info(loop: TrackerLoop, site: SiteState, location: Location, at: dateti
         mount=config.mount,
         first_deg=config.turning_deg[0],
         second_deg=config.turning_deg[1],
+        horizon=site.horizon,
     )
 
 
@@ -218,4 +219,5 @@ def _show_info(
         mount=config.mount,
         first_deg=config.turning_deg[0],
         second_deg=config.turning_deg[1],
+        horizon=site.horizon,
     )

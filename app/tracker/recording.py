@@ -7,6 +7,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from app.sun.horizon import FLAT, Horizon
 from app.sun.position import Location
 from app.tracker.config import MountConfig
 from app.tracker.mode import Mode
@@ -54,6 +55,7 @@ class RecordingInfo:
     """The head of a recording. `ended_at` is None while it runs; `outcome` says how it ended.
 
     `first_deg` and `second_deg` are the soft limits that the axes had then; None: not known, or no such axis.
+    `horizon` is what was entered for the site then.
     """
 
     recording_id: str
@@ -78,6 +80,7 @@ class RecordingInfo:
     mount: MountConfig = field(default_factory=MountConfig)
     first_deg: tuple[float, float] | None = None
     second_deg: tuple[float, float] | None = None
+    horizon: Horizon = FLAT
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,11 +6,12 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from typing import TypeVar
 
 from app.show.simulate import encoded, simulate
+from app.sun.horizon import FLAT, Horizon
 from app.sun.position import Location
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import Pointing
@@ -44,6 +45,7 @@ class SimulationRequest:
     step: timedelta
     title: str
     weather: WeatherDay | None = None
+    horizon: Horizon = FLAT
 
 
 class Simulations:
@@ -102,4 +104,4 @@ def simulated(request: SimulationRequest) -> Simulated:
         title=request.title,
         weather=request.weather,
     )
-    return info, encoded(frames)
+    return replace(info, horizon=request.horizon), encoded(frames)

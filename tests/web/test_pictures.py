@@ -135,6 +135,17 @@ async def test_the_horizon_is_kept_and_comes_back(panel: httpx.AsyncClient, mach
     assert read["points"][1] == {"azimuth_deg": 250.0, "elevation_deg": 22.0}
 
 
+async def test_a_recording_is_replayed_behind_the_horizon_of_its_time(
+    panel: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    head = machine.store.heads["day-1"]
+    path = f"/recordings/{head.recording_id}"
+    assert 'class="sp-skyline"' not in (await panel.get(path)).text
+    machine.store.heads["day-1"] = replace(head, horizon=HILLS)
+    assert 'class="sp-skyline"' in (await panel.get(path)).text
+    assert scene_recorded(machine.store.heads["day-1"], JUNE).horizon == HILLS.outline()
+
+
 @pytest.mark.parametrize(
     ("typed", "sentence"),
     [

@@ -148,6 +148,7 @@ async def simulate_span(
         step=timedelta(seconds=new.step_s),
         title=new.title,
         weather=weather,
+        horizon=(await machine.detail()).site.horizon,
     )
     try:
         info, chunks = await panel.simulations.run(request)

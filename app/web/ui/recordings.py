@@ -60,7 +60,7 @@ def player(
         info=info,
         other=_stored(reader, with_) if with_ else None,
         others=_others(reader, info),
-        diagram=diagram_of(info.location, info.time_zone, on, algorithm, WHOLE_SKY),
+        diagram=diagram_of(info.location, info.time_zone, on, algorithm, WHOLE_SKY, info.horizon),
         scene=scene_recorded(info, on),
         speeds=speeds,
         speed=speeds[0],

@@ -46,6 +46,7 @@ def scene_recorded(info: RecordingInfo, on: date) -> Scene:
         yaw=looked_from_deg(info.location),
         arc=arc(algorithm, info.location, on),
         hours=hours_of(algorithm, info.location, on, info.time_zone),
+        horizon=info.horizon.outline(),
     )
 
 

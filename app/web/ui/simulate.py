@@ -109,6 +109,7 @@ def _read(typed: Typed, detail: SiteDetail) -> SimulationRequest | None:
         step=STEP,
         title="",
         weather=weather,
+        horizon=detail.site.horizon,
     )
 
 
