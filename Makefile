@@ -11,7 +11,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 # Tests that judge how punctual things are, each with the computer to itself; the others share the cores.
 ALONE := tests/drives/timed $(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk kills process)) \
-	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop two_operators walk)) \
+	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop two_operators)) \
 	$(addprefix tests/e2e/test_,$(addsuffix .py,drive_lost hold_to_run kill stop_and_tabs))
 
 .DEFAULT_GOAL := help

@@ -7,8 +7,8 @@ from typing import Protocol
 from playwright.sync_api import Locator, Page, TimeoutError
 
 HOLD_MS = 700
-LINK_MEASURED = '#link-quality:not([data-level="0"])'
-"""Before a page has measured its link, a held key begins nothing."""
+LINK_MEASURED = '#link-quality:is([data-level="1"], [data-level="2"])'
+"""Before a page has measured its link, and while it is too slow, a held key begins nothing."""
 TOLD = '[role="alert"], .reasons, .field-error, .outcome, .kept-note, #link-words, #place-doubts, h1'
 """Where a page says how things stand, and why something is refused."""
 

@@ -16,10 +16,11 @@ from app.drives.factory import DriveFactory
 from app.link.client import LinkClient
 from app.link.messages import ConfigureTracker, MachineUnreachable, Order, SetClock, SetLocation, SiteCommand
 from app.sun.position import Location
-from app.tracker.commands import Command, Home
+from app.tracker.commands import Command, SetZero
 from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
 from app.tracker.motion import Feedback
 from app.tracker.snapshot import ActivityName, SiteSnapshot, Snapshot
+from tests.e2e.product import DRIVE_SIM
 from tests.ports import free_port
 
 SAMSUN = Location(41.2867, 36.33, 4.0)
@@ -48,9 +49,8 @@ class DriveSimulator:
     async def start(cls) -> "DriveSimulator":
         port = free_port()
         process = await asyncio.create_subprocess_exec(
-            sys.executable, "-m", "app.cli", "drive-sim", "--tcp", f"127.0.0.1:{port}",
-            stdout=asyncio.subprocess.PIPE,
-        )  # fmt: skip
+            *DRIVE_SIM, "--tcp", f"127.0.0.1:{port}", stdout=asyncio.subprocess.PIPE
+        )
         assert process.stdout is not None
         async with asyncio.timeout(LONGEST_WAIT_S):
             await process.stdout.readline()
@@ -161,15 +161,13 @@ class Service:
         await eventually(is_so, within_s=within_s)
 
     async def commission(self, drive: DriveSimulator) -> None:
-        """Point T1 at a drive, give it a place, a clock and a zero."""
+        """Point T1 at a drive, give it a place and a clock, and call where its axes stand zero."""
         await self.ask(ConfigureTracker(config_for(drive.port)))
         await self.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
         await self.ask(SetClock("system"))
-        await self.until(lambda seen: not seen.actions["home"])
-        await self.ask(Home())
-        await self.until(
-            lambda seen: seen.home_trusted and seen.activity is ActivityName.HOLDING, within_s=100.0
-        )
+        await self.until(lambda seen: not seen.actions["zero"])
+        await self.ask(SetZero())
+        await self.until(lambda seen: seen.home_trusted and seen.activity is ActivityName.HOLDING)
 
     async def stop(self) -> int:
         await self.link.close()
