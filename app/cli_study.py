@@ -22,36 +22,38 @@ from app.tracker.config import Orientation, TrackerConfig
 HEAD = ("case", "kWh/m2", "kWh", "gain %", "drives kWh", "net kWh", "net gain %", "moves", "travel deg")
 DIED = "The process that worked the study out ended without a result; what it printed above says more."
 
+Latitude = Annotated[float, typer.Option(help="Latitude, degrees, north positive.")]
+Longitude = Annotated[float, typer.Option(help="Longitude, degrees, east positive.")]
+Altitude = Annotated[float, typer.Option(help="Metres above the sea.")]
+TimeZone = Annotated[str, typer.Option(help="IANA time zone; days are cut in its standard time.")]
+Strategies = Annotated[list[StudyStrategy] | None, typer.Option(help="One or several. [default: continuous]")]
+WeatherFile = Annotated[Path | None, typer.Option(help="Instead, a weather file: TMY3, EPW or PVGIS CSV.")]
+Sky = Annotated[Transposition, typer.Option(help="How the sky's light is spread.")]
+HeldElevation = Annotated[
+    float | None, typer.Option(help="Held elevation of the normal. [default: 90 less the latitude]")
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print everything that was found as JSON.")]
+
 
 def study(
-    lat: Annotated[float, typer.Option(help="Latitude, degrees, north positive.")],
-    lon: Annotated[float, typer.Option(help="Longitude, degrees, east positive.")],
+    lat: Latitude,
+    lon: Longitude,
     date: Annotated[str, typer.Option(help="The day, or any day of the year, as 2026-06-21.")],
-    altitude: Annotated[float, typer.Option(help="Metres above the sea.")] = 0.0,
-    time_zone: Annotated[
-        str, typer.Option(help="IANA time zone; days are cut in its standard time.")
-    ] = "UTC",
+    altitude: Altitude = 0.0,
+    time_zone: TimeZone = "UTC",
     span: Annotated[Span, typer.Option(help="A day, the twelve representative days, or a year.")] = Span.YEAR,
     mode: Annotated[list[StudyMode] | None, typer.Option(help="One or several. [default: all]")] = None,
-    strategy: Annotated[
-        list[StudyStrategy] | None, typer.Option(help="One or several. [default: continuous]")
-    ] = None,
+    strategy: Strategies = None,
     step: Annotated[int, typer.Option(help="Minutes between instants; a divisor of 60.")] = 10,
     light: Annotated[LightModel, typer.Option(help="A clear-sky model.")] = LightModel.INEICHEN,
-    weather: Annotated[
-        Path | None, typer.Option(help="Instead, a weather file: TMY3, EPW or PVGIS CSV.")
-    ] = None,
-    sky: Annotated[
-        Transposition, typer.Option(help="How the sky's light is spread.")
-    ] = Transposition.HAY_DAVIES,
+    weather: WeatherFile = None,
+    sky: Sky = Transposition.HAY_DAVIES,
     azimuth: Annotated[float | None, typer.Option(help="Held azimuth. [default: to the equator]")] = None,
-    elevation: Annotated[
-        float | None, typer.Option(help="Held elevation of the normal. [default: 90 less the latitude]")
-    ] = None,
+    elevation: HeldElevation = None,
     deadband: Annotated[float, typer.Option(help="Degrees.")] = 1.0,
     interval: Annotated[int, typer.Option(help="Minutes.")] = 20,
     *,
-    as_json: Annotated[bool, typer.Option("--json", help="Print everything that was found as JSON.")] = False,
+    as_json: AsJson = False,
     as_csv: Annotated[bool, typer.Option("--csv", help="Print the table as CSV.")] = False,
 ) -> None:
     """Compare what modes and strategies collect in a day, twelve days or a year."""
@@ -84,13 +86,13 @@ def study(
 
 
 def compare(
-    lat: Annotated[float, typer.Option(help="Latitude, degrees, north positive.")],
-    lon: Annotated[float, typer.Option(help="Longitude, degrees, east positive.")],
+    lat: Latitude,
+    lon: Longitude,
     year: Annotated[int, typer.Option(help="The year that is worked out.")],
-    altitude: Annotated[float, typer.Option(help="Metres above the sea.")] = 0.0,
+    altitude: Altitude = 0.0,
     turbidity: Annotated[float, typer.Option(min=1.0, max=10.0, help="Linke turbidity of the air.")] = 3.0,
     *,
-    as_json: Annotated[bool, typer.Option("--json", help="Print what was found as JSON.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Compare what each mode collects in a clear year, and what each deadband costs in motion and error."""
     place = Location(lat, lon, altitude)
