@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import bench
-from bench.table import Row
+from bench.table import NotMeasured, Row
 
 REPORT = Path(__file__).resolve().parents[1] / "docs" / "benchmarks.md"
 NOT_BENCHMARKS = {"__main__", "table"}
@@ -54,16 +54,22 @@ def renewed(report: str, measured: dict[str, str]) -> str:
 
 
 def main() -> int:
-    """Measure what was asked for, without names everything; the report is renewed after each."""
+    """Measure what was asked for, without names everything, and renew the report after each that could be."""
     arguments = argparse.ArgumentParser(prog="python -m bench", description=__doc__)
     arguments.add_argument("names", nargs="*", help="benchmarks to run (default: all)")
+    missing = 0
     for name in arguments.parse_args().names or names():
         print(f"measuring {name} ...", file=sys.stderr, flush=True)
-        text = section(name, importlib.import_module(f"bench.{name}").measure())
+        try:
+            text = section(name, importlib.import_module(f"bench.{name}").measure())
+        except NotMeasured as why:
+            print(f"{name} was not measured: {why}", file=sys.stderr, flush=True)
+            missing = 1
+            continue
         print(text, flush=True)
         before = REPORT.read_text() if REPORT.exists() else HEAD
         REPORT.write_text(renewed(before, {name: text}))
-    return 0
+    return missing
 
 
 if __name__ == "__main__":

@@ -1,6 +1,10 @@
-"""One row of the benchmark report."""
+"""One row of the benchmark report, and why there is none."""
 
 from dataclasses import dataclass
+
+
+class NotMeasured(Exception):
+    """What a benchmark needs is not there; says what."""
 
 
 @dataclass(frozen=True, slots=True)
