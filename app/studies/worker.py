@@ -37,9 +37,16 @@ def main() -> None:
     """Do the one job that comes in, and tell about it line by line."""
     os.nice(KINDLY)
     try:
-        tell(done(JOB.validate_json(sys.stdin.buffer.readline())))
+        tell(_answer(sys.stdin.buffer.readline()))
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # whoever asked has gone
+
+
+def _answer(line: bytes) -> Told:
+    try:
+        return done(JOB.validate_json(line))
     except (ValueError, OSError) as error:
-        tell(Refused(str(error)))
+        return Refused(str(error))
 
 
 def done(job: Job) -> Told:
