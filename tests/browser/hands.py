@@ -1,12 +1,14 @@
 """The three ways to use a page: mouse, finger and keyboard, behind one small set of words."""
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
 from playwright.sync_api import Locator, Page, TimeoutError
 
 HOLD_MS = 700
+LOOK_EVERY_MS = 50
 LINK_MEASURED = '#link-quality:is([data-level="1"], [data-level="2"])'
 """Before a page has measured its link, and while it is too slow, a held key begins nothing."""
 TOLD = '[role="alert"], .reasons, .field-error, .outcome, .kept-note, #link-words, #place-doubts, h1'
@@ -38,6 +40,15 @@ def arrive(page: Page, to: str) -> None:
         page.wait_for_selector('html[data-link="live"]')
     except TimeoutError as error:
         raise AssertionError(f"The page did not come to {to}: {shown(page)}.") from error
+
+
+def until(page: Page, reached: Callable[[], object], *, within_ms: int = 12_000) -> None:
+    """Return once something is so, or fail; the page goes on meanwhile."""
+    for _ in range(within_ms // LOOK_EVERY_MS):
+        if reached():
+            return
+        page.wait_for_timeout(LOOK_EVERY_MS)
+    raise AssertionError("It did not become so in time.")
 
 
 def middle(thing: Locator) -> tuple[float, float]:

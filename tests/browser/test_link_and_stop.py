@@ -4,6 +4,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Opened, Plant
+from tests.browser.hands import until
 
 LIVE = "/trackers/T1"
 T2 = "/trackers/T2"
@@ -14,7 +15,7 @@ def test_stop_goes_by_socket_and_by_post(opened: Opened, plant: Plant) -> None:
     page = opened(T2)
     page.locator("#stop-key").click()
     expect(page.locator("#stopped-words")).to_have_text("Stopped.")
-    page.wait_for_timeout(200)
+    until(page, lambda: len(plant.orders("stop")) >= 2)
     assert len(plant.orders("stop")) == 2
     assert plant.machine.trackers["T2"].memory.tracking_on is False
 

@@ -6,12 +6,11 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import PATIENCE_MS
-from tests.browser.hands import Mouse, arrive
+from tests.browser.hands import Mouse, arrive, until
 from tests.browser.walking import Picture, Walker, rooms, say_where, service, walker
 from tests.e2e.integrator import Integrator
 
 __all__ = ["rooms", "service", "walker"]
-LOOK_EVERY_MS = 50
 
 
 def ready(service: str) -> None:
@@ -25,11 +24,8 @@ def ready(service: str) -> None:
 
 def progressed(page: Page, bar: str, beyond: float) -> None:
     """Return once a bar of the page is beyond a value."""
-    for _ in range(PATIENCE_MS // LOOK_EVERY_MS):
-        if float(page.locator(bar).evaluate("bar => bar.value")) > beyond:
-            return
-        page.wait_for_timeout(LOOK_EVERY_MS)
-    pytest.fail(f"{bar} did not come beyond {beyond}.")
+    shown = page.locator(bar)
+    until(page, lambda: float(shown.evaluate("bar => bar.value")) > beyond, within_ms=PATIENCE_MS)
 
 
 @pytest.mark.timeout(180)

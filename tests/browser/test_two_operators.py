@@ -23,7 +23,7 @@ from app.tracker.memory import SiteState
 from app.tracker.snapshot import ActivityName, Event, EventKind
 from app.web.main import create_app
 from tests.access.fake_hasher import FakeHasher
-from tests.browser.hands import LINK_MEASURED, middle
+from tests.browser.hands import LINK_MEASURED, middle, until
 from tests.e2e.proxy import network
 from tests.fake_store import FakeReader
 from tests.site.plant import FIRST
@@ -113,14 +113,6 @@ def opened(browser: Browser, url: str, port: int, session: str) -> Page:
     page.goto(url + HOMING)
     page.wait_for_selector('html[data-link="live"]')
     return page
-
-
-def until(page: Page, reached: Callable[[], bool], within_ms: int = 12_000) -> None:
-    for _ in range(within_ms // 50):
-        if reached():
-            return
-        page.wait_for_timeout(50)
-    pytest.fail("It did not become so in time.")
 
 
 def hold(page: Page, panel: Panel) -> None:

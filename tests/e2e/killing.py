@@ -132,8 +132,10 @@ class Killing:
         assert self.integrator.get("/api/v1/site")["site_name"] == self.names[-1]
         told = [event["message"] for event in reversed(self.integrator.journal("tracker_changed"))]
         assert told[-len(self.names) :] == [f"The site is now called {name}." for name in self.names]
+        starts = len(self.names) + 1
+        eventually(lambda: len(self.integrator.journal("machine_started")) >= starts, "the start is told")
         started = self.integrator.journal("machine_started")
-        assert len(started) == len(self.names) + 1, self.product.deaths()
+        assert len(started) == starts, self.product.deaths()
         assert started[0]["data"]["clean"] is False
         assert "without warning" in started[0]["message"]
         path = self.product.data_dir / "heliopanel.db"

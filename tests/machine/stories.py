@@ -14,7 +14,7 @@ from app.store.store import JournalFilter
 from app.tracker.commands import GoToStart, RunShow
 from app.tracker.programs.show import ShowPlan
 from app.tracker.recording import RecordingKind
-from app.tracker.snapshot import ActivityName, EventKind, ShowPhase
+from app.tracker.snapshot import ActivityName, Event, EventKind, ShowPhase
 from tests.machine.service import SAMSUN, DriveSimulator, Service, eventually
 
 WATCHDOG_AND_RAMP_S = 0.5 + 1.2
@@ -36,6 +36,7 @@ async def kill_mid_show(service: Service, drive: DriveSimulator, number: int) ->
     service.signal("machine", signal.SIGKILL)
     stopped_after_s = await drive.rests(within_s=WATCHDOG_AND_RAMP_S + 2.0)
     await _until_restarted(service, boot_id)
+    await eventually(lambda: len(_starts(service)) >= number + 2)
     _check_nothing_lost(service, name, number)
     seen = service.tracker()
     assert seen is not None
@@ -76,6 +77,14 @@ async def _until_restarted(service: Service, boot_id: str) -> None:
     await eventually(is_new)
 
 
+def _starts(service: Service) -> list[Event]:
+    """Return the starts that the journal tells of, newest first; one is told shortly after it happened."""
+    reader = open_reader(f"sqlite:///{service.data_dir / 'heliopanel.db'}")
+    found = reader.journal(JournalFilter(limit=1000, kinds=(EventKind.MACHINE_STARTED,)))
+    reader.close()
+    return [entry.event for entry in found]
+
+
 def _check_nothing_lost(service: Service, name: str, number: int) -> None:
     reader = open_reader(f"sqlite:///{service.data_dir / 'heliopanel.db'}")
     site = reader.site()
@@ -85,7 +94,7 @@ def _check_nothing_lost(service: Service, name: str, number: int) -> None:
     assert site is not None
     assert site.name == name
     assert [event for event in journal if event.message == f"The site is now called {name}."]
-    starts = [event for event in journal if event.kind is EventKind.MACHINE_STARTED]
+    starts = _starts(service)
     assert len(starts) == number + 2, service.deaths()
     assert starts[0].data["clean"] is False
     assert "without warning" in starts[0].message

@@ -175,9 +175,10 @@ def written(tmp_path: Path) -> Iterator[Path]:
         os.environ["PYTHONPATH"] = before
 
 
-def waits(child: Child, pause: timedelta) -> bool:
-    ended = child.process is not None and child.process.returncode is not None
-    return ended and child.pause == pause
+def waits(clock: VirtualClock, child: Child, pause: timedelta) -> bool:
+    """Return whether the child has ended and sleeps now for this long."""
+    asleep = any(until == clock.now() + pause for until, _ in clock._sleepers)
+    return asleep and child.pause == pause
 
 
 @pytest.mark.usefixtures("written")
@@ -187,8 +188,7 @@ async def test_a_child_that_dies_is_started_again_with_a_growing_pause() -> None
     running = asyncio.create_task(supervisor.run())
     pauses = [timedelta(milliseconds=200) * 2**n for n in range(3)]
     for pause in pauses:
-        await eventually(partial(waits, child, pause))
-        await asyncio.sleep(0.1)
+        await eventually(partial(waits, clock, child, pause))
         clock.advance(pause)
     await eventually(lambda: child.pause == pauses[-1] * 2)
 
@@ -301,10 +301,9 @@ async def test_settings_that_worked_once_and_do_not_any_more_end_nobody_else(wri
     )
     supervisor = Supervisor(clock, child, other)
     running = asyncio.create_task(supervisor.run())
-    await eventually(partial(waits, child, timedelta(milliseconds=200)))
-    await asyncio.sleep(0.1)
+    await eventually(partial(waits, clock, child, timedelta(milliseconds=200)))
     clock.advance(timedelta(milliseconds=200))
-    await eventually(partial(waits, child, timedelta(milliseconds=400)))
+    await eventually(partial(waits, clock, child, timedelta(milliseconds=400)))
 
     assert other.process is not None
     assert other.process.returncode is None
