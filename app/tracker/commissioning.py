@@ -123,12 +123,11 @@ def _moved(site: SiteState, saved: Confirmation | None) -> Reason | None:
 
 
 def _open(step: Step) -> Reason:
-    number = list(StepName).index(step.name) + 1
-    words = "is to be done" if step.status is StepStatus.TO_DO else "is to be confirmed"
+    number, what = list(StepName).index(step.name) + 1, step.name
     because = " ".join(reason.message for reason in step.reasons)
-    return Reason(
-        f"step_{step.name}", f"Step {number}, {step.name}, {words}: {because}", f"Go to step {number}."
-    )
+    is_to_do = step.status is StepStatus.TO_DO
+    message = f"Step {number}, {what}, is to be {'done' if is_to_do else 'confirmed'}: {because}"
+    return Reason(f"step_{what}", message, f"Go to step {number}.")
 
 
 def _home_lost(why: str) -> Reason:

@@ -8,6 +8,7 @@ from app.store.store import Photo, RecordHead
 from app.web.contexts import Form, Frame, ModeChoice
 from app.web.record import CommissioningRecord
 from app.web.record_document import Difference, RecordDocument
+from app.web.record_files import Section
 from app.web.signatures import Signature
 
 
@@ -41,20 +42,22 @@ class RecordsPage:
 
 @dataclass(frozen=True, slots=True)
 class SignedRecordPage:
-    """One signed record."""
+    """One signed record; each section by its English heading, and as it is told in the reader's language."""
 
     template: ClassVar[str] = "signed_record.html"
 
     frame: Frame
     head: RecordHead
     read: RecordDocument
+    title: str
+    sections: tuple[tuple[str, Section], ...]
     photos: tuple[Photo, ...]
     signatures: tuple[Signature, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class ComparePage:
-    """Two signed records side by side, the first the older one."""
+    """Two signed records side by side, in the reader's language, the first the older one."""
 
     template: ClassVar[str] = "record_compare.html"
 

@@ -1,19 +1,16 @@
-"""The commissioning record for printing: the same sections as HTML and as PDF."""
+"""The commissioning record for printing: what stands in which section, in English."""
 
-from base64 import b64encode
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from datetime import datetime, tzinfo
 from enum import Enum
-from html import escape
 from typing import Any
 
-from app.late import late
 from app.store.store import JournalEntry
 from app.tracker.drive_check import DriveCheck
 from app.tracker.proof_states import ProofState
 from app.web.record import CommissioningRecord
-from app.web.signatures import HEIGHT, WIDTH, Signature, SignatureRole
+from app.web.signatures import Signature, SignatureRole
 from app.zones import zone_of
 
 Row = tuple[str, str]
@@ -42,7 +39,10 @@ class PaperPhoto:
 
 @dataclass(frozen=True, slots=True)
 class Paper:
-    """A record as it is printed; one that nobody has signed has lines to sign on and no hash."""
+    """A record as it is printed; one that nobody has signed has lines to sign on and no hash.
+
+    `note` says in which language the signed file is where the paper is in another.
+    """
 
     title: str
     at: datetime
@@ -51,52 +51,12 @@ class Paper:
     photos: tuple[PaperPhoto, ...] = ()
     mark: str = "not signed"
     digest: str = ""
+    note: str = ""
 
 
 def draft(record: CommissioningRecord) -> Paper:
     """Return the record as it stands now, for signing on paper."""
     return Paper(title(record), record.written_at, tuple(sections(record)))
-
-
-def record_html(paper: Paper) -> str:
-    """Return the record as one HTML file that needs nothing else."""
-    parts = [
-        "<!doctype html><html lang='en'><meta charset='utf-8'>",
-        f"<title>{escape(paper.title)}</title><h1>{escape(paper.title)}</h1>",
-        f"<p>{escape(' '.join(filter(None, (paper.mark, paper.digest and 'SHA-256', paper.digest))))}</p>",
-    ]
-    for heading, rows in paper.sections:
-        lines = (
-            f"<tr><th align='left'>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows
-        )
-        parts.append(f"<h2>{escape(heading)}</h2><table>{''.join(lines)}</table>")
-    parts += [_photo_html(one) for one in paper.photos]
-    parts += [_signature_html(one) for one in paper.signatures]
-    return "\n".join([*parts, "</html>"])
-
-
-def _photo_html(photo: PaperPhoto) -> str:
-    source = f"data:image/jpeg;base64,{b64encode(photo.content).decode()}"
-    caption = escape(photo.caption)
-    return (
-        f"<figure><img src='{source}' width='480' alt='{caption}'><figcaption>{caption}</figcaption></figure>"
-    )
-
-
-def _signature_html(one: Signature) -> str:
-    drawn = (
-        f"<svg viewBox='0 0 {WIDTH} {HEIGHT}' width='400' role='img'><path d='{one.path}' fill='none' "
-        "stroke='#000' stroke-width='5'/></svg>"
-        if one.strokes
-        else "<br><br>"
-    )
-    return f"<p>{drawn}<br>________________________<br>{escape(one.words)}: {escape(one.name)}</p>"
-
-
-def record_pdf(paper: Paper) -> bytes:
-    """Return the record as a PDF on A4: every section a table, photos, and signatures or lines to sign on."""
-    printed: bytes = late("app.web.record_pdf").printed(paper)
-    return printed
 
 
 def sections(record: CommissioningRecord) -> Iterator[Section]:
@@ -185,8 +145,21 @@ def _text(value: Any, zone: tzinfo) -> str:
             return f"{value:.6g}"
         case Enum():
             return str(value.value)
+        case tuple():
+            return "; ".join(_entry(one, zone) for one in value)
         case _:
             return str(value)
+
+
+def _entry(value: Any, zone: tzinfo) -> str:
+    """Return one of several: a reason as its sentence, a part of a setting by its fields, a name as it is."""
+    match value:
+        case {"message": str(message)}:
+            return message
+        case dict():
+            return ", ".join(f"{_label(name)} {_text(inner, zone)}" for name, inner in value.items())
+        case _:
+            return _text(value, zone)
 
 
 def _degrees(angle: float | None) -> str:

@@ -1,15 +1,25 @@
 """The commissioning record as a PDF on A4; loaded late, as what draws it weighs 40 MB."""
 
+import re
+from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
 
 from fpdf import FPDF
 
+from app.web.languages import said
 from app.web.record_files import Paper, Row
+from app.web.record_words import PAGE, filled, heads, told_heading
 from app.web.signatures import HEIGHT, WIDTH, Signature
 
 FONT = "DejaVu"
 FONTS = Path(__file__).parents[2] / "static" / "vendor" / "dejavu" / "2.37.3"
+WIDE_FONT = "Droid"
+WIDE_FONTS = Path(__file__).parents[2] / "static" / "vendor" / "droid" / "6.0.1r16-1.1"
+WIDE = re.compile("[\u2e80-\u9fff\uf900-\ufaff\ufe30-\ufe4f\uff00-\uffef\U00020000-\U0003ffff]")
+"""Letters that the first font has not: Chinese and Japanese, and their signs."""
+BREAKS = re.compile("(?<=[\u2e80-\u9fff\uff00-\uffef])(?=[\u3041-\u9fff])")
+"""Where a line of Chinese may end: behind a letter or sign, not before a sign."""
 SIGNED_MM = (70.0, 21.0)
 PHOTO_MM = (82.0, 66.0)
 
@@ -35,28 +45,34 @@ class _Sheets(FPDF):
         self.set_title(paper.title)
         self.add_font(FONT, "", FONTS / "DejaVuSans.ttf")
         self.add_font(FONT, "B", FONTS / "DejaVuSans-Bold.ttf")
+        if any(map(WIDE.search, _texts(paper))):
+            self.add_font(WIDE_FONT, "", WIDE_FONTS / "DroidSansFallbackFull.ttf")
+            self.set_fallback_fonts([WIDE_FONT], exact_match=False)
         self.set_margins(18, 18)
         self.set_auto_page_break(auto=True, margin=20)
         self.add_page()
 
     def heading(self) -> None:
         """Write the title of the paper, its number and its hash."""
-        self.set_font(FONT, "B", 15)
-        self.multi_cell(0, 8, self._paper.title, new_x="LMARGIN", new_y="NEXT")
-        self.set_font(FONT, "", 8.5)
-        hashed = f"SHA-256 of the JSON file: {self._paper.digest}" if self._paper.digest else ""
-        self.multi_cell(0, 5, f"{self._paper.mark}\n{hashed}".strip(), new_x="LMARGIN", new_y="NEXT")
+        self._letters("B", 15)
+        self._lines(8, self._paper.title)
+        self._letters("", 8.5)
+        self._lines(5, "\n".join(heads(self._paper)))
 
     def section(self, heading: str, rows: tuple[Row, ...]) -> None:
         """Write one section as a table."""
         self._heading(heading)
         with self.table(
-            col_widths=(3, 5), first_row_as_headings=False, borders_layout="HORIZONTAL_LINES", line_height=5
+            col_widths=(3, 5),
+            first_row_as_headings=False,
+            borders_layout="HORIZONTAL_LINES",
+            line_height=5,
+            text_align="LEFT",
         ) as table:
             for name, value in rows:
                 row = table.row()
-                row.cell(name)
-                row.cell(value)
+                row.cell(_breakable(name))
+                row.cell(_breakable(value))
 
     def photos(self) -> None:
         """Set the photos side by side, two in a row, each above what it shows."""
@@ -64,7 +80,7 @@ class _Sheets(FPDF):
             return
         if self.will_page_break(PHOTO_MM[1] + 15):
             self.add_page()
-        self._heading("Photos")
+        self._heading(told_heading("Photos"))
         for place, photo in enumerate(self._paper.photos):
             if place % 2 == 0 and self.will_page_break(PHOTO_MM[1]):
                 self.add_page()
@@ -81,14 +97,14 @@ class _Sheets(FPDF):
         """Draw what was signed, above a line with the name; an empty line is for a pen."""
         if self.will_page_break(SIGNED_MM[1] + 25):
             self.add_page()
-        self._heading("Signatures")
+        self._heading(told_heading("Signatures"))
         top = self.get_y()
         for place, one in enumerate(self._paper.signatures):
             left = self.l_margin + place * (SIGNED_MM[0] + 20)
             self._draw(one, left, top)
             self.line(left, top + SIGNED_MM[1], left + SIGNED_MM[0], top + SIGNED_MM[1])
             self.set_xy(left, top + SIGNED_MM[1] + 1)
-            self.multi_cell(SIGNED_MM[0], 5, f"{one.words}\n{one.name}".strip())
+            self.multi_cell(SIGNED_MM[0], 5, f"{said(one.words)}\n{one.name}".strip(), align="L")
 
     def _draw(self, one: Signature, left: float, top: float) -> None:
         self.set_line_width(0.4)
@@ -99,13 +115,45 @@ class _Sheets(FPDF):
 
     def _heading(self, heading: str) -> None:
         self.ln(4)
-        self.set_font(FONT, "B", 11)
-        self.multi_cell(0, 7, heading, new_x="LMARGIN", new_y="NEXT")
-        self.set_font(FONT, "", 8.5)
+        self._letters("B", 11)
+        self._lines(7, heading)
+        self._letters("", 8.5)
+
+    def _lines(self, height: float, text: str) -> None:
+        self.multi_cell(0, height, _breakable(text), align="L", new_x="LMARGIN", new_y="NEXT")
+
+    def _letters(self, style: str, points: float) -> None:
+        """Choose the letters for what follows.
+
+        The library would choose them with the next text, and forget them behind letters of the second font.
+        """
+        self.set_font(FONT, style, points)
+        self.text(self.l_margin, self.t_margin, " ")
+
+    def header(self) -> None:
+        """Choose the letters anew on a new page, which begins without."""
+        if self.font_family:
+            self.text(self.l_margin, self.t_margin, " ")
 
     def footer(self) -> None:
         """Number the pages, and say which paper they are of."""
         self.set_y(-14)
-        self.set_font(FONT, "", 8)
-        which = f"{self._paper.title} - {self._paper.mark} - page {self.page_no()}"
-        self.cell(0, 6, which, align="C")
+        self._letters("", 8)
+        which = (self._paper.title, self._paper.mark, filled(PAGE, number=self.page_no()))
+        self.cell(0, 6, " - ".join(which), align="C")
+
+
+def _texts(paper: Paper) -> Iterator[str]:
+    """Return everything that is written on a paper."""
+    yield from (paper.title, paper.mark, paper.note, told_heading("Signatures"))
+    for heading, rows in paper.sections:
+        yield heading
+        for row in rows:
+            yield from row
+    yield from (one.caption for one in paper.photos)
+    yield from (one.name for one in paper.signatures)
+
+
+def _breakable(text: str) -> str:
+    """Return a text whose lines may end between Chinese letters, which have no spaces between them."""
+    return BREAKS.sub("\u200b", text)

@@ -1,4 +1,4 @@
-"""Copies pinned third-party files from npm packages, and checks offline that nobody changed them."""
+"""Copies pinned third-party files from npm and Debian packages; checks offline that nobody changed them."""
 
 import base64
 import hashlib
@@ -16,7 +16,7 @@ MANIFEST = HERE / "manifest.json"
 
 
 class Vendored(TypedDict):
-    """One package in the manifest: its pin, npm's checksum of the archive and ours of each file."""
+    """One package in the manifest: its pin, the checksum of the archive and ours of each file."""
 
     package: str
     version: str
@@ -43,13 +43,29 @@ def pack(package: str, version: str, folder: Path) -> tuple[Path, str]:
     return folder / told["filename"], told["integrity"]
 
 
-def copy(archive: Path, files: list[str], target: Path) -> dict[str, str]:
+def pack_debian(package: str, version: str, folder: Path) -> tuple[Path, str]:
+    """Fetch one archive with apt, which verifies it, and return the files in it as a tar with its SHA-512."""
+    fetch = ["apt-get", "download", f"{package}={version}"]
+    subprocess.run(fetch, check=True, capture_output=True, cwd=folder)  # noqa: S603 - fixed words and our own pins
+    archive = next(folder.glob(f"{package}_*.deb"))
+    unpack = ["dpkg-deb", "--fsys-tarfile", str(archive)]
+    tar = subprocess.run(unpack, check=True, capture_output=True).stdout  # noqa: S603 - the file fetched above
+    (folder / f"{package}.tar").write_bytes(tar)
+    integrity = base64.b64encode(hashlib.sha512(archive.read_bytes()).digest()).decode()
+    return folder / f"{package}.tar", f"sha512-{integrity}"
+
+
+SOURCES = {"npm": (pack, "package"), "debian": (pack_debian, ".")}
+"""How a package is fetched, and below which folder its files stand in the archive."""
+
+
+def copy(archive: Path, inside: str, files: list[str], target: Path) -> dict[str, str]:
     """Copy the listed files out of an archive and return their checksums by path below `static/vendor`."""
     target.mkdir(parents=True, exist_ok=True)
     checksums = {}
     with tarfile.open(archive) as packed:
         for name in files:
-            member = packed.extractfile(f"package/{name}")
+            member = packed.extractfile(f"{inside}/{name}")
             if member is None:
                 raise SystemExit(f"{archive.name} holds no file {name}; correct vendor.toml.")
             content = member.read()
@@ -64,8 +80,10 @@ def update() -> None:
     with tempfile.TemporaryDirectory() as scratch:
         for name, entry in wanted().items():
             package, version = str(entry["package"]), str(entry["version"])
-            archive, integrity = pack(package, version, Path(scratch))
-            files = copy(archive, list(entry["files"]), HERE / name / version)  # type: ignore[call-overload]
+            fetch, inside = SOURCES[str(entry.get("source", "npm"))]
+            archive, integrity = fetch(package, version, Path(scratch))
+            target = HERE / name / version.rpartition(":")[2]
+            files = copy(archive, inside, list(entry["files"]), target)  # type: ignore[call-overload]
             manifest[name] = Vendored(
                 package=package,
                 version=version,

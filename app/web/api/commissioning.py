@@ -7,6 +7,7 @@ from urllib.parse import quote
 from fastapi import Path
 from fastapi.responses import Response
 from pydantic import Field
+from starlette.concurrency import run_in_threadpool
 
 from app.link.messages import ApplySightings, ConfirmStep, TakeSighting
 from app.tracker.commissioning import Step
@@ -17,7 +18,8 @@ from app.web.api.trackers import detail_of
 from app.web.deps import MachineDep, PanelDep
 from app.web.errors import NotAcceptable
 from app.web.record import CommissioningRecord, read_record
-from app.web.record_files import draft, record_html, record_pdf
+from app.web.record_files import draft
+from app.web.record_print import record_html, record_pdf
 
 router = api_router(prefix="/trackers/{tracker_id}", tags=["commissioning"])
 
@@ -120,11 +122,14 @@ async def read_commissioning_record(
         case RecordFormat.HTML:
             return written(record_html(draft(record)), format, name)
         case RecordFormat.PDF:
-            return written(record_pdf(draft(record)), format, name)
+            return written(await run_in_threadpool(record_pdf, draft(record)), format, name)
 
 
 def written(content: str | bytes, kind: RecordFormat, name: str) -> Response:
     """Return a record as a file to be kept; `name` without its ending."""
     media_type = "text/html" if kind is RecordFormat.HTML else "application/pdf"
-    headers = {"Content-Disposition": f"attachment; filename*=utf-8''{quote(name)}.{kind.value}"}
+    headers = {
+        "Content-Disposition": f"attachment; filename*=utf-8''{quote(name)}.{kind.value}",
+        "Vary": "Cookie, Accept-Language",
+    }
     return Response(content, media_type=media_type, headers=headers)

@@ -14,7 +14,6 @@ from app.web.deps import PanelDep, PrincipalDep, ReaderDep
 from app.web.errors import NotAcceptable
 from app.web.photos import LARGEST_UPLOAD, PhotoRefused
 from app.web.record_document import LONGEST_REMARK, differences, paper, read_document
-from app.web.record_files import record_html, record_pdf
 from app.web.record_orders import (
     add_photo,
     photo_of,
@@ -23,6 +22,7 @@ from app.web.record_orders import (
     sign,
     signed_record,
 )
+from app.web.record_print import record_html, record_pdf
 from app.web.signatures import HEIGHT, LONGEST_NAME, MOST_STROKES, WIDTH, Signature, SignatureRole
 
 router = api_router(tags=["commissioning records"])

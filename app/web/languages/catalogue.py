@@ -117,7 +117,7 @@ class Catalogue(_Stored):
         if not any(letter.isalpha() for letter in value):
             return self.number(value)
         known = self._known(value, depth - 1) if depth else self._catalog.get(value)
-        return known or self._piece(value) or self.number(value)
+        return known or self._by_sentences(value) or self._piece(value) or self.number(value)
 
     def _by_sentences(self, text: str) -> str | None:
         """Return several sentences, each for itself, None where none is known."""

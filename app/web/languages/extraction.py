@@ -7,7 +7,7 @@ from pathlib import Path
 
 from babel.messages.extract import DEFAULT_KEYWORDS, extract
 
-from app.web import guide
+from app.web import guide, record_words
 from app.web.languages.catalogue import DOCUMENTS
 from app.web.languages.python_texts import python_texts
 from app.web.languages.script_texts import texts_of
@@ -25,7 +25,7 @@ JINJA = {
 _SPEAKING = """
     app/tracker app/alarms app/web app/site app/drives app/show app/access app/store app/studies app/energy
     app/sun app/link app/gateway/gateways.py app/gateway/notices.py app/gateway/notifier.py
-    app/gateway/mqtt.py app/gateway/sunspec_controls.py"""
+    app/gateway/mqtt.py app/gateway/sunspec_controls.py app/machine/safe_mode.py"""
 """What has texts that reach a page, in the order in which they are listed."""
 
 _PHRASES = (400, 401, 403, 404, 405, 409, 413, 422, 423, 429, 500, 503)
@@ -40,8 +40,8 @@ MORE = {
 _SILENT = """
     app/web/languages app/web/metrics.py app/web/route_permissions.py app/web/routes.py app/web/openapi.py
     app/web/documented.py app/web/main.py app/web/server.py app/web/presses.py app/web/record_files.py
-    app/web/record_pdf.py app/web/journal_files.py app/web/mdns.py app/web/qr.py
-    app/web/attachments.py app/web/api/base.py
+    app/web/record_pdf.py app/web/record_print.py app/web/record_words.py app/web/journal_files.py
+    app/web/mdns.py app/web/qr.py app/web/attachments.py app/web/api/base.py
     app/web/api/operations.py app/web/api/router.py app/web/ui/components.py
     app/web/ui/papers.py app/web/components_context.py app/link/codec.py
     app/drives/wire_faults.py app/drives/write_frame.py app/drives/sim_server.py app/drives/sim_training.py
@@ -77,6 +77,8 @@ def texts(root: Path = ROOT) -> Iterator[Text]:
     for document in guide.SPOKEN:
         for line, markdown in guide.blocks(document):
             yield Text(f"docs/{document}.md", line, markdown, context=DOCUMENTS)
+    words = ((text, record_words.CONTEXT) for text in dict.fromkeys(record_words.TEXTS))
+    yield from (Text("app/web/record_words.py", 0, text, context=context) for text, context in words)
     for name, more in MORE.items():
         yield from (Text(name, 0, text) for text in more)
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 GAP = re.compile(r"\{([a-z][a-z0-9_]*)\}")
 WORD = re.compile(r"[^\W\d_]+")
+NEXT_SENTENCE = re.compile(r"(?<=[a-z0-9)][.!?]) (?=[A-Z])")
 MOST_TRIED = 40
 """So many patterns are tried for one sentence, those with the longest fixed text first."""
 MOST_FOUND = 6
@@ -41,8 +42,15 @@ class Pattern:
         return [
             dict(zip(self.gaps, values, strict=True))
             for values in found
-            if values is not None and not (self.is_thin and not all(map(_is_measure, values)))
+            if values is not None
+            and not (self.is_thin and not all(map(_is_measure, values)))
+            and not self._swallows(values)
         ]
+
+    def _swallows(self, values: list[str]) -> bool:
+        """Return whether a gap before a full stop holds the end of one sentence and the start of the next."""
+        after = zip(values, self.parts[1:], strict=True)
+        return any(part[:1] in (".", ")") and NEXT_SENTENCE.search(value) for value, part in after)
 
     @property
     def fixed_length(self) -> int:

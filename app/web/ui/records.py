@@ -9,13 +9,15 @@ from starlette.responses import Response
 from app.web.contexts import Link
 from app.web.deps import ReaderDep
 from app.web.record_contexts import ComparePage, RecordsPage, SignedRecordPage
-from app.web.record_document import differences, read_document
+from app.web.record_document import Difference, differences, read_document
 from app.web.record_orders import signed_record
+from app.web.record_words import told_heading, told_name, told_sections, told_title, told_value
 from app.web.ui.frame import site_frame
 from app.web.ui.render import page
 
 router = APIRouter(prefix="/records")
 TWO = "Choose two records to compare."
+GIVEN = ("Signatures", "Photos")
 BACK = Link("Records", "/records")
 
 
@@ -45,7 +47,7 @@ def compare(
         frame=site_frame(request, "Two records compared", back=BACK),
         first=first.head,
         second=second.head,
-        lines=tuple(lines if everything else differing),
+        lines=tuple(map(_told, lines if everything else differing)),
         differing=len(differing),
         only_differences=not everything,
     )
@@ -61,7 +63,19 @@ def record(request: Request, number: int, reader: ReaderDep) -> Response:
         frame=site_frame(request, f"Record {number}", back=BACK),
         head=signed.head,
         read=read,
+        title=told_title(read.title),
+        sections=tuple(
+            zip((heading for heading, _ in read.sections), told_sections(read.sections), strict=True)
+        ),
         photos=tuple(reader.photos_of(number)),
         signatures=read.signatures,
     )
     return page(request, context)
+
+
+def _told(line: Difference) -> Difference:
+    """Return a line in the language of the request; who signed and what a photo shows is left alone."""
+    heading, name = told_heading(line.section), told_name(line.name)
+    if line.section in GIVEN:
+        return Difference(heading, name, line.first, line.second)
+    return Difference(heading, name, told_value(line.name, line.first), told_value(line.name, line.second))
