@@ -16,6 +16,7 @@ const ALIKE_DEG = 0.02;
 const SHARPEST = 2;
 const SLOW_MS = 24;
 const AWAY_MS = 1000;
+const TRIAL = { sun: { azimuth: 180, elevation: 45 }, panel: { first: 0, second: 45 }, target: null };
 
 export class PanelScene {
   // `settle`: whether the panel glides to what is new, or is there at once (a recording that plays is smooth by itself).
@@ -32,6 +33,7 @@ export class PanelScene {
     this.seen = false;
     this.sharpness = SHARPEST;
     this.pacedMs = 0;
+    this.begun = false;
     this.painter = null;
     this.#listen();
   }
@@ -53,7 +55,7 @@ export class PanelScene {
   }
 
   draw() {
-    if (!this.frame && this.seen) this.frame = requestAnimationFrame((at) => this.#paint(at));
+    if (!this.frame && this.seen && this.painter) this.frame = requestAnimationFrame((at) => this.#paint(at));
   }
 
   // What is painted next, as plain data.
@@ -69,10 +71,12 @@ export class PanelScene {
     return canvas;
   }
 
-  #begin() {
+  // It is painted once out of sight first: the page goes on while the driver builds what painting needs.
+  async #begin() {
     const canvas = this.#canvas();
+    let painter = null;
     try {
-      this.#use(new GlPainter(canvas), "webgl2");
+      painter = new GlPainter(canvas);
     } catch {
       this.#useDrawn();
       return;
@@ -81,6 +85,9 @@ export class PanelScene {
     canvas.addEventListener("webglcontextrestored", () => {
       try { this.#use(new GlPainter(canvas), "webgl2"); } catch { this.#useDrawn(); }
     });
+    painter.paint(stageOf(this.view, TRIAL), cameraAt(this.turned, this.holder.clientWidth || 1, this.holder.clientHeight || 1), this.#sharp());
+    await painter.finished();
+    if (!this.painter) this.#use(painter, "webgl2");
   }
 
   #useDrawn() {
@@ -113,7 +120,10 @@ export class PanelScene {
   // What is below the screen's edge is not painted, and not even prepared.
   #look(seen) {
     this.seen = seen;
-    if (seen && !this.painter) this.#begin();
+    if (seen && !this.begun) {
+      this.begun = true;
+      this.#begin();
+    }
     this.draw();
   }
 

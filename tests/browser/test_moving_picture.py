@@ -155,6 +155,7 @@ def frames(page: Page) -> int:
 
 def settled(page: Page) -> int:
     """Wait until the picture stands still, and return how often it was painted by then."""
+    page.wait_for_selector(".scene[data-frames]")
     before = -1
     while before != frames(page):
         before = frames(page)

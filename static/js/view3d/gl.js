@@ -12,6 +12,8 @@ const LINE_FLOATS = 11;
 const MARK_FLOATS = 6;
 const CELL_PX = 64;
 const SHEET_CELLS = 8;
+const ASK_MS = 16;
+const LONGEST_MS = 3000;
 
 export class GlPainter {
   // Throws where the browser has no WebGL2, or none just now.
@@ -54,6 +56,17 @@ export class GlPainter {
     this.#stillness(stage.fixed, camera);
     this.#strokes(stage.lines, camera);
     this.#sprites(stage.marks, camera, ratio);
+  }
+
+  // Resolves once everything that was ordered is painted, or was not for too long; it keeps nobody waiting.
+  async finished() {
+    const { gl } = this;
+    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    const giveUpAt = performance.now() + LONGEST_MS;
+    gl.flush();
+    while (fence && !gl.isContextLost() && performance.now() < giveUpAt && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) {
+      await new Promise((done) => setTimeout(done, ASK_MS));
+    }
   }
 
   #mesh(faces) {
