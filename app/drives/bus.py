@@ -54,6 +54,8 @@ EXCEPTIONS = {
 }
 PERMANENT = (1, 2, 3)
 UNREACHABLE = (10, 11)
+FITS, AGAIN = "Check that the profile fits the device.", "It is asked again in the next cycle."
+NOT_AGAIN = "It is not sent again."
 
 log = structlog.get_logger(__name__)
 
@@ -263,16 +265,14 @@ class Bus:
             return await self._ask(job)
         except Broken as broken:
             if job.ask.words and job.priority is not Priority.STOP:
-                raise DriveError(
-                    f"Writing {job.what} to the drive at {job.unit} failed: {broken}. It is not sent again."
-                ) from broken
+                failed = f"Writing {job.what} to the drive at {job.unit} failed: {broken}."
+                raise DriveError(f"{failed} {NOT_AGAIN}") from broken
         try:
             return await self._ask(job)
         except Broken as broken:
             verb = "Writing" if job.ask.words else "Reading"
-            raise DriveError(
-                f"{verb} {job.what} failed twice at the drive at {job.unit}: {broken}. {self._wire.advice}"
-            ) from broken
+            failed = f"{verb} {job.what} failed twice at the drive at {job.unit}: {broken}."
+            raise DriveError(f"{failed} {self._wire.advice}") from broken
 
     async def _ask(self, job: _Job) -> list[int]:
         await self._make_ready(job)
@@ -293,11 +293,7 @@ class Bus:
             ) from given_up
         except Unanswered as unanswered:
             job.unit.unheard(self._clock.now())
-            raise DriveSilent(
-                f"The drive at {job.unit} did not answer within {job.unit.timing.timeout_s:g} s "
-                f"({job.what}). Check its power and cable, that its unit id is {job.unit.unit} and, on a "
-                "serial line, speed and parity."
-            ) from unanswered
+            raise DriveSilent(_unanswered(job)) from unanswered
         job.unit.heard()
         return found
 
@@ -324,17 +320,28 @@ class Bus:
         if not too_soon:
             self._next_attempt_at = now + self._delay
             self._delay = min(LONGEST_DELAY, self._delay * 2)
-        raise DriveSilent(f"There is no connection to the drive at {unit}. {self._wire.advice}")
+        missing = f"There is no connection to the drive at {unit}."
+        raise DriveSilent(f"{missing} {self._wire.advice}")
+
+
+def _unanswered(job: _Job) -> str:
+    """Return two sentences, each a text of its own, so that either is found in every language."""
+    missing = f"The drive at {job.unit} did not answer within {job.unit.timing.timeout_s:g} s ({job.what})."
+    check = (
+        f"Check its power and cable, that its unit id is {job.unit.unit} and, on a serial line, speed and "
+        "parity."
+    )
+    return f"{missing} {check}"
 
 
 def _refusal(code: int, job: _Job) -> DriveError:
     text = EXCEPTIONS.get(code, "answered with an unknown exception")
     sentence = f"The drive at {job.unit} {text} (Modbus exception {code}): {job.what}."
     if code in PERMANENT:
-        return DriveRefused(f"{sentence} Check that the profile fits the device.")
+        return DriveRefused(f"{sentence} {FITS}")
     if code in UNREACHABLE:
         return DriveSilent(sentence)
-    return DriveError(f"{sentence} It is asked again in the next cycle.")
+    return DriveError(f"{sentence} {AGAIN}")
 
 
 def _fail(job: _Job, error: DriveError) -> None:

@@ -38,7 +38,8 @@ async def scan(
     """
     wire = wire_of(drive)
     if not await wire.connect():
-        raise DriveSilent(f"There is no connection to {drive.line}. {wire.advice}")
+        missing = f"There is no connection to {drive.line}."
+        raise DriveSilent(f"{missing} {wire.advice}")
     bus = Bus(drive.line, wire, clock)
     asked: list[BusUnit] = []
     try:

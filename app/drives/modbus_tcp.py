@@ -15,6 +15,7 @@ from app.drives.wire import Ask, Broken, GivenUp, Refused, Timing, Unanswered
 STOP_PATIENCE_S = 0.03
 CONNECT_WITHIN_S = 0.3
 WHY_WITHIN_S = 0.3
+CHECK = "Check its power, cable and address, and that only Modbus TCP is spoken there."
 
 
 class TcpWire:
@@ -43,7 +44,7 @@ class TcpWire:
     @property
     def advice(self) -> str:
         """Return what to check when there is no connection."""
-        return f"{self._why}Check its power, cable and address, and that only Modbus TCP is spoken there."
+        return f"{self._why} {CHECK}" if self._why else CHECK
 
     def epoch(self, unit: int) -> int:
         """Return a number that grows with every new and every lost connection."""
@@ -158,10 +159,10 @@ async def _why_not(host: str, port: int) -> str:
         async with asyncio.timeout(WHY_WITHIN_S):
             _, writer = await asyncio.open_connection(host, port)
     except ConnectionRefusedError:
-        return f"The device at {host} answers, but nothing listens on port {port}. "
+        return f"The device at {host} answers, but nothing listens on port {port}."
     except socket.gaierror:
-        return f"The host name {host} is not known. "
+        return f"The host name {host} is not known."
     except (OSError, TimeoutError):
-        return f"Nothing answers at {host}. "
+        return f"Nothing answers at {host}."
     writer.transport.abort()
     return ""

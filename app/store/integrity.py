@@ -11,6 +11,8 @@ from app.store.store import StoreDamaged
 FIRST_SAFE_SQLITE = (3, 51, 3)
 """Older ones may damage a database in WAL mode if two connections write at once; here only one writes."""
 
+RESTORE = "Restore a backup with: heliopanel restore FILE."
+
 
 def check_file(url: str) -> None:
     """Raise `StoreDamaged` if an existing SQLite file is damaged.
@@ -33,10 +35,8 @@ def check_file(url: str) -> None:
                     else ()
                 )
                 if any(line != "ok" for line in found):
-                    raise StoreDamaged(
-                        f"The database {path} is damaged (table {name}). "
-                        "Restore a backup with: heliopanel restore FILE."
-                    )
+                    damage = f"The database {path} is damaged (table {name})."
+                    raise StoreDamaged(f"{damage} {RESTORE}")
     finally:
         engine.dispose()
 

@@ -11,7 +11,9 @@ from dataclasses import dataclass
 
 GAP = re.compile(r"\{([a-z][a-z0-9_]*)\}")
 WORD = re.compile(r"[^\W\d_]+")
-NEXT_SENTENCE = re.compile(r"(?<=[a-z0-9)][.!?]) (?=[A-Z])")
+NEXT_SENTENCE = re.compile(r"(?:(?<=[a-z)]{3}[.!?])|(?<=\d[.!?])) (?=[A-Z])")
+SHORT_GAPS = frozenset(("unit", "unit2", "name", "line", "axis"))
+"""Gaps in which a few words stand, never sentences."""
 MOST_TRIED = 40
 """So many patterns are tried for one sentence, those with the longest fixed text first."""
 MOST_FOUND = 6
@@ -48,9 +50,11 @@ class Pattern:
         ]
 
     def _swallows(self, values: list[str]) -> bool:
-        """Return whether a gap before a full stop holds the end of one sentence and the start of the next."""
-        after = zip(values, self.parts[1:], strict=True)
-        return any(part[:1] in (".", ")") and NEXT_SENTENCE.search(value) for value, part in after)
+        """Return whether a gap within a sentence holds the end of one sentence and the start of the next."""
+        return any(
+            NEXT_SENTENCE.search(value) and (gap in SHORT_GAPS or after.startswith((".", ")")))
+            for gap, value, after in zip(self.gaps, values, self.parts[1:], strict=True)
+        )
 
     @property
     def fixed_length(self) -> int:

@@ -105,3 +105,22 @@ def test_hostile_text_that_fits_hundreds_of_patterns_is_answered() -> None:
     for place in range(20):
         assert many.said(f"{place}{hostile}"[:LONGEST])
     assert many.said("x" * (LONGEST + 1)) == "x" * (LONGEST + 1)
+
+
+@pytest.mark.parametrize("language", ["de", "es", "ro", "tr", "zh_Hans"])
+@pytest.mark.parametrize(
+    "sentences",
+    [
+        "There is no connection to the drive at 127.0.0.1:1502 unit 1. The device at 127.0.0.1 answers, but "
+        "nothing listens on port 1502. Check its power, cable and address, and that only Modbus TCP is "
+        "spoken there.",
+        "The drive of T1 does not answer. The drive at plc:502 unit 1 did not answer within 0.3 s (status). "
+        "Check its power and cable, that its unit id is 1 and, on a serial line, speed and parity.",
+        "Heliopanel runs in safe mode: The database /data/heliopanel.db is damaged (table events). Restore "
+        "a backup with: heliopanel restore FILE.",
+    ],
+)
+def test_of_what_is_wrong_with_a_machine_no_sentence_stays_english(language: str, sentences: str) -> None:
+    said = catalogue_of(language).said(sentences)
+    for english in (" is ", " the ", " did ", " and ", "Check", "Nothing", "Restore"):
+        assert english not in said.replace("heliopanel restore FILE", "")
