@@ -1,5 +1,6 @@
 """What the templates of the pages about energy studies and step programs are given."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -46,6 +47,7 @@ class StudiesPage:
 
     frame: Frame
     form: Form
+    hints: Mapping[str, str]
     options: StudyOptions
     studies: tuple[StudyState, ...]
     files: tuple[WeatherFile, ...]

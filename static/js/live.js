@@ -144,10 +144,11 @@ function paintValues() {
 
 // `data-when="show.phase=running,paused"`: shown while the value is one of these; without `=`, while there is one.
 function holds(element) {
-  const [path, wanted] = element.dataset.when.split("=");
+  const [place, wanted] = element.dataset.when.split("=");
+  const path = place.replace("!", "");
   const value = path.startsWith("site.") ? valueAt(live.site, path.slice(5)) : valueAt(scopeOf(element), path);
   if (wanted === undefined) return Array.isArray(value) ? value.length > 0 : Boolean(value);
-  return wanted.split(",").includes(String(value ?? "none"));
+  return wanted.split(",").includes(String(value ?? "none")) !== place.endsWith("!");
 }
 
 export function fillReasons(list, reasons) {

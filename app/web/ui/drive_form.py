@@ -154,7 +154,7 @@ def _axis(typed: Typed, axis: Axis, units: tuple[int, int]) -> AxisDrive:
     numbers = (
         typed.whole(f"{axis}_unit", f"{label} unit", *units) if unit else None,
         typed.number(f"{axis}_steps", f"{label} steps per revolution", 1e-3, 999_999_999) if steps else None,
-        typed.number(f"{axis}_gear", f"{label} gear ratio", 1e-6, 999_999),
+        typed.number(f"{axis}_gear", f"{label} gear ratio", 1e-4, 999_999),
     )
     if any(name.startswith(f"{axis}_") for name in typed.errors):
         return AxisDrive()

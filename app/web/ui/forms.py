@@ -65,10 +65,10 @@ def number(text: str, label: str, least: float, most: float) -> float:
     """Return the number that a text with a comma or a point means."""
     plain = text.replace("−", "-").replace(" ", "").replace(",", ".")
     if not re.fullmatch(r"[+-]?\d+(\.\d*)?|[+-]?\.\d+", plain):
-        raise Unreadable(f"{label}: type a number, such as {least:g}.")
+        raise Unreadable(f"{label}: type a number, such as {least:.10g}.")
     value = float(plain)
     if not least <= value <= most:
-        raise Unreadable(f"{label} must lie between {least:g} and {most:g}.")
+        raise Unreadable(f"{label} must lie between {least:.10g} and {most:.10g}.")
     return value
 
 

@@ -51,6 +51,23 @@ NUMBERS = (
     ("standby", "standby_w", "Standby", 0, 1e4),
 )
 WHOLE = (("step", "step_min", "Step", 1, 60), ("interval", "interval_min", "Interval", 1, 240))
+MEANINGS = {
+    "step": "A divisor of 60",
+    "elevation": "Of the panel's normal: 90 is a level panel.",
+    "latitude": "North is positive.",
+    "longitude": "East is positive.",
+    "range": "Single and polar axes",
+    "rows": "Of rows that backtrack; 0: none.",
+    "axis_tilt": "Tilted axis",
+    "albedo": "Share of light that the ground reflects.",
+    "power": "At 1000 W/m², 25 °C",
+    "losses": "Cables, inverter, dirt.",
+    "air": "Clear sky",
+    "wind": "Clear sky",
+    "degree": "Drives",
+    "start": "Drives",
+    "standby": "Drives",
+}
 FILE = "file:"
 SPANS: Options = (
     (Span.DAY, "One day"),
@@ -107,6 +124,19 @@ BEGUN = StudyForm(
     strategies=[StudyStrategy.CONTINUOUS, StudyStrategy.DEADBAND],
 )
 NAMES = tuple(name for name in StudyForm.model_fields if name not in ("modes", "strategies"))
+
+
+def hints() -> dict[str, str]:
+    """Return what every number of the form means, its range and its usual value."""
+    spans = [(name, least, most) for name, _, _, least, most in (*NUMBERS, *WHOLE)]
+    return {name: _hint(name, least, most) for name, least, most in spans}
+
+
+def _hint(name: str, least: float, most: float) -> str:
+    meaning, usual = MEANINGS.get(name, "").removesuffix("."), getattr(StudyForm(), name)
+    low, high = f"{least:.10g}", f"{most:.10g}"
+    span = f"{low} to {high}, usual {usual}." if usual else f"{low} to {high}."
+    return f"{meaning}. {span}" if meaning else span
 
 
 @router.get("")
@@ -221,6 +251,7 @@ async def _answer(
     context = StudiesPage(
         frame=site_frame(request, "Energy studies"),
         form=typed.form(NAMES),
+        hints=hints(),
         options=_options(detail, form, files),
         studies=listed,
         files=files,
