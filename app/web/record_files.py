@@ -142,7 +142,7 @@ def _text(value: Any, zone: tzinfo) -> str:
         case datetime():
             return _local(value, zone)
         case float():
-            return f"{value:.6g}"
+            return f"{value:.6f}".rstrip("0").rstrip(".")
         case Enum():
             return str(value.value)
         case tuple():

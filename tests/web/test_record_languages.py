@@ -6,6 +6,7 @@ import re
 import zlib
 from collections.abc import AsyncIterator, Iterator
 from dataclasses import is_dataclass
+from datetime import UTC
 from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
@@ -20,7 +21,7 @@ from app.tracker.snapshot import ClockState
 from app.web.languages import CATALOGUE, read_all
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import LANGUAGES, TRANSLATED
-from app.web.record_files import _label
+from app.web.record_files import _label, _text
 from app.web.record_words import told_name, told_value
 from tests.web.desk import Desk
 
@@ -208,3 +209,10 @@ async def test_two_records_are_compared_in_the_language_of_the_reader(desk: Desk
     await sign(desk)
     page = await desk.ask("GET", "/records/compare?pick=1&pick=2", headers={"Cookie": "language=tr"})
     assert "<td>ölü bant (°)</td><td>0,5</td><td>0,75</td>" in page.text
+
+
+@pytest.mark.parametrize(
+    ("value", "written"), [(18251797.9, "18251797.9"), (-2e-06, "-0.000002"), (0.5, "0.5"), (360.0, "360")]
+)
+def test_numbers_are_written_without_powers_of_ten(value: float, written: str) -> None:
+    assert _text(value, UTC) == written
