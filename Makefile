@@ -48,7 +48,8 @@ system-packages:
 
 test: $(VENV)/.dev system-packages ## Set up what tests need and run them all, browser tests included
 	@echo "Running the tests that share the computer's cores ..."
-	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder $(ALONE:%=--ignore=%)
+	@$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder $(ALONE:%=--ignore=%) --ignore=tests/drives
+	@$(BIN)/python -m pytest -n 2 --dist loadfile tests/drives --ignore=tests/drives/timed
 	@echo "Running the tests that judge how punctual things are, one at a time ..."
 	@$(BIN)/python -m pytest $(ALONE)
 
