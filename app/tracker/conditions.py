@@ -119,10 +119,10 @@ def homed(mind: Mind) -> Reason | None:
     """Return that no zero is trusted, and why if one was lost."""
     if mind.memory.home is not None:
         return None
-    lost = f": {mind.memory.home_lost}" if mind.memory.home_lost else "."
+    name, lost = mind.config.name, mind.memory.home_lost
     return Reason(
         "home_not_trusted",
-        f"{mind.config.name} has no trusted zero{lost}",
+        f"{name} has no trusted zero: {lost}" if lost else f"{name} has no trusted zero.",
         "Go to step 3, Homing, and set the zero.",
     )
 

@@ -5,7 +5,7 @@ from app.tracker.protections.config import ProtectionConfig
 from app.tracker.protections.guarding import limits_of
 from app.tracker.shelter import BAD, doubt_reason, guarding
 from app.tracker.snapshot import SensorState
-from app.tracker.weather import NOTHING_SENSED, SIMULATED, Quality, Quantity, Reading
+from app.tracker.weather import NOTHING_SENSED, Quality, Quantity, Reading
 
 UNITS = {Quantity.WIND: "m/s", Quantity.SNOW: "kg", Quantity.LIGHT: "W/m2"}
 AGAINST = {Quantity.WIND: "wind", Quantity.SNOW: "snow", Quantity.LIGHT: "too little light"}
@@ -44,7 +44,7 @@ def _sensor(mind: Mind, quantity: Quantity) -> SensorState:
         unit=UNITS[quantity],
         quality=reading.quality,
         age_s=reading.age_s,
-        text=f"{text} The reading is {SIMULATED}." if made_up else text,
+        text=f"{text} The reading is SIMULATED." if made_up else text,
     )
 
 

@@ -65,13 +65,18 @@ export function words(value) {
   return _(text.charAt(0).toUpperCase() + text.slice(1));
 }
 
+// A user has a name; what sits at this computer has none and is told in the language of the page.
+const who = (value) => (value === "this computer" ? _("this computer") : String(value));
+
 const FORMS = {
   text: String,
+  who,
   words,
   angle2: (value) => angle(value, 2),
   angle0: (value) => angle(value, 0),
   angle1: (value) => angle(value, 1),
   compass,
+  horizon: (value) => (value < 0 ? _("below the horizon") : _("above the horizon")),
   duration,
   signed_seconds: signedSeconds,
   age: (value) => `${decimals(value, 1)} s`,

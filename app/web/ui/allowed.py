@@ -2,9 +2,11 @@
 
 import re
 from collections.abc import Iterable
+from html import escape
 
 from app.access.principal import Principal
 from app.access.roles import Permission, who_may
+from app.web.languages import said
 from app.web.route_permissions import ROUTES
 from app.web.routes import Guarded, key_of
 
@@ -30,7 +32,7 @@ def shut(html: str, who: Principal, routes: Iterable[Guarded]) -> str:
         if needed is None or who.may(needed):
             return match[0]
         shut_forms.update(ID.findall(match[1]))
-        why = f'<p class="denied-why">Only for {who_may(needed)}.</p>'
+        why = f'<p class="denied-why">{escape(said(f"Only for {who_may(needed)}."))}</p>'
         return f'{match[1]}<fieldset class="denied" disabled>{match[2]}</fieldset>{why}</form>'
 
     def key(match: re.Match[str]) -> str:

@@ -9,6 +9,7 @@ from app.web.languages.known import in_words
 from app.zones import zone_of
 
 UNKNOWN = "–"
+NAMELESS = "this computer"
 ISO_DATE = "%Y-%m-%d"
 
 
@@ -33,6 +34,11 @@ def angle(value: float, digits: int = 2) -> str:
 def compass(azimuth_deg: float) -> str:
     """Return the nearest of the sixteen points of the compass."""
     return CATALOGUE.get().language.compass[round(azimuth_deg / 22.5) % 16]
+
+
+def horizon(elevation_deg: float) -> str:
+    """Return on which side of the horizon an elevation lies."""
+    return CATALOGUE.get().said("below the horizon" if elevation_deg < 0 else "above the horizon")
 
 
 def duration(value: timedelta | float) -> str:
@@ -79,12 +85,19 @@ def words(value: object) -> str:
     return CATALOGUE.get().said(in_words(value))
 
 
+def who(value: object) -> str:
+    """Return a name as it is; what sits at this computer has none and is told in the language of the page."""
+    return CATALOGUE.get().said(NAMELESS) if value == NAMELESS else str(value)
+
+
 FORMATS: dict[str, Callable[[Any, str], str]] = {
     "text": lambda value, _: CATALOGUE.get().said(str(value)),
+    "who": lambda value, _: who(value),
     "words": lambda value, _: words(value),
     "angle2": lambda value, _: angle(value, 2),
     "angle0": lambda value, _: angle(value, 0),
     "angle1": lambda value, _: angle(value, 1),
+    "horizon": lambda value, _: horizon(value),
     "compass": lambda value, _: compass(value),
     "duration": lambda value, _: duration(value),
     "signed_seconds": lambda value, _: signed_seconds(value),

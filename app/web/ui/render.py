@@ -38,6 +38,7 @@ FILTERS = {
     "signed_seconds": formats.signed_seconds,
     "decimals": formats.decimals,
     "words": formats.words,
+    "who": formats.who,
     "local": formats.read_local,
     "format": formats.formatted,
     "zone_offset": formats.offset,
