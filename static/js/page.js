@@ -22,5 +22,9 @@ startOutdated();
 startLive();
 stayAwake();
 
+// On a narrow screen the tabs are one row that scrolls: the page's own stands in sight.
+const tab = document.querySelector(".tabs a[aria-current]");
+if (tab) tab.closest("ul").scrollLeft = tab.offsetLeft - (innerWidth - tab.offsetWidth) / 2;
+
 const heading = document.getElementById("heading");
 if (document.getElementById("steps") && heading && !document.querySelector("[data-focus]")) heading.focus();
