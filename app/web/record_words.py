@@ -37,7 +37,7 @@ _PARTS = """
 _VALUES = """
     yes / no / none / not set / not selected / not reached yet / not known / not described / not read back
     / not tested since the controller was started / {number} s, read back / {number} degrees / done / to do
-    / to be confirmed / unset / manual / system / encoder-deadband / stepped
+    / to be confirmed / unset / manual / system / encoder-deadband / stepped / anything / edge / back
     / {at}, by {name} / {status}, {at}, by {name}"""
 
 

@@ -22,6 +22,7 @@ from app.web.record_files import draft
 from app.web.record_print import record_html, record_pdf
 
 router = api_router(prefix="/trackers/{tracker_id}", tags=["commissioning"])
+HEADERS = {"Vary": "Cookie, Accept-Language"}
 
 FILES: Responses = {
     200: {
@@ -128,8 +129,5 @@ async def read_commissioning_record(
 def written(content: str | bytes, kind: RecordFormat, name: str) -> Response:
     """Return a record as a file to be kept; `name` without its ending."""
     media_type = "text/html" if kind is RecordFormat.HTML else "application/pdf"
-    headers = {
-        "Content-Disposition": f"attachment; filename*=utf-8''{quote(name)}.{kind.value}",
-        "Vary": "Cookie, Accept-Language",
-    }
-    return Response(content, media_type=media_type, headers=headers)
+    attached = {"Content-Disposition": f"attachment; filename*=utf-8''{quote(name)}.{kind.value}"}
+    return Response(content, media_type=media_type, headers=HEADERS | attached)

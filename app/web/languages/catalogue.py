@@ -24,7 +24,9 @@ NAMES = frozenset(_NAMES.split())
 """Gaps in which something stands that people or machines named: a word there is not translated."""
 
 NUMBER = re.compile(r"(?<![\w.])(\d+)\.(\d+)(?![\w.]*\.\d|\d)")
-SENTENCE_END = re.compile(r"(?<=[.!?]) (?=[A-Z0-9])")
+GROUPED = re.compile(r"(?<![\d.,])\d{1,3}(?:,\d{3})+(?![\d,])")
+THIN_SPACE = "\u202f"
+SENTENCE_END = re.compile(r"(?<=[.!?]) (?=-?\d|[A-Z])")
 JOINT = re.compile(r"(: |, | and |; | or | · )")
 MOST_SENTENCES, MOST_NAME_WORDS, MOST_TOGETHER, MOST_SPACES = 40, 8, 4, 2
 
@@ -81,8 +83,11 @@ class Catalogue(_Stored):
         return self._read_blocks().get(markdown) or markdown
 
     def number(self, text: str) -> str:
-        """Return a text with the numbers in it as this language writes them."""
-        return text if self.language.point == "." else NUMBER.sub(rf"\1{self.language.point}\2", text)
+        """Return a text with the numbers in it as this language writes them, thousands with a thin space."""
+        if self.language.point == ".":
+            return text
+        apart = GROUPED.sub(lambda found: found[0].replace(",", THIN_SPACE), text)
+        return NUMBER.sub(rf"\1{self.language.point}\2", apart)
 
     def _said(self, sentence: str) -> str:
         """Return a sentence of the program in this language; one that is not known stays English."""

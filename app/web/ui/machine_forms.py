@@ -30,7 +30,7 @@ NUMBERS: dict[str, tuple[str, str, float, float, str]] = {
     "creep_deg": ("Creep that is borne", "°", 0.1, 45, "Of an axis that was told to stand."),
     "overrun_factor": (
         "A stop may be longer by",
-        "times",
+        "×",
         1,
         20,
         "Than measured or computed; else it is slow.",

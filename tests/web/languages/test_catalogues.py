@@ -153,3 +153,10 @@ def test_texts_have_identities_of_their_own(fresh: Catalog) -> None:
 @pytest.mark.parametrize("code", LANGUAGES)
 def test_sixteen_points_make_a_compass(code: str) -> None:
     assert len(set(catalogue_of(code).language.compass)) == 16
+
+
+@pytest.mark.parametrize("code", TRANSLATED)
+def test_letters_on_a_picture_are_those_of_the_compass(code: str) -> None:
+    catalogue = catalogue_of(code)
+    written = tuple(catalogue.pgettext("compass", letter) for letter in "NESW")
+    assert written == catalogue.language.compass[::4]

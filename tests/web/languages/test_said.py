@@ -29,6 +29,7 @@ from tests.web.languages.made_up import GERMAN, catalogue
         ("Holding.", "Steht."),
         ("Time to stand. 1 to 45, usual 2.5.", "Zeit zu stehen. 1 bis 45, üblich 2,5."),
         ("0.5 to 12", "0,5 bis 12"),
+        ("1,000 to 86,400", "1\u202f000 bis 86\u202f400"),
     ],
 )
 def test_a_sentence_is_found(english: str, german: str) -> None:
