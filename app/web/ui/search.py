@@ -1,6 +1,6 @@
 """One small index over pages, settings, alarms and documents."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from starlette.requests import Request
 
@@ -9,12 +9,15 @@ from app.web import guide
 from app.web.guide_contexts import Hit
 from app.web.help import help_for
 from app.web.languages import said
+from app.web.ui.field_search import SITE_FORMS, TRACKER_FORMS, fields_of
 from app.web.ui.frame import SITE_TABS, TRACKER_TABS, shown_site
 from app.web.ui.protection_forms import NUMBERS, TITLES, field_name
 from app.web.ui.settings_words import SETTINGS
 
 MOST_HITS = 60
 LONGEST_TEXT = 160
+FEW_TRACKERS = 10
+"""Of so many trackers all fields are found; of more those of the trackers that the words name."""
 
 FURTHER = (
     ("Commissioning records", "/records", "Signed records: see, compare, PDF"),
@@ -24,6 +27,9 @@ FURTHER = (
     ("Users and sessions", "/users", "Add users, give roles"),
     ("Tokens", "/tokens", "Access tokens for programs, cabinet panels and their PIN"),
     ("Audit", "/audit", "Who ordered what"),
+    ("Log-ins and refusals", "/audit/access", "Who came in, and who was turned away"),
+    ("Network", "/network", "Where this panel is found: address, port, https"),
+    ("Horizon", "/site/horizon", "What stands round the site"),
     ("Certificate", "/certificate", "HTTPS on tablets"),
     ("Restore a backup", "/restore", "When the database is damaged: safe mode"),
     ("At a glance", "/studies/glance", "What tracking gains here"),
@@ -51,7 +57,8 @@ PARTS = (
 def found(request: Request, words: str) -> tuple[Hit, ...]:
     """Return everything that has all the words: pages first, then settings, alarms and documents."""
     needles = guide.folded(words).split()
-    hits = (hit for hit in _index(_trackers(request)) if _fits(hit, needles))
+    trackers = _trackers(request)
+    hits = (hit for hit in _index(trackers, _meant(trackers, needles)) if _fits(hit, needles))
     return (*hits, *(_of_document(name, section) for name, section in guide.found(words)))[:MOST_HITS]
 
 
@@ -72,7 +79,12 @@ def _trackers(request: Request) -> tuple[str, ...]:
     return tuple(one.tracker_id for one in site.trackers) if site else ()
 
 
-def _index(trackers: tuple[str, ...]) -> Iterator[Hit]:
+def _meant(trackers: tuple[str, ...], needles: list[str]) -> tuple[str, ...]:
+    """Return the trackers whose fields are looked through."""
+    return tuple(name for name in trackers if guide.folded(name) in needles) or trackers[:FEW_TRACKERS]
+
+
+def _index(trackers: tuple[str, ...], meant: tuple[str, ...]) -> Iterator[Hit]:
     yield from (Hit("Page", label, href, _about(href)) for label, href in SITE_TABS)
     yield from (Hit("Page", *further) for further in FURTHER)
     for name in trackers:
@@ -81,12 +93,20 @@ def _index(trackers: tuple[str, ...]) -> Iterator[Hit]:
             Hit("Page", f"{name}: {label}", root + end, _about(root + end)) for label, end in TRACKER_TABS
         )
         yield from (Hit("Page", f"{name}: {label}", root + end, text) for label, end, text in PARTS)
-    for name in trackers:
-        yield from _settings(name)
+    yield from _fields_of_forms(meant)
     for entry in ENTRIES:
         yield Hit(
             "Alarm", entry.title, f"/alarms/guide#alarm-{entry.code}", f"{entry.consequence} {entry.do}"
         )
+
+
+def _fields_of_forms(meant: tuple[str, ...]) -> Iterator[Hit]:
+    for template, title, path in SITE_FORMS:
+        yield from _fields(template, title, path)
+    for name in meant:
+        yield from _settings(name)
+        for template, title, end in TRACKER_FORMS:
+            yield from _fields(template, f"{name}: {title}", f"/trackers/{name}{end}", but=SETTINGS)
 
 
 def _settings(name: str) -> Iterator[Hit]:
@@ -99,6 +119,13 @@ def _settings(name: str) -> Iterator[Hit]:
         about = f"{text} {least:g} to {most:g} {unit}."
         place = f"{root}/protections#f-{field_name(path)}"
         yield Hit("Setting", f"{name}: {title}, {label.lower()}", place, about)
+
+
+def _fields(template: str, title: str, path: str, but: Collection[str] = ()) -> Iterator[Hit]:
+    for field in fields_of(template):
+        if field.name not in but:
+            place = f"{path}#f-{field.name}" if field.name else path
+            yield Hit("Setting", f"{title}, {field.label}", place, field.hint)
 
 
 def _about(path: str) -> str:
