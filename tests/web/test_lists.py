@@ -108,7 +108,9 @@ async def test_only_an_administrator_takes_users_along(office: Office) -> None:
 
 def test_every_key_that_keeps_a_list_leads_to_a_call() -> None:
     calls = {
-        route.path for route in fake_app().routes if isinstance(route, APIRoute) and "GET" in route.methods
+        route.path
+        for route in fake_app().routes
+        if isinstance(route, APIRoute) and "GET" in (route.methods or ())
     }
     keys = [
         path.replace('" ~ frame.tracker_id ~ "', "{tracker_id}").split("?")[0]

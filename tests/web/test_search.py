@@ -27,7 +27,9 @@ async def found(client: httpx.AsyncClient, words: str, language: str = "en") -> 
 
 def pages() -> list[str]:
     """Return the paths of all pages that need nothing but a tracker to be opened."""
-    routes = (route for route in fake_app().routes if isinstance(route, APIRoute) and "GET" in route.methods)
+    routes = (
+        route for route in fake_app().routes if isinstance(route, APIRoute) and "GET" in (route.methods or ())
+    )
     paths = {route.path for route in routes if not NO_PAGES.search(route.path)}
     ready = (path.replace("{tracker_id}", "T1") for path in paths)
     return sorted(path for path in ready if "{" not in path)
