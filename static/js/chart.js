@@ -32,7 +32,11 @@ export function chart(holder, wanted) {
     ],
     hooks: wanted.hooks,
   }, wanted.data ?? [[], ...wanted.series.map(() => [])], holder);
-  const watcher = new ResizeObserver(() => plot.setSize(size()));
+  // Its first word comes at once, when nothing has changed: then there is nothing to draw again.
+  const watcher = new ResizeObserver(() => {
+    const room = size();
+    if (room.width !== plot.width || room.height !== plot.height) plot.setSize(room);
+  });
   watcher.observe(holder);
   return plot;
 }

@@ -21,6 +21,7 @@ turnKeys(scene);
 let tape = null;
 let other = null;
 let plots = [];
+let drawn = 0;
 let at = 0;
 let playing = false;
 let tickAt = 0;
@@ -62,22 +63,42 @@ const SERIES = [
   { label: _("measured"), colour: "blue", width: 2.5 },
 ];
 
-function draw() {
+// Resolves once something is on the screen, or nearly so, or is to be printed.
+const near = (holder) => new Promise((done) => {
+  const watcher = new IntersectionObserver((seen) => {
+    if (!seen.at(-1).isIntersecting) return;
+    watcher.disconnect();
+    done();
+  }, { rootMargin: "25%" });
+  watcher.observe(holder);
+  addEventListener("beforeprint", done, { once: true });
+});
+
+// One chart at a time and where somebody looks: what is pressed meanwhile does not wait for both.
+async function draw() {
+  const mine = drawn += 1;
   plots.forEach((plot) => plot.destroy());
+  plots = [];
+  show();
   const cursor = { lock: false, sync: { key: "player" } };
   const withOther = other ? [{ label: _("Other azimuth"), colour: "p1", width: 1.5 }, { label: _("Other elevation"), colour: "p1", width: 1.5, dash: [4, 3] }] : [];
   const base = [tape.time, ...curves(tape)];
   const angles = other ? window.uPlot.join([base, [shifted(other), unbroken(other.columns.measured_azimuth_deg), other.columns.measured_elevation_deg]]) : base;
   const errors = other ? window.uPlot.join([[tape.time, tape.error], [shifted(other), other.error]]) : [tape.time, tape.error];
-  plots = [
-    chart(document.getElementById("angles"), { zone: head.playerZone, data: angles, range: [0, 360], cursor, series: [...SERIES, ...withOther] }),
-    chart(document.getElementById("errors"), { height: 180, zone: head.playerZone, data: errors, cursor, digits: 3,
-      range: (_, least, most) => [0, Math.max(0.1, (most ?? 0) * 1.1)], series: [{ label: _("Tracking error"), colour: "text" }, ...(other ? [{ label: _("Other"), colour: "p1", width: 1.5 }] : [])] }),
-  ];
-  for (const plot of plots) {
+  const wanted = {
+    angles: { zone: head.playerZone, data: angles, range: [0, 360], cursor, series: [...SERIES, ...withOther] },
+    errors: { height: 180, zone: head.playerZone, data: errors, cursor, digits: 3,
+      range: (_, least, most) => [0, Math.max(0.1, (most ?? 0) * 1.1)], series: [{ label: _("Tracking error"), colour: "text" }, ...(other ? [{ label: _("Other"), colour: "p1", width: 1.5 }] : [])] },
+  };
+  for (const [name, options] of Object.entries(wanted)) {
+    const holder = document.getElementById(name);
+    await near(holder);
+    if (mine !== drawn) return;
+    const plot = chart(holder, options);
+    plots.push(plot);
     plot.over.addEventListener("click", () => { if (plot.cursor.left >= 0) seek(elapsedAt(plot.posToVal(plot.cursor.left, "x"))); });
+    requestAnimationFrame(show);  // A new chart has its scales only after its first frame.
   }
-  requestAnimationFrame(show);  // A new chart has its scales only after its first frame.
 }
 
 function elapsedAt(unixSeconds) {
@@ -173,10 +194,10 @@ async function open() {
   if (head.other) other = await read(head.other, head.otherBegin, head.otherZone);
   scrubber.max = String(tape.columns.elapsed_s[tape.columns.elapsed_s.length - 1]);
   said.textContent = other ? _("Laid over it, in red: {title}.", { title: head.otherTitle }) : "";
-  draw();
   key.addEventListener("click", () => play(!playing));
   scrubber.addEventListener("input", () => { at = Number(scrubber.value); play(false); });
   addEventListener("theme", draw);
+  await draw();
 }
 
 open().catch((error) => { said.textContent = _("The frames could not be read: {why}", { why: error.message }); });
