@@ -8,7 +8,21 @@ from app.tracker.snapshot import SensorState
 from app.tracker.weather import NOTHING_SENSED, Quality, Quantity, Reading
 
 UNITS = {Quantity.WIND: "m/s", Quantity.SNOW: "kg", Quantity.LIGHT: "W/m2"}
-AGAINST = {Quantity.WIND: "wind", Quantity.SNOW: "snow", Quantity.LIGHT: "too little light"}
+OFF = {
+    Quantity.WIND: "The protection against wind is switched off.",
+    Quantity.SNOW: "The protection against snow is switched off.",
+    Quantity.LIGHT: "The protection against too little light is switched off.",
+}
+NEVER_TOLD = {
+    Quantity.WIND: "There is no protection against wind: no sensor has ever reported.",
+    Quantity.SNOW: "There is no protection against snow: no sensor has ever reported.",
+    Quantity.LIGHT: "There is no protection against too little light: no sensor has ever reported.",
+}
+PROTECTS = {
+    Quantity.WIND: "Protects against wind.",
+    Quantity.SNOW: "Protects against snow.",
+    Quantity.LIGHT: "Protects against too little light.",
+}
 
 
 def sensors(mind: Mind) -> tuple[SensorState, ...]:
@@ -50,13 +64,12 @@ def _sensor(mind: Mind, quantity: Quantity) -> SensorState:
 
 def _text(mind: Mind, quantity: Quantity, reading: Reading, *, enabled: bool, known: bool) -> str:
     """Return how far this protection protects, in one sentence."""
-    against = AGAINST[quantity]
     if not enabled:
-        return f"The protection against {against} is switched off."
+        return OFF[quantity]
     if not known:
-        return f"There is no protection against {against}: no sensor has ever reported."
+        return NEVER_TOLD[quantity]
     if guarding(mind).doubt(quantity).ripe:
         return doubt_reason(mind, quantity).message
     if reading.quality is not Quality.GOOD:
         return f"The sensor {BAD[reading.quality]}."
-    return f"Protects against {against}."
+    return PROTECTS[quantity]

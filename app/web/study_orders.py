@@ -184,7 +184,7 @@ class NewProgram(Place):
 def glance_question(detail: SiteDetail, location: Location, year: int) -> CompareSite:
     """Return the comparison of a site: its first tracker's axes, a panel tilted by the latitude."""
     trackers = tuple(detail.trackers.values())
-    config = trackers[0].state.config if trackers else TrackerConfig("T1", "Tracker 1")
+    config = trackers[0].state.config if trackers else TrackerConfig("T1", "T1")
     towards_deg = 180.0 if location.latitude_deg >= 0.0 else 0.0
     held = Orientation(towards_deg, 90.0 - abs(location.latitude_deg))
     return CompareSite(config, location, year, held, ClearSky(location.altitude_m))
