@@ -11,6 +11,7 @@ from app.link.messages import ConfigureTracker, SetClock, SetLocation
 from app.tracker.commands import GoToStart, Move, SelectMode, SetZero, Step
 from app.tracker.mode import Mode
 from app.tracker.reason import Reason
+from app.tracker.snapshot import ActivityName
 from app.web import contexts
 from app.web.languages import CATALOGUE
 from app.web.languages.catalogue import catalogue_of
@@ -303,3 +304,16 @@ def test_values_read_the_same_everywhere() -> None:
     assert duration(185) == "3 min 05 s"
     assert duration(54720) == "15 h 12 min"
     assert [compass(angle) for angle in (0, 191, 359)] == ["N", "S", "N"]
+
+
+@pytest.mark.parametrize("page", [T1, f"{T1}/commissioning/run"])
+@pytest.mark.parametrize("activity", [ActivityName.TRACKING, ActivityName.HOLDING])
+async def test_a_tracker_that_tracks_says_so_instead_of_offering_it(
+    page: str, activity: ActivityName, client: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    machine.trackers["T1"].activity = activity
+    machine.emit()
+    text = (await client.get(page)).text
+    is_tracking = activity is ActivityName.TRACKING
+    assert bool(re.search(r'data-when="activity=tracking" hidden', text)) is not is_tracking
+    assert bool(re.search(r'data-when="activity!=tracking" hidden', text)) is is_tracking
