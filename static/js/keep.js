@@ -1,5 +1,6 @@
 // What was typed outlives a reload, in this tab: it comes back with a word about it, until it is saved or discarded.
 
+import { loadAgain } from "./again.js";
 import { _ } from "./said.js";
 
 const SKIPPED = new Set(["password", "file", "submit", "button"]);
@@ -59,7 +60,7 @@ function tell(form) {
   key.textContent = _("Discard it");
   key.addEventListener("click", () => {
     sessionStorage.removeItem(placeOf(form));
-    location.reload();
+    loadAgain();
   });
   note.append(words, key);
   form.prepend(note);

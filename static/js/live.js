@@ -1,5 +1,6 @@
 // One WebSocket a page: state in, jog and stop out. Nothing is kept for later: what cannot be sent now is dropped.
 
+import { loadAgain } from "./again.js";
 import { shown } from "./format.js";
 import { _ } from "./said.js";
 
@@ -245,7 +246,7 @@ export function start() {
     leaving = true;
     if (socket?.readyState === WebSocket.OPEN) socket.close();
   });
-  addEventListener("pageshow", (shownAgain) => { if (shownAgain.persisted) location.reload(); });
+  addEventListener("pageshow", (shownAgain) => { if (shownAgain.persisted) loadAgain(); });
   document.addEventListener("htmx:after:swap", paint);
   setInterval(judge, 250);
   setInterval(ping, 1000);

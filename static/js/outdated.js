@@ -1,9 +1,11 @@
 // A page of another build, or from before the controller's last start: it says so and is loaded again in place.
 
+import { loadAgain } from "./again.js";
 import { live } from "./live.js";
 
 const SHOW_MS = 1500;
 const LOOP_MS = 5000;
+const LAST = "loaded-again-at";
 const banner = document.getElementById("outdated-banner");
 const mark = document.documentElement.dataset.page ?? "";
 let touched = false;
@@ -14,8 +16,13 @@ function tell({ ordered }) {
   if (told && !ordered) return;
   told = true;
   banner.hidden = false;
-  const justLoaded = performance.getEntriesByType("navigation")[0]?.type === "reload" && performance.now() < LOOP_MS;
-  if ((ordered || !touched) && !justLoaded) setTimeout(() => location.reload(), SHOW_MS);
+  const justLoaded = Date.now() - Number(sessionStorage.getItem(LAST) ?? 0) < LOOP_MS;
+  if ((ordered || !touched) && !justLoaded) setTimeout(again, SHOW_MS);
+}
+
+function again() {
+  sessionStorage.setItem(LAST, Date.now());
+  loadAgain();
 }
 
 function heard() {
@@ -30,7 +37,7 @@ export function start() {
   document.addEventListener("htmx:after:request", (event) => {
     if (event.detail?.ctx?.response?.headers?.get("Page-Outdated")) tell({ ordered: true });
   });
-  document.getElementById("outdated-load").addEventListener("click", () => location.reload());
+  document.getElementById("outdated-load").addEventListener("click", again);
   live.on("state", heard);
   live.on("jog", (message) => {
     if (message.reasons?.some((reason) => reason.code === "page_outdated")) tell({ ordered: true });

@@ -41,3 +41,22 @@ def test_an_order_of_an_outdated_page_is_refused_and_the_page_is_loaded_again(
     expect(page.locator('form[action="/trackers/T1/park"] .outcome')).to_contain_text("This page is outdated")
     expect(page.locator("html")).not_to_have_attribute("data-page", "0123456789ab.fake-boot")
     assert plant.orders("park") == []
+
+
+@pytest.mark.fault(61)
+def test_a_page_that_answers_a_form_is_loaded_again_without_sending_the_form(
+    plant: Plant, opened: Opened
+) -> None:
+    page = opened("/users", allow=("422",))
+    page.locator("input[name=name]").fill("carl")
+    page.locator("input[name=password]").fill("four words that stand together")
+    page.locator("label").filter(has_text="Administrator").click()
+    page.locator("label").filter(has_text="Viewer").click()
+    with page.expect_response(lambda answer: answer.status == 422):
+        page.get_by_role("button", name="Add").click()
+    expect(page.locator("#link-words")).to_have_text("live")
+    sent: list[str] = []
+    page.on("request", lambda request: sent.append(request.method))
+    plant.do(plant.machine.start_again)
+    expect(page.locator("html")).to_have_attribute("data-page", LATER)
+    assert "POST" not in sent
