@@ -112,7 +112,7 @@ def _fields_of_forms(meant: tuple[str, ...]) -> Iterator[Hit]:
 def _settings(name: str) -> Iterator[Hit]:
     root = f"/trackers/{name}"
     for field, words in SETTINGS.items():
-        text = f"{words.hint} In {words.unit}."
+        text = f"{words.hint} The unit is {words.unit}."
         yield Hit("Setting", f"{name}: {words.label}", f"{root}/settings#f-{field}", text)
     for path, (label, unit, least, most, text) in NUMBERS.items():
         title = TITLES.get(path.split(".")[0], ("Warning", ""))[0]
