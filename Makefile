@@ -40,7 +40,6 @@ fast: $(VENV)/.runtime ## Add the compiled loops (numba) that make studies and c
 	@echo "Ready: studies and comparisons use compiled loops."
 
 run: setup ## Serve the panel with a simulated tracker at http://127.0.0.1:8000
-	@echo "Heliopanel: open http://127.0.0.1:$${HELIOPANEL_PORT:-8000} (Ctrl-C ends it)"
 	@$(BIN)/heliopanel serve
 
 system-packages:

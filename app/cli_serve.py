@@ -21,17 +21,10 @@ def serve(
     if insecure_lan:
         os.environ["HELIOPANEL_INSECURE_LAN"] = "1"
     settings = read_settings()
-    typer.echo(
-        f"Heliopanel {VERSION}: open {settings.scheme}://{_bracketed(settings.host)}:{settings.port} "
-        "(Ctrl-C ends it)"
-    )
+    typer.echo(f"Heliopanel {VERSION}: starting ... (Ctrl-C ends it)")
     raise typer.Exit(supervise(settings))
 
 
 def version() -> None:
     """Print the version."""
     typer.echo(VERSION)
-
-
-def _bracketed(host: str) -> str:
-    return f"[{host}]" if ":" in host else host

@@ -18,7 +18,13 @@ def web(supervised: Supervised = None) -> None:
         end_with_parent(supervised)
     settings = read_settings()
     _check_port(settings)
-    run(settings)
+    run(settings, on_answer=_tell_address)
+
+
+def _tell_address(settings: Settings) -> None:
+    """Say where a browser finds the panel, which answers now."""
+    host = f"[{settings.host}]" if ":" in settings.host else settings.host
+    typer.echo(f"Heliopanel answers: open {settings.scheme}://{host}:{settings.port}")
 
 
 def _check_port(settings: Settings) -> None:

@@ -2,9 +2,9 @@
 
 import asyncio
 import gc
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import AsyncExitStack, asynccontextmanager
-from functools import cache
+from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
 
@@ -171,30 +171,36 @@ async def _living(app: FastAPI) -> AsyncIterator[None]:
             await asyncio.gather(following, return_exceptions=True)
 
 
-def run(settings: Settings, clock: Clock | None = None) -> None:
+OnAnswer = Callable[[Settings], None]
+"""Told, each time the panel begins to answer, with which settings."""
+
+
+def run(settings: Settings, clock: Clock | None = None, on_answer: OnAnswer | None = None) -> None:
     """Serve the panel until it is told to end; a change of its network is tried, kept or taken back here."""
     set_up_logs("web", log_format=settings.log_format, log_level=settings.log_level)
     stage: Stage | None = Stage(settings, fixed_by_environment())
     while stage is not None:
-        stage = _serve(stage, clock) if stage.trial is None else _try(stage, clock)
+        serve = _serve if stage.trial is None else _try
+        stage = serve(stage, clock, on_answer)
         gc.unfreeze()
 
 
-def _try(stage: Stage, clock: Clock | None) -> Stage | None:
+def _try(stage: Stage, clock: Clock | None, on_answer: OnAnswer | None) -> Stage | None:
     """Serve settings that are on trial; where that fails, what was in force is next."""
     try:
-        return _serve(stage, clock)
+        return _serve(stage, clock, on_answer)
     except (OSError, SystemExit, Foreseen) as error:
         log.error("network_not_served", reason=str(error))
         return stage.back(NOT_SERVED)
 
 
-def _serve(stage: Stage, clock: Clock | None) -> Stage | None:
+def _serve(stage: Stage, clock: Clock | None, on_answer: OnAnswer | None) -> Stage | None:
     """Serve one stage and return what to serve next, None if the panel was told to end."""
     settings = stage.settings
     app = create_app(settings, clock=clock, stage=stage)
     panel: Panel = app.state.panel
-    server = PanelServer(configured(app, settings), panel.hub.closing.set)
+    told = None if on_answer is None else partial(on_answer, settings)
+    server = PanelServer(configured(app, settings), panel.hub.closing.set, told)
     panel.network.restart = server.leave
     settle()
     server.run()

@@ -282,15 +282,24 @@ class CautiousHttp(HttpToolsProtocol):
 
 
 class PanelServer(uvicorn.Server):
-    """A server that tells its streams to end before it waits for them."""
+    """A server that says when it answers, and tells its streams to end before it waits for them."""
 
-    def __init__(self, config: Config, say_farewell: Callable[[], None]) -> None:
+    def __init__(
+        self, config: Config, say_farewell: Callable[[], None], on_answer: Callable[[], None] | None = None
+    ) -> None:
         super().__init__(config)
         self._say_farewell = say_farewell
+        self._on_answer = on_answer
 
     def leave(self) -> None:
         """End this serving as if it had been told to."""
         self.should_exit = True
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Listen, then say that it answers."""
+        await super().startup(sockets)
+        if self.started and self._on_answer is not None:
+            self._on_answer()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """End the streams, then wait for what is under way."""

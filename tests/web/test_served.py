@@ -4,7 +4,7 @@ import asyncio
 import socket
 import ssl
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from http.client import HTTPConnection
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -32,10 +32,10 @@ from tests.web.office import HERE, PASSWORD
 
 
 @contextmanager
-def served(settings: Settings) -> Iterator[Any]:
+def served(settings: Settings, on_answer: Callable[[], None] | None = None) -> Iterator[Any]:
     """Serve a panel in a thread for a while."""
     app = create_app(settings, machine=FakeMachine(), reader=FakeReader(), hasher=FakeHasher())
-    server = PanelServer(configured(app, settings), app.state.panel.hub.closing.set)
+    server = PanelServer(configured(app, settings), app.state.panel.hub.closing.set, on_answer)
     thread = threading.Thread(target=server.run, daemon=True)
     thread.start()
     asyncio.run(eventually(lambda: server.started))
@@ -54,6 +54,17 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     )
     assert told.exit_code == 0, told.output
     return made
+
+
+def test_the_address_is_told_when_a_browser_can_open_it_and_not_before(tmp_path: Path) -> None:
+    settings, told = Settings(data_dir=tmp_path, port=free_port()), []
+
+    def tell() -> None:
+        with socket.create_connection(("127.0.0.1", settings.port), 5):
+            told.append(settings.port)
+
+    with served(settings, tell):
+        assert told == [settings.port]
 
 
 def test_one_command_later_the_panel_is_served_over_https(folder: Path) -> None:
