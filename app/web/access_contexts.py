@@ -12,7 +12,10 @@ from app.web.contexts import Form, Frame
 
 @dataclass(frozen=True, slots=True)
 class SignInPage:
-    """The form to sign in, to type the password again, to set up, or to bind a cabinet's panel."""
+    """The form to sign in, to type the password again, to set up, or to bind a cabinet's panel.
+
+    `made` is the name of the first administrator, whom this browser has just made.
+    """
 
     template: ClassVar[str] = "sign_in.html"
 
@@ -22,6 +25,7 @@ class SignInPage:
     back: str
     problem: str
     notice: str
+    made: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,10 +4,12 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.access.sessions import ABSOLUTE
-from app.web.deps import principal
+from app.web.deps import panel, principal
 from app.web.gate import cookie_name
 
 KIOSK_AGE_S = 366 * 24 * 3600
+FIRST = "first_administrator"
+FIRST_AGE_S = 300
 
 
 def set_session(request: Request, response: Response, session_id: str, *, kiosk: bool = False) -> None:
@@ -32,6 +34,31 @@ def forget_session(request: Request, response: Response) -> None:
         cookie_name(request.scope), path="/", httponly=True, samesite="strict", secure=secure
     )
     response.headers["Clear-Site-Data"] = '"cache"'
+
+
+def remember_first(request: Request, response: Response, name: str) -> None:
+    """Let this browser's page to sign in say, for a while, that the first administrator was made."""
+    response.set_cookie(
+        FIRST,
+        name.lower(),
+        max_age=FIRST_AGE_S,
+        path="/login",
+        httponly=True,
+        samesite="strict",
+        secure=request.url.scheme == "https",
+    )
+
+
+def forget_first(request: Request, response: Response) -> None:
+    """Say no more that the first administrator was made."""
+    if FIRST in request.cookies:
+        response.delete_cookie(FIRST, path="/login")
+
+
+def first_made(request: Request) -> str:
+    """Return the first administrator's name if this browser has just made that user, otherwise nothing."""
+    name = request.cookies.get(FIRST, "")
+    return name if name in panel(request).keeper.book.users else ""
 
 
 def whence(request: Request) -> tuple[str, str]:

@@ -15,7 +15,7 @@ from app.access.roles import Role
 from app.access.tokens import Scope
 from app.web.route_permissions import PROVEN, ROUTES
 from app.web.routes import RouteUnguarded, guarded_routes, walk
-from tests.web.office import HERE, PORT, Office
+from tests.web.office import HERE, PASSWORD, PORT, Office
 from tests.web.sockets import connected
 
 
@@ -64,6 +64,27 @@ async def test_without_a_notice_the_log_in_has_none(office: Office) -> None:
         found = await stranger.get("/login")
     assert found.status_code == 200
     assert "sign-in-notice" not in found.text
+
+
+async def test_whoever_made_the_first_administrator_is_told_so_before_the_log_in(tmp_path: Path) -> None:
+    office = Office(tmp_path)
+    told = "The administrator zoe was made. Sign in."
+    new = {"name": "Zoe", "password": PASSWORD, "role": "administrator"}
+    async with (
+        office.app.router.lifespan_context(office.app),
+        office.browser() as browser,
+        office.browser() as other,
+    ):
+        answer = await browser.post("/users", data=new)
+        assert answer.headers["location"] == "/login"
+        page = (await browser.get("/login")).text
+        assert told in page
+        assert "The STOP key is here once you are signed in." in page
+        assert 'id="stop-key"' not in page
+        assert "was made" not in (await other.get("/login")).text
+        await browser.post("/login", data={"name": "zoe", "password": PASSWORD})
+        assert "was made" not in (await browser.get("/login")).text
+        assert "STOP is not an emergency stop." in (await browser.get("/")).text
 
 
 def test_a_route_without_an_entry_keeps_the_panel_from_starting(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from app.web.access_contexts import UsersPage
 from app.web.contexts import Field
 from app.web.deps import PanelDep, PrincipalDep, panel, principal
 from app.web.errors import problem_of
+from app.web.sign_ins import remember_first
 from app.web.ui.frame import site_frame
 from app.web.ui.render import go, page
 
@@ -105,7 +106,11 @@ async def _then(
         await built.keeper.do(lambda: work(built.clock.now()))
     except AccessRefused as error:
         return _answer(request, typed, error=error)
-    return go(request, "/login") if first else _answer(request, done=done)
+    if not first:
+        return _answer(request, done=done)
+    response = go(request, "/login")
+    remember_first(request, response, typed[0])
+    return response
 
 
 def _answer(

@@ -13,7 +13,7 @@ from app.web.access_contexts import SignInPage
 from app.web.contexts import Field
 from app.web.deps import PanelDep, PrincipalDep, panel
 from app.web.errors import problem_of
-from app.web.sign_ins import forget_session, set_session, whence
+from app.web.sign_ins import first_made, forget_first, forget_session, remember_first, set_session, whence
 from app.web.ui.frame import site_frame
 from app.web.ui.paths import own_path
 from app.web.ui.render import page
@@ -60,6 +60,7 @@ async def login(
     await built.keeper.log_out(who)
     response = RedirectResponse(own_path(back), 303)
     set_session(request, response, session_id)
+    forget_first(request, response)
     return response
 
 
@@ -102,7 +103,10 @@ async def setup(
     if not built.keeper.is_closed:
         return RedirectResponse("/", 303)
     work = built.keeper.set_up(code, name, password, whence(request)[0])
-    return await _then(request, "setup", work, "/login", {"code": code, "name": name})
+    response = await _then(request, "setup", work, "/login", {"code": code, "name": name})
+    if not built.keeper.is_closed:
+        remember_first(request, response, name)
+    return response
 
 
 @router.get("/kiosk")
@@ -145,6 +149,7 @@ def _form(
         back=own_path(back),
         problem=_words(request, problem.detail) if problem else "",
         notice=panel(request).settings.login_notice if purpose in BEFORE else "",
+        made=first_made(request) if purpose == "login" else "",
     )
     response = page(request, context, status=problem.status if problem else 200)
     response.headers.update(problem.headers if problem else {})
