@@ -10,14 +10,20 @@ function moveCross() {
   cross.setAttribute("visibility", found ? "visible" : "hidden");
   if (!found) return;
   cross.setAttribute("transform", `translate(${found.dataset.x} ${found.dataset.y})`);
+  press("latitude", found.dataset.latitudeSide);
+  press("longitude", found.dataset.longitudeSide);
   const byPlace = document.querySelector('#f-time_zone option[value=""]');
   if (byPlace && document.getElementById("f-time_zone").value === "") byPlace.textContent = found.dataset.zone;
 }
 
 function put(name, value, sides) {
   document.getElementById(`f-${name}`).value = Math.abs(value).toFixed(5);
-  const side = value < 0 ? sides[1] : sides[0];
-  document.querySelector(`input[name="${name}_side"][value="${side}"]`).checked = true;
+  press(name, value < 0 ? sides[1] : sides[0]);
+}
+
+function press(name, side) {
+  const key = document.querySelector(`input[name="${name}_side"][value="${side}"]`);
+  if (key) key.checked = true;
 }
 
 function take(position, words) {

@@ -9,6 +9,7 @@ import pytest
 from app.link.messages import SetLocation
 from app.sun.position import Location
 from app.web.place import place_doubts
+from app.web.ui.location import LocationForm, read
 from tests.fakes import FakeMachine
 
 SUMMER = datetime(2027, 6, 21, 9, tzinfo=UTC)
@@ -96,3 +97,38 @@ async def test_before_it_is_saved_the_page_shows_the_sun_of_the_place(client: ht
     answer = await client.get(f"{PAGE}/preview", params=typed, headers=HTMX)
     assert "The sun stands there now:" in answer.text
     assert "With the two numbers exchanged:" in answer.text
+
+
+async def test_a_place_that_is_stored_is_not_asked_about_again(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    place = machine.site.location
+    assert place is not None
+    stored = {
+        "latitude": f"{place.latitude_deg:.7g}",
+        "longitude": f"{place.longitude_deg:.7g}",
+        "time_zone": machine.site.time_zone,
+        "device_zone": "Pacific/Auckland",
+    }
+    moved = stored | {"latitude": f"{place.latitude_deg + 0.01:.7g}"}
+    assert (await client.post(PAGE, data=moved, headers=HTMX)).status_code == 422
+    assert not saved(machine)
+    assert (await client.post(PAGE, data=stored)).status_code == 303
+    assert len(saved(machine)) == 1
+
+
+@pytest.mark.parametrize(
+    ("latitude", "longitude", "sides"),
+    [
+        ("35 18 29 S", "149 7 E", "SE"),
+        ("s 35.3", "W 149.1", "SW"),
+        ("35 18 29", "149", "NE"),
+        ("-35.3081, 149.1244", "", "SE"),
+        ("35 18 29 W", "149 N", "NE"),
+    ],
+)
+def test_the_key_beside_an_angle_is_that_of_the_letter_it_is_typed_with(
+    latitude: str, longitude: str, sides: str
+) -> None:
+    texts = read(LocationForm(latitude=latitude, longitude=longitude)).typed.texts
+    assert texts["latitude_side"] + texts["longitude_side"] == sides

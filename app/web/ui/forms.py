@@ -98,6 +98,13 @@ def angle(text: str, label: str, sides: str, chosen: str, limit: float) -> float
     return value * _sign(sign, letters.pop() if letters else chosen, sides, label)
 
 
+def side(text: str, sides: str) -> str:
+    """Return the letter of `sides` that an angle was typed with, nothing where it has none of them."""
+    match = ANGLE.fullmatch(_in_english(text.strip().replace("−", "-"), sides))
+    letters = {letter.upper() for letter in (match[1], match[match.re.groups]) if letter} if match else set()
+    return letters.pop() if len(letters) == 1 and letters <= set(sides) else ""
+
+
 def _in_english(text: str, sides: str) -> str:
     """Return an angle whose letter is in the page's language, such as `36° O`, with the English one."""
     for side in sides:

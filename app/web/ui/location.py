@@ -32,6 +32,8 @@ from app.zones import zone_of
 router = APIRouter(prefix="/trackers/{tracker_id}/commissioning/location")
 NAMES = ("latitude", "longitude", "altitude", "latitude_side", "longitude_side", "time_zone", "device_zone")
 BY_PLACE = ""
+SIDES = {"latitude": "NS", "longitude": "EW"}
+SHOWN_DEG = 1e-4
 
 
 class LocationForm(BaseModel):
@@ -95,7 +97,9 @@ def read(form: LocationForm) -> Read:
     """Return what was typed and what it means."""
     texts = form.model_dump()
     if pasted := forms.pair(form.latitude):
-        texts |= {"latitude": pasted[0], "longitude": pasted[1], "latitude_side": "N", "longitude_side": "E"}
+        for (name, sides), text in zip(SIDES.items(), pasted, strict=True):
+            texts |= {name: text.lstrip("+-"), f"{name}_side": sides[text.startswith("-")]}
+    texts |= _sides(texts)
     typed = Typed(texts)
     latitude = typed.read("latitude", lambda text: _angle(text, texts, "latitude", "NS", 90.0), 0.0)
     longitude = typed.read("longitude", lambda text: _angle(text, texts, "longitude", "EW", 180.0), 0.0)
@@ -109,9 +113,15 @@ def read(form: LocationForm) -> Read:
     )
 
 
+def _sides(texts: dict[str, str]) -> dict[str, str]:
+    """Return which keys beside the fields the letters in them press; a letter counts more than a key."""
+    letters = {name: forms.side(texts[name], sides) for name, sides in SIDES.items()}
+    return {f"{name}_side": letter for name, letter in letters.items() if letter}
+
+
 def _doubted(found: Read, site: SiteState, built: Panel) -> Read:
     """Return what was typed with what speaks against it."""
-    if found.location is None:
+    if found.location is None or _is_stored(found, site):
         return found
     device_zone = found.typed.texts["device_zone"]
     known = device_zone if device_zone in zones() else ""
@@ -119,6 +129,18 @@ def _doubted(found: Read, site: SiteState, built: Panel) -> Read:
         found.location, found.zone, built.clock.now(), before=site.location, device_zone=known
     )
     return replace(found, doubts=doubts)
+
+
+def _is_stored(found: Read, site: SiteState) -> bool:
+    """Return whether this place is stored, to the digits that the form shows: it was confirmed then."""
+    there, stored = found.location, site.location
+    return (
+        there is not None
+        and stored is not None
+        and found.zone == site.time_zone
+        and abs(there.latitude_deg - stored.latitude_deg) < SHOWN_DEG
+        and abs(there.longitude_deg - stored.longitude_deg) < SHOWN_DEG
+    )
 
 
 def _angle(text: str, texts: dict[str, str], name: str, sides: str, limit: float) -> float:
