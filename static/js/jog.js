@@ -3,6 +3,7 @@
 import { live } from "./live.js";
 import { randomId } from "./orders.js";
 import { _ } from "./said.js";
+import { keepStill, letGo } from "./steady.js";
 
 const BEAT_MS = 50;
 const SLIDE_PX = 24;
@@ -35,6 +36,7 @@ function begin(key, pointer) {
   press = { id: randomId(), key, pointer, axis: key.dataset.jog, direction: Number(key.dataset.direction), speed: speed(), sequence: 0, beats: 0,
     epoch: live.tracker.control.epoch };
   press.box = key.getBoundingClientRect();
+  keepStill(key);
   key.dataset.held = "";
   said.textContent = "";
   navigator.vibrate?.(15);
@@ -48,6 +50,7 @@ function end(why = "") {
   paintBeats(beats - sequence, beats);
   press = null;
   clearInterval(timer);
+  letGo();
   delete key.dataset.held;
   said.textContent = why;
   live.send({ type: "end_jog", tracker_id: live.trackerId, press_id: id });
