@@ -7,7 +7,7 @@ from app.sun.algorithms import PUBLISHED
 from app.tracker.config import MountConfig, TrackerConfig
 from app.tracker.control import ControlState
 from app.tracker.limit_change import LimitReview
-from app.tracker.memory import ClockSetting, HomeTrust, Pointing, Sighting, StepName, TrackerMemory
+from app.tracker.memory import ClockSetting, Pointing, Sighting, StepName, TrackerMemory
 from app.tracker.mode import Mode
 from app.tracker.motion import DriveCapabilities
 from app.tracker.programs.show import ShowPlan
@@ -220,7 +220,6 @@ class HomingPage:
 
     frame: Frame
     capabilities: DriveCapabilities | None
-    home: HomeTrust | None
     config: TrackerConfig
 
 

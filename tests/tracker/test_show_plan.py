@@ -3,7 +3,9 @@
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
+from zoneinfo import ZoneInfo
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -126,6 +128,24 @@ def test_through_the_north_an_axis_of_0_to_360_unwinds_at_noon() -> None:
     assert codes(check.notices) == ["unwinding"]
     assert "turns from 0 to 330 degrees" in check.notices[0].message
     assert "of sun time" in check.notices[0].message
+
+
+def test_the_path_shows_the_unwinding_as_slow_as_the_axis_is() -> None:
+    path = check_show(SOUTH, PLAIN).path
+    step_s = SOUTH.duration.total_seconds() / (len(path.panel_azimuth_deg) - 1)
+    speeds_dps = np.abs(np.diff(path.panel_azimuth_deg)) / step_s
+    turning_s = step_s * np.count_nonzero(speeds_dps > 0.9 * PLAIN.azimuth.speed_dps)
+    assert speeds_dps.max() < 1.02 * PLAIN.azimuth.speed_dps
+    assert turning_s == pytest.approx(330.0 / PLAIN.azimuth.speed_dps, abs=2.0)
+
+
+def test_a_notice_tells_the_time_of_the_zone_in_which_the_show_was_planned() -> None:
+    begin, end = (at.astimezone(ZoneInfo("Australia/Sydney")) for at in (SOUTH.begin_at, SOUTH.end_at))
+    local, utc_ = check_show(replace(SOUTH, begin_at=begin, end_at=end), PLAIN), check_show(SOUTH, PLAIN)
+    assert local.notices[0].message.startswith("At 12:0")
+    assert "(Australia/Sydney) the azimuth axis meets" in local.notices[0].message
+    assert utc_.notices[0].message.startswith("At 02:0")
+    assert "(UTC) the azimuth axis meets" in utc_.notices[0].message
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from app.tracker.axes import AxisConfig
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mount import AxisTarget, aim, mode_direction, second_axis, sky
-from app.tracker.programs.pace import Night, Pace, Repositioning, pace, travel_s
+from app.tracker.programs.pace import Night, Pace, Repositioning, pace, travel_s, underway_deg
 from app.tracker.programs.path import EDGE_DEG, Stretch, sampled, stretches
 from app.tracker.programs.plan import ShowPlan
 
@@ -70,8 +70,13 @@ class ShowCourse:
         return path, pace(path, self._tracker, self._zero_s, acceleration, duration_s)
 
     def planned(self, elapsed_s: float) -> AxisTarget:
-        """Return the axis angles planned for an instant of the show, seconds of the drive's time."""
-        return self._place(elapsed_s).target
+        """Return where the axes will be at an instant of the show, seconds of the drive's time."""
+        target = self._place(elapsed_s).target
+        for span in self.pace.repositionings:
+            if span.begin_s <= elapsed_s < span.end_s:
+                azimuth_deg = underway_deg(self._tracker.azimuth, span, elapsed_s)
+                return AxisTarget(azimuth_deg, target.elevation_deg, target.limited)
+        return target
 
     def at(self, elapsed: timedelta) -> ShowAim:
         """Return the sun, the target and the set-point after so much of the show has run."""

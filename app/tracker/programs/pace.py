@@ -8,6 +8,7 @@ along it (the keyhole, for azimuth near the zenith). It may take at most a fifth
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import copysign
 
 import numpy as np
 
@@ -119,6 +120,21 @@ def pace(
 def travel_s(axis: AxisConfig, distance_deg: float) -> float:
     """Return how long an axis needs from rest to rest over a distance, seconds."""
     return float(_travel_s(axis, np.array([distance_deg]))[0])
+
+
+def underway_deg(axis: AxisConfig, span: Repositioning, elapsed_s: float) -> float:
+    """Return where the azimuth axis is while it repositions, from rest to rest, axis degrees."""
+    distance_deg = abs(span.to_deg - span.from_deg)
+    whole_s = travel_s(axis, distance_deg)
+    ramp_s = min(axis.speed_dps / axis.acceleration_dps2, whole_s / 2.0)
+    gone_s = min(max(elapsed_s - span.begin_s, 0.0), whole_s)
+    gathering_s, braking_s = min(gone_s, ramp_s), max(0.0, gone_s - (whole_s - ramp_s))
+    steady_s = gone_s - gathering_s - braking_s
+    speed_dps = axis.acceleration_dps2 * ramp_s
+    gone_deg = 0.5 * axis.acceleration_dps2 * (gathering_s**2 - braking_s**2) + speed_dps * (
+        steady_s + braking_s
+    )
+    return span.from_deg + copysign(gone_deg, span.to_deg - span.from_deg)
 
 
 def _travel_s(axis: AxisConfig, distance_deg: Array) -> Array:

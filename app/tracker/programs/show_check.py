@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from datetime import UTC, timedelta
+from datetime import timedelta
 from typing import Protocol
 
 import numpy as np
@@ -180,7 +180,8 @@ def _notices(course: ShowCourse, tracker: TrackerConfig) -> Iterator[Reason]:
 
 
 def _repositioning_notice(course: ShowCourse, span: Repositioning, mount: MountConfig) -> Reason:
-    at = course.plan.sun_time(timedelta(seconds=span.begin_s)).astimezone(UTC)
+    zone = course.plan.begin_at.tzinfo
+    at = course.plan.sun_time(timedelta(seconds=span.begin_s)).astimezone(zone)
     seconds = span.end_s - span.begin_s
     lost = spell(timedelta(seconds=seconds * course.plan.acceleration))
     title = axis_title(mount, Axis.AZIMUTH)
@@ -190,7 +191,7 @@ def _repositioning_notice(course: ShowCourse, span: Repositioning, mount: MountC
     else:
         where = "zenith" if mount.kind in UPRIGHT_KINDS else "direction of the axis"
         code, why = "keyhole", f"the sun passes too near the {where} to follow and the {title} axis {turn}"
-    return Reason(code, f"At {at:%H:%M} UTC {why}: {seconds:.1f} s of the show, {lost} of sun time.")
+    return Reason(code, f"At {at:%H:%M} ({zone}) {why}: {seconds:.1f} s of the show, {lost} of sun time.")
 
 
 def _limit_notices(stretches: Sequence[Stretch], tracker: TrackerConfig) -> Iterator[Reason]:

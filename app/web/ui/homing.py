@@ -34,7 +34,6 @@ async def show(request: Request, tracker_id: str, machine: MachineDep) -> Respon
     context = HomingPage(
         frame=wizard_frame(request, tracker, StepName.HOMING),
         capabilities=tracker.capabilities,
-        home=tracker.state.memory.home,
         config=tracker.state.config,
     )
     return page(request, context)
@@ -44,7 +43,7 @@ async def show(request: Request, tracker_id: str, machine: MachineDep) -> Respon
 async def zero(tracker_id: str, press: PressDep) -> Response:
     """Call the present position zero on both axes."""
     await press.send(SetZero(), tracker_id)
-    return press.answer("The drive was told to set zero; it is read back now.")
+    return press.answer("The drive was told to set zero.")
 
 
 @router.post("/home")
