@@ -1,4 +1,4 @@
-// The last ten minutes of measured and target angles, kept by this page.
+// The last ten minutes of measured and target angles: what was recorded, and from then on what this page hears.
 
 import { chart } from "./chart.js";
 import { live } from "./live.js";
@@ -7,15 +7,37 @@ import { _ } from "./said.js";
 const SPAN_S = 600;
 const EVERY_MS = 500;
 const holder = document.querySelector("[data-trend]");
-const rows = [[], [], [], [], []];
+const POINTS = 1200;
+const COLUMNS = ["measured_azimuth_deg", "target_azimuth_deg", "measured_elevation_deg", "target_elevation_deg"];
+let rows = [[], [], [], [], []];
 let plot = null;
 let takenAt = 0;
+let asked = false;
+
+// What was recorded goes before what was heard meanwhile; where it cannot be read, the curves begin now.
+async function recall() {
+  const end = live.machineNow() ?? live.tracker.at;
+  const begin = new Date(Date.parse(end) - SPAN_S * 1000).toISOString();
+  const query = new URLSearchParams({ tracker_id: live.trackerId, begin, end, points: String(POINTS) });
+  const answer = await fetch(`/api/v1/telemetry?${query}`);
+  if (!answer.ok) return;
+  const { columns } = await answer.json();
+  const times = columns.elapsed_s.map((seconds) => Date.parse(begin) / 1000 + seconds);
+  const heardFrom = rows[0][0] ?? Infinity;
+  const count = times.filter((at) => at < heardFrom).length;
+  rows = [times, ...COLUMNS.map((name) => columns[name])].map((old, index) => [...old.slice(0, count), ...rows[index]]);
+  if (rows[0].length) paint();
+}
 
 function take() {
   const one = live.tracker;
   const now = performance.now();
   if (!one || now - takenAt < EVERY_MS) return;
   takenAt = now;
+  if (!asked) {
+    asked = true;
+    recall().catch(() => {});
+  }
   const values = [Date.parse(one.at) / 1000, one.measured?.azimuth_deg, one.target?.azimuth_deg, one.measured?.elevation_deg, one.target?.elevation_deg];
   values.forEach((value, index) => rows[index].push(value ?? null));
   while (rows[0].length && rows[0][0] < values[0] - SPAN_S) rows.forEach((row) => row.shift());

@@ -1,0 +1,31 @@
+// The page of the site: its weather card is read again when other quantities are known than those that it shows.
+
+import { live } from "./live.js";
+
+const LEAST_MS = 2000;
+const READINGS = "site.weather.readings.";
+let askedAt = -Infinity;
+
+const card = () => document.getElementById("weather");
+
+function shown() {
+  const names = [...card().querySelectorAll(`[data-live^="${READINGS}"]`)].map((element) => element.dataset.live.slice(READINGS.length));
+  return keyOf(names, card().hasAttribute("data-simulated"));
+}
+
+function known({ readings, simulated } = { readings: {}, simulated: false }) {
+  return keyOf(Object.keys(readings).filter((name) => readings[name] !== null), simulated);
+}
+
+const keyOf = (names, simulated) => [...names.sort(), simulated].join(" ");
+
+async function follow() {
+  if (performance.now() - askedAt < LEAST_MS || shown() === known(live.site.weather ?? undefined)) return;
+  askedAt = performance.now();
+  const answer = await fetch("/site");
+  if (!answer.ok) return;
+  const fresh = new DOMParser().parseFromString(await answer.text(), "text/html").getElementById("weather");
+  if (fresh) card().replaceWith(fresh);
+}
+
+live.on("state", () => { follow().catch(() => {}); });

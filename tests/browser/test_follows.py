@@ -1,0 +1,70 @@
+"""Pages that go on with what was already there, and follow what comes: curves, weather, the pressed key."""
+
+import re
+from dataclasses import replace
+from datetime import datetime, timedelta
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from app.tracker.recording import RecordingKind
+from app.tracker.weather import Weather, WeatherNow
+from tests.browser.conftest import Opened, Plant
+from tests.browser.hands import until
+from tests.fake_data import recording
+
+DAY = timedelta(days=1)
+LEAST, MOST = timedelta(minutes=9), timedelta(minutes=11)
+
+
+def told_at(page: Page, share: float) -> datetime:
+    """Return the time of day that the legend tells where one points at so much of the curves' width."""
+    over = page.locator("[data-trend] .u-over")
+    box = over.bounding_box()
+    assert box is not None
+    over.hover(position={"x": box["width"] * share, "y": box["height"] / 2})
+    told = page.locator("[data-trend] .u-legend .u-series").first.locator(".u-value")
+    expect(told).to_have_text(re.compile(r"\d\d:\d\d:\d\d"))
+    return datetime.strptime(f"{told.inner_text()}Z", "%H:%M:%S%z")
+
+
+def test_the_last_ten_minutes_begin_with_what_was_recorded(plant: Plant, opened: Opened) -> None:
+    began = plant.machine.clock.now() - timedelta(hours=1)
+    head = recording("today", RecordingKind.DAY, "Today", 1.0, 7200.0)
+    plant.machine.store.heads["today"] = replace(head, began_at=began, ended_at=None)
+    page = opened("/trackers/T1", allow=("WebGL",))
+    until(
+        page,
+        lambda: MOST > (told_at(page, 0.98) - told_at(page, 0.02)) % DAY > LEAST,
+        within_ms=10_000,
+    )
+
+
+def test_the_weather_card_follows_what_the_station_tells(plant: Plant, opened: Opened) -> None:
+    page = opened("/site")
+    card = page.locator("#weather")
+    expect(card).to_contain_text("No weather station has reported")
+    page.locator("#f-host").fill("10.0.0.7")
+    for readings, simulated in (
+        (Weather(wind_mps=7.5), True),
+        (Weather(wind_mps=7.5, snow_kg=3.0), True),
+        (Weather(wind_mps=7.5), False),
+    ):
+        plant.machine.weather = WeatherNow(
+            readings, plant.machine.clock.now(), 0.0, stale=False, source="mast", simulated=simulated
+        )
+        expect(card.get_by_role("heading")).to_have_text("Weather, SIMULATED" if simulated else "Weather")
+        expect(card.get_by_text("Snow load")).to_have_count(int(readings.snow_kg is not None))
+        expect(card).to_contain_text("7.5 m/s")
+    expect(page.locator("#f-host")).to_have_value("10.0.0.7")
+
+
+@pytest.mark.parametrize(("typed", "south"), [("35 18 29 S", True), ("35 18 29 N", False)])
+def test_the_letter_that_is_typed_presses_its_key(opened: Opened, typed: str, *, south: bool) -> None:
+    page = opened("/trackers/T1/commissioning/location")
+    keys = page.locator("input[name=latitude_side]")
+    other = keys.nth(0 if south else 1)
+    other.check(force=True)
+    page.locator("#f-latitude").fill(typed)
+    expect(keys.nth(1 if south else 0)).to_be_checked()
+    expect(page.locator("#preview")).to_contain_text("southern" if south else "northern")
