@@ -87,3 +87,13 @@ def test_reasons_that_come_above_the_keys_do_not_move_them(size: str, browser: B
     page.close()
     assert on_page > 20
     assert on_screen < 1
+
+
+def test_on_a_tablet_all_keys_stand_above_the_footer_below_a_notice_too(opened: Opened) -> None:
+    page = opened(HOMING, "tablet")
+    page.evaluate(ADD_NOTICE)
+    footer = page.locator(".footer").bounding_box()
+    boxes = [key.bounding_box() for key in page.locator("[data-jog]").all()]
+    assert footer is not None
+    assert len(boxes) == 4
+    assert all(box is not None and box["y"] + box["height"] <= footer["y"] for box in boxes)
