@@ -1,8 +1,8 @@
 """Templates and how a declared context becomes a page, or the one block of it that htmx asked for."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import fields
-from functools import cache
+from functools import cache, wraps
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +61,6 @@ def environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
         extensions=["jinja2.ext.i18n"],
-        optimized=False,  # else a fixed text is said once for all, in the language of who comes first
     )
     env.policies["ext.i18n.trimmed"] = True
     env.install_gettext_callables(  # type: ignore[attr-defined] # the extension adds it
@@ -71,7 +70,7 @@ def environment() -> Environment:
         pgettext=languages.pgettext,
         npgettext=languages.npgettext,
     )
-    env.filters |= FILTERS
+    env.filters |= {name: _when_shown(told) for name, told in FILTERS.items()}
     env.globals |= {"help_for": help_for, "live": live, "world": world(), "abilities": abilities}
     env.globals |= {"languages": offered()}
     env.globals |= {"spoken": languages.spoken, "script_texts": for_page}
@@ -86,6 +85,17 @@ def environment() -> Environment:
     ):
         env.globals |= _macros(env, shared)
     return env
+
+
+def _when_shown(told: Callable[..., object]) -> Callable[..., object]:
+    """Return a filter that is not worked out when a template is compiled, by whoever comes first."""
+
+    @pass_context
+    @wraps(told)
+    def tell(_context: TemplateContext, *given: object, **named: object) -> object:
+        return told(*given, **named)
+
+    return tell
 
 
 def _macros(env: Environment, template: str) -> dict[str, object]:
