@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from itertools import pairwise
 from typing import Any
 from zoneinfo import ZoneInfo
 
@@ -290,3 +291,13 @@ def test_where_no_duration_works_the_hint_says_so() -> None:
     check = check_show(SOLSTICE, crawling)
     assert check.shortest is None
     assert check.reasons[0].hint == "No simulation time up to 24 hours works: choose another interval."
+
+
+def test_the_sun_goes_on_evenly_where_clocks_are_set_forward() -> None:
+    berlin = ZoneInfo("Europe/Berlin")
+    begin, end = datetime(2027, 3, 28, 0, tzinfo=berlin), datetime(2027, 3, 28, 12, tzinfo=berlin)
+    plan = replace(SOLSTICE, begin_at=begin, end_at=end, duration=timedelta(seconds=110))
+    assert plan.acceleration == pytest.approx(360.0)
+    seen = [plan.sun_time(timedelta(seconds=second)).astimezone(UTC) for second in range(111)]
+    assert {after - before for before, after in pairwise(seen)} == {timedelta(minutes=6)}
+    assert seen[-1] == end.astimezone(UTC)

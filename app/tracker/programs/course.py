@@ -64,7 +64,7 @@ class ShowCourse:
 
     def run_in(self, duration_s: float) -> tuple[tuple[Stretch, ...], Pace]:
         """Return what the same interval of sun asks of the axes when it is run in a duration."""
-        acceleration = (self.plan.end_at - self.plan.begin_at).total_seconds() / duration_s
+        acceleration = self.plan.span.total_seconds() / duration_s
         unwinding_s = travel_s(self._tracker.azimuth, 360.0) * acceleration
         path = stretches(self._sampled, self._tracker, unwinding_s)
         return path, pace(path, self._tracker, self._zero_s, acceleration, duration_s)

@@ -1,7 +1,7 @@
 """What a show is made of: the plan, its path, and whether a tracker can do it."""
 
 from dataclasses import dataclass
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,13 +32,18 @@ class ShowPlan:
     schedule: Schedule | None = None
 
     @property
+    def span(self) -> timedelta:
+        """Return how much sun time is played, also where clocks are set forward or back in between."""
+        return self.end_at.astimezone(UTC) - self.begin_at.astimezone(UTC)
+
+    @property
     def acceleration(self) -> float:
         """Return how many seconds of sun time pass in one second."""
-        return (self.end_at - self.begin_at) / self.duration
+        return self.span / self.duration
 
     def sun_time(self, elapsed: timedelta) -> datetime:
         """Return the sun's clock after so much of the show has run."""
-        return min(self.end_at, self.begin_at + elapsed * self.acceleration)
+        return min(self.end_at, self.begin_at.astimezone(UTC) + elapsed * self.acceleration)
 
 
 @dataclass(frozen=True, slots=True)

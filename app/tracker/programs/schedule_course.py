@@ -3,7 +3,7 @@
 from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from datetime import timedelta
+from datetime import UTC, timedelta
 from itertools import pairwise
 from math import ceil
 
@@ -76,7 +76,7 @@ class ScheduleCourse:
 
     def shortest_s(self) -> float:
         """Return the least duration in which every move is done before the next begins, seconds."""
-        whole_s = (self.plan.end_at - self.plan.begin_at).total_seconds()
+        whole_s = self.plan.span.total_seconds()
         needed_s = 0.0
         moves = pairwise(self.places)
         for (before, after), end_s in zip(moves, self._from_s[2:], strict=False):
@@ -123,7 +123,7 @@ class ScheduleCourse:
         return high_s
 
     def _scheduled(self, sun_s: float, near_deg: float) -> Aimed:
-        at = self.plan.begin_at + timedelta(seconds=sun_s)
+        at = self.plan.begin_at.astimezone(UTC) + timedelta(seconds=sun_s)
         sun = sun_position(self.plan.algorithm, self.plan.location, at)
         moment = Moment(at, sun, self.plan.location)
         return scheduled(self._schedule, self._followed, moment, near_deg)

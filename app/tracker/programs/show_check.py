@@ -83,7 +83,7 @@ def _interval_reasons(plan: ShowPlan) -> Iterator[Reason]:
             "end_before_start", "The show ends before it starts.", "Choose an end time after the start time."
         )
         return
-    if plan.end_at - plan.begin_at > LONGEST_INTERVAL:
+    if plan.span > LONGEST_INTERVAL:
         yield Reason("interval_too_long", "The show covers more than 48 hours.", "Choose an earlier end.")
     try:
         for at in (plan.begin_at, plan.end_at):
@@ -170,7 +170,7 @@ def _notices(course: ShowCourse, tracker: TrackerConfig) -> Iterator[Reason]:
         yield _repositioning_notice(course, span, tracker.mount)
     yield from _limit_notices(course.stretches, tracker)
     up = sum((end - begin for begin, end in sun_up(course.plan)), timedelta(0))
-    down = course.plan.end_at - course.plan.begin_at - up
+    down = course.plan.span - up
     if down >= timedelta(seconds=1):
         yield Reason(
             "sun_down",

@@ -31,7 +31,7 @@ def options_said(options: Iterable[tuple[object, str]]) -> tuple[tuple[object, s
 
 
 TEMPLATES = Path(__file__).resolve().parents[3] / "templates"
-FILTERS = {
+FILTERS: dict[str, Callable[..., Any]] = {
     "angle": formats.angle,
     "compass": formats.compass,
     "duration": formats.duration,
@@ -87,12 +87,12 @@ def environment() -> Environment:
     return env
 
 
-def _when_shown(told: Callable[..., object]) -> Callable[..., object]:
+def _when_shown(told: Callable[..., Any]) -> Callable[..., Any]:
     """Return a filter that is not worked out when a template is compiled, by whoever comes first."""
 
     @pass_context
     @wraps(told)
-    def tell(_context: TemplateContext, *given: object, **named: object) -> object:
+    def tell(_context: TemplateContext, *given: Any, **named: Any) -> Any:
         return told(*given, **named)
 
     return tell
