@@ -143,7 +143,8 @@ function paintValues() {
   for (const element of document.querySelectorAll("[data-when]")) element.hidden = !holds(element);
 }
 
-// `data-when="show.phase=running,paused"`: shown while the value is one of these; without `=`, while there is one.
+// `data-when="show.phase=running,paused"`: shown while the value is one of these, with `!=` while it is none of them;
+// without `=`, while there is one.
 function holds(element) {
   const [place, wanted] = element.dataset.when.split("=");
   const path = place.replace("!", "");
