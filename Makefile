@@ -11,8 +11,8 @@ VENV := .venv
 BIN := $(VENV)/bin
 # Tests that judge how punctual things are, each with the computer to itself; the others share the cores.
 ALONE := tests/drives/timed $(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk kills process)) \
-	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop two_operators)) \
-	$(addprefix tests/e2e/test_,$(addsuffix .py,drive_lost hold_to_run kill stop_and_tabs))
+	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop shown two_operators walk)) \
+	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost first_time hold_to_run kill shows stop_and_tabs))
 
 .DEFAULT_GOAL := help
 .PHONY: help setup fast run test check translations fuzz bench format lock browser system-packages clean
@@ -47,8 +47,7 @@ system-packages:
 
 test: $(VENV)/.dev system-packages ## Set up what tests need and run them all, browser tests included
 	@echo "Running the tests that share the computer's cores ..."
-	@$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder $(ALONE:%=--ignore=%) --ignore=tests/drives
-	@$(BIN)/python -m pytest -n 2 --dist loadfile tests/drives --ignore=tests/drives/timed
+	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder $(ALONE:%=--ignore=%)
 	@echo "Running the tests that judge how punctual things are, one at a time ..."
 	@$(BIN)/python -m pytest $(ALONE)
 

@@ -20,11 +20,11 @@ def test_a_page_from_before_a_restart_is_loaded_again_in_place(
     typing.locator("input[type=text]").first.fill("North field 7")
     plant.do(plant.machine.start_again)
     expect(page.locator("#outdated-banner")).to_be_visible()
-    picture(page, "page-outdated")
     expect(page.locator("html")).to_have_attribute("data-page", LATER)
     expect(page.locator("#outdated-banner")).to_be_hidden()
 
     expect(typing.locator("#outdated-banner")).to_be_visible()
+    picture(typing, "page-outdated")
     typing.wait_for_timeout(2000)
     expect(typing.locator("input[type=text]").first).to_have_value("North field 7")
     typing.locator("#outdated-load").click()
