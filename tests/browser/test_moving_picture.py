@@ -5,6 +5,7 @@ import base64
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from datetime import datetime
 from itertools import product
 from math import acos, cos, degrees, radians, sin
 from operator import mul
@@ -13,6 +14,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page
 
+from app.clock import SystemClock
 from app.sun.horizon import Horizon
 from app.sun.trigonometry import SCALAR
 from app.tracker.config import MountKind, TrackerConfig
@@ -20,6 +22,7 @@ from app.tracker.mounts.kinematics import direction
 from app.tracker.mounts.usual import mounted
 from app.tracker.snapshot import Pair
 from tests.browser.conftest import PATIENCE_MS, SCREENS, SOFTWARE_NOTE, Served
+from tests.fake_data import NOON
 from tests.fakes import FakeMachine
 
 T1 = "/trackers/T1"
@@ -83,6 +86,17 @@ FIT = """() => ({
 })"""
 
 
+class NoonClock(SystemClock):
+    """Runs on from noon, so that the sun shines on the panel at whatever hour the tests run."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._late = NOON - super().now()
+
+    def now(self) -> datetime:
+        return super().now() + self._late
+
+
 class Panel:
     """One served panel for all tests here, and the pages that were opened on it."""
 
@@ -113,7 +127,7 @@ class Panel:
 
 @pytest.fixture(scope="module")
 def served() -> Iterator[Served]:
-    served = Served(FakeMachine())
+    served = Served(FakeMachine(NoonClock()))
     thread = threading.Thread(target=lambda: asyncio.run(served.run()), daemon=True)
     thread.start()
     assert served.ready.wait(20), "the panel did not start"
