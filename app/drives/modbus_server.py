@@ -66,7 +66,7 @@ class ModbusServer:
         self._respond = respond
         self._most_clients = most_clients
         self._server: asyncio.Server | None = None
-        self._serving: set[asyncio.Task[None]] = set()
+        self._serving: dict[asyncio.Task[None], asyncio.StreamWriter] = {}
 
     @property
     def client_count(self) -> int:
@@ -82,9 +82,14 @@ class ModbusServer:
         """Stop listening and close every connection."""
         if self._server is not None:
             self._server.close()
-        for task in self._serving:
+        serving = dict(self._serving)
+        for task in serving:
             task.cancel()
-        await asyncio.gather(*self._serving, return_exceptions=True)
+        await asyncio.gather(*serving, return_exceptions=True)
+        for writer in serving.values():  # a task that was ended before it began has closed nothing
+            writer.transport.abort()
+            with suppress(OSError):
+                await writer.wait_closed()
         if self._server is not None:
             await self._server.wait_closed()
 
@@ -93,8 +98,11 @@ class ModbusServer:
             writer.close()
             return
         task = asyncio.create_task(self._serve(reader, writer))
-        self._serving.add(task)
-        task.add_done_callback(self._serving.discard)
+        self._serving[task] = writer
+        task.add_done_callback(self._forget)
+
+    def _forget(self, task: asyncio.Task[None]) -> None:
+        self._serving.pop(task, None)
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         try:

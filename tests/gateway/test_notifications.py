@@ -72,7 +72,7 @@ class MailServer:
 
 @asynccontextmanager
 async def served(found: WebServer | MailServer) -> AsyncIterator[None]:
-    conversations: set[asyncio.Task[None]] = set()
+    conversations: dict[asyncio.Task[None], asyncio.StreamWriter] = {}
 
     async def converse(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         try:
@@ -81,7 +81,7 @@ async def served(found: WebServer | MailServer) -> AsyncIterator[None]:
             writer.transport.abort()
 
     def accept(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        conversations.add(asyncio.create_task(converse(reader, writer)))
+        conversations[asyncio.create_task(converse(reader, writer))] = writer
 
     server = await asyncio.start_server(accept, "127.0.0.1", 0)
     found.port = server.sockets[0].getsockname()[1]
@@ -92,6 +92,9 @@ async def served(found: WebServer | MailServer) -> AsyncIterator[None]:
         for conversation in conversations:
             conversation.cancel()
         await asyncio.gather(*conversations, return_exceptions=True)
+        for writer in conversations.values():  # one that was ended before it began has closed nothing
+            writer.transport.abort()
+        await asyncio.sleep(0)
         await server.wait_closed()
 
 
