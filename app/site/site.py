@@ -17,8 +17,6 @@ from app.link.messages import (
     AlarmOrder,
     CheckConnection,
     ControlOrder,
-    LockOrder,
-    NotificationOrder,
     Order,
     SiteCommand,
     SiteDetail,
@@ -28,18 +26,7 @@ from app.link.messages import (
 )
 from app.link.metrics import MachineMetrics
 from app.link.outlet import Outlet
-from app.link.record_orders import RecordOrder
-from app.link.settings_orders import UndoSiteSettings
-from app.site import (
-    control,
-    notifying,
-    records,
-    settings_lock,
-    sightings,
-    site_orders,
-    site_undo,
-    tracker_orders,
-)
+from app.site import changes, control, sightings, site_orders, tracker_orders
 from app.site.alarming import AlarmDesk
 from app.site.auditing import Auditor, as_action
 from app.site.checking import Checks, DriveTools
@@ -70,9 +57,6 @@ AT_REST = timedelta(milliseconds=495)
 CONTROL_EVERY = timedelta(milliseconds=250)
 FLUSH_EVERY = timedelta(seconds=2)
 PRUNE_EVERY = timedelta(days=1)
-
-Change = LockOrder | RecordOrder | NotificationOrder | site_orders.SiteOrder
-"""An order that changes what is set; one at a time is carried out."""
 
 log = structlog.get_logger(__name__)
 
@@ -279,22 +263,7 @@ class Site:
             return await control.carry_out(self.model, command, order)
         async with self._changing:
             refuse_old(order, self.model.now())
-            settings_lock.refuse_locked(self.model, command)
-            obey = partial(self._change, actor=order.actor)
-            if isinstance(command, UndoSiteSettings):
-                return await site_undo.undo(self.model, obey)
-            if isinstance(command, site_undo.SiteChange):
-                return await site_undo.change(self.model, command, obey)
-            return await obey(command)
-
-    async def _change(self, command: Change, actor: str) -> tuple[Event, ...]:
-        if isinstance(command, LockOrder):
-            return await settings_lock.carry_out(self.model, command, actor)
-        if isinstance(command, RecordOrder):
-            return await records.carry_out(self.model, command, actor)
-        if isinstance(command, NotificationOrder):
-            return await notifying.carry_out(self.model, command, actor)
-        return await site_orders.carry_out(self.model, command, actor)
+            return await changes.carry_out(self.model, command, order.actor)
 
     def _on_tick(self, loop: TrackerLoop, seen: Observation, events: tuple[Event, ...]) -> None:
         """Keep what a tick changed, record it and tell it."""
