@@ -6,7 +6,7 @@ from datetime import datetime
 
 from app.alarms.catalogue import CATALOGUE
 from app.alarms.view import ASIDE
-from app.link.messages import AcknowledgeAlarm, AlarmOrder, ShelveAlarm
+from app.link.alarm_orders import AcknowledgeAlarm, AlarmOrder, ShelveAlarm
 from app.tracker.alarm_words import AlarmCounts, AlarmNow, AlarmState
 
 

@@ -19,8 +19,8 @@ import uvicorn
 from fastapi import FastAPI
 
 from app.clock import Clock, SystemClock
+from app.link.alarm_orders import AcknowledgeAlarm, ShelveAlarm, UnshelveAlarm
 from app.link.messages import (
-    AcknowledgeAlarm,
     AddTracker,
     ApplySightings,
     ConfigureTracker,
@@ -34,14 +34,12 @@ from app.link.messages import (
     SaveRecording,
     SetClock,
     SetLocation,
-    ShelveAlarm,
     SiteDetail,
     StopAll,
     TakeSighting,
     TrackerDetail,
     UnknownRecording,
     UnknownTracker,
-    UnshelveAlarm,
     Update,
 )
 from app.link.metrics import GatewayMetrics, GatewayStatus, MachineMetrics

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Literal, Protocol
 
+from app.link.alarm_orders import AlarmOrder, NotificationOrder
 from app.link.place_orders import SetHorizon
 from app.link.record_orders import RecordOrder
 from app.link.settings_orders import UndoSettings, UndoSiteSettings
@@ -17,7 +18,6 @@ from app.tracker.config import DriveConfig, TrackerConfig
 from app.tracker.drive_check import DriveCheck, DriveChoices
 from app.tracker.memory import Sighting, SiteState, StepName, TrackerState
 from app.tracker.motion import DriveCapabilities
-from app.tracker.notifications import Channel, Notifications
 from app.tracker.programs.show import ShowPlan
 from app.tracker.proof_states import ProofState
 from app.tracker.proofs import AxisEnd
@@ -254,57 +254,6 @@ class DeleteRecording:
 
     recording_id: str
     kind: Literal["delete_recording"] = "delete_recording"
-
-
-@dataclass(frozen=True, slots=True)
-class AcknowledgeAlarm:
-    """Somebody has seen an alarm."""
-
-    alarm_id: str
-    kind: Literal["acknowledge_alarm"] = "acknowledge_alarm"
-
-
-@dataclass(frozen=True, slots=True)
-class ShelveAlarm:
-    """Put an alarm aside for some minutes, 24 hours at most, with a reason; never one of priority 1."""
-
-    alarm_id: str
-    minutes: int
-    reason: str
-    kind: Literal["shelve_alarm"] = "shelve_alarm"
-
-
-@dataclass(frozen=True, slots=True)
-class UnshelveAlarm:
-    """Take an alarm back from the shelf."""
-
-    alarm_id: str
-    kind: Literal["unshelve_alarm"] = "unshelve_alarm"
-
-
-AlarmOrder = AcknowledgeAlarm | ShelveAlarm | UnshelveAlarm
-"""What an operator does about one alarm."""
-
-
-@dataclass(frozen=True, slots=True)
-class SetNotifications:
-    """Say where alarms are sent."""
-
-    notifications: Notifications
-    kind: Literal["set_notifications"] = "set_notifications"
-
-
-@dataclass(frozen=True, slots=True)
-class TestNotification:
-    """Send a test message by one channel."""
-
-    __test__ = False
-    channel: Channel
-    kind: Literal["test_notification"] = "test_notification"
-
-
-NotificationOrder = SetNotifications | TestNotification
-"""What concerns where alarms are sent."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from app.alarms.alarm import Alarm
 from app.alarms.book import Book, Change, Happened
 from app.alarms.conditions import Condition, conditions, in_maintenance
 from app.alarms.view import view
-from app.link.messages import AcknowledgeAlarm, AlarmOrder, ShelveAlarm, UnshelveAlarm
+from app.link.alarm_orders import AcknowledgeAlarm, AlarmOrder, ShelveAlarm, UnshelveAlarm
 from app.site.health import HealthWatch
 from app.site.model import SiteModel
 from app.store.store import KeptAlarm

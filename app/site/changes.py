@@ -2,7 +2,8 @@
 
 from functools import partial
 
-from app.link.messages import LockOrder, NotificationOrder
+from app.link.alarm_orders import NotificationOrder
+from app.link.messages import LockOrder
 from app.link.record_orders import RecordOrder
 from app.link.settings_orders import UndoSiteSettings
 from app.site import notifying, records, settings_lock, site_orders, site_undo

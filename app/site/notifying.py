@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from app.link.messages import NotificationOrder, SetNotifications
+from app.link.alarm_orders import NotificationOrder, SetNotifications
 from app.site.model import SiteModel
 from app.tracker.commands import CommandRejected
 from app.tracker.notifications import Channel, Notifications

@@ -13,8 +13,8 @@ from app.alarms.alarm import Alarm
 from app.alarms.conditions import Condition
 from app.clock import Clock
 from app.drives.drive import Drive
+from app.link.alarm_orders import AlarmOrder
 from app.link.messages import (
-    AlarmOrder,
     CheckConnection,
     ControlOrder,
     Order,

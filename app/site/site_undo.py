@@ -3,7 +3,8 @@
 from collections.abc import Awaitable, Callable, Iterator
 from dataclasses import replace
 
-from app.link.messages import RenameSite, SetNotifications
+from app.link.alarm_orders import SetNotifications
+from app.link.messages import RenameSite
 from app.link.place_orders import SetHorizon
 from app.link.weather_orders import SetMetStation, SetWeatherWindows, SimulateWeather
 from app.site.model import SiteModel

@@ -17,7 +17,8 @@ from pydantic import SecretStr
 from app.alarms.conditions import Condition
 from app.gateway.gateways import Gateways
 from app.gateway.mqtt import heeding
-from app.link.messages import AcknowledgeAlarm, RenameSite
+from app.link.alarm_orders import AcknowledgeAlarm
+from app.link.messages import RenameSite
 from app.link.metrics import GatewayMetrics, GatewayStatus
 from app.settings import Settings
 from app.store.store import JournalEntry, JournalFilter, Writer

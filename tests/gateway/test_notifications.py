@@ -15,7 +15,7 @@ from pydantic import SecretStr
 from app.alarms.conditions import Condition
 from app.gateway.gateways import Gateways
 from app.gateway.notices import DELIVERY, SIGNATURE, signature
-from app.link.messages import SetNotifications, TestNotification
+from app.link.alarm_orders import SetNotifications, TestNotification
 from app.link.metrics import GatewayStatus
 from app.settings import Settings
 from app.tracker.alarm_words import AlarmState

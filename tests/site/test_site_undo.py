@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.link.messages import RenameSite, SetNotifications, SiteCommand
+from app.link.alarm_orders import SetNotifications
+from app.link.messages import RenameSite, SiteCommand
 from app.link.place_orders import SetHorizon
 from app.link.settings_orders import UndoSiteSettings
 from app.link.weather_orders import SetMetStation, SetWeatherWindows, SimulateWeather

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from app.alarms.catalogue import ENTRIES
 from app.alarms.view import told
-from app.link.messages import AcknowledgeAlarm, AlarmOrder, ShelveAlarm, UnshelveAlarm
+from app.link.alarm_orders import AcknowledgeAlarm, AlarmOrder, ShelveAlarm, UnshelveAlarm
 from app.store.store import AlarmFilter, KeptAlarm
 from app.tracker.alarm_words import AlarmCounts, AlarmNow
 from app.web.api.base import NOT_FOUND, Input, Output, api_router

@@ -2,7 +2,7 @@
 
 from pydantic import Field
 
-from app.link.messages import SetNotifications, TestNotification
+from app.link.alarm_orders import SetNotifications, TestNotification
 from app.tracker.notifications import Channel, Notifications
 from app.web.api.base import REFUSED, Input, api_router
 from app.web.api.orders import SenderDep

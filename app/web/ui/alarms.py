@@ -10,7 +10,7 @@ from starlette.responses import Response
 
 from app.alarms.catalogue import CATALOGUE, ENTRIES
 from app.alarms.view import ASIDE, told
-from app.link.messages import AcknowledgeAlarm, ShelveAlarm, UnshelveAlarm
+from app.link.alarm_orders import AcknowledgeAlarm, ShelveAlarm, UnshelveAlarm
 from app.store.store import AlarmFilter, KeptAlarm
 from app.tracker.alarm_words import PRIORITIES, AlarmCounts, AlarmNow
 from app.web.alarm_contexts import AlarmGuidePage, AlarmsPage, PastAlarm, ShelfForm

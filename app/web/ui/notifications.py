@@ -6,7 +6,7 @@ from fastapi import APIRouter, Form
 from starlette.requests import Request
 from starlette.responses import Response
 
-from app.link.messages import SetNotifications, TestNotification
+from app.link.alarm_orders import SetNotifications, TestNotification
 from app.tracker.alarm_words import PRIORITIES
 from app.tracker.notifications import Channel, Notifications
 from app.web.alarm_contexts import NotificationsPage
