@@ -19,7 +19,8 @@ from app.access.sessions import is_proven
 from app.access.tokens import token_id_of
 from app.clock import Clock
 from app.web.errors import FOR_PROGRAMS, Busy, NotAcceptable, NotSetUp, answer_to
-from app.web.route_permissions import PROVEN, ROUTES, STREAMS, TICKETED
+from app.web.route_conditions import PROVEN, STREAMS, TICKETED
+from app.web.route_permissions import ROUTES
 from app.web.routes import STATIC, Guarded, key_of
 from app.web.security import SAFE_METHODS
 from app.web.ui.paths import login_path, proof_path

@@ -13,7 +13,8 @@ from fastapi.routing import iter_route_contexts
 from app.access.accounts import TokenWish
 from app.access.roles import Role
 from app.access.tokens import Scope
-from app.web.route_permissions import PROVEN, ROUTES
+from app.web.route_conditions import PROVEN
+from app.web.route_permissions import ROUTES
 from app.web.routes import RouteUnguarded, guarded_routes, walk
 from tests.web.office import HERE, PASSWORD, PORT, Office
 from tests.web.sockets import connected

@@ -37,10 +37,11 @@ MORE = {
 """What no rule finds: phrases of HTTP, parts of sentences, and words that travel."""
 
 _SILENT = """
-    app/web/languages app/web/metrics.py app/web/route_permissions.py app/web/routes.py app/web/openapi.py
-    app/web/documented.py app/web/main.py app/web/server.py app/web/presses.py app/web/record_files.py
-    app/web/record_pdf.py app/web/record_print.py app/web/record_words.py app/web/journal_files.py
-    app/web/mdns.py app/web/qr.py app/web/attachments.py app/web/api/base.py
+    app/web/languages app/web/metrics.py app/web/route_conditions.py app/web/route_permissions.py
+    app/web/routes.py app/web/openapi.py app/web/documented.py app/web/main.py app/web/server.py
+    app/web/presses.py app/web/record_files.py app/web/record_pdf.py app/web/record_print.py
+    app/web/record_words.py app/web/journal_files.py app/web/mdns.py app/web/qr.py app/web/attachments.py
+    app/web/api/base.py
     app/web/api/operations.py app/web/api/router.py app/web/ui/components.py
     app/web/ui/papers.py app/web/components_context.py app/link/codec.py
     app/drives/wire_faults.py app/drives/write_frame.py app/drives/sim_server.py app/drives/sim_training.py
