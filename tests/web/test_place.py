@@ -22,6 +22,16 @@ def saved(machine: FakeMachine) -> list[SetLocation]:
     return [order.command for order in machine.orders if isinstance(order.command, SetLocation)]
 
 
+def stored(machine: FakeMachine) -> Location:
+    place = machine.site.location
+    assert place is not None
+    return place
+
+
+def form(latitude_deg: float, longitude_deg: float, **others: str) -> dict[str, str]:
+    return {"latitude": f"{latitude_deg:.7g}", "longitude": f"{longitude_deg:.7g}", **others}
+
+
 @pytest.mark.parametrize(
     ("place", "time_zone", "said"),
     [
@@ -55,13 +65,8 @@ def test_numbers_of_the_stored_place_exchanged_and_a_device_far_away() -> None:
 async def test_exchanged_numbers_are_asked_about_with_the_sun_there_now(
     machine: FakeMachine, client: httpx.AsyncClient, record_property: Callable[[str, object], None]
 ) -> None:
-    place = machine.site.location
-    assert place is not None
-    typed = {
-        "latitude": f"{place.longitude_deg}",
-        "longitude": f"{place.latitude_deg}",
-        "device_zone": machine.site.time_zone,
-    }
+    place = stored(machine)
+    typed = form(place.longitude_deg, place.latitude_deg, device_zone=machine.site.time_zone)
     answer = await client.post(PAGE, data=typed, headers=HTMX)
     assert answer.status_code == 422
     assert not saved(machine)
@@ -102,18 +107,13 @@ async def test_before_it_is_saved_the_page_shows_the_sun_of_the_place(client: ht
 async def test_a_place_that_is_stored_is_not_asked_about_again(
     machine: FakeMachine, client: httpx.AsyncClient
 ) -> None:
-    place = machine.site.location
-    assert place is not None
-    stored = {
-        "latitude": f"{place.latitude_deg:.7g}",
-        "longitude": f"{place.longitude_deg:.7g}",
-        "time_zone": machine.site.time_zone,
-        "device_zone": "Pacific/Auckland",
-    }
-    moved = stored | {"latitude": f"{place.latitude_deg + 0.01:.7g}"}
+    place = stored(machine)
+    zones = {"time_zone": machine.site.time_zone, "device_zone": "Pacific/Auckland"}
+    moved = form(place.latitude_deg + 0.01, place.longitude_deg, **zones)
     assert (await client.post(PAGE, data=moved, headers=HTMX)).status_code == 422
     assert not saved(machine)
-    assert (await client.post(PAGE, data=stored)).status_code == 303
+    same = form(place.latitude_deg, place.longitude_deg, **zones)
+    assert (await client.post(PAGE, data=same)).status_code == 303
     assert len(saved(machine)) == 1
 
 
