@@ -52,6 +52,7 @@ PLAY = """(async () => {
   await new Promise((done) => setTimeout(done, 3000));
   return (frames() - before) / (performance.now() - begin) * 1000;
 })()"""
+PAINTED = "document.querySelector('.scene').dataset.frames > 0"
 LOADED = "document.readyState === 'complete' && window.liveAt !== undefined"
 WEIGHT = """[...performance.getEntriesByType('navigation'), ...performance.getEntriesByType('resource')]
   .filter(one => !one.name.includes('/api/')).reduce((sum, one) => sum + one.transferSize, 0)"""
@@ -112,6 +113,7 @@ def _frames_a_second(browser: Chromium, url: str) -> float:
     """Play a recorded day at full speed and count what is painted; without a graphics card, in software."""
     tab, context = _cold(browser, url)
     tab.until("document.querySelector('#angles canvas') !== null", "the curves are drawn")
+    tab.until(PAINTED, "the picture is there")
     rate = float(tab.evaluate(PLAY))
     browser.send("Target.disposeBrowserContext", browserContextId=context)
     return rate

@@ -1,10 +1,10 @@
 // The moving picture: the panel on its mount with sun, shadow, compass, limits and the day's path.
-// It paints only when something changes. WebGL2 where the browser has it, else the drawn view of the same scene.
+// It paints only when something changes. WebGL2 in a worker where the browser has it, else the drawn view of the same scene.
 
 import { PITCH, cameraAt } from "./view3d/camera.js";
 import { DrawnPainter } from "./view3d/drawn.js";
-import { GlPainter } from "./view3d/gl.js";
 import { anglesOf, stageOf, viewOf } from "./view3d/stage.js";
+import { ThreadPainter } from "./view3d/thread.js";
 import { _ } from "./said.js";
 
 const TURN_DEG = 15;
@@ -30,6 +30,7 @@ export class PanelScene {
     this.settle = settle;
     this.frame = 0;
     this.paintedAt = 0;
+    this.late = false;
     this.seen = false;
     this.sharpness = SHARPEST;
     this.pacedMs = 0;
@@ -71,33 +72,30 @@ export class PanelScene {
     return canvas;
   }
 
-  // It is painted once out of sight first: the page goes on while the driver builds what painting needs.
-  async #begin() {
-    const canvas = this.#canvas();
-    let painter = null;
+  // It is shown when the worker is ready, and the drawn view where it never will be or while it has lost its context.
+  #begin() {
+    const first = [stageOf(this.view, TRIAL), cameraAt(this.turned, this.holder.clientWidth || 1, this.holder.clientHeight || 1), this.#sharp()];
     try {
-      painter = new GlPainter(canvas);
+      const painter = new ThreadPainter(this.#canvas(), first, {
+        ready: () => this.#use(painter, "webgl2"),
+        none: () => this.#useDrawn(),
+        lost: () => this.#useDrawn(),
+        painted: (tookMs) => this.#painted(tookMs),
+      });
     } catch {
       this.#useDrawn();
-      return;
     }
-    canvas.addEventListener("webglcontextlost", (event) => { event.preventDefault(); this.#useDrawn(); });
-    canvas.addEventListener("webglcontextrestored", () => {
-      try { this.#use(new GlPainter(canvas), "webgl2"); } catch { this.#useDrawn(); }
-    });
-    painter.paint(stageOf(this.view, TRIAL), cameraAt(this.turned, this.holder.clientWidth || 1, this.holder.clientHeight || 1), this.#sharp());
-    await painter.finished();
-    if (!this.painter) this.#use(painter, "webgl2");
   }
 
   #useDrawn() {
-    this.#use(new DrawnPainter(this.#canvas()), "drawn");
+    this.#use(new DrawnPainter(this.#canvas(), (tookMs) => this.#painted(tookMs)), "drawn");
   }
 
   #use(painter, name) {
     this.painter = painter;
     this.holder.dataset.painter = name;
     this.holder.replaceChildren(painter.canvas);
+    painter.repaint();
     this.draw();
   }
 
@@ -157,7 +155,7 @@ export class PanelScene {
 
   // A device that cannot keep up with a fine picture gets a coarser one, down to one point for each of the page's.
   #pace(tookMs) {
-    if (tookMs > AWAY_MS) return;
+    if (tookMs > AWAY_MS || this.#sharp() <= 1) return;
     this.pacedMs += (tookMs - this.pacedMs) / 16;
     if (this.pacedMs <= SLOW_MS) return;
     this.sharpness = Math.max(1, this.#sharp() - 0.5);
@@ -167,13 +165,19 @@ export class PanelScene {
   #paint(at) {
     this.frame = 0;
     const { clientWidth: width, clientHeight: height } = this.holder;
-    if (!width || !height) return;
+    this.late = this.painter.busy;
+    if (!width || !height || this.late) return;
     const moving = this.#approach(Math.min(100, Math.max(8, at - this.paintedAt)));
     this.paintedAt = at;
     this.painter.paint(this.stage(), cameraAt(this.turned, width, height), this.#sharp());
-    this.holder.dataset.frames = String(Number(this.holder.dataset.frames ?? 0) + 1);
-    if (this.#sharp() > 1) requestAnimationFrame((next) => this.#pace(next - at));
     if (moving) this.draw();
+  }
+
+  // Tells of a picture that is on the screen; one that waited for it is painted next.
+  #painted(tookMs) {
+    this.holder.dataset.frames = String(Number(this.holder.dataset.frames ?? 0) + 1);
+    this.#pace(tookMs);
+    if (this.late) this.draw();
   }
 }
 

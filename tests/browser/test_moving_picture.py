@@ -12,7 +12,7 @@ from operator import mul
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page
+from playwright.sync_api import Browser, BrowserContext, Page, Route
 
 from app.clock import SystemClock
 from app.sun.horizon import Horizon
@@ -29,16 +29,17 @@ T1 = "/trackers/T1"
 SIZES = ((1920, 1080), (1280, 800), (1024, 768), (390, 844))
 PAGES = ("/", "/?layout=rows", T1, f"{T1}/sun-path", f"{T1}/trends", "/site/horizon")
 HILLS = Horizon(((0.0, 2.0), (100.0, 12.0), (180.0, 3.0), (250.0, 22.0)))
-NO_WEBGL = """const given = HTMLCanvasElement.prototype.getContext;
-HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+NO_WEBGL = """const given = OffscreenCanvas.prototype.getContext;
+OffscreenCanvas.prototype.getContext = function (kind, ...more) {
   return kind === 'webgl2' ? null : given.call(this, kind, ...more);
 };"""
-KEEP_CONTEXT = """const given = HTMLCanvasElement.prototype.getContext;
-HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+KEEP_CONTEXT = """const given = OffscreenCanvas.prototype.getContext;
+OffscreenCanvas.prototype.getContext = function (kind, ...more) {
   const found = given.call(this, kind, ...more);
-  if (kind === 'webgl2') window.lastContext = found;
+  if (kind === 'webgl2') self.lastContext = found;
   return found;
 };"""
+NO_WORKER = "delete HTMLCanvasElement.prototype.transferControlToOffscreen"
 NORMALS = """async ({mount, angles}) => {
   const script = document.querySelector('script[src*="js/scene.js"]').src;
   const { anglesOf, pose } = await import(script.replace('scene.js', 'view3d/mounts.js'));
@@ -105,7 +106,10 @@ class Panel:
         self.contexts: list[BrowserContext] = []
         self.complaints: list[str] = []
 
-    def open(self, path: str, *, init: str = "", allow: str = SOFTWARE_NOTE, **options: Any) -> Page:
+    def open(
+        self, path: str, *, init: str = "", worker: str = "", allow: str = SOFTWARE_NOTE, **options: Any
+    ) -> Page:
+        """Open a page; `init` runs before it does, and `worker` before the thread that paints."""
         context = self.browser.new_context(
             viewport={"width": 1280, "height": 800}, timezone_id="Europe/Istanbul", **options
         )
@@ -114,6 +118,8 @@ class Panel:
         page = context.new_page()
         if init:
             page.add_init_script(init)
+        if worker:
+            page.route("**/view3d/worker.js", lambda route: begin_with(worker, route))
         page.on("console", lambda one: self._complain(one.type, one.text, allow))
         page.on("pageerror", lambda error: self.complaints.append(f"uncaught: {error}"))
         page.goto(self.url + path)
@@ -151,6 +157,11 @@ def panel(served: Served, browser: Browser) -> Iterator[Panel]:
     for context in panel.contexts:
         context.close()
     assert panel.complaints == []
+
+
+def begin_with(text: str, route: Route) -> None:
+    answer = route.fetch()
+    route.fulfill(response=answer, body=f"{text}\n{answer.text()}")
 
 
 def share(page: Page, colour: tuple[int, int, int]) -> float:
@@ -295,8 +306,9 @@ def test_who_wants_no_motion_sees_none(panel: Panel) -> None:
     assert settled(page) - before <= 2, "it is there at once"
 
 
-def test_without_webgl_the_same_scene_is_drawn(panel: Panel) -> None:
-    page = panel.open(T1, init=NO_WEBGL)
+@pytest.mark.parametrize("lacking", [{"worker": NO_WEBGL}, {"init": NO_WORKER}])
+def test_without_webgl_the_same_scene_is_drawn(lacking: dict[str, str], panel: Panel) -> None:
+    page = panel.open(T1, **lacking)
     page.wait_for_selector('.scene[data-painter="drawn"]')
     settled(page)
     assert share(page, CELL) > 0.02
@@ -304,15 +316,16 @@ def test_without_webgl_the_same_scene_is_drawn(panel: Panel) -> None:
 
 
 def test_a_lost_context_is_bridged_and_taken_back(panel: Panel) -> None:
-    page = panel.open(T1, init=KEEP_CONTEXT, allow="CONTEXT_LOST_WEBGL")
+    page = panel.open(T1, worker=KEEP_CONTEXT, allow="CONTEXT_LOST_WEBGL")
     settled(page)
-    page.evaluate(
-        "window.loser = window.lastContext.getExtension('WEBGL_lose_context'); window.loser.loseContext()"
+    painting = page.workers[0]
+    painting.evaluate(
+        "self.loser = self.lastContext.getExtension('WEBGL_lose_context'); self.loser.loseContext()"
     )
     page.wait_for_selector('.scene[data-painter="drawn"]')
     settled(page)
     assert share(page, CELL) > 0.02
-    page.evaluate("window.loser.restoreContext()")
+    painting.evaluate("self.loser.restoreContext()")
     page.wait_for_selector('.scene[data-painter="webgl2"]')
     settled(page)
     assert share(page, CELL) > 0.02

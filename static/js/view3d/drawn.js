@@ -7,9 +7,12 @@ import { MESHES } from "./solids.js";
 import { add, clipped, dot, moved } from "./space.js";
 
 export class DrawnPainter {
-  constructor(canvas) {
+  // `painted`: told after each picture how many milliseconds it took until the next could begin.
+  constructor(canvas, painted) {
     this.canvas = canvas;
     this.pen = canvas.getContext("2d");
+    this.painted = painted;
+    this.busy = false;
   }
 
   // Keeps nothing of a theme: colours are read at every painting.
@@ -17,6 +20,8 @@ export class DrawnPainter {
 
   paint(stage, camera, ratio) {
     const { canvas, pen } = this;
+    const begun = performance.now();
+    requestAnimationFrame(() => this.painted(performance.now() - begun));
     const [width, height] = [Math.round(camera.width * ratio), Math.round(camera.height * ratio)];
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);

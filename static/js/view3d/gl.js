@@ -27,7 +27,7 @@ export class GlPainter {
     this.lines = this.#stream([[4, 0], [4, 4], [3, 8]], LINE_FLOATS);
     this.still = { ...this.#stream([[4, 0], [4, 4], [3, 8]], LINE_FLOATS), of: null, seen: [], count: 0 };
     this.marks = this.#stream([[4, 0], [2, 4]], MARK_FLOATS);
-    this.sheet = { canvas: document.createElement("canvas"), texture: gl.createTexture(), cells: new Map() };
+    this.sheet = { canvas: new OffscreenCanvas(1, 1), texture: gl.createTexture(), cells: new Map() };
     this.rgba = new Map();
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
@@ -58,7 +58,7 @@ export class GlPainter {
     this.#sprites(stage.marks, camera, ratio);
   }
 
-  // Resolves once everything that was ordered is painted, or was not for too long; it keeps nobody waiting.
+  // Resolves once everything that was ordered is painted, or was not for too long.
   async finished() {
     const { gl } = this;
     const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
@@ -239,7 +239,7 @@ function stroke(values, { points, width, dash }, paint, camera) {
   }
 }
 
-const reader = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+const reader = new OffscreenCanvas(1, 1).getContext("2d", { willReadFrequently: true });
 
 // A colour of the style sheet as red, green, blue and alpha between 0 and 1.
 function parsed(text) {

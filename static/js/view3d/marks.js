@@ -1,6 +1,6 @@
-// Letters, numbers and the sun, painted once on a plain canvas for both painters.
+// Letters, numbers and the sun, painted on a plain canvas for both painters.
 
-import { colour } from "../colours.js";
+import { colour, font } from "../colours.js";
 
 const BEAMS = 12;
 
@@ -10,7 +10,7 @@ export function paintMark(pen, mark, x, y) {
 }
 
 function paintText(pen, { words, size, weight }, x, y) {
-  Object.assign(pen, { font: `${weight} ${size}px ${getComputedStyle(document.body).fontFamily}`, textAlign: "center", textBaseline: "middle",
+  Object.assign(pen, { font: `${weight} ${size}px ${font()}`, textAlign: "center", textBaseline: "middle",
     lineJoin: "round", strokeStyle: colour("panel"), lineWidth: 4, fillStyle: colour("text") });
   pen.setLineDash([]);
   pen.strokeText(words, x, y);

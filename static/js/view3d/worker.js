@@ -1,0 +1,47 @@
+// Paints with WebGL2 in a thread of its own. Told: begin, looks, paint. Tells: ready, none, lost, painted.
+
+import { takeLooks } from "../colours.js";
+import { GlPainter } from "./gl.js";
+
+let painter = null;
+let fixed = [];
+
+const ORDERS = {
+  // The first picture is for nobody: the driver builds what painting needs.
+  begin({ canvas, ...first }) {
+    takeLooks(first.looks);
+    canvas.addEventListener("webglcontextlost", (event) => { event.preventDefault(); painter = null; postMessage("lost"); });
+    canvas.addEventListener("webglcontextrestored", () => open(canvas));
+    open(canvas, first);
+  },
+  looks({ looks }) {
+    takeLooks(looks);
+    painter?.repaint();
+  },
+  paint(order) {
+    paint(order);
+    requestAnimationFrame(() => postMessage("painted"));
+  },
+};
+
+async function open(canvas, first) {
+  try {
+    painter = new GlPainter(canvas);
+  } catch {
+    postMessage("none");
+    return;
+  }
+  if (first) {
+    paint(first);
+    await painter.finished();
+  }
+  postMessage("ready");
+}
+
+// What never moves comes when it has changed.
+function paint({ stage, camera, sharpness }) {
+  fixed = stage.fixed ?? fixed;
+  painter?.paint({ ...stage, fixed }, camera, sharpness);
+}
+
+addEventListener("message", ({ data }) => ORDERS[data.order](data));
