@@ -8,7 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -63,6 +63,13 @@ class Moving:
             assert time.monotonic() < give_up, f"The panel is not as expected on {port}."
             time.sleep(LOOK_EVERY_S)
 
+    @contextmanager
+    def time_stands(self) -> Iterator[None]:
+        """Have no time pass for the panel while the block runs, however long that takes."""
+        self.process.send_signal(signal.SIGUSR2)
+        yield
+        self.process.send_signal(signal.SIGUSR2)
+
     def let_a_minute_pass(self) -> None:
         self.process.send_signal(signal.SIGUSR1)
 
@@ -71,6 +78,18 @@ class Moving:
         answer = self.ask("PUT", self.port, "/api/v1/network", json=change)
         assert answer.status_code == 202, answer.text
         return str(answer.json()["ticket"])
+
+    def until_taken_back(self, why: str) -> None:
+        """Return once the panel is where it was and says why; fail if that takes too long."""
+        give_up = time.monotonic() + SOON_S
+        while not self._says(why):
+            assert time.monotonic() < give_up, f"The panel does not say: {why}"
+            time.sleep(LOOK_EVERY_S)
+
+    def _says(self, why: str) -> bool:
+        with suppress(httpx.TransportError):
+            return bool(self.state()["last_rollback"] == why)
+        return False
 
     def state(self) -> dict[str, Any]:
         found: dict[str, Any] = self.ask("GET", self.port, "/api/v1/network").json()
@@ -92,10 +111,11 @@ def test_what_nobody_confirms_is_taken_back(moving: Moving) -> None:
     tried = free_port()
     ticket = moving.propose(tried)
     moving.until(tried)
-    assert not moving.is_there(moving.port)
-    page = moving.ask("GET", tried, f"/network/trial?ticket={ticket}").text
-    assert "Keep this" in page
-    assert Settings(data_dir=moving.folder).port == moving.port
+    with moving.time_stands():
+        assert not moving.is_there(moving.port)
+        page = moving.ask("GET", tried, f"/network/trial?ticket={ticket}").text
+        assert "Keep this" in page
+        assert Settings(data_dir=moving.folder).port == moving.port
     moving.let_a_minute_pass()
     moving.until(moving.port)
     assert not moving.is_there(tried)
@@ -105,23 +125,24 @@ def test_what_nobody_confirms_is_taken_back(moving: Moving) -> None:
 
 def test_what_cannot_be_served_is_taken_back_at_once(moving: Moving) -> None:
     tried = free_port()
-    moving.propose(tried)
-    with socket.create_server(("127.0.0.1", tried)):
-        moving.until(moving.port, there=False)
-        moving.until(moving.port)
-    assert moving.state()["last_rollback"] == NOT_SERVED
+    with ExitStack() as held:
+        with moving.time_stands():
+            moving.propose(tried)
+            held.enter_context(socket.create_server(("127.0.0.1", tried)))
+        moving.until_taken_back(NOT_SERVED)
 
 
 def test_what_is_confirmed_there_is_kept(moving: Moving) -> None:
     tried, before = free_port(), moving.port
     ticket = moving.propose(tried)
     moving.until(tried)
-    wrong = moving.ask("POST", tried, "/network/trial?ticket=guessed")
-    assert wrong.status_code == 409
-    page = moving.ask("GET", tried, f"/network/trial?ticket={ticket}").text
-    action = re.search(r'action="(/network/trial[^"]+)"', page)
-    assert action is not None
-    assert "The panel stays here" in moving.ask("POST", tried, action[1]).text
+    with moving.time_stands():
+        wrong = moving.ask("POST", tried, "/network/trial?ticket=guessed")
+        assert wrong.status_code == 409
+        page = moving.ask("GET", tried, f"/network/trial?ticket={ticket}").text
+        action = re.search(r'action="(/network/trial[^"]+)"', page)
+        assert action is not None
+        assert "The panel stays here" in moving.ask("POST", tried, action[1]).text
     moving.port = tried
     moving.let_a_minute_pass()
     stays_until = time.monotonic() + STAYS_S
