@@ -7,7 +7,8 @@ import { separation, unbroken } from "./sphere.js";
 import { place } from "./sunpath.js";
 import { _ } from "./said.js";
 
-const POINTS = 6000;
+// As many frames as curves of this screen's width can show, whose extremes are kept.
+const POINTS = Math.max(1500, Math.min(6000, Math.round(innerWidth * devicePixelRatio * 2)));
 const TELL_EVERY_MS = 60;
 const ANGLES = ["sun", "target", "setpoint", "measured"];
 const head = document.getElementById("player").dataset;
