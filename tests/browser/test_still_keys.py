@@ -5,6 +5,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Browser, Page
 
+from app.web.languages.known import LANGUAGES
 from tests.browser.conftest import SIZES, Opened
 from tests.browser.hands import LINK_MEASURED, until
 from tests.browser.walking import service
@@ -89,11 +90,35 @@ def test_reasons_that_come_above_the_keys_do_not_move_them(size: str, browser: B
     assert on_screen < 1
 
 
-def test_on_a_tablet_all_keys_stand_above_the_footer_below_a_notice_too(opened: Opened) -> None:
-    page = opened(HOMING, "tablet")
-    page.evaluate(ADD_NOTICE)
-    footer = page.locator(".footer").bounding_box()
-    boxes = [key.bounding_box() for key in page.locator("[data-jog]").all()]
-    assert footer is not None
-    assert len(boxes) == 4
-    assert all(box is not None and box["y"] + box["height"] <= footer["y"] for box in boxes)
+SEEN_AT_ONCE = {
+    NOTICE: 1,
+    "[data-jog]": 4,
+    ".speed .key": 2,
+    '[data-action="zero"]': 1,
+    '[data-action="home"]': 1,
+    ".jog-state": 1,
+    "#link-quality": 1,
+}
+BELOW = """(names) => {
+  const footer = document.querySelector(".footer").getBoundingClientRect().top;
+  return names.flatMap((name) => [...document.querySelectorAll(name)])
+    .filter((one) => one.getBoundingClientRect().bottom > footer).map((one) => one.textContent.trim());
+}"""
+SMALLEST_JOG_KEY = """Math.min(...[...document.querySelectorAll("[data-jog]")]
+  .map((one) => one.getBoundingClientRect()).flatMap((box) => [box.width, box.height]))"""
+
+
+def test_on_a_tablet_step_three_is_worked_without_scrolling_in_every_language(
+    browser: Browser, service: str
+) -> None:
+    width, height = SIZES["tablet"]
+    context = browser.new_context(viewport={"width": width, "height": height})
+    page = context.new_page()
+    for language in LANGUAGES:
+        context.add_cookies([{"name": "language", "value": language, "url": service}])
+        page.goto(service + HOMING)
+        page.wait_for_selector(LINK_MEASURED)
+        assert {name: page.locator(name).count() for name in SEEN_AT_ONCE} == SEEN_AT_ONCE
+        assert page.evaluate(BELOW, list(SEEN_AT_ONCE)) == [], language
+        assert page.evaluate(SMALLEST_JOG_KEY) >= 112, language
+    context.close()
