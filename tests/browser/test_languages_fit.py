@@ -15,7 +15,19 @@ from tests.browser.test_pages_fit import LEAST_TARGET_PX, PAGES, TOO_SMALL
 
 SOAK = "HELIOPANEL_SOAK" in os.environ
 SCREEN_SIZES = SIZES | {"wall": (1920, 1080)}
-DAILY = ("overview", "live", "location", "homing", "mode", "run", "settings", "show", "alarms", "site")
+DAILY = (
+    "overview",
+    "live",
+    "location",
+    "homing",
+    "mode",
+    "run",
+    "settings",
+    "show",
+    "alarms",
+    "site",
+    "network",
+)
 LOOKED_AT = PAGES if SOAK else {name: PAGES[name] for name in DAILY}
 TRIED = [(code, size) for code in LANGUAGES for size in SCREEN_SIZES] if SOAK else [("de", "phone")]
 ON_ANOTHER = """() => {

@@ -42,6 +42,7 @@ PAGES = {
     "site": "/site",
     "alarms": "/alarms",
     "notifications": "/site/notifications",
+    "network": "/network",
 }
 LEAST_TARGET_PX = 60
 MOST_BYTES = 150_000
