@@ -216,6 +216,13 @@ class Keeper:
 
         await self.do(work)
 
+    def own_sessions(self, principal: Principal) -> tuple[Session, ...]:
+        """Return the sessions of whoever is signed in, the newest first; a program has none."""
+        if principal.via is not Via.SESSION:
+            return ()
+        own = (one for one in self.book.sessions.values() if one.user == principal.name)
+        return tuple(sorted(own, key=lambda one: one.began_at, reverse=True))
+
     async def end_own_session(self, principal: Principal, digest: str) -> None:
         """End a session of whoever is signed in; one that is not theirs stays."""
         session = self.book.sessions.get(digest)

@@ -46,6 +46,7 @@ _TABLE: dict[Permission, str] = {
         POST /prove
         POST /logout
         POST /kiosk/pin
+        GET /api/v1/me/sessions
         PUT /api/v1/me/password
         DELETE /api/v1/session
         POST /api/v1/session/proof
@@ -76,6 +77,8 @@ _TABLE: dict[Permission, str] = {
         GET /studies/glance
         GET /studies/list
         GET /studies/program
+        GET /studies/program/program.csv
+        GET /studies/program/table.csv
         GET /studies/{study_id}
         GET /studies/{study_id}/curves.csv
         GET /studies/{study_id}/table.csv

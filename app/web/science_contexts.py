@@ -24,9 +24,10 @@ class AccuracyRow:
 
 @dataclass(frozen=True, slots=True)
 class AccuracyResult:
-    """A survey, ready to be shown."""
+    """A survey, ready to be shown; `query` asks the API for the same."""
 
     title: str
+    query: str
     rows: tuple[AccuracyRow, ...]
     charts: tuple[LogChart, ...]
 

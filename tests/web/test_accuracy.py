@@ -1,6 +1,8 @@
 """The accuracy of the algorithms as a page and over the API, worked out in the worker process."""
 
+import re
 from collections.abc import AsyncIterator
+from html import unescape
 
 import httpx
 import numpy as np
@@ -28,6 +30,8 @@ async def test_page_and_api_tell_the_same(client: httpx.AsyncClient) -> None:
     shown = (await client.get("/accuracy", params=QUICK, headers=HTMX)).text
     assert told["location"]["latitude_deg"] == pytest.approx(41.2867)
     assert told["title"] in shown
+    (file,) = re.findall(r'href="(/api/[^"]+)" download="accuracy.json"', shown)
+    assert (await client.get(unescape(file))).json() == told
     assert len(told["errors"]) == 9
     for error in told["errors"]:
         assert f"<b>{error['spreads']['true']['max_deg']:.4f}°</b>" in shown

@@ -274,7 +274,9 @@ async def test_a_look_at_the_drive_names_watchdog_action_and_unverified_register
     )
     tracker = machine.trackers["T1"]
     tracker.check = DriveCheck(tracker.config.drive, machine.clock.now(), "operator", answered)
-    page = re.sub(r"<[^>]+>|\s+", " ", (await client.get(f"{T1}/drive")).text)
+    shown = (await client.get(f"{T1}/drive")).text
+    assert f'href="{API}/drive/check" download="registers-T1.json"' in shown
+    page = re.sub(r"<[^>]+>|\s+", " ", shown)
     for words in ("0.4 s, read back", "Both axes ramp down.", "1 of 2 registers: position", "Refused."):
         assert words in re.sub(r" +", " ", page), words
     record = (await client.get(f"{API}/record", params={"format": "html"})).text

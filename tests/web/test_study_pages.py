@@ -1,8 +1,11 @@
 """The pages of studies and step programs: forms that keep what was typed, pictures, files, and their keys."""
 
+import csv
 import re
 from collections.abc import AsyncIterator
 from datetime import UTC, date, datetime
+from html import unescape
+from io import StringIO
 from pathlib import Path
 
 import httpx
@@ -16,6 +19,7 @@ from app.studies.request import Span, StudyMode, StudyRequest, StudyStrategy
 from app.studies.result import StudyResult
 from app.sun.position import Location
 from app.tracker.config import Orientation
+from app.tracker.programs.step_table import from_table
 from app.tracker.strategy import Stepped
 from app.web.main import create_app
 from app.web.ui.heatmap import heat_map
@@ -183,6 +187,7 @@ async def test_step_programs_are_shown_and_used(client: httpx.AsyncClient, machi
     assert "1932.62" in answer.text
     assert "10 steps leave most" in answer.text
     assert "−0.00" not in answer.text
+    await check_files(client, answer.text)
     used = await client.post(
         "/studies/program/use", data={**asked, "chosen": "8", "tracker": "T1"}, headers=HTMX
     )
@@ -193,6 +198,20 @@ async def test_step_programs_are_shown_and_used(client: httpx.AsyncClient, machi
     assert wrong.status_code == 422
     assert "Range must lie between 5 and 120" in wrong.text
     assert 'value="500"' in wrong.text
+
+
+async def check_files(client: httpx.AsyncClient, shown: str) -> None:
+    """The page's two files have its table, and the chosen program as a tracker's strategy reads it."""
+    table, program = re.findall(r'href="(/studies/program/[a-z]+\.csv\?[^"]+)"', shown)
+    lines = list(csv.DictReader(StringIO((await client.get(unescape(table))).text)))
+    assert [int(line["steps"]) for line in lines] == list(range(13))
+    assert f"{float(lines[10]['electric_wh']):.2f}" in shown
+    kept = await client.get(unescape(program))
+    assert kept.headers["content-disposition"] == 'attachment; filename="program-8-steps-2026-06-21.csv"'
+    assert len(from_table(kept.text).steps) == 9
+    wrong = await client.get("/studies/program/table.csv", params={"date": "2026-06-21", "range": "500"})
+    assert wrong.status_code == 422
+    assert "Range must lie between 5 and 120" in wrong.text
 
 
 async def test_a_weather_file_that_is_none_is_refused_below_its_key(client: httpx.AsyncClient) -> None:

@@ -9,6 +9,7 @@ from starlette.responses import Response
 from app.access.principal import NotAllowed, Via
 from app.access.roles import Permission, Role
 from app.web.api.base import TOO_MANY, Input, Output, api_router
+from app.web.api.users import SignedIn
 from app.web.deps import PanelDep, PrincipalDep
 from app.web.sign_ins import forget_session, set_session, whence
 
@@ -66,6 +67,12 @@ async def me(request: Request, built: PanelDep, who: PrincipalDep) -> Myself:
         proven_at=who.proven_at,
         csrf_token=built.keeper.csrf(session_id) if who.via in (Via.SESSION, Via.KIOSK) else None,
     )
+
+
+@router.get("/me/sessions", summary="Own sessions")
+async def own_sessions(built: PanelDep, who: PrincipalDep) -> list[SignedIn]:
+    """Return where who asks is signed in, the newest first; a program is signed in nowhere."""
+    return [SignedIn.of(session) for session in built.keeper.own_sessions(who)]
 
 
 @router.post("/session", status_code=204, summary="Sign in", responses=TOO_MANY)

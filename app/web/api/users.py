@@ -1,7 +1,7 @@
 """Users, sessions and tokens, for administrators."""
 
 from datetime import datetime, timedelta
-from typing import Annotated
+from typing import Annotated, Self
 
 from fastapi import Path
 from pydantic import Field, SecretStr
@@ -56,6 +56,19 @@ class SignedIn(Output):
     agent: str
     began_at: datetime
     used_at: datetime
+
+    @classmethod
+    def of(cls, one: Session) -> Self:
+        """Return a session without what opens it."""
+        return cls(
+            digest=one.digest,
+            user=one.user,
+            token_id=one.token_id,
+            address=one.address,
+            agent=one.agent,
+            began_at=one.began_at,
+            used_at=one.used_at,
+        )
 
 
 class NewToken(Input):
@@ -125,7 +138,7 @@ async def remove(name: UserName, built: PanelDep, who: PrincipalDep) -> None:
 @router.get("/sessions", summary="All sessions")
 async def sessions(built: PanelDep) -> list[SignedIn]:
     """Return who is signed in, from where, and since when."""
-    return [_signed_in(session) for session in built.keeper.book.sessions.values()]
+    return [SignedIn.of(session) for session in built.keeper.book.sessions.values()]
 
 
 @router.delete("/sessions/{digest}", status_code=204, summary="End a session", responses=NOT_FOUND)
@@ -176,18 +189,6 @@ def _person(user: User) -> Person:
         roles=tuple(sorted(user.roles)),
         created_at=user.created_at,
         changed_at=user.changed_at,
-    )
-
-
-def _signed_in(one: Session) -> SignedIn:
-    return SignedIn(
-        digest=one.digest,
-        user=one.user,
-        token_id=one.token_id,
-        address=one.address,
-        agent=one.agent,
-        began_at=one.began_at,
-        used_at=one.used_at,
     )
 
 

@@ -64,13 +64,12 @@ async def step_up(request: Request, built: PanelDep, who: PrincipalDep, pin: Sec
 def _answer(request: Request, *, error: Exception | None = None, done: str = "") -> Response:
     built, who = panel(request), principal(request)
     problem = problem_of(error) if error else None
-    sessions = [one for one in built.keeper.book.sessions.values() if one.user and one.user == who.name]
     context = AccountPage(
         frame=site_frame(request, "Account"),
         form={name: Field(name, "") for name in ("old", "new", "pin")},
         problem=problem.detail if problem else "",
         done=done,
-        sessions=tuple(sorted(sessions, key=lambda one: one.began_at, reverse=True)),
+        sessions=built.keeper.own_sessions(who),
         mine=who.credential,
         now=built.clock.now(),
     )

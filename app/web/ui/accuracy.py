@@ -80,7 +80,16 @@ def _places(location: Location | None) -> tuple[tuple[str, str], ...]:
 
 
 def _result(found: Survey) -> AccuracyResult:
-    return AccuracyResult(title(found), tuple(_row(error) for error in found.errors), _charts(found))
+    return AccuracyResult(
+        title(found), _query(found), tuple(_row(error) for error in found.errors), _charts(found)
+    )
+
+
+def _query(found: Survey) -> str:
+    """Return what asks the API for the same table."""
+    asked = found.question
+    wanted = {"from_year": asked.from_year, "to_year": asked.to_year, "samples": asked.samples}
+    return urlencode({"globe": "false" if asked.location else "true", **wanted})
 
 
 def _row(error: AlgorithmError) -> AccuracyRow:

@@ -12,7 +12,11 @@ from starlette.responses import Response
 from app.energy.equatorial import DEGREES_AN_HOUR, NOON_H
 from app.link.messages import ConfigureTracker, SiteDetail
 from app.studies.jobs import ProgramAnswer, ProgramLight, ProgramRow
+from app.studies.program_table import programs_csv
+from app.tracker.programs.step_table import to_table
+from app.tracker.programs.stepped import StepProgram
 from app.tracker.strategy import Stepped
+from app.web.attachments import kept_as
 from app.web.contexts import Link
 from app.web.deps import MachineDep, PanelDep
 from app.web.errors import NotAcceptable
@@ -27,6 +31,7 @@ from app.web.ui.render import page
 from app.web.ui.wizard import tracker_of
 
 router = APIRouter(prefix="/studies/program")
+CSV = "text/csv; charset=utf-8"
 LIGHTS: Options = (
     (ProgramLight.MELISS, "Meliss's clear sky, as in Alexandru's paper"),
     (ProgramLight.INEICHEN, "Ineichen and Perez's clear sky at the place"),
@@ -108,19 +113,45 @@ async def use(
 ) -> Response:
     """Have a tracker run the chosen program."""
     detail = await machine.detail()
+    config = tracker_of(detail, form.tracker).state.config
+    program = _chosen(await _answered(form, detail, built), form)
+    press.issued_at = None  # It took a while, and nothing moves by it: this order is never too old.
+    await press.send(ConfigureTracker(replace(config, strategy=Stepped(program))))
+    return press.answer(f"{form.tracker} now follows the program of {len(program.steps) - 1} steps.")
+
+
+@router.get("/table.csv")
+async def table(machine: MachineDep, built: PanelDep, form: Annotated[ProgramForm, Query()]) -> Response:
+    """Return the best program of every number of steps as a file."""
+    found = await _answered(form, await machine.detail(), built)
+    return Response(programs_csv(found), media_type=CSV, headers=kept_as(f"step-programs-{form.date}.csv"))
+
+
+@router.get("/program.csv")
+async def program(machine: MachineDep, built: PanelDep, form: Annotated[ProgramForm, Query()]) -> Response:
+    """Return the steps of the chosen program as a file, which the strategy of a tracker reads."""
+    chosen = _chosen(await _answered(form, await machine.detail(), built), form)
+    named = kept_as(f"program-{len(chosen.steps) - 1}-steps-{form.date}.csv")
+    return Response(to_table(chosen), media_type=CSV, headers=named)
+
+
+async def _answered(form: ProgramForm, detail: SiteDetail, built: PanelDep) -> ProgramAnswer:
+    """Return the programs that a form asks for, or raise `NotAcceptable` with what is wrong."""
     typed = Typed(form.model_dump())
     wanted = _read(typed)
     if wanted is None:
         raise NotAcceptable(" ".join(typed.errors.values()))
-    config = tracker_of(detail, form.tracker).state.config
     try:
-        answer = await built.studies.find_programs(wanted.question(detail))
-        program = chosen_program(answer, _steps(answer, form.chosen))
+        return await built.studies.find_programs(wanted.question(detail))
     except ValueError as error:
         raise NotAcceptable(str(error)) from error
-    press.issued_at = None  # It took a while, and nothing moves by it: this order is never too old.
-    await press.send(ConfigureTracker(replace(config, strategy=Stepped(program))))
-    return press.answer(f"{form.tracker} now follows the program of {len(program.steps) - 1} steps.")
+
+
+def _chosen(answer: ProgramAnswer, form: ProgramForm) -> StepProgram:
+    try:
+        return chosen_program(answer, _steps(answer, form.chosen))
+    except ValueError as error:
+        raise NotAcceptable(str(error)) from error
 
 
 async def _find(
