@@ -1,4 +1,4 @@
-"""Every text of the project that a page can show, found in templates, Python, JavaScript and documents."""
+"""Every text of the project that a page can show: of templates, modules, scripts, profiles and documents."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -9,6 +9,7 @@ from babel.messages.extract import DEFAULT_KEYWORDS, extract
 
 from app.web import guide, record_words
 from app.web.languages.catalogue import DOCUMENTS
+from app.web.languages.profile_texts import profile_texts
 from app.web.languages.python_texts import python_texts
 from app.web.languages.script_texts import texts_of
 
@@ -74,9 +75,10 @@ def texts(root: Path = ROOT) -> Iterator[Text]:
     for named in SPEAKING:
         for path in sorted((root / named).rglob("*.py")) or (root / named,):
             yield from _of_module(path, str(path.relative_to(root)))
+    for path in sorted((root / "app" / "drives" / "profiles").glob("*.toml")):
+        yield from _of_profile(path, root)
     for document in guide.SPOKEN:
-        for line, markdown in guide.blocks(document):
-            yield Text(f"docs/{document}.md", line, markdown, context=DOCUMENTS)
+        yield from _of_document(document)
     words = ((text, record_words.CONTEXT) for text in dict.fromkeys(record_words.TEXTS))
     yield from (Text("app/web/record_words.py", 0, text, context=context) for text, context in words)
     for name, more in MORE.items():
@@ -87,6 +89,16 @@ def _of_module(path: Path, name: str) -> Iterator[Text]:
     if not name.startswith(SILENT):
         for line, text in python_texts(path.read_text()):
             yield Text(name, line, text)
+
+
+def _of_profile(path: Path, root: Path) -> Iterator[Text]:
+    for line, text in profile_texts(path):
+        yield Text(str(path.relative_to(root)), line, text)
+
+
+def _of_document(name: str) -> Iterator[Text]:
+    for line, markdown in guide.blocks(name):
+        yield Text(f"docs/{name}.md", line, markdown, context=DOCUMENTS)
 
 
 def _of_template(path: Path, root: Path) -> Iterator[Text]:
