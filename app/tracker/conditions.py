@@ -255,7 +255,8 @@ def showing(*phases: ShowPhase) -> Condition:
         if isinstance(mind.activity, Showing) and mind.activity.phase in phases:
             return None
         phase = mind.activity.phase if isinstance(mind.activity, Showing) else None
-        return Reason("show_phase", f"{mind.config.name} {_SHOW_IS[phase]}.", _SHOW_HINT[phases[0]])
+        hint = _SHOW_HINT[phases[0]] if phases[0] is not ShowPhase.READY else _BEFORE_RUN[phase]
+        return Reason("show_phase", f"{mind.config.name} {_SHOW_IS[phase]}.", hint)
 
     return condition
 
@@ -295,9 +296,15 @@ _SHOW_IS = {
 }
 _SHOW_HINT = {
     ShowPhase.GOING_TO_START: "Nothing has to be stopped.",
-    ShowPhase.READY: "Press Go to start position and wait until the panel is there.",
     ShowPhase.RUNNING: "Only a running show can be paused.",
     ShowPhase.PAUSED: "Only a paused show can go on.",
+}
+_BEFORE_RUN = {
+    None: "Press Go to start position and wait until the panel is there.",
+    ShowPhase.GOING_TO_START: "Wait until it has arrived, or press Stop.",
+    ShowPhase.READY: "Nothing has to be done.",
+    ShowPhase.RUNNING: "Stop the show first.",
+    ShowPhase.PAUSED: "Stop the show first.",
 }
 
 _HOLD, _JOG, _MOVE = ActivityName.HOLDING, ActivityName.JOGGING, ActivityName.MOVING

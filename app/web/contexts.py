@@ -10,12 +10,11 @@ from app.tracker.limit_change import LimitReview
 from app.tracker.memory import ClockSetting, Pointing, Sighting, StepName, TrackerMemory
 from app.tracker.mode import Mode
 from app.tracker.motion import DriveCapabilities
-from app.tracker.programs.show import ShowPlan
 from app.tracker.reason import Reason
 from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import SiteSnapshot, Snapshot
 from app.web.standing import Standing, standing
-from app.web.ui.drawings import DayChart, Scene, SunDiagram
+from app.web.ui.drawings import Scene, SunDiagram
 from app.web.ui.glances import Glance
 from app.web.who import Who
 
@@ -283,45 +282,6 @@ class TrackerPage:
     diagram: SunDiagram | None
     scene: Scene
     blocked: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Verdict:
-    """What the check of a show's plan says, in the words of the page."""
-
-    feasible: bool
-    headline: str
-    facts: tuple[tuple[str, str], ...]
-    reasons: tuple[Reason, ...]
-    notices: tuple[Reason, ...]
-    shortest: Link | None
-    chart: DayChart | None
-
-
-@dataclass(frozen=True, slots=True)
-class ShowPlanPage:
-    """A show is planned."""
-
-    template: ClassVar[str] = "show.html"
-
-    frame: Frame
-    form: Form
-    presets: tuple[Link, ...]
-    verdict: Verdict | None
-
-
-@dataclass(frozen=True, slots=True)
-class ShowRunPage:
-    """A show on the machine."""
-
-    template: ClassVar[str] = "show_run.html"
-
-    frame: Frame
-    plan: ShowPlan
-    minutes: str
-    again: str
-    diagram: SunDiagram
-    scene: Scene
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,6 +58,8 @@ def test_a_show_from_its_start_to_its_end(plant: Plant) -> None:
     assert show is not None
     assert show.phase is ShowPhase.GOING_TO_START
     assert plant.reasons("run_show") == {"show_phase"}
+    (waiting,) = plant.snapshot.actions["run_show"]
+    assert waiting.hint == "Wait until it has arrived, or press Stop."
     plant.forward(30.0)
     assert plant.snapshot.activity_text == "Show: ready at the start position"
     assert plant.controller.memory.showing is None

@@ -3,10 +3,13 @@
 import re
 from collections.abc import AsyncIterator
 from dataclasses import fields
+from importlib import import_module
+from pkgutil import iter_modules
 
 import httpx
 import pytest
 
+from app import web
 from app.link.messages import ConfigureTracker, SetClock, SetLocation
 from app.tracker.commands import GoToStart, Move, SelectMode, SetZero, Step
 from app.tracker.mode import Mode
@@ -287,10 +290,10 @@ async def test_step_bar_opens_forward_only_as_far_as_steps_are_done(client: http
 
 def test_every_context_names_a_template_that_exists() -> None:
     env = environment()
-    templates = [
-        kind.template for kind in vars(contexts).values() if isinstance(getattr(kind, "template", None), str)
-    ]
-    assert len(templates) >= 18
+    named = [one.name for one in iter_modules(web.__path__) if one.name.endswith("contexts")]
+    kinds = [kind for name in named for kind in vars(import_module(f"app.web.{name}")).values()]
+    templates = {kind.template for kind in kinds if isinstance(getattr(kind, "template", None), str)}
+    assert len(templates) >= 50
     for template in templates:
         assert env.get_template(template)
     assert all(fields(kind) for kind in (contexts.Frame, contexts.HomingPage))

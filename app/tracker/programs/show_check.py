@@ -31,6 +31,8 @@ UPRIGHT_KINDS = (MountKind.AZIMUTH_ELEVATION, MountKind.VERTICAL_SINGLE_AXIS)
 LONGEST_INTERVAL = timedelta(hours=48)
 SHORTEST_DURATION = timedelta(seconds=10)
 LONGEST_DURATION = timedelta(hours=24)
+WHOLE_DAY = timedelta(hours=23)
+"""So short is a civil day on which the clocks are set forward."""
 PATH_POINTS = 721
 EMPTY = np.empty(0)
 NO_PATH = ShowPath(EMPTY, EMPTY, EMPTY, EMPTY, EMPTY, np.empty(0, dtype=np.bool_))
@@ -105,6 +107,10 @@ def duration_reasons(plan: ShowPlan) -> Iterator[Reason]:
 def sun_reasons(plan: ShowPlan, *, lit: bool) -> Iterator[Reason]:
     """Yield that there is no sun to follow; `lit` says whether it is up at any time."""
     if not lit and plan.mode is not Mode.FIXED:
+        if plan.span >= WHOLE_DAY:
+            message = "It is polar night: on this day the sun does not rise here."
+            yield Reason("sun_never_up", message, "Choose a day on which it does.")
+            return
         yield Reason(
             "sun_never_up",
             "The sun is below the horizon for the whole of the show.",
@@ -169,6 +175,9 @@ def _notices(course: ShowCourse, tracker: TrackerConfig) -> Iterator[Reason]:
     for span in course.pace.repositionings:
         yield _repositioning_notice(course, span, tracker.mount)
     yield from _limit_notices(course.stretches, tracker)
+    if course.plan.mode is Mode.FIXED:
+        message = "The mode is Fixed: the panel stands still through the whole show."
+        yield Reason("stands_still", message, "Choose another mode in step 4 to see it follow the sun.")
     up = sum((end - begin for begin, end in sun_up(course.plan)), timedelta(0))
     down = course.plan.span - up
     if down >= timedelta(seconds=1):

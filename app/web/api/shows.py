@@ -13,7 +13,7 @@ from starlette.concurrency import run_in_threadpool
 from app.instants import Instant
 from app.link.messages import SavePlan, TrackerDetail
 from app.store.store import Reader
-from app.sun.events import day_events
+from app.sun.daylight import daylight
 from app.sun.position import Algorithm
 from app.tracker.commands import (
     Command,
@@ -26,6 +26,7 @@ from app.tracker.commands import (
 )
 from app.tracker.config import Orientation
 from app.tracker.mode import Mode
+from app.tracker.mounts.abilities import default_mode
 from app.tracker.programs.show import ShowCheck, ShowPlan, check_show, schedule_of
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ShowProgress, SiteSnapshot, Snapshot
@@ -51,7 +52,9 @@ class NewShow(Input):
     end_at: Instant | None = Field(None, examples=["2026-06-21T20:00:00+03:00"])
     date: CivilDate | None = Field(None, description="Civil date of the site: from sunrise to sunset.")
     duration_s: float = Field(ge=1, le=604800, description="How long the show takes.", examples=[180])
-    mode: Mode | None = Field(None, description="Left out: the tracker's selected mode, else dual.")
+    mode: Mode | None = Field(
+        None, description="Left out: the tracker's selected mode, else all axes follow."
+    )
     azimuth_deg: Azimuth | None = Field(None, description="For modes that hold the azimuth.")
     elevation_deg: Elevation | None = Field(None, description="For modes that hold the elevation.")
     algorithm: Algorithm | None = None
@@ -206,7 +209,7 @@ def _plan(new: NewShow, detail: TrackerDetail, site: SiteSnapshot) -> ShowPlan:
         end_at=end,
         duration=timedelta(seconds=new.duration_s),
         location=location_of(site),
-        mode=new.mode or memory.mode or Mode.DUAL,
+        mode=new.mode or memory.mode or default_mode(config.mount),
         orientation=Orientation(
             held.azimuth_deg if new.azimuth_deg is None else new.azimuth_deg,
             held.elevation_deg if new.elevation_deg is None else new.elevation_deg,
@@ -221,10 +224,10 @@ def _interval(new: NewShow, site: SiteSnapshot, algorithm: Algorithm) -> tuple[d
     if new.begin_at is not None and new.end_at is not None:
         return new.begin_at, new.end_at
     begin, end = midnights(new.date or site.at.date(), site.time_zone)
-    events = day_events(algorithm, location_of(site), begin, end)
-    if events.rise is None or events.set is None:
+    lit = daylight(algorithm, location_of(site), begin, end)
+    if lit is None:
         raise NotAcceptable("On this date the sun does not rise and set here; give begin_at and end_at.")
-    return events.rise, events.set
+    return lit
 
 
 def _checked(tracker_id: str, plan: ShowPlan, detail: TrackerDetail, progress: ShowProgress | None) -> Show:

@@ -28,7 +28,6 @@ WHOLE_SKY = sector(AZIMUTH_DEFAULT, ELEVATION_DEFAULT)
 SHOW_SPEEDS = (1, 2, 5, 10)
 DAY_SPEEDS = (60, 300, 900, 3600)
 LONG_S = 3 * 3600
-DEFAULT_RERUN_MINUTES = "3"
 
 
 @router.get("")
@@ -83,15 +82,15 @@ def _frame(request: Request, info: RecordingInfo) -> Frame:
 
 
 def _plan(info: RecordingInfo) -> dict[str, str]:
-    """Return the form of a show over the same stretch of sun time."""
+    """Return the form of a show over the same stretch of sun time; a day's length is left to the page."""
     zone = info.time_zone
     is_show = info.kind is RecordingKind.SHOW
-    return {
+    plan = {
         "date": local(info.sun_begin_at, zone, "%Y-%m-%d"),
         "start": local(info.sun_begin_at, zone, "%H:%M:%S"),
         "end": local(info.sun_end_at, zone, "%H:%M:%S"),
-        "minutes": f"{info.duration_s / 60:.4g}" if is_show else DEFAULT_RERUN_MINUTES,
     }
+    return plan | {"minutes": f"{info.duration_s / 60:.4g}"} if is_show else plan
 
 
 def _others(reader: Reader, info: RecordingInfo) -> tuple[RecordingInfo, ...]:

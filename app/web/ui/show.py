@@ -1,56 +1,34 @@
 """Show tracking movement: plan a stretch of any day, check it, and run it on the machine."""
 
-from datetime import date, datetime, time, timedelta
-from math import ceil
 from typing import Annotated
 from urllib.parse import urlencode
-from uuid import uuid4
 
 from fastapi import APIRouter, Form, Query
-from pydantic import BaseModel
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
-from app.link.messages import SavePlan, SiteDetail, TrackerDetail
-from app.sun.events import day_events
-from app.sun.position import Location
-from app.tracker.axes import Axis
+from app.link.messages import SavePlan, SiteDetail
 from app.tracker.commands import CommandRejected, GoToStart, PauseShow, ResumeShow, RunShow, StopShow
-from app.tracker.config import TrackerConfig
-from app.tracker.mode import Mode
-from app.tracker.mounts.abilities import axis_title
-from app.tracker.programs.show import ShowCheck, ShowPlan, check_show, schedule_of
+from app.tracker.programs.show import ShowPlan
 from app.tracker.reason import Reason
-from app.web.contexts import Link, ShowPlanPage, ShowRunPage, Verdict
-from app.web.deps import MachineDep, Panel, PanelDep
+from app.web.contexts import Link
+from app.web.deps import Panel, PanelDep
 from app.web.errors import NotFound
-from app.web.ui.daychart import chart
-from app.web.ui.formats import duration, local
-from app.web.ui.forms import Typed
+from app.web.show_contexts import ShowPlanPage, ShowRunPage
+from app.web.ui.formats import local
 from app.web.ui.frame import snapshot_of, tracker_frame
-from app.web.ui.mode import choice
 from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
 from app.web.ui.scene import scene_on
+from app.web.ui.show_plan import NAMES, Place, ShowForm, planned, presets
 from app.web.ui.sunpath import diagram_of, outline
 from app.web.ui.wizard import tracker_of
 from app.zones import zone_of
 
 router = APIRouter(prefix="/trackers/{tracker_id}")
-NAMES = ("date", "start", "end", "minutes")
-DEFAULT_MINUTES = "3"
 NO_LOCATION = Reason("no_location", "The location is not saved yet.", "Do step 1 of commissioning first.")
 NO_SHOW = Reason("no_show", "No show stands at its start.", "Plan a show and go to its start.")
-
-
-class ShowForm(BaseModel):
-    """The form as it was typed; all texts."""
-
-    date: str = ""
-    start: str = ""
-    end: str = ""
-    minutes: str = ""
 
 
 @router.get("/show")
@@ -67,14 +45,14 @@ async def plan(
 
 @router.post("/show/go-to-start")
 async def go_to_start(
-    tracker_id: str, press: PressDep, machine: MachineDep, typed: Annotated[ShowForm, Form()]
+    tracker_id: str, press: PressDep, built: PanelDep, typed: Annotated[ShowForm, Form()]
 ) -> Response:
     """Keep the plan and move the panel to where the show begins."""
-    detail = await machine.detail()
-    location, tracker = _place(detail), tracker_of(detail, tracker_id)
-    wanted = _read(Typed(typed.model_dump()), tracker, location, detail.site.time_zone)
+    place = _place(await built.machine.detail(), tracker_id, built)
+    wanted = (await run_in_threadpool(planned, typed, place)).plan
     if wanted is None:
-        return go(press.request, f"/trackers/{tracker_id}/show?{urlencode(typed.model_dump())}")
+        texts = typed.model_dump(exclude_none=True)
+        return go(press.request, f"/trackers/{tracker_id}/show?{urlencode(texts)}")
     key = press.key
     await press.send(SavePlan(tracker_id, wanted))
     press.key = f"{key}-go" if key else None
@@ -129,135 +107,27 @@ def _stored(built: Panel, tracker_id: str, show_id: str) -> ShowPlan:
     return planned.plan
 
 
-def _place(detail: SiteDetail) -> Location:
+def _place(detail: SiteDetail, tracker_id: str, built: Panel) -> Place:
+    """Return what a plan depends on, or raise `CommandRejected` where the site has no location yet."""
     if detail.site.location is None:
         raise CommandRejected(NO_LOCATION)
-    return detail.site.location
+    latest, zone = built.machine.latest(), detail.site.time_zone
+    today = (latest.at if latest else built.clock.now()).astimezone(zone_of(zone)).date()
+    return Place(tracker_of(detail, tracker_id), detail.site.location, zone, today)
 
 
 def _plan_page(
     request: Request, tracker_id: str, detail: SiteDetail, form: ShowForm, built: Panel
 ) -> Response:
-    tracker, zone = tracker_of(detail, tracker_id), detail.site.time_zone
-    location = _place(detail)
-    latest = built.machine.latest()
-    today = (latest.at if latest else built.clock.now()).astimezone(zone_of(zone)).date()
-    typed = Typed(form.model_dump() if form.date else _sun_span(tracker, location, zone, today))
-    wanted = _read(typed, tracker, location, zone)
+    place = _place(detail, tracker_id, built)
+    found = planned(form, place)
     context = ShowPlanPage(
         frame=tracker_frame(request, tracker_id, "Show tracking movement"),
-        form=typed.form(NAMES),
-        presets=_presets(tracker, location, zone, today, typed),
-        verdict=_verdict(wanted, tracker, zone, typed) if wanted else None,
+        form=found.typed.form(NAMES),
+        presets=presets(place, found.typed),
+        verdict=found.verdict,
     )
     return page(request, context, block="plan")
-
-
-def _read(typed: Typed, tracker: TrackerDetail, location: Location, zone: str) -> ShowPlan | None:
-    """Return the plan that was typed; an end that is not after the start lies on the next day."""
-    day = typed.day("date", "Date")
-    start, end = typed.clock_time("start", "Start"), typed.clock_time("end", "End")
-    minutes = typed.number("minutes", "Minutes", 0.1, 1440)
-    if typed.errors:
-        return None
-    last_day = day if end > start else day + timedelta(days=1)
-    config, memory = tracker.state.config, tracker.state.memory
-    return ShowPlan(
-        show_id=uuid4().hex[:12],
-        begin_at=datetime.combine(day, start, zone_of(zone)),
-        end_at=datetime.combine(last_day, end, zone_of(zone)),
-        duration=timedelta(seconds=round(minutes * 60)),
-        location=location,
-        mode=memory.mode or Mode.DUAL,
-        orientation=memory.orientation,
-        algorithm=config.algorithm,
-        refraction=config.refraction,
-        schedule=schedule_of(config.strategy),
-    )
-
-
-def _sun_span(
-    tracker: TrackerDetail, location: Location, zone: str, day: date, minutes: str = DEFAULT_MINUTES
-) -> dict[str, str]:
-    """Return the form for sunrise to sunset of a day, or for the whole of a polar day."""
-    begin = datetime.combine(day, time(), zone_of(zone))
-    end = datetime.combine(day + timedelta(days=1), time(), zone_of(zone))
-    events = day_events(tracker.state.config.algorithm, location, begin, end)
-    start, stop = "00:00", "00:00"
-    if events.rise and events.set and events.rise < events.set:
-        start = local(events.rise + timedelta(seconds=59), zone, "%H:%M")
-        stop = local(events.set, zone, "%H:%M")
-    return {"date": day.isoformat(), "start": start, "end": stop, "minutes": minutes}
-
-
-def _presets(
-    tracker: TrackerDetail, location: Location, zone: str, today: date, typed: Typed
-) -> tuple[Link, ...]:
-    minutes = typed.texts.get("minutes") or DEFAULT_MINUTES
-    days = (
-        ("Today", today),
-        ("21 March", date(today.year, 3, 21)),
-        ("21 June", date(today.year, 6, 21)),
-        ("21 December", date(today.year, 12, 21)),
-    )
-    spans = [(label, _sun_span(tracker, location, zone, day, minutes)) for label, day in days]
-    return tuple(Link(label, f"?{urlencode(span)}", span == typed.texts) for label, span in spans)
-
-
-def _verdict(wanted: ShowPlan, tracker: TrackerDetail, zone: str, typed: Typed) -> Verdict:
-    check = check_show(wanted, tracker.state.config, tracker.state.memory.pointing)
-    return Verdict(
-        feasible=check.feasible,
-        headline=_headline(check, wanted),
-        facts=_facts(check, wanted, tracker, zone),
-        reasons=check.reasons,
-        notices=check.notices,
-        shortest=_shortest(check, typed),
-        chart=chart(check.path, zone),
-    )
-
-
-def _headline(check: ShowCheck, wanted: ShowPlan) -> str:
-    if not check.feasible:
-        return "This show cannot be run."
-    return f"This works: {duration(wanted.duration)}, {wanted.acceleration:.0f} × the sun's speed."
-
-
-def _shortest(check: ShowCheck, typed: Typed) -> Link | None:
-    if check.feasible or check.shortest is None:
-        return None
-    minutes = f"{ceil(check.shortest.total_seconds() / 60 * 1000) / 1000:g}"
-    query = urlencode({name: typed.texts[name] for name in NAMES} | {"minutes": minutes})
-    return Link(f"Take {duration(check.shortest)} instead", f"?{query}")
-
-
-def _facts(
-    check: ShowCheck, wanted: ShowPlan, tracker: TrackerDetail, zone: str
-) -> tuple[tuple[str, str], ...]:
-    config = tracker.state.config
-    spans = ", ".join(f"{local(a, zone, '%H:%M')} to {local(b, zone, '%H:%M')}" for a, b in check.sun_up)
-    return (
-        ("Mode", choice(config, wanted.mode).label),
-        ("Sun up", spans or "not in this interval"),
-        *_axis_facts(check, config),
-    )
-
-
-def _axis_facts(check: ShowCheck, config: TrackerConfig) -> tuple[tuple[str, str], ...]:
-    """Return what the show asks of each axis that the mount has, and where they begin."""
-    asked = (
-        (Axis.AZIMUTH, check.peak_azimuth_dps, check.start.azimuth_deg),
-        (Axis.ELEVATION, check.peak_elevation_dps, check.start.elevation_deg),
-    )
-    present = [(axis_title(config.mount, axis), axis, dps, deg) for axis, dps, deg in asked]
-    present = [one for one in present if one[1] in config.mount.axes]
-    return (
-        *(
-            (f"{title.capitalize()} speed", f"{dps:.2f} of {config.axis(axis).speed_dps:g} °/s")
-            for title, axis, dps, _ in present
-        ),
-        ("Begins at", ", ".join(f"{title} {deg:.1f}°" for title, _, _, deg in present)),
-    )
 
 
 def _run_page(
