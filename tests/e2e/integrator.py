@@ -95,9 +95,9 @@ class Integrator:
         self.call("PATCH", "", json={"drive": drive, **change})
         self.until_allowed("jog")
 
-    def place_and_time(self, at: str = SOLSTICE_MORNING) -> None:
-        """Walk steps 1 and 2: Samsun, on a summer's morning."""
-        self.call("PUT", "/api/v1/site/location", json=SAMSUN)
+    def place_and_time(self, at: str = SOLSTICE_MORNING, place: dict[str, Any] = SAMSUN) -> None:
+        """Walk steps 1 and 2: Samsun, on a summer's morning, if nothing else is said."""
+        self.call("PUT", "/api/v1/site/location", json=place)
         self.call("PUT", "/api/v1/site/clock", json={"source": "manual", "at": at})
 
     def jog(self, seconds: float, axis: str = "azimuth", speed: str = "fast") -> None:
