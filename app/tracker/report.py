@@ -236,7 +236,7 @@ def _axis_state(axis: AxisFeedback) -> AxisState:
 
 
 def _waiting(mind: Mind) -> tuple[Reason, ...]:
-    """Return why a tracker that should track does not move."""
+    """Return why a tracker that should track does not move, a cause that two conditions share once."""
     if isinstance(mind.activity, Tracking):
         rests = hold_reason(mind) if mind.activity.phase is TrackPhase.RESTING else None
         return _HOLDS.get(mind.activity.phase, ()) if rests is None else (rests,)
@@ -246,6 +246,8 @@ def _waiting(mind: Mind) -> tuple[Reason, ...]:
         return () if mind.memory.stow is None or mind.wait is None else (mind.wait,)
     known = () if mind.wait is None else (mind.wait,)
     codes = {reason.code for reason in known}
+    if codes & _SENT_TO_HOMING and mind.wait is not None and mind.wait.message == mind.memory.home_lost:
+        codes.add("home_not_trusted")
     others = tuple(reason for reason in unmet(mind, Action.TRACK) if reason.code not in codes)
     return known + others or (_OPERATOR,)
 
@@ -318,6 +320,8 @@ _CLOCK_DOUBTED = Reason(
     "Confirm the clock in step 2, or wait until it has been stable for 60 s; then tracking goes on.",
 )
 _HOLDS = {TrackPhase.NIGHT: (_SUN_DOWN,), TrackPhase.PAUSED: (_CLOCK_DOUBTED,)}
+_SENT_TO_HOMING = frozenset({"drive_restarted", "not_homed", "encoder_jump"})
+"""Reasons to wait that say by themselves that the zero is lost, and to set it again."""
 _STOWED = Reason("stowed", "The panel was stowed by command.", "Press Resume, or Start tracking.")
 _HAND_ENDS = Reason(
     "hand_motion_ends",

@@ -191,8 +191,9 @@ def test_a_restarted_drive_has_lost_its_zero_and_tracking_waits() -> None:
     assert plant.controller.memory.tracking_on
     assert "restarted" in plant.happened(EventKind.HOME_LOST)[0].message
     assert plant.happened(EventKind.TRACKING_WAITING)
-    waiting = {reason.code for reason in plant.snapshot.waiting}
-    assert {"drive_restarted", "home_not_trusted"} <= waiting
+    assert [reason.code for reason in plant.snapshot.waiting] == ["drive_restarted"], "one cause, told once"
+    assert "step 3" in plant.snapshot.waiting[0].hint
+    assert "home_not_trusted" in plant.reasons("track")
     assert "restarted" in plant.controller.memory.home_lost
 
 
