@@ -10,39 +10,53 @@ from pathlib import Path
 
 import httpx
 import pytest
+import pytest_asyncio
 
 from app.link.messages import MachineUnreachable, RenameSite
 from app.machine.marker import MARKER_NAME
 from app.store.engine import open_reader
 from app.store.store import JournalFilter
 from app.tracker.axes import Axis, JogSpeed
-from app.tracker.commands import Jog, SelectMode, Track
+from app.tracker.commands import Jog, SelectMode, Stop, Track
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName, EventKind
-from tests.machine.service import LONGEST_WAIT_S, LOOK_EVERY_S, DriveSimulator, Service, eventually
-from tests.machine.stories import WATCHDOG_AND_RAMP_S, kill_mid_show, kill_panel
+from tests.machine.service import DriveSimulator, Service, eventually
+from tests.machine.stories import WATCHDOG_AND_RAMP_S, kill_mid_show, kill_panel, until_served
 
-KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "3"))
+KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "2"))
 PANEL_KILLS = 2
 
+pytestmark = pytest.mark.asyncio(loop_scope="module")
 
-@pytest.fixture
+
+@pytest_asyncio.fixture(scope="module", loop_scope="module")
 async def drive() -> AsyncIterator[DriveSimulator]:
     simulator = await DriveSimulator.start()
     yield simulator
     await simulator.stop()
 
 
-@pytest.fixture
-async def service(tmp_path: Path) -> AsyncIterator[Service]:
-    started = await Service.start(tmp_path / "data")
+@pytest_asyncio.fixture(scope="module", loop_scope="module")
+async def running(tmp_path_factory: pytest.TempPathFactory, drive: DriveSimulator) -> AsyncIterator[Service]:
+    """A service in front of the drive, for all stories of this module that do not end it."""
+    started = await Service.start(tmp_path_factory.mktemp("service") / "data")
+    await started.commission(drive)
     yield started
     await started.stop()
 
 
+@pytest_asyncio.fixture(loop_scope="module")
+async def service(running: Service) -> AsyncIterator[Service]:
+    """The service, which moves nothing when a story begins, and whose panel answers."""
+    await until_served(running.port)
+    yield running
+    await running.ask_until_taken(Stop())
+    await running.until(lambda seen: seen.activity is ActivityName.HOLDING)
+
+
 @pytest.mark.fault(44)
-async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service, drive: DriveSimulator) -> None:
-    await service.commission(drive)
+async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service) -> None:
+    await service.until(lambda seen: not seen.actions["zero"])
     await service.ask(SelectMode(Mode.DUAL))
     await service.ask(Track())
     before = await service.link.metrics()
@@ -58,20 +72,9 @@ async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service, dri
     assert seen.tracking_on
 
 
-async def until_answered(browser: httpx.AsyncClient) -> None:
-    """Return once the panel answers."""
-    async with asyncio.timeout(LONGEST_WAIT_S):
-        while True:
-            with suppress(httpx.TransportError):
-                if (await browser.get("/health")).status_code == 200:
-                    return
-            await asyncio.sleep(LOOK_EVERY_S)
-
-
 async def test_the_panel_moves_and_the_machine_misses_no_tick(service: Service) -> None:
     async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{service.port}") as browser:
-        await until_answered(browser)
-        before = await service.link.metrics()
+        before, processes = await service.link.metrics(), started(service)
         change = {
             "host": "127.0.0.1",
             "port": service.port,
@@ -92,7 +95,12 @@ async def test_the_panel_moves_and_the_machine_misses_no_tick(service: Service) 
     assert after.boot_id == before.boot_id
     ticks = after.trackers["T1"].ticks - before.trackers["T1"].ticks
     assert ticks >= int((after.uptime_s - before.uptime_s) * 10) - 1
-    assert len(service.starts("web")) == len(service.starts("machine")) == 1
+    assert started(service) == processes
+
+
+def started(service: Service) -> tuple[int, int]:
+    """Return how often panel and machine have been started."""
+    return len(service.starts("web")), len(service.starts("machine"))
 
 
 @pytest.mark.timeout(60 + 15 * KILLS)
@@ -100,7 +108,6 @@ async def test_the_panel_moves_and_the_machine_misses_no_tick(service: Service) 
 async def test_killed_at_any_instant_of_a_show_nothing_is_lost_and_the_axes_stop(
     service: Service, drive: DriveSimulator
 ) -> None:
-    await service.commission(drive)
     for number in range(KILLS):
         assert await kill_mid_show(service, drive, number) <= WATCHDOG_AND_RAMP_S + 1.0
 
@@ -109,7 +116,8 @@ async def test_killed_at_any_instant_of_a_show_nothing_is_lost_and_the_axes_stop
 async def test_a_frozen_machine_moves_nothing_and_does_not_catch_up(
     service: Service, drive: DriveSimulator
 ) -> None:
-    await service.commission(drive)
+    processes = started(service)
+    await service.until(lambda seen: not seen.actions["jog"])
     jogging = asyncio.create_task(_hold(service))
     await service.until(lambda seen: seen.activity is ActivityName.JOGGING)
     service.signal("machine", signal.SIGSTOP)
@@ -124,7 +132,7 @@ async def test_a_frozen_machine_moves_nothing_and_does_not_catch_up(
     await asyncio.sleep(1.0)
 
     assert (await drive.look()).azimuth.position_deg == pytest.approx(stood_at, abs=0.1)
-    assert len(service.starts("machine")) == 1
+    assert started(service) == processes
 
 
 async def _hold(service: Service) -> None:
@@ -147,7 +155,7 @@ async def test_a_second_machine_refuses_to_start_and_says_who_runs(service: Serv
     assert second.returncode == 2
     sentence = told.decode().strip()
     assert sentence.startswith(f"The data folder {service.data_dir} is in use by process")
-    assert str(service.starts("machine")[0]) in sentence
+    assert str(service.starts("machine")[-1]) in sentence
     assert "\n" not in sentence
 
 
