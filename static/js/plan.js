@@ -13,9 +13,22 @@ function outdate() {
   verdict().setAttribute("aria-busy", "true");
 }
 
-form.addEventListener("input", () => { changed = true; outdate(); });
+form.addEventListener("input", () => {
+  changed = true;
+  outdate();
+  document.querySelector(".plan-days [aria-current]")?.removeAttribute("aria-current");
+});
 document.addEventListener("htmx:before:request", (event) => {
   if (event.detail?.ctx?.sourceElement === form) changed = false;
+});
+// Whoever presses Check is shown the answer, which on a phone stands above the form.
+let asked = false;
+form.addEventListener("submit", () => { asked = true; });
+document.addEventListener("htmx:after:swap", () => {
+  if (!asked) return;
+  asked = false;
+  const box = verdict().getBoundingClientRect();
+  if (box.top < 0 || box.top > innerHeight / 2) verdict().scrollIntoView();
 });
 // An answer that comes after more was typed is already out of date.
 document.addEventListener("htmx:after:swap", () => { if (changed) outdate(); });

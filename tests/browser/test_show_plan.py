@@ -1,0 +1,42 @@
+"""The plan of a show is used from the top of its page: a day, the answer, the key; all else comes after."""
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import SIZES, Opened
+
+PATH = "/trackers/T1/show?date=2026-06-21"
+GO = '[data-action="go_to_start"]'
+
+
+def footer_top(page: Page) -> float:
+    return float(page.locator(".footer").first.evaluate("one => one.getBoundingClientRect().top"))
+
+
+@pytest.mark.parametrize("size", ["tablet", "phone"])
+def test_answer_and_key_are_seen_without_scrolling(opened: Opened, size: str) -> None:
+    page = opened(PATH, size, touch=True)
+    expect(page.locator("#verdict h2")).to_contain_text("This works")
+    for name in (".plan-days", "#verdict h2", GO):
+        box = page.locator(name).bounding_box()
+        assert box is not None
+        assert box["y"] >= 0
+        assert box["y"] + box["height"] <= footer_top(page), name
+
+
+def test_whoever_presses_check_on_a_phone_is_shown_the_answer(opened: Opened) -> None:
+    page = opened(PATH, "phone", touch=True)
+    page.locator("#f-minutes").fill("0.3")
+    page.locator("#plan-form button").tap()
+    expect(page.locator("#verdict:not([inert]) h2")).to_contain_text("cannot be run")
+    expect(page.locator("#verdict h2")).to_be_in_viewport()
+    assert SIZES["phone"][1] / 2 > page.locator("#verdict h2").bounding_box()["y"] >= 0  # type: ignore[index]
+
+
+def test_no_day_is_marked_any_more_once_something_else_is_typed(opened: Opened) -> None:
+    page = opened(PATH, "desk")
+    marked = page.locator('.plan-days [aria-current="true"]')
+    expect(marked).to_have_text("21 June Solstice")
+    page.locator("#f-start").fill("08:00")
+    expect(marked).to_have_count(0)
+    expect(page.locator("#verdict:not([inert]) .facts")).to_contain_text("08:00 to")
