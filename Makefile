@@ -11,8 +11,8 @@ VENV := .venv
 BIN := $(VENV)/bin
 # Tests that judge how punctual things are, each with the computer to itself; the others share the cores.
 ALONE := tests/drives/timed $(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk kills process)) \
-	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop shown two_operators walk)) \
-	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost first_time hold_to_run kill shows stop_and_tabs))
+	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop two_operators)) \
+	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost hold_to_run kill stop_and_tabs))
 
 .DEFAULT_GOAL := help
 .PHONY: help setup fast run test check translations fuzz bench format lock browser system-packages clean
@@ -53,7 +53,7 @@ test: $(VENV)/.dev system-packages ## Set up what tests need and run them all, b
 
 soak: $(VENV)/.dev system-packages ## Run the long proofs (hours): random operation, kills, power cuts, a day of a field
 	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/store/test_power_cut.py tests/tracker/test_stateful.py tests/site/test_field.py
-	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/machine/test_clock_jump.py tests/machine/test_viewers.py tests/browser/test_axe.py tests/browser/test_languages_fit.py
+	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/machine/test_clock_jump.py tests/machine/test_viewers.py $(addprefix tests/browser/test_,$(addsuffix .py,axe languages_fit walk))
 	@HELIOPANEL_TEST_KILLS=$${HELIOPANEL_TEST_KILLS:-1000} $(BIN)/python -m pytest -s tests/machine/test_kills.py
 	@HELIOPANEL_TEST_KILLS=20 $(BIN)/python -m pytest -s tests/e2e/test_kill.py tests/machine/test_process.py
 
@@ -62,7 +62,7 @@ mutants: $(VENV)/.dev ## Change the guards' code place by place, in a copy, and 
 	@$(BIN)/mutmut results
 
 browser: $(VENV)/.dev system-packages ## Run the browser tests alone; screenshots go to build/screens
-	@$(BIN)/python -m pytest tests/browser
+	@HELIOPANEL_SCREENS=1 $(BIN)/python -m pytest tests/browser
 
 check: $(VENV)/.dev ## Formatting, lint, types, import contracts, migrations, vendored files
 	@$(BIN)/ruff format --check .

@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.hands import Finger, Hands, Mouse
-from tests.browser.walking import Picture, Walker, add_tracker, rooms, service, walker
+from tests.browser.walking import Picture, Walker, add_tracker, move_by_hand, rooms, service, walker
 from tests.e2e.product import DriveSim
 
 __all__ = ["rooms", "service", "walker"]
@@ -99,9 +99,7 @@ def set_limits(page: Page, hands: Hands) -> None:
     expect(page.locator('#limits [data-reasons="set_limit"]')).to_contain_text("no trusted zero")
     page.evaluate("window.scrollTo(0, document.body.scrollHeight)")
     reading = page.locator('.jog-panel [data-live="measured.elevation_deg"]')
-    before = reading.inner_text()
-    hands.hold(page.locator('[data-jog="elevation"][data-direction="1"]'))
-    expect(reading).not_to_have_text(before)
+    move_by_hand(hands, page.locator('[data-jog="elevation"][data-direction="1"]'), reading)
 
 
 def arrive(page: Page, hands: Hands, service: str, tracker_id: str) -> str:

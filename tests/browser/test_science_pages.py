@@ -19,7 +19,8 @@ from app.sun.position import Location
 from app.tracker.config import Orientation
 from app.web.main import create_app
 from tests.browser.conftest import SCREENS, SIZES, Served
-from tests.browser.test_pages_fit import LEAST_TARGET_PX, TOO_SMALL
+from tests.browser.layout import faults
+from tests.browser.walking import Picture
 from tests.fakes import FakeMachine, FakeReader
 
 # pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.
@@ -106,14 +107,12 @@ def shown(request: pytest.FixtureRequest, browser: Browser, panel_url: str) -> I
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_a_page_of_figures_fits(shown: tuple[str, Page], size: str) -> None:
+def test_a_page_of_figures_fits(shown: tuple[str, Page], size: str, picture: Picture) -> None:
     name, page = shown
     width, height = SIZES[size]
     page.set_viewport_size({"width": width, "height": height})
-    SCREENS.mkdir(parents=True, exist_ok=True)
-    page.screenshot(path=SCREENS / f"science-{name}-{size}.png")
-    assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
-    assert page.evaluate(TOO_SMALL, LEAST_TARGET_PX) == []
+    picture(page, f"science-{name}-{size}")
+    assert faults(page) == []
     narrowest = "Math.min(...[...document.querySelectorAll('td')].filter(e => e.textContent.length > 3)"
     assert page.evaluate(narrowest + ".map(e => e.getBoundingClientRect().width))") >= 30
 
@@ -138,6 +137,7 @@ def test_on_paper_curves_are_black_and_told_apart_by_their_dashes(shown: tuple[s
     seen = page.evaluate(
         "[...document.querySelectorAll('.footer, .tabs, .key')].filter(e => e.offsetHeight).length"
     )
+    SCREENS.mkdir(parents=True, exist_ok=True)
     page.pdf(path=SCREENS / f"science-{name}.pdf", format="A4")
     page.emulate_media(media="screen")
     assert seen == 0
