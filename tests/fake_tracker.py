@@ -66,6 +66,7 @@ class FakeTracker:
         self.position = position
         self.activity = ActivityName.TRACKING if state.memory.tracking_on else ActivityName.HOLDING
         self.show: tuple[ShowPlan, ShowPhase] | None = None
+        self.shown = 0.4
         self.press: str | None = None
         self.dead: set[str] = set()
         self.sequence = -1
@@ -197,7 +198,7 @@ class FakeTracker:
         if self.show is None:
             return None
         plan, phase = self.show
-        elapsed = plan.duration * 0.4 if phase is not ShowPhase.READY else timedelta()
+        elapsed = plan.duration * self.shown if phase is not ShowPhase.READY else timedelta()
         return ShowProgress(
             plan.show_id, phase, plan.sun_time(elapsed), elapsed.total_seconds(),
             plan.duration.total_seconds(), plan.acceleration, plan.begin_at, plan.end_at, sun_is_up=True,

@@ -9,15 +9,16 @@ import { unbroken } from "./sphere.js";
 import { panelOf, place, sunOf } from "./sunpath.js";
 import { _ } from "./said.js";
 
-const showId = document.querySelector("[data-show]").dataset.show;
+const { show: showId, end: showEnd } = document.querySelector("[data-show]").dataset;
 const scene = new PanelScene(document.getElementById("show-scene"));
 const diagram = document.querySelector(".sunpath");
 const PHASES = { going_to_start: _("Going to the start"), ready: _("Ready at the start"), running: _("Running"), paused: _("Paused") };
+const MESSAGE_S = 1;
 turnKeys(scene);
 
 let table = null;
 let plots = null;
-let begun = false;
+let last = null;
 
 function mine() {
   const show = live.tracker?.show;
@@ -38,12 +39,19 @@ function draw() {
   if (!table) return;
   plots?.forEach((plot) => plot.destroy());
   plots = [
-    chart(document.getElementById("angles"), { zone: live.zone, range: [0, 360], data: anglesData(), series: [
+    chart(document.getElementById("angles"), { zone: live.zone, range: spread(), data: anglesData(), series: [
       { label: _("Azimuth planned"), colour: "second", dash: [6, 5], width: 1.5 }, { label: _("Azimuth measured"), colour: "text", width: 3 },
       { label: _("Elevation planned"), colour: "blue", dash: [6, 5], width: 1.5 }, { label: _("Elevation measured"), colour: "blue", width: 3 }] }),
     chart(document.getElementById("errors"), { height: 180, zone: live.zone, data: errorData(), range: (_, least, most) => [0, Math.max(0.5, (most ?? 0) * 1.1)],
       series: [{ label: _("Off the sun"), colour: "text", width: 2 }] }),
   ];
+}
+
+// From the least to the greatest planned angle, a little more on either side, in whole tens of degrees; the whole circle through north.
+function spread() {
+  if (table.plannedAzimuth.some((angle) => angle !== null && (angle < 5 || angle > 355))) return [0, 360];
+  const planned = [...table.plannedAzimuth, ...table.plannedElevation].filter((angle) => angle !== null);
+  return [Math.floor(Math.min(...planned) / 10 - 0.5) * 10, Math.ceil(Math.max(...planned) / 10 + 0.5) * 10];
 }
 
 const anglesData = () => [table.time, table.plannedAzimuth, table.azimuth, table.plannedElevation, table.elevation];
@@ -76,21 +84,42 @@ function progressOf(show) {
     : _("{elapsed} of {all} · {times} × the sun; the sun is down, the panel holds", values);
 }
 
-function paint() {
-  const show = mine();
-  const phase = document.getElementById("show-phase");
-  scene.show({ sun: sunOf(live.tracker), panel: panelOf(live.tracker), target: targetOf(live.tracker) });
-  place(diagram, "sun", sunOf(live.tracker));
+// The sun of a show stays where the show left it: the one outside stands elsewhere, and has nothing to do with it.
+function picture(sun, target) {
+  scene.show({ sun, panel: panelOf(live.tracker), target });
+  place(diagram, "sun", sun);
   place(diagram, "panel", panelOf(live.tracker));
-  if (!show) {
-    phase.textContent = begun ? _("Ended") : _("Not on the machine");
-    return;
-  }
-  begun = true;
-  phase.textContent = PHASES[show.phase] ?? words(show.phase);
+}
+
+// A show that has run to its end is over within a message's time of it; one that was ended earlier stays where it was.
+function finish() {
+  const { show, sun } = last;
+  picture(sun, null);
+  document.getElementById("show-phase").textContent = _("Ended");
+  if (show.phase !== "running" || show.duration_s - show.elapsed_s > MESSAGE_S) return;
+  last.show = { ...show, elapsed_s: show.duration_s, sun_time: showEnd };
+  progress(last.show);
+}
+
+function progress(show) {
   document.getElementById("show-clock").textContent = clockTime(show.sun_time, live.zone);
   document.getElementById("show-progress").value = show.elapsed_s / show.duration_s;
   document.getElementById("show-elapsed").textContent = progressOf(show);
+}
+
+function paint() {
+  const show = mine();
+  const phase = document.getElementById("show-phase");
+  if (!show) {
+    if (last) return finish();
+    picture(null, null);
+    phase.textContent = _("Not on the machine");
+    return;
+  }
+  last = { show, sun: sunOf(live.tracker) };
+  picture(last.sun, targetOf(live.tracker));
+  phase.textContent = PHASES[show.phase] ?? words(show.phase);
+  progress(show);
   note(show);
 }
 

@@ -1,11 +1,11 @@
 """Recorded shows, days and simulations: the list, the player, and running one again on the machine."""
 
 from typing import Annotated
-from urllib.parse import urlencode
+from urllib.parse import quote, urlencode
 
 from fastapi import APIRouter, Query
 from starlette.requests import Request
-from starlette.responses import Response
+from starlette.responses import RedirectResponse, Response
 
 from app.link.messages import DeleteRecording, UnknownRecording
 from app.store.store import Reader
@@ -31,8 +31,11 @@ LONG_S = 3 * 3600
 
 
 @router.get("")
-def recordings(request: Request, reader: ReaderDep, kind: str = "") -> Response:
-    """Show what was recorded, newest first."""
+def recordings(request: Request, reader: ReaderDep, kind: str = "", show: str = "") -> Response:
+    """Show what was recorded, newest first; of a show, play what was recorded of it last."""
+    if (last := _last_of(reader, show)) is not None:
+        return RedirectResponse(f"/recordings/{quote(last.recording_id)}", 303)
+    kind = RecordingKind.SHOW if show else kind
     chosen = RecordingKind(kind) if kind in list(RecordingKind) else None
     context = RecordingsPage(
         frame=site_frame(request, "Recordings"),
@@ -91,6 +94,16 @@ def _plan(info: RecordingInfo) -> dict[str, str]:
         "end": local(info.sun_end_at, zone, "%H:%M:%S"),
     }
     return plan | {"minutes": f"{info.duration_s / 60:.4g}"} if is_show else plan
+
+
+def _last_of(reader: Reader, show_id: str) -> RecordingInfo | None:
+    """Return the newest recording of a planned show, None where there is none."""
+    kept = reader.show(show_id) if show_id else None
+    if kept is None:
+        return None
+    stretch = (kept.plan.begin_at, kept.plan.end_at)
+    shows = reader.recordings(kind=RecordingKind.SHOW, tracker_id=kept.tracker_id, limit=SHOWN)
+    return next((one for one in shows if (one.sun_begin_at, one.sun_end_at) == stretch), None)
 
 
 def _others(reader: Reader, info: RecordingInfo) -> tuple[RecordingInfo, ...]:

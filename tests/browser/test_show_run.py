@@ -1,0 +1,101 @@
+"""A show on the machine is seen whole while it runs, and ends where it ended."""
+
+from datetime import UTC, datetime, timedelta
+from functools import partial
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from app.store.store import PlannedShow
+from app.tracker.programs.show import ShowPlan
+from app.tracker.snapshot import ActivityName, ShowPhase
+from tests.browser.conftest import Opened, Plant
+from tests.fake_data import SAMSUN
+
+SHOW = "/trackers/T1/shows/s1"
+PLAN = ShowPlan(
+    "s1",
+    datetime(2026, 6, 21, 5, tzinfo=UTC),
+    datetime(2026, 6, 21, 14, tzinfo=UTC),
+    timedelta(minutes=3),
+    SAMSUN,
+)
+
+
+def at(plant: Plant, part: float, phase: ShowPhase = ShowPhase.RUNNING) -> None:
+    """Bring the show of the fake machine to a part of its length."""
+    plant.machine.store.shows["s1"] = PlannedShow("T1", PLAN)
+    tracker = plant.machine.trackers["T1"]
+    tracker.show, tracker.shown, tracker.activity = (PLAN, phase), part, ActivityName.SHOWING
+
+
+def over(plant: Plant) -> None:
+    tracker = plant.machine.trackers["T1"]
+    tracker.show, tracker.activity = None, ActivityName.HOLDING
+
+
+@pytest.fixture
+def under_way(plant: Plant) -> Plant:
+    at(plant, 0.4)
+    return plant
+
+
+def bottom(page: Page, name: str) -> float:
+    return float(page.locator(name).evaluate("one => one.getBoundingClientRect().bottom"))
+
+
+def test_on_a_tablet_picture_path_and_keys_are_seen_together(under_way: Plant, opened: Opened) -> None:
+    page = opened(SHOW, "tablet")
+    expect(page.locator("#show-phase")).to_have_text("Running")
+    footer = float(page.locator(".footer").evaluate("one => one.getBoundingClientRect().top"))
+    for name in ("#show-keys", "#show-scene", ".show-grid .sunpath"):
+        assert bottom(page, name) <= footer, name
+
+
+def test_a_show_that_has_run_to_its_end_says_so_to_the_last_second(under_way: Plant, opened: Opened) -> None:
+    page = opened(SHOW, "desk")
+    under_way.do(partial(at, under_way, 0.996))
+    expect(page.locator("#show-elapsed")).to_contain_text("2 min 59 s")
+    under_way.do(partial(over, under_way))
+    expect(page.locator("#show-phase")).to_have_text("Ended")
+    expect(page.locator("#show-clock")).to_have_text("17:00:00")
+    assert page.locator("#show-progress").evaluate("bar => bar.value") == 1
+    expect(page.locator("#show-elapsed")).to_contain_text("3 min of 3 min")
+
+
+def test_a_show_that_was_ended_before_stays_where_it_was(under_way: Plant, opened: Opened) -> None:
+    page = opened(SHOW, "desk")
+    expect(page.locator("#show-clock")).to_have_text("11:36:00")
+    under_way.do(partial(over, under_way))
+    expect(page.locator("#show-phase")).to_have_text("Ended")
+    expect(page.locator("#show-clock")).to_have_text("11:36:00")
+
+
+def test_the_sun_outside_is_not_drawn_into_a_show_that_is_over(under_way: Plant, opened: Opened) -> None:
+    page = opened(SHOW, "desk")
+    sun = page.locator('.show-grid .sunpath [data-mark="sun"]')
+    expect(sun).to_have_attribute("visibility", "visible")
+    under_way.do(partial(over, under_way))
+    expect(page.get_by_text("Panel off the sun", exact=True).first).to_be_hidden()
+    page.reload()
+    expect(page.locator("#show-phase")).to_have_text("Not on the machine")
+    expect(sun).to_have_attribute("visibility", "hidden")
+
+
+def test_the_replay_key_plays_what_was_recorded_of_this_show(under_way: Plant, opened: Opened) -> None:
+    over(under_way)
+    shown = under_way.machine.store.heads["show-1"]
+    under_way.machine.store.shows["s1"] = PlannedShow(
+        "T1",
+        ShowPlan("s1", shown.sun_begin_at, shown.sun_end_at, timedelta(seconds=shown.duration_s), SAMSUN),
+    )
+    page = opened(SHOW, "tablet", touch=True)
+    page.get_by_role("link", name="Replay").tap()
+    page.wait_for_url("**/recordings/show-1")
+
+
+def test_the_replay_key_of_a_show_that_never_ran_leads_to_the_list(under_way: Plant, opened: Opened) -> None:
+    over(under_way)
+    page = opened(SHOW, "tablet", touch=True)
+    page.get_by_role("link", name="Replay").tap()
+    expect(page.locator("h1")).to_have_text("Recordings")
