@@ -17,9 +17,12 @@ from app.access.keeper import Keeper
 from app.access.roles import Role
 from app.clock import SystemClock
 from app.settings import Settings
+from app.web.languages.catalogue import catalogue_of
+from app.web.languages.known import LANGUAGES
 from app.web.main import create_app
 from tests.access.fake_hasher import FakeHasher
 from tests.browser.conftest import PATIENCE_MS, SIZES, Opened, Served
+from tests.fake_alarms import alarm
 from tests.fakes import FakeMachine, FakeReader
 from tests.web.office import HERE, PASSWORD
 
@@ -216,3 +219,38 @@ def test_the_network_page_says_where_to_go_and_counts_down(
     small = opened("/network", "phone", theme="night")
     picture(small, "network-phone-night")
     assert small.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+CUT_IN_STRIP = """() => {
+  const strip = document.getElementById("alarm-strip").getBoundingClientRect();
+  const parts = document.querySelectorAll("#alarm-strip :is(p, button, li, .alarm-first-words)");
+  return [...parts].filter((one) => {
+    const style = getComputedStyle(one);
+    const box = one.getBoundingClientRect();
+    const shown = one.checkVisibility({ visibilityProperty: true }) && style.clipPath === "none";
+    const beyond = box.bottom > strip.bottom || box.right > strip.right;
+    return shown && (beyond || one.scrollHeight > one.clientHeight + 1);
+  }).map((one) => one.textContent);
+}"""
+BROKEN_STATES = """() => [...document.querySelectorAll(".alarm-state")].filter((one) => {
+  const line = parseFloat(getComputedStyle(one).lineHeight);
+  return one.textContent.trim().length < 6 && one.getBoundingClientRect().height > 1.5 * line;
+}).map((one) => one.textContent.trim())"""
+
+
+def test_a_viewer_reads_in_full_who_may_acknowledge_an_alarm(door: Door) -> None:
+    machine = door.served.machine
+    machine.alarms = tuple(alarm(code, machine.clock.now()) for code in ("not_stowed", "drive_lost"))
+    page = door.signed_in("vera", "/alarms")
+    for size in ("phone", "tablet"):
+        page.set_viewport_size(dict(zip(("width", "height"), SIZES[size], strict=True)))
+        for language in LANGUAGES:
+            page.context.add_cookies([{"name": "language", "value": language, "url": door.url}])
+            page.goto(f"{door.url}/alarms")
+            expect(page.locator("#alarm-ack button")).to_be_disabled()
+            why = page.locator("li.alarm .denied-why").first
+            expect(why).to_have_text(catalogue_of(language).said("Only for operator or engineer."))
+            assert page.evaluate(CUT_IN_STRIP) == [], (size, language)
+            assert page.evaluate(BROKEN_STATES) == [], (size, language)
+            assert why.evaluate("one => one.scrollWidth <= one.clientWidth"), (size, language)
+    machine.alarms = ()
