@@ -252,10 +252,9 @@ def _announce(alarms: dict[str, Alarm], at: datetime) -> tuple[dict[str, Alarm],
 
 
 def _is_first(alarms: dict[str, Alarm], alarm: Alarm) -> bool:
-    """Return whether no other alarm of its group and place has been announced and is still active."""
-    group = (alarm.entry.group, alarm.tracker_id)
+    """Return whether no alarm of its place that may be its cause has been announced and is still active."""
     return not any(
-        (other.entry.group, other.tracker_id) == group
+        other.tracker_id == alarm.tracker_id and other.entry.group in alarm.entry.kin
         for other in alarms.values()
         if other.active and other.told and other.alarm_id != alarm.alarm_id
     )

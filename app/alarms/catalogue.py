@@ -34,7 +34,7 @@ class Entry:
 
     It is raised once its condition has lasted `on_delay`, and has returned once that was gone for
     `off_delay`. While one of the codes in `suppressed_by` is active at the same place it is suppressed by
-    design.
+    design. Alarms of its group, and of the groups in `caused_by`, may be its cause.
     Raises `ValueError` for a priority other than 1 to 4.
     """
 
@@ -47,6 +47,12 @@ class Entry:
     on_delay: timedelta = SOON
     off_delay: timedelta = SHORT
     suppressed_by: tuple[str, ...] = ()
+    caused_by: tuple[Group, ...] = ()
+
+    @property
+    def kin(self) -> frozenset[Group]:
+        """Return the groups of the alarms that may be its cause, its own among them."""
+        return frozenset((self.group, *self.caused_by))
 
     def __post_init__(self) -> None:
         if self.priority not in (1, 2, 3, 4):
@@ -58,7 +64,7 @@ ENTRIES = (
         "not_stowed", 1, Group.WEATHER, "Not stowed",
         "Wind or snow may damage the panel.",
         "Find out what holds it, press Stow; if it does not move, keep people away and stow it by hand.",
-        SHORT,
+        SHORT, caused_by=(Group.MOTION, Group.DRIVE),
     ),
     Entry(
         "stop_overdue", 1, Group.MOTION, "Axes do not stop",

@@ -1,11 +1,13 @@
 """From the book to what the snapshot tells: the most urgent first, bounded, with counts of all."""
 
 from collections import Counter
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import cast
 
 from app.alarms.alarm import Alarm
 from app.alarms.book import Book
+from app.alarms.catalogue import Group
 from app.tracker.alarm_words import MOST_SHOWN, PRIORITIES, AlarmCounts, AlarmNow, AlarmState
 
 COLLAPSED_FROM = 3
@@ -14,11 +16,16 @@ MAINTENANCE = "locked for maintenance"
 SILENCED = (AlarmState.SUPPRESSED, AlarmState.OUT_OF_SERVICE)
 ASIDE = (AlarmState.SHELVED, *SILENCED)
 Four = tuple[int, int, int, int]
+Followed = set[tuple[Group, str | None]]
 
 
 def view(book: Book, at: datetime, now: datetime) -> tuple[tuple[AlarmNow, ...], AlarmCounts]:
     """Return the alarms that stand, at most 50, and how many there are; `at` and `now` as in the book."""
-    alarms = sorted((_now(one, book, at, now) for one in book.alarms.values() if one.stands), key=_urgency)
+    followed = _followed(book)
+    alarms = sorted(
+        (_leading(_now(one, book, at, now), one, followed) for one in book.alarms.values() if one.stands),
+        key=_urgency,
+    )
     listed = [one for one in alarms if one.state not in ASIDE]
     counts = AlarmCounts(
         standing=_by_priority(listed),
@@ -61,6 +68,17 @@ def _now(alarm: Alarm, book: Book, at: datetime, now: datetime) -> AlarmNow:
         collapsed=book.flood and entry.priority >= COLLAPSED_FROM,
         occurrences=max(1, alarm.occurrences),
     )
+
+
+def _followed(book: Book) -> Followed:
+    """Return the groups and places where an alarm came after another one that may be its cause."""
+    later = (one for one in book.alarms.values() if one.active and one.told and not one.first_out)
+    return {(group, one.tracker_id) for one in later for group in one.entry.kin}
+
+
+def _leading(now: AlarmNow, alarm: Alarm, followed: Followed) -> AlarmNow:
+    """Return an alarm marked as the first only where others followed: alone it is just an alarm."""
+    return replace(now, first_out=now.first_out and (alarm.entry.group, alarm.tracker_id) in followed)
 
 
 def _by_site(steady: datetime, at: datetime, now: datetime) -> datetime:

@@ -198,6 +198,27 @@ def test_the_first_of_a_group_is_marked() -> None:
     assert first == {"encoder_jump@T1", "following_error@T2", "drive_fault@T1"}
 
 
+def marked(desk: Desk) -> set[str]:
+    return {one.alarm_id for one in view(desk.book, desk.at, desk.now)[0] if one.first_out}
+
+
+def test_an_alarm_is_shown_as_the_first_only_where_others_followed() -> None:
+    desk = Desk()
+    desk.see(of("encoder_jump"), of("drive_fault", "T2"))
+    assert marked(desk) == set(), "of one alarm there is no first"
+    desk.see(of("encoder_jump"), of("following_error"), of("drive_fault", "T2"))
+    assert marked(desk) == {"encoder_jump@T1"}
+
+
+def test_what_keeps_a_panel_from_its_stow_is_first_and_not_stowed_follows_it() -> None:
+    desk = Desk()
+    stuck, unstowed = of("limit_switch"), of("not_stowed")
+    desk.see(stuck)
+    desk.see(stuck, unstowed, of("not_stowed", "T2"), for_s=4)
+    assert desk.state("not_stowed@T1") is desk.state("not_stowed@T2") is AlarmState.UNACKNOWLEDGED
+    assert marked(desk) == {"limit_switch@T1"}
+
+
 def test_a_flood_is_one_more_alarm_and_puts_the_lesser_behind() -> None:
     desk = Desk()
     many = [of("drive_restarted", f"T{number}") for number in range(11)]
