@@ -64,15 +64,20 @@ const SERIES = [
   { label: _("measured"), colour: "blue", width: 2.5 },
 ];
 
+let printing = null;
+const toBePrinted = new Promise((done) => { printing = done; });
+addEventListener("beforeprint", printing);
+
 // Resolves once something is on the screen, or nearly so, or is to be printed.
-const near = (holder) => new Promise((done) => {
+const near = (holder) => Promise.race([toBePrinted, onScreen(holder)]);
+
+const onScreen = (holder) => new Promise((done) => {
   const watcher = new IntersectionObserver((seen) => {
     if (!seen.at(-1).isIntersecting) return;
     watcher.disconnect();
     done();
   }, { rootMargin: "25%" });
   watcher.observe(holder);
-  addEventListener("beforeprint", done, { once: true });
 });
 
 // One chart at a time and where somebody looks: what is pressed meanwhile does not wait for both.
@@ -197,8 +202,22 @@ async function open() {
   said.textContent = other ? _("Laid over it, in red: {title}.", { title: head.otherTitle }) : "";
   key.addEventListener("click", () => play(!playing));
   scrubber.addEventListener("input", () => { at = Number(scrubber.value); play(false); });
-  addEventListener("theme", draw);
-  await draw();
+  let drawing = draw();
+  addEventListener("theme", () => { drawing = draw(); });
+  offerToPrint(() => drawing);
+  await drawing;
+}
+
+// What has not been looked at yet is drawn first, and has a frame's time to come to the paper.
+function offerToPrint(drawing) {
+  const paper = document.getElementById("player-print");
+  paper.hidden = false;
+  paper.addEventListener("click", async () => {
+    play(false);
+    printing();
+    await drawing();
+    requestAnimationFrame(() => requestAnimationFrame(() => print()));
+  });
 }
 
 open().catch((error) => { said.textContent = _("The frames could not be read: {why}", { why: error.message }); });

@@ -99,3 +99,24 @@ def test_the_replay_key_of_a_show_that_never_ran_leads_to_the_list(under_way: Pl
     page = opened(SHOW, "tablet", touch=True)
     page.get_by_role("link", name="Replay").tap()
     expect(page.locator("h1")).to_have_text("Recordings")
+
+
+def test_a_replay_is_printed_with_both_curves_though_nobody_has_looked_at_them(
+    plant: Plant, opened: Opened
+) -> None:
+    page = opened("/recordings/show-1", "tablet")
+    page.evaluate(
+        "window.print = () => { window.printed = document.querySelectorAll('.chart canvas').length; }"
+    )
+    expect(page.locator("#errors canvas")).to_have_count(0)
+    page.locator("#player-print").click()
+    page.wait_for_function("() => window.printed !== undefined")
+    assert page.evaluate("window.printed") == 2
+    page.emulate_media(media="print")
+    for gone in (".player-bar", "#player-print", ".scene-keys"):
+        expect(page.locator(gone)).to_be_hidden()
+    for name in ("#angles", "#errors"):
+        inside = page.locator(name).evaluate(
+            "one => one.querySelector('canvas').getBoundingClientRect().width <= one.clientWidth + 1"
+        )
+        assert inside, name
