@@ -1,9 +1,11 @@
 """Both databases: every test that asks for `url` runs on SQLite and on PostgreSQL."""
 
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from sqlalchemy.engine import make_url
 
 from app.store.engine import open_reader, open_writer
 from app.store.migrations import upgrade
@@ -23,19 +25,42 @@ def sqlite_url(tmp_path: Path) -> str:
     return f"sqlite:///{tmp_path / 'heliopanel.db'}"
 
 
+@pytest.fixture(scope="session")
+def made_sqlite(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A file with tables and nothing in them, to be copied."""
+    path = tmp_path_factory.mktemp("made") / "heliopanel.db"
+    upgrade(f"sqlite:///{path}")
+    return path
+
+
+@pytest.fixture(scope="session")
+def made_postgres(postgres_folder: Path) -> str:
+    """The name of a database with tables and nothing in them, to be copied."""
+    made = fresh_database(postgres_folder)
+    upgrade(made)
+    return str(make_url(made).database)
+
+
 @pytest.fixture(params=["sqlite", "postgresql"])
-def empty_url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
-    """The address of a database without tables."""
-    if request.param == "sqlite":
-        return f"sqlite:///{tmp_path / 'heliopanel.db'}"
-    return fresh_database(request.getfixturevalue("postgres_folder"))
+def kind(request: pytest.FixtureRequest) -> str:
+    """The kind of database that a test runs on."""
+    return str(request.param)
 
 
 @pytest.fixture
-def url(empty_url: str) -> str:
+def empty_url(kind: str, request: pytest.FixtureRequest, sqlite_url: str) -> str:
+    """The address of a database without tables."""
+    return sqlite_url if kind == "sqlite" else fresh_database(request.getfixturevalue("postgres_folder"))
+
+
+@pytest.fixture
+def url(kind: str, request: pytest.FixtureRequest, tmp_path: Path, sqlite_url: str) -> str:
     """The address of a database with tables and nothing in them."""
-    upgrade(empty_url)
-    return empty_url
+    if kind == "sqlite":
+        shutil.copy(request.getfixturevalue("made_sqlite"), tmp_path / "heliopanel.db")
+        return sqlite_url
+    folder = request.getfixturevalue("postgres_folder")
+    return fresh_database(folder, request.getfixturevalue("made_postgres"))
 
 
 @pytest.fixture

@@ -56,11 +56,11 @@ def running_postgres() -> Iterator[Path]:
         shutil.rmtree(folder)
 
 
-def fresh_database(folder: Path) -> str:
-    """Return the URL of a new, empty database on the server."""
+def fresh_database(folder: Path, like: str = "template1") -> str:
+    """Return the URL of a new database on the server, empty or a copy of another one."""
     name = f"test{next(NUMBERS)}"
     with psycopg.connect(f"host={folder} user=heliopanel dbname=postgres", autocommit=True) as connection:
-        connection.execute(f"CREATE DATABASE {name}")
+        connection.execute(f"CREATE DATABASE {name} TEMPLATE {like}")
     return f"postgresql+psycopg://heliopanel@/{name}?host={folder}"
 
 
