@@ -7,6 +7,7 @@ from datetime import datetime
 from app.web.languages import CATALOGUE, said
 from app.web.languages.known import ENGLISH, in_words
 from app.web.record_files import Paper, Row, Section
+from app.web.ui.formats import who
 
 CONTEXT = "record"
 NUMBERED, UNSIGNED, TITLE = "No. {number}", "not signed", "Commissioning record: {name}"
@@ -52,8 +53,8 @@ TEXTS = (*SENTENCES, *HEADINGS, *sorted(PARTS), *VALUES)
 _NAMED = """
     name / by / tracker id / remark / unverified / unverified registers / drive host / drive profile
     / drive serial port / strategy program name"""
-NAMED = frozenset(_listed(_NAMED))
-"""Lines whose value somebody or something was named."""
+NAMED, DOER = frozenset(_listed(_NAMED)), "by"
+"""Lines whose value somebody or something was named, and the one of them that tells who did something."""
 
 INSTANT = r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d[+-]\d\d:\d\d"
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]\d+)?")
@@ -65,7 +66,7 @@ MARKED, PICTURED = re.compile(r"No\. (\d+)"), re.compile(r"photo (\d+)")
 STATUS = re.compile(rf"(done|to do|to be confirmed)(?:, ({INSTANT}) by (.*?))?\.( .*)?", re.DOTALL)
 NEXT_STEP = re.compile(r" (?=Step \d, )")
 BY = re.compile(rf"(.*) ({INSTANT}) by (.*)", re.DOTALL)
-EVENT = re.compile(r"(.*)( \([^()]*\))", re.DOTALL)
+EVENT = re.compile(r"(.*) \(([^()]*)\)", re.DOTALL)
 
 
 def told(paper: Paper) -> Paper:
@@ -121,10 +122,10 @@ def told_name(name: str) -> str:
 def told_value(name: str, value: str) -> str:
     """Return what stands behind a line's name; what somebody was named is left alone."""
     if CATALOGUE.get().language is ENGLISH or name in NAMED:
-        return value
+        return who(value) if name == DOER else value
     if re.fullmatch(INSTANT, name):
         event = EVENT.fullmatch(value)
-        return f"{said(event[1])}{event[2]}" if event else said(value)
+        return f"{said(event[1])} ({who(event[2])})" if event else said(value)
     if NUMBER.fullmatch(value):
         return CATALOGUE.get().number(value)
     return _sentence(value) or _words(value)
@@ -165,11 +166,11 @@ def _sentence(value: str) -> str:
         return _instant(value)
     if status := STATUS.fullmatch(value):
         word, at, name, rest = status.groups()
-        when = filled(VALUES[-1], status=_own(word), at=_instant(at), name=name) if at else _own(word)
+        when = filled(VALUES[-1], status=_own(word), at=_instant(at), name=who(name)) if at else _own(word)
         reasons = map(said, NEXT_STEP.split((rest or "").strip()))
         return " ".join(filter(None, (f"{when}{CATALOGUE.get().language.stop}", *reasons)))
     if checked := BY.fullmatch(value):
-        return f"{said(checked[1])} {filled(VALUES[-2], at=_instant(checked[2]), name=checked[3])}"
+        return f"{said(checked[1])} {filled(VALUES[-2], at=_instant(checked[2]), name=who(checked[3]))}"
     if measured := NUMBERED_TEXT.fullmatch(value):
         return filled("{number}" + measured[2], number=CATALOGUE.get().number(measured[1]))
     return ""

@@ -10,6 +10,8 @@ from app.zones import zone_of
 
 UNKNOWN = "–"
 NAMELESS = "this computer"
+MACHINE, CONTEXT = "machine", "record"
+"""What the controller is called where it did something by itself, as in a record."""
 ISO_DATE = "%Y-%m-%d"
 
 
@@ -86,7 +88,9 @@ def words(value: object) -> str:
 
 
 def who(value: object) -> str:
-    """Return a name as it is; what sits at this computer has none and is told in the language of the page."""
+    """Return a name as it is; this computer and the machine are told in the language of the page."""
+    if value == MACHINE:
+        return CATALOGUE.get().pgettext(CONTEXT, MACHINE)
     return CATALOGUE.get().said(NAMELESS) if value == NAMELESS else str(value)
 
 

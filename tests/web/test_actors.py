@@ -1,0 +1,66 @@
+"""What the machine and this computer did is told in the reader's language; what is stored stays as it is."""
+
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import pytest
+
+from app.tracker.snapshot import EventKind
+from app.web.languages import CATALOGUE
+from app.web.languages.catalogue import catalogue_of
+from app.web.languages.known import TRANSLATED
+from app.web.record_words import told_value
+from app.web.ui.formats import who
+from tests.web.desk import Desk
+
+INSTANT = "2027-06-21 09:40:00+03:00"
+PAGES = ("/journal", "/records", "/records/1", "/trackers/T1/record", "/api/v1/records/1?format=html")
+
+
+@pytest.fixture
+async def desk(tmp_path: Path) -> AsyncIterator[Desk]:
+    async with Desk(tmp_path) as one:
+        yield one
+
+
+async def happened(desk: Desk) -> None:
+    """Let the machine do something by itself, and this computer sign a record."""
+    site = desk.plant.site
+    site.note(site.model.event(EventKind.MACHINE_RESTARTS, "Memory runs short.", "machine"))
+    await desk.forward(1.0)
+    signed = {"signatures": [{"role": "technician", "name": "machine operator", "strokes": []}]}
+    assert (await desk.ask("POST", "/api/v1/trackers/T1/records", json=signed)).status_code == 201
+
+
+@pytest.mark.parametrize("code", TRANSLATED)
+async def test_pages_tell_who_has_no_name_in_the_language_of_the_reader(code: str, desk: Desk) -> None:
+    await happened(desk)
+    for path in PAGES:
+        page = (await desk.ask("GET", path, headers={"Cookie": f"language={code}"})).text
+        assert ">this computer<" not in page
+        assert "by this computer" not in page
+        assert ">machine<" not in page
+        assert "(machine)" not in page
+    journal = (await desk.ask("GET", "/journal", headers={"Cookie": f"language={code}"})).text
+    assert f">{catalogue_of(code).pgettext('record', 'machine')}<" in journal
+    records = (await desk.ask("GET", "/records", headers={"Cookie": f"language={code}"})).text
+    assert catalogue_of(code).said("this computer") in records
+
+
+async def test_files_keep_what_is_stored(desk: Desk) -> None:
+    await happened(desk)
+    answer = await desk.ask("GET", "/api/v1/journal", headers={"Cookie": "language=de"})
+    assert "machine" in {entry["event"]["actor"] for entry in answer.json()["entries"]}
+
+
+def test_a_printed_record_tells_who_did_it() -> None:
+    before = CATALOGUE.set(catalogue_of("de"))
+    try:
+        assert told_value(INSTANT, "It is over. (machine)").endswith("(Maschine)")
+        assert told_value(INSTANT, "It is over. (Ada)").endswith("(Ada)")
+        assert told_value("by", "this computer") == "dieser Rechner"
+        assert told_value("clock", f"done, {INSTANT} by this computer.").endswith("dieser Rechner.")
+        assert (who("machine"), who("machinist")) == ("Maschine", "machinist")
+    finally:
+        CATALOGUE.reset(before)
+    assert told_value("by", "this computer") == "this computer"
