@@ -113,16 +113,11 @@ def _translate(state: StateCore) -> None:
             token.content = catalogue.block(token.content)
 
 
-def found(wanted: str) -> list[tuple[str, GuideSection]]:
-    """Return every section of every document that has all the words, those with a fitting title first."""
-    needles = folded(wanted).split()
-    hits = [
-        (document, section)
-        for document in TITLES
-        for section in sections(document)
-        if all(needle in section.words for needle in needles)
-    ]
-    return sorted(hits, key=lambda hit: not all(needle in folded(hit[1].title) for needle in needles))
+def all_sections() -> Iterator[tuple[str, GuideSection]]:
+    """Return every section of every document in the language of the request, with the document's name."""
+    for document in TITLES:
+        for section in sections(document):
+            yield document, section
 
 
 def folded(text: str) -> str:

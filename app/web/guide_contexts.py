@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from app.web.contexts import Frame
+from app.web.contexts import Frame, Link
 from app.web.guide import GuideSection
 
 
@@ -26,22 +26,25 @@ class Hit:
     """Something that a search found: what kind of thing, its name, where it is, a few words about it.
 
     A section of a document is told as the document is shown, `is_foreign` where that is English for want of
-    a translation; all else is English and is said in the reader's language by the page.
+    a translation; all else is English and is said in the reader's language by the page. `others` lead to
+    the same place of other trackers.
     """
 
     kind: str
     title: str
     href: str
     text: str
+    others: tuple[Link, ...] = ()
     is_foreign: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class SearchPage:
-    """What was searched for and found."""
+    """What was searched for and found; `is_near` where nothing has all the words."""
 
     template: ClassVar[str] = "search.html"
 
     frame: Frame
     words: str
     hits: tuple[Hit, ...]
+    is_near: bool

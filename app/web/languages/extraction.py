@@ -32,7 +32,7 @@ _SPEAKING = """
 _PHRASES = (400, 401, 403, 404, 405, 409, 413, 422, 423, 429, 500, 503)
 MORE = {
     "app/web/errors.py": tuple(HTTPStatus(status).phrase for status in _PHRASES),
-    "app/web/ui/search.py": ("{least} to {most} {unit}.",),
+    "app/web/ui/search_index.py": ("{least} to {most} {unit}.",),
     "app/site/recorder.py": ("Completed", "Stopped", "Interrupted"),
 }
 """What no rule finds: phrases of HTTP, parts of sentences, and words that travel."""

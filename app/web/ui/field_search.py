@@ -68,10 +68,12 @@ def _called(tree: nodes.Template) -> Iterator[FormField]:
 
 
 def _name(field: nodes.Expr) -> str:
-    """Return what a field is called, nothing where the page makes its name up."""
+    """Return what a field is called, of those of both axes the first, nothing where the page makes it up."""
     match field:
         case nodes.Getattr(attr=name):
             return name
+        case nodes.Getitem(arg=nodes.Concat(nodes=[nodes.Name(name="axis"), nodes.Const(value=str(end))])):
+            return f"azimuth{end}"
         case nodes.Getitem(arg=nodes.Const(value=str(name))) | nodes.Const(value=str(name)):
             return name
         case _:

@@ -11,7 +11,7 @@ from app.web.errors import NotFound
 from app.web.guide_contexts import GuidePage, SearchPage
 from app.web.ui.frame import site_frame
 from app.web.ui.render import page
-from app.web.ui.search import found
+from app.web.ui.search import Found, found
 
 router = APIRouter()
 
@@ -39,10 +39,10 @@ def picture(name: str) -> Response:
 
 @router.get("/search")
 def search(request: Request, q: Annotated[str, Query(max_length=200)] = "") -> Response:
-    """Show pages, settings, alarms and sections of the documents that have all the words."""
+    """Show pages, settings, alarms and sections of the documents that have all the words, or come nearest."""
     words = q.strip()
-    hits = found(request, words) if words else ()
-    return page(request, SearchPage(site_frame(request, "Search"), words, hits))
+    outcome = found(request, words) if words else Found(())
+    return page(request, SearchPage(site_frame(request, "Search"), words, outcome.hits, outcome.is_near))
 
 
 def _show(request: Request, name: str) -> Response:

@@ -1,147 +1,121 @@
-"""One small index over pages, settings, alarms and documents."""
+"""The search over pages, settings, alarms and documents: what fits best comes first."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 
 from starlette.requests import Request
 
-from app.alarms.catalogue import ENTRIES
-from app.web import guide
+from app.tracker.snapshot import Snapshot
+from app.web.contexts import Link
 from app.web.guide_contexts import Hit
-from app.web.help import help_for
 from app.web.languages import said
-from app.web.ui.field_search import SITE_FORMS, TRACKER_FORMS, fields_of
-from app.web.ui.frame import SITE_TABS, TRACKER_TABS, shown_site
-from app.web.ui.protection_forms import NUMBERS, TITLES, field_name
-from app.web.ui.settings_words import SETTINGS
+from app.web.ui.frame import shown_site
+from app.web.ui.search_index import ALARM, DOCUMENT, PAGE, SETTING, Entry, index
+from app.web.ui.search_score import Words, nearness, plain, score, words_of
 
 MOST_HITS = 60
-LONGEST_TEXT = 160
+MOST_NEAR = 12
 FEW_TRACKERS = 10
-"""Of so many trackers all fields are found; of more those of the trackers that the words name."""
+"""Of so many trackers each place is told; of more those that the words name."""
+PREFERRED = {PAGE: 1.5, SETTING: 1.0, ALARM: 0.5, DOCUMENT: 0.0}
 
-FURTHER = (
-    ("Commissioning records", "/records", "Signed records: see, compare, PDF"),
-    ("What alarms mean", "/alarms/guide", "Every alarm, what follows and what to do"),
-    ("Notifications", "/site/notifications", "Where alarms are sent: webhook, e-mail"),
-    ("Your own page", "/account", "Password, sessions"),
-    ("Users and sessions", "/users", "Add users, give roles"),
-    ("Tokens", "/tokens", "Access tokens for programs, cabinet panels and their PIN"),
-    ("Audit", "/audit", "Who ordered what"),
-    ("Log-ins and refusals", "/audit/access", "Who came in, and who was turned away"),
-    ("Network", "/network", "Where this panel is found: address, port, https"),
-    ("Horizon", "/site/horizon", "What stands round the site"),
-    ("Certificate", "/certificate", "HTTPS on tablets"),
-    ("Restore a backup", "/restore", "When the database is damaged: safe mode"),
-    ("At a glance", "/studies/glance", "What tracking gains here"),
-    ("Best step program", "/studies/program", "When to step and to which angles"),
-    ("The five papers", "/papers", "Where the methods come from"),
-)
-PARTS = (
-    ("Drive", "/drive", "Connect the drive: profile, address, unit, gear ratio"),
-    ("Prove the drive", "/proofs", "Direction, scale, soft limits, stop test, link-loss test"),
-    ("Mount", "/mount", "How the panel hangs on its axes, actuators, backtracking"),
-    ("Strategy", "/strategy", "Continuous, deadband, interval, step program, light sensors"),
-    ("Protections", "/protections", "Wind, snow, light, stow positions, warning, maintenance lock"),
-    ("Machine protections", "/machine", "Over-travel, creep, overrun, recovery, forbidden regions"),
-    ("Service mode", "/service", "Who may move the machine now, trust in the zero"),
-    ("Training", "/training", "Play faults on a simulated tracker"),
-    ("Label", "/label", "Print a label with a QR code"),
-    ("Location", "/commissioning/location", "Step 1: latitude, longitude, time zone"),
-    ("Clock", "/commissioning/clock", "Step 2: date, time, NTP"),
-    ("Homing", "/commissioning/homing", "Step 3: move by hand, set zero"),
-    ("Mode", "/commissioning/mode", "Step 4: fixed, azimuth, elevation, dual axis"),
-    ("Run", "/commissioning/run", "Step 5: start tracking, show movement"),
-)
+Scored = list[tuple[float, Hit]]
 
 
-def found(request: Request, words: str) -> tuple[Hit, ...]:
-    """Return everything that has all the words: pages first, then settings, alarms and documents."""
-    needles = guide.folded(words).split()
-    trackers = _trackers(request)
-    hits = (hit for hit in _index(trackers, _meant(trackers, needles)) if _fits(hit, needles))
-    return (*hits, *(_of_document(name, section) for name, section in guide.found(words)))[:MOST_HITS]
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What a search found, the best first; `is_near` where nothing has all the words."""
+
+    hits: tuple[Hit, ...]
+    is_near: bool = False
 
 
-def _of_document(name: str, section: guide.GuideSection) -> Hit:
-    """Return a section as what was found, in the language that the document is shown in."""
-    is_foreign, title = guide.is_foreign(name), guide.TITLES[name]
-    return Hit(
-        "Document",
-        f"{title if is_foreign else said(title)}: {section.title}",
-        _place(name, section),
-        _start(section),
-        is_foreign=is_foreign,
-    )
+def found(request: Request, words: str) -> Found:
+    """Return everything that has all the words, or else what comes nearest."""
+    asked = _asked(plain(words).split(), _trackers(request))
+    if hits := _best(asked.hits(score), MOST_HITS):
+        return Found(hits)
+    near = _best(asked.hits(nearness), MOST_NEAR)
+    return Found(near, is_near=bool(near))
 
 
-def _trackers(request: Request) -> tuple[str, ...]:
+@dataclass(frozen=True, slots=True)
+class _Asked:
+    """The words without those that name trackers, and the trackers that are meant."""
+
+    needles: Sequence[str]
+    trackers: Sequence[Snapshot]
+    names_tracker: bool
+
+    def hits(self, worth: Callable[[Words, Sequence[str]], float]) -> Scored:
+        """Return what the words are worth something for."""
+        if self.names_tracker and not self.needles:
+            return self._of_named()
+        fitting = ((entry, worth(words, self.needles)) for entry, words in index())
+        found = [(value + PREFERRED[entry.kind], entry) for entry, value in fitting if value]
+        own = self._by_name(worth)
+        return [*own, *((value, hit) for value, entry in found if (hit := _hit(entry, self.trackers)))]
+
+    def _of_named(self) -> Scored:
+        """Return the tracker that is meant, its live page first, with all its pages."""
+        pages = [entry for entry, _ in index() if entry.kind == PAGE and entry.of_tracker]
+        return [(0.0, hit) for page in pages if (hit := _hit(page, self.trackers))]
+
+    def _by_name(self, worth: Callable[[Words, Sequence[str]], float]) -> Scored:
+        """Return trackers whose name or id has the words."""
+        own = ((one, words_of((one.tracker_id, one.name), (), ())) for one in self.trackers)
+        fitting = ((one, worth(words, self.needles)) for one, words in own)
+        return [(value + PREFERRED[PAGE], _live(one)) for one, value in fitting if value]
+
+
+def _asked(needles: Sequence[str], trackers: Sequence[Snapshot]) -> _Asked:
+    """Return what is asked: a tracker whose id or whole name stands among the words is meant.
+
+    A name of one word, alone, may as well be something else that is looked for.
+    """
+    for one in trackers:
+        for name in (one.tracker_id, one.name, *_numbers(one.tracker_id)):
+            words = plain(name).split()
+            is_sure = name != one.name or len(words) > 1
+            if words and (rest := _without(needles, words)) is not None and (rest or is_sure):
+                return _Asked(rest, (one,), names_tracker=True)
+    return _Asked(needles, trackers[:FEW_TRACKERS], names_tracker=False)
+
+
+def _numbers(tracker_id: str) -> tuple[str, ...]:
+    """Return how a tracker may be called by its number, such as `tracker 7` for T07."""
+    number = tracker_id.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz-_").lstrip("0")
+    kinds = ("tracker", said("Tracker")) if number.isdecimal() else ()
+    return tuple(f"{kind} {number}" for kind in kinds)
+
+
+def _without(needles: Sequence[str], words: Sequence[str]) -> Sequence[str] | None:
+    """Return the needles without these words where they stand in a row, None where they do not."""
+    for at in range(len(needles) - len(words) + 1):
+        if list(needles[at : at + len(words)]) == list(words):
+            return [*needles[:at], *needles[at + len(words) :]]
+    return None
+
+
+def _trackers(request: Request) -> tuple[Snapshot, ...]:
     site = shown_site(request)
-    return tuple(one.tracker_id for one in site.trackers) if site else ()
+    return tuple(site.trackers) if site else ()
 
 
-def _meant(trackers: tuple[str, ...], needles: list[str]) -> tuple[str, ...]:
-    """Return the trackers whose fields are looked through."""
-    return tuple(name for name in trackers if guide.folded(name) in needles) or trackers[:FEW_TRACKERS]
+def _best(scored: Scored, most: int) -> tuple[Hit, ...]:
+    return tuple(hit for _, hit in sorted(scored, key=lambda one: -one[0])[:most])
 
 
-def _index(trackers: tuple[str, ...], meant: tuple[str, ...]) -> Iterator[Hit]:
-    yield from (Hit("Page", label, href, _about(href)) for label, href in SITE_TABS)
-    yield from (Hit("Page", *further) for further in FURTHER)
-    for name in trackers:
-        root = f"/trackers/{name}"
-        yield from (
-            Hit("Page", f"{name}: {label}", root + end, _about(root + end)) for label, end in TRACKER_TABS
-        )
-        yield from (Hit("Page", f"{name}: {label}", root + end, text) for label, end, text in PARTS)
-    yield from _fields_of_forms(meant)
-    for entry in ENTRIES:
-        yield Hit(
-            "Alarm", entry.title, f"/alarms/guide#alarm-{entry.code}", f"{entry.consequence} {entry.do}"
-        )
+def _hit(entry: Entry, trackers: Iterable[Snapshot]) -> Hit | None:
+    """Return an entry as what was found: a tracker's leads to the first, with ways to the others."""
+    if not entry.of_tracker:
+        return Hit(entry.kind, entry.title, entry.href, entry.text, is_foreign=entry.is_foreign)
+    ways = [Link(one.tracker_id, f"/trackers/{one.tracker_id}{entry.href}") for one in trackers]
+    if not ways:
+        return None
+    name = ways[0].label
+    return Hit(entry.kind, f"{name}: {entry.title}", ways[0].href, entry.text, tuple(ways[1:]))
 
 
-def _fields_of_forms(meant: tuple[str, ...]) -> Iterator[Hit]:
-    for template, title, path in SITE_FORMS:
-        yield from _fields(template, title, path)
-    for name in meant:
-        yield from _settings(name)
-        for template, title, end in TRACKER_FORMS:
-            yield from _fields(template, f"{name}: {title}", f"/trackers/{name}{end}", but=SETTINGS)
-
-
-def _settings(name: str) -> Iterator[Hit]:
-    root = f"/trackers/{name}"
-    for field, words in SETTINGS.items():
-        text = f"{words.hint} The unit is {words.unit}."
-        yield Hit("Setting", f"{name}: {words.label}", f"{root}/settings#f-{field}", text)
-    for path, (label, unit, least, most, text) in NUMBERS.items():
-        title = TITLES.get(path.split(".")[0], ("Warning", ""))[0]
-        about = f"{text} {least:g} to {most:g} {unit}."
-        place = f"{root}/protections#f-{field_name(path)}"
-        yield Hit("Setting", f"{name}: {title}, {label.lower()}", place, about)
-
-
-def _fields(template: str, title: str, path: str, but: Collection[str] = ()) -> Iterator[Hit]:
-    for field in fields_of(template):
-        if field.name not in but:
-            place = f"{path}#f-{field.name}" if field.name else path
-            yield Hit("Setting", f"{title}, {field.label}", place, field.hint)
-
-
-def _about(path: str) -> str:
-    helped = help_for(path)
-    return helped.purpose if helped else ""
-
-
-def _place(name: str, section: guide.GuideSection) -> str:
-    return f"/guide/{name}#{section.anchor}"
-
-
-def _start(section: guide.GuideSection) -> str:
-    text = section.html.striptags()
-    return text if len(text) <= LONGEST_TEXT else text[:LONGEST_TEXT].rsplit(" ", 1)[0] + " …"
-
-
-def _fits(hit: Hit, needles: list[str]) -> bool:
-    text = guide.folded(f"{hit.title} {hit.text} {said(hit.title)} {said(hit.text)}")
-    return all(needle in text for needle in needles)
+def _live(one: Snapshot) -> Hit:
+    return Hit(PAGE, f"{one.tracker_id}: {one.name}", f"/trackers/{one.tracker_id}", "")
