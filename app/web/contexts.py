@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar, Protocol
 
 from app.sun.algorithms import PUBLISHED
-from app.tracker.config import MountConfig, TrackerConfig
+from app.tracker.config import MountConfig, Orientation, TrackerConfig
 from app.tracker.control import ControlState
 from app.tracker.limit_change import LimitReview
 from app.tracker.memory import ClockSetting, Pointing, Sighting, StepName, TrackerMemory
@@ -224,11 +224,12 @@ class HomingPage:
 
 @dataclass(frozen=True, slots=True)
 class ModeChoice:
-    """One of the four modes and what it does."""
+    """One of the four modes, what it does, and which angles it holds."""
 
     mode: Mode
     label: str
     text: str
+    held: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,6 +241,7 @@ class ModePage:
     frame: Frame
     choices: tuple[ModeChoice, ...]
     chosen: Mode | None
+    orientation: Orientation
 
 
 @dataclass(frozen=True, slots=True)

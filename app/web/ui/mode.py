@@ -59,9 +59,10 @@ async def show(request: Request, tracker_id: str, machine: MachineDep) -> Respon
     """Show the modes that the mount has."""
     tracker = tracker_of(await machine.detail(), tracker_id)
     frame = wizard_frame(request, tracker, StepName.MODE)
+    memory = tracker.state.memory
+    listed = choices(tracker.state.config)
     return page(
-        request,
-        ModePage(frame=frame, choices=choices(tracker.state.config), chosen=tracker.state.memory.mode),
+        request, ModePage(frame=frame, choices=listed, chosen=memory.mode, orientation=memory.orientation)
     )
 
 
@@ -143,7 +144,9 @@ def choices(config: TrackerConfig) -> tuple[ModeChoice, ...]:
     """Return the modes that a tracker's mount has, the one with the most energy first."""
     titles = abilities(config.mount).modes
     return tuple(
-        ModeChoice(one.mode, titles[one.mode], _text(config, one)) for one in CHOICES if one.mode in titles
+        ModeChoice(one.mode, titles[one.mode], _text(config, one), held(config, one.mode))
+        for one in CHOICES
+        if one.mode in titles
     )
 
 
