@@ -21,6 +21,9 @@ PLAN = ShowPlan(
     SAMSUN,
 )
 
+WIDE = """(keys, symbol) => keys.filter((key) => key.querySelector('span').scrollWidth + symbol > key.clientWidth)
+  .map((key) => key.innerText)"""
+
 
 def at(plant: Plant, part: float, phase: ShowPhase = ShowPhase.RUNNING) -> None:
     """Bring the show of the fake machine to a part of its length."""
@@ -38,6 +41,35 @@ def over(plant: Plant) -> None:
 def under_way(plant: Plant) -> Plant:
     at(plant, 0.4)
     return plant
+
+
+def test_on_the_way_to_the_start_nothing_is_told_twice(plant: Plant, opened: Opened) -> None:
+    at(plant, 0.0, ShowPhase.GOING_TO_START)
+    page = opened(SHOW, "tablet")
+    expect(page.locator("#show-phase")).to_have_text("Going to the start")
+    expect(page.get_by_role("button", name="Show tracking movement")).to_be_disabled()
+    expect(page.locator("#show-keys .reasons:visible")).to_have_count(0)
+    plant.do(partial(at, plant, 0.0, ShowPhase.READY))
+    expect(page.locator('[data-action="run_show"]')).to_be_enabled()
+
+
+@pytest.mark.parametrize("phase", [ShowPhase.GOING_TO_START, ShowPhase.RUNNING, None])
+@pytest.mark.parametrize("language", ["de", "es", "ro", "tr", "zh_Hans"])
+def test_no_word_is_wider_than_its_key(
+    plant: Plant, opened: Opened, language: str, phase: ShowPhase | None
+) -> None:
+    at(plant, 0.2, phase or ShowPhase.RUNNING)
+    if phase is None:
+        over(plant)
+    page = opened(SHOW, "tablet")
+    page.context.add_cookies([{"name": "language", "value": language, "url": plant.url}])
+    page.goto(plant.url + SHOW)
+    page.wait_for_selector('html[data-link="live"]')
+    expect(page.locator("html")).to_have_attribute("lang", language.replace("_", "-"))
+    expect(page.locator("#show-keys .key:visible")).to_have_count(3 if phase is None else 2)
+    wide = page.locator("#show-keys .key:visible").evaluate_all(WIDE, 24 + 10)
+    assert wide == []
+    page.context.clear_cookies(name="language")
 
 
 def bottom(page: Page, name: str) -> float:
