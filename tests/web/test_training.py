@@ -1,5 +1,6 @@
 """Training: faults played over pages and API on a simulated tracker, and seen as an operator sees them."""
 
+import re
 from collections.abc import AsyncIterator
 from html import unescape
 from pathlib import Path
@@ -86,6 +87,24 @@ async def test_a_storm_that_meets_a_fault_says_not_stowed_on_every_page(desk: De
         page = (await desk.ask("GET", path)).text
         assert "is NOT STOWED, and wind demands it" in page
         assert 'data-when="not_stowed">' in page, "the band is shown"
+
+
+@pytest.mark.fault(42)
+async def test_the_key_that_stows_comes_first_while_the_panel_is_not_stowed(desk: Desk) -> None:
+    stow_now = '<section class="panel" id="stow-now" data-when="not_stowed"'
+    calm = (await desk.ask("GET", "/trackers/T1")).text
+    assert f"{stow_now} hidden" in calm
+    await desk.ask("POST", "/trackers/T1/training/weather", headers=HTMX)
+    await desk.forward(2.0)
+    assert (await desk.ask("POST", API, json={"fault": "not_stowed"})).status_code == 204
+    await desk.forward(3.0)
+    page = (await desk.ask("GET", "/trackers/T1")).text
+    assert f"{stow_now} aria-label" in page
+    assert page.index(stow_now) < page.index("live-readings"), "before everything else of the page"
+    urgent = page[page.index(stow_now) : page.index("live-readings")]
+    forms = re.findall(r"<form.*?</form>", urgent, re.DOTALL)
+    assert ["hidden" in one.split(">")[0] for one in forms] == [False, True], "the wind demands it, not snow"
+    assert 'value="wind"' in forms[0]
 
 
 async def wind(desk: Desk) -> str:
