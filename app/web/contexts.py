@@ -12,7 +12,7 @@ from app.tracker.mode import Mode
 from app.tracker.motion import DriveCapabilities
 from app.tracker.reason import Reason
 from app.tracker.recording import RecordingInfo
-from app.tracker.snapshot import SiteSnapshot, Snapshot
+from app.tracker.snapshot import ActivityName, SiteSnapshot, Snapshot
 from app.web.standing import Standing, standing
 from app.web.ui.drawings import Scene, SunDiagram
 from app.web.ui.glances import Glance
@@ -146,12 +146,13 @@ Form = dict[str, Field]
 
 @dataclass(frozen=True, slots=True)
 class OverviewPage:
-    """All trackers of the site, as cards or in rows."""
+    """All trackers of the site, as cards or in rows, and how many do what."""
 
     template: ClassVar[str] = "overview.html"
 
     frame: Frame
     glances: tuple[Glance, ...]
+    doing: tuple[tuple[ActivityName, int], ...]
     layout: str
     form: Form
 

@@ -1,4 +1,4 @@
-// The overview: moves the bars of every tracker and counts its alarms.
+// The overview: moves the bars of every tracker, counts its alarms, and counts what the trackers do.
 
 import { live } from "./live.js";
 
@@ -29,10 +29,26 @@ function paintAlarms(holder) {
   const worst = Math.min(...mine.map((alarm) => alarm.priority));
   holder.hidden = !mine.length;
   holder.querySelector("b").textContent = String(mine.length);
+  holder.querySelector(".glance-trouble").textContent = mine.find((alarm) => alarm.priority === worst)?.title ?? "";
+  const card = holder.closest("[data-tracker]");
+  card.querySelector("[data-urgent]").hidden = worst !== 1;
+  card.querySelector("[data-calm]").hidden = worst === 1;
   for (const shape of holder.querySelectorAll("[data-priority]")) shape.hidden = Number(shape.dataset.priority) !== worst;
+}
+
+function paintCount(item, isMeant) {
+  const count = live.site.trackers.filter(isMeant).length;
+  item.hidden = !count;
+  item.querySelector("b").textContent = String(count);
+}
+
+function paintDoing() {
+  for (const item of document.querySelectorAll("[data-doing]")) paintCount(item, (one) => one.activity === item.dataset.doing);
+  for (const item of document.querySelectorAll("[data-unstowed]")) paintCount(item, (one) => Boolean(one.not_stowed));
 }
 
 live.on("state", () => {
   for (const svg of document.querySelectorAll("[data-bar]")) paintBar(svg, live.trackerOf(svg.closest("[data-tracker]").dataset.tracker));
   document.querySelectorAll("[data-alarms]").forEach(paintAlarms);
+  paintDoing();
 });

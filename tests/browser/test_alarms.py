@@ -45,6 +45,23 @@ def test_the_strip_is_live_and_never_jumps(
     assert [one.alarm_id for one in plant.orders("acknowledge_alarm")] == ["not_stowed@T1"]
 
 
+def test_the_overview_leads_to_the_tracker_that_is_in_danger(
+    plant: Plant, opened: Opened, picture: Callable[[Page, str], None]
+) -> None:
+    page = opened("/", "tablet")
+    card = page.locator('.glance[data-tracker="T1"]')
+    urgent = card.get_by_role("link", name="Look at the alarm")
+    expect(card.locator("[data-calm]")).to_be_visible()
+    expect(urgent).to_be_hidden()
+    raised(plant, "not_stowed", "drive_lost")
+    expect(urgent).to_be_visible()
+    expect(card.locator("[data-calm]")).to_be_hidden()
+    expect(card.locator(".glance-trouble")).to_have_text("Not stowed")
+    picture(page, "overview-in-danger-tablet")
+    urgent.click()
+    expect(page).to_have_url(f"{plant.url}/trackers/T1")
+
+
 def test_an_alarm_is_shelved_with_a_reason(
     plant: Plant, opened: Opened, picture: Callable[[Page, str], None]
 ) -> None:

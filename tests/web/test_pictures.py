@@ -18,11 +18,12 @@ from app.tracker.axes import AxisConfig
 from app.tracker.config import MountKind, TrackerConfig
 from app.tracker.mounts.usual import mounted
 from app.tracker.recording import COLUMNS, RecordingKind
-from app.tracker.snapshot import Pair
+from app.tracker.snapshot import ActivityName, Pair
 from app.web.ui.cartesian import cartesian
 from app.web.ui.glances import bars
 from app.web.ui.scene import scene_on, scene_recorded
 from app.web.ui.sunpath import hours_of, skyline
+from tests.fake_alarms import alarm
 from tests.fake_data import NOON, SAMSUN, TIME_ZONE, commissioned, recording
 from tests.fake_tracker import FakeTracker
 from tests.fakes import FakeMachine, fake_app, serving
@@ -246,3 +247,23 @@ async def test_many_trackers_stand_in_rows_and_few_as_cards(
     assert "glances-rows" in page
     assert page.count('class="glance-open"') == 6
     assert "glances-cards" in (await panel.get("/?layout=cards")).text
+
+
+def hidden_of(page: str, mark: str) -> list[bool]:
+    return [" hidden" in tag for tag in re.findall(rf"<[^>]*{mark}[^>]*>", page)]
+
+
+async def test_the_overview_counts_what_the_trackers_do_and_leads_to_what_is_urgent(
+    panel: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    machine.trackers["T2"].activity = ActivityName.STOWED
+    machine.emit()
+    calm = (await panel.get("/")).text
+    assert re.findall(r'data-doing="(\w+)"><b>(\d+)', calm) == [("holding", "1"), ("stowed", "1")]
+    assert hidden_of(calm, "data-urgent") == [True, True]
+    machine.alarms = tuple(alarm(code, NOON, "T2") for code in ("drive_lost", "not_stowed"))
+    machine.emit()
+    page = (await panel.get("/")).text
+    assert hidden_of(page, "data-urgent") == [True, False], "the key of the tracker in danger leads to it"
+    assert hidden_of(page, "data-calm") == [False, True], "and to nothing else"
+    assert '<span class="glance-trouble">Not stowed</span>' in page, "the most urgent alarm is named"

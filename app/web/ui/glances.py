@@ -1,11 +1,12 @@
 """One tracker at a glance: where it stands against where it should, its wind and its alarms."""
 
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 from app.tracker.alarm_words import AlarmNow, AlarmState
 from app.tracker.config import MountKind, TrackerConfig
-from app.tracker.snapshot import Pair, Snapshot
+from app.tracker.snapshot import ActivityName, Pair, Snapshot
 from app.tracker.weather import Quantity
 
 BAR = 200.0
@@ -31,13 +32,17 @@ class Bar:
 
 @dataclass(frozen=True, slots=True)
 class Glance:
-    """A tracker on the overview; `wind` is the place of its wind sensor among `one.sensors`, None without."""
+    """A tracker on the overview; `wind` is the place of its wind sensor among `one.sensors`, None without.
+
+    `trouble` names the most urgent of its alarms, of which `priority` is 0 without any.
+    """
 
     one: Snapshot
     bars: tuple[Bar, ...]
     wind: int | None
     priority: int
     alarms: int
+    trouble: str
     done: int
     next_step: str
 
@@ -47,16 +52,24 @@ def glance(
 ) -> Glance:
     """Return what the overview shows of a tracker."""
     mine = [alarm for alarm in alarms if alarm.tracker_id == one.tracker_id and alarm.state not in QUIET]
+    worst = min(mine, key=lambda alarm: alarm.priority, default=None)
     quantities = [sensor.quantity for sensor in one.sensors]
     return Glance(
         one=one,
         bars=bars(one, config),
         wind=quantities.index(Quantity.WIND) if Quantity.WIND in quantities else None,
-        priority=min((alarm.priority for alarm in mine), default=0),
+        priority=worst.priority if worst else 0,
         alarms=len(mine),
+        trouble=worst.title if worst else "",
         done=progress[0],
         next_step=progress[1],
     )
+
+
+def doing(trackers: Iterable[Snapshot]) -> tuple[tuple[ActivityName, int], ...]:
+    """Return of everything that a tracker may do how many do it."""
+    counted = Counter(one.activity for one in trackers)
+    return tuple((name, counted[name]) for name in ActivityName)
 
 
 def bars(one: Snapshot, config: TrackerConfig | None) -> tuple[Bar, ...]:

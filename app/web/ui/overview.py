@@ -15,7 +15,7 @@ from app.web.contexts import Field, OverviewPage
 from app.web.contexts import Form as Fields
 from app.web.deps import MachineDep
 from app.web.ui.frame import STEP_LABELS, site_frame
-from app.web.ui.glances import Glance, glance
+from app.web.ui.glances import Glance, doing, glance
 from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
 
@@ -89,6 +89,7 @@ def _answer(
     context = OverviewPage(
         frame=frame,
         glances=(glances := _glances(frame.site, detail)),
+        doing=doing(one.one for one in glances),
         layout=layout or (Layout.ROWS if len(glances) >= MANY else Layout.CARDS),
         form=form,
     )
