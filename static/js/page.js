@@ -26,5 +26,14 @@ stayAwake();
 const tab = document.querySelector(".tabs a[aria-current]");
 if (tab) tab.closest("ul").scrollLeft = tab.offsetLeft - (innerWidth - tab.offsetWidth) / 2;
 
+// The list of languages lies on the page: it is closed by whoever leaves it, and by Escape.
+const list = document.querySelector(".language");
+list.addEventListener("focusout", ({ relatedTarget }) => { if (relatedTarget && !list.contains(relatedTarget)) list.open = false; });
+list.addEventListener("keydown", ({ key }) => {
+  if (key !== "Escape") return;
+  list.open = false;
+  list.querySelector("summary").focus();
+});
+
 const heading = document.getElementById("heading");
 if (document.getElementById("steps") && heading && !document.querySelector("[data-focus]")) heading.focus();
