@@ -21,7 +21,8 @@ PLAN = ShowPlan(
     SAMSUN,
 )
 
-WIDE = """(keys, symbol) => keys.filter((key) => key.querySelector('span').scrollWidth + symbol > key.clientWidth)
+WIDE = """(keys, symbol) => keys
+  .filter((key) => key.querySelector('span').scrollWidth + symbol > key.clientWidth)
   .map((key) => key.innerText)"""
 
 
