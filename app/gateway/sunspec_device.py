@@ -159,8 +159,10 @@ class SunSpecDevice:
         told_at, count = self._turned_away.get(host, (None, 0))
         count += 1
         if told_at is None or now - told_at >= TELL_AGAIN:
-            often = "" if count == 1 else f"{count} times "
-            message = f"{host} tried {often}to write over SunSpec, but only the hosts in {SETTING} may."
+            message = (
+                f"{host} tried {'' if count == 1 else f'{count} times '}to write over SunSpec, "
+                f"but only the hosts in {SETTING} may."
+            )
             refused(self._door, None, f"{ACTOR}{host}", message)
             told_at, count = now, 0
         if host in self._turned_away or len(self._turned_away) < MOST_HOSTS:

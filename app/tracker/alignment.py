@@ -122,10 +122,13 @@ def _clock_mistake(sky: _Sky) -> Iterator[tuple[int, Cause]]:
     at = sky.sighting.at + timedelta(seconds=best_s)
     residual_deg = sky.off_deg(sun_position(sky.algorithm, sky.location, at))
     minutes, slow = abs(best_s) / 60.0, best_s > 0.0
-    message = f"The clock is {minutes:.1f} minutes {'slow' if slow else 'fast'}. Check step 2"
+    message = f"The clock is {minutes:.1f} minutes {'slow' if slow else 'fast'}."
     whole_hours = abs(best_s / 3600.0 - round(best_s / 3600.0)) < 0.05 and abs(best_s) > 1800.0
-    message += ": the time zone or daylight saving time is probably wrong." if whole_hours else "."
-    yield 1, Cause(Mistake.CLOCK, message, residual_deg, best_s)
+    zone = "Check step 2: the time zone or daylight saving time is probably wrong."
+    yield (
+        1,
+        Cause(Mistake.CLOCK, f"{message} {zone if whole_hours else 'Check step 2.'}", residual_deg, best_s),
+    )
 
 
 def _shifted_off(sky: _Sky, shifts_s: Array) -> Array:

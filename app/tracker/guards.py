@@ -64,12 +64,11 @@ def _pressed_switch(config: TrackerConfig, axis: Axis, seen: AxisFeedback) -> Re
     if seen.at_lower_limit is seen.at_upper_limit or words is None:
         return None
     end, free = ("upper", words.falls) if seen.at_upper_limit else ("lower", words.grows)
-    inside = (
-        " although it stands within its soft limits" if config.axis(axis).contains(seen.position_deg) else ""
-    )
+    inside = config.axis(axis).contains(seen.position_deg)
     return Reason(
         "at_limit_switch",
-        f"The {end} limit switch of the {axis_of(config, axis)} is on{inside}: it moves {free} only.",
+        f"The {end} limit switch of the {axis_of(config, axis)} is on"
+        f"{' although it stands within its soft limits' if inside else ''}: it moves {free} only.",
         "Move it away from the switch by hand; if it does not stand at its end, check switch and zero.",
     )
 

@@ -28,7 +28,9 @@ GROUPED = re.compile(r"(?<![\d.,])\d{1,3}(?:,\d{3})+(?![\d,])")
 THIN_SPACE = "\u202f"
 SENTENCE_END = re.compile(r"(?<=[.!?]) (?=-?\d|[A-Z])")
 JOINT = re.compile(r"(: |, | and |; | or | · )")
-MOST_SENTENCES, MOST_NAME_WORDS, MOST_TOGETHER, MOST_SPACES = 40, 8, 4, 2
+INNER_SENTENCE = re.compile(r": [A-Z]")
+"""What a sentence says further on: rarely of something that it is about."""
+MOST_SENTENCES, MOST_NAME_WORDS, MOST_TOGETHER, MOST_SPACES, MOST_NESTED = 40, 8, 4, 2, 4
 
 
 DOCUMENTS = "guide"
@@ -93,9 +95,15 @@ class Catalogue(_Stored):
         """Return a sentence of the program in this language; one that is not known stays English."""
         if not self._catalog or len(sentence) > LONGEST:
             return sentence
-        return self._known(sentence) or self._by_sentences(sentence) or self._piece(sentence) or sentence
+        known = self._all_known(sentence) or self._known(sentence)
+        return known or self._by_sentences(sentence) or self._piece(sentence) or sentence
 
-    def _known(self, sentence: str, depth: int = 2) -> str | None:
+    def _all_known(self, text: str) -> str | None:
+        """Return several sentences that are known to the letter; no pattern is better than that."""
+        said = [self._catalog.get(sentence) for sentence in SENTENCE_END.split(text, MOST_SENTENCES - 1)]
+        return " ".join(filter(None, said)) if all(said) else None
+
+    def _known(self, sentence: str, depth: int = MOST_NESTED) -> str | None:
         if found := self._catalog.get(sentence):
             return found
         matches = self._patterns.matches(sentence)
@@ -108,12 +116,17 @@ class Catalogue(_Stored):
     def _likelihood(self, match: tuple[Pattern, Mapping[str, str]]) -> int:
         """Return how well a pattern explains a sentence; unknown words in a gap count against it."""
         pattern, values = match
-        return pattern.fixed_length + sum(map(self._weight, values.values()))
+        *inner, last = pattern.gaps
+        within = inner if pattern.parts[-1] in ("", ".") else (*inner, last)
+        astray = sum(len(values[gap]) for gap in within if INNER_SENTENCE.search(values[gap]))
+        return pattern.fixed_length + sum(map(self._weight, values.values())) - 2 * astray
 
     def _weight(self, value: str) -> int:
-        if value in self._catalog:
+        if value in self._catalog or value.removesuffix(".") in self._catalog:
             return len(value)
-        return -len(value) if " " in value else int(value[:1].isdigit())
+        if " " not in value:
+            return int(value[:1].isdigit())
+        return 0 if self._patterns.matches(value) else -len(value)
 
     def _value(self, name: str, value: str, depth: int) -> str:
         """Return what stands in a gap: words in this language, names and what is not known as they are."""

@@ -7,8 +7,10 @@ from pathlib import Path
 
 from babel.messages.extract import DEFAULT_KEYWORDS, extract
 
+from app.access.roles import ORDERS
 from app.web import guide, record_words
 from app.web.languages.catalogue import DOCUMENTS
+from app.web.languages.known import in_words
 from app.web.languages.profile_texts import profile_texts
 from app.web.languages.python_texts import python_texts
 from app.web.languages.script_texts import texts_of
@@ -26,14 +28,30 @@ JINJA = {
 _SPEAKING = """
     app/tracker app/alarms app/web app/site app/drives app/show app/access app/store app/studies app/energy
     app/sun app/link app/gateway/gateways.py app/gateway/notices.py app/gateway/notifier.py
-    app/gateway/mqtt.py app/gateway/sunspec_controls.py app/machine/safe_mode.py"""
+    app/gateway/mqtt.py app/gateway/mqtt_commands.py app/gateway/sunspec.py app/gateway/sunspec_controls.py
+    app/gateway/sunspec_device.py app/gateway/calibration.py
+    app/machine/safe_mode.py app/machine/memory.py"""
 """What has texts that reach a page, in the order in which they are listed."""
+
+_HAPPENED = """
+    user_added roles_changed password_changed user_removed token_made token_revoked session_ended
+    factory_reset stepped_up log_in refused_log_in refused_token refused_foreign refused_stops
+    refusals_left_out network_tried network_kept network_rolled_back network_not_served"""
+"""What the record of the panel's door calls what happened."""
 
 _PHRASES = (400, 401, 403, 404, 405, 409, 413, 422, 423, 429, 500, 503)
 MORE = {
     "app/web/errors.py": tuple(HTTPStatus(status).phrase for status in _PHRASES),
     "app/web/ui/search_index.py": ("{least} to {most} {unit}.",),
     "app/site/recorder.py": ("Completed", "Stopped", "Interrupted"),
+    "app/access/roles.py": tuple(map(in_words, ORDERS)),
+    "app/access/accounts.py": tuple(map(in_words, _HAPPENED.split())),
+    "app/site/auditing.py": ("refused: {reason}", "failed: {why}"),
+    "app/site/timekeeping.py": ("manual", "system", "unset"),
+    "app/site/site_orders.py": ("flat",),
+    "app/gateway/door.py": ("{kind} was refused: {rejected}",),
+    "app/machine/main.py": ("The controller service was stopped.",),
+    "app/tracker/mounts/abilities.py": ("up", "down", "north", "south"),
 }
 """What no rule finds: phrases of HTTP, parts of sentences, and words that travel."""
 

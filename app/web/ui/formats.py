@@ -12,6 +12,8 @@ UNKNOWN = "–"
 NAMELESS = "this computer"
 MACHINE, CONTEXT = "machine", "record"
 """What the controller is called where it did something by itself, as in a record."""
+NO_NAMES = ("site", "network", "panel")
+"""What an order or an event may be about that nobody gave a name."""
 ISO_DATE = "%Y-%m-%d"
 
 
@@ -92,6 +94,11 @@ def who(value: object) -> str:
     if value == MACHINE:
         return CATALOGUE.get().pgettext(CONTEXT, MACHINE)
     return CATALOGUE.get().said(NAMELESS) if value == NAMELESS else str(value)
+
+
+def thing(value: str) -> str:
+    """Return what something is about: a name as it is, the site as a word."""
+    return CATALOGUE.get().said(value) if value in NO_NAMES else value
 
 
 FORMATS: dict[str, Callable[[Any, str], str]] = {

@@ -39,6 +39,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "decimals": formats.decimals,
     "words": formats.words,
     "who": formats.who,
+    "thing": formats.thing,
     "local": formats.read_local,
     "format": formats.formatted,
     "zone_offset": formats.offset,

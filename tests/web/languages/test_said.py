@@ -97,6 +97,42 @@ def test_no_text_is_refused(text: str) -> None:
 _GERMAN: Catalogue = catalogue()
 
 
+def test_a_sentence_within_a_sentence_is_said_whatever_it_is_about() -> None:
+    texts = {
+        "{title} at {where} (priority {priority}) {change}": "{title}, {where} ({priority}) {change}",
+        "was raised: {alarm}": "entstand: {alarm}",
+        "{name} has no trusted zero any more: {why}": "{name} hat keinen sicheren Nullpunkt mehr: {why}",
+        "The {config} does not follow its command.": "{config} folgt dem Befehl nicht.",
+        "{axis} axis of {name}": "Achse {axis} von {name}",
+        "Zero is lost": "Nullpunkt verloren",
+        "azimuth": "Azimut",
+    }
+    assert catalogue(texts).said(
+        "Zero is lost at T7 (priority 2) was raised: T7 has no trusted zero any more: "
+        "The azimuth axis of T7 does not follow its command."
+    ) == (
+        "Nullpunkt verloren, T7 (2) entstand: T7 hat keinen sicheren Nullpunkt mehr: "
+        "Achse Azimut von T7 folgt dem Befehl nicht."
+    )
+
+
+def test_a_label_before_a_range_and_sentences_known_to_the_letter_are_said() -> None:
+    texts = {
+        "{meaning} {least} to {most}, usual {default}.": "{meaning} {least} bis {most}, üblich {default}.",
+        "Single and polar axes": "Einzelne und polare Achsen",
+        "The {what} {bad}; {reacts}.": "{what} {bad}; {reacts}.",
+        "The higher wind counts.": "Der höhere Wind zählt.",
+        "Compare the sensors; switch one off.": "Sensoren vergleichen; einen abschalten.",
+    }
+    said = catalogue(texts).said
+    assert said("Single and polar axes. 5 to 180, usual 60.") == (
+        "Einzelne und polare Achsen. 5 bis 180, üblich 60."
+    )
+    assert said("The higher wind counts. Compare the sensors; switch one off.") == (
+        "Der höhere Wind zählt. Sensoren vergleichen; einen abschalten."
+    )
+
+
 def test_hostile_text_that_fits_hundreds_of_patterns_is_answered() -> None:
     """A search that tried every division of the text would not end within the life of a test."""
     many = catalogue(
