@@ -111,6 +111,19 @@ async def test_preview_tells_the_sun_of_the_place(client: httpx.AsyncClient) -> 
 
 
 @pytest.mark.parametrize(
+    ("language", "seconds", "step"), [("en", "12.1″ N", "0.1°"), ("es", "12,1″ N", "0,1°")]
+)
+async def test_a_place_and_the_size_of_a_step_have_the_point_or_comma_of_the_language(
+    client: httpx.AsyncClient, language: str, seconds: str, step: str
+) -> None:
+    asked, typed = {"Accept-Language": language}, {"latitude": "41.2867, 36.3300"}
+    place = await client.get(f"{T1}/commissioning/location/preview", params=typed, headers={**HTMX, **asked})
+    assert f"41° 17′ {seconds}" in place.text
+    homing = await client.get(f"{T1}/commissioning/homing", headers=asked)
+    assert f'value="0.1">{step}</label>' in homing.text
+
+
+@pytest.mark.parametrize(
     ("text", "side", "degrees"),
     [
         ("41.2867", "N", 41.2867),

@@ -22,7 +22,7 @@ from app.web.deps import Panel, PanelDep
 from app.web.languages import pgettext
 from app.web.place import place_doubts, swapped
 from app.web.ui import forms
-from app.web.ui.formats import compass, decimals, local
+from app.web.ui.formats import compass, decimals, formatted, local
 from app.web.ui.forms import Typed
 from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
@@ -247,7 +247,7 @@ def _dms(value_deg: float, sides: str) -> str:
     total = round(abs(value_deg) * 36000)
     minutes, tenths = divmod(total, 600)
     side = pgettext("compass", sides[value_deg < 0])
-    return f"{minutes // 60}° {minutes % 60:02d}′ {tenths / 10:04.1f}″ {side}"
+    return f"{minutes // 60}° {minutes % 60:02d}′ {formatted('%04.1f', tenths / 10)}″ {side}"
 
 
 def _half(place: Location) -> str:
