@@ -33,7 +33,7 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class ProtectionsPage:
-    """What holds now, and what is set for the protections of one tracker."""
+    """What holds now, and what is set for the protections of one tracker; `usual` are elevations of stows."""
 
     template: ClassVar[str] = "protections.html"
 
@@ -42,6 +42,7 @@ class ProtectionsPage:
     groups: tuple[Group, ...]
     facings: Options
     stows: Options
+    usual: dict[str, str]
     fixed: tuple[Setting, ...]
 
 

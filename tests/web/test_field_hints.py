@@ -53,6 +53,39 @@ BESIDE = {
     "minutes": {"kind": "interval"},
 }
 """What must be chosen for a number to be read at all."""
+SETTINGS_PAGES = (
+    "/network",
+    "/site",
+    "/site/horizon",
+    "/site/notifications",
+    f"{T1}/drive",
+    f"{T1}/machine",
+    f"{T1}/mount",
+    f"{T1}/protections",
+    f"{T1}/settings",
+    f"{T1}/strategy",
+)
+DEFAULT = re.compile(r"\b(?:usual|empty)\b", re.IGNORECASE)
+"""How a hint names what holds until somebody sets it: a usual value, or what an empty field stands for."""
+NO_DEFAULT = {
+    "reason": "words about this one time",
+    "typed_id": "asked for again before a tracker is removed",
+    "name": "a tracker is named when it is added, a person by who they are",
+    "host": "a drive is where it was wired",
+    "serial_port": "a drive is where it was wired",
+    "serial_other": "a drive is where it was wired",
+    "allowed_hosts": "names that a network gives",
+    "region0_name": "a region is what stands in the way",
+    "region0_corners": "a region is what stands in the way",
+    "program_name": "belongs to the program beside it",
+    "angles": "belongs to the program beside it",
+    "base": "belongs to the program beside it",
+    "table": "belongs to the program beside it",
+    "example": "belongs to the program beside it",
+}
+"""Fields whose value nobody but the reader can know."""
+MEASURED = re.compile(r"(?:first|second)_")
+"""The measures of a machine's own actuator."""
 TABLE = ("at", "first", "second")
 """The columns of a step program, whose heads say what they hold."""
 
@@ -129,6 +162,26 @@ async def test_every_field_says_what_it_is_for(page: str, client: httpx.AsyncCli
     fields = await fields_of(client, page)
     assert fields
     assert [one.name for one in fields if not one.hint.strip()] == []
+
+
+@pytest.mark.parametrize("page", SETTINGS_PAGES)
+async def test_every_setting_says_its_default(page: str, client: httpx.AsyncClient) -> None:
+    asked = [one for one in await fields_of(client, page) if not MEASURED.match(one.name)]
+    silent = [one.name for one in asked if not DEFAULT.search(one.hint) and one.name not in NO_DEFAULT]
+    assert silent == []
+
+
+@pytest.mark.parametrize("page", [page for page in SETTINGS_PAGES if not page.endswith(("network", "drive"))])
+async def test_every_settings_page_can_undo_its_last_saving(page: str, client: httpx.AsyncClient) -> None:
+    """A drive's page has its own key once it was changed, the network's a trial that ends by itself."""
+    way = f"{T1}/settings/undo" if page.startswith(T1) else "/site/undo"
+    assert f'action="{way}"' in (await client.get(page)).text
+
+
+async def test_an_undo_leads_back_to_the_page_where_it_was_pressed(client: httpx.AsyncClient) -> None:
+    for back, to in ((f"{T1}/mount", f"{T1}/mount"), ("/", f"{T1}/settings"), ("", f"{T1}/settings")):
+        answer = await client.post(f"{T1}/settings/undo", data={"back": back})
+        assert (answer.status_code, answer.headers["location"]) == (303, to)
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -49,6 +49,7 @@ STOW_TITLES = (
     (StowName.CLEANING.value, "Cleaning"),
     (StowName.MAINTENANCE.value, "Maintenance"),
 )
+USUAL_STOWS = {name: f"{PROTECTED.stows.place(StowName(name)).elevation_deg:g}" for name, _ in STOW_TITLES}
 CHECKS = ("enabled", "required")
 GROUPS = tuple(TITLES)
 

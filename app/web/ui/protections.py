@@ -85,6 +85,7 @@ def _answer(request: Request, tracker: TrackerDetail, typed: Typed, *, status: i
         groups=forms.groups(),
         facings=forms.FACINGS,
         stows=forms.STOW_TITLES,
+        usual=forms.USUAL_STOWS,
         fixed=forms.fixed(),
     )
     return page(request, context, block="form", status=status)

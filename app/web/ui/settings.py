@@ -89,7 +89,8 @@ async def save(
 async def undo(tracker_id: str, press: PressDep) -> Response:
     """Set the tracker as it was before its settings were changed last."""
     await press.send(UndoSettings(tracker_id))
-    return go(press.request, f"/trackers/{tracker_id}/settings")
+    root = f"/trackers/{tracker_id}/"
+    return go(press.request, press.back if press.back.startswith(root) else f"{root}settings")
 
 
 @router.post("/remove")
