@@ -128,3 +128,12 @@ async def test_a_pressed_switch_is_named_with_the_way_out_on_the_page(desk: Desk
     both = (await desk.ask("GET", "/api/v1/trackers/T1/snapshot")).json()
     assert "at_limit_switch" not in {reason["code"] for reason in both["notices"]}
     assert both["fault"]["code"] == "limit_switch_wiring"
+
+
+async def test_step_3_of_a_simulated_tracker_says_how_its_true_zero_is_found(desk: Desk) -> None:
+    told = "A simulated tracker has no panel to look at: its origin switches know its true zero."
+    page = "/trackers/T1/commissioning/homing"
+    assert told in (await desk.ask("GET", page)).text
+    real = {"drive": {"kind": "modbus-tcp", "profile": "simulated-plc", "host": "127.0.0.1", "port": 5020}}
+    assert (await desk.ask("PATCH", "/api/v1/trackers/T1", json=real)).status_code == 200
+    assert told not in (await desk.ask("GET", page)).text
