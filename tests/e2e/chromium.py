@@ -129,12 +129,14 @@ class Tab:
         pressed = {"button": "left", "clickCount": 1} if kind != "mouseMoved" else {}
         self.send("Input.dispatchMouseEvent", type=kind, x=at[0], y=at[1], **pressed)
 
-    def click(self, selector: str) -> None:
-        """Press and release the left button on an element."""
+    def click(self, selector: str) -> float:
+        """Press and release the left button on an element; return when it was pressed."""
         at = self.middle(selector)
         self.mouse("mouseMoved", at)
+        pressed_at = time.monotonic()
         self.mouse("mousePressed", at)
         self.mouse("mouseReleased", at)
+        return pressed_at
 
     def fingers(self, kind: str, *points: tuple[float, float]) -> None:
         """Touch the page with these fingers."""

@@ -151,7 +151,9 @@ def check_day(integrator: Integrator) -> None:
 
 
 def check_rerun(integrator: Integrator, recording_id: str) -> None:
-    answer = integrator.call("POST", f"/api/v1/recordings/{recording_id}/rerun", json={"duration_s": SHOW["duration_s"]})
+    answer = integrator.call(
+        "POST", f"/api/v1/recordings/{recording_id}/rerun", json={"duration_s": SHOW["duration_s"]}
+    )
     show_id = answer.headers["Location"].rpartition("/")[2]
     run_when_ready(integrator, show_id)
     integrator.until(lambda seen: seen["show"]["elapsed_s"] > RERUN_S, "the show runs again")

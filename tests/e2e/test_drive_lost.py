@@ -34,7 +34,7 @@ def turn_away(calling: Integrator) -> None:
     """Begin a long move at the rated speed."""
     calling.until_allowed("move")
     calling.command("move", azimuth_deg=150.0, elevation_deg=20.0)
-    calling.until(lambda seen: seen["measured"]["azimuth_deg"] > 4.0, "the panel moves")
+    calling.until(lambda seen: seen["measured"] and seen["measured"]["azimuth_deg"] > 4.0, "the panel moves")
 
 
 def lost(calling: Integrator, words: str) -> dict[str, Any]:

@@ -92,9 +92,7 @@ def test_stop_from_any_of_eight_tabs(
     for tab in (tabs[-1], tabs[0], tabs[3]):
         browser.send("Target.activateTarget", targetId=tab.target)
         turn(integrator, eyes, by_deg=4.0)
-        at = time.monotonic()
-        tab.click("#stop-key")
-        took_s = eyes.rest_after(at)
+        took_s = eyes.rest_after(tab.click("#stop-key"))
         print(f"at rest {(took_s - RAMP_S) * 1000:.0f} ms and its ramp after the click")
         assert took_s <= RAMP_S + STOP_WITHIN_S
     for tab in tabs:
@@ -110,9 +108,7 @@ def test_stop_on_every_page(opened: Callable[..., Tab], integrator: Integrator, 
     for path in PAGES + recordings[:1]:
         tab.goto(str(integrator.http.base_url.join(path)))
         turn(integrator, eyes, by_deg=0.3)
-        at = time.monotonic()
-        tab.click("#stop-key")
-        assert eyes.rest_after(at) <= RAMP_S + STOP_WITHIN_S, path
+        assert eyes.rest_after(tab.click("#stop-key")) <= RAMP_S + STOP_WITHIN_S, path
         assert integrator.journal("stopped"), path
 
 
@@ -214,7 +210,8 @@ def test_what_was_pressed_while_the_panel_was_dead_is_not_done_later(
     ready.until_ready()
     tab.until("document.documentElement.dataset.link === 'live'", "the page is live again")
     stays(eyes, at, eyes.now.at - at + 1.0)
+    tab.until("!document.querySelector('#go-form button').disabled", "a motion may be asked for")
     ask_for_motion(tab)
-    eyes.until_moving()
+    eyes.until_moving(within_s=15.0)
     integrator.post("/stop")
     eyes.rest_after(time.monotonic())
