@@ -1,0 +1,31 @@
+// Puts down every place where the focus rests, as soon as the page has scrolled to it: before the next key is pressed.
+() => {
+  const stops = [];
+  const named = (e) => {
+    if (!e.dataset.stop) e.dataset.stop = String(Math.random());
+    return { key: e.dataset.stop, text: e.outerHTML.replace(/ data-stop="[^"]*"/, "").slice(0, 110) };
+  };
+  const marked = (e) => [e.closest(".key-choice") ?? e, e].flatMap((one) => [getComputedStyle(one), getComputedStyle(one, "::after")])
+    .some((style) => style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2);
+  const look = () => {
+    const e = document.activeElement;
+    if (!e || e === document.body) return;
+    const box = (e.closest(".key-choice") ?? e).getBoundingClientRect();
+    const footer = document.querySelector(".footer");
+    const top = footer.contains(e) || e.closest(".skip") ? innerHeight : footer.getBoundingClientRect().top;
+    const room = top;
+    const hidden = box.height <= room ? box.bottom > top + 1 || box.top < -1 : box.top >= top;
+    const x = Math.min(Math.max((box.left + box.right) / 2, 1), innerWidth - 1), y = Math.max(Math.min((box.top + box.bottom) / 2, top - 2), 1);
+    const there = document.elementFromPoint(x, y);
+    const covered = there && !e.contains(there) && !there.contains(e) && !e.closest("label")?.contains(there) && !there.closest(".glance")?.contains(e);
+    stops.push({ ...named(e), marked: marked(e), hidden: hidden || covered ? `${Math.round(box.top)} to ${Math.round(box.bottom)} of ${Math.round(top)}` : "",
+      inFooter: footer.contains(e), top: box.top + scrollY, bottom: box.bottom + scrollY, left: box.left, right: box.right });
+  };
+  addEventListener("keydown", (event) => { if (event.key === "Tab") look(); }, true);
+  const kinds = "a[href], button, input:not([type=hidden]), select, textarea, summary, [tabindex='0']";
+  const reachable = () => [...document.querySelectorAll(kinds)]
+    .filter((e) => !e.matches(":disabled") && e.checkVisibility({ visibilityProperty: true }) && e.tabIndex >= 0)
+    .filter((e) => e.type !== "radio" || e.checked || ![...document.querySelectorAll(`input[type=radio][name="${e.name}"]:checked`)].some((one) => one.form === e.form))
+    .map(named);
+  window.walk = { stops, reachable, look };
+}
