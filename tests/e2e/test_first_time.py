@@ -137,6 +137,7 @@ def replay(person: Newcomer) -> None:
     person.sees("Replay:")
     person.key("Play")
     expect(page.get_by_text("Nothing moves")).to_be_visible()
+    page.wait_for_selector(".scene[data-frames]")
     person.picture("replay", "The replay")
 
 
