@@ -1,4 +1,4 @@
-"""A language that nobody speaks: what is translated stands between ⟦ and ⟧, so that the rest shows."""
+"""A language that nobody speaks: between ⟦ and ⟧, in wide letters, so that what is not translated shows."""
 
 import re
 from html.parser import HTMLParser
@@ -17,18 +17,28 @@ READ_ATTRIBUTES = ("aria-label", "aria-description", "aria-valuetext", "title", 
 VOID = frozenset(("area", "base", "br", "col", "hr", "img", "input", "link", "meta", "source", "wbr"))
 UNREAD = frozenset(("script", "style", "code", "kbd"))
 PICTURE = re.compile(r"!\[([^]]*)\]")
+KEPT = re.compile(r"\{[a-z][a-z0-9_]*\}|%\([a-z0-9_]+\)s|<[^>]*>|&[a-z]+;|`[^`]*`|\]\([^)]*\)|https?://\S+")
+"""What every language has as English has it: gaps, tags, code, links and addresses."""
+WIDE = {code: code + 0xFF21 - ord("A") for code in range(ord("A"), ord("z") + 1) if chr(code).isalpha()}
 WORD = re.compile(r"[^\W\d_]{3,}")
 
 
+def wide(text: str) -> str:
+    """Return a text in wide letters, which no English text has."""
+    kept = [*KEPT.findall(text), ""]
+    plain = [part.translate(WIDE) for part in KEPT.split(text)]
+    return "".join(part + same for part, same in zip(plain, kept, strict=True))
+
+
 def pseudo_catalogue() -> Catalogue:
-    """Return every text of the sources between brackets."""
+    """Return every text of the sources between brackets in wide letters."""
     catalog = template()
     catalog.locale = "de"
     for text in catalog:
         if isinstance(text.id, tuple):
-            text.string = tuple(f"⟦{form}⟧" for form in text.id)
+            text.string = tuple(f"⟦{wide(form)}⟧" for form in text.id)
         elif text.id:
-            text.string = f"⟦{text.id}⟧"
+            text.string = f"⟦{wide(text.id)}⟧"
     blocks = {text.id: PICTURE.sub(r"![⟦\1⟧]", text.string) for text in catalog if text.context == DOCUMENTS}
     return Catalogue(LANGUAGES["de"], BytesIO(mo_bytes(catalog)), lambda: blocks)
 
@@ -92,7 +102,8 @@ class Reading(HTMLParser):
         outside = ""
         for letter in text:
             depth += (letter == "⟦") - (letter == "⟧")
-            outside += letter if depth <= 0 and letter not in "⟦⟧" else " "
+            is_ours = depth > 0 and ord(letter) not in WIDE and letter not in " .,:;/_-()"
+            outside += " " if is_ours or letter in "⟦⟧" else letter
         bare = " ".join(outside.split())
         if WORD.search(bare):
             self.untranslated.append(bare)

@@ -1,4 +1,4 @@
-"""No page shows a text that no language can have: in a language of brackets all but data stands in them."""
+"""No page shows a text that no language can have: in a language of wide letters all but data has them."""
 
 import re
 
@@ -35,14 +35,17 @@ MORE = (
     *(f"/guide/{name}" for name in TITLES),
 )
 DATA = re.compile(
-    r"Samsun solar field|T[12] (North|South) field|North field|Heliopanel( [\d.]+)?|UTC([+−]\d+)?"
+    r"Deutsch|A simulated$|A simulated(?= ,)|Summer solstice in minutes|broker\.example|Connection refused"
+    r"|none|_SUNSPEC_SERIAL|drive_lost|drive_fault|home_lost|disk_full|heliopanel tls init|(GET|PATCH) /api/v"
+    r"|/trackers/( id mount|T)|/mounts"
+    r"|Samsun solar field|T[12] (North|South) field|North field|Heliopanel( [\d.]+)?|UTC([+−]\d+)?"
     r"|simulated-plc|SunSpec( over Modbus (TCP|RTU))?|Modbus TCP|JSON|CSV|Parquet|https?(://\S+)?"
     r"|broker\.example:8883|psa|ada|operator|min|Simulated drive|Alexandru 2024, Table 3"
     r"|Summer solstice in 3 minutes( began\.)?|A simulated day( began\.)?|[A-Z][\w-]+/[\w/-]+"
     r"|time,wind_mps,snow_kg( [\d:,]+)*"
     r"|Step run is not done yet\.|[\d.,: ]+|\d+ h|T[12]|·|,|[NOSW]{1,3}"
 )
-"""Names that people gave, units, formats, time zones, citations, and what the fake machine says."""
+"""Names that people gave, units, formats, time zones, citations, codes, commands, what the machine says."""
 
 
 def pages() -> list[str]:
@@ -93,6 +96,7 @@ def test_every_sentence_with_gaps_is_found_again(brackets: Catalogue) -> None:
 
 def test_what_is_not_translated_is_found() -> None:
     page = (
-        '<p>⟦Since <b>3 min</b>.⟧ Moving <i translate="no">run.sh now</i></p><a title="To the end">⟦Go⟧</a>'
+        '<p>⟦Ｓｉｎｃｅ <b>3 ｍｉｎ</b>.⟧ Moving <i translate="no">run.sh now</i></p>'
+        '<a title="To the end">⟦Ｇｏ⟧</a><p>⟦Ｉｔ ｓａｙｓ: that it is ｏｖｅｒ⟧</p>'
     )
-    assert left_over(page) == {"Moving", "To the end"}
+    assert left_over(page) == {". Moving", "To the end", ": that it is"}

@@ -113,20 +113,27 @@ class Catalogue(_Stored):
         said = {name: self._value(name, value, depth) for name, value in values.items()}
         return GAP.sub(lambda gap: said.get(gap[1], gap[0]), self._catalog[pattern.text])
 
-    def _likelihood(self, match: tuple[Pattern, Mapping[str, str]]) -> int:
+    def _likelihood(self, match: tuple[Pattern, Mapping[str, str]], *, is_within: bool = False) -> int:
         """Return how well a pattern explains a sentence; unknown words in a gap count against it."""
         pattern, values = match
         *inner, last = pattern.gaps
-        within = inner if pattern.parts[-1] in ("", ".") else (*inner, last)
-        astray = sum(len(values[gap]) for gap in within if INNER_SENTENCE.search(values[gap]))
-        return pattern.fixed_length + sum(map(self._weight, values.values())) - 2 * astray
+        about = inner if pattern.parts[-1] in ("", ".") else (*inner, last)
+        astray = {gap for gap in about if INNER_SENTENCE.search(values[gap])}
+        return pattern.fixed_length + sum(
+            -2 * len(value) if gap in astray else self._weight(value, is_within=is_within)
+            for gap, value in values.items()
+        )
 
-    def _weight(self, value: str) -> int:
+    def _weight(self, value: str, *, is_within: bool) -> int:
+        """Return how well what stands in a gap is explained; what stands in a gap of that only whether."""
         if value in self._catalog or value.removesuffix(".") in self._catalog:
             return len(value)
         if " " not in value:
             return int(value[:1].isdigit())
-        return 0 if self._patterns.matches(value) else -len(value)
+        matches = self._patterns.matches(value)
+        if not matches or is_within:
+            return 0 if matches else -len(value)
+        return max(0, *(self._likelihood(match, is_within=True) for match in matches))
 
     def _value(self, name: str, value: str, depth: int) -> str:
         """Return what stands in a gap: words in this language, names and what is not known as they are."""
