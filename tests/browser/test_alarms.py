@@ -6,7 +6,10 @@ import httpx
 import pytest
 from playwright.sync_api import Page, expect
 
+from app.alarms.catalogue import CATALOGUE
 from app.tracker.alarm_words import AlarmState
+from app.web.languages.catalogue import catalogue_of
+from app.web.languages.known import LANGUAGES
 from tests.browser.conftest import Opened, Plant
 from tests.fake_alarms import alarm
 
@@ -91,3 +94,31 @@ def test_the_sound_is_switched_on_here_heard_and_muted(plant: Plant, opened: Ope
     page.wait_for_selector("html[data-sounded]")
     page.locator("#mute-key").click()
     expect(page.locator("#mute-key")).to_contain_text("Muted until")
+
+
+CUT_TITLES = """([titles, where]) => {
+  const strip = document.getElementById("alarm-strip");
+  const words = document.querySelector(".alarm-first-words");
+  const title = document.getElementById("alarm-first-title");
+  document.getElementById("alarm-first-where").textContent = where;
+  return titles.filter((text) => {
+    title.textContent = text;
+    const [outer, inner] = [strip.getBoundingClientRect(), words.getBoundingClientRect()];
+    const beyond = inner.top < outer.top || inner.bottom > outer.bottom;
+    return beyond || title.scrollHeight > title.clientHeight + 1 || title.scrollWidth > title.clientWidth + 1;
+  });
+}"""
+
+
+@pytest.mark.parametrize("size", ["phone", "tablet"])
+def test_every_alarm_is_told_in_full_in_the_strip_in_every_language(
+    size: str, plant: Plant, opened: Opened
+) -> None:
+    raised(plant, "drive_lost")
+    page = opened("/", size)
+    for language in LANGUAGES:
+        page.context.add_cookies([{"name": "language", "value": language, "url": plant.url}])
+        page.goto(f"{plant.url}/")
+        expect(page.locator("#alarm-ack button")).to_be_visible()
+        titles = [catalogue_of(language).said(entry.title) for entry in CATALOGUE.values()]
+        assert page.evaluate(CUT_TITLES, [titles, "North field 12 · 23:59:59"]) == [], language
