@@ -87,7 +87,6 @@ def test_what_does_not_fit_is_found(browser: Browser) -> None:
     page.close()
     assert sorted(found) == [
         "beside the screen",
-        "beside the screen",
         "cut off in a picture",
         "overlap",
         "too near",
