@@ -23,6 +23,9 @@ _NAMES = """
 NAMES = frozenset(_NAMES.split())
 """Gaps in which something stands that people or machines named: a word there is not translated."""
 
+NO_NAME = "Site"
+"""Where an alarm stands that belongs to no tracker: a word in the place of a name."""
+
 NUMBER = re.compile(r"(?<![\w.])(\d+)\.(\d+)(?![\w.]*\.\d|\d)")
 GROUPED = re.compile(r"(?<![\d.,])\d{1,3}(?:,\d{3})+(?![\d,])")
 THIN_SPACE = "\u202f"
@@ -120,7 +123,7 @@ class Catalogue(_Stored):
         about = inner if pattern.parts[-1] in ("", ".") else (*inner, last)
         astray = {gap for gap in about if INNER_SENTENCE.search(values[gap])}
         return pattern.fixed_length + sum(
-            -2 * len(value) if gap in astray else self._weight(value, is_within=is_within)
+            -4 * len(value) if gap in astray else self._weight(value, is_within=is_within)
             for gap, value in values.items()
         )
 
@@ -138,7 +141,7 @@ class Catalogue(_Stored):
     def _value(self, name: str, value: str, depth: int) -> str:
         """Return what stands in a gap: words in this language, names and what is not known as they are."""
         if name in NAMES:
-            return self._catalog.get(value, value) if " " in value else value
+            return self._catalog.get(value, value) if " " in value or value == NO_NAME else value
         if not any(letter.isalpha() for letter in value):
             return self.number(value)
         known = self._known(value, depth - 1) if depth else self._catalog.get(value)
