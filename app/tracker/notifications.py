@@ -27,9 +27,7 @@ class Notifications:
 
     def __post_init__(self) -> None:
         if self.webhook_url and not self.webhook_url.startswith(("http://", "https://")):
-            raise ValueError(
-                f"{self.webhook_url!r} is no web address: it must begin with https or http."
-            )
+            raise ValueError(f"{self.webhook_url!r} is no web address: it must begin with https or http.")
         if len(self.webhook_url) > 500 or any(one.isspace() for one in self.webhook_url):
             raise ValueError("A web address has at most 500 characters and no spaces.")
         if len(self.mail_to) > MOST_ADDRESSES:
