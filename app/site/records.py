@@ -20,6 +20,9 @@ TOO_MANY = Reason(
     f"{MOST_PHOTOS} photos wait for the next record already.",
     "Remove one that is not needed, or sign the record.",
 )
+SIGNED = Reason(
+    "already_signed", "This very record is signed already.", "Look for it in the list of signed records."
+)
 
 
 async def carry_out(model: SiteModel, command: RecordOrder, actor: str) -> tuple[Event, ...]:
@@ -82,4 +85,6 @@ async def _sign(model: SiteModel, command: SignRecord, actor: str) -> tuple[Even
 
 
 def _keep(writer: Writer, head: RecordHead, document: str, photos: tuple[int, ...], event: Event) -> None:
+    if any(one.digest == head.digest for one in writer.signed_records(head.tracker_id)):
+        raise CommandRejected(SIGNED)
     writer.sign_record(head, document, photos, (event,))

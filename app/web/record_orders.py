@@ -36,19 +36,27 @@ async def remove_photo(send: Send, reader: Reader, tracker_id: str, number: int)
 async def sign(
     send: Send, built: Panel, tracker_id: str, kept_by: str, remark: str, signatures: Sequence[Signature]
 ) -> RecordHead:
-    """Keep the record of a tracker as it stands now, with its photos; return its head."""
+    """Keep the record of a tracker as it stands now, with its photos; return its head.
+
+    A second press within the second finds the record of the first.
+    """
     record = await read_record(built.machine, built.reader, tracker_id)
     photos = await run_in_threadpool(built.reader.waiting_photos, tracker_id)
     text, digest = document(record, kept_by, remark, signatures, photos)
+    if found := await run_in_threadpool(_kept, built.reader, tracker_id, digest):
+        return found
     encoded = b64encode(text.encode()).decode()
     await send(SignRecord(tracker_id, encoded, digest, tuple(photo.number for photo in photos)))
-    kept = await run_in_threadpool(built.reader.signed_records, tracker_id)
-    found = next((head for head in kept if head.digest == digest), None)
+    found = await run_in_threadpool(_kept, built.reader, tracker_id, digest)
     if found is None:
         raise StoreFailed(
             "The record was handed over but is not in the list yet. Look there before you sign again."
         )
     return found
+
+
+def _kept(reader: Reader, tracker_id: str, digest: str) -> RecordHead | None:
+    return next((head for head in reader.signed_records(tracker_id) if head.digest == digest), None)
 
 
 async def require_tracker(built: Panel, tracker_id: str) -> None:

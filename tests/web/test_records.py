@@ -1,5 +1,6 @@
 """Records are signed, kept, compared and printed; photos come in small and plain."""
 
+import asyncio
 import hashlib
 import io
 import json
@@ -55,6 +56,14 @@ async def test_a_signed_record_is_its_hash(desk: Desk) -> None:
     pdf = await desk.ask("GET", f"/api/v1/records/{head['number']}?format=pdf")
     assert pdf.content.startswith(b"%PDF-")
     assert "commissioning-T1-1.pdf" in pdf.headers["content-disposition"]
+
+
+async def test_signing_twice_at_one_instant_keeps_one_record(desk: Desk) -> None:
+    first, late = await asyncio.gather(sign(desk), desk.ask("POST", f"{T1}/records", json=SIGNED))
+    assert await sign(desk) == first
+    assert late.status_code in (201, 409), late.text
+    assert late.status_code == 201 or "signed already" in late.text
+    assert len((await desk.ask("GET", "/api/v1/records")).json()) == 1
 
 
 async def test_a_later_change_leaves_what_was_signed_and_is_shown_beside_it(desk: Desk) -> None:
