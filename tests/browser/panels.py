@@ -138,9 +138,9 @@ def furnish(where: Where, panel: Panel) -> None:
         )
         machine.store.shows[SHOW_ID] = PlannedShow("T1", plan)
         signed = {"signatures": [{"role": "technician", "name": "Ada", "strokes": [[[9, 9], [500, 200]]]}]}
-        for _ in range(2):
+        for remark in ("Frost on the ground.", "After the sun check."):
             address = f"{panel.url}/api/v1/trackers/T1/records"
-            httpx.post(address, json=signed, timeout=60).raise_for_status()
+            httpx.post(address, json=signed | {"remark": remark}, timeout=60).raise_for_status()
     elif where is Where.TROUBLED:
         panel.do(partial(trouble, machine))
     elif where is Where.UNHEARD:

@@ -1,6 +1,7 @@
 """Every page: it fits, it is light, a screen reader finds its way, nothing moves, nothing vanishes.
 
 Each page is opened once, on the narrowest screen, and made wider: narrow is where a page has no room.
+`make test` looks at every page and at every second of the states that pages can be in, `make soak` at all.
 """
 
 from collections.abc import Callable, Iterator
@@ -15,16 +16,21 @@ from playwright.sync_api import Browser, Page
 
 from app.web.route_permissions import ROUTES
 from tests.browser.conftest import SIZES
-from tests.browser.every_page import EVERY_PAGE, NO_PAGES, STUDY_ID, Leaf, Where, unvisited
+from tests.browser.every_page import EVERY_PAGE, NO_PAGES, PAGES, STATES, STUDY_ID, Leaf, Where, unvisited
 from tests.browser.layout import LOOKS, faults, unfold
 from tests.browser.panels import Panels, resize
 from tests.browser.reading import tree_faults
+from tests.soak import amount
 
 MOST_BYTES = 150_000
 SCREEN_SIZES = SIZES | {"wall": (1920, 1080)}
 STILL = (LOOKS / "still.js").read_text()
 BARE = (LOOKS / "forced.js").read_text()
-
+PARTS = """() => {
+  const later = new Set([...document.querySelectorAll('img[loading=lazy]')].map((one) => one.src));
+  return performance.getEntriesByType('resource').map((one) => one.name).filter((one) => !later.has(one));
+}"""
+"""What a page is made of; pictures that come when somebody scrolls to them are not of it."""
 
 # pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.
 pytestmark = pytest.mark.filterwarnings("ignore:DatetimeIndex.dayofyear is deprecated")
@@ -45,7 +51,7 @@ def panels(browser: Browser) -> Iterator[Panels]:
         yield Panels(browser, stack)
 
 
-@pytest.fixture(scope="module", params=EVERY_PAGE)
+@pytest.fixture(scope="module", params=amount([*PAGES, *list(STATES)[::2]], list(EVERY_PAGE)))
 def shown(request: pytest.FixtureRequest, panels: Panels) -> Iterator[Shown]:
     leaf = EVERY_PAGE[request.param]
     with panels.shown(leaf) as page:
@@ -79,7 +85,7 @@ def weight(url: str) -> int:
 def test_no_page_is_heavier_than_150_kilobytes(shown: Shown, panels: Panels) -> None:
     if shown.leaf.where is not Where.CALM or shown.leaf.sends:
         return
-    parts = shown.page.evaluate("performance.getEntriesByType('resource').map((one) => one.name)")
+    parts = shown.page.evaluate(PARTS)
     url = panels.at(Where.CALM).url
     assert [one for one in parts if not one.startswith((url, "data:"))] == []
     assert any("frame.css" in one for one in parts), "what the browser remembers counts, too"

@@ -1,6 +1,6 @@
 """The keyboard alone: it reaches everything in the order of the page, is always seen, and is never caught.
 
-`make test` walks through every third page, `make soak` through all of them at two sizes.
+`make test` walks through every eighth page, `make soak` through all of them at two sizes.
 """
 
 from collections.abc import Iterator
@@ -21,7 +21,7 @@ from tests.soak import amount
 pytestmark = pytest.mark.filterwarnings("ignore:DatetimeIndex.dayofyear is deprecated")
 
 STOPS = (LOOKS / "stops.js").read_text()
-EVERY = amount(3, 1)
+EVERY = amount(8, 1)
 WALKED = list(EVERY_PAGE)[::EVERY]
 MOST_STOPS = 400
 POINTED = """() => {
@@ -93,8 +93,9 @@ def test_the_keyboard_reaches_everything_and_shows_where_it_is(name: str, size: 
         assert [stop["text"] for stop in stops if not stop["marked"]] == [], "not seen to have the focus"
         assert [(stop["text"], stop["hidden"]) for stop in stops if stop["hidden"]] == [], "behind something"
         assert disordered(stops) == []
-        back = walk(page, "Shift+Tab")
-        assert {stop["key"] for stop in back} >= set(wanted), "not reached backwards"
+        # What closes when the focus leaves it is not there on the way back.
+        left = {one["key"] for one in page.evaluate("walk.reachable()")}
+        assert {stop["key"] for stop in walk(page, "Shift+Tab")} >= left, "not reached backwards"
 
 
 @pytest.mark.parametrize("name", ["live", "journal", "trouble-homing"])

@@ -13,8 +13,8 @@
     const box = (e.closest(".key-choice") ?? e).getBoundingClientRect();
     const footer = document.querySelector(".footer");
     const top = footer.contains(e) || e.closest(".skip") ? innerHeight : footer.getBoundingClientRect().top;
-    const room = top;
-    const hidden = box.height <= room ? box.bottom > top + 1 || box.top < -1 : box.top >= top;
+    const scrolls = e.tagName === "TEXTAREA";  // It shows the line that is written.
+    const hidden = box.height <= top && !scrolls ? box.bottom > top + 1 || box.top < -1 : box.top >= top;
     const x = Math.min(Math.max((box.left + box.right) / 2, 1), innerWidth - 1), y = Math.max(Math.min((box.top + box.bottom) / 2, top - 2), 1);
     const there = document.elementFromPoint(x, y);
     const covered = there && !e.contains(there) && !there.contains(e) && !e.closest("label")?.contains(there) && !there.closest(".glance")?.contains(e);
