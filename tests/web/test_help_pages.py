@@ -89,7 +89,7 @@ async def test_html_in_a_document_is_text_and_nothing_outside_is_served(client: 
     [
         ("deadband", "Setting", "T1: Deadband"),
         ("drive answer", "Alarm", "Drive does not answer"),
-        ("gust", "Setting", "T2: Wind, stow at a gust of"),
+        ("gust", "Setting", "T1: Wind, stow at a gust of"),
         ("alarms", "Page", "Alarms"),
         ("maintenance lock", "Document", "Operator&#39;s guide: The maintenance lock"),
     ],

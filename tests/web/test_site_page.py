@@ -182,7 +182,7 @@ async def test_made_up_weather_is_marked_where_it_is_shown(
     for page in ("/", "/site"):
         text = (await panel.get(page)).text
         assert "Weather, SIMULATED" in text
-        assert source in text
+        assert "the simulated station" in text
     assert (await panel.get(f"{API}/weather")).json()["simulated"] is True
 
 
