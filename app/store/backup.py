@@ -18,7 +18,7 @@ from app.store.connections import (
     writing_engine,
 )
 from app.store.documents import SITE
-from app.store.files import make_folder, make_portable, put_in_place, remove_sqlite
+from app.store.files import keep_private, make_folder, make_portable, put_in_place, remove_sqlite
 from app.store.migrations import upgrade
 from app.store.store import StoreFailed
 
@@ -48,6 +48,7 @@ def backup(url: str, target: Path) -> BackupInfo:
     make_folder(target.parent)
     try:
         remove_sqlite(unfinished)
+        keep_private(unfinished)
         _copy_to_file(url, unfinished)
         found = inspect_backup(unfinished)
         put_in_place(unfinished, target)

@@ -28,9 +28,14 @@ from app.store.tables import REVISION
 
 BUSY_MS = 3000
 """Below the 5 s for which the panel waits for an answer, so that it hears why nothing was stored."""
+LOG_PAGES = 256
+"""Pages in the write-ahead log after which it is folded into the file and begun anew: one megabyte."""
+LOG_BYTES = (LOG_PAGES + 64) * (4096 + 24)
+"""How long the log is laid out at once: those pages with their frames, and a transaction beyond."""
 WRITER_PRAGMAS = (
     f"PRAGMA busy_timeout = {BUSY_MS}",
     "PRAGMA journal_mode = WAL",
+    f"PRAGMA wal_autocheckpoint = {LOG_PAGES}",
     "PRAGMA synchronous = FULL",
     "PRAGMA foreign_keys = ON",
 )
@@ -85,8 +90,12 @@ def sharing_engine(url: str) -> Engine:
     return _single(url, SHARING_PRAGMAS)
 
 
-def reading_engine(url: str) -> Engine:
-    """Return an engine that cannot write; on SQLite each use opens the file anew, to see a restored one."""
+def reading_engine(url: str, *, keeps_open: bool = False) -> Engine:
+    """Return an engine that cannot write.
+
+    On SQLite each use opens the file anew, to see a restored one; with `keeps_open` it stays open, for those
+    who ask every second: under root, SQLite changes the owner of its log with each opening.
+    """
     path = sqlite_path(url)
     if path is None:
         options = {"postgresql_readonly": True, "isolation_level": "REPEATABLE READ"}
@@ -94,7 +103,7 @@ def reading_engine(url: str) -> Engine:
             parse_url(url), pool_pre_ping=True, connect_args=POSTGRES, execution_options=options
         )
     readonly = URL.create("sqlite", database=f"file:{quote(str(path))}", query={"mode": "ro", "uri": "true"})
-    engine = create_engine(readonly, poolclass=NullPool)
+    engine = create_engine(readonly) if keeps_open else create_engine(readonly, poolclass=NullPool)
     _speak_sqlite(engine, READER_PRAGMAS, "BEGIN")
     return engine
 

@@ -2,11 +2,15 @@
 
 import os
 import sqlite3
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 
 from app.store.store import StoreFailed
 
+PRIVATE = 0o600
+OTHERS = 0o077
+DATABASES = ("*.db", "*.db-*", "*.db.*", "restore.*", "backups/*")
+"""What in a data folder may hold secrets: addresses of notifications, names, the audit, and copies."""
 COMPANIONS = ("-wal", "-shm", "-journal")
 """What SQLite keeps beside a file; left beside another file of that name it would be played into that."""
 
@@ -21,12 +25,58 @@ def make_folder(folder: Path) -> None:
         ) from error
 
 
+def keep_private(path: Path) -> None:
+    """Let nobody else read a SQLite file; one that is not there is made, empty.
+
+    SQLite gives what it keeps beside a file the rights of that file.
+    """
+    try:
+        path.touch(PRIVATE)
+        for name in (path.name, *(path.name + ending for ending in COMPANIONS)):
+            _close_to_others(path.with_name(name))
+    except OSError as error:
+        raise StoreFailed(
+            f"The file {path} cannot be kept from other users ({error.strerror}). Check whose it is."
+        ) from error
+
+
+def private_opener(name: str, flags: int) -> int:
+    """Open a file for `open`; one that is made can be read by nobody else."""
+    return os.open(name, flags, PRIVATE)
+
+
+def keep_all_private(data_dir: Path) -> None:
+    """Let nobody else read what databases and backups an older version left in a data folder."""
+    for pattern in DATABASES:
+        for path in data_dir.glob(pattern):
+            with suppress(OSError):
+                _close_to_others(path)
+
+
+def _close_to_others(path: Path) -> None:
+    if path.is_file() and path.stat().st_mode & OTHERS:
+        path.chmod(PRIVATE)
+
+
+def lay_out_log(path: Path, size: int) -> None:
+    """Give the write-ahead log of an open SQLite file its place on the disk, as far as there is room.
+
+    Commits then only fill it: a file that grows costs the file system's own journal more than what is
+    written. SQLite reads its log up to the first frame that is not signed as part of it; zeros are none.
+    """
+    with suppress(OSError), path.with_name(f"{path.name}-wal").open("r+b", buffering=0) as log:
+        present = os.fstat(log.fileno()).st_size
+        os.pwrite(log.fileno(), bytes(max(0, size - present)), present)
+        os.fsync(log.fileno())
+
+
 def copy_sqlite(source: Path, target: Path) -> None:
     """Copy a SQLite database while it is in use; the target appears complete or not at all."""
     unfinished = target.with_name(f"{target.name}.unfinished")
     try:
         remove_sqlite(unfinished)
         remove_companions(target)
+        keep_private(unfinished)
         with closing(sqlite3.connect(source)) as live, closing(sqlite3.connect(unfinished)) as copy:
             live.backup(copy)
         put_in_place(unfinished, target)

@@ -13,7 +13,7 @@ from sqlalchemy import Connection
 
 from app.late import late
 from app.store.connections import revision_of, sqlite_path, transaction, writing_engine
-from app.store.files import copy_sqlite, make_folder
+from app.store.files import copy_sqlite, keep_private, make_folder
 from app.store.integrity import check_file
 from app.store.store import StoreFailed
 from app.store.tables import REVISION, metadata
@@ -30,6 +30,7 @@ def upgrade(url: str, *, scripts: Path = SCRIPTS) -> str | None:
     path = sqlite_path(url)
     if path is not None:
         make_folder(path.parent)
+        keep_private(path)
         check_file(url)
     engine = writing_engine(url)
     try:

@@ -3,16 +3,29 @@
 import asyncio
 import queue
 import threading
+from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
 from contextlib import suppress
+from datetime import datetime, timedelta
 from typing import TypeVar
 
+from app.clock import Clock, SystemClock
 from app.store.store import StoreFailed, Writer
 
 T = TypeVar("T")
 
+SLOW = timedelta(milliseconds=100)
+"""A disk that takes longer for a write, on average, is too slow."""
+STUCK = timedelta(seconds=1)
+"""A write that takes longer than this holds up all others."""
+LAST = 20
+
 FULL = "The disk is too slow: {capacity} writes are waiting. Nothing was stored; check the disk or card."
+FLOODED = (
+    "Too many events at once: {capacity} writes are waiting, although the disk is fast enough. Nothing was "
+    "stored; see in the journal where they come from."
+)
 CLOSED = "The store is closed: nothing was stored. Start Heliopanel again."
 
 
@@ -24,11 +37,19 @@ class WriterThread:
     """
 
     def __init__(
-        self, writer: Writer, on_failure: Callable[[Exception], None], *, capacity: int = 1000
+        self,
+        writer: Writer,
+        on_failure: Callable[[Exception], None],
+        *,
+        capacity: int = 1000,
+        clock: Clock | None = None,
     ) -> None:
         self._writer = writer
         self._on_failure = on_failure
         self._capacity = capacity
+        self._clock = clock or SystemClock()
+        self._took: deque[timedelta] = deque(maxlen=LAST)
+        self._begun: datetime | None = None
         self._queue: queue.Queue[Callable[[], None] | None] = queue.Queue(capacity)
         self._closed = False
         self._dropped = 0
@@ -84,11 +105,22 @@ class WriterThread:
         try:
             self._queue.put_nowait(work)
         except queue.Full:
-            raise StoreFailed(FULL.format(capacity=self._capacity)) from None
+            text = FULL if self._is_slow() else FLOODED
+            raise StoreFailed(text.format(capacity=self._capacity)) from None
+
+    def _is_slow(self) -> bool:
+        """Return whether what waits does so for the disk: by how long it takes for what it was given."""
+        begun, took = self._begun, tuple(self._took)
+        if begun is not None and self._clock.now() - begun >= STUCK:
+            return True
+        return bool(took) and sum(took, timedelta()) / len(took) >= SLOW
 
     def _run(self) -> None:
         while (work := self._queue.get()) is not None:
+            begun = self._begun = self._clock.now()
             work()
+            self._begun = None
+            self._took.append(self._clock.now() - begun)
 
     def _answer(self, work: Callable[[Writer], T], answer: Future[T]) -> None:
         if not answer.set_running_or_notify_cancel():

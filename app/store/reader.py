@@ -9,7 +9,7 @@ from sqlalchemy import Connection, Engine, Row, Select, select
 
 from app.alarms.alarm import Alarm
 from app.audit.entry import Sealed
-from app.store import alarming, auditing, signed, tables
+from app.store import alarming, auditing, recording, signed, tables
 from app.store.chunks import ChunkDamaged, decode_all
 from app.store.connections import require_revision, transaction
 from app.store.documents import CONFIG, EVENT_DATA, PLAN, RECORDING, SITE, TRACKER
@@ -30,14 +30,6 @@ from app.tracker.config import TrackerConfig
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.recording import Frames, RecordingInfo, RecordingKind
 from app.tracker.snapshot import Event, EventKind
-
-HEAD = (
-    tables.recordings.c.recording_id,
-    tables.recordings.c.ended_at,
-    tables.recordings.c.outcome,
-    tables.recordings.c.frame_count,
-    tables.recordings.c.document,
-)
 
 
 class DatabaseReader:
@@ -158,7 +150,7 @@ class DatabaseReader:
     ) -> list[RecordingInfo]:
         """Return recordings, newest first."""
         columns = tables.recordings.c
-        query = select(*HEAD).order_by(columns.began_at.desc(), columns.recording_id.desc()).limit(limit)
+        query = recording.heads().order_by(columns.began_at.desc(), columns.recording_id.desc()).limit(limit)
         if kind is not None:
             query = query.where(columns.kind == kind)
         if tracker_id is not None:
@@ -169,21 +161,15 @@ class DatabaseReader:
 
     def recording(self, recording_id: str) -> RecordingInfo | None:
         """Return the head of one recording."""
-        query = select(*HEAD).where(tables.recordings.c.recording_id == recording_id)
+        query = recording.heads().where(tables.recordings.c.recording_id == recording_id)
         with self._read() as connection:
             row = connection.execute(query).one_or_none()
         return None if row is None else head(row)
 
     def frames(self, recording_id: str, *, begin_s: float = 0.0, end_s: float | None = None) -> Frames:
         """Return the frames whose `elapsed_s` lies in the range, ends included; empty if there are none."""
-        columns = tables.chunks.c
-        query = select(columns.frames).where(
-            columns.recording_id == recording_id, columns.last_elapsed_s >= begin_s
-        )
-        if end_s is not None:
-            query = query.where(columns.first_elapsed_s <= end_s)
         with self._read() as connection:
-            stored = list(connection.execute(query.order_by(columns.position)).scalars())
+            stored = recording.stored_frames(connection, recording_id, begin_s, end_s)
         try:
             return _between(decode_all(stored), begin_s, end_s)
         except ChunkDamaged as error:

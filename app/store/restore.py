@@ -37,6 +37,7 @@ NUMBERED = (
     tables.alarms,
     tables.records,
     tables.record_photos,
+    tables.sample_blocks,
 )
 
 

@@ -1,8 +1,8 @@
 """What the machine and the panel ask of the store, whichever database is behind it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Protocol
 
@@ -132,6 +132,20 @@ class Photo:
     record_number: int | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """What recordings gained: which began, samples by recording, and which ended, when and how."""
+
+    begun: tuple[RecordingInfo, ...] = ()
+    samples: Mapping[str, Frames] = field(default_factory=dict)
+    ended: tuple[tuple[str, datetime, str], ...] = ()
+
+    @property
+    def is_empty(self) -> bool:
+        """Return whether nothing is to be kept."""
+        return not (self.begun or self.samples or self.ended)
+
+
 class Reader(Protocol):
     """Reading only; safe from any thread of any process."""
 
@@ -232,6 +246,12 @@ class Writer(Reader, Protocol):
 
     def remove_photo(self, number: int) -> None:
         """Remove a photo that waits; one of a signed record stays."""
+
+    def together(self) -> AbstractContextManager[None]:
+        """Have everything that is written inside happen in one transaction: all of it, or nothing."""
+
+    def keep_recorded(self, recorded: Recorded) -> None:
+        """Keep what recordings gained, together; samples of one that does not run are left out."""
 
     def begin_recording(self, info: RecordingInfo) -> None:
         """Open a recording."""

@@ -21,7 +21,7 @@ from sqlalchemy import (
     UniqueConstraint,
 )
 
-REVISION = "0005"
+REVISION = "0006"
 """The newest migration: what the tables of a database must be for this software to use them."""
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
@@ -143,6 +143,18 @@ chunks = Table(
     Column("frame_count", Integer, nullable=False),
     Column("frames", LargeBinary, nullable=False),
 )
+
+sample_blocks = Table(
+    "sample_blocks",
+    metadata,
+    Column("number", Number, Identity(), primary_key=True),
+    Column("recording_id", ForeignKey("recordings.recording_id", ondelete="CASCADE"), nullable=False),
+    Column("first_elapsed_s", Double, nullable=False),
+    Column("last_elapsed_s", Double, nullable=False),
+    Column("frame_count", Integer, nullable=False),
+    Column("frames", LargeBinary, nullable=False),
+)
+"""Frames of running recordings until there are enough for a chunk: few rows, so that no index is kept."""
 
 audit = Table(
     "audit",

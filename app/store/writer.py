@@ -2,19 +2,19 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from datetime import datetime, timedelta
+from datetime import datetime
 
 from sqlalchemy import ColumnElement, Connection, Engine, Table, delete, insert, select, update
 from sqlalchemy.exc import SQLAlchemyError
 
 from app.audit.entry import Entry
-from app.store import alarming, auditing, signed, tables
-from app.store.chunks import CHUNK_FRAMES, ChunkDamaged, decode, encode_all, join
+from app.store import alarming, auditing, recording, signed, tables
+from app.store.chunks import ChunkDamaged
 from app.store.connections import require_revision
-from app.store.documents import CONFIG, EVENT_DATA, PLAN, RECORDING, SITE, TRACKER, plain
+from app.store.documents import CONFIG, EVENT_DATA, PLAN, SITE, TRACKER, plain
 from app.store.failures import explained, is_lasting
-from app.store.reader import HEAD, DatabaseReader, head
-from app.store.store import KeptAlarm, Photo, PlannedShow, RecordHead, StoreFailed
+from app.store.reader import DatabaseReader, head
+from app.store.store import KeptAlarm, Photo, PlannedShow, Recorded, RecordHead, StoreFailed
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.recording import Frames, RecordingInfo, RecordingKind
 from app.tracker.snapshot import Event
@@ -45,16 +45,27 @@ class DatabaseWriter(DatabaseReader):
 
         The entry gets the changed values; with `only_changes` it is left out where none changed.
         """
-        with self._write() as connection:
-            self._open = connection
-            self._auditing = auditing.Change(entry, only_changes)
+        with self.together():
+            change = self._auditing = auditing.Change(entry, only_changes)
             try:
                 yield
-                finished = self._auditing.finished()
+                finished = change.finished()
             finally:
-                self._open = self._auditing = None
+                self._auditing = None
             if finished is not None:
-                auditing.append(connection, finished)
+                with self._write() as connection:
+                    auditing.append(connection, finished)
+
+    @contextmanager
+    def together(self) -> Iterator[None]:
+        """Have everything that is written inside happen in one transaction: all of it, or nothing."""
+        outer = self._open
+        with self._write() as connection:
+            self._open = connection
+            try:
+                yield
+            finally:
+                self._open = outer
 
     @contextmanager
     def _write(self) -> Iterator[Connection]:
@@ -150,47 +161,40 @@ class DatabaseWriter(DatabaseReader):
         with self._write() as connection:
             signed.remove_photo(connection, number)
 
+    def keep_recorded(self, recorded: Recorded) -> None:
+        """Keep what recordings gained, together; samples of one that does not run are left out."""
+        with self._write() as connection:
+            recording.keep(connection, recorded)
+
     def begin_recording(self, info: RecordingInfo) -> None:
         """Open a recording."""
         with self._write() as connection:
-            _insert_head(connection, info)
+            recording.insert_head(connection, info)
 
     def append_frames(self, recording_id: str, frames: Frames) -> None:
-        """Add frames to an open recording: the last chunk is rewritten until it holds 900."""
+        """Add frames to an open recording."""
         if not len(frames):
             return
-        columns = tables.recordings.c
-        counted = update(tables.recordings).where(
-            columns.recording_id == recording_id, columns.ended_at.is_(None)
-        )
         with self._write() as connection:
-            grown = connection.execute(counted.values(frame_count=columns.frame_count + len(frames)))
-            if grown.rowcount != 1:
+            if not recording.is_open(connection, recording_id):
                 raise StoreFailed(f"The recording {recording_id!r} is not open; no frames were added to it.")
-            _append_frames(connection, recording_id, frames)
+            recording.append(connection, {recording_id: frames})
 
     def finish_recording(self, recording_id: str, ended_at: datetime, outcome: str) -> None:
         """Close a recording."""
-        columns = tables.recordings.c
         with self._write() as connection:
-            closed = connection.execute(
-                update(tables.recordings)
-                .where(columns.recording_id == recording_id, columns.ended_at.is_(None))
-                .values(ended_at=ended_at, outcome=plain(outcome))
-            )
-            if closed.rowcount != 1:
+            if not recording.close(connection, recording_id, ended_at, outcome):
                 raise StoreFailed(f"The recording {recording_id!r} is not open; it cannot be closed.")
 
     def save_recording(self, info: RecordingInfo, chunks: Sequence[bytes]) -> None:
         """Store a whole finished recording, all or nothing; chunks in the store's own encoding."""
         try:
-            parts = [decode(chunk) for chunk in chunks]
+            blocks = [recording.block(chunk) for chunk in chunks]
         except ChunkDamaged as error:
             raise StoreFailed(f"The recording {info.recording_id!r} was not stored: {error}") from error
         with self._write() as connection:
-            _insert_head(connection, info, sum(len(part) for part in parts))
-            for position, (chunk, part) in enumerate(zip(chunks, parts, strict=True)):
-                _insert_chunk(connection, info.recording_id, position, chunk, part)
+            recording.insert_head(connection, info, sum(one["frame_count"] for one in blocks))
+            recording.insert_chunks(connection, info.recording_id, blocks)
 
     def delete_recording(self, recording_id: str) -> None:
         """Delete a recording and its frames."""
@@ -203,16 +207,13 @@ class DatabaseWriter(DatabaseReader):
         """Close what a crash left open (ended at its last frame, at `ended_at` without one) and return it."""
         columns = tables.recordings.c
         with self._write() as connection:
-            left = connection.execute(select(*HEAD).where(columns.ended_at.is_(None))).all()
+            left = connection.execute(recording.heads().where(columns.ended_at.is_(None))).all()
             for row in left:
-                at = _last_frame_at(connection, head(row)) or ended_at
-                connection.execute(
-                    update(tables.recordings)
-                    .where(columns.recording_id == row.recording_id)
-                    .values(ended_at=at, outcome=plain(outcome))
-                )
+                recording.pack(connection, row.recording_id, everything=True)
+                at = recording.last_frame_at(connection, head(row)) or ended_at
+                recording.close(connection, row.recording_id, at, outcome)
             ids = [row.recording_id for row in left]
-            closed = connection.execute(select(*HEAD).where(columns.recording_id.in_(ids))).all()
+            closed = connection.execute(recording.heads().where(columns.recording_id.in_(ids))).all()
         return [head(row) for row in closed]
 
     def prune(self, *, days_before: datetime, keep: int) -> int:
@@ -265,69 +266,3 @@ def _append(connection: Connection, events: Sequence[Event]) -> None:
     ]
     if rows:
         connection.execute(insert(tables.events), rows)
-
-
-def _insert_head(connection: Connection, info: RecordingInfo, frame_count: int = 0) -> None:
-    connection.execute(
-        insert(tables.recordings).values(
-            recording_id=info.recording_id,
-            kind=info.kind,
-            tracker_id=info.tracker_id,
-            began_at=info.began_at,
-            ended_at=info.ended_at,
-            outcome=plain(info.outcome),
-            frame_count=frame_count,
-            document=RECORDING.write(info),
-        )
-    )
-
-
-def _insert_chunk(
-    connection: Connection, recording_id: str, position: int, chunk: bytes, frames: Frames
-) -> None:
-    connection.execute(
-        insert(tables.chunks).values(
-            recording_id=recording_id, position=position, **_chunk_values(chunk, frames)
-        )
-    )
-
-
-def _chunk_values(chunk: bytes, frames: Frames) -> dict[str, object]:
-    elapsed_s = frames.column("elapsed_s").round(3)
-    return {
-        "first_elapsed_s": float(elapsed_s.min()),
-        "last_elapsed_s": float(elapsed_s.max()),
-        "frame_count": len(frames),
-        "frames": chunk,
-    }
-
-
-def _append_frames(connection: Connection, recording_id: str, frames: Frames) -> None:
-    columns = tables.chunks.c
-    position, already = 0, join([])
-    last = connection.execute(
-        select(columns.position, columns.frame_count, columns.frames)
-        .where(columns.recording_id == recording_id)
-        .order_by(columns.position.desc())
-        .limit(1)
-    ).one_or_none()
-    if last is not None and last.frame_count < CHUNK_FRAMES:
-        position, already = last.position, decode(last.frames)
-        mine = (columns.recording_id == recording_id, columns.position == position)
-        connection.execute(delete(tables.chunks).where(*mine))
-    elif last is not None:
-        position = last.position + 1
-    for chunk in encode_all(join([already, frames])):
-        _insert_chunk(connection, recording_id, position, chunk, decode(chunk))
-        position += 1
-
-
-def _last_frame_at(connection: Connection, info: RecordingInfo) -> datetime | None:
-    columns = tables.chunks.c
-    last_s = connection.execute(
-        select(columns.last_elapsed_s)
-        .where(columns.recording_id == info.recording_id)
-        .order_by(columns.position.desc())
-        .limit(1)
-    ).scalar_one_or_none()
-    return None if last_s is None else info.began_at + timedelta(seconds=last_s)

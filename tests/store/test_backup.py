@@ -27,6 +27,7 @@ from app.store.store import JournalEntry, JournalFilter, PlannedShow, StoreFaile
 from app.store.tables import REVISION
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.recording import RecordingInfo
+from tests.fault_result import FaultResult
 from tests.store.postgres import fresh_database
 from tests.store.samples import SITE, event, plan, tracker
 from tests.store.tracked_day import MIDNIGHT, day_info, tracked_day
@@ -138,7 +139,7 @@ def test_restoring_into_nothing_makes_the_database(url: str, tmp_path: Path) -> 
 
 
 @pytest.mark.fault(51)
-def test_a_damaged_database_is_kept_and_replaced(sqlite_url: str, tmp_path: Path) -> None:
+def test_a_damaged_database_is_kept_and_replaced(sqlite_url: str, tmp_path: Path, fault: FaultResult) -> None:
     upgrade(sqlite_url)
     before = fill(sqlite_url)
     made = backup(sqlite_url, tmp_path / "backup.db")
@@ -148,6 +149,7 @@ def test_a_damaged_database_is_kept_and_replaced(sqlite_url: str, tmp_path: Path
     assert content(sqlite_url) == before
     assert restored.kept is not None
     assert restored.kept.read_bytes() == b"rubbish" * 1000
+    fault.recovers("a backup is restored; the damaged file is kept")
 
 
 def test_an_open_reader_sees_the_restored_database(url: str, tmp_path: Path) -> None:
@@ -213,18 +215,21 @@ def newer(path: Path) -> None:
 )
 @pytest.mark.fault(72)
 def test_what_is_not_a_good_backup_is_refused(
-    url: str, tmp_path: Path, spoil: Callable[[Path], None], sentence: str
+    url: str, tmp_path: Path, spoil: Callable[[Path], None], sentence: str, fault: FaultResult
 ) -> None:
     before = fill(url)
     made = backup(url, tmp_path / "backup.db")
     spoil(made.path)
-    with pytest.raises(StoreFailed, match=sentence):
+    with pytest.raises(StoreFailed, match=sentence) as refused:
         restore(made.path, url, MIDNIGHT)
+    fault.prevented("refused before anything is replaced")
+    fault.shows(str(refused.value).replace(str(made.path), "FILE"))
     with pytest.raises(StoreFailed, match=sentence):
         request_restore(made.path, url, tmp_path, MIDNIGHT)
     assert content(url) == before
     assert list(tmp_path.glob("*restoring*")) == []
     assert not (tmp_path / PENDING_NAME).exists()
+    fault.recovers("with a good backup")
 
 
 def test_a_restore_is_done_at_once_while_no_machine_runs(url: str, tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ from app.store.integrity import FIRST_SAFE_SQLITE, sqlite_notice
 from app.store.migrations import upgrade
 from app.store.store import JournalFilter, StoreFailed
 from app.store.writer import DatabaseWriter
+from tests.fault_result import FaultResult
 from tests.store.samples import SITE, event
 from tests.store.tracked_day import day_info, tracked_day
 
@@ -89,13 +90,18 @@ def on_sqlite(sqlite_url: str) -> Iterator[DatabaseWriter]:
 
 
 @pytest.mark.fault(49)
-def test_a_full_disk_is_told_and_nothing_is_half_written(on_sqlite: DatabaseWriter) -> None:
+def test_a_full_disk_is_told_and_nothing_is_half_written(
+    on_sqlite: DatabaseWriter, fault: FaultResult
+) -> None:
     on_sqlite.save_site(SITE, [event(1)])
     on_sqlite.begin_recording(day_info())
     with limited(on_sqlite, "max_page_count = 1"):
         large = replace(SITE, name="x" * 100_000)
-        with pytest.raises(StoreFailed, match=r"The disk is full: nothing was stored\. Free some space"):
+        with pytest.raises(
+            StoreFailed, match=r"The disk is full: nothing was stored\. Free some space"
+        ) as told:
             on_sqlite.save_site(large, [event(2)])
+        fault.shows(str(told.value))
         with pytest.raises(StoreFailed, match="The disk is full"):
             on_sqlite.append_frames("day-1", tracked_day(80_000))
     assert on_sqlite.site() == SITE
@@ -104,21 +110,26 @@ def test_a_full_disk_is_told_and_nothing_is_half_written(on_sqlite: DatabaseWrit
     with limited(on_sqlite, "max_page_count = 1000000"):
         on_sqlite.save_site(large, [event(2)])
     assert on_sqlite.site() == large
+    fault.recovers("by itself: what waited is stored once there is room")
 
 
 @pytest.mark.fault(48)
-def test_a_locked_database_is_told_and_works_again(sqlite_url: str, on_sqlite: DatabaseWriter) -> None:
+def test_a_locked_database_is_told_and_works_again(
+    sqlite_url: str, on_sqlite: DatabaseWriter, fault: FaultResult
+) -> None:
     with (
         limited(on_sqlite, "busy_timeout = 20"),
         closing(sqlite3.connect(str(sqlite_path(sqlite_url)), isolation_level=None)) as other,
     ):
         other.execute("BEGIN IMMEDIATE")
-        with pytest.raises(StoreFailed, match="locked by another program: nothing was stored"):
+        with pytest.raises(StoreFailed, match="locked by another program: nothing was stored") as told:
             on_sqlite.save_site(SITE)
+        fault.shows(str(told.value))
         assert on_sqlite.site() is None, "reading goes on meanwhile"
         other.execute("ROLLBACK")
         on_sqlite.save_site(SITE)
     assert on_sqlite.site() == SITE
+    fault.recovers("by itself: what waited is stored once the lock is gone")
 
 
 def overwrite(path: Path) -> None:
@@ -130,13 +141,19 @@ def overwrite(path: Path) -> None:
 
 
 @pytest.mark.fault(51)
-def test_a_damaged_file_is_told_at_the_start(sqlite_url: str, on_sqlite: DatabaseWriter) -> None:
+def test_a_damaged_file_is_told_at_the_start(
+    sqlite_url: str, on_sqlite: DatabaseWriter, fault: FaultResult
+) -> None:
     on_sqlite.save_site(SITE)
     on_sqlite.close()
     overwrite(Path(str(sqlite_path(sqlite_url))))
     for opening in (open_writer, upgrade):
-        with pytest.raises(StoreFailed, match=r"damaged.*Restore a backup with: heliopanel restore FILE"):
+        with pytest.raises(
+            StoreFailed, match=r"damaged.*Restore a backup with: heliopanel restore FILE"
+        ) as told:
             opening(sqlite_url)
+    fault.prevented("noticed at the start, before anything moves")
+    fault.shows(str(told.value))
 
 
 def test_a_damaged_table_is_named_at_the_start(sqlite_url: str, on_sqlite: DatabaseWriter) -> None:

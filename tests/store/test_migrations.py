@@ -23,6 +23,7 @@ from app.store.migrations import (
 )
 from app.store.store import StoreFailed
 from app.store.tables import REVISION
+from tests.fault_result import FaultResult
 from tests.store.samples import SITE
 
 
@@ -94,18 +95,21 @@ def test_a_migration_that_fails_leaves_nothing_behind(empty_url: str) -> None:
 
 
 @pytest.mark.fault(72)
-def test_a_newer_database_is_refused(url: str) -> None:
+def test_a_newer_database_is_refused(url: str, fault: FaultResult) -> None:
     execute(url, "UPDATE alembic_version SET version_num = '9999'")
     with pytest.raises(
         StoreFailed, match=r"newer version of Heliopanel .revision 9999.*Install that version"
-    ):
+    ) as refused:
         upgrade(url)
+    fault.prevented("refused before anything is changed")
+    fault.shows(str(refused.value))
     with pytest.raises(StoreFailed, match="at revision 9999, but this version of Heliopanel needs"):
         open_writer(url)
     reader = open_reader(url)
     with pytest.raises(StoreFailed, match="at revision 9999"):
         reader.site()
     reader.close()
+    fault.recovers("the newer version is installed again, or a backup of this one is restored")
 
 
 def test_a_reader_waits_for_the_database(sqlite_url: str) -> None:
@@ -211,7 +215,9 @@ def test_a_migration_that_fails_midway_leaves_the_old_database(url: str, tmp_pat
 
 
 @pytest.mark.fault(53)
-def test_a_migration_that_is_killed_midway_leaves_the_old_database(url: str, tmp_path: Path) -> None:
+def test_a_migration_that_is_killed_midway_leaves_the_old_database(
+    url: str, tmp_path: Path, fault: FaultResult
+) -> None:
     with_a_site(url)
     scripts = later_software(tmp_path, "os.kill(os.getpid(), signal.SIGKILL)")
     child = multiprocessing.get_context("fork").Process(
@@ -222,3 +228,6 @@ def test_a_migration_that_is_killed_midway_leaves_the_old_database(url: str, tmp
     assert child.exitcode == -signal.SIGKILL
     assert upgrade(url) == REVISION
     assert still_usable(url)
+    fault.prevented("the migration is one transaction")
+    fault.shows_nothing("the next start migrates again")
+    fault.recovers("by itself: with the next start")

@@ -3,15 +3,18 @@
 import asyncio
 import threading
 from collections.abc import Iterator
+from datetime import timedelta
 
 import pytest
 
+from app.clock import VirtualClock
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
-from app.store.offloaded import WriterThread
+from app.store.offloaded import FLOODED, FULL, WriterThread
 from app.store.store import JournalFilter, StoreFailed, Writer
 from app.store.writer import DatabaseWriter
-from tests.store.samples import SITE, event
+from tests.fault_result import BY_ITSELF, VIRTUAL, FaultResult
+from tests.store.samples import NOON, SITE, event
 
 PATIENCE_S = 20.0
 
@@ -40,8 +43,13 @@ def reports() -> Reports:
 
 
 @pytest.fixture
-def thread(stored: DatabaseWriter, reports: Reports) -> Iterator[WriterThread]:
-    started = WriterThread(stored, reports, capacity=3)
+def clock() -> VirtualClock:
+    return VirtualClock(NOON)
+
+
+@pytest.fixture
+def thread(stored: DatabaseWriter, reports: Reports, clock: VirtualClock) -> Iterator[WriterThread]:
+    started = WriterThread(stored, reports, capacity=3, clock=clock)
     yield started
     assert started.close()
 
@@ -99,10 +107,11 @@ async def test_a_posted_failure_is_counted_and_reported(thread: WriterThread, re
 
 
 async def test_a_slow_disk_never_blocks_and_what_is_dropped_is_told(
-    thread: WriterThread, reports: Reports, stored: DatabaseWriter
+    thread: WriterThread, reports: Reports, stored: DatabaseWriter, clock: VirtualClock
 ) -> None:
     disk = Disk()
     disk.hold(thread)
+    clock.advance(timedelta(seconds=1))
     for number in range(5):
         thread.post(lambda writer, number=number: append(number, writer))  # type: ignore[misc]
     with pytest.raises(StoreFailed, match="disk is too slow: 3 writes are waiting"):
@@ -113,6 +122,36 @@ async def test_a_slow_disk_never_blocks_and_what_is_dropped_is_told(
     assert thread.close()
     assert len(stored.journal(JournalFilter())) == 3
     assert stored.site() is None
+
+
+@pytest.mark.fault(87)
+async def test_a_flood_of_events_is_not_blamed_on_the_disk(
+    thread: WriterThread, reports: Reports, clock: VirtualClock, fault: FaultResult
+) -> None:
+    disk = Disk()
+    disk.hold(thread)
+    clock.advance(timedelta(milliseconds=99))
+    for number in range(4):
+        thread.post(lambda writer, number=number: append(number, writer))  # type: ignore[misc]
+    assert [str(failure) for failure in reports.failures] == [FLOODED.format(capacity=3)]
+    fault.shows("Too many events at once: 3 writes are waiting, although the disk is fast enough.")
+    fault.noticed(0.0, VIRTUAL)
+    disk.released.set()
+    assert thread.close()
+    fault.recovers(BY_ITSELF)
+
+
+@pytest.mark.fault(87)
+async def test_a_disk_that_takes_long_for_every_write_is_too_slow(
+    thread: WriterThread, reports: Reports, clock: VirtualClock
+) -> None:
+    await thread.call(lambda _writer: clock.advance(timedelta(milliseconds=200)))
+    disk = Disk()
+    disk.hold(thread)
+    for number in range(4):
+        thread.post(lambda writer, number=number: append(number, writer))  # type: ignore[misc]
+    assert [str(failure) for failure in reports.failures] == [FULL.format(capacity=3)]
+    disk.released.set()
 
 
 async def test_a_call_that_nobody_awaits_any_more_is_not_begun(

@@ -9,8 +9,9 @@ import pytest
 
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
+from tests.fault_result import FaultResult
 from tests.soak import amount
-from tests.store.committing import ACKNOWLEDGED, check
+from tests.store.committing import ACKNOWLEDGED, RECORDINGS, check
 from tests.store.power_cut import Call, Disk, Recording, record
 from tests.store.tracked_day import day_info
 
@@ -28,7 +29,8 @@ def recorded(folder: Path, *, checkpoint_pages: int, synchronous: str = "as_ship
     url = f"sqlite:///{data / 'heliopanel.db'}"
     upgrade(url)
     writer = open_writer(url)
-    writer.begin_recording(day_info())
+    for recording_id in RECORDINGS:
+        writer.begin_recording(day_info(recording_id))
     writer.close()
     words = [url, str(COMMITS), str(checkpoint_pages), synchronous]
     return record([sys.executable, "-m", "tests.store.committing", *words], data, folder / "strace.log")
@@ -59,10 +61,15 @@ def _lost(files: dict[str, bytes], folder: Path, acknowledged: int) -> int:
 
 @pytest.mark.fault(54)
 @pytest.mark.parametrize("checkpoint_pages", [AS_SHIPPED, OFTEN])
-def test_no_power_cut_loses_what_was_acknowledged(tmp_path: Path, checkpoint_pages: int) -> None:
+def test_no_power_cut_loses_what_was_acknowledged(
+    tmp_path: Path, checkpoint_pages: int, fault: FaultResult
+) -> None:
     recording = recorded(tmp_path, checkpoint_pages=checkpoint_pages)
     assert sum(call.file == ACKNOWLEDGED and call.name == "write" for call in recording.calls) == COMMITS
     assert lost_after_cuts(recording, tmp_path, CUTS) == [0] * CUTS
+    fault.prevented("what is acknowledged is on the disk")
+    fault.shows_nothing("the start tells how the last run ended, as after a kill: row 43")
+    fault.recovers("by itself: every database opens whole")
 
 
 def test_the_same_cuts_find_the_loss_of_a_database_that_does_not_sync_every_commit(tmp_path: Path) -> None:

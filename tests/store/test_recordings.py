@@ -51,6 +51,7 @@ def test_what_grew_in_pieces_is_stored_like_what_came_at_once(url: str, writer: 
     for begin in range(0, 1900, 77):
         writer.append_frames("day-1", Frames(frames.values[begin : begin + 77]))
     writer.append_frames("day-1", Frames(frames.values[:0]))
+    writer.finish_recording("day-1", MIDNIGHT, "complete")
     engine = writing_engine(url)
     with transaction(engine) as connection:
         stored = connection.execute(
