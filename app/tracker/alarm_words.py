@@ -55,6 +55,11 @@ class AlarmNow:
         """Return whether it waits to be acknowledged."""
         return self.state in (AlarmState.UNACKNOWLEDGED, AlarmState.RETURNED)
 
+    @property
+    def heading(self) -> str:
+        """Return its title, and of one that waits to be seen though its cause is gone that it is gone."""
+        return f"Gone: {self.title}" if self.state is AlarmState.RETURNED else self.title
+
 
 @dataclass(frozen=True, slots=True)
 class AlarmCounts:

@@ -15,8 +15,10 @@ from app.tracker.transitions import interrupt, leave, switch_tracking_off
 
 
 def watch_local(mind: Mind, before: Feedback | None, feedback: Feedback) -> None:
-    """End everything while the switch at the cabinet is on local; nothing resumes when it is turned back."""
+    """End everything while the switch at the cabinet is on local; nothing moves when it is turned back."""
     was_local = before is not None and before.local
+    if feedback.local or was_local:
+        mind.held_back = None
     if feedback.local and not was_local:
         reason = at_cabinet(mind)
         mind.say(EventKind.LOCAL_TAKEN, reason.message, code=reason.code)

@@ -67,6 +67,13 @@ class SetZero:
 
 
 @dataclass(frozen=True, slots=True)
+class UndoZero:
+    """Bring back the home position as it was before it was set last."""
+
+    kind: Literal["undo_zero"] = "undo_zero"
+
+
+@dataclass(frozen=True, slots=True)
 class Home:
     """Search the origin switches, on drives that have them."""
 
@@ -243,7 +250,7 @@ class EndService:
 
 
 Command = (
-    Jog | EndJog | Step | SetZero | Home | SelectMode | Move | Park | Track
+    Jog | EndJog | Step | SetZero | UndoZero | Home | SelectMode | Move | Park | Track
     | GoToStart | RunShow | PauseShow | ResumeShow | StopShow | Stop | ResetFault
     | ProveDirection | ProveScale | MeasureStop | MeasureLinkLoss
     | Stow | Resume | LockOut | ReleaseLock

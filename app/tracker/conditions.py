@@ -5,6 +5,7 @@ from enum import StrEnum
 
 from app.tracker.activity import NAMES, Faulted, Showing
 from app.tracker.commands import CommandRejected
+from app.tracker.guards import axis_feedback
 from app.tracker.memory import StepName
 from app.tracker.mind import Mind
 from app.tracker.motion import Feedback
@@ -18,6 +19,7 @@ from app.tracker.rejected import accepted
 from app.tracker.runs import at_rest
 from app.tracker.snapshot import ActivityName, ShowPhase
 
+UNDO_NEAR_DEG = 0.2
 Condition = Callable[[Mind], Reason | None]
 
 
@@ -27,6 +29,7 @@ class Action(StrEnum):
     JOG = "jog"
     STEP = "step"
     ZERO = "zero"
+    UNDO_ZERO = "undo_zero"
     HOME = "home"
     SET_MODE = "set_mode"
     MOVE = "move"
@@ -124,6 +127,25 @@ def homed(mind: Mind) -> Reason | None:
         "home_not_trusted",
         f"{name} has no trusted zero: {lost}" if lost else f"{name} has no trusted zero.",
         "Go to step 3, Homing, and set the zero.",
+    )
+
+
+def undoable(mind: Mind) -> Reason | None:
+    """Return that there is no home position to go back to, or that the axes have moved since it was set."""
+    former, seen = mind.memory.former_home, mind.feedback
+    if former is None or seen is None or seen.boot_count != former.boot_count:
+        return Reason(
+            "nothing_to_undo",
+            "There is no former home position.",
+            "Only the home position that was set last by hand can be undone.",
+        )
+    near_deg = max(UNDO_NEAR_DEG, mind.config.in_position_deg)
+    if all(abs(axis_feedback(seen, axis).position_deg) <= near_deg for axis in former.axes):
+        return None
+    return Reason(
+        "moved_since",
+        f"The axes of {mind.config.name} have moved since the home position was set.",
+        "Turn them to the right place and set the home position there.",
     )
 
 
@@ -317,13 +339,14 @@ _CAN_PROVE = (accepted, reachable, sound, remote, cleared, while_(_HOLD), restin
 REQUIRED: dict[Action, tuple[Condition, ...]] = {
     Action.JOG: (accepted, reachable, sound, remote, cleared, prompt, while_(_HOLD, _JOG)),
     Action.STEP: (accepted, reachable, sound, remote, cleared, while_(_HOLD)),
-    Action.ZERO: (reachable, sound, settings_open, while_(_HOLD), resting),
+    Action.ZERO: (reachable, sound, remote, settings_open, while_(_HOLD), resting),
+    Action.UNDO_ZERO: (reachable, sound, remote, settings_open, while_(_HOLD), resting, undoable),
     Action.HOME: (accepted, reachable, sound, remote, cleared, unlocked, self_homing, while_(_HOLD), resting),
     Action.SET_MODE: (while_(_HOLD, _JOG, _MOVE, _STOPPING),),
     Action.MOVE: (*_CAN_MOVE, cleared, sheltered, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
     Action.PARK: (*_BY_ITSELF, sheltered, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
     Action.STOW: (*_BY_ITSELF, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
-    Action.RESUME: (unlocked, unserved, stowed),
+    Action.RESUME: (remote, unlocked, unserved, stowed),
     Action.LOCK_OUT: (unlocked,),
     Action.RELEASE_LOCK: (locked,),
     Action.BEGIN_SERVICE: (unserved,),

@@ -33,9 +33,11 @@ from app.tracker.activity import (
     Zeroing,
 )
 from app.tracker.announce import is_announced
+from app.tracker.approach import has_reached
 from app.tracker.authority import watch_local, watch_service
 from app.tracker.commands import Command
 from app.tracker.config import TrackerConfig
+from app.tracker.home_shift import forget
 from app.tracker.machine_guard import watch_machine
 from app.tracker.memory import CommissioningLock, Confirmation, Pointing, Sighting, StepName, TrackerMemory
 from app.tracker.mind import HALTED, NOWHERE, STANDING, Mind, Turn
@@ -88,7 +90,7 @@ class Controller:
     ) -> None:
         self._mind = Mind(config, memory, capabilities)
         self._resumes = resumes
-        if not resumes and memory.stow is not None:
+        if not resumes and (memory.stow is not None or memory.show_moves):
             self._mind.wait = _BEGUN_ANEW
         if memory.fault_code is not None:
             self._mind.activity = Faulted(Reason(memory.fault_code, memory.fault_text, _RESET_HINT))
@@ -146,12 +148,13 @@ class Controller:
         horn = mind.warning is not None and mind.feedback is not None
         return Tick(replace(command, horn=True) if horn else command, mind.drain())
 
-    def snapshot(self, at: datetime, now: datetime | None = None) -> Snapshot:
+    def snapshot(self, at: datetime, now: datetime | None = None, *, asked: bool = True) -> Snapshot:
         """Return everything known after the last tick, stamped `at`.
 
         `now` is the machine's steady time, to which ages are counted; without it, that of the last tick.
+        Unless `asked`, `actions` are left out.
         """
-        return report.snapshot(self._mind, at, now or self._mind.now)
+        return report.snapshot(self._mind, at, now or self._mind.now, asked=asked)
 
     def frame(self) -> tuple[float, ...]:
         """Return the last tick as one row of `recording.COLUMNS`; the first two columns are NaN."""
@@ -177,6 +180,7 @@ class Controller:
         if config.drive != mind.config.drive:
             mind.feedback = mind.feedback_at = None
             lose_home(mind, Reason("drive_changed", "another drive was configured."))
+            forget(mind)
         mind.config, mind.capabilities = config, capabilities
         mind.setpoint, mind.target, mind.watches = NOWHERE, None, {}
         mind.corrected = None
@@ -246,6 +250,7 @@ class Controller:
         recover(mind, feedback)
         stowing.guard(mind, feedback)
         turn = self._step(feedback, seen)
+        mind.reached = has_reached(mind, turn, feedback)
         mind.activity, mind.target = turn.activity, upright(turn.target)
         mind.sun = seen.sun if turn.sun is None else turn.sun
         if turn.command is HALTED:

@@ -6,6 +6,7 @@ from enum import StrEnum
 
 from app.sun.horizon import FLAT, Horizon
 from app.sun.position import Location
+from app.tracker.axes import Axis
 from app.tracker.config import DriveConfig, Orientation, TrackerConfig
 from app.tracker.mode import Mode
 from app.tracker.notifications import Notifications
@@ -43,6 +44,31 @@ class Confirmation:
     at: datetime
     by: str
     location_revision: int
+
+
+@dataclass(frozen=True, slots=True)
+class HomeShift:
+    """What is added to the drive's own count to get the angles of the axes, degrees."""
+
+    azimuth_deg: float = 0.0
+    elevation_deg: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class FormerHome:
+    """The home position before it was set last, so that this can be undone: its shift and who set it.
+
+    `axes` were set, in the life of the drive that `boot_count` names; `zeroed` had been set before.
+    """
+
+    axes: tuple[Axis, ...]
+    shift: HomeShift
+    boot_count: int
+    home: HomeTrust | None
+    home_lost: str
+    home_lost_at: datetime | None
+    zeroed: tuple[Axis, ...]
+    confirmation: Confirmation | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,9 +127,11 @@ class TrackerMemory:
     known); `former_drive` are the drive settings before the last change, so that it can be undone. `stow` is
     the place it was sent to by command and stays in until it is resumed or commanded otherwise; `protection`
     is the one that holds, which must be seen good before tracking goes on; `sensors` are those that were ever
-    seen, so that they can be missed. `control_epoch` is the newest number that orders were fenced with.
-    `rejected` are the stored settings that were not accepted at the start; nothing moves until somebody has
-    saved the settings.
+    seen, so that they can be missed. `show_moves` says that a show moves the panel by itself, or did so when
+    it was cut off and nobody has asked for anything since. `control_epoch` is the newest number that orders
+    were fenced with. `rejected` are the stored settings that were not accepted at the start; nothing moves
+    until somebody has saved the settings. `home_shift` is not zero while setting the
+    home position was undone, `former_home` is what it would be undone to.
     """
 
     mode: Mode | None = None
@@ -113,6 +141,7 @@ class TrackerMemory:
     home_lost: str = ""
     home_lost_at: datetime | None = None
     showing: str | None = None
+    show_moves: bool = False
     fault_code: str | None = None
     fault_text: str = ""
     confirmations: dict[StepName, Confirmation] = field(default_factory=dict)
@@ -128,6 +157,8 @@ class TrackerMemory:
     control_epoch: int = 0
     settings_lock: CommissioningLock | None = None
     rejected: tuple[RejectedSetting, ...] = ()
+    home_shift: HomeShift = HomeShift()
+    former_home: FormerHome | None = None
 
 
 @dataclass(frozen=True, slots=True)

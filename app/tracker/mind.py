@@ -67,11 +67,13 @@ class Mind:
         "guarding",
         "guards",
         "hand_until",
+        "held_back",
         "lost",
         "made_up",
         "memory",
         "misses",
         "now",
+        "reached",
         "recovered_at",
         "recovering",
         "request_number",
@@ -109,6 +111,7 @@ class Mind:
         self.made_up = False
         self.aftermath: Reason | None = None
         self.wait: Reason | None = None
+        self.held_back: Reason | None = None
         self.warning: Warned | None = None
         self.guarding: Guarding | None = None
         self.hand_until: datetime | None = None
@@ -132,6 +135,7 @@ class Mind:
         self.ailing_since = LONG_AGO
         self.recovered_at: tuple[datetime, ...] = ()
         self.recovering = False
+        self.reached = False
 
     def say(self, kind: EventKind, message: str, **data: Any) -> None:
         """Note that something happened; it leaves with the present call's events."""

@@ -13,7 +13,7 @@ from app.tracker.activities import (
     tracking,
     zeroing,
 )
-from app.tracker.activity import STOPPING, Faulted
+from app.tracker.activity import STOPPING, Faulted, Showing
 from app.tracker.authority import begin_service, confirm_clear, end_service
 from app.tracker.commands import (
     BeginService,
@@ -45,7 +45,9 @@ from app.tracker.commands import (
     StopShow,
     Stow,
     Track,
+    UndoZero,
 )
+from app.tracker.home_shift import undo_zero
 from app.tracker.lockout import lock_out, release_lock
 from app.tracker.mind import NOWHERE, Mind
 from app.tracker.mounts.absent import absent_axis
@@ -57,10 +59,16 @@ from app.tracker.transitions import leave, switch_tracking_off
 def obey(mind: Mind, command: Command) -> None:
     """Change the tracker's mind, or raise `CommandRejected` and change nothing but a refused press."""
     _refuse_absent_axis(mind, command)
+    _hand_on(mind, command)
+    if mind.memory.show_moves and not isinstance(mind.activity, Showing):
+        mind.remember(show_moves=False)
+
+
+def _hand_on(mind: Mind, command: Command) -> None:
     match command:
         case Stop():
             stop(mind)
-        case Jog() | EndJog() | Step() | SetZero() | Home() | SelectMode():
+        case Jog() | EndJog() | Step() | SetZero() | UndoZero() | Home() | SelectMode():
             _obey_by_hand(mind, command)
         case Move() | Park() | Track() | ResetFault():
             _obey_automatic(mind, command)
@@ -93,7 +101,7 @@ def _refuse_absent_axis(mind: Mind, command: Command) -> None:
         raise CommandRejected(absent_axis(mind.config))
 
 
-def _obey_by_hand(mind: Mind, command: Jog | EndJog | Step | SetZero | Home | SelectMode) -> None:
+def _obey_by_hand(mind: Mind, command: Jog | EndJog | Step | SetZero | UndoZero | Home | SelectMode) -> None:
     match command:
         case Jog():
             jogging.jog(mind, command)
@@ -103,6 +111,8 @@ def _obey_by_hand(mind: Mind, command: Jog | EndJog | Step | SetZero | Home | Se
             moving.step_by(mind, command)
         case SetZero():
             zeroing.set_zero(mind, command)
+        case UndoZero():
+            undo_zero(mind)
         case Home():
             zeroing.home(mind)
         case SelectMode():

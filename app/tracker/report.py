@@ -7,9 +7,20 @@ from app.angles import separation_deg, wrap360
 from app.sun.position import SunPosition
 from app.tracker import machine_guard
 from app.tracker.activities.tracking import sun_height_deg
-from app.tracker.activity import NAMES, AxisPair, Faulted, Showing, Stowed, Stowing, Tracking, TrackPhase
+from app.tracker.activity import (
+    NAMES,
+    AxisPair,
+    Faulted,
+    Homing,
+    Showing,
+    Stowed,
+    Stowing,
+    Tracking,
+    TrackPhase,
+)
+from app.tracker.approach import is_approaching
 from app.tracker.authority import service_state
-from app.tracker.conditions import Action, unmet
+from app.tracker.conditions import Action, reachable, undoable, unmet
 from app.tracker.config import MountKind, Orientation, TrackerConfig
 from app.tracker.hybrid import Corrected
 from app.tracker.mind import Mind
@@ -31,8 +42,11 @@ _INDEX = {kind: float(list(ActivityName).index(name)) for kind, name in NAMES.it
 _NO_ORIENTATION = (nan, nan)
 
 
-def snapshot(mind: Mind, at: datetime, now: datetime) -> Snapshot:
-    """Return everything known after the last tick, stamped `at`; ages are counted to `now`, steady time."""
+def snapshot(mind: Mind, at: datetime, now: datetime, *, asked: bool = True) -> Snapshot:
+    """Return everything known after the last tick, stamped `at`; ages are counted to `now`, steady time.
+
+    `asked`: somebody wants to know which actions are forbidden, and why; else they are left out.
+    """
     fresh = mind.seen.feedback if mind.seen else None
     faced = _faced(mind, fresh)
     sun_is_up = mind.sun is not None and sun_height_deg(mind.config, mind.sun) > 0.0
@@ -43,6 +57,7 @@ def snapshot(mind: Mind, at: datetime, now: datetime) -> Snapshot:
         tick=mind.ticks,
         activity=NAMES[type(mind.activity)],
         activity_text=activity_text(mind),
+        approaching=is_approaching(mind),
         mode=mind.memory.mode or default_mode(mind.config.mount),
         orientation=mind.memory.orientation,
         tracking_on=mind.memory.tracking_on,
@@ -65,7 +80,8 @@ def snapshot(mind: Mind, at: datetime, now: datetime) -> Snapshot:
         show=_show(mind.activity) if isinstance(mind.activity, Showing) else None,
         program=step_progress(mind),
         hybrid=_hybrid(mind, fresh),
-        actions={action.value: unmet(mind, action) for action in Action},
+        actions={action.value: unmet(mind, action) for action in Action} if asked else {},
+        unreachable=reachable(mind),
         protection=protection_state(mind),
         stow=mind.activity.stow if isinstance(mind.activity, Stowing | Stowed) else None,
         not_stowed=mind.alarmed,
@@ -79,6 +95,7 @@ def snapshot(mind: Mind, at: datetime, now: datetime) -> Snapshot:
         home=mind.memory.home,
         home_lost=mind.memory.home_lost,
         home_lost_at=mind.memory.home_lost_at,
+        can_undo_home=undoable(mind) is None,
         rejected=mind.memory.rejected,
     )
 
@@ -280,7 +297,7 @@ def _notices(mind: Mind) -> tuple[Reason, ...]:
     )
     refused = accepted(mind)
     told = tuple(reason for reason in (refused, mind.aftermath) if reason is not None)
-    if mind.memory.home is None and mind.memory.home_lost:
+    if mind.memory.home is None and mind.memory.home_lost and not isinstance(mind.activity, Homing):
         told = (*told, _zero_lost(mind))
     return (
         told

@@ -1,5 +1,6 @@
 """What wind, snow and light demand of this tracker now, in the words of the person who reads it."""
 
+from dataclasses import replace
 from datetime import datetime
 
 from app.tracker.mind import Mind
@@ -21,7 +22,9 @@ BAD = {
     Quality.STALE: "has not reported in time",
     Quality.FROZEN: "reports the same value all the time",
     Quality.IMPOSSIBLE: "reports what cannot be",
+    Quality.BEFORE_RESTART: "has reported nothing since the restart",
 }
+PROVES_A_SENSOR = (Quality.GOOD, Quality.BEFORE_RESTART)
 REACTS = {
     Reaction.IGNORE: "that is ignored",
     Reaction.WARN: "nothing moves because of it",
@@ -89,7 +92,15 @@ def protection_state(mind: Mind) -> ProtectionState | None:
 
 
 def reason(mind: Mind) -> Reason:
-    """Return the sentence for what holds."""
+    """Return the sentence for what holds; it says so where the weather is simulated."""
+    found = _reason(mind)
+    if mind.seen is None or not mind.seen.weather.simulated:
+        return found
+    text = found.message
+    return replace(found, message=f"{text} The reading is SIMULATED.")
+
+
+def _reason(mind: Mind) -> Reason:
     state, config, name = guarding(mind), mind.config.protection, mind.config.name
     match state.kind:
         case Protection.TYPHOON:
@@ -146,7 +157,9 @@ def _learnt(mind: Mind, sensed: Sensed) -> tuple[Quantity, ...]:
         return known
     if sensed.simulated:
         return known + tuple(one for one in Quantity if sensed.reading(one).value is not None)
-    fresh = tuple(one for one in Quantity if one not in known and sensed.reading(one).good is not None)
+    fresh = tuple(
+        one for one in Quantity if one not in known and sensed.reading(one).quality in PROVES_A_SENSOR
+    )
     if fresh:
         mind.remember(sensors=known + fresh)
     return known + fresh
@@ -175,6 +188,9 @@ def _typhoon_reason(mind: Mind, state: Guarding) -> Reason:
         return Reason(
             "wind_sensor_bad", doubt_reason(mind, Quantity.WIND).message, f"Check the sensor. {hint}"
         )
+    if wind is not None and wind.quality is Quality.BEFORE_RESTART and wind.value is not None:
+        text = f"The wind at {name} was {wind.value:.1f} m/s before the restart and is not known to be calm."
+        return Reason("wind", text, hint)
     if wind is None or wind.good is None:
         return Reason("wind", f"The wind at {name} was too strong and is not known to be calm.", hint)
     if state.typhoon.unsafe_at == mind.now:

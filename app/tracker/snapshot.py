@@ -145,12 +145,14 @@ class Snapshot:
     degrees; `position_age_s` is the age of the last good reading. `off_sun_deg` is the angle between
     the panel's normal and the sun (None while the sun is down), the correction of `hybrid` taken out.
     `waiting` says why a tracker that should move does not. `actions` maps every action to the reasons
-    that forbid it (none: allowed). `protection` is what wind, snow or light demand now (None: nothing),
+    that forbid it (none: allowed); it is empty where nobody asked for it. `unreachable` says that the drive
+    does not answer. `protection` is what wind, snow or light demand now (None: nothing),
     `stow` the place it is or goes to for that or by command, `not_stowed` why it does not stow although it
     should (priority 1), `local` that the switch at the cabinet is on local, `service` who serves the machine,
     `link` how the drive's replies come. `home` says who set the zero that is trusted, `home_lost` why and
-    `home_lost_at` since when none is. `warning` counts down to a motion that nobody at the machine asked
-    for.
+    `home_lost_at` since when none is, `can_undo_home` that it was set and may be undone.
+    `approaching` says of one that tracks that it has not reached the sun yet, or not again after a break.
+    `warning` counts down to a motion that nobody at the machine asked for.
     """
 
     tracker_id: str
@@ -197,6 +199,9 @@ class Snapshot:
     home_lost: str = ""
     home_lost_at: datetime | None = None
     rejected: tuple[RejectedSetting, ...] = ()
+    can_undo_home: bool = False
+    unreachable: Reason | None = None
+    approaching: bool = False
 
 
 class EventKind(StrEnum):
@@ -219,6 +224,7 @@ class EventKind(StrEnum):
     MOVE_ENDED = "move_ended"
     ZERO_SET = "zero_set"
     ZERO_FAILED = "zero_failed"
+    ZERO_UNDONE = "zero_undone"
     HOMING_STARTED = "homing_started"
     HOMING_ENDED = "homing_ended"
     HOME_LOST = "home_lost"

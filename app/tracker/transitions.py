@@ -82,7 +82,7 @@ def end_move(mind: Mind, why: str) -> None:
 
 def end_show(mind: Mind, showing: Showing, message: str, outcome: str) -> None:
     """Say that a show has ended; nothing is running any more."""
-    mind.remember(showing=None)
+    mind.remember(showing=None, show_moves=False)
     mind.say(EventKind.SHOW_ENDED, message, outcome=outcome, show_id=showing.course.plan.show_id)
 
 
@@ -104,6 +104,7 @@ def fail(mind: Mind, reason: Reason) -> None:
 
 def lose_home(mind: Mind, reason: Reason) -> None:
     """Stop believing the zero, and whatever needed it."""
+    mind.remember(former_home=None)
     mind.zeroed, mind.corrected = frozenset(), None
     if mind.memory.home is None:
         return

@@ -75,6 +75,7 @@ class Quality(StrEnum):
     STALE = "stale"
     FROZEN = "frozen"
     IMPOSSIBLE = "impossible"
+    BEFORE_RESTART = "before_restart"
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +102,8 @@ class Sensed:
 
     `wind` is the gust, the fastest wind of the last 3 s; `wind_mean_mps` the mean of up to 10 minutes, None
     without a sample (the site may set other windows); `wind_from_deg` where a good reading says that it comes
-    from, clockwise from north; `simulated` says that it is all made up.
+    from, clockwise from north; `simulated` says that it is all made up. What was reported before the restart
+    and not since has that quality; `unheard_s` is how long nothing has been heard at all.
     """
 
     wind: Reading = NO_READING
@@ -110,6 +112,7 @@ class Sensed:
     wind_mean_mps: float | None = None
     wind_from_deg: float | None = None
     simulated: bool = False
+    unheard_s: float = 0.0
 
     def reading(self, quantity: Quantity) -> Reading:
         """Return one quantity."""
@@ -134,6 +137,8 @@ class WeatherNow:
     tells age, source and quality of each value; `gust_mps` is the fastest wind of the last 3 s, `mean_mps`
     the mean of up to 10 minutes, unless the site sets other windows. `simulated` says that it is all made up.
     `winds` are the wind sensors by their source, `disagreement` says that two of them are too far apart.
+    `before_restart` says that nothing has been reported since the controller service started: it is the last
+    that was known before.
     """
 
     readings: Weather
@@ -147,6 +152,7 @@ class WeatherNow:
     simulated: bool = False
     winds: dict[str, Reading] = field(default_factory=dict)
     disagreement: Reason | None = None
+    before_restart: bool = False
 
     @property
     def usable(self) -> Weather | None:

@@ -21,6 +21,7 @@ from app.tracker.activity import (
     TrackPhase,
     Zeroing,
 )
+from app.tracker.approach import is_approaching
 from app.tracker.mind import Mind
 from app.tracker.mount import sky
 from app.tracker.mounts.abilities import axis_words
@@ -69,7 +70,7 @@ def _doing(mind: Mind, activity: Activity) -> str:
         case Zeroing() | Homing() | Stopping():
             return _PLAIN[type(activity)]
         case Tracking():
-            return f"Tracking: {_tracking(mind, activity)}"
+            return _approaching(mind) if is_approaching(mind) else f"Tracking: {_tracking(mind, activity)}"
         case Showing():
             return _SHOWING[activity.phase]
         case Faulted():
@@ -96,10 +97,17 @@ def _jog(mind: Mind, jogging: Jogging) -> str:
     return f"{words.title.lower()} {words.grows if jogging.direction > 0 else words.falls}"
 
 
+def _approaching(mind: Mind) -> str:
+    return "Moving to the sun" if mind.warning is None else "Moving to the sun in a few seconds"
+
+
 def _tracking(mind: Mind, tracking: Tracking) -> str:
     night = tracking.phase is TrackPhase.NIGHT
     if tracking.run is not None:
-        return "the sun is down, going to the night position" if night else "moving to the sun"
+        if night:
+            return "the sun is down, going to the night position"
+        is_fixed = tracking.phase is TrackPhase.FIXED
+        return "moving to the fixed orientation" if is_fixed else "moving to the sun"
     if tracking.phase is TrackPhase.RESTING or mind.warning is not None:
         return _resting(mind)
     return _standing(mind, tracking)

@@ -12,6 +12,7 @@ from app.tracker.config import DriveConfig, DriveKind
 from app.tracker.memory import Confirmation, Pointing, Sighting, StepName
 from app.tracker.motion import AxisFeedback, Feedback, RequestKind
 from app.tracker.snapshot import ActivityName, EventKind
+from tests.fault_result import HOME_AGAIN, VIRTUAL, FaultResult
 from tests.tracker.plant import CONFIG, MORNING, READY, TRUST, Plant
 from tests.tracker.scripted import Scripted
 
@@ -124,17 +125,23 @@ def test_the_drive_searches_its_origin_by_itself() -> None:
 
 
 @pytest.mark.fault(23)
-def test_a_search_that_is_stopped_leaves_no_zero_and_the_drive_at_rest() -> None:
+def test_a_search_that_is_stopped_leaves_no_zero_and_the_drive_at_rest(fault: FaultResult) -> None:
     plant = Plant()
     plant.tick()
     plant.ask(Home())
     plant.forward(0.5)
     plant.ask(Stop())
+    fault.noticed(0.0, VIRTUAL)
     plant.forward(1.0)
     assert not plant.snapshot.home_trusted
     assert not plant.drive.observe().homing
     assert plant.activity is ActivityName.HOLDING
     assert "was not finished" in plant.controller.memory.home_lost
+    fault.shows(plant.controller.memory.home_lost)
+    plant.ask(Home())
+    plant.forward(120.0)
+    assert plant.snapshot.home_trusted
+    fault.recovers(HOME_AGAIN)
 
 
 @pytest.mark.parametrize(

@@ -23,6 +23,7 @@ from app.tracker.mounts.abilities import default_mode
 from app.tracker.mounts.kinematics import angles
 from app.tracker.programs.show import ShowCourse, check_show
 from app.tracker.snapshot import EventKind
+from tests.fault_result import FaultResult
 from tests.tracker.plant import BLANK, CONFIG, MORNING, READY, SAMSUN, Plant
 from tests.tracker.shows import SYDNEY, daylight, show, utc
 
@@ -207,6 +208,23 @@ RANGES = {
     MountKind.HORIZONTAL_SINGLE_AXIS: ((-90.0, 90.0), (-90.0, 90.0)),
     MountKind.TILTED_SINGLE_AXIS: ((-120.0, 120.0), (-120.0, 120.0)),
 }
+
+
+@pytest.mark.fault(35)
+def test_a_move_through_north_goes_the_long_way_within_the_travel(fault: FaultResult) -> None:
+    plant = tracking(CONFIG)
+    plant.ask(Move(Orientation(350.0, 20.0)))
+    plant.forward(90.0)
+    assert plant.snapshot.in_position
+    plant.ask(Move(Orientation(10.0, 20.0)))
+    passed: list[float] = []
+    plant.forward(90.0, lambda: passed.append(plant.azimuth_deg))
+    assert plant.snapshot.in_position
+    assert all(CONFIG.azimuth.beyond_deg(azimuth_deg) < 1e-6 for azimuth_deg in passed)
+    assert any(170.0 < azimuth_deg < 190.0 for azimuth_deg in passed), "it turned back through the south"
+    fault.prevented("the way is planned within the travel, never through an end stop")
+    fault.shows_nothing("the axis turns the long way")
+    fault.recovers("nothing was lost")
 
 
 @settings(max_examples=40)

@@ -11,6 +11,7 @@ from app.tracker.commands import (
     CommandRejected,
     EndJog,
     GoToStart,
+    Home,
     Jog,
     LockOut,
     Move,
@@ -29,6 +30,7 @@ from app.tracker.protections.config import ProtectionConfig, StowPlace, Stows, W
 from app.tracker.protections.words import Facing, Protection, Reaction, StowName
 from app.tracker.snapshot import ActivityName, EventKind
 from app.tracker.weather import Quantity
+from tests.fault_result import HOME_AGAIN, VIRTUAL, FaultResult
 from tests.tracker.plant import CONFIG, READY, Plant
 from tests.tracker.shows import SOLSTICE
 
@@ -132,12 +134,25 @@ def test_a_panel_that_stands_level_already_is_not_missed() -> None:
 
 
 @pytest.mark.fault(42)
-def test_without_a_zero_or_with_a_fault_the_panel_is_not_stowed() -> None:
-    plant = Plant().blow(STORM).forward(5)
+def test_without_a_zero_or_with_a_fault_the_panel_is_not_stowed(fault: FaultResult) -> None:
+    plant = Plant().blow(STORM)
+    begun = plant.clock.now()
+    while plant.snapshot.not_stowed is None:
+        assert plant.clock.now() - begun < timedelta(seconds=5)
+        plant.forward(0.1)
+    fault.noticed((plant.clock.now() - begun).total_seconds(), VIRTUAL)
     reason = plant.snapshot.not_stowed
     assert reason is not None
     assert "no trusted zero" in reason.message
     assert doing(plant) is ActivityName.HOLDING
+    fault.shows(reason.message)
+    plant.ask(Home())
+    plant.forward(120)
+    plant.ask(Stow(StowName.WIND))
+    plant.forward(60)
+    assert plant.snapshot.not_stowed is None
+    assert doing(plant) is ActivityName.STOWED
+    fault.recovers(f"{HOME_AGAIN}, and the tracker is stowed")
 
 
 def test_a_lost_drive_in_a_storm_raises_the_condition() -> None:
@@ -238,6 +253,25 @@ def test_a_stow_by_command_waits_for_resume_and_wind_wins_over_it() -> None:
         plant.ask(Resume())
 
 
+@pytest.mark.fault(41)
+def test_wind_takes_a_tracker_that_snow_has_stowed(fault: FaultResult) -> None:
+    plant = tracking()
+    plant.blow(2.0, snow_kg=4.0).forward(120)
+    assert plant.snapshot.stow is StowName.SNOW
+    plant.blow(STORM, snow_kg=4.0)
+    begun = plant.clock.now()
+    while plant.snapshot.stow is not StowName.WIND:
+        assert plant.clock.now() - begun < timedelta(seconds=5)
+        plant.forward(0.1)
+    fault.noticed((plant.clock.now() - begun).total_seconds(), VIRTUAL)
+    seen = plant.snapshot.protection
+    assert seen is not None
+    fault.shows(seen.reason.message)
+    plant.blow(2.0, snow_kg=4.0).forward(CALM_S + 120)
+    assert plant.snapshot.stow is StowName.SNOW
+    fault.recovers("by itself: after the calm the snow stow goes on")
+
+
 def test_snow_tips_the_panel_and_its_end_brings_it_back() -> None:
     plant = tracking()
     plant.blow(2.0, snow_kg=4.0).forward(59)
@@ -298,17 +332,26 @@ def test_after_a_restart_a_storm_that_was_not_seen_over_still_holds() -> None:
 
 
 @pytest.mark.fault(38)
-def test_a_wind_sensor_that_fails_stows_after_a_minute() -> None:
+def test_a_wind_sensor_that_fails_stows_after_a_minute(fault: FaultResult) -> None:
     plant = tracking()
     plant.blow(None).forward(55)
     assert doing(plant) is ActivityName.TRACKING
-    plant.forward(60)
+    begun = plant.clock.now() - timedelta(seconds=55)
+    while "wind_sensor_bad" not in {reason.code for reason in plant.snapshot.notices}:
+        assert plant.clock.now() - begun <= timedelta(seconds=61)
+        plant.forward(0.1)
+    fault.noticed((plant.clock.now() - begun).total_seconds(), VIRTUAL)
+    plant.forward(55)
     seen = plant.snapshot
     assert doing(plant) is ActivityName.STOWED
     assert seen.protection is not None
     assert seen.protection.reason.code == "wind_sensor_bad"
     assert "wind_sensor_bad" in {reason.code for reason in seen.notices}
     assert [event.data["quantity"] for event in plant.happened(EventKind.SENSOR_DOUBTED)] == [Quantity.WIND]
+    fault.shows(seen.protection.reason.message)
+    plant.blow(2.0).forward(CALM_S + 30)
+    assert doing(plant) is ActivityName.TRACKING
+    fault.recovers(f"by itself: after {CALM_S - 1:.0f} s of calm that a good sensor saw")
 
 
 def test_a_bad_wind_sensor_may_also_hold_the_panel() -> None:

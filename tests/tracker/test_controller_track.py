@@ -13,6 +13,7 @@ from app.tracker.memory import Confirmation, StepName, TrackerMemory
 from app.tracker.mode import Mode
 from app.tracker.motion import HALT
 from app.tracker.snapshot import ActivityName, EventKind, Snapshot
+from tests.fault_result import FaultResult
 from tests.tracker.plant import BLANK, CONFIG, MORNING, READY, SAMSUN, Plant
 from tests.tracker.scripted import Scripted
 
@@ -141,7 +142,7 @@ def test_before_the_first_tick_of_tracking_there_is_no_next_move_yet() -> None:
     plant = Plant(READY)
     plant.tick()
     plant.controller.handle(Track(), plant.clock.now())
-    assert plant.snapshot.activity_text == "Tracking: on the sun"
+    assert plant.snapshot.activity_text == "Moving to the sun"
 
 
 def test_a_sunrise_in_an_unknown_place_is_approached_from_the_low_end() -> None:
@@ -178,7 +179,7 @@ def test_a_sun_beyond_the_limits_is_faced_as_nearly_as_possible_and_it_is_said()
 
 
 @pytest.mark.fault(34)
-def test_a_slow_azimuth_axis_says_that_it_passes_the_zenith() -> None:
+def test_a_slow_azimuth_axis_says_that_it_passes_the_zenith(fault: FaultResult) -> None:
     slow = replace(CONFIG, azimuth=replace(CONFIG.azimuth, speed_dps=0.2, jog_slow_dps=0.1, jog_fast_dps=0.2))
     noon = datetime(2026, 6, 10, 11, 45, tzinfo=UTC)
     plant = tracking(config=slow, at=noon, location=Location(23.0, 0.0))
@@ -186,6 +187,11 @@ def test_a_slow_azimuth_axis_says_that_it_passes_the_zenith() -> None:
     plant.forward(1500.0, lambda: seen.add(plant.snapshot.activity_text))
     assert "Tracking: passing the zenith as fast as the azimuth axis can" in seen
     assert not plant.happened(EventKind.FAULT_RAISED)
+    fault.prevented("the aim is led or held within the speed of the axis")
+    fault.shows("Tracking: passing the zenith as fast as the azimuth axis can")
+    plant.forward(1800.0)
+    assert plant.snapshot.in_position
+    fault.recovers("by itself: after the zenith the panel is in position again")
 
 
 def test_tracking_needs_everything_that_the_earlier_steps_give_and_says_all_of_it() -> None:

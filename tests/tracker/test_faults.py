@@ -28,6 +28,7 @@ from app.tracker.commands import (
     Stop,
     Track,
 )
+from app.tracker.conditions import Action
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.machine_watch import Braking, allowed_overrun_deg
 from app.tracker.motion import HALT, Feedback
@@ -36,6 +37,7 @@ from app.tracker.protections.machine_config import MachineProtection, Recoveries
 from app.tracker.protections.words import LinkQuality
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ActivityName, EventKind, Snapshot
+from tests.fault_result import HOME_AGAIN, RESET, VIRTUAL, FaultResult
 from tests.tracker.plant import CONFIG, MORNING, READY, Plant
 
 SOUTH = Move(Orientation(180.0, 45.0))
@@ -43,18 +45,18 @@ Witness = Callable[..., float]
 
 
 @pytest.fixture
-def witnessed(record_property: Callable[[str, object], None]) -> Witness:
+def witnessed(fault: FaultResult) -> Witness:
     """Let time pass until a code is shown; record how long that took, and the very sentence."""
 
-    def wait(plant: Plant, code: str, *, within_s: float, policy: str = "none: a person clears it") -> float:
+    def wait(plant: Plant, code: str, *, within_s: float, policy: str = RESET) -> float:
         begun = plant.clock.now()
         while (reason := shown(plant.snapshot).get(code)) is None:
             assert plant.clock.now() - begun <= timedelta(seconds=within_s), f"{code} was not noticed"
             plant.forward(0.1)
         took_s = (plant.clock.now() - begun).total_seconds()
-        record_property("detected_s", f"{took_s:.1f}")
-        record_property("shown", reason.message)
-        record_property("policy", policy)
+        fault.noticed(took_s, VIRTUAL)
+        fault.shows(reason.message)
+        fault.recovers(policy)
         return took_s
 
     return wait
@@ -110,7 +112,7 @@ def test_a_cut_cable_in_mid_move_is_told_with_the_age_of_the_reading(witnessed: 
 def test_a_drive_that_lost_its_power_has_lost_its_zero(witnessed: Witness) -> None:
     plant = moving(tracks=True)
     hurt(plant, FaultKind.POWER_LOSS, None)
-    witnessed(plant, "drive_restarted", within_s=0.5, policy="none: the zero is set again")
+    witnessed(plant, "drive_restarted", within_s=0.5, policy=HOME_AGAIN)
     assert plant.controller.memory.home is None
     assert "home_not_trusted" in plant.reasons("track") & plant.reasons("stow") & plant.reasons("move")
     assert plant.reasons("jog") == set(), "slow hand motion is the way back"
@@ -124,7 +126,7 @@ def test_slow_replies_end_and_refuse_motion_by_a_held_key(witnessed: Witness) ->
     plant.forward(0.1)
     assert plant.reasons("jog") == {"link_slow"}
     assert plant.reasons("step") == set()
-    assert witnessed(plant, "link_slow", within_s=0.5, policy="unlimited: it ends with its cause") <= 0.5
+    assert witnessed(plant, "link_slow", within_s=0.5, policy="by itself: it ends with its cause") <= 0.5
     plant.link = LinkQuality(0.03, 0.08)
     plant.forward(0.1)
     assert plant.reasons("jog") == set()
@@ -165,7 +167,7 @@ def test_an_axis_that_turns_the_wrong_way_asks_for_its_phases(witnessed: Witness
 def test_a_counter_that_jumps_costs_the_zero(witnessed: Witness) -> None:
     plant = moving(tracks=True)
     hurt(plant, FaultKind.ENCODER_JUMP, amount=12.4)
-    assert witnessed(plant, "encoder_jump", within_s=0.5, policy="none: the zero is set again") <= 0.5
+    assert witnessed(plant, "encoder_jump", within_s=0.5, policy=HOME_AGAIN) <= 0.5
     assert plant.controller.memory.home is None
     assert plant.activity is ActivityName.HOLDING
 
@@ -185,7 +187,7 @@ def test_an_axis_that_creeps_is_told_until_it_rests(witnessed: Witness) -> None:
     plant.forward(1.0)
     hurt(plant, FaultKind.SLIP, Axis.ELEVATION, 0.5)
     took_s = witnessed(
-        plant, "creep", within_s=4.0, policy="unlimited: it ends a minute after the last motion"
+        plant, "creep", within_s=4.0, policy="by itself: it ends a minute after the last motion"
     )
     assert took_s <= 4.0, "a degree at half a degree a second"
     plant.forward(30.0)
@@ -203,7 +205,7 @@ def test_an_axis_that_stops_too_late_is_slow_until_its_stops_are_short(witnessed
     plant.forward(10.0)
     hurt(plant, FaultKind.LONG_STOP)
     plant.ask(Stop())
-    witnessed(plant, "overrun", within_s=5.0, policy="limited: three short stops in a row")
+    witnessed(plant, "overrun", within_s=5.0, policy="by itself: three short stops in a row")
     plant.drive.clear_faults()
     plant.forward(10.0)
     for _ in range(3):
@@ -231,17 +233,22 @@ def test_a_stop_is_judged_by_the_one_that_was_measured() -> None:
 
 
 @pytest.mark.fault(17)
-def test_one_switch_in_the_range_leaves_the_other_way_free(witnessed: Witness) -> None:
+def test_one_switch_in_the_range_leaves_the_other_way_free(fault: FaultResult) -> None:
     plant = moving()
     hurt(plant, FaultKind.UPPER_LIMIT_STUCK)
     plant.ask(Track())
     plant.ask(SOUTH)
+    begun = plant.clock.now()
+    while not plant.happened(EventKind.LIMIT_REACHED):
+        assert plant.clock.now() - begun < timedelta(seconds=2)
+        plant.forward(0.1)
+    fault.noticed((plant.clock.now() - begun).total_seconds(), VIRTUAL)
     plant.forward(2.0)
-    assert plant.happened(EventKind.LIMIT_REACHED)
     with pytest.raises(CommandRejected, match="limit switch"):
         plant.ask(Jog("up", Axis.AZIMUTH, 1))
     plant.ask(Step(Axis.AZIMUTH, -1.0))
     assert plant.activity is ActivityName.MOVING
+    fault.recovers("the axis leaves the switch, the only way that is free")
 
 
 @pytest.mark.fault(18)
@@ -272,7 +279,7 @@ def test_an_axis_whose_switch_never_comes_is_stopped_beyond_its_soft_limit(witne
 
 @pytest.mark.fault(19)
 def test_a_search_whose_switch_never_comes_ends_with_the_travel_and_says_whose(
-    record_property: Callable[[str, object], None],
+    fault: FaultResult,
 ) -> None:
     plant = Plant()
     plant.tick()
@@ -284,9 +291,8 @@ def test_a_search_whose_switch_never_comes_ends_with_the_travel_and_says_whose(
         assert plant.clock.now() - begun < timedelta(seconds=120)
         plant.forward(0.1)
     (told,) = plant.happened(EventKind.HOMING_ENDED)
-    record_property("detected_s", f"{(plant.clock.now() - begun).total_seconds():.1f}")
-    record_property("shown", told.message)
-    record_property("policy", "none: the zero is set again")
+    fault.noticed((plant.clock.now() - begun).total_seconds(), VIRTUAL)
+    fault.shows(told.message)
     assert told.data == {"outcome": "failed"}
     assert "did not find that of the azimuth axis" in told.message
     assert stands(plant)
@@ -296,6 +302,7 @@ def test_a_search_whose_switch_never_comes_ends_with_the_travel_and_says_whose(
     plant.ask(Home())
     plant.forward(120.0)
     assert plant.snapshot.home_trusted
+    fault.recovers(HOME_AGAIN)
 
 
 @pytest.mark.fault(20)
@@ -337,6 +344,13 @@ def test_an_ordinary_stop_keeps_the_zero_and_a_search_gives_it_up() -> None:
     assert not plant.snapshot.home_trusted
 
 
+ALLOWED_ON_LOCAL = {
+    Action.STOP, Action.STOP_SHOW, Action.PAUSE_SHOW, Action.RESET_FAULT, Action.SET_MODE,
+    Action.LOCK_OUT, Action.RELEASE_LOCK, Action.BEGIN_SERVICE, Action.CONFIRM_CLEAR, Action.END_SERVICE,
+}  # fmt: skip
+"""What moves nothing and says nothing about where the panel is; everything else is refused on local."""
+
+
 def test_the_switch_at_the_cabinet_beats_everything() -> None:
     plant = moving(tracks=True)
     hurt(plant, FaultKind.LOCAL_SWITCH, None)
@@ -344,8 +358,8 @@ def test_the_switch_at_the_cabinet_beats_everything() -> None:
     assert plant.snapshot.local
     assert plant.activity is ActivityName.HOLDING
     assert plant.snapshot.waiting[0].message == "The switch at the cabinet of Tracker 1 is on local."
-    for action in ("jog", "step", "move", "park", "track", "stow", "home", "prove_direction"):
-        assert "local" in plant.reasons(action), action
+    for action in Action:
+        assert ("local" in plant.reasons(action)) is (action not in ALLOWED_ON_LOCAL), action
     assert plant.reasons("stop") == set()
     plant.drive.clear_faults()
     plant.forward(5.0)

@@ -12,6 +12,7 @@ from app.tracker.commands import Track
 from app.tracker.mode import Mode
 from app.tracker.motion import DriveCommand
 from app.tracker.snapshot import ActivityName, EventKind
+from tests.fault_result import VIRTUAL, FaultResult
 from tests.tracker.plant import CONFIG, READY, SAMSUN, Plant
 from tests.tracker.scripted import Scripted
 
@@ -55,11 +56,16 @@ def tracked_over(instant: datetime, location: Location) -> Plant:
 
 @pytest.mark.fault(29)
 @pytest.mark.parametrize(("zone", "switch"), SWITCHES)
-def test_the_hour_at_which_clocks_are_put_on_or_back_moves_nothing(zone: str, switch: datetime) -> None:
+def test_the_hour_at_which_clocks_are_put_on_or_back_moves_nothing(
+    zone: str, switch: datetime, fault: FaultResult
+) -> None:
     just_before, just_after = (switch + timedelta(seconds=s) for s in (-1, 1))
     local = ZoneInfo(zone)
     assert just_before.astimezone(local).utcoffset() != just_after.astimezone(local).utcoffset()
     tracked_over(switch, PLACES[zone])
+    fault.prevented("the controller reckons in UTC alone")
+    fault.shows_nothing("local time changes on the page, with its offset beside it")
+    fault.recovers("nothing was lost")
 
 
 @pytest.mark.fault(31)
@@ -79,12 +85,15 @@ def test_the_hour_at_which_clocks_are_put_on_or_back_moves_nothing(zone: str, sw
     ids=lambda instant: f"{instant:%Y-%m-%d}",
 )
 @pytest.mark.parametrize("location", [SAMSUN, Location(-33.9, 151.2)], ids=["Samsun", "Sydney"])
-def test_an_end_of_an_era_moves_nothing(instant: datetime, location: Location) -> None:
+def test_an_end_of_an_era_moves_nothing(instant: datetime, location: Location, fault: FaultResult) -> None:
     tracked_over(instant, location)
+    fault.prevented("no counter of the product ends with the era")
+    fault.shows_nothing("nothing happens that is worth telling")
+    fault.recovers("nothing was lost")
 
 
 @pytest.mark.fault(33)
-def test_in_the_polar_night_nothing_moves_and_nothing_is_waited_for() -> None:
+def test_in_the_polar_night_nothing_moves_and_nothing_is_waited_for(fault: FaultResult) -> None:
     plant = Plant(READY, at=datetime(2027, 12, 21, tzinfo=UTC), location=SPITSBERGEN, watchdog=None)
     plant.tick()
     plant.ask(Track())
@@ -95,10 +104,14 @@ def test_in_the_polar_night_nothing_moves_and_nothing_is_waited_for() -> None:
         plant.forward(3.0)
         assert plant.activity is ActivityName.TRACKING
         assert (plant.azimuth_deg, plant.elevation_deg) == stood
+    fault.prevented("no sunrise is waited for")
+    (waits,) = plant.snapshot.waiting
+    assert waits.code == "sun_down"
+    fault.shows(waits.message)
 
 
 @pytest.mark.fault(33)
-def test_the_midnight_sun_is_followed_all_around_within_the_limits() -> None:
+def test_the_midnight_sun_is_followed_all_around_within_the_limits(fault: FaultResult) -> None:
     plant = Plant(READY, at=datetime(2027, 6, 21, tzinfo=UTC), location=SPITSBERGEN, watchdog=None)
     plant.tick()
     plant.ask(Track())
@@ -111,6 +124,7 @@ def test_the_midnight_sun_is_followed_all_around_within_the_limits() -> None:
         faced.add(round(plant.azimuth_deg / 15.0))
     assert len(faced) == 8
     assert not plant.happened(EventKind.FAULT_RAISED)
+    fault.recovers("by itself: when the sun rises")
 
 
 @pytest.mark.fault(26)
@@ -119,9 +133,10 @@ def test_the_midnight_sun_is_followed_all_around_within_the_limits() -> None:
     [timedelta(hours=1), timedelta(hours=-1), timedelta(days=-1), timedelta(days=-365), timedelta(days=365)],
     ids=str,
 )
-def test_a_clock_that_jumps_moves_nothing_until_it_is_trusted(by: timedelta) -> None:
+def test_a_clock_that_jumps_moves_nothing_until_it_is_trusted(by: timedelta, fault: FaultResult) -> None:
     plant = tracked_over(datetime(2027, 6, 21, 9, 0, tzinfo=UTC), SAMSUN)
     plant.jump(by)
+    jumped_at = plant.clock.now()
     plant.tick()
     assert plant.told == DriveCommand()
     plant.forward(2.0)
@@ -129,12 +144,15 @@ def test_a_clock_that_jumps_moves_nothing_until_it_is_trusted(by: timedelta) -> 
     plant.forward(58.0)
     assert (plant.azimuth_deg, plant.elevation_deg) == stood
     assert plant.activity is ActivityName.TRACKING
-    assert plant.happened(EventKind.TRACKING_WAITING)
+    (waiting,) = plant.happened(EventKind.TRACKING_WAITING)
+    fault.noticed((waiting.at - plant.clock_error - jumped_at).total_seconds(), VIRTUAL)
+    fault.shows(waiting.message)
     plant.jump(-by)
     plant.clock_trusted = True
     plant.forward(10.0)
     assert plant.activity is ActivityName.TRACKING
     assert plant.snapshot.in_position
+    fault.recovers("by itself: once the clock is trusted again")
 
 
 @pytest.mark.fault(32)

@@ -11,6 +11,7 @@ from app.tracker.config import Orientation
 from app.tracker.protections.machine_config import Corner, MachineProtection, Region
 from app.tracker.regions import Span, touches
 from app.tracker.snapshot import ActivityName, EventKind
+from tests.fault_result import FaultResult
 from tests.tracker.plant import CONFIG, READY, Plant
 
 CORNERS = ((40.0, 10.0), (70.0, 10.0), (70.0, 50.0), (55.0, 60.0), (40.0, 50.0))
@@ -53,7 +54,7 @@ def test_no_random_move_enters_the_region(plant: Plant) -> None:
 
 
 @pytest.mark.fault(25)
-def test_a_held_key_and_steps_end_before_the_region(plant: Plant) -> None:
+def test_a_held_key_and_steps_end_before_the_region(plant: Plant, fault: FaultResult) -> None:
     plant.ask(Move(Orientation(0.0, 30.0)))
     plant.forward(20.0)
     beat = 1
@@ -69,6 +70,12 @@ def test_a_held_key_and_steps_end_before_the_region(plant: Plant) -> None:
     plant.forward(4.0)
     assert plant.azimuth_deg == pytest.approx(stood_deg, abs=0.05)
     assert plant.activity is ActivityName.HOLDING
+    fault.prevented("the motion is refused, or ends before the region")
+    fault.shows(plant.happened(EventKind.LIMIT_REACHED)[-1].message)
+    plant.ask(Step(Axis.AZIMUTH, -5.0))
+    plant.forward(4.0)
+    assert plant.azimuth_deg < stood_deg - 4.0
+    fault.recovers("the axis leaves, the way that it came")
 
 
 def test_the_way_round_is_free(plant: Plant) -> None:

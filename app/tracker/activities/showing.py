@@ -29,6 +29,7 @@ def go_to_start(mind: Mind, command: GoToStart) -> None:
     announce_if_remote(mind, "The panel goes to the start of a show.")
     run = new_run(paced(mind), feedback, _start(course), begins_at(mind))
     mind.activity = Showing(course, ShowPhase.GOING_TO_START, run, timedelta(0), mind.now, mind.actor)
+    mind.remember(show_moves=True)
     mind.say(EventKind.MOVE_STARTED, "Going to the start of the show.", show_id=command.plan.show_id)
 
 
@@ -41,7 +42,7 @@ def run_show(mind: Mind, command: RunShow) -> None:
     switch_tracking_off(mind, "a show was commanded.")
     announce_if_remote(mind, "A show begins.")
     mind.activity = Showing(course, ShowPhase.RUNNING, None, timedelta(0), begins_at(mind), mind.actor)
-    mind.remember(showing=command.plan.show_id)
+    mind.remember(showing=command.plan.show_id, show_moves=True)
     mind.say(EventKind.SHOW_STARTED, "The show has begun.", show_id=command.plan.show_id)
 
 
@@ -88,6 +89,7 @@ def _going(mind: Mind, showing: Showing, run: Run, feedback: Feedback) -> Turn:
             outcome="in_position",
             show_id=showing.course.plan.show_id,
         )
+        mind.remember(show_moves=False)
         return Turn(replace(showing, phase=ShowPhase.READY, run=None), HALTED, seen.target, seen.sun)
     if mind.now >= run.until:
         fail(mind, not_arrived(mind))
@@ -132,6 +134,7 @@ def _standing_course(mind: Mind, plan: ShowPlan) -> Course | None:
 
 def _change_phase(mind: Mind, phase: ShowPhase, kind: EventKind, message: str) -> None:
     if isinstance(mind.activity, Showing):
+        mind.remember(show_moves=phase is ShowPhase.RUNNING)
         mind.activity = replace(mind.activity, phase=phase, at=begins_at(mind))
         mind.say(kind, message, show_id=mind.activity.course.plan.show_id)
 

@@ -170,10 +170,19 @@ def _is_automatic(mind: Mind, wanted: StowName) -> bool:
         case Moving(kind=MoveKind.PARK):
             return wanted is not StowName.PARK
         case Holding():
-            sent = mind.memory.stow is not None and mind.wait is None
-            return sent and wanted is not StowName.PARK and not _blocked(mind)
+            return _was_automatic(mind) and wanted is not StowName.PARK and not _blocked(mind)
         case _:
             return False
+
+
+def _was_automatic(mind: Mind) -> bool:
+    """Return whether a tracker that holds was left automatic.
+
+    It was by a command, by a show that the restart cut off, or by tracking that has waited since the restart.
+    """
+    if mind.wait is not None:
+        return mind.wait is mind.held_back
+    return mind.memory.stow is not None or mind.memory.show_moves
 
 
 def _blocked(mind: Mind) -> bool:
@@ -181,6 +190,9 @@ def _blocked(mind: Mind) -> bool:
 
 
 def _begin_by_itself(mind: Mind, feedback: Feedback, wanted: StowName) -> None:
+    """Go to a stow position; after a show that the restart cut off the tracker stays there."""
+    if mind.memory.show_moves:
+        mind.remember(stow=wanted, show_moves=False)
     if isinstance(mind.activity, Moving):
         leave(mind, reason(mind).message)
     _begin(mind, feedback, wanted)
@@ -205,9 +217,9 @@ def _arrived(mind: Mind, name: StowName) -> Stowed | Holding:
 
 
 def _go_on(mind: Mind) -> None:
-    """Track again where tracking is on, else hold."""
+    """Track again where tracking is on and lacks nothing, else hold."""
     mind.warning = None
-    if not mind.memory.tracking_on:
+    if not mind.memory.tracking_on or mind.wait is not None:
         mind.activity = HOLDING
         return
     mind.activity = Tracking()

@@ -24,7 +24,7 @@ from app.tracker.programs.schedule import Aimed, Followed, Moment, aimed, schedu
 from app.tracker.pursuit import due, pursue, widened
 from app.tracker.reason import Reason
 from app.tracker.runs import arrived, new_run
-from app.tracker.shelter import TWILIGHT_DEG, guarding, hold_reason
+from app.tracker.shelter import TWILIGHT_DEG, demanded_stow, guarding, hold_reason
 from app.tracker.snapshot import EventKind
 from app.tracker.strategy import (
     DEADBAND,
@@ -68,9 +68,10 @@ def resume(mind: Mind, after: str = "the restart") -> None:
         mind.activity = TRACKING[TrackPhase.FOLLOWING]
         mind.wait = None
         mind.say(EventKind.TRACKING_RESUMED, f"Tracking goes on after {after}.", mode=mind.memory.mode)
-        announce(mind, f"{mind.config.name} goes on tracking after {after}.")
+        if demanded_stow(mind) is None:
+            announce(mind, f"{mind.config.name} goes on tracking after {after}.")
         return
-    mind.wait = reasons[0]
+    mind.wait = mind.held_back = reasons[0]
     why = " ".join(reason.message for reason in reasons)
     mind.say(EventKind.TRACKING_WAITING, f"Tracking waits for the operator: {why}")
 

@@ -8,6 +8,7 @@ from app.tracker.axes import Axis
 from app.tracker.commands import CommandRejected, SetZero
 from app.tracker.conditions import Action, demand
 from app.tracker.guards import axis_feedback
+from app.tracker.home_shift import forget, keep_former
 from app.tracker.memory import HomeTrust, StepName
 from app.tracker.mind import HALTED, NOWHERE, Mind, Turn
 from app.tracker.motion import DriveCommand, DriveRequest, Feedback, RequestKind
@@ -39,6 +40,7 @@ def set_zero(mind: Mind, command: SetZero) -> None:
                 f"Name one or more of these: {', '.join(mind.config.mount.axes)}.",
             )
         )
+    keep_former(mind, axes)
     mind.setpoint, mind.corrected = NOWHERE, None
     until = mind.now + ZERO_PATIENCE
     mind.activity = Zeroing(axes, axes, mind.next_request(), until, mind.actor)
@@ -49,6 +51,7 @@ def home(mind: Mind) -> None:
     demand(mind, Action.HOME)
     mind.setpoint, mind.corrected = NOWHERE, None
     mind.zeroed = frozenset()
+    forget(mind)
     doubt_zero(mind, "the search for the origin switches was not finished.")
     mind.activity = Homing(mind.next_request(), mind.now + _homing_time(mind), mind.actor)
     mind.say(EventKind.HOMING_STARTED, "The drive searches for its origin switches.")
@@ -139,6 +142,7 @@ def _trust(mind: Mind, feedback: Feedback, actor: str, how: str) -> None:
 def _zero_failed(mind: Mind, why: str) -> Turn:
     mind.activity = HOLDING
     mind.say(EventKind.ZERO_FAILED, f"Zero was not set: {why} Stand still and press Set as zero again.")
+    mind.remember(former_home=None)
     lose_home(mind, Reason("zero_failed", why))
     return Turn(HOLDING)
 

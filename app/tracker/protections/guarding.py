@@ -1,7 +1,7 @@
 """All protections of one tracker together: what is seen goes in, what is demanded comes out."""
 
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import datetime, timedelta
 from typing import assert_never
 
 from app.tracker.protections import doubt, hibernation, snow, typhoon
@@ -17,7 +17,7 @@ from app.tracker.protections.priority import classify
 from app.tracker.protections.snow import CLEAR, Snow
 from app.tracker.protections.typhoon import CALM, Typhoon, Wind
 from app.tracker.protections.words import Protection, Reaction, StowName
-from app.tracker.weather import Quantity, Reading, Sensed
+from app.tracker.weather import Quality, Quantity, Sensed
 
 Limits = WindProtection | SnowProtection | LightProtection
 STOWS = {Protection.TYPHOON: StowName.WIND, Protection.SNOW: StowName.SNOW}
@@ -97,7 +97,7 @@ def step(
     night: bool,
 ) -> Guarding:
     """Return the state after one look at the weather. `known` are the sensors that were ever seen."""
-    doubts = {one: _doubted(state, config, seen.reading(one), known, now, one) for one in Quantity}
+    doubts = {one: _doubted(state, config, seen, known, now, one) for one in Quantity}
     blown = _typhoon(state, config.wind, seen, doubts[Quantity.WIND], now)
     loaded = _snow(state, config.snow, seen, doubts[Quantity.SNOW], now)
     dark = _hibernation(state, config.light, seen, doubts[Quantity.LIGHT], now)
@@ -108,27 +108,36 @@ def step(
     return Guarding(blown, loaded, dark, wind, load, light, kind, since, held)
 
 
+def wind_of(seen: Sensed, limits: WindProtection, *, doubted: bool = False) -> Wind:
+    """Return what is known of the wind; one that was high before the restart is until it is heard again."""
+    if seen.wind.quality is Quality.BEFORE_RESTART:
+        before = Wind(seen.wind.value, seen.wind_mean_mps, doubted)
+        return before if typhoon.is_high(limits, before) else Wind(None, None, doubted)
+    gust_mps = seen.wind.good
+    return Wind(gust_mps, None if gust_mps is None else seen.wind_mean_mps, doubted)
+
+
 def _doubted(
     state: Guarding,
     config: ProtectionConfig,
-    reading: Reading,
+    seen: Sensed,
     known: tuple[Quantity, ...],
     now: datetime,
     quantity: Quantity,
 ) -> Doubt:
-    limits = limits_of(config, quantity)
+    limits, reading = limits_of(config, quantity), seen.reading(quantity)
     is_known = limits.enabled and (limits.required or quantity in known)
     good = reading.good is not None
     before = state.doubt(quantity)
+    if before.since is None and reading.quality is Quality.BEFORE_RESTART:
+        before = Doubt(now - timedelta(seconds=seen.unheard_s))
     return doubt.step(before, good=good, known=is_known, after_s=limits.bad_after_s, now=now)
 
 
 def _typhoon(state: Guarding, limits: WindProtection, seen: Sensed, doubted: Doubt, now: datetime) -> Typhoon:
     if not limits.enabled:
         return CALM
-    gust_mps = seen.wind.good
-    mean_mps = None if gust_mps is None else seen.wind_mean_mps
-    wind = Wind(gust_mps, mean_mps, demands(doubted, limits.bad, Reaction.STOW))
+    wind = wind_of(seen, limits, doubted=demands(doubted, limits.bad, Reaction.STOW))
     return typhoon.step(state.typhoon, limits, wind, now)
 
 

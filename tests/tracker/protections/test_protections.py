@@ -20,6 +20,7 @@ from app.tracker.protections.snow import CLEAR
 from app.tracker.protections.typhoon import CALM, Typhoon, Wind
 from app.tracker.protections.words import Protection, Reaction, StowName
 from app.tracker.weather import NOTHING_SENSED, Quality, Quantity, Reading, Sensed
+from tests.fault_result import FaultResult
 
 BEGIN = datetime(2026, 1, 1, tzinfo=UTC)
 ALL = tuple(Quantity)
@@ -119,13 +120,16 @@ def test_within_the_hysteresis_the_wind_does_not_begin_but_goes_on(wind: Wind) -
 
 
 @pytest.mark.fault(40)
-def test_light_flickering_around_its_threshold_switches_once() -> None:
+def test_light_flickering_around_its_threshold_switches_once(fault: FaultResult) -> None:
     limits, state = LightProtection(threshold_wm2=50.0, hysteresis_wm2=10.0, hold_s=10.0), AWAKE
     for second in range(12):
         state = hibernation.step(state, limits, 49.0, at(second))
     assert state.since == at(11)
     assert hibernation.step(state, limits, 59.9, at(12)).since == at(11)
     assert hibernation.step(state, limits, 60.0, at(12)).since is None
+    fault.prevented("hysteresis and delay: it switches once")
+    fault.shows_nothing("the tracker stays as it is")
+    fault.recovers("by itself: when the light has left the band of the hysteresis")
 
 
 def test_darkness_is_counted_from_the_last_reading_that_was_not_dark() -> None:

@@ -1,0 +1,52 @@
+"""Whether a panel that tracks has reached the sun: until then it is on its way, however long that takes."""
+
+from app.angles import separation_deg
+from app.tracker.activity import AxisPair, Tracking, TrackPhase
+from app.tracker.mind import HALTED, Mind, Turn
+from app.tracker.mode import Mode
+from app.tracker.motion import AxisCommand, DriveCommand, Feedback, Position
+from app.tracker.pursuit import UNWIND_DEG
+from app.tracker.runs import close_to
+
+FAR_DEG = 20.0
+"""Farther off than this a panel is on its way again; no strategy lets it wait so long by itself."""
+_BREAKS = (TrackPhase.RESTING, TrackPhase.PAUSED)
+_TO_THE_SUN = (TrackPhase.FOLLOWING, TrackPhase.LIMITED, TrackPhase.KEYHOLE)
+
+
+def is_approaching(mind: Mind) -> bool:
+    """Return whether the panel has not reached the sun since tracking began or had a break."""
+    activity = mind.activity
+    if not isinstance(activity, Tracking) or mind.memory.mode is Mode.FIXED:
+        return False
+    return activity.phase in _TO_THE_SUN and not mind.reached
+
+
+def has_reached(mind: Mind, turn: Turn, feedback: Feedback) -> bool:
+    """Return whether the panel is where tracking wants it, or was and has gone on from there."""
+    if not isinstance(turn.activity, Tracking) or turn.activity.phase in _BREAKS:
+        return False
+    if turn.command is HALTED:
+        return mind.reached or mind.warning is None
+    target = _target(turn.command)
+    if _is_far(target, feedback):
+        return False
+    return mind.reached or close_to(target, feedback, mind.config.in_position_deg)
+
+
+def _is_far(target: AxisPair, feedback: Feedback) -> bool:
+    """Judge on the sphere, where an azimuth counts little near the zenith, and by the turn of the cable."""
+    azimuth_deg, elevation_deg = feedback.azimuth.position_deg, feedback.elevation.position_deg
+    wanted_deg = azimuth_deg if target.azimuth_deg is None else target.azimuth_deg
+    height_deg = elevation_deg if target.elevation_deg is None else target.elevation_deg
+    if abs(wanted_deg - azimuth_deg) > UNWIND_DEG:
+        return True
+    return separation_deg(azimuth_deg, elevation_deg, wanted_deg, height_deg) > FAR_DEG
+
+
+def _target(command: DriveCommand) -> AxisPair:
+    return AxisPair(_position_deg(command.azimuth), _position_deg(command.elevation))
+
+
+def _position_deg(command: AxisCommand) -> float | None:
+    return command.position_deg if isinstance(command, Position) else None

@@ -1,0 +1,105 @@
+"""Tracking is said of a panel that has reached the sun; until then it moves to the sun."""
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from app.tracker.commands import Stop, Stow, Track
+from app.tracker.config import Orientation
+from app.tracker.mode import Mode
+from app.tracker.protections.words import StowName
+from app.tracker.snapshot import ActivityName
+from app.tracker.strategy import Continuous, Strategy
+from tests.tracker.plant import CONFIG, READY, Plant
+
+APPROACH = "Moving to the sun"
+
+
+def told(plant: Plant) -> tuple[str, bool]:
+    """Return the text without what follows `Tracking:`, and whether the panel is on its way."""
+    return plant.snapshot.activity_text.split(":")[0], plant.snapshot.approaching
+
+
+def begun(strategy: Strategy | None = None) -> Plant:
+    config = CONFIG if strategy is None else replace(CONFIG, strategy=strategy)
+    plant = Plant(READY, config=config, watchdog=None)
+    plant.tick()
+    plant.ask(Track())
+    return plant
+
+
+@pytest.mark.parametrize("strategy", [None, Continuous()])
+def test_the_first_approach_is_no_tracking_yet(strategy: Strategy | None) -> None:
+    plant = begun(strategy)
+    assert plant.snapshot.off_sun_deg is not None
+    assert plant.snapshot.off_sun_deg > 30.0
+    worst_tracking_deg = 0.0
+
+    def look() -> None:
+        nonlocal worst_tracking_deg
+        shown = plant.snapshot
+        assert shown.activity is ActivityName.TRACKING
+        if shown.approaching:
+            assert shown.activity_text == APPROACH
+        else:
+            worst_tracking_deg = max(worst_tracking_deg, shown.off_sun_deg or 0.0)
+
+    plant.forward(120.0, look)
+    assert told(plant) == ("Tracking", False)
+    assert worst_tracking_deg < CONFIG.deadband_deg
+
+
+def test_the_runs_of_every_few_minutes_are_tracking() -> None:
+    plant = begun().forward(120.0)
+    moving = 0
+
+    def look() -> None:
+        nonlocal moving
+        assert told(plant) == ("Tracking", False)
+        moving += "moving to the sun" in plant.snapshot.activity_text
+
+    plant.forward(1200.0, look)
+    assert moving > 5
+
+
+def test_after_a_stow_the_way_back_is_an_approach() -> None:
+    plant = begun().forward(120.0)
+    plant.ask(Stow(StowName.WIND))
+    plant.forward(60.0)
+    assert not plant.snapshot.approaching
+    plant.ask(Track())
+    assert told(plant) == (APPROACH, True)
+    plant.forward(120.0)
+    assert told(plant) == ("Tracking", False)
+
+
+def test_after_a_stop_on_the_sun_it_tracks_at_once() -> None:
+    plant = begun().forward(120.0)
+    plant.ask(Stop())
+    plant.forward(2.0)
+    plant.ask(Track())
+    assert told(plant) == ("Tracking", False)
+
+
+def test_a_target_that_leaps_away_is_approached_anew() -> None:
+    plant = begun().forward(120.0)
+    plant.leap(plant.clock.now() + timedelta(hours=4))
+    plant.forward(1.0)
+    assert told(plant) == (APPROACH, True)
+
+
+def test_a_fixed_orientation_is_not_the_sun() -> None:
+    plant = Plant(replace(READY, mode=Mode.FIXED, orientation=Orientation(300.0, 20.0)), watchdog=None)
+    plant.tick()
+    plant.ask(Track())
+    assert not plant.snapshot.approaching
+    assert plant.snapshot.activity_text == "Tracking: moving to the fixed orientation"
+
+
+def test_the_night_position_is_not_the_sun() -> None:
+    plant = Plant(READY, at=datetime(2026, 6, 21, 20, 0, tzinfo=UTC), watchdog=None)
+    plant.tick()
+    plant.ask(Track())
+    assert not plant.snapshot.approaching
+    assert plant.snapshot.activity_text == "Tracking: the sun is down, going to the night position"

@@ -1,0 +1,88 @@
+"""Giving up the home position by command raises no alarm; losing it does, and so does a homing that fails."""
+
+from dataclasses import replace
+
+import pytest
+
+from app.alarms.conditions import SiteHealth, of_tracker
+from app.tracker.axes import Axis
+from app.tracker.commands import Command, Home, SetZero, Stop, UndoZero
+from app.tracker.snapshot import ActivityName, Snapshot
+from tests.tracker.plant import BLANK, READY, Plant
+from tests.tracker.scripted import Scripted
+
+
+def is_alarmed(shown: Snapshot) -> bool:
+    return any(found.code == "home_lost" for found in of_tracker(shown, SiteHealth(), frozenset()))
+
+
+def alarmed_during(plant: Plant, command: Command, seconds: float) -> int:
+    """Return at how many ticks the alarm was there, from the command on."""
+    plant.ask(command)
+    found = int(is_alarmed(plant.snapshot))
+
+    def look() -> None:
+        nonlocal found
+        found += is_alarmed(plant.snapshot)
+
+    plant.forward(seconds, look)
+    return found
+
+
+@pytest.mark.parametrize("command", [Home(), SetZero(), SetZero((Axis.AZIMUTH,))])
+@pytest.mark.parametrize("memory", [BLANK, READY])
+def test_homing_and_setting_home_raise_no_alarm(memory: object, command: Command) -> None:
+    plant = Plant(READY if memory is READY else BLANK)
+    plant.tick()
+    assert alarmed_during(plant, command, 120.0) == 0
+    assert plant.activity is ActivityName.HOLDING
+
+
+@pytest.mark.parametrize("memory", [BLANK, READY])
+def test_undoing_it_raises_no_alarm(memory: object) -> None:
+    plant = Plant(READY if memory is READY else BLANK)
+    plant.tick()
+    plant.ask(SetZero())
+    plant.forward(1.0)
+    assert plant.snapshot.can_undo_home
+    assert alarmed_during(plant, UndoZero(), 2.0) == 0
+    assert plant.snapshot.home_trusted == (memory is READY)
+
+
+def test_a_drive_that_restarts_raises_the_alarm_at_once() -> None:
+    script = Scripted(READY)
+    script.tick()
+    assert not is_alarmed(script.snapshot)
+    script.reading = replace(script.reading, boot_count=script.reading.boot_count + 1)
+    script.tick()
+    assert is_alarmed(script.snapshot)
+
+
+def test_a_drive_that_restarts_during_homing_raises_it_at_once() -> None:
+    script = Scripted(READY)
+    script.tick()
+    script.ask(Home())
+    assert not is_alarmed(script.snapshot)
+    script.reading = replace(script.reading, boot_count=script.reading.boot_count + 1)
+    script.tick()
+    assert is_alarmed(script.snapshot)
+
+
+def test_a_homing_that_fails_raises_it_at_once() -> None:
+    script = Scripted(READY)
+    script.tick()
+    script.ask(Home())
+    request = script.told.request
+    assert request is not None
+    script.reading = replace(script.reading, request_done=request.number, request_failed=True)
+    script.tick()
+    assert script.controller.activity is ActivityName.HOLDING
+    assert is_alarmed(script.snapshot)
+
+
+def test_a_homing_that_is_stopped_raises_it() -> None:
+    script = Scripted(READY)
+    script.tick()
+    script.ask(Home())
+    script.ask(Stop())
+    assert is_alarmed(script.snapshot)
