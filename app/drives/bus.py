@@ -2,7 +2,6 @@
 
 import asyncio
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from enum import IntEnum
@@ -18,6 +17,7 @@ FIRST_DELAY = timedelta(milliseconds=100)
 LONGEST_DELAY = timedelta(seconds=1)
 MOST_WAITING = 200
 SILENT_TIMES = 3
+AGAIN_AFTER_S = 0.05
 FIRST_REST = timedelta(milliseconds=250)
 LONGEST_REST = timedelta(seconds=4)
 
@@ -225,10 +225,9 @@ class Bus:
             return
         owner, self._owner = self._owner, None
         self._wire.close()
-        if owner is not None:
+        while owner is not None and not owner.done():  # what it waits for may swallow a cancellation
             owner.cancel()
-            with suppress(asyncio.CancelledError):
-                await owner
+            await asyncio.wait({owner}, timeout=AGAIN_AFTER_S)
 
     async def _own(self) -> None:
         """Serve the waiting requests for ever, the most urgent first, one at a time."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import assert_never
 
-from app.drives.drive import Drive
+from app.drives.drive import Drive, answers_at_once
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import AxisDrive, TrackerConfig
 from app.tracker.motion import (
@@ -80,6 +80,11 @@ class CorrectedDrive:
     def inner(self) -> Drive:
         """Return the drive behind this one."""
         return self._inner
+
+    @property
+    def answers_at_once(self) -> bool:
+        """Return whether the drive behind this one never waits."""
+        return answers_at_once(self._inner)
 
     @property
     def capabilities(self) -> DriveCapabilities:

@@ -1,7 +1,7 @@
 """The small protocol behind which every drive, simulated or real, stands."""
 
 from datetime import datetime
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from app.foreseen import Foreseen
 from app.tracker.motion import DriveCapabilities, DriveCommand, Feedback
@@ -40,3 +40,17 @@ class Drive(Protocol):
 
     async def close(self) -> None:
         """Let go of the connection; the axes are stopped first if that is possible."""
+
+
+@runtime_checkable
+class PromptDrive(Protocol):
+    """A drive that can tell whether it lives in this process, so that reading and writing never wait."""
+
+    @property
+    def answers_at_once(self) -> bool:
+        """Return whether reading and writing never wait."""
+
+
+def answers_at_once(drive: Drive) -> bool:
+    """Return whether reading and writing this drive never wait; one that does not tell may wait."""
+    return isinstance(drive, PromptDrive) and drive.answers_at_once

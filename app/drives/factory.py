@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from pathlib import Path
 from typing import assert_never
-from urllib.parse import quote
 
 from app.clock import Clock
 from app.drives.adapters import drive_on
@@ -11,6 +10,7 @@ from app.drives.bus import BusUnit
 from app.drives.buses import Buses
 from app.drives.corrected import corrected
 from app.drives.drive import Drive
+from app.drives.kept_positions import KeptPositions
 from app.drives.profile_library import ProfileLibrary
 from app.drives.simulated import SimulatedDrive
 from app.drives.sunlight import Sunlight
@@ -22,8 +22,8 @@ from app.tracker.config import DriveKind, TrackerConfig
 class DriveFactory:
     """Makes drives, and keeps the buses that they share; a process has one.
 
-    A simulated drive keeps its position memory in the data folder; without one it forgets. If its tracker is
-    corrected by light, it has photo-sensors, and `sun` says where the sun stands over them.
+    Simulated drives keep their positions in the data folder; without one they forget. If a tracker is
+    corrected by light, its simulated drive has photo-sensors, and `sun` says where the sun stands over them.
     """
 
     def __init__(
@@ -36,7 +36,7 @@ class DriveFactory:
         self.buses = Buses(clock)
         self.profiles = ProfileLibrary(data_dir / "profiles" if data_dir is not None else None)
         self._clock = clock
-        self._data_dir = data_dir
+        self._positions = None if data_dir is None else KeptPositions(data_dir / "drives")
         self._sun = sun
 
     def make(self, config: TrackerConfig) -> Drive:
@@ -57,12 +57,8 @@ class DriveFactory:
 
     def _simulated(self, config: TrackerConfig) -> Drive:
         light = Sunlight(config, self._sun) if config.hybrid.enabled else None
-        return SimulatedDrive(config, self._clock, memory=self._memory(config.tracker_id), light=light)
-
-    def _memory(self, tracker_id: str) -> Path | None:
-        if self._data_dir is None:
-            return None
-        return self._data_dir / "drives" / f"{quote(tracker_id, safe='')}.json"
+        memory = None if self._positions is None else self._positions.of(config.tracker_id)
+        return SimulatedDrive(config, self._clock, memory=memory, light=light)
 
     def _modbus(self, config: TrackerConfig) -> Drive:
         profile = self.profiles.load(config.drive.profile)

@@ -19,7 +19,7 @@ SHORTEST_SILENCE_S, GATEWAY_SILENCE_S = 0.00175, 0.0005
 WARY_SILENCE_S = 0.025
 """After damage a shorter silence proves nothing: USB adapters hand bytes over every 16 ms by default."""
 BROKEN_OFF_S = 0.1
-TURNAROUND_S = 0.04
+TURNAROUND_S = 0.03
 NEVER_SILENT_S, STOP_SPEAKS_AFTER_S = 0.1, 0.02
 MOST_PROBES = 16
 

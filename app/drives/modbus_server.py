@@ -2,13 +2,14 @@
 
 import asyncio
 from collections.abc import Awaitable, Callable, Mapping, Sequence
-from contextlib import suppress
 from struct import error, pack, unpack_from
 from typing import Protocol
 
+from app.clock import Clock, SystemClock
+from app.drives.modbus_clients import Client, Clients, Limits
+
 MOST_BITS, MOST_REGISTERS, MOST_WRITTEN_BITS, MOST_WRITTEN_REGISTERS = 2000, 125, 1968, 123
 LONGEST_LENGTH = 260
-CLOSE_WITHIN_S = 0.5
 COIL_ON = 0xFF00
 
 
@@ -50,7 +51,7 @@ class ModbusServer:
     """Answers for its devices' unit ids; requests for any other are not answered, as on a bus.
 
     `others` are further devices by their unit ids, as behind a gateway. `respond` answers in the devices'
-    place where an answer takes time. More than `most_clients` at once are turned away.
+    place where an answer takes time. Between two replies everything else in this process has its turn.
     """
 
     def __init__(
@@ -60,80 +61,45 @@ class ModbusServer:
         *,
         others: Mapping[int, Device] | None = None,
         respond: Respond | None = None,
-        most_clients: int = 64,
+        limits: Limits | None = None,
+        clock: Clock | None = None,
     ) -> None:
         self._devices = {**(others or {}), unit: device}
         self._respond = respond
-        self._most_clients = most_clients
+        self._clients = Clients(self._answer_one, limits or Limits(), clock or SystemClock())
         self._server: asyncio.Server | None = None
-        self._serving: dict[asyncio.Task[None], asyncio.StreamWriter] = {}
 
     @property
     def client_count(self) -> int:
         """Return how many clients are connected."""
-        return len(self._serving)
+        return len(self._clients)
 
     async def start(self, host: str, port: int) -> int:
         """Listen, and return the port."""
-        self._server = await asyncio.start_server(self._begin, host, port)
+        self._server = await asyncio.start_server(self._clients.admit, host, port)
         return int(self._server.sockets[0].getsockname()[1])
 
     async def close(self) -> None:
         """Stop listening and close every connection."""
         if self._server is not None:
             self._server.close()
-        serving = dict(self._serving)
-        for task in serving:
-            task.cancel()
-        await asyncio.gather(*serving, return_exceptions=True)
-        for writer in serving.values():  # a task that was ended before it began has closed nothing
-            writer.transport.abort()
-            with suppress(OSError):
-                await writer.wait_closed()
+        await self._clients.close()
         if self._server is not None:
             await self._server.wait_closed()
 
-    def _begin(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        if len(self._serving) >= self._most_clients:
-            writer.close()
-            return
-        task = asyncio.create_task(self._serve(reader, writer))
-        self._serving[task] = writer
-        task.add_done_callback(self._forget)
-
-    def _forget(self, task: asyncio.Task[None]) -> None:
-        self._serving.pop(task, None)
-
-    async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        try:
-            while await self._answer_one(reader, writer):
-                pass
-        except (ConnectionError, asyncio.IncompleteReadError):
-            pass
-        finally:
-            writer.close()
-            with suppress(OSError, TimeoutError):
-                async with asyncio.timeout(CLOSE_WITHIN_S):
-                    await writer.wait_closed()
-
-    async def _answer_one(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> bool:
+    async def _answer_one(self, client: Client) -> bool:
         """Answer the next request; return False if what came is no Modbus TCP and the line must be cut."""
-        header = await reader.readexactly(7)
-        transaction, protocol, length, unit = unpack_from(">HHHB", header)
+        transaction, protocol, length, unit = unpack_from(">HHHB", await client.begin(7))
         if protocol != 0 or not 2 <= length <= LONGEST_LENGTH:
             return False
-        request = await reader.readexactly(length - 1)
+        request = await client.rest(length - 1)
         device = self._devices.get(unit)
         if device is None:
             return True
-        if self._respond is None:
-            body = answer(device, request)
-        else:
-            body = await self._respond(request, str(writer.get_extra_info("peername", ("",))[0]))
+        body = answer(device, request) if self._respond is None else await self._respond(request, client.host)
         reply = await device.let_out(pack(">HHHB", transaction, 0, len(body) + 1, unit) + body)
         if reply is not None:
-            writer.write(reply)
-            await writer.drain()
+            await client.send(reply)
         return True
 
 

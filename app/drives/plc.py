@@ -10,12 +10,12 @@ from app.drives.bus import BusUnit, Priority
 from app.drives.drive import DriveError, DriveRefused
 from app.drives.plausibility import Plausibility
 from app.drives.plc_map import CLOCK_PARTS, PlcMap
+from app.drives.plc_signs import SignsOfLife
 from app.drives.profile import Profile
 from app.drives.register import runs
 from app.tracker.config import TrackerConfig
 from app.tracker.motion import HALT, DriveCapabilities, DriveCommand, Feedback, Velocity
 
-MOST_UNCHANGED = 3
 STAND = DriveCommand(Velocity(0.0), Velocity(0.0))
 """What stops a PLC that has no stop register; unlike `Halt` it also ends a search for the origin."""
 
@@ -42,8 +42,7 @@ class PlcDrive:
         self._request_number = 0
         self._sounds = False
         self._boot_count: int | None = None
-        self._unchanged: dict[str, tuple[int, int]] = {}
-        self._watchdog_s = profile.watchdog.timeout_ms / 1000.0 if profile.watchdog is not None else None
+        self._signs = SignsOfLife(profile, lambda: str(link))
 
     @property
     def profile_name(self) -> str:
@@ -60,7 +59,7 @@ class PlcDrive:
         """Return what the profile offers; the watchdog's time-out is the device's own once it was read."""
         return DriveCapabilities(
             automatic_homing="home" in self._profile.enums["request"],
-            watchdog_s=self._watchdog_s,
+            watchdog_s=self._signs.watchdog_s,
             settable_clock="clock" in self._profile.blocks,
             limit_switches="switches" in self._profile.bits,
             description=f"{self._profile.title}, {self._link}",
@@ -76,6 +75,7 @@ class PlcDrive:
         if self._plausibility.doubt(feedback) is not None:
             words = await self._poll()
             feedback = self._plausibility.settle(feedback, self._map.feedback(words, self._block.address))
+        self._signs.watch_watchdog(words, self._block.address, feedback)
         self._plausibility.accept(feedback)
         self._notice_restart(feedback)
         self._compare(words, feedback)
@@ -104,6 +104,7 @@ class PlcDrive:
                 priority=_priority(command),
             )
         self._sounds = command.horn
+        self._signs.fed()
         if ticket == self._link.ticket:
             self._taken = taken | words
 
@@ -131,10 +132,12 @@ class PlcDrive:
 
     async def close(self) -> None:
         """Stop the axes if the PLC can be reached, then let go of the connection."""
-        if self._ticket is not None:
-            with suppress(DriveError):
-                await self.stop()
-        await self._link.close()
+        try:
+            if self._ticket is not None:
+                with suppress(DriveError):
+                    await self.stop()
+        finally:
+            await self._link.close()
 
     async def _look_again(self) -> None:
         """Read the state anew; raise `DriveError` if it is not the one that the command was meant for."""
@@ -153,10 +156,7 @@ class PlcDrive:
         words = await self._link.read(block.address, block.count, what=what, priority=self._urgency)
         self._ticket = self._link.ticket
         self._identify(words)
-        self._watch_heartbeat(words)
-        readback = self._profile.watchdog.readback if self._profile.watchdog is not None else None
-        if readback is not None:
-            self._watchdog_s = self._integer(readback, words) / 1000.0 or None
+        self._signs.watch(words, block.address)
         return words
 
     def _integer(self, name: str, words: list[int]) -> int:
@@ -173,19 +173,6 @@ class PlcDrive:
                     f"{self._profile.at(register.address)} holds {found} instead of {register.expect}. "
                     "Check address, unit and profile."
                 )
-
-    def _watch_heartbeat(self, words: list[int]) -> None:
-        if "heartbeat" not in self._profile.registers:
-            return
-        value = self._integer("heartbeat", words)
-        last, times = self._unchanged.get("heartbeat", (None, 0))
-        times = times + 1 if value == last else 0
-        self._unchanged["heartbeat"] = (value, times)
-        if times >= MOST_UNCHANGED:
-            raise DriveError(
-                f"The drive at {self._link} answers, but its heartbeat stands still: its readings are "
-                "old. Check that its program runs."
-            )
 
     def _notice_restart(self, feedback: Feedback) -> None:
         if self._boot_count is not None and feedback.boot_count != self._boot_count:

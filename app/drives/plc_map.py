@@ -229,7 +229,9 @@ def _check(profile: Profile) -> None:
 
 def _check_block(profile: Profile) -> None:
     inside = profile.blocks["status"].addresses
-    others = (*LIGHT, "supply", *(name for name in profile.bits if name == "switches"))
+    readback = profile.watchdog.readback if profile.watchdog is not None else None
+    signs = ("heartbeat", "echo", *filter(None, (readback,)))
+    others = (*LIGHT, *signs, "supply", *(name for name in profile.bits if name == "switches"))
     for name in (*NEEDED, *(other for other in others if other in profile.registers)):
         register: Register = profile.registers[name]
         if not all(address in inside for address in register.addresses):

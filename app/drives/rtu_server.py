@@ -6,7 +6,8 @@ from contextlib import suppress
 from datetime import timedelta
 from struct import pack
 
-from app.clock import Clock
+from app.budget import Budget
+from app.clock import Clock, give_way
 from app.drives.line import Line
 from app.drives.modbus_server import Device, Respond, answer
 from app.drives.rtu_frame import LONGEST, is_sealed, request_length, sealed
@@ -20,13 +21,22 @@ MASTER = "the serial line"
 class RtuServer:
     """Answers for the unit ids of its devices; everything else on the line is left alone, broadcasts too.
 
-    `respond` answers in the devices' place where an answer takes time.
+    `respond` answers in the devices' place where an answer takes time. `budget` sets the master's pace; of
+    what comes faster a few requests wait, and the rest is lost as on a line that is too slow.
     """
 
-    def __init__(self, devices: Mapping[int, Device], line: Line, *, respond: Respond | None = None) -> None:
+    def __init__(
+        self,
+        devices: Mapping[int, Device],
+        line: Line,
+        *,
+        respond: Respond | None = None,
+        budget: Budget | None = None,
+    ) -> None:
         self._devices = devices
         self._line = line
         self._respond = respond
+        self._budget = budget
         self._buffer = bytearray()
         self._requests: asyncio.Queue[bytes] = asyncio.Queue(MOST_WAITING)
         self._forgetting: asyncio.TimerHandle | None = None
@@ -66,9 +76,10 @@ class RtuServer:
         if self._forgetting is not None:
             self._forgetting.cancel()
             self._forgetting = None
-        while (request := self._taken()) is not None:
-            if not self._requests.full():
-                self._requests.put_nowait(request)
+        while not self._requests.full() and (request := self._taken()) is not None:
+            self._requests.put_nowait(request)
+        if self._requests.full():
+            self._buffer.clear()
         if self._buffer:
             self._forgetting = asyncio.get_running_loop().call_later(FORGET_AFTER_S, self._forget)
 
@@ -93,11 +104,14 @@ class RtuServer:
 
     async def _serve(self) -> None:
         while True:
+            if self._budget is not None:
+                await self._budget.wait()
             request = await self._requests.get()
             reply = await self._answer(request)
             if reply is not None and self._line.is_open:
                 with suppress(OSError):
                     self._line.write(reply)
+            await give_way()
 
     async def _answer(self, request: bytes) -> bytes | None:
         unit, body = request[0], request[1:-2]

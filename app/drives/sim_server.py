@@ -15,6 +15,7 @@ from app.drives.faults import Fault, FaultKind
 from app.drives.line import Line
 from app.drives.listening_line import ListeningLine
 from app.drives.modbus_server import Device, ModbusServer
+from app.drives.position_memory import PositionFile
 from app.drives.profile import Profile, load_profile
 from app.drives.pty_line import serial_end
 from app.drives.rtu_server import RtuServer
@@ -151,11 +152,12 @@ async def _rtu(line: Line, devices: Mapping[int, Device]) -> RtuServer:
     return server
 
 
-def _memory_of(memory: Path | None, unit: int, units: Sequence[int]) -> Path | None:
+def _memory_of(memory: Path | None, unit: int, units: Sequence[int]) -> PositionFile | None:
     """Return the file of one drive: the first has the given one, the others their unit id in the name."""
-    if memory is None or unit == units[0]:
-        return memory
-    return memory.with_name(f"{memory.stem}-{unit}{memory.suffix}")
+    if memory is None:
+        return None
+    first = unit == units[0]
+    return PositionFile(memory if first else memory.with_name(f"{memory.stem}-{unit}{memory.suffix}"))
 
 
 async def _run(

@@ -12,10 +12,16 @@ class SimulatedDrive(SimulatedMachine):
 
     Where the panel really points is `true_orientation`. A drive that does not know its zero reads that
     plus an offset of 90 degrees in azimuth and 30 in elevation. With `watchdog=None` there is no watchdog:
-    a simulation whose ticks are longer than its time-out needs that. The file `memory` keeps position, zero
-    and boot count; it is trusted at the next start unless the program ended in mid-motion without `close`.
+    a simulation whose ticks are longer than its time-out needs that. `memory` keeps position, zero and boot
+    count. A drive with power of its own goes on where it came to rest; one without has lost its zero if the
+    program ended in mid-motion without `close`.
     Homing goes on while `Halt` is written; motion, `stop`, a fault or the watchdog end it.
     """
+
+    @property
+    def answers_at_once(self) -> bool:
+        """Return that nothing here waits."""
+        return True
 
     @property
     def capabilities(self) -> DriveCapabilities:

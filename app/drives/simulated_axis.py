@@ -69,6 +69,12 @@ class SimulatedAxis:
         """Return what survives a power cut."""
         return AxisMemory(self._path.at(time_s)[0], self._offset_deg, self._homed)
 
+    def left_alone(self, from_s: float) -> AxisMemory:
+        """Return what survives once the axis has come to rest that is braked from a time on."""
+        position_deg, velocity_dps = self._path.at(from_s)
+        end_deg = braking_end_deg(position_deg, velocity_dps, self._config.acceleration_dps2 * self._grip())
+        return AxisMemory(end_deg, self._offset_deg, self._homed)
+
     def true_deg(self, time_s: float) -> float:
         """Return where the panel really points; it lags behind the motor by the backlash."""
         play_deg = self._mechanics.backlash_deg / 2.0

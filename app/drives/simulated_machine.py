@@ -2,12 +2,11 @@
 
 from dataclasses import replace
 from datetime import datetime, timedelta
-from pathlib import Path
 
 from app.clock import Clock
 from app.drives.cabinet import CABINET_FAULTS, Cabinet
 from app.drives.faults import LIGHT_FAULTS, LINK_FAULTS, Fault, FaultKind
-from app.drives.position_memory import AxisMemory, PositionMemory, recall, remember
+from app.drives.position_memory import UNKNOWN_OFFSET, Keeper, Memory, PositionMemory
 from app.drives.simulated_axis import STANDARD, Mechanics, SimulatedAxis
 from app.drives.sunlight import Sunlight
 from app.tracker.axes import Axis
@@ -24,8 +23,6 @@ from app.tracker.motion import (
 
 WATCHDOG = timedelta(milliseconds=500)
 SETTLED = timedelta(seconds=1)
-FIRST_STAND = Orientation(12.40, 6.60)
-UNKNOWN_OFFSET = Orientation(90.0, 30.0)
 STOP_ALL = DriveCommand()
 
 
@@ -37,7 +34,7 @@ class SimulatedMachine:
         config: TrackerConfig,
         clock: Clock,
         *,
-        memory: Path | None = None,
+        memory: Memory | None = None,
         watchdog: timedelta | None = WATCHDOG,
         mechanics: Mechanics = STANDARD,
         light: Sunlight | None = None,
@@ -45,14 +42,13 @@ class SimulatedMachine:
         self._clock = clock
         self._light = light
         self._started_at = clock.now()
-        self._memory = memory
         self._watchdog_s = watchdog.total_seconds() if watchdog is not None else None
-        known = _power_up(recall(memory) if memory is not None else None, config)
+        self._keeper = Keeper(memory, config)
+        known = self._keeper.known
         self._boot_count = known.boot_count
         self._azimuth = SimulatedAxis(config.azimuth, mechanics, known.azimuth)
         self._elevation = SimulatedAxis(config.elevation, mechanics, known.elevation)
         self._mounted = (self._azimuth,) if config.mount.single_axis else (self._azimuth, self._elevation)
-        self._kept_trusted = known.trusted
         self._rested_at_s = 0.0
         self._command = STOP_ALL
         self._fed_at_s: float | None = None
@@ -68,8 +64,6 @@ class SimulatedMachine:
         self._cabinet = Cabinet()
         self._clock_offset = timedelta(0)
         self._steady: Feedback | None = None
-        if not known.trusted:
-            self._write_memory(0.0, trusted=False)
 
     @property
     def true_orientation(self) -> Orientation:
@@ -145,7 +139,7 @@ class SimulatedMachine:
             local=self._cabinet.local,
             supply_v=self._cabinet.supply_v,
         )
-        if resting and self._kept_trusted:
+        if resting and self._keeper.true:
             self._steady = feedback
         return feedback
 
@@ -158,6 +152,10 @@ class SimulatedMachine:
         if alive:
             self._fed_at_s = now_s
             self._clear_trip()
+        self._do(command, now_s)
+        self._count(now_s)
+
+    def _do(self, command: DriveCommand, now_s: float) -> None:
         if command is self._command or command == self._command or self._ignores_writes or self._tripped:
             return
         self._change(now_s)
@@ -210,8 +208,7 @@ class SimulatedMachine:
         """Ramp down and write the position memory at once: where both axes come to rest is known already."""
         self.halt()
         end_s = max(self._advance(), self._azimuth.end_s, self._elevation.end_s)
-        self._kept_trusted = True
-        self._write_memory(end_s, trusted=True)
+        self._keeper.settle(self._known(end_s))
 
     def set_wall_clock(self, at: datetime) -> None:
         """Make the drive's own clock show `at` now."""
@@ -268,7 +265,7 @@ class SimulatedMachine:
             self._watch(now_s, self._fed_at_s + self._watchdog_s)
         if self._homing is not None and self._resting(now_s):
             self._finish_homing(now_s)
-        if not self._kept_trusted:
+        if not self._keeper.true:
             self._keep(now_s)
         return now_s
 
@@ -297,9 +294,7 @@ class SimulatedMachine:
     def _change(self, now_s: float) -> None:
         """Note that the next reading differs and the position memory is no longer true."""
         self._steady = None
-        if self._kept_trusted:
-            self._kept_trusted = False
-            self._write_memory(now_s, trusted=False)
+        self._keeper.disturb(self._known(now_s))
 
     def _resting(self, now_s: float) -> bool:
         return self._azimuth.resting(now_s) and self._elevation.resting(now_s)
@@ -310,14 +305,21 @@ class SimulatedMachine:
             self._rested_at_s = now_s
             return
         if now_s - self._rested_at_s >= SETTLED.total_seconds():
-            self._kept_trusted = True
-            self._write_memory(now_s, trusted=True)
+            self._keeper.settle(self._known(now_s))
 
-    def _write_memory(self, now_s: float, *, trusted: bool) -> None:
-        if self._memory is None:
-            return
+    def _known(self, now_s: float) -> PositionMemory:
+        """Return what the drive knows at a time."""
         azimuth, elevation = self._azimuth.memory(now_s), self._elevation.memory(now_s)
-        remember(self._memory, PositionMemory(azimuth, elevation, self._boot_count, trusted))
+        return PositionMemory(azimuth, elevation, self._boot_count, trusted=True)
+
+    def _count(self, now_s: float) -> None:
+        """Keep what the drive will know if no command comes any more: its watchdog stops the axes."""
+        if not self._keeper.counts:
+            return
+        fed_at_s = now_s if self._fed_at_s is None else self._fed_at_s
+        alone_s = fed_at_s + (self._watchdog_s or 0.0)
+        azimuth, elevation = self._azimuth.left_alone(alone_s), self._elevation.left_alone(alone_s)
+        self._keeper.follow(PositionMemory(azimuth, elevation, self._boot_count, trusted=True))
 
     def _take_request(self, request: DriveRequest | None, now_s: float) -> None:
         if request is None or request.number == self._request_seen:
@@ -375,20 +377,6 @@ class SimulatedMachine:
         self._fed_at_s = None
         self._azimuth.lose_power(now_s, UNKNOWN_OFFSET.azimuth_deg)
         self._elevation.lose_power(now_s, UNKNOWN_OFFSET.elevation_deg)
-
-
-def _power_up(found: PositionMemory | None, config: TrackerConfig) -> PositionMemory:
-    """Return what the drive knows at start: all of it if the memory is trusted, else no zero."""
-    if found is not None and found.trusted:
-        return found
-    azimuth_deg = found.azimuth.true_deg if found else config.azimuth.clamp(FIRST_STAND.azimuth_deg)
-    elevation_deg = found.elevation.true_deg if found else config.elevation.clamp(FIRST_STAND.elevation_deg)
-    return PositionMemory(
-        azimuth=AxisMemory(azimuth_deg, UNKNOWN_OFFSET.azimuth_deg, homed=False),
-        elevation=AxisMemory(elevation_deg, UNKNOWN_OFFSET.elevation_deg, homed=False),
-        boot_count=found.boot_count + 1 if found else 1,
-        trusted=False,
-    )
 
 
 def _is_halt(command: DriveCommand) -> bool:

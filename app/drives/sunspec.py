@@ -134,10 +134,12 @@ class SunSpecDrive:
 
     async def close(self) -> None:
         """Stop the axes, which stay in manual control where they are, then let go of the connection."""
-        if self._unit.was_read and self._last is not None:
-            with suppress(DriveError):
-                await self.stop()
-        await self._unit.close()
+        try:
+            if self._unit.was_read and self._last is not None:
+                with suppress(DriveError):
+                    await self.stop()
+        finally:
+            await self._unit.close()
 
     async def _read(self) -> Feedback:
         try:

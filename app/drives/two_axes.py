@@ -109,11 +109,13 @@ class TwoAxisDrive:
 
     async def close(self) -> None:
         """Stop the axes if they can be reached, then let go of the bus."""
-        if all(axis.unit.was_read for axis in self._axes.values()):
-            with suppress(DriveError):
-                await self.stop()
-        for axis in self._axes.values():
-            await axis.unit.close()
+        try:
+            if all(axis.unit.was_read for axis in self._axes.values()):
+                with suppress(DriveError):
+                    await self.stop()
+        finally:
+            for axis in self._axes.values():
+                await axis.unit.close()
 
     async def _read(self) -> Feedback:
         try:

@@ -17,6 +17,7 @@ from app.drives.modbus_server import ModbusServer
 from app.drives.modbus_tcp import TcpWire
 from app.drives.plc import PlcDrive
 from app.drives.plc_map import PlcMap
+from app.drives.plc_signs import MOST_UNCHANGED
 from app.drives.profile import Profile, load_profile
 from app.drives.sim_plc import SimulatedPlc
 from app.drives.simulated import SimulatedDrive
@@ -268,6 +269,73 @@ async def test_a_heartbeat_that_stands_still_is_an_error() -> None:
                 await bench.drive.read()
         bench.wire.still = {}
         assert await bench.drive.read()
+
+
+ECHO, WATCHDOG_MS = 3, 17
+TURN = DriveCommand(Velocity(2.0), HALT)
+
+
+async def test_an_echo_that_stands_still_while_keep_alive_values_are_written_is_an_error() -> None:
+    async with on_the_bench() as bench:
+        await bench.drive.read()
+        bench.wire.still = {ECHO: 0}
+        for _ in range(MOST_UNCHANGED + 1):
+            await bench.drive.write(TURN)
+            bench.later()
+            if bench.wire.reads <= MOST_UNCHANGED:
+                await bench.drive.read()
+        for _ in range(2):
+            with pytest.raises(DriveError, match="does not echo the keep-alive value"):
+                await bench.drive.read()
+            await bench.drive.write(TURN)
+        bench.wire.still = {}
+        assert await bench.drive.read()
+
+
+async def test_an_echo_need_not_change_while_nothing_is_written() -> None:
+    async with on_the_bench() as bench:
+        await bench.drive.read()
+        await bench.drive.write(DriveCommand())
+        for _ in range(3 * MOST_UNCHANGED):
+            await bench.drive.read()
+
+
+async def test_a_watchdog_that_is_switched_off_during_a_motion_is_an_error() -> None:
+    async with on_the_bench() as bench:
+        await bench.drive.read()
+        await bench.drive.write(TURN)
+        bench.later()
+        assert (await bench.drive.read()).azimuth.moving
+        bench.wire.still = {WATCHDOG_MS: 0}
+        for _ in range(3):
+            with pytest.raises(DriveError, match="was switched off during a motion"):
+                await bench.drive.read()
+        bench.wire.still = {}
+        assert await bench.drive.read()
+
+
+async def test_a_watchdog_that_stays_off_is_an_error_of_every_later_motion() -> None:
+    async with on_the_bench() as bench:
+        await bench.drive.read()
+        bench.wire.still = {WATCHDOG_MS: 0}
+        assert bench.drive.capabilities.watchdog_s
+        for _ in range(2):
+            assert await bench.drive.read()
+            await bench.drive.write(TURN)
+            bench.later()
+            with pytest.raises(DriveError, match="Switch it on again"):
+                await bench.drive.read()
+            await bench.drive.write(DriveCommand(Velocity(0.0), Velocity(0.0)))
+            bench.later(2000)
+            assert await bench.drive.read()
+
+
+async def test_a_watchdog_that_is_off_at_rest_is_told_as_none() -> None:
+    async with on_the_bench() as bench:
+        await bench.drive.read()
+        bench.wire.still = {WATCHDOG_MS: 0}
+        assert await bench.drive.read()
+        assert bench.drive.capabilities.watchdog_s is None
 
 
 @pytest.mark.parametrize(("address", "word"), [(0, 4), (1, 2)])

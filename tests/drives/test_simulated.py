@@ -8,6 +8,7 @@ import pytest
 
 from app.clock import VirtualClock
 from app.drives.faults import Fault, FaultKind
+from app.drives.position_memory import PositionFile
 from app.drives.simulated import SimulatedDrive
 from app.drives.simulated_axis import Mechanics
 from app.tracker.axes import Axis, AxisConfig
@@ -18,7 +19,8 @@ MOVE = DriveCommand(Position(120.0, 6.0), Position(50.0, 4.0))
 
 
 def drive_at(clock: VirtualClock, memory: Path | None) -> SimulatedDrive:
-    return SimulatedDrive(CONFIG, clock, memory=memory, watchdog=None)
+    kept = None if memory is None else PositionFile(memory)
+    return SimulatedDrive(CONFIG, clock, memory=kept, watchdog=None)
 
 
 async def homed(clock: VirtualClock, memory: Path) -> SimulatedDrive:

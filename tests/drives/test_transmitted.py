@@ -11,7 +11,7 @@ import pytest
 from app.clock import VirtualClock
 from app.drives.factory import DriveFactory
 from app.drives.faults import Fault
-from app.drives.position_memory import AxisMemory, PositionMemory, remember
+from app.drives.position_memory import AxisMemory, PositionFile, PositionMemory
 from app.drives.simulated import SimulatedDrive
 from app.drives.simulated_axis import Mechanics
 from app.drives.transmitted import TransmittedDrive, counted_mm, in_millimetres
@@ -68,8 +68,8 @@ async def lifted_rig(folder: Path) -> AsyncIterator[Rig]:
     clock, memory = VirtualClock(START), folder / "T1.json"
     true_mm = counted_mm(LIFT, TRUE_ELEVATION_DEG)
     elevation = AxisMemory(true_mm, counted_mm(LIFT, BEGIN_ELEVATION_DEG) - true_mm, homed=False)
-    remember(memory, PositionMemory(AxisMemory(12.4, 90.0, homed=False), elevation, 1, trusted=True))
-    machine = SimulatedDrive(in_millimetres(LIFTED), clock, memory=memory, mechanics=FINE)
+    PositionFile(memory).keep(PositionMemory(AxisMemory(12.4, 90.0, homed=False), elevation, 1, trusted=True))
+    machine = SimulatedDrive(in_millimetres(LIFTED), clock, memory=PositionFile(memory), mechanics=FINE)
     drive = TransmittedDrive(machine, LIFTED)
     yield Rig(drive, LiftedMachine(machine), clock)  # type: ignore[arg-type]  # as much as the stories ask for
     await drive.close()

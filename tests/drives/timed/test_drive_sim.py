@@ -110,7 +110,7 @@ def test_the_factory_makes_a_simulated_drive_with_its_memory(tmp_path: Path) -> 
     assert isinstance(
         DriveFactory(clock, tmp_path).make(replace(CONFIG, tracker_id="../T 1")), SimulatedDrive
     )
-    assert [path.name for path in (tmp_path / "drives").iterdir()] == ["..%2FT%201.json"]
+    assert [path.name for path in (tmp_path / "drives").iterdir()] == ["positions"]
     assert isinstance(DriveFactory(clock).make(CONFIG), SimulatedDrive)
 
 

@@ -18,8 +18,8 @@ from tests.drives.timed.proxied import BENCHES, STOP_REGISTER, TIMING, Bench, Re
 from tests.ports import free_port
 
 RECOVERED_WITHIN_S = {"tcp": 0.3, "rtu": 1.0, "rtu-over-tcp": 1.0}
-STOP_WITHIN_S = 0.1
-"""Half as long as a poll without an answer holds the line."""
+STOP_WITHIN_S = 0.05
+"""A quarter of the time that a poll without an answer holds the line."""
 COMMAND = "import typer; from app.cli_drives import fault_proxy; typer.run(fault_proxy)"
 LATE = ("delay=250", "delay=450", "delay=700")
 
@@ -62,12 +62,9 @@ async def test_no_wrong_value_is_believed_and_the_next_read_is_right(wire: str, 
         devices = [bench.buses.unit(bench.config, unit, TIMING) for unit in bench.devices]
         for device in devices:
             assert await one_read(bench, device, 10)
-        recovered_s = await recovery(bench, devices, fault)
-        if recovered_s >= RECOVERED_WITHIN_S[wire]:
-            recovered_s = await recovery(bench, devices, fault)
-        assert recovered_s < RECOVERED_WITHIN_S[wire], "twice in a row is no stall of a busy computer"
+        assert await recovery(bench, devices, fault) < RECOVERED_WITHIN_S[wire]
         again = [await one_read(bench, devices[place % 2], 20 + place) for place in range(8)]
-        assert sum(again) >= 7, "the bus is in step again"
+        assert again == [True] * 8, "the bus is in step again"
         for device in devices:
             await device.close()
 
@@ -92,7 +89,7 @@ async def test_a_stop_goes_at_once_while_polls_are_in_flight(wire: str, fault: s
             stop.cancel()
             await asyncio.gather(stop, return_exceptions=True)
         assert min(took_s) > 0.0, "every stop was sent"
-        assert sorted(took_s)[1] < STOP_WITHIN_S
+        assert max(took_s) < STOP_WITHIN_S
         for poll in polls:
             poll.cancel()
         await asyncio.gather(*polls, return_exceptions=True)

@@ -25,6 +25,7 @@ from tests.drives.scripted_server import (
     scripted,
     silent,
 )
+from tests.fault_result import REAL, FaultResult
 
 TIMEOUT_S = 0.6
 RIGHT = [30, 33, 36, 39]
@@ -81,12 +82,18 @@ BAD_REPLIES: dict[str, Answer] = {
 
 @pytest.mark.parametrize("name", BAD_REPLIES)
 @pytest.mark.fault(6)
-async def test_a_bad_reply_is_never_believed_and_the_next_read_is_right(name: str) -> None:
+async def test_a_bad_reply_is_never_believed_and_the_next_read_is_right(
+    name: str, fault: FaultResult
+) -> None:
     async with linked(BAD_REPLIES[name], BAD_REPLIES[name], good) as (link, server, _):
-        with pytest.raises(DriveError):
+        began = time.monotonic()
+        with pytest.raises(DriveError) as caught:
             await read(link)
+        fault.noticed(time.monotonic() - began, REAL)
+        fault.shows(str(caught.value))
         assert await read(link) == RIGHT
         assert server.connections >= 2, "a bad reply costs the connection"
+        fault.recovers("by itself: with the next good reply, over a new connection")
 
 
 @pytest.mark.parametrize("name", BAD_REPLIES)
@@ -106,19 +113,23 @@ async def test_a_reply_in_many_pieces_is_put_together() -> None:
 
 
 @pytest.mark.fault(2)
-async def test_silence_is_noticed_within_the_time_out_and_costs_the_connection() -> None:
+async def test_silence_is_noticed_within_the_time_out_and_costs_the_connection(fault: FaultResult) -> None:
     async with linked(silent, good) as (link, server, _):
         began = time.monotonic()
-        with pytest.raises(DriveSilent, match="did not answer within"):
+        with pytest.raises(DriveSilent, match="did not answer within") as caught:
             await read(link)
-        assert 0.5 < time.monotonic() - began < 5.0
+        took_s = time.monotonic() - began
+        assert 0.5 < took_s < 5.0
+        fault.noticed(took_s, REAL)
+        fault.shows(str(caught.value))
         assert len(server.requests) == 1, "a silent device is not asked twice in one call"
         assert await read(link) == RIGHT
         assert server.connections == 2
+        fault.recovers("by itself: with the next good reply, over a new connection")
 
 
 @pytest.mark.fault(5)
-async def test_a_late_reply_is_not_taken_for_the_next_one() -> None:
+async def test_a_late_reply_is_not_taken_for_the_next_one(fault: FaultResult) -> None:
     late: list[bytes] = []
 
     def keep(request: bytes) -> list[bytes | None]:
@@ -129,8 +140,11 @@ async def test_a_late_reply_is_not_taken_for_the_next_one() -> None:
         return [late[0], right(request)]
 
     async with linked(keep, both, both, good) as (link, _, _):
-        with pytest.raises(DriveSilent):
+        began = time.monotonic()
+        with pytest.raises(DriveSilent) as caught:
             await link.read(10, 4, what="one")
+        fault.noticed(time.monotonic() - began, REAL)
+        fault.shows(str(caught.value))
         found = []
         for _ in range(2):
             try:
@@ -139,6 +153,7 @@ async def test_a_late_reply_is_not_taken_for_the_next_one() -> None:
                 continue
         assert all(words == [60, 63, 66, 69] for words in found)
         assert found, "the link works again"
+        fault.recovers("by itself: the late reply is thrown away with its connection")
 
 
 WRONG_ECHOES: dict[str, tuple[list[int], Answer]] = {
@@ -177,13 +192,17 @@ async def test_what_a_device_does_not_know_is_refused_for_good(code: int) -> Non
 
 @pytest.mark.parametrize("code", [4, 5, 6])
 @pytest.mark.fault(10)
-async def test_a_busy_device_is_asked_again_later(code: int) -> None:
+async def test_a_busy_device_is_asked_again_later(code: int, fault: FaultResult) -> None:
     async with linked(exception(code), good) as (link, server, _):
+        began = time.monotonic()
         with pytest.raises(DriveError, match="asked again") as caught:
             await read(link)
+        fault.noticed(time.monotonic() - began, REAL)
+        fault.shows(str(caught.value))
         assert not isinstance(caught.value, DriveRefused | DriveSilent)
         assert await read(link) == RIGHT
         assert server.connections == 1, "an exception reply is a good reply"
+        fault.recovers("by itself: it is asked again")
 
 
 @pytest.mark.parametrize("code", [10, 11])
