@@ -18,6 +18,7 @@ from app.audit.entry import Entry, Sealed
 from app.instants import without_leap_second
 from app.settings import Settings, read_settings
 from app.store.engine import open_reader
+from app.store.files import private_opener
 from app.store.store import AuditFilter, Reader
 
 audit = typer.Typer(name="audit", help="Who did what: check it, take it along.", no_args_is_help=True)
@@ -187,7 +188,7 @@ def _tell(what: str, broken: Break) -> bool:
 def _write(out: Path, as_format: Format, columns: Sequence[str], rows: Iterable[Row]) -> int:
     """Write rows and return how many there were."""
     count = 0
-    with out.open("w", newline="", encoding="utf-8") as file:
+    with open(out, "w", newline="", encoding="utf-8", opener=private_opener) as file:
         put = _put_csv(file, columns) if as_format is Format.CSV else _put_json(file)
         for count, one in enumerate(rows, start=1):  # noqa: B007 - the last number is the count
             put(one)

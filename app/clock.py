@@ -47,6 +47,11 @@ class VirtualClock:
         """Return the instant that this clock was last moved to."""
         return self._now
 
+    @property
+    def next_wake(self) -> datetime | None:
+        """Return the earliest instant that somebody sleeps until, None if nobody does."""
+        return min((until for until, _ in self._sleepers), default=None)
+
     def move_to(self, at: datetime) -> None:
         """Move to `at` (never backwards) and wake everyone who slept until then."""
         if at < self._now:
@@ -70,6 +75,11 @@ class VirtualClock:
         woken = asyncio.Event()
         self._sleepers.append((at, woken))
         await woken.wait()
+
+
+async def give_way() -> None:
+    """Let everything else that is due run once: what answers a flood of requests does so between any two."""
+    await asyncio.sleep(0)
 
 
 async def set_or_at(event: asyncio.Event, clock: Clock, until: datetime) -> None:

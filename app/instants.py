@@ -1,10 +1,12 @@
 """Instants as programs and people write them, leap seconds included."""
 
 import re
+from datetime import datetime
 from typing import Annotated
 
-from pydantic import AwareDatetime, BeforeValidator
+from pydantic import AfterValidator, AwareDatetime, BeforeValidator, Strict
 
+FIRST_YEAR, LAST_YEAR = 1000, 8999
 NUMBER = re.compile(r"\s*[-+]?[\d._]+(?:[eE][-+]?\d+)?\s*")
 NOT_A_NUMBER = "Write the instant in ISO 8601 with its offset, such as 2026-06-21T12:00:00+03:00."
 LEAP_SECOND = re.compile(r"([T ]\d{2}:\d{2}):60(?:[.,]\d+)?(?=$|[Zz+-])")
@@ -26,5 +28,15 @@ def _clamped(given: object) -> object:
     return without_leap_second(given) if isinstance(given, str) else given
 
 
-Instant = Annotated[AwareDatetime, BeforeValidator(_clamped)]
-"""An instant with its offset in what comes in; 23:59:60 is taken as 23:59:59, and a number is refused."""
+def _countable(instant: datetime) -> datetime:
+    """Refuse what no arithmetic with instants can take: a day more or less leaves the calendar."""
+    if not FIRST_YEAR <= instant.year <= LAST_YEAR:
+        raise ValueError(f"Give an instant of the years {FIRST_YEAR} to {LAST_YEAR}.")
+    return instant
+
+
+Instant = Annotated[AwareDatetime, Strict(False), BeforeValidator(_clamped), AfterValidator(_countable)]
+"""An instant with its offset in what comes in; 23:59:60 is taken as 23:59:59, and a number is refused.
+
+It is text in JSON: where a model is strict, the text would be refused behind a validator of ours.
+"""

@@ -18,6 +18,7 @@ from pydantic_settings import (
 )
 
 from app.foreseen import Foreseen
+from app.hosts import checked_host
 from app.network import FILE_NAME, NETWORK_FIELDS, Network, read_network
 
 PREFIX = "HELIOPANEL_"
@@ -88,6 +89,13 @@ class Settings(BaseSettings):
     )
     recordings_keep: int = Field(
         500, ge=1, description="Shows and simulations beyond this number are removed, oldest first."
+    )
+    sample_store_s: int = Field(
+        300,
+        ge=1,
+        le=900,
+        description="Seconds between two times that recorded samples are written to the disk; a power cut "
+        "loses at most so many.",
     )
     weather_stale_s: int = Field(
         300, ge=5, le=86400, description="A weather report older than this is shown as stale and not used."
@@ -170,6 +178,11 @@ class Settings(BaseSettings):
             InitSettingsSource(settings_cls, network),
             InitSettingsSource(settings_cls, given),
         )
+
+    @field_validator("mqtt_host", "smtp_host")
+    @classmethod
+    def _host(cls, host: str | None) -> str | None:
+        return None if host is None else checked_host(host)
 
     @field_validator("sunspec_host")
     @classmethod

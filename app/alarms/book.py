@@ -71,11 +71,13 @@ def step(
     *,
     maintenance: frozenset[str] = frozenset(),
     settled: bool = True,
+    raised_elsewhere: Iterable[datetime] = (),
 ) -> tuple[Book, tuple[Change, ...]]:
     """Return the book after one look, and what changed.
 
     `maintenance` are trackers whose alarms are out of service, priority 1 aside. As long as the machine has
     not `settled` after its start nothing returns: a condition not seen yet may still be there.
+    `raised_elsewhere` is when other books raised alarms since the last look: a flood counts them, too.
     """
     seen = {one.alarm_id: one for one in present}
     if book.flood:
@@ -91,7 +93,7 @@ def step(
         if name in book.alarms and book.alarms[name].active and not alarm.active and alarm.told
     ]
     fresh = sum(1 for one in told if one.alarm.code != FLOOD)
-    raised = (*(one for one in book.raised if now - one < FLOOD_WINDOW), *[now] * fresh)
+    raised = (*(one for one in book.raised if now - one < FLOOD_WINDOW), *raised_elsewhere, *[now] * fresh)
     flood = len(raised) > (FLOOD_OVER_BELOW - 1 if book.flood else FLOOD_ABOVE)
     kept = {name: alarm for name, alarm in alarms.items() if alarm.stands or alarm.active or alarm.seen_since}
     return Book(kept, raised, flood), (*ended, *told, *returned)

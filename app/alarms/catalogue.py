@@ -268,7 +268,7 @@ ENTRIES = (
     ),
     Entry(
         "disk_full", 2, Group.STORE, "Disk is full",
-        "Journal, settings and recordings cannot be stored any more.",
+        "No samples are recorded any more; soon journal and settings cannot be stored either.",
         "Delete recordings or other files on this computer now.",
         SHORT, LONG,
     ),
@@ -277,6 +277,12 @@ ENTRIES = (
         "Soon nothing can be stored.",
         "Delete recordings that are not needed, or other files on this computer.",
         LONG, LONG, ("disk_full",),
+    ),
+    Entry(
+        "overloaded", 3, Group.LOAD, "Controller is overloaded",
+        "Pages show new values once a second and nothing is recorded; motion and stops stay on time.",
+        "Close what else runs on this computer; use fewer trackers or a longer period if that does not help.",
+        SOON, SHORT,
     ),
     Entry(
         "ticks_late", 3, Group.LOAD, "Control is late",

@@ -63,21 +63,22 @@ LATE = Band(0.05, 0.02)
 LINK_POOR = Band(0.05, 0.01)
 
 
-def conditions(site: SiteSnapshot, health: SiteHealth, before: frozenset[str]) -> tuple[Condition, ...]:
-    """Return every condition that is present; `before` are the ids of those that were, for the deadbands."""
-    found = [*_of_site(site), *_of_health(health, before)]
-    for tracker in site.trackers:
-        found.extend(_of_tracker(tracker))
-        found.extend(_of_link(tracker, health.unread.get(tracker.tracker_id), before))
+def of_site(site: SiteSnapshot, health: SiteHealth, before: frozenset[str]) -> tuple[Condition, ...]:
+    """Return every condition of the site itself; `before` are those that were present, for the deadbands."""
+    return _once((*_told_by_site(site), *_of_health(health, before)))
+
+
+def of_tracker(tracker: Snapshot, health: SiteHealth, before: frozenset[str]) -> tuple[Condition, ...]:
+    """Return every condition of one tracker; `before` are those that were present, for the deadbands."""
+    unread = health.unread.get(tracker.tracker_id)
+    return _once((*_told_by_tracker(tracker), *_of_link(tracker, unread, before)))
+
+
+def _once(found: tuple[Condition, ...]) -> tuple[Condition, ...]:
     return tuple({one.alarm_id: one for one in reversed(found)}.values())[::-1]
 
 
-def in_maintenance(site: SiteSnapshot) -> frozenset[str]:
-    """Return the trackers that somebody has locked for maintenance: their alarms are out of service."""
-    return frozenset(one.tracker_id for one in site.trackers if one.lock is not None)
-
-
-def _of_tracker(tracker: Snapshot) -> Iterator[Condition]:
+def _told_by_tracker(tracker: Snapshot) -> Iterator[Condition]:
     """Yield what a tracker tells; a fault is always one, under its own code or as any fault."""
     if tracker.not_stowed is not None:
         yield _told(tracker, tracker.not_stowed)
@@ -87,9 +88,8 @@ def _of_tracker(tracker: Snapshot) -> Iterator[Condition]:
     for reason in (*tracker.notices, *tracker.waiting):
         if reason.code in CATALOGUE:
             yield _told(tracker, reason)
-    for reason in tracker.actions.get("jog", ()):
-        if reason.code == "drive_unreachable":
-            yield _told(tracker, reason, "drive_lost")
+    if tracker.unreachable is not None:
+        yield _told(tracker, tracker.unreachable, "drive_lost")
 
 
 def _told(tracker: Snapshot, reason: Reason, code: str | None = None) -> Condition:
@@ -103,7 +103,7 @@ def _of_link(tracker: Snapshot, unread: float | None, before: frozenset[str]) ->
         yield found
 
 
-def _of_site(site: SiteSnapshot) -> Iterator[Condition]:
+def _told_by_site(site: SiteSnapshot) -> Iterator[Condition]:
     for reason in (*site.clock.reasons, *site.clock.warnings):
         if reason.code in CATALOGUE:
             yield Condition(reason.code, None, SITE, reason.message, reason.hint)

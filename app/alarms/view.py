@@ -1,12 +1,13 @@
 """From the book to what the snapshot tells: the most urgent first, bounded, with counts of all."""
 
+from bisect import bisect_left, insort
 from collections import Counter
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import cast
 
 from app.alarms.alarm import Alarm
-from app.alarms.book import Book
 from app.alarms.catalogue import Group
 from app.tracker.alarm_words import MOST_SHOWN, PRIORITIES, AlarmCounts, AlarmNow, AlarmState
 
@@ -17,34 +18,86 @@ SILENCED = (AlarmState.SUPPRESSED, AlarmState.OUT_OF_SERVICE)
 ASIDE = (AlarmState.SHELVED, *SILENCED)
 Four = tuple[int, int, int, int]
 Followed = set[tuple[Group, str | None]]
+Urgency = tuple[bool, bool, bool, bool, int, float, str]
+Ranked = tuple[Urgency, AlarmNow]
+Counted = tuple[str, int]
+Shown = tuple[tuple[AlarmNow, ...], AlarmCounts]
 
 
-def view(book: Book, at: datetime, now: datetime) -> tuple[tuple[AlarmNow, ...], AlarmCounts]:
-    """Return the alarms that stand, at most 50, and how many there are; `at` and `now` as in the book."""
-    followed = _followed(book)
-    alarms = sorted(
-        (_leading(_now(one, book, at, now), one, followed) for one in book.alarms.values() if one.stands),
-        key=_urgency,
+class Ranking:
+    """The alarms that stand in the order of their urgency; a place that changes is put in anew."""
+
+    def __init__(self) -> None:
+        self._ranked: list[Ranked] = []
+        self._places: dict[str | None, tuple[Ranked, ...]] = {}
+        self._counts: Counter[Counted] = Counter()
+
+    def renew(
+        self, place: str | None, alarms: Iterable[Alarm], at: datetime, now: datetime, *, flood: bool
+    ) -> None:
+        """Take the alarms of one tracker, or of the site (None), in the place of those it had."""
+        for ranked in self._places.pop(place, ()):
+            del self._ranked[bisect_left(self._ranked, ranked[:1])]
+            self._counts.subtract(_counted(ranked[1]))
+        fresh = tuple((_urgency(one), one) for one in _standing(tuple(alarms), at, now, flood=flood))
+        for ranked in fresh:
+            insort(self._ranked, ranked)
+            self._counts.update(_counted(ranked[1]))
+        if fresh:
+            self._places[place] = fresh
+
+    def shown(self, *, flood: bool) -> Shown:
+        """Return the alarms that stand, at most 50, and how many there are."""
+        counts = AlarmCounts(
+            standing=self._by_priority("standing"),
+            calling=self._by_priority("calling"),
+            shelved=self._counts["shelved", 0],
+            silenced=self._counts["silenced", 0],
+            more=max(0, len(self._ranked) - MOST_SHOWN),
+            flood=flood,
+        )
+        return tuple(alarm for _, alarm in self._ranked[:MOST_SHOWN]), counts
+
+    def _by_priority(self, what: str) -> Four:
+        return cast(Four, tuple(self._counts[what, priority] for priority in PRIORITIES))
+
+
+def _standing(alarms: tuple[Alarm, ...], at: datetime, now: datetime, *, flood: bool) -> Iterator[AlarmNow]:
+    followed = _followed(alarms)
+    for alarm in alarms:
+        if alarm.stands:
+            yield _leading(_now(alarm, at, now, flood=flood), alarm, followed)
+
+
+def counts_of(alarms: Iterable[AlarmNow], *, flood: bool) -> AlarmCounts:
+    """Return how many of these alarms there are of every kind."""
+    found = Counter(kind for one in alarms for kind in _counted(one))
+
+    def four(what: str) -> Four:
+        return cast(Four, tuple(found[what, priority] for priority in PRIORITIES))
+
+    return AlarmCounts(
+        four("standing"), four("calling"), found["shelved", 0], found["silenced", 0], flood=flood
     )
-    listed = [one for one in alarms if one.state not in ASIDE]
-    counts = AlarmCounts(
-        standing=_by_priority(listed),
-        calling=_by_priority([one for one in listed if one.calls]),
-        shelved=sum(one.state is AlarmState.SHELVED for one in alarms),
-        silenced=sum(one.state in SILENCED for one in alarms),
-        more=max(0, len(alarms) - MOST_SHOWN),
-        flood=book.flood,
-    )
-    return tuple(alarms[:MOST_SHOWN]), counts
+
+
+def _counted(alarm: AlarmNow) -> tuple[Counted, ...]:
+    """Return the counters in which an alarm counts."""
+    if alarm.state is AlarmState.SHELVED:
+        return (("shelved", 0),)
+    if alarm.state in SILENCED:
+        return (("silenced", 0),)
+    calling = (("calling", alarm.priority),) if alarm.calls else ()
+    return (("standing", alarm.priority), *calling)
 
 
 def told(alarm: Alarm, ended_at: datetime | None) -> AlarmNow:
     """Return an alarm of the history as people read it."""
     at = ended_at or alarm.raised_at or EPOCH
-    return _now(alarm, Book(), at, at)
+    return _now(alarm, at, at, flood=False)
 
 
-def _now(alarm: Alarm, book: Book, at: datetime, now: datetime) -> AlarmNow:
+def _now(alarm: Alarm, at: datetime, now: datetime, *, flood: bool) -> AlarmNow:
     entry, shelf = alarm.entry, alarm.shelf
     return AlarmNow(
         alarm_id=alarm.alarm_id,
@@ -65,14 +118,14 @@ def _now(alarm: Alarm, book: Book, at: datetime, now: datetime) -> AlarmNow:
         shelved_for="" if shelf is None else shelf.reason,
         silenced_by=_silenced_by(alarm),
         first_out=alarm.first_out,
-        collapsed=book.flood and entry.priority >= COLLAPSED_FROM,
+        collapsed=flood and entry.priority >= COLLAPSED_FROM,
         occurrences=max(1, alarm.occurrences),
     )
 
 
-def _followed(book: Book) -> Followed:
+def _followed(alarms: Iterable[Alarm]) -> Followed:
     """Return the groups and places where an alarm came after another one that may be its cause."""
-    later = (one for one in book.alarms.values() if one.active and one.told and not one.first_out)
+    later = (one for one in alarms if one.active and one.told and not one.first_out)
     return {(group, one.tracker_id) for one in later for group in one.entry.kin}
 
 
@@ -90,7 +143,7 @@ def _silenced_by(alarm: Alarm) -> str:
     return MAINTENANCE if alarm.in_maintenance else alarm.suppressed_by
 
 
-def _urgency(alarm: AlarmNow) -> tuple[object, ...]:
+def _urgency(alarm: AlarmNow) -> Urgency:
     """Return what sorts alarms: priority 1, then what calls, by priority, the newest first; aside is last."""
     aside = alarm.state in ASIDE
     return (
@@ -102,8 +155,3 @@ def _urgency(alarm: AlarmNow) -> tuple[object, ...]:
         -alarm.since.timestamp(),
         alarm.alarm_id,
     )
-
-
-def _by_priority(alarms: list[AlarmNow]) -> Four:
-    counted = Counter(one.priority for one in alarms)
-    return cast(Four, tuple(counted[priority] for priority in PRIORITIES))

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 
 from app.gateway.door import Door, Update, refused, send
-from app.link.messages import RequestControl
+from app.link.messages import RequestControl, UnknownTracker
 from app.tracker.commands import CommandRejected, Home, Stop, Track
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
@@ -42,13 +42,13 @@ class Calibrations:
 
     async def begin(self, tracker: Snapshot, actor: str) -> None:
         """Begin with one tracker, or raise `CommandRejected` before anything is stopped."""
-        against = lasting(tracker)
+        against = lasting(await self._now(tracker))
         if against:
             rejected = CommandRejected(*against)
             refused(self._door, tracker.tracker_id, actor, f"The calibration was not begun: {rejected}")
             raise rejected
         await send(self._door, RequestControl((tracker.tracker_id,)), tracker.tracker_id, actor)
-        if tracker.actions["home"]:
+        if (await self._now(tracker)).actions["home"]:
             await send(self._door, Stop(), tracker.tracker_id, actor)
             self._running[tracker.tracker_id] = Calibration(_Phase.STOPPING, actor)
         else:
@@ -65,6 +65,8 @@ class Calibrations:
 
     async def follow(self, update: Update) -> None:
         """Take every calibration on as far as the update allows."""
+        if not self._running:
+            return
         trackers = {one.tracker_id: one for one in update.snapshot.trackers}
         for tracker_id, running in tuple(self._running.items()):
             tracker = trackers.get(tracker_id)
@@ -74,8 +76,12 @@ class Calibrations:
             events = tuple(event for event in update.events if event.tracker_id == tracker_id)
             try:
                 await self._step(tracker, running, events)
-            except CommandRejected:
+            except (CommandRejected, UnknownTracker):
                 self.forget(tracker_id)
+
+    async def _now(self, tracker: Snapshot) -> Snapshot:
+        """Return a tracker with what may be asked of it, which snapshots leave out."""
+        return await self._door.tracker(tracker.tracker_id)
 
     async def _step(self, tracker: Snapshot, running: Calibration, events: tuple[Event, ...]) -> None:
         if any(event.kind is EventKind.STOPPED and event.actor != running.actor for event in events):
@@ -84,7 +90,7 @@ class Calibrations:
             await self._homing(tracker, running, events)
         elif tracker.activity not in COMES_TO_REST:
             self._give_up(tracker, running, f"the tracker is {tracker.activity}.")
-        elif not tracker.actions["home"]:
+        elif not (await self._now(tracker)).actions["home"]:
             await self._home(tracker.tracker_id, running.actor)
 
     async def _homing(self, tracker: Snapshot, running: Calibration, events: tuple[Event, ...]) -> None:

@@ -17,10 +17,11 @@ from app.gateway.sunspec import RTU, TCP, SunSpecRtu, SunSpecTcp
 from app.gateway.sunspec_device import SERIAL, SunSpecDevice
 from app.link.messages import Order, SiteDetail, Update
 from app.link.metrics import GatewayMetrics, GatewayStatus, MachineMetrics
+from app.link.outlet import Listener
 from app.settings import Settings
 from app.store.store import Reader
 from app.tracker.notifications import Channel
-from app.tracker.snapshot import SiteSnapshot
+from app.tracker.snapshot import SiteSnapshot, Snapshot
 
 TELL_AGAIN_S = 1.0
 OUTBOX_NAME = "mqtt-outbox.json"
@@ -44,7 +45,13 @@ class Gateway(Protocol):
 
 
 class MeteredDoor(Door, Protocol):
-    """A machine that also counts."""
+    """A machine that also counts, and tells who listens what changed."""
+
+    def listen(self) -> Listener:
+        """Return a new subscriber of its updates."""
+
+    async def watch(self, tracker_ids: frozenset[str], who: object = None) -> None:
+        """Have snapshots of these trackers told with their actions, as long as one who watches them does."""
 
     async def metrics(self) -> MachineMetrics:
         """Return the counters."""
@@ -112,6 +119,18 @@ class Gateways:
     def latest(self) -> SiteSnapshot | None:
         """Return the newest snapshot."""
         return self._machine.latest()
+
+    async def tracker(self, tracker_id: str) -> Snapshot:
+        """Return one tracker now, with what may be asked of it."""
+        return await self._machine.tracker(tracker_id)
+
+    async def watch(self, tracker_ids: frozenset[str], who: object = None) -> None:
+        """Have snapshots of these trackers told with their actions."""
+        await self._machine.watch(tracker_ids, who)
+
+    def listen(self) -> Listener:
+        """Return a new subscriber of the machine's updates."""
+        return self._machine.listen()
 
     def updates(self) -> AsyncIterator[Update]:
         """Yield updates until the machine ends."""

@@ -5,20 +5,22 @@ journal on disk, and both by tasks of their own.
 """
 
 import asyncio
-from collections.abc import AsyncIterator, Coroutine
+from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine
 from contextlib import asynccontextmanager, suppress
 from datetime import timedelta
 from pathlib import Path
 from typing import TypeVar
 
 import structlog
-from aiomqtt import Client, MqttError, TLSParameters, Will
+from aiomqtt import Client, MqttError, ProtocolVersion, TLSParameters, Will
+from aiomqtt.exceptions import MqttConnectError
+from paho.mqtt.subscribeoptions import SubscribeOptions
 
 from app.alarms.conditions import SITE, Condition
 from app.clock import Clock
 from app.gateway.door import Door
-from app.gateway.mqtt_commands import obey
 from app.gateway.mqtt_discovery import announcements
+from app.gateway.mqtt_lanes import CommandLanes
 from app.gateway.mqtt_messages import (
     OFFLINE,
     ONLINE,
@@ -45,6 +47,13 @@ ANSWER_WITHIN_S = 5.0
 KEEPALIVE_S = 15
 MOST_COMMANDS_WAITING = 100
 AT_LEAST_ONCE = 1
+HEARD = SubscribeOptions(
+    qos=AT_LEAST_ONCE,
+    retainAsPublished=True,
+    retainHandling=SubscribeOptions.RETAIN_DO_NOT_SEND,
+)
+"""A command that was sent to be retained keeps its flag; what was retained before is not sent at all."""
+UNSUPPORTED_VERSION = 132
 
 T = TypeVar("T")
 
@@ -66,6 +75,7 @@ class MqttGateway:
         self._waiting = 0
         self._announced: dict[str, bytes] = {}
         self._alarms: dict[str, bytes] | None = None
+        self._protocol = ProtocolVersion.V5
 
     def metrics(self) -> GatewayMetrics:
         """Return how it is doing."""
@@ -79,6 +89,13 @@ class MqttGateway:
     @property
     def _where(self) -> str:
         return f"{self._settings.mqtt_host}:{self._port}"
+
+    @property
+    def _deaf(self) -> str:
+        """Return why no commands are heard although they are allowed, empty if they are."""
+        if self._protocol is ProtocolVersion.V5 or not self._settings.mqtt_commands:
+            return ""
+        return f"The broker at {self._where} does not speak MQTT 5, so no commands are taken."
 
     async def run(self) -> None:
         """Connect, tell, and connect again, until cancelled."""
@@ -100,6 +117,9 @@ class MqttGateway:
         while isinstance(first, BaseExceptionGroup):
             first = first.exceptions[0]
         self._status = GatewayStatus.CONNECTING
+        if isinstance(first, MqttConnectError) and first.rc == UNSUPPORTED_VERSION:
+            self._protocol = ProtocolVersion.V311
+            log.warning("mqtt_older_broker", broker=self._where, commands="none are taken")
         self._error = f"The broker at {self._where} is not reached: {first}. It is tried again."
         self._door.trouble(MQTT, Condition("gateway_down", None, SITE, self._error))
         log.warning("mqtt_disconnected", reason=str(first), broker=self._where)
@@ -108,10 +128,10 @@ class MqttGateway:
     async def _connected(self) -> AsyncIterator[Client]:
         """Connect with a last will, hear commands, say that we are online, and take it back at the end."""
         async with self._client() as client:
-            if self._settings.mqtt_commands:
-                await client.subscribe(self._topics.commands, AT_LEAST_ONCE)
+            if self._settings.mqtt_commands and self._protocol is ProtocolVersion.V5:
+                await client.subscribe(self._topics.commands, options=HEARD)
             await client.publish(self._topics.availability, ONLINE, AT_LEAST_ONCE, retain=True)
-            self._status, self._error, self._announced = GatewayStatus.CONNECTED, "", {}
+            self._status, self._error, self._announced = GatewayStatus.CONNECTED, self._deaf, {}
             self._alarms = None
             self._door.trouble(MQTT, None)
             log.info("mqtt_connected", broker=self._where)
@@ -138,6 +158,7 @@ class MqttGateway:
             timeout=ANSWER_WITHIN_S,
             keepalive=KEEPALIVE_S,
             max_queued_incoming_messages=MOST_COMMANDS_WAITING,
+            protocol=self._protocol,
         )
 
     def _tls(self) -> TLSParameters:
@@ -226,12 +247,20 @@ class MqttGateway:
             await self._clock.sleep_until(self._clock.now() + LOOK_FOR_RECORDINGS)
 
     async def _take_commands(self, client: Client) -> None:
-        async for message in client.messages:
-            tracker_id = self._topics.addressed(message.topic.value)
-            payload = message.payload if isinstance(message.payload, bytes) else b""
-            if payload:
-                answer = await obey(self._door, tracker_id, payload, retained=message.retain)
-                await heeding(client.publish(self._topics.result(tracker_id), answer, AT_LEAST_ONCE))
+        """Hand every command to its lane: a stop is carried out at once, the others in their order."""
+        lanes = CommandLanes(self._door, self._clock, self._answer_to(client))
+        async with asyncio.TaskGroup() as tasks:
+            lanes.start(tasks)
+            async for message in client.messages:
+                if isinstance(message.payload, bytes) and message.payload:
+                    tracker_id = self._topics.addressed(message.topic.value)
+                    lanes.take(tracker_id, message.payload, retained=message.retain)
+
+    def _answer_to(self, client: Client) -> Callable[[str, bytes], Awaitable[None]]:
+        async def answer(tracker_id: str, text: bytes) -> None:
+            await heeding(client.publish(self._topics.result(tracker_id), text, AT_LEAST_ONCE))
+
+        return answer
 
     async def _count_waiting(self) -> None:
         with suppress(StoreFailed):

@@ -17,7 +17,7 @@ from app.tracker.reason import Reason
 class _Message(BaseModel):
     """What every command carries: who asks, and what keeps a repeat or a late one from being carried out."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True)
 
     client: str = Field(min_length=1, max_length=40, pattern=r"^[\w.@ -]+$")
     key: str | None = Field(None, min_length=1, max_length=64)
@@ -61,19 +61,26 @@ RETAINED = Reason(
 _messages: TypeAdapter[_Plain | _Move] = TypeAdapter(Annotated[_Plain | _Move, Field(discriminator="type")])
 
 
-async def obey(door: Door, tracker_id: str, payload: bytes, *, retained: bool) -> bytes:
+TOO_MANY = Reason(
+    "too_many", "Too many commands came over MQTT; this one was not carried out.", "Send them more slowly."
+)
+
+
+async def obey(door: Door, tracker_id: str, payload: bytes, *, against: tuple[Reason, ...] = ()) -> bytes:
     """Carry out one command and return the answer: its key, whether it was accepted, and if not why.
 
-    What asks for a stop is a stop, whatever else is wrong with the message.
+    `against` says why it is not carried out, unless it is a stop. What asks for a stop is a stop, whatever
+    else is wrong with the message.
     """
     try:
         message = _messages.validate_json(payload)
     except ValidationError as error:
-        if not _is_stop(payload):
+        if not is_stop(payload):
             return _answer(None, _malformed(error))
         message = _Plain(type="stop", client=UNNAMED)
     actor = f"mqtt {message.client}"
-    reasons = (RETAINED,) if retained else await _carry_out(door, tracker_id, message, actor)
+    goes = message.type == "stop" or not against
+    reasons = await _carry_out(door, tracker_id, message, actor) if goes else against
     if reasons:
         told = " ".join(reason.message for reason in reasons)
         refused(door, tracker_id, actor, f"{message.type} over MQTT was refused: {told}")
@@ -92,7 +99,8 @@ async def _carry_out(door: Door, tracker_id: str, message: _Plain | _Move, actor
     return ()
 
 
-def _is_stop(payload: bytes) -> bool:
+def is_stop(payload: bytes) -> bool:
+    """Return whether a message asks for a stop."""
     try:
         said = orjson.loads(payload)
     except orjson.JSONDecodeError:

@@ -12,6 +12,7 @@ from app.gateway.door import Door
 from app.gateway.notices import NotDelivered
 from app.gateway.outbox import Outbox
 from app.link.metrics import GatewayMetrics, GatewayStatus
+from app.masking import masked
 from app.settings import Settings
 from app.store.store import JournalEntry, StoreFailed
 from app.tracker.notifications import Channel, Notifications
@@ -112,7 +113,7 @@ class Notifier:
 
     def _where(self) -> str:
         wanted = self._door.notifications
-        return wanted.webhook_url if self._channel is Channel.WEBHOOK else ", ".join(wanted.mail_to)
+        return masked(wanted.webhook_url) if self._channel is Channel.WEBHOOK else ", ".join(wanted.mail_to)
 
 
 def is_sent(event: Event, channel: Channel, wanted: Notifications) -> bool:

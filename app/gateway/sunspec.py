@@ -6,8 +6,10 @@ from datetime import timedelta
 
 import structlog
 
+from app.budget import Budget
 from app.clock import Clock
 from app.drives.line import SerialLine
+from app.drives.modbus_clients import Limits
 from app.drives.modbus_server import ModbusServer
 from app.drives.rtu_server import RtuServer
 from app.gateway.sunspec_device import SERIAL, SunSpecDevice
@@ -17,7 +19,8 @@ from app.tracker.config import Parity, SerialConfig
 
 TCP, RTU = "SunSpec over Modbus TCP", "SunSpec over Modbus RTU"
 TRY_AGAIN = timedelta(seconds=10)
-MOST_CLIENTS = 16
+LIMITS = Limits(most=16, requests_per_s=200.0, burst=50, idle_s=600.0)
+"""Enough to read and write 100 trackers every second; a control system that asks faster is slowed down."""
 
 log = structlog.get_logger(__name__)
 
@@ -30,7 +33,7 @@ class SunSpecTcp:
         self._host = settings.sunspec_host
         self._port = settings.sunspec_port or 0
         self._server = ModbusServer(
-            device, settings.sunspec_unit, respond=device.respond, most_clients=MOST_CLIENTS
+            device, settings.sunspec_unit, respond=device.respond, limits=LIMITS, clock=clock
         )
         self._listening = False
         self._error = ""
@@ -93,7 +96,12 @@ class SunSpecRtu:
     async def run(self) -> None:
         """Serve until cancelled."""
         while True:
-            server = RtuServer({self._unit: self._device}, SerialLine(self._serial), respond=self._respond)
+            server = RtuServer(
+                {self._unit: self._device},
+                SerialLine(self._serial),
+                respond=self._respond,
+                budget=Budget(self._clock, per_s=LIMITS.requests_per_s or 1.0, burst=LIMITS.burst),
+            )
             try:
                 await server.start()
                 self._serving, self._error = True, ""

@@ -6,17 +6,19 @@ from typing import assert_never
 
 from app.drives.modbus_server import ILLEGAL_ADDRESS, ILLEGAL_VALUE, Refusal
 from app.gateway.calibration import Calibrations
-from app.gateway.door import Door, Update, refused, send, written
+from app.gateway.door import SUNSPEC, Door, Update, refused, send, written
+from app.gateway.quiet_door import QuietDoor
 from app.gateway.sunspec_values import Control, Targets
-from app.link.messages import RequestControl, UnknownTracker
+from app.link.messages import Order, RenewControl, RequestControl, UnknownTracker
 from app.tracker.commands import CommandRejected, Move, Track
 from app.tracker.config import Orientation
 from app.tracker.reason import Reason
-from app.tracker.snapshot import EventKind, SiteSnapshot, Snapshot
+from app.tracker.snapshot import ActivityName, EventKind, SiteSnapshot, Snapshot
 
 ACTOR = "sunspec "
 """What the actor of every order of this door begins with; the host follows."""
 BUSY = 6
+SAME_PLACE_DEG = 0.5
 TARGETS = {"ElCtl": (-90.0, 90.0), "AzCtl": (0.0, 360.0)}
 TAKES_OVER = {
     EventKind.STOPPED,
@@ -46,7 +48,10 @@ class Controls:
     """
 
     def __init__(self, door: Door) -> None:
-        self._door = door
+        door = QuietDoor(door)
+        self._door: Door = door
+        self._written: dict[tuple[str | None, str, str], float | None] = {}
+        self._last: dict[str, tuple[Control, Targets]] = {}
         self.targets: dict[str | None, Targets] = {}
         self.calibrations = Calibrations(door)
         self._manual: set[str] = set()
@@ -67,7 +72,8 @@ class Controls:
             azimuth_deg=values.get("AzCtl", before.azimuth_deg),
         )
         self.targets[tracker_id] = kept
-        written(self._door, tracker_id, actor, f"{told} was written over SunSpec.")
+        if self._has_changed(tracker_id, values, actor):
+            written(self._door, tracker_id, actor, f"{told} was written over SunSpec.")
         try:
             if "Ctl" in values:
                 await self._act(tracker_id, Control(int(values["Ctl"] or 0)), kept, actor)
@@ -82,7 +88,28 @@ class Controls:
         for event in update.events:
             if event.kind in TAKES_OVER and not event.actor.startswith(ACTOR):
                 self._manual.discard(event.tracker_id or "")
+                self._last.pop(event.tracker_id or "", None)
         await self.calibrations.follow(update)
+
+    def _has_changed(self, tracker_id: str | None, values: Written, actor: str) -> bool:
+        """Return whether one of these values was not written last by this host, and keep them."""
+        places = {(tracker_id, actor, name): value for name, value in values.items()}
+        changed = any(place not in self._written or self._written[place] != places[place] for place in places)
+        self._written |= places
+        return changed
+
+    def _is_done(self, tracker: Snapshot, control: Control, targets: Targets) -> bool:
+        """Return whether a tracker does already what is written once more, as control systems do it."""
+        name = tracker.tracker_id
+        if control is Control.CALIBRATE:
+            return name in self.calibrations.trackers
+        if self._last.get(name) != (control, targets):
+            return False
+        if control is Control.AUTOMATIC:
+            return tracker.tracking_on and tracker.activity is ActivityName.TRACKING
+        return name in self._manual and (
+            tracker.activity is ActivityName.MOVING or _is_there(tracker, targets)
+        )
 
     def _check(self, tracker_id: str | None, values: Written, actor: str) -> None:
         for name, value in values.items():
@@ -103,6 +130,10 @@ class Controls:
         """
         failures: list[Refusal] = []
         trackers = _addressed(self._door.latest(), tracker_id)
+        if trackers and all(self._is_done(one, control, targets) for one in trackers):
+            names = tuple(one.tracker_id for one in trackers)
+            await self._door.execute(Order(RenewControl(names), actor, via=SUNSPEC))
+            return
         if tracker_id is None and trackers:
             await self._take(tuple(one.tracker_id for one in trackers), actor)
         for tracker in trackers:
@@ -133,9 +164,11 @@ class Controls:
             match control:
                 case Control.AUTOMATIC:
                     await send(self._door, Track(), name, actor)
+                    self._last[name] = control, targets
                 case Control.MANUAL:
                     gone_to = await self._move(tracker, targets, actor)
                     self._manual.add(name)
+                    self._last[name] = control, targets
                     if for_all:
                         self.targets[name] = gone_to
                 case Control.CALIBRATE:
@@ -160,6 +193,20 @@ class Controls:
         orientation = Orientation(azimuth_deg % 360.0, elevation_deg)
         await send(self._door, Move(orientation), tracker.tracker_id, actor)
         return Targets(elevation_deg, azimuth_deg)
+
+
+def _is_there(tracker: Snapshot, targets: Targets) -> bool:
+    """Return whether a tracker stands still where it was sent."""
+    measured = tracker.measured
+    if tracker.activity is not ActivityName.HOLDING or measured is None:
+        return False
+    azimuth_deg, elevation_deg = targets.azimuth_deg, targets.elevation_deg
+    off_deg = (
+        0.0 if azimuth_deg is None else abs((measured.azimuth_deg - azimuth_deg + 180.0) % 360.0 - 180.0)
+    )
+    if elevation_deg is not None:
+        off_deg = max(off_deg, abs(measured.elevation_deg - elevation_deg))
+    return off_deg <= SAME_PLACE_DEG
 
 
 def _said(value: float | None) -> str:

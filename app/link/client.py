@@ -5,6 +5,7 @@ import itertools
 from collections.abc import AsyncIterator
 from contextlib import suppress
 from datetime import timedelta
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Self, assert_never
@@ -17,31 +18,37 @@ from app.link.codec import (
     Done,
     Execute,
     FrameBroken,
+    Look,
     Measured,
     Pong,
     Refused,
     Request,
+    Seen,
     Telling,
     Told,
+    Watch,
     decode_telling,
     encode_request,
     ends_motion,
     let_go,
     read_body,
 )
+from app.link.lanes import Lanes
 from app.link.messages import (
     MachineUnreachable,
     Order,
     SaveRecording,
     SiteCommand,
     SiteDetail,
+    StopAll,
     Update,
 )
 from app.link.metrics import MachineMetrics
 from app.link.outlet import Outlet
 from app.link.record_orders import AddRecordPhoto, SignRecord
-from app.tracker.commands import Jog
-from app.tracker.snapshot import SiteSnapshot
+from app.link.whole import Whole, with_tracker
+from app.tracker.commands import EndJog, Jog, Stop
+from app.tracker.snapshot import SiteSnapshot, Snapshot
 
 RECONNECT_AFTER = timedelta(milliseconds=300)
 SILENCE_S = 1.5
@@ -67,6 +74,10 @@ class LinkClient:
         self._path = path
         self._clock = clock or SystemClock()
         self._outlet = Outlet()
+        self._whole = Whole()
+        self._asked_again = False
+        self._watched: frozenset[str] = frozenset()
+        self._stops: Lanes[SiteSnapshot] = Lanes(self._clock)
         self._numbers = itertools.count(1)
         self._waiting: dict[int, asyncio.Future[Answer]] = {}
         self._writer: asyncio.StreamWriter | None = None
@@ -95,7 +106,13 @@ class LinkClient:
         await self.close()
 
     async def execute(self, order: Order) -> SiteSnapshot:
-        """Carry out one order and return the snapshot after it."""
+        """Carry out one order and return the snapshot after it; somebody's stops never pile up."""
+        if not isinstance(order.command, Stop | StopAll | EndJog):
+            return await self._execute(order)
+        alike = (order.command, order.tracker_id, order.actor, order.via, order.address)
+        return await self._stops.ask(alike, partial(self._execute, order))
+
+    async def _execute(self, order: Order) -> SiteSnapshot:
         patience_s = _patience_s(order)
         good_for_s = order.command.lease.total_seconds() if isinstance(order.command, Jog) else patience_s
         request = Execute(
@@ -114,10 +131,23 @@ class LinkClient:
         answer = await self._ask(request, patience_s)
         if not isinstance(answer, Done):
             raise _out_of_place(answer)
-        snapshot = answer.snapshot or self._outlet.latest
-        if snapshot is None:
+        site = self._whole.snapshot
+        if site is None:
             raise MachineUnreachable(TOO_LATE)
-        return snapshot
+        return site if answer.tracker is None else with_tracker(site, answer.tracker)
+
+    async def tracker(self, tracker_id: str) -> Snapshot:
+        """Return one tracker now, with what may be asked of it."""
+        answer = await self._ask(Look(next(self._numbers), tracker_id), ANSWER_S)
+        if not isinstance(answer, Seen):
+            raise _out_of_place(answer)
+        return answer.tracker
+
+    async def watch(self, tracker_ids: frozenset[str]) -> None:
+        """Have snapshots of these trackers told with their actions, also after the link was down."""
+        self._watched = tracker_ids
+        if self._writer is not None:
+            self._writer.write(encode_request(Watch(next(self._numbers), tracker_ids)))
 
     async def detail(self) -> SiteDetail:
         """Return stored settings, steps and capabilities."""
@@ -179,6 +209,8 @@ class LinkClient:
     async def _converse(self) -> None:
         reader, writer = await asyncio.open_unix_connection(self._path)
         self._writer = writer
+        if self._watched:
+            await self.watch(self._watched)
         try:
             while True:
                 async with asyncio.timeout(SILENCE_S):
@@ -190,16 +222,29 @@ class LinkClient:
     def _hear(self, telling: Telling) -> None:
         match telling:
             case Told():
-                self._outlet.publish(telling.update.snapshot, telling.update.events)
-            case Done() | Detailed() | Measured() | Pong() | Refused():
+                self._take(telling)
+            case Done() | Detailed() | Seen() | Measured() | Pong() | Refused():
                 answered = self._waiting.get(telling.number)
                 if answered is not None and not answered.done():
                     answered.set_result(telling)
             case _:
                 assert_never(telling)
 
+    def _take(self, told: Told) -> None:
+        """Merge what was told into the whole; after a gap ask for everything once."""
+        if told.after is None:
+            self._asked_again = False
+        elif not self._whole.follows(told) and not self._asked_again and self._writer is not None:
+            self._asked_again = True
+            self._writer.write(encode_request(Ask(next(self._numbers), "again")))
+        taken = self._whole.take(told)
+        if taken is not None:
+            arrivals = told.tracker_ids is not None
+            self._outlet.publish(taken.snapshot, taken.events, taken.changed, arrivals=arrivals)
+
     def _mark_down(self) -> None:
         self._writer = None
+        self._whole, self._asked_again = Whole(), False
         self._outlet.end()
         for answered in self._waiting.values():
             if not answered.done():

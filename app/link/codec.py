@@ -21,10 +21,11 @@ from app.link.messages import (
     Update,
 )
 from app.link.metrics import MachineMetrics
+from app.tracker.alarm_words import AlarmCounts
 from app.tracker.commands import Command, CommandRejected, EndJog, Jog, Stop
 from app.tracker.control import refusal
 from app.tracker.reason import Reason
-from app.tracker.snapshot import SiteSnapshot
+from app.tracker.snapshot import Event, SiteSnapshot, Snapshot
 
 LENGTH_BYTES = 4
 LONGEST_FRAME = 32 * 1024 * 1024
@@ -70,7 +71,25 @@ class Ask:
     """A question that changes nothing."""
 
     number: int
-    do: Literal["detail", "metrics", "ping"]
+    do: Literal["detail", "metrics", "ping", "again"]
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """How does this tracker stand, and what may be asked of it?"""
+
+    number: int
+    tracker_id: str
+    do: Literal["look"] = "look"
+
+
+@dataclass(frozen=True, slots=True)
+class Watch:
+    """Somebody looks at these trackers, and at no others."""
+
+    number: int
+    tracker_ids: frozenset[str]
+    do: Literal["watch"] = "watch"
 
 
 class ProblemKind(StrEnum):
@@ -111,10 +130,13 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class Done:
-    """An order was carried out; the snapshot after it, None if it is the newest that was told."""
+    """An order was carried out; what its tracker became, None if it has none or changed nothing.
+
+    What else the order changed was told before this.
+    """
 
     number: int
-    snapshot: SiteSnapshot | None
+    tracker: Snapshot | None
     tell: Literal["done"] = "done"
 
 
@@ -154,15 +176,33 @@ class Refused:
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """An update that nobody asked for."""
+class Seen:
+    """The answer to `look`."""
 
-    update: Update
+    number: int
+    tracker: Snapshot
+    tell: Literal["seen"] = "seen"
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """An update that nobody asked for: `site` has the trackers that changed, and alarms if they did.
+
+    `after`, `same_alarms` and `more` are those of `Update`; `tracker_ids` are all trackers, None while none
+    came or went.
+    """
+
+    site: SiteSnapshot
+    events: tuple[Event, ...]
+    after: int | None
+    tracker_ids: tuple[str, ...] | None
+    same_alarms: bool
+    more: bool
     tell: Literal["update"] = "update"
 
 
-Request = Execute | Ask
-Answer = Done | Detailed | Measured | Pong | Refused
+Request = Execute | Ask | Look | Watch
+Answer = Done | Detailed | Seen | Measured | Pong | Refused
 Telling = Answer | Told
 
 _requests: TypeAdapter[Request] = TypeAdapter(Annotated[Request, Discriminator("do")])
@@ -197,6 +237,17 @@ def problem_of(error: Exception) -> Problem:
             )
 
 
+def told(update: Update) -> Told:
+    """Return what is to be sent of an update: what differs."""
+    site, ids = update.snapshot, None
+    if update.arrivals:
+        ids = tuple(one.tracker_id for one in site.trackers)
+    if update.same_alarms:
+        site = replace(site, alarms=(), alarm_counts=AlarmCounts())
+    site = replace(site, trackers=update.changed)
+    return Told(site, update.events, update.after, ids, update.same_alarms, update.more)
+
+
 def _framed(body: bytes) -> bytes:
     return len(body).to_bytes(LENGTH_BYTES, "big") + body
 
@@ -214,7 +265,7 @@ def encode_telling(telling: Telling) -> bytes:
 def decode_request(body: bytes) -> Request:
     """Return the request in a frame's body, or raise `FrameBroken`."""
     try:
-        return _requests.validate_json(body)
+        return _requests.validate_json(body, strict=True)
     except ValueError as error:
         raise FrameBroken(str(error)) from error
 

@@ -22,7 +22,7 @@ from app.tracker.programs.show import ShowPlan
 from app.tracker.proof_states import ProofState
 from app.tracker.proofs import AxisEnd
 from app.tracker.recording import RecordingInfo
-from app.tracker.snapshot import Event, SiteSnapshot
+from app.tracker.snapshot import Event, SiteSnapshot, Snapshot
 
 
 class MachineUnreachable(Exception):
@@ -287,9 +287,10 @@ class Order:
     """One call into the machine. `tracker_id` addresses a `Command`; a `SiteCommand` leaves it None.
 
     `key` makes a repeated order a no-op that answers as the first did. `issued_at` (the machine's
-    own clock, as told by snapshots) makes an order that is older than 2 s refused. `via` and `address` say
-    how whoever ordered was known, and from where. `epoch` is the one of control that the order was given
-    under (None: whichever holds on arrival), `rank` whose word counts more: 2 engineer, 1 operator.
+    own clock, as told by snapshots) makes an order refused that is older than 2 s, or as much ahead. `via`
+    and `address` say how whoever ordered was known, and from where. `epoch` is the one of control that the
+    order was given under (None: whichever holds on arrival), `rank` whose word counts more: 2 engineer, 1
+    operator.
     """
 
     command: Command | SiteCommand
@@ -305,10 +306,20 @@ class Order:
 
 @dataclass(frozen=True, slots=True)
 class Update:
-    """What the machine tells: a full snapshot, and the events since the last update."""
+    """What the machine tells: how the site stands, the events since the last update, and what is different.
+
+    `changed` are the trackers that differ, `arrivals` says that some came or went, `same_alarms` that no
+    alarm differs. It follows the snapshot of the sequence `after`; None: there was none, all is new. With
+    `more`, further trackers that changed come with the next one.
+    """
 
     snapshot: SiteSnapshot
     events: tuple[Event, ...] = ()
+    changed: tuple[Snapshot, ...] = ()
+    after: int | None = None
+    arrivals: bool = True
+    same_alarms: bool = False
+    more: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -335,13 +346,19 @@ class Machine(Protocol):
     """The machine as the panel sees it: over the wire, or directly in tests."""
 
     async def execute(self, order: Order) -> SiteSnapshot:
-        """Carry out one order and return the snapshot after it.
+        """Carry out one order and return the snapshot after it; the tracker it is about has its `actions`.
 
         Raises `CommandRejected`, `UnknownTracker`, `UnknownRecording` or `MachineUnreachable`.
         """
 
     async def detail(self) -> SiteDetail:
         """Return stored settings, steps and capabilities, or raise `MachineUnreachable`."""
+
+    async def tracker(self, tracker_id: str) -> Snapshot:
+        """Return one tracker now, with the reasons that forbid its `actions`, or raise `UnknownTracker`."""
+
+    async def watch(self, tracker_ids: frozenset[str]) -> None:
+        """Have snapshots of these trackers told with their `actions` from now on, and of no others."""
 
     def latest(self) -> SiteSnapshot | None:
         """Return the newest snapshot that arrived, None before the first or while the link is down."""

@@ -22,6 +22,14 @@ class TrackerMetrics:
     lateness_max_ms: float
 
 
+@dataclass(frozen=True, slots=True)
+class Lateness:
+    """Ticks of any tracker that began no later than this, and later than the bound before."""
+
+    at_most_ms: float
+    ticks: int
+
+
 class GatewayStatus(StrEnum):
     """How one of the machine's other doors is doing."""
 
@@ -61,4 +69,6 @@ class MachineMetrics:
     store_queue: int = 0
     store_failures: int = 0
     resident_bytes: int = 0
+    lateness: tuple[Lateness, ...] = ()
+    overloaded: bool = False
     gateways: tuple[GatewayMetrics, ...] = ()

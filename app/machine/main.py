@@ -22,6 +22,7 @@ from app.late import settle
 from app.link.server import LinkServer
 from app.logs import set_up_logs
 from app.machine.lock import only_instance
+from app.machine.loop import run_loop
 from app.machine.marker import mark_running, mark_stopped, mark_version, version_before
 from app.machine.memory import MemoryGuard
 from app.machine.process import on_signals, raise_priority
@@ -35,6 +36,7 @@ from app.site.ntp import kernel_clock
 from app.site.site import Site, SiteOptions
 from app.site.timekeeping import Timekeeper
 from app.store.engine import open_writer
+from app.store.files import keep_all_private
 from app.store.integrity import sqlite_notice
 from app.store.migrations import upgrade
 from app.store.offloaded import WriterThread
@@ -56,16 +58,17 @@ def run(settings: Settings) -> None:
     settings.data_dir.mkdir(mode=0o700, parents=True, exist_ok=True)
     clock = SystemClock()
     with only_instance(settings.data_dir, clock.now()):
+        keep_all_private(settings.data_dir)
         _restore_if_asked(settings, clock.now())
         try:
             upgrade(settings.url)
             writer = open_writer(settings.url)
         except StoreDamaged as damage:
-            asyncio.run(serve_safely(settings, clock, damage))
+            run_loop(serve_safely(settings, clock, damage))
             return
         try:
             audit_version(settings.data_dir, writer, VERSION, clock.now())
-            asyncio.run(_serve(settings, clock, writer))
+            run_loop(_serve(settings, clock, writer))
         finally:
             writer.close()
 
@@ -185,8 +188,10 @@ def _site(
             period=timedelta(milliseconds=settings.tick_ms),
             retention=timedelta(days=settings.telemetry_retention_days),
             recordings_keep=settings.recordings_keep,
+            samples_every=timedelta(seconds=settings.sample_store_s),
             weather_stale_after=timedelta(seconds=settings.weather_stale_s),
             make_station=partial(met_reader, factory.buses),
+            weather_file=settings.data_dir / "weather",
             journal_retention=timedelta(days=settings.journal_retention_days),
             disk_free=lambda: _disk_free(settings.data_dir),
         ),

@@ -13,7 +13,8 @@ from app.energy.equatorial import daylight_h, declination_deg
 from app.energy.stepping import Steps, clear_day, fixed_whm2, midpoint_h, stepped_whm2
 from app.papers import alexandru_published as published
 from app.papers.alexandru_actuators import actuators, beyond_stroke_mm, solstice_stroke_mm
-from app.papers.result import Erratum, Figure, Gap, Group, Paper
+from app.papers.effect import Effect, Measured, effect, not_measured
+from app.papers.result import Basis, Erratum, Figure, Gap, Group, Paper
 from app.papers.sampling import from_spa, worse
 from app.sun.algorithms import PUBLISHED, Algorithm
 
@@ -21,7 +22,9 @@ WITHIN_GAIN_PERCENT = 0.5
 FEWER_STEPS = 8
 NUMERALS = ("I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X", "XI", "XII")
 CONTINUOUS = "No turbidity gives the fixed panel, the steps and this one together."
+OTHER_LATITUDE_DEG = 45.5
 MOST_TURBIDITY, TURBIDITY_WITHIN = 12.0, 0.002
+NAME, REFERENCE = not_measured("a name"), not_measured("a reference")
 
 
 def alexandru() -> Paper:
@@ -48,7 +51,11 @@ def alexandru() -> Paper:
 
 def _daylight() -> Group:
     rise_h, set_h = daylight_h(model.LATITUDE_DEG, declination_deg(model.SOLSTICE))
-    remark = "It follows from latitude 45.65 as little as from 45.50, which gives 4.254."
+    other_h, _ = daylight_h(OTHER_LATITUDE_DEG, declination_deg(model.SOLSTICE))
+    remark = (
+        f"It follows from latitude {model.LATITUDE_DEG:.2f} as little as from {OTHER_LATITUDE_DEG:.2f}, "
+        f"which gives {other_h:.3f}."
+    )
     return Group(
         "Section 4, sunrise and sunset of 21 June, solar time",
         "12 ∓ acos(−tan φ tan δ)/15 with φ = 45.65° and δ of eq 8.",
@@ -63,10 +70,12 @@ def _solstice() -> Group:
     found = model.solstice()
     return Group(
         "Section 4, figure 26 and eq 4: energies of 21 June",
-        "Meliss's beam with turbidity 3.000, which the paper does not print; energy of the steps counted "
-        "from 6 h to 18 h solar time, of the fixed panel all day.",
+        "Meliss's beam with turbidity 3.000, which the paper does not print: fitted to the "
+        "fixed panel; energy of the steps counted from 6 h to 18 h solar time, of the fixed panel all day.",
         (
-            Figure("fixed panel", "Wh", published.FIXED_WH, found.fixed_wh, 0.02),
+            Figure(
+                "fixed panel", "Wh", published.FIXED_WH, found.fixed_wh, 0.02, basis=Basis.FITTED,
+            ),
             Figure("program of table 3", "Wh", published.TABLE_3_WH, found.table_3_wh, 0.5),
             Figure("net gain of table 3", "%", published.GAIN_PERCENT, found.gain_percent, 0.05),
             Figure(
@@ -108,7 +117,7 @@ def _mirrored() -> Group:
         tuple(
             Figure(
                 f"step {name}", "h", told, 24.0 - morning, 0.005, 2,
-                "A misprint of 14.58." if abs(told - 24.0 + morning) > 0.005 else "",
+                "A misprint of 14.58." if abs(told - 24.0 + morning) > 0.005 else "", Basis.PRINTED,
             )
             for name, told, morning in pairs
         ),
@@ -155,7 +164,10 @@ def _gains() -> Group:
     ]
     printed = sum(published.TABLE_4_GAINS_PERCENT) / len(figures)
     ours = sum(figure.ours for figure in figures) / len(figures)
-    mean = Figure("mean of the twelve printed gains", "%", published.MEAN_GAIN_PERCENT, printed, 0.01, 3)
+    mean = Figure(
+        "mean of the twelve printed gains", "%", published.MEAN_GAIN_PERCENT, printed, 0.01, 3,
+        basis=Basis.PRINTED,
+    )  # fmt: skip
     return Group(
         "Table 4, gains",
         "Ten-degree steps at the best instants, the day's ideal tilt, turbidity 3.000, 6 h to 18 h; nothing "
@@ -199,28 +211,41 @@ def _errata() -> tuple[Erratum, ...]:
     return (
         Erratum(
             "eq 7", "cos δ′, sin δ′ of the tilt δ′", "cos (φ − δ′), sin (φ − δ′): the normal's declination",
-            f"the fixed panel becomes a horizontal one: {flat_wh:.1f} Wh instead of {fixed_wh:.1f} Wh",
+            effect("the fixed panel becomes a horizontal one: ", Measured(flat_wh, 5), " Wh instead of ",
+                   Measured(fixed_wh, 5), " Wh"),
         ),
         Erratum(
             "eq 8", "N − 80", "N − 81, as Cooper has 284 + N",
-            f"{worse(shifted, cooper)}, both with equation of time",
+            effect(*worse(shifted, cooper), ", both with equation of time"),
         ),
         Erratum(
             "section 2", "travel 22.05° to 68.95°", "22.20° to 69.10° for φ = 45.65°",
-            f"on 21 December the actuator lacks {beyond_stroke_mm():.2f} mm",
+            effect("at the winter solstice the actuator lacks ", Measured(beyond_stroke_mm(), 2), " mm"),
         ),
         Erratum(
             "figure 24", "elevation actuator at zero on 21 June", "out by what 22.20° asks",
-            f"{solstice_stroke_mm():.2f} mm",
+            effect(Measured(solstice_stroke_mm(), 2), " mm"),
         ),
-        Erratum("section 2", "βe = ∠DEH, βd = ∠ABG", "τe and τd: transmission angles", "none"),
-        Erratum("section 4", "TI = TII + tIII", "TIII = TII + tIII", "none"),
-        Erratum("section 4", "sunrise 4.26 h", "4.24 h", "see above"),
-        Erratum("table 3", "step X at 14.59 h", "14.58 h, 24 less 9.42", "36 s"),
-        Erratum("section 2", "figures 4a and 7a referred to", "5a and 8a", "none"),
-        Erratum("section 3", "GK1, GKI and FBS by turns", "one name each", "none"),
-        Erratum("section 4", "Melis", "Meliss", "none"),
+        Erratum("section 2", "βe = ∠DEH, βd = ∠ABG", "τe and τd: transmission angles", NAME),
+        Erratum("section 4", "TI = TII + tIII", "TIII = TII + tIII", NAME),
+        Erratum("section 4", "sunrise 4.26 h", "4.24 h", _sunrise()),
+        Erratum("table 3", "step X at 14.59 h", "14.58 h, 24 less 9.42", _tenth_step()),
+        Erratum("section 2", "figures 4a and 7a referred to", "5a and 8a", REFERENCE),
+        Erratum("section 3", "GK1, GKI and FBS by turns", "one name each", NAME),
+        Erratum("section 4", "Melis", "Meliss", NAME),
     )  # fmt: skip
+
+
+def _sunrise() -> Effect:
+    rise_h, _ = daylight_h(model.LATITUDE_DEG, declination_deg(model.SOLSTICE))
+    return effect("sunrise ", Measured(60.0 * abs(published.SUNRISE_H - rise_h), 2), " min off")
+
+
+def _tenth_step() -> Effect:
+    """Return how far the time of step X is from its morning's mirror."""
+    step = NUMERALS.index("X")
+    off_h = TABLE_3_STARTS_H[step] - (24.0 - TABLE_3_STARTS_H[len(NUMERALS) - 1 - step])
+    return effect("the step ", Measured(3600.0 * off_h, 2), " s late")
 
 
 GAPS = (

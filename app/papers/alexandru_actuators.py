@@ -1,7 +1,7 @@
 """Alexandru's two linear actuators: their lengths at the ends of travel, from the points that he prints."""
 
 from app.papers import alexandru_published as published
-from app.papers.result import Figure, Group
+from app.papers.result import Basis, Figure, Group
 from app.tracker.mechanisms import LATITUDE_DEG, alexandru_diurnal, alexandru_elevation
 from app.tracker.transmission import LinearActuator
 
@@ -68,7 +68,9 @@ def _lengths(
     names: tuple[str, str],
 ) -> tuple[Figure, ...]:
     return tuple(
-        Figure(f"length at {name}", "mm", told, actuator.length_mm(angle_deg), WITHIN_MM, 3)
+        Figure(
+            f"length at {name}", "mm", told, actuator.length_mm(angle_deg), WITHIN_MM, 3, basis=Basis.FITTED
+        )
         for name, told, angle_deg in zip(names, told_mm, at_deg, strict=True)
     )
 

@@ -11,15 +11,17 @@ BEGIN = """\
 # The five papers
 
 What Heliopanel computes is published in five papers. This page has what each prints beside what comes out \
-when it is computed, every misprint with what it costs, and what cannot be reproduced and why. The program \
-uses the corrected equations; one step of a paper is one function, with its equation number beside it.
+when it is computed, every misprint with what it costs where that can be measured, and what cannot be \
+reproduced and why. The program uses the corrected equations; one step of a paper is one function, with its \
+equation number beside it.
 
 All of it is computed when it is asked for: on the page *The five papers* (reached from *Accuracy*), by \
 `heliopanel papers`, and over the API by `GET /api/v1/papers`. This page is what `heliopanel papers \
 --markdown` prints, and a test holds it to that. Where the effect of a misprint is a separation of two suns, \
 it is the greatest against NREL SPA over 40,000 instants drawn from 2000 to 2049 and latitude -65 to 65, \
-those with the sun up. An effect is "no usable sun" where the printed form takes radians for degrees or \
-leaves a value undefined.
+those with the sun up. Every number of an effect is computed when the page is made, from the printed form \
+and the corrected one; where nothing follows that could be computed, it says "not measured". A figure is \
+*fitted* where the paper leaves a value out that was chosen so that it comes out, which proves nothing.
 
 ## The algorithms
 
@@ -53,8 +55,8 @@ def _paper(one: Paper) -> Iterator[str]:
     for group in one.groups:
         yield from _group(group)
     yield from ("### Errata", "")
-    errata = ((each.where, each.printed, each.right, each.effect) for each in one.errata)
-    yield from _table(("where", "printed", "must be", "measured effect"), errata)
+    errata = ((each.where, each.printed, each.right, each.effect.text) for each in one.errata)
+    yield from _table(("where", "printed", "must be", "effect"), errata)
     yield from ("### Not reproduced", "", *(f"- {gap.what}: {gap.why}" for gap in one.gaps), "")
 
 

@@ -2,22 +2,31 @@
 
 import numpy as np
 
+from app.papers.effect import Effect, Measured, effect, not_measured
 from app.papers.koblick_printed import (
     ASTRONOMICAL_UNIT_KM,
     Printed,
     constant_obliquity_deg,
+    constant_tilt_of_sine,
+    cosine_of_degrees,
     day_without_century_rule,
     day_without_month_rule,
     growing_eccentricity,
+    longitude_of_radians,
+    orbit_of_degrees,
+    tilts_of_radians,
+    without_y,
 )
 from app.papers.result import Erratum, Figure, Gap, Group, Paper
-from app.papers.sampling import figures, from_spa, told, worse
+from app.papers.sampling import from_spa, told, worse
 from app.sun import koblick
 from app.sun.algorithms import PUBLISHED, Algorithm
-from app.sun.trigonometry import ARRAY, Array
+from app.sun.trigonometry import ARRAY, PER_DEGREE, Array
 
-THREE_HOURS_S = 10_800.0
-NO_SUN = "no usable sun"
+HOUR_S, THREE_HOURS_S = 3600.0, 10_800.0
+MOUNTAIN_KM = 4.0
+METRES_A_KM = 1000.0
+NAME = not_measured("a name")
 
 
 def gezegin() -> Paper:
@@ -66,56 +75,77 @@ def _accuracy() -> Group:
 def _measured() -> tuple[Erratum, ...]:
     right = from_spa(Printed().position)
 
-    def cost(printed: Printed) -> str:
+    def cost(printed: Printed) -> tuple[str | Measured, ...]:
         return worse(from_spa(printed.position), right)
 
     return (
         Erratum(
             "eq 1", "+ 2 + ⌊Y/100⌋ + ⌊Y/4⌋ − ⌊Y/100⌋", "+ 2 − ⌊Y/100⌋ + ⌊⌊Y/100⌋/4⌋",
-            f"{_days_off()}; {cost(Printed(day=day_without_century_rule))}",
+            effect(*_days_off(), "; ", *cost(Printed(day=day_without_century_rule))),
         ),
         Erratum(
             "eq 1", "no rule for January and February", "if M ≤ 2: Y − 1 and M + 12",
-            cost(Printed(day=day_without_month_rule)),
+            effect(*cost(Printed(day=day_without_month_rule))),
         ),
         Erratum(
             "text, section 3", "time at the same location", "UT: time zone and daylight saving taken off",
-            f"three hours of time zone taken for UT: sun off by up to {told(from_spa(_three_hours_late))}",
+            effect("three hours of time zone taken for UT: sun off by up to ", *_late(THREE_HOURS_S)),
         ),
         Erratum(
             "eq 4", "e = 0.016709 + 1.151·10⁻⁹·Day", "e = 0.016709 − 1.151·10⁻⁹·Day",
-            cost(Printed(eccentricity=growing_eccentricity)),
+            effect(*cost(Printed(eccentricity=growing_eccentricity))),
         ),
         Erratum(
             "eq 19", "sin(0.409115648642983)", "sin(oblecl), the obliquity of the day",
-            cost(Printed(sine_obliquity_deg=constant_obliquity_deg())),
+            effect(*cost(Printed(tilts=constant_tilt_of_sine))),
         ),
         Erratum(
             "eq 20", "− Alt/149598000", "nothing: the term is no parallax",
-            f"sun moved by up to {figures(_altitude_effect(4.0), 1)}° at 4 km; by "
-            f"{figures(_altitude_effect(4000.0), 1)}° "
-            "where 4000 m are entered as if they were km",
+            _altitude(),
         ),
         Erratum(
             "eq 34", "no parallax", "El − 8.794″/r · cos El, as an option",
-            worse(right, from_spa(PUBLISHED[Algorithm.KOBLICK_PARALLAX].many)),
+            effect(*worse(right, from_spa(PUBLISHED[Algorithm.KOBLICK_PARALLAX].many))),
         ),
     )  # fmt: skip
 
 
 def _fatal() -> tuple[Erratum, ...]:
+    """Return the misprints that lose the sun, each taken at its word, and those of names."""
+
+    def lost(printed: Printed) -> Effect:
+        return effect("sun off by up to ", *told(from_spa(printed.position)))
+
+    right, plus = Printed(), Printed(z_sign=1.0)
     return (
-        Erratum("eq 5", "M", "another name: M is the month in eq 1", "none on paper; a name clash in a PLC"),
-        Erratum("eqs 6 and 7", "oblecl in radians", "degrees", NO_SUN),
-        Erratum("eqs 8 to 10", "sin(M), cos(E) of degrees", "arguments in degrees, so times π/180", NO_SUN),
-        Erratum("eqs 12 and 13", "v in radians added to w in degrees", "v·180/π", NO_SUN),
-        Erratum("eq 18", "cos(oblecl) of degrees", "argument times π/180", NO_SUN),
-        Erratum("eq 18", "+ zeclip·sin(oblecl)", "− zeclip·sin(oblecl)", "none: zeclip is 0"),
-        Erratum("eqs 21 and 22", "RA and delta in radians", "degrees, as eqs 26 to 29 need", NO_SUN),
-        Erratum("eq 24", "GMTS0", "GMST0, hours", "none"),
-        Erratum("eq 31", "zhor = y", "yhor = y", NO_SUN),
-        Erratum("HMI, step 2", "clock and date", "clock, date and offset from UTC", "15° an hour of offset"),
-    )
+        Erratum("eq 5", "M", "another name: M is the month in eq 1", NAME),
+        Erratum("eqs 6 and 7", "oblecl in radians", "degrees", lost(Printed(tilts=tilts_of_radians))),
+        Erratum(
+            "eqs 8 to 10", "sin(M), cos(E) of degrees", "arguments in degrees, so times π/180",
+            lost(Printed(orbit=orbit_of_degrees)),
+        ),
+        Erratum(
+            "eqs 12 and 13", "v in radians added to w in degrees", "v·180/π",
+            lost(Printed(longitude=longitude_of_radians)),
+        ),
+        Erratum(
+            "eq 18", "cos(oblecl) of degrees", "argument times π/180", lost(Printed(tilts=cosine_of_degrees))
+        ),
+        Erratum(
+            "eq 18", "+ zeclip·sin(oblecl)", "− zeclip·sin(oblecl)",
+            effect(*worse(from_spa(plus.position), from_spa(right.position)), ": zeclip is zero"),
+        ),
+        Erratum(
+            "eqs 21 and 22", "RA and delta in radians", "degrees, as eqs 26 to 29 need",
+            lost(Printed(equatorial_unit=PER_DEGREE)),
+        ),
+        Erratum("eq 24", "GMTS0", "GMST0, hours", NAME),
+        Erratum("eq 31", "zhor = y", "yhor = y", _left_at_zero(lost(Printed(horizontal=without_y)))),
+        Erratum(
+            "HMI, step 2", "clock and date", "clock, date and offset from UTC",
+            effect("an hour of offset left out: sun off by up to ", *_late(HOUR_S)),
+        ),
+    )  # fmt: skip
 
 
 GAPS = (
@@ -125,19 +155,41 @@ GAPS = (
 )
 
 
-def _days_off() -> str:
-    at = np.array([946_684_800.0, 2_524_521_600.0])
-    days = day_without_century_rule(at) - koblick.day_number(at)
-    return f"Julian day too great by {days.min():.0f} days in 2000, {days.max():.0f} in 2049"
+def _left_at_zero(lost: Effect) -> Effect:
+    return effect("yhor is left at zero: ", *lost.parts)
 
 
-def _three_hours_late(unix_s: Array, latitude_deg: float, longitude_deg: float) -> tuple[Array, Array]:
-    return koblick.position(unix_s + THREE_HOURS_S, latitude_deg, longitude_deg, ARRAY)
+def _days_off() -> tuple[str | Measured, ...]:
+    at = np.array([np.datetime64(day, "s").astype(np.float64) for day in ("2000-01-01", "2050-01-01")])
+    first, last = (float(days) for days in day_without_century_rule(at) - koblick.day_number(at))
+    begin, between = "Julian day too great by ", " days in the first year of the sample, "
+    return begin, Measured(first, 3), between, Measured(last, 3), " after the last"
 
 
-def _altitude_effect(altitude_km: float) -> float:
-    """Return by how much eq 20 turns the sun in a year at most, degrees."""
+def _late(late_s: float) -> tuple[str | Measured, ...]:
+    """Return how far the sun of another instant is off, as parts of an effect."""
+
+    def position(unix_s: Array, latitude_deg: float, longitude_deg: float) -> tuple[Array, Array]:
+        return koblick.position(unix_s + late_s, latitude_deg, longitude_deg, ARRAY)
+
+    return told(from_spa(position))
+
+
+def _altitude() -> Effect:
+    """Return what eq 20 does on a mountain, and where its metres are entered as if they were kilometres."""
+    right, in_metres = (
+        _moved_deg(Printed(altitude_term=km / ASTRONOMICAL_UNIT_KM))
+        for km in (MOUNTAIN_KM, MOUNTAIN_KM * METRES_A_KM)
+    )
+    return effect(
+        "sun moved by up to ", Measured(right, 1), "° at ", Measured(MOUNTAIN_KM, 1), " km; by ",
+        Measured(in_metres, 1), "° where the height is entered in meters",
+    )  # fmt: skip
+
+
+def _moved_deg(printed: Printed) -> float:
+    """Return by how much a printed step lifts the sun over the pole in a year at most, degrees."""
     unix_s = np.arange(365.0) * 86400.0 + 1_767_225_600.0
     _, right = Printed().position(unix_s, 90.0, 0.0)
-    _, moved = Printed(altitude_term=altitude_km / ASTRONOMICAL_UNIT_KM).position(unix_s, 90.0, 0.0)
+    _, moved = printed.position(unix_s, 90.0, 0.0)
     return float(np.abs(moved - right).max())

@@ -10,7 +10,7 @@ from app.papers.alexandru import alexandru
 from app.papers.gezegin import gezegin
 from app.papers.nalini import nalini
 from app.papers.psa_rexroth import psa_rexroth
-from app.papers.result import Figure, Group, Paper, Standing
+from app.papers.result import Basis, Figure, Group, Paper, Standing
 from app.papers.xia import xia
 
 LIBRARY: Final[Mapping[str, Callable[[], Paper]]] = MappingProxyType(
@@ -24,6 +24,11 @@ LIBRARY: Final[Mapping[str, Callable[[], Paper]]] = MappingProxyType(
 )
 WIDE = 110
 MARKS = {Standing.AGREES: "", Standing.DIFFERS: "differs", Standing.MEASURED: ""}
+BASES = {
+    Basis.COMPUTED: "",
+    Basis.FITTED: "Fitted: a value that the paper leaves out was chosen so that this comes out.",
+    Basis.PRINTED: "From other numbers that the paper prints, not from its equations.",
+}
 
 
 class UnknownPaper(ValueError):
@@ -62,7 +67,8 @@ def remarks(group: Group) -> tuple[str, ...]:
     """Return what is remarked on the figures of a group, each remark once, after the names it is about."""
     about: dict[str, list[str]] = {}
     for figure in group.figures:
-        about.setdefault(figure.remark, []).append(figure.name)
+        for remark in (BASES[figure.basis], figure.remark):
+            about.setdefault(remark, []).append(figure.name)
     return tuple(f"{'; '.join(names)}: {remark}" for remark, names in about.items() if remark)
 
 
@@ -74,9 +80,9 @@ def _lines(one: Paper) -> Iterator[str]:
         yield f"  {'':<52}{'paper':>12}{'ours':>12}{'difference':>12}"
         yield from (_figure(figure) for figure in group.figures)
         yield from (f"  {remark}" for remark in remarks(group))
-    yield from ("", "Errata: printed -> right: measured effect")
+    yield from ("", "Errata: printed -> right: effect")
     for erratum in one.errata:
-        told = f"{erratum.where}: {erratum.printed} -> {erratum.right}: {erratum.effect}"
+        told = f"{erratum.where}: {erratum.printed} -> {erratum.right}: {erratum.effect.text}"
         yield fill(told, WIDE, initial_indent="  ", subsequent_indent="      ")
     yield from ("", "Not reproduced")
     for gap in one.gaps:

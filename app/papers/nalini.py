@@ -5,6 +5,7 @@ from math import asin, degrees, radians, tan
 
 import numpy as np
 
+from app.papers.effect import Effect, Measured, effect, not_measured
 from app.papers.nalini_table import REPEATED, TABLE_1
 from app.papers.result import Erratum, Figure, Gap, Group, Paper
 from app.papers.sampling import from_spa, worse
@@ -18,6 +19,9 @@ CLOCK_UT_H = 3
 LATITUDE_DEG = 12.9716
 BENGALURU = Location(LATITUDE_DEG, 77.60)
 MISPRINTED = Location(LATITUDE_DEG, 77.9946)
+CENTER = Location(LATITUDE_DEG, 77.5946)
+SOLSTICE_DEG, ROUNDED_SOLSTICE_DEG = 23.45, 23.50
+REFERENCE = not_measured("a reference")
 ELEVATION_WITHIN_DEG, AZIMUTH_WITHIN_DEG = 0.006, 0.007
 TEN_AND_A_HALF_HOURS = timedelta(hours=10.5)
 DAYS = np.arange(1.0, 366.0)
@@ -42,7 +46,8 @@ def _table_1() -> Group:
     return Group(
         "Table 1, solar angles over a year",
         "Apparent position by NREL SPA at 03:00 UTC of each day of 2022, latitude 12.9716, longitude 77.60 "
-        "(the printed 77.9946 is a misprint of 77.5946). Not the paper's own equations: see below.",
+        "fitted to the table (the printed 77.9946 is a misprint of 77.5946). Not the paper's own equations: "
+        "see below.",
         (*figures, *_row(*REPEATED, remark="The table repeats 27 November; the day should be 2 December.")),
     )
 
@@ -62,7 +67,7 @@ def _misses() -> Group:
     ours, printed, mended = (
         _greatest_miss(one) for one in (Algorithm.SPA, Algorithm.COOPER, Algorithm.COOPER_EOT)
     )
-    typed = _greatest_miss(Algorithm.SPA, MISPRINTED)
+    typed, unfitted = (_greatest_miss(Algorithm.SPA, place) for place in (MISPRINTED, CENTER))
     later = [_sun(Algorithm.SPA, month, day, TEN_AND_A_HALF_HOURS) for month, day, _, _ in TABLE_1]
     return Group(
         "Table 1, greatest misses over its 24 rows",
@@ -70,6 +75,8 @@ def _misses() -> Group:
         (
             Figure("by SPA with refraction, elevation", "°", None, ours[0], digits=4),
             Figure("by SPA with refraction, azimuth", "°", None, ours[1], digits=4),
+            Figure("by SPA at the longitude 77.5946, elevation", "°", None, unfitted[0], digits=4),
+            Figure("by SPA at the longitude 77.5946, azimuth", "°", None, unfitted[1], digits=4),
             Figure("by the paper's eqs 3, 16 and 17, elevation", "°", None, printed[0]),
             Figure("by the paper's eqs 3, 16 and 17, azimuth", "°", None, printed[1]),
             Figure("by the same with an equation of time, elevation", "°", None, mended[0]),
@@ -88,35 +95,44 @@ def _misses() -> Group:
 def _errata() -> tuple[Erratum, ...]:
     printed, mended = (from_spa(PUBLISHED[one].many) for one in (Algorithm.COOPER, Algorithm.COOPER_EOT))
     north, highest_deg = _noons_north_of_zenith()
-    sunrise_deg = degrees(asin(-tan(radians(23.45)) * tan(radians(LATITUDE_DEG))))
+    sunrise_deg = degrees(asin(-tan(radians(SOLSTICE_DEG)) * tan(radians(LATITUDE_DEG))))
     return (
-        Erratum("text above eq 3", "+23.50 and −23.50", "±23.5°, or ±23.45° as eq 3 has it", "none"),
-        Erratum("eq 3", "0.9863", "360/365", f"declination off by up to {_rounding_deg():.1g}°"),
+        Erratum("text above eq 3", "+23.50 and −23.50", "±23.5°, or ±23.45° as eq 3 has it", _solstices()),
+        Erratum(
+            "eq 3", "0.9863", "360/365",
+            effect("declination off by up to ", Measured(_rounding_deg(), 1), "°"),
+        ),
         Erratum(
             "eq 4", "α = 90 − L + δ", "α = 90 − |L − δ|",
-            f"in Bengaluru wrong on {north} noons a year, with elevations of up to {highest_deg:.2f}°",
+            effect(
+                "in Bengaluru wrong on ", Measured(north, 3), " noons a year, with elevations of up to ",
+                Measured(highest_deg, 5), "°",
+            ),
         ),
-        Erratum("text below eq 4", "derived from eq 17", "derived from eq 16", "none"),
+        Erratum("text below eq 4", "derived from eq 17", "derived from eq 16", REFERENCE),
         Erratum(
             "eq 6", "sin ω_s = −tan δ tan L", "cos ω_s = −tan L tan δ in the hour angle of eq 16",
-            f"sunrise of δ = 23.45° in Bengaluru at {sunrise_deg:.4f}° instead of −{90 - sunrise_deg:.4f}°",
+            effect(
+                "sunrise of the summer solstice in Bengaluru at ", Measured(sunrise_deg, 5),
+                "° instead of ", Measured(sunrise_deg - 90.0, 6), "°",
+            ),
         ),
-        Erratum("eqs 8 and 20", "referred to", "they do not exist", "none"),
+        Erratum("eqs 8 and 20", "referred to", "they do not exist", REFERENCE),
         Erratum(
             "eqs 9 and 10", "twice the same vector Z", "one is N = (−sin L cos ω, −sin L sin ω, cos L)",
-            "eqs 12 and 17 cannot be derived from what is printed",
+            not_measured("without a vector to the north no azimuth can be derived"),
         ),
         Erratum(
             "eq 17", "Az by arccosine alone", "360° − Az in the afternoon, or a four-quadrant arctangent",
-            f"azimuth wrong in {_afternoon_percent():.0f} % of daylight in Bengaluru, by up to 180°",
+            _mornings_alone(),
         ),
-        Erratum("no equation", "no rule for ω", "15·(UT − 12) + longitude", "ω cannot be had"),
-        Erratum("no equation", "no equation of time", "Spencer's, for one", worse(printed, mended)),
+        Erratum("no equation", "no rule for ω", "15·(UT − 12) + longitude", not_measured("ω cannot be had")),
+        Erratum("no equation", "no equation of time", "Spencer's, for one", effect(*worse(printed, mended))),
         Erratum(
             "below table 1", "longitude 77.9946 E, UTC−5.00 Indiana (East)", "77.5946 E, UTC+5:30",
-            "see the misses above",
+            _misplaced(),
         ),
-        Erratum("table 1", "Nov-27 twice", "Dec-02 in the second row", "elevation 26.03, azimuth 122.60"),
+        Erratum("table 1", "Nov-27 twice", "Dec-02 in the second row", _repeated()),
     )  # fmt: skip
 
 
@@ -163,9 +179,39 @@ def _noons_north_of_zenith() -> tuple[int, float]:
     return int((noon > 90.0).sum()), float(noon.max())
 
 
-def _afternoon_percent() -> float:
-    """Return the share of a year's daylight in which the sun is west of the meridian, percent."""
+def _mornings_alone() -> Effect:
+    """Return what the arccosine of eq 17 makes of a year's daylight: no azimuth beyond south."""
     at = np.arange(0.0, 365.0 * 86400.0, 600.0) + datetime(YEAR, 1, 1, tzinfo=UTC).timestamp()
     azimuth_deg, elevation_deg = PUBLISHED[Algorithm.COOPER].many(at, LATITUDE_DEG, BENGALURU.longitude_deg)
-    west = np.mod(azimuth_deg, 360.0) > 180.0
-    return float(100.0 * west[elevation_deg > 0.0].mean())
+    by_day_deg = np.mod(azimuth_deg[elevation_deg > 0.0], 360.0)
+    turned_deg = np.degrees(np.arccos(np.cos(np.radians(by_day_deg))))
+    off_deg = np.abs(np.mod(by_day_deg - turned_deg + 180.0, 360.0) - 180.0)
+    share_percent = float(100.0 * (by_day_deg > 180.0).mean())
+    return effect(
+        "azimuth wrong in ", Measured(share_percent, 2), " % of daylight in Bengaluru, by up to ",
+        Measured(float(off_deg.max()), 3), "°",
+    )  # fmt: skip
+
+
+def _solstices() -> Effect:
+    apart_deg = ROUNDED_SOLSTICE_DEG - float(cooper.declination(DAYS, ARRAY).max())
+    return effect("greatest declination ", Measured(apart_deg, 1), "° beyond that of the equation")
+
+
+def _misplaced() -> Effect:
+    """Return what the printed longitude and time zone do to Table 1."""
+    elevation_deg, azimuth_deg = _greatest_miss(Algorithm.SPA, MISPRINTED)
+    up = sum(_sun(Algorithm.SPA, month, day, TEN_AND_A_HALF_HOURS).is_up for month, day, _, _ in TABLE_1)
+    return effect(
+        "table missed by up to ", Measured(elevation_deg, 2), "° in elevation and ",
+        Measured(azimuth_deg, 2), "° in azimuth; ", Measured(up, 1), " rows with the sun up",
+    )  # fmt: skip
+
+
+def _repeated() -> Effect:
+    month, day, elevation_deg, azimuth_deg = REPEATED
+    sun = _sun(Algorithm.SPA, month, day)
+    return effect(
+        "elevation off by ", Measured(abs(elevation_deg - sun.apparent_elevation_deg), 2),
+        "°, azimuth by ", Measured(abs(azimuth_deg - sun.azimuth_deg), 2), "°",
+    )  # fmt: skip

@@ -4,6 +4,7 @@ from typing import cast
 
 import numpy as np
 
+from app.papers.effect import effect, not_measured
 from app.papers.koblick_printed import calendar
 from app.papers.result import Erratum, Figure, Gap, Group, Paper
 from app.papers.sampling import from_spa, worse
@@ -73,18 +74,21 @@ def _errata() -> tuple[Erratum, ...]:
     return (
         Erratum(
             "eq 1", "integer divisions, not said which way", "divisions that truncate towards zero",
-            f"divisions that round down, as in Python: {worse(from_spa(_rounding_down), right)}",
+            effect("divisions that round down, as in Python: ", *worse(from_spa(_rounding_down), right)),
         ),
         Erratum(
             "eq 8", "tan⁻¹", "a four-quadrant arctangent",
-            worse(from_spa(_half_of_right_ascensions), right),
+            effect(*worse(from_spa(_half_of_right_ascensions), right)),
         ),
-        Erratum("eq 14", "tan⁻¹", "a four-quadrant arctangent", worse(from_spa(_half_of_azimuths), right)),
+        Erratum(
+            "eq 14", "tan⁻¹", "a four-quadrant arctangent",
+            effect(*worse(from_spa(_half_of_azimuths), right)),
+        ),
         Erratum(
             "eq 11", "layout: π/180 beside Long", "π/180 times the whole bracket",
-            worse(from_spa(_factor_on_longitude), right),
+            effect(*worse(from_spa(_factor_on_longitude), right)),
         ),
-        Erratum("numbering", "two series of 5 to 8", "one series", "none"),
+        Erratum("numbering", "two series of 5 to 8", "one series", not_measured("a numbering")),
     )  # fmt: skip
 
 

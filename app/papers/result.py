@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from app.papers.effect import Effect
+
 
 class Standing(StrEnum):
     """How a published figure fares."""
@@ -12,11 +14,19 @@ class Standing(StrEnum):
     MEASURED = "measured"
 
 
+class Basis(StrEnum):
+    """What ours is had from: computed, fitted so that it must come out, or other numbers that are printed."""
+
+    COMPUTED = "computed"
+    FITTED = "fitted"
+    PRINTED = "printed"
+
+
 @dataclass(frozen=True, slots=True)
 class Figure:
     """A published value and ours, in `unit`; it agrees within `within`. Without the former it is measured.
 
-    `remark` says why it differs, or how ours was had.
+    `remark` says why it differs, or how ours was had; `basis` whether it proves anything that it comes out.
     """
 
     name: str
@@ -26,6 +36,7 @@ class Figure:
     within: float = 0.0
     digits: int = 2
     remark: str = ""
+    basis: Basis = Basis.COMPUTED
 
     @property
     def difference(self) -> float | None:
@@ -61,12 +72,12 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class Erratum:
-    """A misprint: where, what is printed, what it must be, and what was measured to follow from it."""
+    """A misprint: where, what is printed, what it must be, and what follows from it."""
 
     where: str
     printed: str
     right: str
-    effect: str
+    effect: Effect
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,9 +111,24 @@ class Paper:
 
     @property
     def summary(self) -> str:
-        """Return in a sentence how many of the published figures come out, and how many errata there are."""
-        errata = f"{len(self.errata)} errata, with the measured effect of each."
+        """Return in sentences how many of the published figures come out, and how many errata there are."""
+        measured = sum(one.effect.measured for one in self.errata)
+        errata = f"{len(self.errata)} errata; the effect of {measured} is measured."
         if self.published == 1:
             comes_out = "comes out" if self.agreeing else "differs"
             return f"The one published figure that can be computed {comes_out}. {errata}"
-        return f"{self.agreeing} of {self.published} published figures come out. {errata}"
+        return f"{self.agreeing} of {self.published} published figures come out.{self._proving_less} {errata}"
+
+    @property
+    def _proving_less(self) -> str:
+        """Return how many of those that come out are fitted, or compare the paper with itself."""
+        agreeing = [
+            figure.basis
+            for group in self.groups
+            for figure in group.figures
+            if figure.standing is Standing.AGREES
+        ]
+        fitted, printed = agreeing.count(Basis.FITTED), agreeing.count(Basis.PRINTED)
+        if not fitted + printed:
+            return ""
+        return f" Of these {fitted} are fitted, and {printed} compare the paper with its own other numbers."

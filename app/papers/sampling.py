@@ -1,10 +1,10 @@
 """One sample of instants and places, on which equations are measured against NREL SPA."""
 
 from functools import cache
-from math import floor, log10
 
 import numpy as np
 
+from app.papers.effect import Measured
 from app.sun.accuracy import Question, Sample, Spread, draw, separations_deg, spread_of
 from app.sun.algorithms import Many
 from app.sun.position import wrap360_path
@@ -35,17 +35,11 @@ def from_spa(position: Many) -> Spread:
     return spread_of(np.concatenate(apart))
 
 
-def told(spread: Spread) -> str:
-    """Return a spread in words."""
-    return f"{figures(spread.max_deg, 4)}° (rms {figures(spread.rms_deg, 2)}°)"
+def told(spread: Spread) -> tuple[Measured | str, ...]:
+    """Return a spread as the parts of an effect."""
+    return Measured(spread.max_deg, 4), "° (rms ", Measured(spread.rms_deg, 2), "°)"
 
 
-def figures(value: float, count: int) -> str:
-    """Return a number above zero with at least so many significant figures, never as a power of ten."""
-    before = floor(log10(value)) + 1
-    return f"{value:.{max(0, count - before)}f}"
-
-
-def worse(printed: Spread, right: Spread) -> str:
-    """Return in words what a misprint costs."""
-    return f"sun off by up to {told(printed)} instead of {told(right)}"
+def worse(printed: Spread, right: Spread) -> tuple[Measured | str, ...]:
+    """Return what a misprint costs as the parts of an effect."""
+    return "sun off by up to ", *told(printed), " instead of ", *told(right)

@@ -4,8 +4,9 @@ from datetime import UTC, datetime
 
 import numpy as np
 
+from app.papers.effect import Effect, Measured, effect
 from app.papers.result import Erratum, Figure, Gap, Group, Paper
-from app.papers.sampling import from_spa, worse
+from app.papers.sampling import from_spa, told, worse
 from app.sun import cooper, psa, spa, spencer_lamm
 from app.sun.algorithms import PUBLISHED, Algorithm
 from app.sun.solar_days import day_and_hour, day_of_cycle, day_of_year
@@ -14,7 +15,7 @@ from app.sun.trigonometry import ARRAY, PER_DEGREE, PER_RADIAN, Array
 HURRICANE_MPS = 36.9
 AIR_KN_M3 = 0.01225
 GRAVITY = 9.81
-PIECE_M2 = 2.0
+PRINTED_LOAD_KN_M2 = 1.7
 ENCODER_COUNTS = 3600.0
 CYCLE_YEARS = (0, 366, 731, 1096)
 LATITUDES = (0.0, 13.0, 26.0, 45.65, 60.0)
@@ -35,7 +36,7 @@ def xia() -> Paper:
 
 
 def _wind() -> Group:
-    pressure = HURRICANE_MPS**2 / 1600.0
+    pressure = _pressure_kn_m2()
     return Group(
         "Section 5, wind pressure, and section 3, encoders",
         "Eq 5 with g = 9.81 m/s² and eq 6 at 36.9 m/s, the upper end of force 12.",
@@ -43,7 +44,7 @@ def _wind() -> Group:
             Figure("pressure by eq 6", "kN/m²", 0.85, pressure, 0.005),
             Figure("pressure by eq 5", "kN/m²", 0.85, AIR_KN_M3 * HURRICANE_MPS**2 / (2 * GRAVITY), 0.005),
             Figure(
-                "load on each piece of 2 m²", "10⁻³ MPa", 1.7, pressure, 0.05,
+                "load on each piece of 2 m²", "10⁻³ MPa", PRINTED_LOAD_KN_M2, pressure, 0.05,
                 remark="1.7 is the force in kN; the pressure in MPa is half that number.",
             ),
             Figure("one encoder count", "°", 0.1, 360.0 / ENCODER_COUNTS, 1e-9),
@@ -84,27 +85,39 @@ def _accuracy() -> Group:
 
 def _errata() -> tuple[Erratum, ...]:
     right = from_spa(PUBLISHED[Algorithm.SPENCER_LAMM].many)
-    shares = ", ".join(f"{latitude:g}° {_beyond_percent(latitude):.0f} %" for latitude in LATITUDES)
     return (
         Erratum(
             "eq 3", "0.070257Γ", "0.070257 sin Γ",
-            f"declination off by up to {_missing_sine_deg():.1f}°; {worse(from_spa(_without_sine), right)}",
+            effect(
+                "declination off by up to ", Measured(_missing_sine_deg(), 3), "°; ",
+                *worse(from_spa(_without_sine), right),
+            ),
         ),
         Erratum(
             "eq 2", "Az by arcsine", "a four-quadrant arctangent",
-            f"azimuth wrong behind the east-west line, so much of daylight: latitude {shares}",
+            _behind(),
         ),
         Erratum(
             "text below eq 3", "hour angle = local standard time + EQT",
-            "15·(time + (longitude − 15 zone)/15 + EQT − 12)", "no hour angle: hours are not degrees",
+            "15·(time + (longitude − 15 zone)/15 + EQT − 12)",
+            effect("taken at its word: sun off by up to ", *told(from_spa(_hours_as_degrees))),
         ),
-        Erratum("figure 1", "azimuth from south, west positive", "kept", "180° to one from north"),
+        Erratum(
+            "figure 1", "azimuth from south, west positive", "kept",
+            effect("taken for one from north: sun off by up to ", *told(from_spa(_from_south))),
+        ),
         Erratum(
             "eqs 3 and 4", "n and N", "n counts days of a year, N days of four years",
-            f"N = n in every year: {worse(from_spa(_one_year), right)}",
+            effect("N = n in every year: ", *worse(from_spa(_one_year), right)),
         ),
-        Erratum("section 5", "1.7·10⁻³ MPa on each piece", "0.85·10⁻³ MPa, or 1.7 kN", "load doubled"),
-        Erratum("sections 3 and 4", "over 10, rise to 10, reaches 10", "10 counts", "one count, 0.1°"),
+        Erratum(
+            "section 5", "1.7·10⁻³ MPa on each piece", "0.85·10⁻³ MPa, or 1.7 kN",
+            effect("load ", Measured(PRINTED_LOAD_KN_M2 / _pressure_kn_m2(), 3), " times what it is"),
+        ),
+        Erratum(
+            "sections 3 and 4", "over 10, rise to 10, reaches 10", "10 counts",
+            effect("one count, ", Measured(360.0 / ENCODER_COUNTS, 1), "°"),
+        ),
     )  # fmt: skip
 
 
@@ -164,3 +177,38 @@ def _beyond_percent(latitude_deg: float) -> float:
     zenith, azimuth = psa.horizontal(declination * PER_DEGREE, angle * PER_DEGREE, latitude_deg, ARRAY)
     behind = np.cos(azimuth) > 0.0
     return float(100.0 * behind[zenith < np.pi / 2].mean())
+
+
+def _pressure_kn_m2() -> float:
+    """Return the wind pressure by eq 6."""
+    return HURRICANE_MPS**2 / 1600.0
+
+
+def _latitude(latitude_deg: float) -> Measured:
+    return Measured(latitude_deg, 1 if latitude_deg.is_integer() else 4)
+
+
+def _behind() -> Effect:
+    shares = [
+        part
+        for latitude_deg in LATITUDES
+        for part in (_latitude(latitude_deg), "° ", Measured(_beyond_percent(latitude_deg), 2), " %, ")
+    ]
+    return effect(
+        "azimuth wrong behind the east-west line, so much of daylight: latitude ", *shares[:-1], " %"
+    )
+
+
+def _hours_as_degrees(unix_s: Array, latitude_deg: float, longitude_deg: float) -> tuple[Array, Array]:
+    """Return the sun with local standard time and equation of time, hours, taken for the angle in degrees."""
+    day, hour = day_and_hour(unix_s, longitude_deg, ARRAY)
+    delta = spencer_lamm.declination(spencer_lamm.day_angle(day_of_year(day, ARRAY)), ARRAY)
+    standard_h = hour - (longitude_deg / 15.0 - round(longitude_deg / 15.0))
+    angle_deg = standard_h + spencer_lamm.equation_of_time(day_of_cycle(day, ARRAY), ARRAY)
+    return cooper.horizontal(delta, angle_deg, latitude_deg, ARRAY)
+
+
+def _from_south(unix_s: Array, latitude_deg: float, longitude_deg: float) -> tuple[Array, Array]:
+    """Return the sun with figure 1's azimuth from south where one from north is asked."""
+    azimuth_deg, elevation_deg = PUBLISHED[Algorithm.SPENCER_LAMM].many(unix_s, latitude_deg, longitude_deg)
+    return azimuth_deg - 180.0, elevation_deg

@@ -1,20 +1,21 @@
-"""The site's book of alarms: fed twice a second and at every event, stored behind the loop, told to all."""
+"""The site's books of alarms: fed with what is told of each tracker, stored behind the loop, told to all."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from typing import assert_never
 
 from app.alarms import book as pages
 from app.alarms.alarm import Alarm
 from app.alarms.book import Book, Change, Happened
-from app.alarms.conditions import Condition, conditions, in_maintenance
-from app.alarms.view import view
+from app.alarms.books import Books, Place
+from app.alarms.conditions import Condition, SiteHealth, of_site, of_tracker
+from app.alarms.view import Shown
 from app.link.alarm_orders import AcknowledgeAlarm, AlarmOrder, ShelveAlarm, UnshelveAlarm
 from app.site.health import HealthWatch
 from app.site.model import SiteModel
 from app.store.store import KeptAlarm
-from app.tracker.snapshot import Event, EventKind, SiteSnapshot
+from app.tracker.snapshot import Event, EventKind, SiteSnapshot, Snapshot
 
 LOOK_EVERY = timedelta(milliseconds=450)
 SETTLED_AFTER = timedelta(seconds=10)
@@ -29,21 +30,26 @@ KINDS = {
 
 @dataclass(slots=True)
 class AlarmDesk:
-    """Keeps the book of one site. `troubles` are conditions that other parts of the machine tell, by name."""
+    """Keeps the books of one site. `troubles` are conditions that other parts of the machine tell, by name.
+
+    A tracker is judged whenever it is told; what concerns the site itself, twice a second.
+    """
 
     model: SiteModel
     health: HealthWatch
-    book: Book
+    books: Books
     troubles: dict[str, Condition]
     _began_at: datetime
     _looked_at: datetime | None = None
+    _health: SiteHealth = field(default_factory=SiteHealth)
 
     @classmethod
     def open(
         cls, model: SiteModel, standing: Sequence[Alarm], disk_free: Callable[[], int | None]
     ) -> "AlarmDesk":
         """Return the desk with what stood when the last life of the machine ended."""
-        return cls(model, HealthWatch(disk_free), pages.restored(standing), {}, model.clock.now())
+        now = model.clock.now()
+        return cls(model, HealthWatch(disk_free), Books(standing, model.now(), now), {}, now)
 
     def trouble(self, name: str, condition: Condition | None) -> None:
         """Note a condition of another part of the machine, or with None that it is over."""
@@ -52,57 +58,74 @@ class AlarmDesk:
         else:
             self.troubles[name] = condition
 
-    def look(self, site: SiteSnapshot, *, at_once: bool) -> tuple[Event, ...]:
-        """Look at the site if it is time, or at once, and return what became of alarms."""
+    def judge(self, site: SiteSnapshot, trackers: Iterable[Snapshot], *, at_once: bool) -> tuple[Event, ...]:
+        """Judge these trackers, and the site if it is time or at once; return what became of alarms."""
         now = self.model.clock.now()
-        if not at_once and self._looked_at is not None and now - self._looked_at < LOOK_EVERY:
-            return ()
+        happened: list[Event] = []
+        for tracker in trackers:
+            place = tracker.tracker_id
+            present = of_tracker(tracker, self._health, self.books.of(place).present)
+            happened.extend(self._look(place, present, site.at, in_maintenance=tracker.lock is not None))
+        due = self._looked_at is None or now - self._looked_at >= LOOK_EVERY
+        if due or at_once or self.books.flood_grew:
+            happened.extend(self._judge_site(site, now))
+        return tuple(happened)
+
+    def _judge_site(self, site: SiteSnapshot, now: datetime) -> Iterator[Event]:
+        """Judge what concerns no tracker that there is."""
         self._looked_at = now
-        health = self.health.look(
+        self._health = self.health.look(
             now,
             lambda: {name: loop.counter.metrics() for name, loop in self.model.loops.items()},
             store_behind=self.model.ledger.behind,
             troubles=tuple(self.troubles.values()),
         )
-        after, changes = pages.step(
-            self.book,
-            conditions(site, health, self.book.present),
-            site.at,
-            now,
-            maintenance=in_maintenance(site),
-            settled=now - self._began_at >= SETTLED_AFTER,
-        )
-        return self._turn(after, changes, site.at)
+        for place in self.books.places:
+            if place is not None and place not in self.model.loops:
+                yield from self._look(place, (), site.at)
+        yield from self._look(None, of_site(site, self._health, self.books.of(None).present), site.at)
+
+    def _look(
+        self, place: Place, present: tuple[Condition, ...], at: datetime, *, in_maintenance: bool = False
+    ) -> tuple[Event, ...]:
+        now = self.model.clock.now()
+        settled = now - self._began_at >= SETTLED_AFTER
+        turned = self.books.look(place, present, at, now, in_maintenance=in_maintenance, settled=settled)
+        return self._turn(place, *turned, at)
 
     def carry_out(self, command: AlarmOrder, actor: str) -> tuple[Event, ...]:
         """Carry out one order; raise `UnknownAlarm`, or `ValueError` with a sentence."""
         at, now = self.model.now(), self.model.clock.now()
+        place = command.alarm_id.partition("@")[2] or None
+        book = self.books.of(place)
         match command:
             case AcknowledgeAlarm():
-                turned = pages.acknowledge(self.book, command.alarm_id, actor, at)
+                turned = pages.acknowledge(book, command.alarm_id, actor, at)
             case ShelveAlarm():
                 duration = timedelta(minutes=command.minutes)
-                turned = pages.shelve(self.book, command.alarm_id, actor, command.reason, duration, now)
+                turned = pages.shelve(book, command.alarm_id, actor, command.reason, duration, now)
             case UnshelveAlarm():
-                turned = pages.unshelve(self.book, command.alarm_id, actor)
+                turned = pages.unshelve(book, command.alarm_id, actor)
             case _:
                 assert_never(command)
-        return self._turn(*turned, at)
+        return self._turn(place, *turned, at)
 
-    def shown(self, site: SiteSnapshot) -> SiteSnapshot:
-        """Return the snapshot with the alarms that stand."""
-        alarms, counts = view(self.book, site.at, self.model.clock.now())
-        return replace(site, alarms=alarms, alarm_counts=counts)
+    def shown(self, at: datetime) -> Shown:
+        """Return the most urgent alarms and how many stand; the same object as before if none changed."""
+        return self.books.shown(at, self.model.clock.now())
 
     def standing(self) -> tuple[KeptAlarm, ...]:
         """Return the alarms that stand, to be stored anew."""
-        return tuple(KeptAlarm(one, None) for one in self.book.alarms.values() if one.stands)
+        return tuple(KeptAlarm(one, None) for one in self.books.alarms if one.stands)
 
-    def _turn(self, after: Book, changes: Sequence[Change], at: datetime) -> tuple[Event, ...]:
-        """Take the next book, have it stored and return the events."""
-        kept = tuple(KeptAlarm(*one) for one in pages.to_keep(self.book, after, at))
+    def _turn(self, place: Place, after: Book, changes: Sequence[Change], at: datetime) -> tuple[Event, ...]:
+        """Take the next book of a place, have it stored and return the events."""
+        before = self.books.of(place)
+        if after is before:
+            return ()
+        kept = tuple(KeptAlarm(*one) for one in pages.to_keep(before, after, at))
         events = tuple(_event(change, at) for change in changes)
-        self.book = after
+        self.books.put(place, after, at, self.model.clock.now())
         if kept or events:
             self.model.ledger.post_alarms(kept, events)
         return events

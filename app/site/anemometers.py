@@ -56,10 +56,19 @@ class Anemometers:
         kept = list(fresh.items())[-(MOST_SENSORS - 1) :]
         self._sensors = dict(kept) | {sample.source: series}
 
+    def recall(self, sample: Sample) -> None:
+        """Know the newest sample of one sensor from before the restart."""
+        self._sensors[sample.source] = Series(NAME, self._windows)
+        self._sensors[sample.source].recall(sample)
+
     def last_of(self, source: str) -> Sample | None:
         """Return the newest sample of one sensor."""
         series = self._sensors.get(source)
         return None if series is None else series.newest
+
+    def last_of_all(self) -> tuple[Sample, ...]:
+        """Return the newest sample of every sensor."""
+        return tuple(one.newest for one in self._sensors.values() if one.newest is not None)
 
     def readings(self, now: datetime, *, others_vary: bool) -> dict[str, Reading]:
         """Return what every sensor reads, by its source."""

@@ -28,6 +28,8 @@ WHEN_IT_CHANGES = Jog | EndJog
 
 LEFT_OUT = {"kind", "chunks"}
 SAME_WITHIN = timedelta(seconds=2)
+CYCLIC, CYCLE_WITHIN = "sunspec", timedelta(minutes=1)
+"""A control system writes the same every few seconds; a refusal is recorded once while it does."""
 MOST_REMEMBERED = 100
 HEAD_EVERY = timedelta(minutes=10)
 
@@ -126,19 +128,20 @@ class Auditor:
         refused = replace(
             entry, result=f"refused: {error}" if str(error) else f"failed: {type(error).__name__}"
         )
-        if isinstance(order.command, WHEN_IT_CHANGES) and self._is_repeated(refused):
+        within = SAME_WITHIN if isinstance(order.command, WHEN_IT_CHANGES) else CYCLE_WITHIN
+        if (within is SAME_WITHIN or order.via == CYCLIC) and self._is_repeated(refused, within):
             return
         self._post(refused)
 
-    def _is_repeated(self, refused: Entry) -> bool:
-        """Return whether the same was refused to the same person just now, as happens while a key is held."""
+    def _is_repeated(self, refused: Entry, within: timedelta) -> bool:
+        """Return whether the same was refused to the same sender just now: a held key, a cyclic write."""
         key = (refused.actor, refused.address, refused.object, refused.result)
         last = self._refused.get(key)
         self._refused[key] = refused.utc
         self._refused.move_to_end(key)
         if len(self._refused) > MOST_REMEMBERED:
             self._refused.popitem(last=False)
-        return last is not None and refused.utc - last < SAME_WITHIN
+        return last is not None and refused.utc - last < within
 
 
 def given(order: Order) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from math import isfinite
 from typing import assert_never
 
 from app.drives.corrected import check_ratio
+from app.hosts import host_fault
 from app.tracker.axes import AxisConfig
 from app.tracker.config import DriveConfig, DriveKind, MountKind, TrackerConfig
 from app.tracker.reason import Reason
@@ -49,7 +50,7 @@ def check_time_zone(name: str) -> str:
 
 def check_config(config: TrackerConfig) -> None:
     """Raise `ValueError` with every sentence that says what is wrong with a configuration."""
-    wrong = [*_wrong_names(config), *_wrong_numbers(config), *_wrong_drive(config)]
+    wrong = [*_wrong_names(config), *_wrong_numbers(config), *_wrong_drive(config.drive)]
     if wrong:
         raise ValueError(" ".join(wrong))
 
@@ -101,15 +102,21 @@ def _reachable(axis: AxisConfig, azimuth_deg: float) -> bool:
     return any(axis.contains(azimuth_deg + turns * 360.0) for turns in (-2, -1, 0, 1, 2))
 
 
-def _wrong_drive(config: TrackerConfig) -> Iterable[str]:
-    drive = config.drive
+def check_drive(drive: DriveConfig) -> None:
+    """Raise `ValueError` with the first thing that is wrong with how a drive is connected."""
+    for wrong in _wrong_drive(drive):
+        raise ValueError(wrong)
+
+
+def _wrong_drive(drive: DriveConfig) -> Iterable[str]:
     match drive.kind:
         case DriveKind.SIMULATED:
             yield from _wrong_ratios(drive)
             return
         case DriveKind.MODBUS_TCP | DriveKind.MODBUS_RTU_OVER_TCP:
-            if not drive.host.strip():
-                yield "Give the drive's host name or address."
+            fault = host_fault(drive.host)
+            if fault is not None:
+                yield fault
             if not 1 <= drive.port <= 65535:
                 yield "The drive's TCP port must lie between 1 and 65535."
         case DriveKind.MODBUS_RTU:

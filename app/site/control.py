@@ -244,9 +244,8 @@ async def _pass_on(
 
 def _is_ordered_motion(model: SiteModel, loop: TrackerLoop) -> bool:
     """Return whether something turns by order; following the sun and stowing are the machine's own."""
-    seen = loop.snapshot(model.now())
-    follows = seen.activity is ActivityName.TRACKING and seen.in_position
-    return seen.activity not in GOES_ON and not follows
+    follows = loop.activity is ActivityName.TRACKING and loop.snapshot(model.now(), asked=False).in_position
+    return loop.activity not in GOES_ON and not follows
 
 
 async def _keep(model: SiteModel, loop: TrackerLoop, changed: Authority, event: Event) -> tuple[Event, ...]:

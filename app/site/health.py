@@ -26,6 +26,8 @@ class HealthWatch:
     _samples: deque[dict[str, TrackerMetrics]] = field(default_factory=lambda: deque(maxlen=SAMPLES))
     _sampled_at: datetime | None = None
     _disk_free_bytes: int | None = None
+    _late_share: float | None = None
+    _unread_shares: dict[str, float] = field(default_factory=dict)
 
     def look(
         self,
@@ -40,7 +42,10 @@ class HealthWatch:
             self._sampled_at = now
             self._samples.append(counters())
             self._disk_free_bytes = self.disk_free()
-        return SiteHealth(store_behind, self._disk_free_bytes, self._late(), self._unread(), troubles)
+            self._late_share, self._unread_shares = self._late(), self._unread()
+        return SiteHealth(
+            store_behind, self._disk_free_bytes, self._late_share, self._unread_shares, troubles
+        )
 
     def _late(self) -> float | None:
         newest, oldest = self._samples[-1], self._samples[0]

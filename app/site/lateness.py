@@ -1,10 +1,17 @@
-"""How late ticks come, as a histogram."""
+"""How late ticks come: of each tracker as a coarse histogram, of all together as a fine one."""
 
 from bisect import bisect_left
+from collections import Counter
 from dataclasses import dataclass, field
 from datetime import timedelta
+from math import ceil, log
 
-from app.link.metrics import LATENESS_BOUNDS_MS, TrackerMetrics
+from app.link.metrics import LATENESS_BOUNDS_MS, Lateness, TrackerMetrics
+
+FINEST_MS = 0.05
+STEP = 1.02
+"""Each bound of the fine histogram lies two per cent above the one before, so exact are its percentiles."""
+MILLISECOND = timedelta(milliseconds=1)
 
 
 @dataclass(slots=True)
@@ -18,9 +25,8 @@ class TickCounter:
     sum_ms: float = 0.0
     max_ms: float = 0.0
 
-    def late(self, by: timedelta) -> None:
-        """Count one scheduled tick that began this long after its time."""
-        late_ms = max(0.0, by / timedelta(milliseconds=1))
+    def late(self, late_ms: float) -> None:
+        """Count one scheduled tick that began so many milliseconds after its time."""
         self.counts[bisect_left(LATENESS_BOUNDS_MS, late_ms)] += 1
         self.sum_ms += late_ms
         self.max_ms = max(self.max_ms, late_ms)
@@ -35,3 +41,21 @@ class TickCounter:
             self.sum_ms,
             self.max_ms,
         )
+
+
+class FineLateness:
+    """The ticks of all trackers, counted by how late they began."""
+
+    def __init__(self) -> None:
+        self._counts: Counter[int] = Counter()
+
+    def count(self, late_ms: float) -> None:
+        """Count one scheduled tick that began so many milliseconds after its time."""
+        self._counts[0 if late_ms <= FINEST_MS else ceil(log(late_ms / FINEST_MS) / _LOG_STEP)] += 1
+
+    def metrics(self) -> tuple[Lateness, ...]:
+        """Return how many ticks were no later than each bound that was needed, not cumulative."""
+        return tuple(Lateness(FINEST_MS * STEP**step, self._counts[step]) for step in sorted(self._counts))
+
+
+_LOG_STEP = log(STEP)

@@ -1,11 +1,16 @@
-"""What the site writes down: settings before they are acknowledged, events and frames behind the loop."""
+"""What the site writes down: settings before they are acknowledged, events and frames behind the loop.
+
+What is posted gathers for a moment and is stored together; what is waited for is stored after it, at once.
+"""
 
 from collections import deque
 from collections.abc import Callable, Sequence
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
 from app.audit.entry import Entry
+from app.clock import Clock
 from app.site.auditing import IN_HAND, log_head
+from app.site.gathering import BackgroundWriter, Gathering
 from app.store.store import KeptAlarm, PlannedShow, StoreFailed, Writer
 from app.tracker.commands import CommandRejected
 from app.tracker.memory import SiteState, TrackerState
@@ -18,24 +23,16 @@ MOST_UNRECORDED = 1000
 """How many orders, most of them stops, are kept in memory until the disk takes them."""
 
 
-class BackgroundWriter(Protocol):
-    """A writer with a thread of its own."""
-
-    async def call(self, work: Callable[[Writer], T]) -> T:
-        """Do the work in its turn and return what it returned, or raise what it raised."""
-
-    def post(self, work: Callable[[Writer], object]) -> bool:
-        """Do the work in its turn, or return that there is no room; failures go to who watches the writer."""
-
-
 class Ledger:
     """Keeps settings, events and plans; without a writer everything lives in memory only."""
 
-    def __init__(self, writer: BackgroundWriter | None) -> None:
+    def __init__(self, writer: BackgroundWriter | None, clock: Clock) -> None:
         self._writer = writer
+        self._gathering = None if writer is None else Gathering(writer, clock, self._fall_behind)
         self.event_count = 0
         self._behind = False
         self._unrecorded: deque[Entry] = deque(maxlen=MOST_UNRECORDED)
+        self._along: dict[str, Callable[[Writer], object]] = {}
 
     @property
     def behind(self) -> bool:
@@ -46,6 +43,16 @@ class Ledger:
     def writer(self) -> BackgroundWriter | None:
         """Return the writer, None for a site that keeps nothing."""
         return self._writer
+
+    def hand_over(self) -> None:
+        """Hand what was posted to the writer, so that whatever it is given next comes after it."""
+        if self._gathering is not None:
+            self._gathering.hand_over()
+
+    def close(self) -> None:
+        """Hand over the last that was posted."""
+        if self._gathering is not None:
+            self._gathering.close()
 
     async def save_site(self, site: SiteState, events: Sequence[Event]) -> None:
         """Return once the site and the events that belong to the change are on disk."""
@@ -73,6 +80,7 @@ class Ledger:
         self.event_count += event_count
         if self._writer is None:
             return
+        self.hand_over()
         try:
             await self._writer.call(self._audited(work))
         except StoreFailed as error:
@@ -95,14 +103,13 @@ class Ledger:
 
     def post_entry(self, entry: Entry) -> None:
         """Have an audit entry stored soon that belongs to no change."""
-        if self._writer is None:
-            return
-        if not self._writer.post(lambda writer: self._noted(writer, _record(entry), entry)):
-            self._fall_behind(entry)
+        if self._gathering is not None:
+            self._gathering.add(_record(entry), entry)
 
     def post_head(self) -> None:
         """Have the audit's last number and hash logged soon."""
         if self._writer is not None:
+            self.hand_over()
             self._writer.post(log_head)
 
     def post_alarms(self, alarms: Sequence[KeptAlarm], events: Sequence[Event]) -> None:
@@ -111,14 +118,49 @@ class Ledger:
         They come by themselves, even while an order is carried out: its audit entry is none of theirs.
         """
         self.event_count += len(events)
-        if self._writer is None:
-            return
+        if self._gathering is not None:
+            self._gathering.add(lambda writer: writer.save_alarms(alarms, events), None)
 
-        def save(writer: Writer) -> None:
-            writer.save_alarms(alarms, events)
+    def post_along(self, name: str, work: Callable[[Writer], object]) -> None:
+        """Have something stored with the next samples, at no cost of its own; the newest of a name counts."""
+        if self._writer is not None:
+            self._along[name] = work
 
-        if not self._writer.post(lambda writer: self._noted(writer, save, None)):
+    @property
+    def has_along(self) -> bool:
+        """Return whether something waits to be stored with the next samples."""
+        return bool(self._along)
+
+    def post_together(self, work: Callable[[Writer], object], finished: Callable[[bool], None]) -> None:
+        """Have the work and what is to go along stored in one transaction; `finished` hears whether it was.
+
+        `finished` is called on the writer's thread, or here if there is no room.
+        """
+        along, self._along = self._along, {}
+
+        def together(writer: Writer) -> None:
+            with writer.together():
+                work(writer)
+                for more in along.values():
+                    more(writer)
+
+        def store(writer: Writer) -> None:
+            try:
+                self._noted(writer, together, None)
+            except Exception:
+                give_back()
+                raise
+            finished(True)
+
+        def give_back() -> None:
+            for name, more in along.items():
+                self._along.setdefault(name, more)
+            finished(False)
+
+        self.hand_over()
+        if self._writer is not None and not self._writer.post(store):
             self._fall_behind(None)
+            give_back()
 
     def catch_up(
         self, site: SiteState, trackers: Sequence[TrackerState], alarms: Sequence[KeptAlarm] = ()
@@ -126,26 +168,28 @@ class Ledger:
         """Have the whole state stored anew; once it is on disk, nothing is behind any more."""
 
         def store(writer: Writer) -> None:
-            writer.save_site(site)
-            for state in trackers:
-                writer.save_tracker(state)
-            writer.save_alarms(alarms)
-            while self._unrecorded:
-                _record(self._unrecorded[0])(writer)
+            unrecorded = tuple(self._unrecorded)
+            with writer.together():
+                writer.save_site(site)
+                for state in trackers:
+                    writer.save_tracker(state)
+                writer.save_alarms(alarms)
+                for entry in unrecorded:
+                    _record(entry)(writer)
+            for _ in unrecorded:
                 self._unrecorded.popleft()
             self._behind = False
 
-        self._post(store, 0)
+        if self._writer is not None:
+            self.hand_over()
+            self._writer.post(store)
 
     def _post(self, work: Callable[[Writer], object], event_count: int) -> None:
         """Have the work done behind the loop; whether it failed is noted on the writer's thread."""
         self.event_count += event_count
-        if self._writer is None:
-            return
-
-        entry, audited = self._entry_in_hand(), self._audited(work)
-        if not self._writer.post(lambda writer: self._noted(writer, audited, entry)):
-            self._fall_behind(entry)
+        if self._gathering is not None:
+            entry = self._entry_in_hand()
+            self._gathering.add(self._audited(work), entry)
 
     def _noted(self, writer: Writer, work: Callable[[Writer], object], entry: Entry | None) -> None:
         try:

@@ -1,7 +1,8 @@
-"""One tracker living on a clock: read, decide, write, on an absolute schedule, never two ticks at once."""
+"""One tracker living on a clock: read, decide, write, whenever the scheduler has it tick."""
 
 import asyncio
 from collections.abc import Callable
+from contextlib import AbstractAsyncContextManager, nullcontext
 from dataclasses import replace
 from datetime import datetime, timedelta
 from typing import Protocol
@@ -9,11 +10,15 @@ from typing import Protocol
 import structlog
 
 from app.clock import Clock
-from app.drives.drive import Drive, DriveError
+from app.drives.drive import Drive, DriveError, answers_at_once
 from app.site.lateness import TickCounter
 from app.site.link_quality import RoundTrips
+from app.site.scheduler import Scheduler, Slot
+from app.tracker.commands import Command
+from app.tracker.conditions import Action
 from app.tracker.config import DriveKind, TrackerConfig
 from app.tracker.controller import Controller
+from app.tracker.home_shift import shifted, unshifted
 from app.tracker.memory import TrackerMemory, TrackerState
 from app.tracker.motion import HALT, AxisCommand, DriveCommand, Feedback, Velocity
 from app.tracker.observation import Observation
@@ -24,6 +29,7 @@ READ_SHARE = 0.8
 LINE_WITHIN_S = 0.7
 ON_A_LINE = (DriveKind.MODBUS_RTU, DriveKind.MODBUS_RTU_OVER_TCP)
 STOP_WITHIN_S = 0.5
+CLOSE_WITHIN_S = 1.0
 STANDSTILL = Velocity(0.0)
 NEVER_FORBIDDEN = ("stop", "reset_fault")
 
@@ -46,6 +52,7 @@ class TrackerLoop:
         drive: Drive,
         clock: Clock,
         surroundings: Surroundings,
+        scheduler: Scheduler,
         *,
         period: timedelta,
         on_tick: Callable[["TrackerLoop", Observation, tuple[Event, ...]], None],
@@ -56,8 +63,10 @@ class TrackerLoop:
         self.round_trips = RoundTrips()
         self.feedback: Feedback | None = None
         self.broken: Reason | None = None
+        self.answers_at_once = answers_at_once(drive)
         self._clock = clock
         self._surroundings = surroundings
+        self._scheduler = scheduler
         self._period = period
         self._on_tick = on_tick
         self._trouble: Reason | None = None
@@ -65,8 +74,7 @@ class TrackerLoop:
         self._ending = False
         self._stored_memory = state.memory
         self._last_snapshot: Snapshot | None = None
-        self._awake = asyncio.Event()
-        self._task: asyncio.Task[None] | None = None
+        self._slot: Slot | None = None
 
     @property
     def config(self) -> TrackerConfig:
@@ -90,9 +98,14 @@ class TrackerLoop:
         return seen is not None and (seen.azimuth.moving or seen.elevation.moving)
 
     @property
-    def died(self) -> bool:
-        """Return whether this loop was started and ended by itself, which it never should."""
-        return self._task is not None and self._task.done()
+    def trouble(self) -> Reason | None:
+        """Return what went wrong when the drive was read or told last."""
+        return self._trouble
+
+    @property
+    def activity(self) -> ActivityName:
+        """Return what the tracker is doing; a broken one is faulted."""
+        return ActivityName.FAULTED if self.broken is not None else self.controller.activity
 
     def take_changed(self) -> bool:
         """Return whether the latches changed since this was last asked."""
@@ -102,23 +115,32 @@ class TrackerLoop:
 
     def start(self) -> None:
         """Begin to tick."""
-        self._task = asyncio.create_task(self._run(), name=f"tracker {self.config.tracker_id}")
+        self._slot = self._scheduler.add(self)
 
     async def close(self) -> None:
         """Stop the drive, end ticking and let go of the drive."""
-        task, self._task = self._task, None
-        if task is not None:
-            task.cancel()
-            await asyncio.gather(task, return_exceptions=True)
+        slot, self._slot = self._slot, None
+        if slot is not None:
+            await self._scheduler.remove(slot)
         await self.stop_drive()
         try:
-            await self.drive.close()
-        except DriveError as error:
+            async with asyncio.timeout(CLOSE_WITHIN_S):
+                await self.drive.close()
+        except (DriveError, TimeoutError) as error:
             log.warning("drive_not_closed", tracker=self.config.tracker_id, reason=str(error))
 
     def wake(self) -> None:
         """Tick now: something was asked."""
-        self._awake.set()
+        if self._slot is not None:
+            self._scheduler.ask(self._slot)
+
+    def handle(self, command: Command, actor: str, via: str = "") -> tuple[Event, ...]:
+        """Have the controller obey, as `Controller.handle`; whatever deadline it has then is watched."""
+        try:
+            return self.controller.handle(command, self._clock.now(), actor, via)
+        finally:
+            if self._slot is not None:
+                self._scheduler.look(self._slot)
 
     async def stop_drive(self) -> bool:
         """Ramp both axes down beside the controller; return whether the drive took it."""
@@ -145,48 +167,33 @@ class TrackerLoop:
         self.broken = None
         self.wake()
 
-    def snapshot(self, at: datetime) -> Snapshot:
-        """Return the tracker as everyone sees it; a broken one shows its fault."""
+    def snapshot(self, at: datetime, *, asked: bool = True) -> Snapshot:
+        """Return the tracker as everyone sees it; a broken one shows its fault.
+
+        Unless it is `asked` what is allowed now, and why not, `actions` are left out.
+        """
         if self.broken is not None and self._last_snapshot is not None:
-            return _broken_snapshot(self._last_snapshot, at, self.broken)
-        shown = self.controller.snapshot(at, self._clock.now())
+            return _broken_snapshot(self._last_snapshot, at, self.broken, asked=asked)
+        shown = self.controller.snapshot(at, self._clock.now(), asked=asked)
         if self._trouble is not None:
             shown = replace(shown, notices=(*shown.notices, self._trouble))
         self._last_snapshot = shown
         return shown
 
-    async def _run(self) -> None:
-        due = self._clock.now()
-        while True:
-            await self._tick_guarded()
-            now = self._clock.now()
-            while due <= now:
-                due += self._period
-            if await self._wait_until(self._next(due)):
-                late = self._clock.now() - due
-                if late >= timedelta(0):
-                    self.counter.late(late)
+    def deadline(self) -> datetime | None:
+        """Return the instant by which it must tick again, such as the end of a jog's lease."""
+        return None if self.broken is not None else self.controller.deadline()
 
-    def _next(self, due: datetime) -> datetime:
-        deadline = None if self.broken is not None else self.controller.deadline()
-        return due if deadline is None else min(due, deadline)
+    async def outlasted(self) -> None:
+        """Stop the drive beside a tick that is still in flight although the lease of a jog has ended."""
+        until = self.deadline() if self.activity is ActivityName.JOGGING else None
+        if until is not None and until <= self._clock.now():
+            await self.stop_drive()
 
-    async def _wait_until(self, until: datetime) -> bool:
-        """Wait for the instant or for a wake-up, and return whether it was the instant."""
-        alarm = asyncio.create_task(self._clock.sleep_until(until))
-        alarm.add_done_callback(self._ring)
-        try:
-            await self._awake.wait()
-            return alarm.done()
-        finally:
-            self._awake.clear()
-            alarm.remove_done_callback(self._ring)
-            alarm.cancel()
-
-    def _ring(self, _: asyncio.Task[None]) -> None:
-        self._awake.set()
-
-    async def _tick_guarded(self) -> None:
+    async def tick(self, scheduled: datetime | None) -> None:
+        """Tick, whatever goes wrong; how late that is counts where it was scheduled."""
+        if scheduled is not None:
+            self.counter.late(self._scheduler.late(scheduled))
         if self.broken is not None:
             await self.stop_drive()
             return
@@ -200,12 +207,14 @@ class TrackerLoop:
         """Read, decide, write; after a write that failed nothing moves until one was taken and judged."""
         self.counter.ticks += 1
         unheard = self._write_failed
-        self.feedback = await self._read()
+        raw = await self._read()
+        self.feedback = shifted(self.memory.home_shift, raw)
         seen = self._surroundings.observe(self.config, self.feedback)
         seen = seen._replace(link=self.round_trips.quality(self._within_s))
         tick = self.controller.tick(seen)
         if not self.controller.is_silent:
-            await self._write(_unmoved(tick.command) if unheard or self._ending else tick.command)
+            told = _unmoved(tick.command) if unheard or self._ending else tick.command
+            await self._write(unshifted(self.memory.home_shift, told))
         self._on_tick(self, seen, tick.events)
 
     @property
@@ -214,10 +223,13 @@ class TrackerLoop:
         within_s = self._period.total_seconds() * READ_SHARE
         return max(within_s, LINE_WITHIN_S) if self.config.drive.kind in ON_A_LINE else within_s
 
+    def _in_time(self) -> AbstractAsyncContextManager[object]:
+        return nullcontext() if self.answers_at_once else asyncio.timeout(self._within_s)
+
     async def _read(self) -> Feedback | None:
         asked_at = self._clock.now()
         try:
-            async with asyncio.timeout(self._within_s):
+            async with self._in_time():
                 feedback = await self.drive.read()
         except (DriveError, TimeoutError) as error:
             self.counter.read_failures += 1
@@ -231,7 +243,7 @@ class TrackerLoop:
 
     async def _write(self, command: DriveCommand) -> None:
         try:
-            async with asyncio.timeout(self._within_s):
+            async with self._in_time():
                 await self.drive.write(command)
             self._write_failed = False
         except (DriveError, TimeoutError) as error:
@@ -269,10 +281,10 @@ def _trouble(error: DriveError | TimeoutError) -> Reason:
     return Reason("drive_trouble", text, "Check the drive's supply, cable and address.")
 
 
-def _broken_snapshot(last: Snapshot, at: datetime, broken: Reason) -> Snapshot:
+def _broken_snapshot(last: Snapshot, at: datetime, broken: Reason, *, asked: bool) -> Snapshot:
     """Return what is still known of a tracker whose controller broke: nothing that was measured is live."""
     forbidden: dict[str, tuple[Reason, ...]] = {
-        action: () if action in NEVER_FORBIDDEN else (broken,) for action in last.actions
+        action.value: () if action in NEVER_FORBIDDEN else (broken,) for action in Action
     }
     age_s = last.position_age_s
     return replace(
@@ -288,8 +300,10 @@ def _broken_snapshot(last: Snapshot, at: datetime, broken: Reason) -> Snapshot:
         following_error_deg=None,
         off_sun_deg=None,
         in_position=False,
+        approaching=False,
         azimuth=None,
         elevation=None,
         show=None,
-        actions=forbidden,
+        actions=forbidden if asked else {},
+        unreachable=None,
     )

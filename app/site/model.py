@@ -1,5 +1,6 @@
 """What a site consists of: its stored state, its clock and sky, its trackers, and what is kept of them."""
 
+import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
@@ -10,10 +11,13 @@ from app.link.messages import UnknownTracker
 from app.site.authority import control_state
 from app.site.checking import Checks
 from app.site.controls import Controls
+from app.site.kept_weather import WeatherFile
 from app.site.ledger import Ledger
 from app.site.loop import TrackerLoop
 from app.site.met_poll import MetPoll, Station, StationReader
+from app.site.overload import Overload
 from app.site.recorder import Recorder
+from app.site.scheduler import Scheduler
 from app.site.simulated_reader import SimulatedReader
 from app.site.sky import Sky
 from app.site.timekeeping import Timekeeper
@@ -25,6 +29,9 @@ from app.tracker.memory import MetStation, SiteState, TrackerState
 from app.tracker.motion import Feedback
 from app.tracker.observation import Observation
 from app.tracker.played_weather import SECOND_MAST, second_mast
+from app.tracker.protections.guarding import wind_of
+from app.tracker.protections.typhoon import is_high
+from app.tracker.protections.words import Protection
 from app.tracker.simulated_weather import SimulatedStation
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
 from app.tracker.weather import Weather
@@ -47,14 +54,23 @@ class SiteModel:
     loops: dict[str, TrackerLoop] = field(default_factory=dict)
     sky: Sky = field(default_factory=Sky)
     checks: Checks = field(default_factory=Checks)
-    weather: WeatherStation = field(default_factory=WeatherStation)
+    overloaded: Callable[[Overload], None] = lambda _: None
+    measured: WeatherStation = field(default_factory=WeatherStation)
+    made_up: WeatherStation | None = None
+    weather_file: WeatherFile = field(default_factory=lambda: WeatherFile(None))
     make_station: Callable[[MetStation], StationReader] | None = None
     met: MetPoll = field(init=False)
+    arrivals: int = 0
+    """How often trackers came or went: who keeps something of each of them looks when it changes."""
+    scheduler: Scheduler = field(init=False)
 
     def __post_init__(self) -> None:
+        self.scheduler = Scheduler(self.clock, self.period, self.overloaded)
         self.met = MetPoll(self.clock, self._reader, self._take_weather)
 
     control: Controls = field(default_factory=Controls)
+    changing: asyncio.Lock = field(default_factory=asyncio.Lock)
+    """Held while something that is stored is changed; never while a drive or the network is waited for."""
 
     @property
     def station(self) -> Station | None:
@@ -62,6 +78,33 @@ class SiteModel:
         drives = {loop.config.drive.kind for loop in self.loops.values()}
         made_up = self.state.simulated_weather if drives <= {DriveKind.SIMULATED} else None
         return made_up or (self.state.met_station if self.make_station else None)
+
+    @property
+    def weather(self) -> WeatherStation:
+        """Return the weather that counts; what is measured and what is made up are never mixed."""
+        return self.made_up or self.measured
+
+    def recall_weather(self) -> None:
+        """Know the weather from before the restart, and note on disk that none has been heard since."""
+        kept = self.weather_file.recall(self.now())
+        if kept is not None:
+            self.measured.recall(kept, self.now(), self.clock.now())
+            self.keep_weather()
+
+    def keep_weather(self) -> None:
+        """Have what was measured outlive this life of the controller, as far as it matters."""
+        now = self.clock.now()
+        limits = (loop.config.protection.wind for loop in self.loops.values())
+        self.weather_file.keep(self.measured.kept(self.now(), now), now, limits)
+
+    def rouse(self) -> None:
+        """Have every tracker tick now that the wind is to stow and has not yet: none waits for its turn."""
+        sensed = self.weather.sensed(self.clock.now())
+        for loop in self.loops.values():
+            limits = loop.config.protection.wind
+            is_new = limits.enabled and loop.memory.protection is not Protection.TYPHOON
+            if is_new and is_high(limits, wind_of(sensed, limits)):
+                loop.wake()
 
     def now(self) -> datetime:
         """Return the site's time."""
@@ -77,18 +120,14 @@ class SiteModel:
             raise UnknownTracker(f"There is no tracker {tracker_id} on this site.")
         return self.loops[tracker_id]
 
-    def snapshots(self, at: datetime) -> tuple[Snapshot, ...]:
-        """Return every tracker, in the order they were added."""
-        return tuple(self.snapshot(loop, at) for loop in self.loops.values())
-
-    def snapshot(self, loop: TrackerLoop, at: datetime) -> Snapshot:
-        """Return one tracker as everyone sees it, with who has control of it."""
+    def snapshot(self, loop: TrackerLoop, at: datetime, *, asked: bool = True) -> Snapshot:
+        """Return one tracker as everyone sees it, with who has control of it; `asked` as in the loop's."""
         authority = self.control.of(loop.config.tracker_id, loop.memory.control_epoch)
-        return replace(loop.snapshot(at), control=control_state(authority, self.clock.now(), at))
+        return replace(loop.snapshot(at, asked=asked), control=control_state(authority, self.clock.now(), at))
 
     def rests(self, loop: TrackerLoop) -> bool:
         """Return whether a tracker neither moves nor means to."""
-        return not loop.moving and loop.snapshot(self.now()).activity in AT_REST
+        return not loop.moving and loop.activity in AT_REST
 
     def observe(self, config: TrackerConfig, feedback: Feedback | None) -> Observation:
         """Return everything one tick of one tracker may depend on."""
@@ -121,11 +160,18 @@ class SiteModel:
             self._drive_of(state.config),
             self.clock,
             self,
+            self.scheduler,
             period=self.period,
             on_tick=self.on_tick,
         )
         self.loops[state.config.tracker_id] = loop
+        self.arrivals += 1
         return loop
+
+    def drop(self, tracker_id: str) -> None:
+        """Take a tracker off the site; who drops it sees to its loop."""
+        del self.loops[tracker_id]
+        self.arrivals += 1
 
     def _drive_of(self, config: TrackerConfig) -> Drive:
         try:
@@ -146,6 +192,9 @@ class SiteModel:
         if second is not None:
             self.weather.receive(second, None, SECOND_MAST, self.now(), self.clock.now())
         self.weather.receive(readings, None, source, self.now(), self.clock.now(), impossible)
+        self.rouse()
+        if made_up is None:
+            self.keep_weather()
 
     def event(
         self, kind: EventKind, message: str, actor: str, tracker_id: str | None = None, **data: object

@@ -1,7 +1,9 @@
 """Orders about where alarms are sent; the sending itself is a gateway's business."""
 
 from dataclasses import replace
+from urllib.parse import urlsplit
 
+from app.hosts import checked_host
 from app.link.alarm_orders import NotificationOrder, SetNotifications
 from app.site.model import SiteModel
 from app.tracker.commands import CommandRejected
@@ -15,6 +17,7 @@ NAMES = {Channel.WEBHOOK: "webhook", Channel.MAIL: "e-mail"}
 async def carry_out(model: SiteModel, command: NotificationOrder, actor: str) -> tuple[Event, ...]:
     """Store where alarms are sent, or journal a test message, which every gateway reads there."""
     if isinstance(command, SetNotifications):
+        _check_hosts(command.notifications)
         event = model.event(EventKind.NOTIFICATIONS_SET, _says(command.notifications), actor)
         state = replace(model.state, notifications=command.notifications)
         await model.ledger.save_site(state, (event,))
@@ -29,6 +32,15 @@ async def carry_out(model: SiteModel, command: NotificationOrder, actor: str) ->
     event = model.event(EventKind.NOTIFICATION_TESTED, text, actor, channel=command.channel.value)
     await model.ledger.append((event,))
     return (event,)
+
+
+def _check_hosts(wanted: Notifications) -> None:
+    """Raise `ValueError` for an address whose host can be none."""
+    hosts = [address.partition("@")[2] for address in wanted.mail_to]
+    if wanted.webhook_url:
+        hosts.append(urlsplit(wanted.webhook_url).hostname or "")
+    for host in hosts:
+        checked_host(host)
 
 
 def _says(wanted: Notifications) -> str:

@@ -5,6 +5,7 @@ from math import isfinite
 
 from app.link.messages import AnswerDirection, AnswerScale, CheckConnection, RestoreDrive, SetSoftLimit
 from app.site import tracker_setup
+from app.site.checks import check_drive
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
 from app.tracker.axes import Axis, AxisConfig
@@ -120,6 +121,7 @@ async def check_connection(model: SiteModel, wanted: CheckConnection, actor: str
     """Read a drive while the tracker stands still, change nothing, and keep what it answered."""
     loop = model.tracker(wanted.tracker_id)
     tracker_setup.refuse_while_busy(model, loop)
+    check_drive(wanted.drive)
     readings = await model.checks.look(wanted.drive)
     model.checks.keep(wanted.tracker_id, DriveCheck(wanted.drive, model.now(), actor, readings))
     event = model.event(

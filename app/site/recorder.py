@@ -1,12 +1,16 @@
 """Records every show from its first frame, and every day at one a second once place and time are set."""
 
+from collections import deque
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, time, timedelta
+from struct import Struct
 
 import numpy as np
 
 from app.site.ledger import Ledger
 from app.site.loop import TrackerLoop
+from app.site.sample_batches import MOST_WAITING, SampleBatches
 from app.sun.position import Location
 from app.tracker.activities.tracking import sun_height_deg
 from app.tracker.memory import SiteState
@@ -17,52 +21,65 @@ from app.tracker.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
 from app.tracker.snapshot import Event, EventKind, ShowPhase, ShowProgress
 from app.zones import zone_of
 
+ROW = Struct(f"={len(COLUMNS)}d")
 DAY_STEP = timedelta(seconds=1)
 RECORDED_PHASES = {ShowPhase.RUNNING, ShowPhase.PAUSED}
 
 
 @dataclass(slots=True)
 class _Open:
-    """A recording that runs: its head and the frames that are not yet handed to the store."""
+    """A recording that runs: its head and its newest samples, the oldest lost while the disk takes none."""
 
     info: RecordingInfo
     began: datetime
     due: datetime
-    rows: list[tuple[float, ...]] = field(default_factory=list)
+    rows: deque[bytes] = field(default_factory=lambda: deque(maxlen=MOST_WAITING))
 
     def add(self, now: datetime, sun_time: datetime, frame: tuple[float, ...]) -> None:
         elapsed_s = (now - self.began).total_seconds()
         sun_s = (sun_time - self.info.sun_begin_at).total_seconds()
-        self.rows.append((elapsed_s, sun_s, *frame[2:]))
+        self.rows.append(ROW.pack(elapsed_s, sun_s, *frame[2:]))
 
-    def take(self) -> Frames | None:
-        if not self.rows:
-            return None
-        values = np.array(self.rows, dtype=np.float64).reshape(-1, len(COLUMNS))
+    def take(self) -> Frames:
+        """Return the samples and forget them; packed ones of all trackers are quickly made into arrays."""
+        values = np.frombuffer(b"".join(self.rows)).reshape(-1, len(COLUMNS))
         self.rows.clear()
         return Frames(values)
 
 
 class Recorder:
-    """Turns ticks into recordings; frames go to the store in batches, behind the loop."""
+    """Turns ticks into recordings; the store gets them in batches, behind the loop."""
 
-    def __init__(self, ledger: Ledger, period: timedelta) -> None:
+    def __init__(self, ledger: Ledger, period: timedelta, every: timedelta) -> None:
         self._ledger = ledger
         self._period = period
+        self._batches = SampleBatches(ledger, every)
         self._plans: dict[str, ShowPlan] = {}
         self._shows: dict[str, _Open] = {}
         self._days: dict[str, _Open] = {}
+        self._suspended: set[str] = set()
 
     @property
     def frames_waiting(self) -> int:
-        """Return how many frames are not yet handed to the store."""
-        return sum(len(one.rows) for one in (*self._shows.values(), *self._days.values()))
+        """Return how many samples are not yet on the disk."""
+        return self._batches.frames_waiting + sum(len(one.rows) for one in self._running())
 
     def is_open(self, recording_id: str) -> bool:
         """Return whether a recording still runs."""
-        return any(
-            one.info.recording_id == recording_id for one in (*self._shows.values(), *self._days.values())
-        )
+        return any(one.info.recording_id == recording_id for one in self._running())
+
+    @property
+    def is_suspended(self) -> bool:
+        """Return whether no samples are recorded."""
+        return bool(self._suspended)
+
+    def suspend(self, why: str) -> None:
+        """Record no samples until this reason is taken back; recordings begin and end as ever."""
+        self._suspended.add(why)
+
+    def resume(self, why: str) -> None:
+        """Take a reason back; without any samples are recorded again."""
+        self._suspended.discard(why)
 
     def announce(self, tracker_id: str, plan: ShowPlan) -> None:
         """Remember the plan of the show that this tracker is about to run."""
@@ -71,7 +88,7 @@ class Recorder:
     def observe(
         self, loop: TrackerLoop, site: SiteState, seen: Observation, events: tuple[Event, ...]
     ) -> None:
-        """Add what this tick showed to the recordings of its tracker."""
+        """Add what this tick showed to the recordings of its tracker; what began or ended is stored soon."""
         if self._ledger.writer is None:
             return
         tracker_id = loop.config.tracker_id
@@ -81,11 +98,13 @@ class Recorder:
         if tracker_id in self._plans:
             self._observe_show(loop, site, seen)
         self._observe_day(loop, site, seen)
+        self.flush(seen.now)
 
-    def flush(self) -> None:
-        """Hand the frames that wait to the store."""
-        for one in (*self._shows.values(), *self._days.values()):
-            self._append(one)
+    def flush(self, now: datetime, *, at_once: bool = False) -> None:
+        """Hand what waits to the store in one transaction, if it is time."""
+        if self._ledger.writer is not None and (at_once or self._batches.is_due(now)):
+            self._batches.add({one.info.recording_id: one.take() for one in self._running() if one.rows})
+            self._batches.hand_over(now)
 
     def finish(self, tracker_id: str, at: datetime, outcome: str) -> None:
         """Close what is being recorded of one tracker."""
@@ -108,7 +127,7 @@ class Recorder:
             running = self._begin(self._shows, info, seen.now)
         if seen.now >= running.due - self._period / 2:
             running.due = min(max(running.due + self._period, seen.now), seen.now + self._period)
-            running.add(seen.now, show.sun_time, loop.controller.frame())
+            self._add(running, seen.now, show.sun_time, loop.controller.frame())
 
     def _observe_day(self, loop: TrackerLoop, site: SiteState, seen: Observation) -> None:
         tracker_id = loop.config.tracker_id
@@ -122,27 +141,29 @@ class Recorder:
             day = self._begin(self._days, _day_info(loop, site, site.location, seen.site_time), seen.now)
         if seen.now >= day.due:
             day.due = max(day.due + DAY_STEP, seen.now)
-            day.add(seen.now, seen.site_time, _day_frame(loop, seen))
+            self._add(day, seen.now, seen.site_time, _day_frame(loop, seen))
+
+    def _running(self) -> Iterator[_Open]:
+        yield from self._shows.values()
+        yield from self._days.values()
 
     def _begin(self, among: dict[str, _Open], info: RecordingInfo, now: datetime) -> _Open:
         opened = _Open(info, now, now)
         among[info.tracker_id] = opened
-        writer = self._ledger.writer
-        if writer is not None:
-            writer.post(lambda store: store.begin_recording(info))
+        self._batches.begin(info)
         return opened
 
-    def _append(self, one: _Open) -> None:
-        frames, writer = one.take(), self._ledger.writer
-        if frames is not None and writer is not None:
-            writer.post(lambda store: store.append_frames(one.info.recording_id, frames))
+    def _add(self, one: _Open, now: datetime, sun_time: datetime, frame: tuple[float, ...]) -> None:
+        if not self.is_suspended:
+            one.add(now, sun_time, frame)
 
     def _finish(self, among: dict[str, _Open], tracker_id: str, at: datetime, outcome: str) -> None:
-        one, writer = among.pop(tracker_id, None), self._ledger.writer
-        if one is None or writer is None:
+        one = among.pop(tracker_id, None)
+        if one is None or self._ledger.writer is None:
             return
-        self._append(one)
-        writer.post(lambda store: store.finish_recording(one.info.recording_id, at, outcome))
+        if one.rows:
+            self._batches.add({one.info.recording_id: one.take()})
+        self._batches.end(one.info.recording_id, at, outcome)
 
 
 def _day_frame(loop: TrackerLoop, seen: Observation) -> tuple[float, ...]:

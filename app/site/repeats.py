@@ -1,4 +1,4 @@
-"""A repeated order is a no-op that answers as the first did; an order that is too old is refused."""
+"""A repeated order is a no-op that answers as the first did; one too old or of the future is refused."""
 
 import asyncio
 from collections import OrderedDict
@@ -12,7 +12,7 @@ from app.tracker.reason import Reason
 from app.tracker.snapshot import SiteSnapshot
 
 MOST_REMEMBERED = 500
-OLDEST_ORDER = timedelta(seconds=2)
+OLDEST_ORDER = MOST_AHEAD = timedelta(seconds=2)
 ENDS_MOTION = Stop | StopAll | EndJog
 
 
@@ -36,7 +36,13 @@ class Repeats:
         if known is None:
             return await self._first(order.key, order, carry_out)
         if (known.order.command, known.order.tracker_id) != (order.command, order.tracker_id):
-            raise ValueError("This idempotency key was used for another command; take a new key.")
+            raise CommandRejected(
+                Reason(
+                    "key_reused",
+                    "This idempotency key was used for another command, so nothing was done.",
+                    "Send it again with a new key.",
+                )
+            )
         return await asyncio.shield(known.answer)
 
     async def _first(
@@ -56,11 +62,23 @@ class Repeats:
         return snapshot
 
 
-def refuse_old(order: Order, now: datetime) -> None:
-    """Raise `CommandRejected` for an order given more than 2 s ago; to stop is never too late."""
+def refuse_untimely(order: Order, now: datetime) -> None:
+    """Raise `CommandRejected` for an order given more than 2 s ago or ahead; a stop is never untimely.
+
+    One from the future tells that a clock is wrong: by that clock, an old order would look like a new one.
+    """
     if order.issued_at is None or isinstance(order.command, ENDS_MOTION):
         return
     age = now - order.issued_at
+    if age < -MOST_AHEAD:
+        raise CommandRejected(
+            Reason(
+                "from_the_future",
+                f"This command was given {-age.total_seconds():.1f} s ahead of the site's clock and is not "
+                "carried out.",
+                "Set the clock of the sender or of the site, then give it again.",
+            )
+        )
     if age > OLDEST_ORDER:
         raise CommandRejected(
             Reason(

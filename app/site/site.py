@@ -1,11 +1,11 @@
 """A site: trackers living on one clock. It carries out orders and tells everyone what is."""
 
 import asyncio
-import itertools
 from collections.abc import AsyncIterator, Callable, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from functools import partial
+from pathlib import Path
 
 import structlog
 
@@ -16,8 +16,11 @@ from app.drives.drive import Drive
 from app.link.alarm_orders import AlarmOrder
 from app.link.messages import (
     CheckConnection,
+    ClearFaults,
     ControlOrder,
     Order,
+    PlayFault,
+    SetClock,
     SiteCommand,
     SiteDetail,
     StopAll,
@@ -25,22 +28,27 @@ from app.link.messages import (
     Update,
 )
 from app.link.metrics import MachineMetrics
-from app.link.outlet import Outlet
+from app.link.outlet import Listener, Outlet
+from app.link.weather_orders import ReportWeather
+from app.link.whole import with_tracker
 from app.site import changes, control, sightings, site_orders, tracker_orders
 from app.site.alarming import AlarmDesk
 from app.site.auditing import Auditor, as_action
 from app.site.checking import Checks, DriveTools
+from app.site.gathering import BackgroundWriter
 from app.site.health import resident_bytes
-from app.site.ledger import BackgroundWriter, Ledger
+from app.site.kept_weather import WeatherFile
+from app.site.ledger import Ledger
 from app.site.loop import TrackerLoop
 from app.site.met_poll import StationReader
 from app.site.model import SiteModel
+from app.site.overload import CODE, Overload
+from app.site.publishing import Publisher, concerned
 from app.site.recorder import Recorder
-from app.site.repeats import Repeats, refuse_old
+from app.site.repeats import Repeats, refuse_untimely
 from app.site.timekeeping import Timekeeper
 from app.site.weather import WeatherStation
-from app.sun.position import Algorithm
-from app.tracker.commands import CommandRejected, Jog, Stop
+from app.tracker.commands import CommandRejected, EndJog, Jog, Stop
 from app.tracker.commissioning import steps
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import MetStation, SiteState, TrackerState
@@ -48,14 +56,13 @@ from app.tracker.notifications import Notifications
 from app.tracker.observation import Observation
 from app.tracker.proof_states import proof_states
 from app.tracker.reason import Reason
-from app.tracker.snapshot import Event, EventKind, SiteSnapshot
+from app.tracker.snapshot import Event, EventKind, SiteSnapshot, Snapshot
 from app.tracker.weather_windows import USUAL_OLD_S, same_age
 
 PULSE = timedelta(milliseconds=500)
-WHILE_MOVING = timedelta(milliseconds=95)
-AT_REST = timedelta(milliseconds=495)
 CONTROL_EVERY = timedelta(milliseconds=250)
-FLUSH_EVERY = timedelta(seconds=2)
+CATCH_UP_EVERY = timedelta(seconds=2)
+SAMPLES_EVERY = timedelta(seconds=300)
 PRUNE_EVERY = timedelta(days=1)
 
 log = structlog.get_logger(__name__)
@@ -72,11 +79,13 @@ class SiteOptions:
     period: timedelta = timedelta(milliseconds=100)
     retention: timedelta = timedelta(days=400)
     recordings_keep: int = 500
+    samples_every: timedelta = SAMPLES_EVERY
     weather_stale_after: timedelta = timedelta(seconds=USUAL_OLD_S)
     journal_retention: timedelta = timedelta(days=1825)
     disk_free: Callable[[], int | None] = lambda: None
     safe_mode: Reason | None = None
     make_station: Callable[[MetStation], StationReader] | None = None
+    weather_file: Path | None = None
 
 
 class Site:
@@ -97,22 +106,23 @@ class Site:
     ) -> None:
         self._options = options or SiteOptions()
         self._clock = clock
-        ledger = Ledger(writer)
+        ledger = Ledger(writer, clock)
+        windows = state.weather_windows or same_age(self._options.weather_stale_after)
         self.model = SiteModel(
             clock,
             timekeeper or Timekeeper(clock, state.clock),
             ledger,
-            Recorder(ledger, self._options.period),
+            Recorder(ledger, self._options.period, self._options.samples_every),
             state,
             self._options.period,
             make_drive,
             self._on_tick,
             checks=Checks(tools),
-            weather=WeatherStation(
-                state.weather_windows or same_age(self._options.weather_stale_after),
-                simulated=state.simulated_weather is not None,
-            ),
+            measured=WeatherStation(windows),
+            made_up=None if state.simulated_weather is None else WeatherStation(windows, simulated=True),
+            weather_file=WeatherFile(self._options.weather_file),
             make_station=self._options.make_station,
+            overloaded=self._shed,
         )
         for tracker in trackers:
             self.model.add(tracker)
@@ -120,43 +130,50 @@ class Site:
         self._alarms = AlarmDesk.open(self.model, alarms, self._options.disk_free)
         self._outlet = Outlet()
         self._repeats = Repeats()
-        self._changing = asyncio.Lock()
-        self._sequence = itertools.count(1)
-        self._started_at = self._published_at = self._flushed_at = self._pruned_at = clock.now()
+        self.publisher = Publisher(self.model, self._alarms, self._outlet, self._options.boot_id)
+        self._started_at = self._caught_up_at = self._pruned_at = clock.now()
         self._orders = self._refused = 0
-        self._pulse: asyncio.Task[None] | None = None
-        self._watching: asyncio.Task[None] | None = None
+        self._tasks: tuple[asyncio.Task[None], ...] = ()
 
     async def start(self, *events: Event) -> None:
         """Begin to tick, and journal how this life began."""
         self.model.ledger.post_events(events)
         self._prune()
+        self.model.recall_weather()
         sightings.ask_the_sun(self.model)
+        self.model.scheduler.start()
         for loop in self.model.loops.values():
             loop.start()
         await self.model.met.follow(self.model.station)
-        self._pulse = asyncio.create_task(self._beat(), name="site pulse")
-        self._watching = asyncio.create_task(self._watch_control(), name="control authority")
-        self._publish(events)
+        self.publisher.publish(self.model.loops, events)
+        self._tasks = (
+            asyncio.create_task(self._beat(), name="site pulse"),
+            asyncio.create_task(self._watch_control(), name="control authority"),
+            asyncio.create_task(self.publisher.run(), name="publisher"),
+        )
 
     async def close(self, *events: Event) -> None:
         """Stop every drive, end every recording and tell nobody any more."""
-        for task in filter(None, (self._pulse, self._watching)):
+        for task in self._tasks:
             task.cancel()
-            await asyncio.gather(task, return_exceptions=True)
+        await asyncio.gather(*self._tasks, return_exceptions=True)
         await self.model.met.close()
         await asyncio.gather(*(loop.close() for loop in self.model.loops.values()))
+        await self.model.scheduler.close()
+        await self.model.weather_file.close(self.model.measured.kept(self.model.now(), self._clock.now()))
         now = self.model.now()
         for tracker_id in self.model.loops:
             self.model.recorder.finish(tracker_id, now, "machine stopped")
+        self.model.recorder.flush(self._clock.now(), at_once=True)
         self.model.ledger.post_events(events)
-        self._publish(events)
+        self.publisher.publish(self.model.loops, events)
+        self.model.ledger.close()
         self._outlet.end()
 
     def note(self, *events: Event) -> None:
         """Journal and tell what happened at one of the site's other doors."""
         self.model.ledger.post_events(events)
-        self._publish(events)
+        self.publisher.mark((), events, at_once=True)
 
     def trouble(self, name: str, condition: Condition | None) -> None:
         """Note a condition that is for the alarms, or with None that it is over."""
@@ -186,7 +203,7 @@ class Site:
         trackers = {
             tracker_id: TrackerDetail(
                 loop.state,
-                steps(self.model.state, loop.memory, loop.snapshot(at), clock),
+                steps(self.model.state, loop.memory, loop.snapshot(at, asked=False), clock),
                 loop.drive.capabilities,
                 proof_states(loop.config, loop.memory, loop.drive.capabilities),
                 self.model.checks.newest(tracker_id),
@@ -199,6 +216,18 @@ class Site:
     def latest(self) -> SiteSnapshot | None:
         """Return the newest snapshot that was told."""
         return self._outlet.latest
+
+    async def tracker(self, tracker_id: str) -> Snapshot:
+        """Return one tracker now, with what may be asked of it."""
+        return self.model.snapshot(self.model.tracker(tracker_id), self.model.now())
+
+    async def watch(self, tracker_ids: frozenset[str], who: object = None) -> None:
+        """Have snapshots of these trackers told with their actions, as long as one who watches them does."""
+        self.publisher.watch(tracker_ids, who)
+
+    def listen(self) -> Listener:
+        """Return a new subscriber of the updates."""
+        return self._outlet.listen()
 
     def updates(self) -> AsyncIterator[Update]:
         """Yield updates until the site ends; a slow reader skips snapshots, never events."""
@@ -219,13 +248,15 @@ class Site:
             store_queue=getattr(writer, "pending", 0),
             store_failures=getattr(writer, "failed", 0) + getattr(writer, "dropped", 0),
             resident_bytes=resident_bytes() or 0,
+            lateness=model.scheduler.lateness.metrics(),
+            overloaded=model.scheduler.overload.active,
         )
 
     @property
     def alive(self) -> bool:
-        """Return whether every loop that was started still runs."""
-        pulse_runs = self._pulse is not None and not self._pulse.done()
-        return pulse_runs and not any(loop.died for loop in self.model.loops.values())
+        """Return whether what makes trackers tick and the tasks of the site still run."""
+        runs = bool(self._tasks) and not any(task.done() for task in self._tasks)
+        return runs and self.model.scheduler.alive
 
     @property
     def rests(self) -> bool:
@@ -236,7 +267,7 @@ class Site:
         return await self._auditor.record(order, self._carry_out)
 
     async def _carry_out(self, order: Order) -> SiteSnapshot:
-        refuse_old(order, self.model.now())
+        refuse_untimely(order, self.model.now())
         command = order.command
         if self._options.safe_mode is not None and not isinstance(command, Stop | StopAll | AlarmOrder):
             raise CommandRejected(self._options.safe_mode)
@@ -247,23 +278,30 @@ class Site:
             with as_action("take_control"):
                 command, taken = await control.admit(self.model, loop, order, command)
             if taken:
-                self._publish(taken)
+                self.publisher.publish((loop.config.tracker_id,), taken)
+            loop = self.model.tracker(order.tracker_id)
             events = await tracker_orders.command(self.model, loop, command, order.actor, order.via)
-            newest = self._outlet.latest
-            if isinstance(command, Jog) and not events and newest is not None:
-                return newest
-        return self._publish(events)
+            if isinstance(command, Jog | EndJog) and not events:
+                return self.publisher.newest
+        about = concerned(order, self.model.loops)
+        await self.publisher.tell(about, events)
+        if len(about) != 1 or about[0] not in self.model.loops:
+            return self.publisher.newest
+        return with_tracker(self.publisher.newest, await self.tracker(about[0]))
 
     async def _carry_out_for_site(self, order: Order, command: SiteCommand) -> tuple[Event, ...]:
         if isinstance(command, AlarmOrder):
             return self._alarms.carry_out(command, order.actor)
-        if isinstance(command, StopAll | CheckConnection):
+        if isinstance(command, StopAll | CheckConnection | PlayFault | ClearFaults | ReportWeather):
             return await site_orders.carry_out(self.model, command, order.actor)
         if isinstance(command, ControlOrder):
             return await control.carry_out(self.model, command, order)
-        async with self._changing:
-            refuse_old(order, self.model.now())
-            return await changes.carry_out(self.model, command, order.actor)
+        async with self.model.changing:
+            refuse_untimely(order, self.model.now())
+            events = await changes.carry_out(self.model, command, order.actor)
+        if isinstance(command, SetClock):
+            await site_orders.set_drive_clocks(self.model)
+        return events
 
     def _on_tick(self, loop: TrackerLoop, seen: Observation, events: tuple[Event, ...]) -> None:
         """Keep what a tick changed, record it and tell it."""
@@ -272,55 +310,21 @@ class Site:
         else:
             self.model.ledger.post_events(events)
         self.model.recorder.observe(loop, self.model.state, seen, events)
-        if events or self._due(WHILE_MOVING if loop.moving else AT_REST):
-            self._publish(events, looks=True)
-
-    def _due(self, after: timedelta) -> bool:
-        return self._clock.now() - self._published_at >= after
-
-    def _publish(self, events: tuple[Event, ...] = (), *, looks: bool = False) -> SiteSnapshot:
-        """Tell everyone what is and what happened; with `looks` alarms are judged first, if it is time."""
-        self._published_at = self._clock.now()
-        snapshot = self._snapshot(self.model.now())
-        if looks:
-            events = (*events, *self._alarms.look(snapshot, at_once=bool(events)))
-        snapshot = self._alarms.shown(snapshot)
-        self._outlet.publish(snapshot, events)
-        return snapshot
-
-    def _snapshot(self, at: datetime) -> SiteSnapshot:
-        state, trackers = self.model.state, self.model.snapshots(at)
-        first = next(iter(self.model.loops.values()), None)
-        algorithm = Algorithm.PSA if first is None else first.config.algorithm
-        sun = self.model.sky.sun(state.location, algorithm, at)
-        return SiteSnapshot(
-            boot_id=self._options.boot_id,
-            sequence=next(self._sequence),
-            at=at,
-            site_name=state.name,
-            location=state.location,
-            time_zone=state.time_zone,
-            clock=self.model.timekeeper.state(),
-            sun=sun,
-            trackers=trackers,
-            weather=self.model.weather.now(self._clock.now()),
-            sun_behind_horizon=sun is not None
-            and state.horizon.hides(sun.azimuth_deg, sun.apparent_elevation_deg),
-        )
+        self.publisher.ticked(loop, events)
 
     async def _beat(self) -> None:
-        """Every half second: watch the clock, hand frames to the store, remove what is too old."""
+        """Every half second: watch the clock, hand samples to the store, remove what is too old."""
         due = self._clock.now()
         while True:
             self._watch_clock()
             now = self._clock.now()
-            if now - self._flushed_at >= FLUSH_EVERY:
-                self._flushed_at = now
-                self._flush()
+            self.model.recorder.flush(now)
+            if now - self._caught_up_at >= CATCH_UP_EVERY:
+                self._caught_up_at = now
+                self._catch_up()
             if now - self._pruned_at >= PRUNE_EVERY:
                 self._prune()
-            if self._due(AT_REST):
-                self._publish(looks=True)
+            self.publisher.beat()
             due = max(due + PULSE, now)
             await self._clock.sleep_until(due)
 
@@ -330,18 +334,29 @@ class Site:
             for loop in tuple(self.model.loops.values()):
                 events = await control.settle(self.model, loop)
                 if events:
-                    self._publish(events)
+                    self.publisher.publish((loop.config.tracker_id,), events)
             await self._clock.sleep_until(self._clock.now() + CONTROL_EVERY)
 
-    def _flush(self) -> None:
-        """Hand frames to the store, and what it could not take before: a latch must outlive a power cut."""
+    def _catch_up(self) -> None:
+        """Store what could not be stored before: a latch must outlive a power cut."""
         model = self.model
+        self._spare_the_disk()
         if model.ledger.behind:
             states = tuple(loop.state for loop in model.loops.values())
             model.ledger.catch_up(model.state, states, self._alarms.standing())
-        model.recorder.flush()
         if self._auditor.head_is_due(self._clock.now()):
             model.ledger.post_head()
+
+    def _spare_the_disk(self) -> None:
+        """Record no samples while hardly anything is free: what is left is for events and settings."""
+        recorder, code = self.model.recorder, "disk_full"
+        (recorder.suspend if code in self._alarms.books.of(None).present else recorder.resume)(code)
+
+    def _shed(self, overload: Overload) -> None:
+        """Leave out, or take up again, what is not motion, and tell it: every tick and every stop goes on."""
+        self.publisher.slow(slow=overload.active)
+        (self.model.recorder.suspend if overload.active else self.model.recorder.resume)(CODE)
+        self._alarms.trouble(CODE, overload.condition())
 
     def _watch_clock(self) -> None:
         jump = self.model.timekeeper.watch()
@@ -357,13 +372,14 @@ class Site:
         )
         self.model.state = replace(self.model.state, clock=self.model.timekeeper.setting)
         self.model.ledger.post_site(self.model.state, (event,))
-        self._publish((event,))
+        self.publisher.publish((), (event,))
 
     def _prune(self) -> None:
         self._pruned_at = self._clock.now()
         writer, before = self.model.ledger.writer, self.model.now() - self._options.retention
         keep = self._options.recordings_keep
         if writer is not None:
+            self.model.ledger.hand_over()
             writer.post(lambda store: store.prune(days_before=before, keep=keep))
             oldest = self.model.now() - self._options.journal_retention
             writer.post(lambda store: store.prune_history(oldest, partial(self._pruned, oldest)))

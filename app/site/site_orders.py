@@ -213,11 +213,11 @@ def _refuse_while_following(model: SiteModel) -> None:
     reasons = tuple(
         Reason(
             "follows_the_sun",
-            f"{tracker.tracker_id} follows the sun of the present location.",
-            f"Stop {tracker.tracker_id} first.",
+            f"{loop.config.tracker_id} follows the sun of the present location.",
+            f"Stop {loop.config.tracker_id} first.",
         )
-        for tracker in model.snapshots(model.now())
-        if tracker.activity in FOLLOWS_THE_SUN
+        for loop in model.loops.values()
+        if loop.activity in FOLLOWS_THE_SUN
     )
     if reasons:
         raise CommandRejected(*reasons)
@@ -232,11 +232,10 @@ async def _set_clock(model: SiteModel, command: SetClock, actor: str) -> tuple[E
     event = model.event(EventKind.CLOCK_SET, message, actor)
     events = await _keep(model, _confirmed(state, StepName.CLOCK, given), event)
     model.timekeeper.adopt(setting)
-    await _set_drive_clocks(model)
     return events
 
 
-async def _set_drive_clocks(model: SiteModel) -> None:
+async def set_drive_clocks(model: SiteModel) -> None:
     """Set them side by side: drives that do not answer hold up neither the others nor the site's orders."""
     await asyncio.gather(*(_set_drive_clock(model, loop) for loop in tuple(model.loops.values())))
 
@@ -303,7 +302,8 @@ async def _stop_all(model: SiteModel, actor: str) -> tuple[Event, ...]:
     happened: list[Event] = []
     for loop in tuple(model.loops.values()):
         happened.extend(tracker_orders.handle_stop(model, loop, actor))
-    await asyncio.gather(*(tracker_orders.finish_stop(model, loop) for loop in tuple(model.loops.values())))
+    await asyncio.gather(*(loop.stop_drive() for loop in tuple(model.loops.values())))
+    await tracker_orders.until_stored(model)
     if not model.loops:
         happened.append(model.event(EventKind.STOPPED, "Stop was asked; there is no tracker.", actor))
         model.ledger.post_events(happened)

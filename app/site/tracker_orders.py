@@ -27,7 +27,8 @@ async def command(
     """Have the controller obey, and return once what changed is on disk; a jog does not wait for that.
 
     Without a store that works everything but a stop is refused, and a jog that lasts ends with its lease.
-    A renewed jog changes only when its lease ends: no tick is needed before the next one.
+    A renewed jog changes only when its lease ends, and the end of a press that is over changes nothing: no
+    tick is needed before the next one.
     """
     if isinstance(given, Stop):
         events = handle_stop(model, loop, actor)
@@ -37,10 +38,10 @@ async def command(
         return _repair(model, loop, given, actor)
     if model.ledger.behind and not isinstance(given, EndJog):
         raise CommandRejected(NOT_RECORDED)
-    events = loop.controller.handle(given, model.clock.now(), actor, via)
+    events = loop.handle(given, actor, via)
     if isinstance(given, RunShow):
         model.recorder.announce(loop.config.tracker_id, given.plan)
-    if events or not isinstance(given, Jog):
+    if events or not isinstance(given, Jog | EndJog):
         loop.wake()
     if isinstance(given, Jog | EndJog):
         _post(model, loop, events)
@@ -52,7 +53,7 @@ async def command(
 def handle_stop(model: SiteModel, loop: TrackerLoop, actor: str) -> tuple[Event, ...]:
     """Make the controller stop and have the latches stored soon; the drive is told by `finish_stop`."""
     try:
-        events = loop.controller.handle(Stop(), model.clock.now(), actor)
+        events = loop.handle(Stop(), actor)
     except Exception:
         log.exception("stop_not_handled", tracker=loop.config.tracker_id)
         message = "Stop was asked. The controller of this tracker is broken; its drive was told to stop."
@@ -65,6 +66,11 @@ def handle_stop(model: SiteModel, loop: TrackerLoop, actor: str) -> tuple[Event,
 async def finish_stop(model: SiteModel, loop: TrackerLoop) -> None:
     """Tell the drive to stop beside the controller, then give the latches half a second to be on disk."""
     await loop.stop_drive()
+    await until_stored(model)
+
+
+async def until_stored(model: SiteModel) -> None:
+    """Give what was posted half a second to be on disk: a stop waits no longer for it."""
     with suppress(CommandRejected, TimeoutError):
         async with asyncio.timeout(STORED_WITHIN_S):
             await model.ledger.keep(lambda writer: None, 0)

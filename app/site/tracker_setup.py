@@ -15,7 +15,7 @@ from app.tracker.memory import Pointing, StepName, TrackerMemory, TrackerState
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind
 
-MOST_TRACKERS = 100
+MOST_TRACKERS = 1000
 NOTHING_TO_UNDO = Reason(
     "nothing_to_undo", "The settings have not been changed since they are kept.", "Nothing has to be done."
 )
@@ -41,7 +41,7 @@ async def add(model: SiteModel, config: TrackerConfig, actor: str) -> tuple[Even
     try:
         await model.ledger.save_tracker(state, (event,))
     except CommandRejected:
-        del model.loops[config.tracker_id]
+        model.drop(config.tracker_id)
         await loop.close()
         raise
     loop.start()
@@ -165,7 +165,7 @@ async def remove(model: SiteModel, tracker_id: str, actor: str) -> tuple[Event, 
     )
     memory = loop.memory
     await model.ledger.remove_tracker(tracker_id, (event,))
-    del model.loops[tracker_id]
+    model.drop(tracker_id)
     model.recorder.finish(tracker_id, model.now(), "tracker removed")
     await loop.close()
     if loop.memory is not memory:

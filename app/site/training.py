@@ -15,9 +15,12 @@ from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind
 from app.tracker.training import Lesson, lesson
 
-TRIES = 12
+TRIED_FOR = timedelta(seconds=3)
 BETWEEN = timedelta(milliseconds=250)
-"""A connection on which silence is played is made anew again and again; in between it answers."""
+"""A connection on which silence is played is made anew again and again; in between it answers.
+
+It takes as long as the drive lets it: what is set for the site is not kept waiting meanwhile.
+"""
 
 
 async def carry_out(model: SiteModel, command: PlayFault | ClearFaults, actor: str) -> tuple[Event, ...]:
@@ -38,10 +41,11 @@ async def _play(model: SiteModel, loop: TrackerLoop, taught: Lesson, actor: str)
         await _reached(model, loop, lambda: trainer.play(faults))
     text = f"TRAINING: a fault is played on {name}: {taught.title}."
     event = model.event(EventKind.FAULT_INJECTED, text, actor, loop.config.tracker_id, fault=taught.fault)
-    if taught.weather is None:
-        await model.ledger.append((event,))
-    else:
-        await play(model, taught.weather, event)
+    async with model.changing:
+        if taught.weather is None:
+            await model.ledger.append((event,))
+        else:
+            await play(model, taught.weather, event)
     loop.wake()
     return (event,)
 
@@ -55,10 +59,11 @@ async def _clear(model: SiteModel, loop: TrackerLoop, actor: str) -> tuple[Event
         await _reached(model, loop, trainer.clear)
     text = f"TRAINING: the faults of {loop.config.name} that were played are ended."
     event = model.event(EventKind.FAULTS_CLEARED, text, actor, loop.config.tracker_id)
-    if weather:
-        await play(model, None, event)
-    else:
-        await model.ledger.append((event,))
+    async with model.changing:
+        if weather:
+            await play(model, None, event)
+        else:
+            await model.ledger.append((event,))
     loop.wake()
     return (event,)
 
@@ -79,11 +84,12 @@ def _trainer(loop: TrackerLoop) -> Trainer:
 
 async def _reached(model: SiteModel, loop: TrackerLoop, work: Callable[[], Awaitable[None]]) -> None:
     """Do it, again where the connection was not there just then, or raise `CommandRejected`."""
-    for left in reversed(range(TRIES)):
+    until = model.clock.now() + TRIED_FOR
+    while True:
         try:
             await work()
         except DriveError as error:
-            if not left or isinstance(error, DriveRefused):
+            if model.clock.now() >= until or isinstance(error, DriveRefused):
                 raise CommandRejected(_not_reached(loop, error)) from error
         else:
             return

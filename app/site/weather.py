@@ -4,6 +4,7 @@ from dataclasses import fields
 from datetime import datetime, timedelta
 
 from app.site.anemometers import Anemometers
+from app.site.kept_weather import KeptValue, KeptWeather
 from app.site.weather_series import FROZEN_AFTER, Sample, Series
 from app.tracker.weather import NOTHING_SENSED, Quality, Reading, Sensed, Weather, WeatherNow
 from app.tracker.weather_windows import WeatherWindows
@@ -14,16 +15,13 @@ NAMES = tuple(field.name for field in fields(Weather))
 WIND = "wind_mps"
 MOVES_WITH = {WIND: "wind_direction_deg"}
 """A vane that turns while the anemometer shows no wind says that the anemometer is stuck."""
+OLD = (Quality.STALE, Quality.BEFORE_RESTART)
 
 
 class WeatherStation:
     """Keeps every quantity's samples; ages grow with the machine's own clock, whatever the site's does."""
 
     def __init__(self, windows: WeatherWindows = USUAL, *, simulated: bool = False) -> None:
-        self.begin_anew(windows, simulated=simulated)
-
-    def begin_anew(self, windows: WeatherWindows, *, simulated: bool = False) -> None:
-        """Forget every value: what is measured and what is made up are never mixed."""
         self._windows, self._simulated = windows, simulated
         self._winds = Anemometers(windows)
         self._series: dict[str, Series | Anemometers] = {name: Series(name, windows) for name in NAMES}
@@ -31,6 +29,8 @@ class WeatherStation:
         self._reported_at: datetime | None = None
         self._measured_at: datetime | None = None
         self._source = ""
+        self._recalled: KeptWeather | None = None
+        self._unheard_at: datetime | None = None
 
     @property
     def windows(self) -> WeatherWindows:
@@ -68,6 +68,47 @@ class WeatherStation:
             value = 0.0 if last is None else last.value
             self._series[name].take(Sample(at, value, source), impossible=True)
         self._reported_at, self._measured_at, self._source = at, measured_at, source
+        self._unheard_at = None
+
+    def recall(self, kept: KeptWeather, site_time: datetime, now: datetime) -> None:
+        """Know what was reported before the restart."""
+
+        def sample(kept: KeptValue) -> Sample:
+            return Sample(now - max(site_time - kept.at, timedelta(0)), kept.value, kept.source)
+
+        for name, one in kept.quantities.items():
+            if name in NAMES and name != WIND:
+                self._series[name].recall(sample(one))
+        for one in kept.winds:
+            self._winds.recall(sample(one))
+        self._reported_at = now - max(site_time - kept.reported_at, timedelta(0))
+        self._measured_at, self._source, self._recalled = kept.reported_at, kept.source, kept
+        self._unheard_at = now - max(site_time - (kept.unheard_since or site_time), timedelta(0))
+
+    def kept(self, site_time: datetime, now: datetime) -> KeptWeather | None:
+        """Return what the next life of the controller has to know, None if nothing was ever reported."""
+        if self._reported_at is None:
+            return None
+
+        def value(sample: Sample) -> KeptValue:
+            return KeptValue(sample.value, site_time - (now - sample.at), sample.source)
+
+        newest = {name: series.newest for name, series in self._series.items() if name != WIND}
+        told = self.sensed(now)
+        return KeptWeather(
+            site_time - (now - self._reported_at),
+            self._source,
+            {name: value(one) for name, one in newest.items() if one is not None},
+            tuple(value(one) for one in self._winds.last_of_all()),
+            told.wind.value,
+            told.wind_mean_mps,
+            None if self._unheard_at is None else site_time - (now - self._unheard_at),
+        )
+
+    @property
+    def unheard(self) -> bool:
+        """Return whether something was reported before the restart, and nothing since."""
+        return self._unheard_at is not None
 
     def now(self, now: datetime) -> WeatherNow | None:
         """Return the newest values with their ages, None if there never was one since the start."""
@@ -80,7 +121,7 @@ class WeatherStation:
             _newest(quantities),
             self._measured_at,
             age.total_seconds(),
-            age > self._windows.oldest,
+            self.unheard or age > self._windows.oldest,
             self._source,
             quantities,
             self._winds.gust(now, others_vary=vane_turns),
@@ -88,6 +129,7 @@ class WeatherStation:
             self._simulated,
             self._winds.readings(now, others_vary=vane_turns),
             self._winds.disagreement(now, others_vary=vane_turns),
+            self.unheard,
         )
 
     def sensed(self, now: datetime) -> Sensed:
@@ -96,15 +138,19 @@ class WeatherStation:
             return NOTHING_SENSED
         vane_turns = self._turns(WIND, now)
         wind, gust_mps = self._reading(WIND, now), self._winds.gust(now, others_vary=vane_turns)
-        if wind.quality is Quality.GOOD and gust_mps is not None:
+        mean_mps = self._winds.mean(now, others_vary=vane_turns)
+        if wind.quality is Quality.BEFORE_RESTART and self._recalled is not None:
+            gust_mps, mean_mps = self._recalled.gust_mps, self._recalled.mean_mps
+        if wind.quality in (Quality.GOOD, Quality.BEFORE_RESTART) and gust_mps is not None:
             wind = Reading(gust_mps, wind.quality, wind.age_s, wind.source)
         return Sensed(
             wind,
             self._reading("snow_kg", now),
             self._reading("light_wm2", now),
-            self._winds.mean(now, others_vary=vane_turns),
+            mean_mps,
             self._reading("wind_direction_deg", now).good,
             self._simulated,
+            0.0 if self._unheard_at is None else (now - self._unheard_at).total_seconds(),
         )
 
     def _reading(self, name: str, now: datetime) -> Reading:
@@ -134,5 +180,5 @@ class WeatherStation:
 
 def _newest(quantities: dict[str, Reading]) -> Weather:
     """Return the values that are not stale; where all are, the last ones, which are shown with their age."""
-    fresh = {name: one.value for name, one in quantities.items() if one.quality is not Quality.STALE}
+    fresh = {name: one.value for name, one in quantities.items() if one.quality not in OLD}
     return Weather(**(fresh or {name: one.value for name, one in quantities.items()}))

@@ -35,7 +35,7 @@ class Series:
         self._samples: deque[Sample] = deque()
         self._total = 0.0
         self._newest: Sample | None = None
-        self._impossible = False
+        self._impossible = self._recalled = False
         self._equal = 0
         self.changed_at: datetime | None = None
 
@@ -44,9 +44,13 @@ class Series:
         """Return the newest sample, also an impossible one."""
         return self._newest
 
+    def recall(self, sample: Sample) -> None:
+        """Know the newest sample from before the restart; nothing counts on it."""
+        self._newest, self._recalled = sample, True
+
     def take(self, sample: Sample, *, impossible: bool = False) -> None:
         """Take a sample; `impossible` says that it is out of range or no number."""
-        before = self._newest
+        before, self._recalled = self._newest, False
         self._impossible = impossible or self._jumped(before, sample)
         if before is None or sample.value != before.value:
             self.changed_at, self._equal = sample.at, 1
@@ -113,6 +117,8 @@ class Series:
         return abs(sample.value - before.value) > steepest * elapsed_s
 
     def _quality(self, newest: Sample, now: datetime, *, others_vary: bool) -> Quality:
+        if self._recalled:
+            return Quality.BEFORE_RESTART
         if self.is_stale(now):
             return Quality.STALE
         if self._impossible:

@@ -4,6 +4,7 @@ from dataclasses import replace
 from datetime import datetime
 from typing import assert_never
 
+from app.hosts import checked_host
 from app.link.weather_orders import (
     ReportWeather,
     SetMetStation,
@@ -12,6 +13,7 @@ from app.link.weather_orders import (
     WeatherOrder,
 )
 from app.site.model import SiteModel
+from app.site.weather import WeatherStation
 from app.tracker.commands import CommandRejected
 from app.tracker.config import DriveKind, TrackerConfig
 from app.tracker.memory import MetStation, SiteState
@@ -40,14 +42,15 @@ async def carry_out(model: SiteModel, command: WeatherOrder, actor: str) -> tupl
     """Carry out one order about the weather, stored before this returns, and return what happened."""
     match command:
         case ReportWeather():
-            return _report(model, command, actor)
+            return await _report(model, command, actor)
         case SetMetStation():
             return await _set_station(model, command.station, actor)
         case SimulateWeather():
             return await _simulate(model, command.station, actor)
         case SetWeatherWindows():
             state = replace(model.state, weather_windows=command.windows)
-            model.weather.judge_by(command.windows)
+            for station in filter(None, (model.measured, model.made_up)):
+                station.judge_by(command.windows)
             return await _keep(model, state, "The windows and ages of the weather were set.", actor)
         case _:
             assert_never(command)
@@ -59,16 +62,21 @@ def refuse_real(model: SiteModel, config: TrackerConfig) -> None:
         raise CommandRejected(NEEDS_SIMULATED)
 
 
-def _report(model: SiteModel, command: ReportWeather, actor: str) -> tuple[Event, ...]:
+async def _report(model: SiteModel, command: ReportWeather, actor: str) -> tuple[Event, ...]:
+    """Take a report at once; one that demands a stow is on disk before this returns."""
     if model.state.simulated_weather is not None:
         raise CommandRejected(IS_SIMULATED)
-    model.weather.receive(command.readings, command.measured_at, actor, model.now(), model.clock.now())
+    model.measured.receive(command.readings, command.measured_at, actor, model.now(), model.clock.now())
+    model.rouse()
+    model.keep_weather()
+    await model.weather_file.written()
     return ()
 
 
 async def _set_station(model: SiteModel, station: MetStation | None, actor: str) -> tuple[Event, ...]:
     told = "No weather station is read any more."
     if station is not None:
+        checked_host(station.host)
         told = f"The weather station {station.name} is read from now on."
     made_up = model.state.simulated_weather if station is None else None
     state = replace(model.state, met_station=station, simulated_weather=made_up)
@@ -128,7 +136,8 @@ async def _follow(model: SiteModel, state: SiteState, told: str, actor: str) -> 
     events = await _keep(model, state, told, actor)
     await model.met.close()
     if mixed:
-        model.weather.begin_anew(model.weather.windows, simulated=state.simulated_weather is not None)
+        made_up = state.simulated_weather is not None
+        model.made_up = WeatherStation(model.measured.windows, simulated=True) if made_up else None
     await model.met.follow(model.station)
     return events
 

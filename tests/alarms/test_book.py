@@ -13,7 +13,7 @@ from app.alarms import book as pages
 from app.alarms.book import Book, Change, Happened, UnknownAlarm
 from app.alarms.catalogue import CATALOGUE, ENTRIES, Entry, Group
 from app.alarms.conditions import Condition
-from app.alarms.view import view
+from app.alarms.view import Ranking, Shown
 from app.tracker.alarm_words import MOST_SHOWN, AlarmState
 
 NOON = datetime(2027, 6, 21, 9, 0, tzinfo=UTC)
@@ -198,8 +198,16 @@ def test_the_first_of_a_group_is_marked() -> None:
     assert first == {"encoder_jump@T1", "following_error@T2", "drive_fault@T1"}
 
 
+def shown(desk: Desk) -> Shown:
+    ranking = Ranking()
+    for place in {one.tracker_id for one in desk.book.alarms.values()}:
+        mine = [one for one in desk.book.alarms.values() if one.tracker_id == place]
+        ranking.renew(place, mine, desk.at, desk.now, flood=desk.book.flood)
+    return ranking.shown(flood=desk.book.flood)
+
+
 def marked(desk: Desk) -> set[str]:
-    return {one.alarm_id for one in view(desk.book, desk.at, desk.now)[0] if one.first_out}
+    return {one.alarm_id for one in shown(desk)[0] if one.first_out}
 
 
 def test_an_alarm_is_shown_as_the_first_only_where_others_followed() -> None:
@@ -229,17 +237,17 @@ def test_a_flood_is_one_more_alarm_and_puts_the_lesser_behind() -> None:
     desk.see(*many)
     assert desk.state("alarm_flood") is AlarmState.UNACKNOWLEDGED
     desk.see(*many, *urgent, for_s=4)
-    shown, counts = view(desk.book, desk.at, desk.now)
-    assert {one.priority for one in shown} == {1}
-    assert len(shown) == MOST_SHOWN
+    listed, counts = shown(desk)
+    assert {one.priority for one in listed} == {1}
+    assert len(listed) == MOST_SHOWN
     assert counts.standing == (60, 1, 11, 0)
     assert counts.more == 60 + 1 + 11 - MOST_SHOWN
     desk.see(*many, for_s=5)
     for number in range(60):
         desk.acknowledge(f"not_stowed@T{number}")
     desk.see(*many)
-    shown, _ = view(desk.book, desk.at, desk.now)
-    assert [one.collapsed for one in shown] == [False, *[True] * 11]
+    listed, _ = shown(desk)
+    assert [one.collapsed for one in listed] == [False, *[True] * 11]
 
 
 def test_a_flood_is_over_when_it_has_been_quiet() -> None:
@@ -340,13 +348,13 @@ class LifeOfABook(RuleBasedStateMachine):
 
     @invariant()
     def priority_1_is_never_hidden(self) -> None:
-        shown, counts = view(self.desk.book, self.desk.at, self.desk.now)
+        ranked, counts = shown(self.desk)
         active = [one for one in self.desk.book.alarms.values() if one.active and one.entry.priority == 1]
-        listed = {one.alarm_id: one for one in shown}
+        listed = {one.alarm_id: one for one in ranked}
         for alarm in active:
             assert listed[alarm.alarm_id].state in (AlarmState.UNACKNOWLEDGED, AlarmState.ACKNOWLEDGED)
             assert not listed[alarm.alarm_id].collapsed
-        assert sum(counts.standing) + counts.shelved + counts.silenced == len(shown) + counts.more
+        assert sum(counts.standing) + counts.shelved + counts.silenced == len(ranked) + counts.more
 
     @invariant()
     def nobody_acknowledges_but_people_and_nothing_is_shelved_for_ever(self) -> None:

@@ -7,6 +7,7 @@ import shutil
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
+from datetime import timedelta
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,7 @@ from app.store.store import JournalEntry, JournalFilter, Writer
 from app.tracker.commands import Move
 from app.tracker.config import Orientation
 from app.tracker.snapshot import ActivityName, EventKind
+from tests.fault_result import FaultResult
 from tests.gateway.rigs import eventually, gateway, kept_plant, opened
 from tests.ports import free_port
 from tests.site.plant import SAMSUN
@@ -214,8 +216,14 @@ async def test_recordings_are_announced_when_they_begin_and_end(tmp_path: Path, 
         await eventually(lambda: broker.told("plant/north/recordings"))
         assert broker.told("plant/north/recordings")[0]["state"] == "running"
         plant.site.model.recorder.finish("T1", plant.site.model.now(), "ended by the test")
-        await eventually(lambda: broker.told("plant/north/recordings")[-1]["state"] == "finished")
-        assert broker.told("plant/north/recordings")[-1]["outcome"] == "ended by the test"
+        await plant.forward(seconds=1)
+        await eventually(lambda: "ended by the test" in outcomes(broker))
+        assert outcomes(broker)["ended by the test"] == "finished"
+
+
+def outcomes(broker: Broker) -> dict[str, str]:
+    """Return the states of the recordings that were told, by outcome."""
+    return {one["outcome"]: one["state"] for one in broker.told("plant/north/recordings")}
 
 
 async def test_commands_go_through_the_same_door_when_they_are_allowed(
@@ -260,13 +268,108 @@ async def test_a_stop_stops_whatever_else_the_message_says(
         await plant.until(lambda seen: seen.activity is ActivityName.HOLDING)
 
 
-async def test_a_command_that_was_retained_is_not_carried_out(tmp_path: Path, broker: Broker) -> None:
-    await broker.send("plant/north/trackers/T1/command", {"type": "home", "client": "scada"}, retain=True)
+COMMAND, RESULT = "plant/north/trackers/T1/command", "plant/north/trackers/T1/result"
+
+
+def command(kind: str, key: str, **values: object) -> dict[str, object]:
+    return {"type": kind, "client": "scada", "key": key, **values}
+
+
+async def test_a_command_that_was_retained_before_is_not_even_heard(tmp_path: Path, broker: Broker) -> None:
+    for tracker_id, kind in (("T1", "home"), ("T2", "stop")):
+        topic = f"plant/north/trackers/{tracker_id}/command"
+        await broker.send(topic, command(kind, "before"), retain=True)
+    wanted = settings(tmp_path, broker, mqtt_commands=True)
+    async with kept_plant(tmp_path, "T1", "T2") as (plant, store), opened(plant, wanted, store):
+        await plant.commission()
+        await eventually(lambda: ("plant/north/availability", b"online", False) in broker.heard)
+        await broker.send(COMMAND, command("move", "now", azimuth_deg=90, elevation_deg=40))
+        await eventually(lambda: broker.told(RESULT))
+        assert [one["key"] for one in broker.told(RESULT)] == ["now"]
+        assert not broker.told("plant/north/trackers/T2/result")
+        assert not plant.happened(EventKind.STOPPED)
+
+
+async def test_a_retained_command_is_refused_while_connected_but_not_a_stop(
+    tmp_path: Path, broker: Broker
+) -> None:
     wanted = settings(tmp_path, broker, mqtt_commands=True)
     async with kept_plant(tmp_path) as (plant, store), opened(plant, wanted, store):
-        await eventually(lambda: broker.told("plant/north/trackers/T1/result"))
-        assert broker.told("plant/north/trackers/T1/result")[0]["reasons"][0]["code"] == "retained"
+        await plant.commission()
+        await eventually(lambda: ("plant/north/availability", b"online", False) in broker.heard)
+        move = command("move", "m", azimuth_deg=90, elevation_deg=40)
+        await broker.send(COMMAND, move, retain=True)
+        await eventually(lambda: broker.told(RESULT))
+        assert broker.told(RESULT)[0]["reasons"][0]["code"] == "retained"
         assert plant.tracker().activity is ActivityName.HOLDING
+        await broker.send(COMMAND, command("stop", "s"), retain=True)
+        await eventually(lambda: len(broker.told(RESULT)) == 2)
+        assert broker.told(RESULT)[1] == {"key": "s", "accepted": True, "reasons": []}
+
+
+@pytest.mark.fault(90)
+async def test_a_command_of_the_future_is_refused_but_not_a_stop(
+    tmp_path: Path, broker: Broker, fault: FaultResult
+) -> None:
+    wanted = settings(tmp_path, broker, mqtt_commands=True)
+    async with kept_plant(tmp_path) as (plant, store), opened(plant, wanted, store):
+        await plant.commission()
+        await eventually(lambda: ("plant/north/availability", b"online", False) in broker.heard)
+        told = broker.told
+        ahead = (plant.clock.now() + timedelta(hours=1)).isoformat()
+        there = {"azimuth_deg": 90, "elevation_deg": 40}
+        await broker.send(COMMAND, command("move", "m", issued_at=ahead, **there))
+        await eventually(lambda: told(RESULT))
+        assert told(RESULT)[0]["reasons"][0]["code"] == "from_the_future"
+        assert plant.tracker().activity is ActivityName.HOLDING
+        await broker.send(COMMAND, command("stop", "s", issued_at=ahead))
+        await eventually(lambda: len(told(RESULT)) == 2)
+        assert told(RESULT)[1] == {"key": "s", "accepted": True, "reasons": []}
+        await plant.until(lambda seen: seen.activity is ActivityName.HOLDING)
+        await broker.send(COMMAND, command("move", "n", issued_at=plant.clock.now().isoformat(), **there))
+        await eventually(lambda: len(told(RESULT)) == 3)
+        assert told(RESULT)[2] == {"key": "n", "accepted": True, "reasons": []}
+        fault.prevented("it is refused")
+        fault.recovers("the clock is set; the next command is obeyed")
+
+
+async def test_an_older_broker_is_told_everything_and_no_commands_are_taken(
+    tmp_path: Path, broker: Broker
+) -> None:
+    older = await asyncio.start_server(lambda r, w: _older(r, w, broker.port), "127.0.0.1", 0)
+    wanted = settings(tmp_path, broker, mqtt_commands=True)
+    wanted = wanted.model_copy(update={"mqtt_port": older.sockets[0].getsockname()[1]})
+    async with kept_plant(tmp_path) as (plant, store), opened(plant, wanted, store) as gateways:
+        await plant.commission()
+        seen = await _until(gateways, lambda seen: seen.status is GatewayStatus.CONNECTED)
+        assert "does not speak MQTT 5" in seen.error
+        await broker.send(COMMAND, command("move", "m", azimuth_deg=90, elevation_deg=40))
+        sites = len(broker.told("plant/north/site"))
+        await eventually(lambda: len(broker.told("plant/north/site")) > sites + 3)
+        assert plant.tracker().activity is ActivityName.HOLDING
+        assert not broker.told(RESULT)
+    older.close()
+    await older.wait_closed()
+
+
+async def _older(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, port: int) -> None:
+    """A broker that knows MQTT 3.1.1: it refuses version 5 as that version's document says."""
+    connect = await reader.read(4096)
+    if connect[connect.index(b"MQTT") + 4] == 5:
+        writer.write(bytes((0x20, 2, 0, 1)))
+        await writer.drain()
+        writer.close()
+        return
+    behind, to_broker = await asyncio.open_connection("127.0.0.1", port)
+    to_broker.write(connect)
+    await asyncio.gather(_pass_on(reader, to_broker), _pass_on(behind, writer))
+
+
+async def _pass_on(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    with contextlib.suppress(OSError):
+        while data := await reader.read(65536):
+            writer.write(data)
+    writer.close()
 
 
 async def test_commands_are_not_heard_unless_they_are_allowed(tmp_path: Path, broker: Broker) -> None:

@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import socket
 from collections.abc import AsyncIterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import Any
 
 import pytest
 import sunspec2.modbus.client as sunspec
+from structlog.testing import capture_logs
 from sunspec2.modbus.modbus import ModbusClientException
 
 from app.clock import SystemClock
@@ -25,12 +27,20 @@ from app.link.messages import ConfigureTracker, ReleaseControl, RequestControl
 from app.link.weather_orders import ReportWeather
 from app.settings import Settings
 from app.tracker.axes import Axis
-from app.tracker.commands import Jog, SelectMode, Stop
-from app.tracker.config import DriveConfig, DriveKind, MountConfig, MountKind, TrackerConfig
+from app.tracker.commands import Jog, Move, SelectMode, Stop
+from app.tracker.config import (
+    DriveConfig,
+    DriveKind,
+    MountConfig,
+    MountKind,
+    Orientation,
+    TrackerConfig,
+)
 from app.tracker.mode import Mode
 from app.tracker.motion import DriveCommand, Position
 from app.tracker.snapshot import ActivityName, EventKind
 from app.tracker.weather import Weather
+from tests.fault_result import REAL, FaultResult
 from tests.gateway.rigs import HurriedClock, eventually, tracker
 from tests.site.plant import Plant, make_plant, settle
 
@@ -328,6 +338,56 @@ async def test_all_trackers_do_what_they_can_and_only_then_it_fails() -> None:
         )
 
 
+@pytest.mark.fault(92)
+@pytest.mark.parametrize("words", [(*packed(45.0), *packed(120.0), 1), (*packed(45.0), *packed(120.0))])
+async def test_the_same_value_written_in_cycles_is_journalled_and_ordered_once(
+    words: tuple[int, ...], fault: FaultResult
+) -> None:
+    async with scada() as system:
+        await system.plant.commission()
+        before = len(system.journal())
+        for _ in range(30):
+            assert (await system.write(EL_CTL, *words))[0] == 16
+            await system.plant.forward(seconds=1)
+        kinds = [kind for kind, _, _ in system.journal()[before:]]
+        assert kinds.count(EventKind.REMOTE_WRITTEN) == 1
+        told = next(text for kind, _, text in system.journal()[before:] if kind is EventKind.REMOTE_WRITTEN)
+        assert kinds.count(EventKind.MOVE_STARTED) == (1 if len(words) == 5 else 0)
+        assert (await system.write(EL_CTL, *packed(46.0)))[0] == 16
+        kinds = [kind for kind, _, _ in system.journal()[before:]]
+        assert kinds.count(EventKind.REMOTE_WRITTEN) == 2, "a change is journalled"
+        assert kinds.count(EventKind.MOVE_STARTED) == (2 if len(words) == 5 else 0)
+        orders = (await system.plant.site.metrics()).orders
+        assert orders >= (30 if len(words) == 5 else 0), "every write is counted"
+        fault.prevented("a value that is written again changes nothing")
+        if len(words) == 5:
+            fault.shows(f"once: {told}")
+        fault.recovers("by itself: the first other value is journalled and ordered")
+
+
+async def test_a_refusal_in_cycles_is_journalled_once_in_a_while() -> None:
+    async with scada() as system:
+        for _ in range(30):
+            assert await system.write(CTL, 0) == bytes((0x90, 6))
+            await system.plant.forward(seconds=1)
+        refused = [message for kind, _, message in system.journal() if kind is EventKind.REMOTE_REFUSED]
+        assert len(refused) == 1
+        await system.plant.forward(seconds=61)
+        assert await system.write(CTL, 0) == bytes((0x90, 6))
+        assert sum(kind is EventKind.REMOTE_REFUSED for kind, _, _ in system.journal()) == 2
+
+
+async def test_who_took_a_tracker_over_is_overruled_by_the_next_write_and_not_before() -> None:
+    async with scada() as system:
+        await system.plant.commission()
+        words = (*packed(45.0), *packed(120.0), 1)
+        await system.write(EL_CTL, *words)
+        await system.plant.ask(Stop())
+        await system.plant.forward(seconds=5)
+        assert (await system.write(EL_CTL, *words))[0] == 16
+        assert system.plant.tracker().activity is ActivityName.MOVING
+
+
 @pytest.mark.parametrize("write_hosts", ["", "10.0.0.0/8, serial"])
 async def test_other_hosts_may_only_read(write_hosts: str) -> None:
     async with scada(write_hosts=write_hosts) as system:
@@ -338,6 +398,52 @@ async def test_other_hosts_may_only_read(write_hosts: str) -> None:
         assert len(refused) == 1, "a host that goes on does not fill the journal"
         assert "only the hosts in HELIOPANEL_SUNSPEC_WRITE_HOSTS may" in refused[0]
         assert two(await system.read(EL_CTL, 2)) == NOTHING
+
+
+@pytest.mark.fault(89)
+async def test_sixteen_idle_connections_do_not_lock_the_control_system_out(fault: FaultResult) -> None:
+    async with scada() as system:
+        idle = [await asyncio.open_connection("127.0.0.1", system.server.port) for _ in range(16)]
+        await eventually(lambda: system.server.metrics().clients == 16)
+        loop = asyncio.get_running_loop()
+        began_s = loop.time()
+        with capture_logs() as logged:
+            assert await system.read(BASE, 2) == [0x5375, 0x6E53]
+        answered_s = loop.time() - began_s
+        assert answered_s < 1.0
+        assert [(line["event"], line["host"]) for line in logged] == [("modbus_client_gave_way", "127.0.0.1")]
+        fault.noticed(answered_s, REAL)
+        fault.shows_nothing("the new connection is answered; the log names the host that gave way")
+        for _ in range(2):
+            assert await system.read(BASE, 2) == [0x5375, 0x6E53]
+        assert await asyncio.wait_for(idle[0][0].read(), 3.0) == b"", "the longest idle gave way"
+        fault.recovers("by itself: at every new connection")
+        for _, writer in idle:
+            writer.close()
+
+
+@pytest.mark.fault(88)
+async def test_a_client_that_reads_no_replies_keeps_neither_ticks_nor_stops_from_their_turn(
+    fault: FaultResult,
+) -> None:
+    async with scada() as system:
+        await system.plant.commission()
+        read = pack(">HHHBBHH", 7, 0, 6, 1, 3, BASE, 125)
+        with socket.socket() as flood:
+            flood.setblocking(False)
+            loop = asyncio.get_running_loop()
+            await loop.sock_connect(flood, ("127.0.0.1", system.server.port))
+            sending = asyncio.create_task(loop.sock_sendall(flood, read * 100_000))
+            await eventually(lambda: system.server.metrics().clients == 1)
+            before = system.plant.tracker().tick
+            await system.plant.ask(Move(Orientation(150.0, 40.0)))
+            await system.plant.forward(seconds=5)
+            assert system.plant.tracker().tick - before >= 50
+            await system.plant.ask(Stop())
+            assert system.plant.tracker().activity is ActivityName.STOPPING
+            sending.cancel()
+            await asyncio.gather(sending, return_exceptions=True)
+        fault.recovers("by itself: ticks and stops keep their turn meanwhile")
 
 
 REFUSED = {

@@ -2,6 +2,7 @@
 
 import asyncio
 import stat
+from collections import Counter
 from collections.abc import AsyncIterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
@@ -9,8 +10,20 @@ from pathlib import Path
 
 import pytest
 
+from app.clock import VirtualClock
 from app.link.client import LinkClient
-from app.link.codec import Execute
+from app.link.codec import (
+    Ask,
+    Execute,
+    Measured,
+    Refused,
+    Telling,
+    Told,
+    decode_telling,
+    encode_request,
+    read_body,
+)
+from app.link.lanes import Lanes
 from app.link.messages import (
     MachineUnreachable,
     Order,
@@ -22,15 +35,16 @@ from app.link.messages import (
     Update,
 )
 from app.link.metrics import MachineMetrics
-from app.link.outlet import MOST_EVENTS_WAITING, Outlet
-from app.link.server import MOST_REQUESTS, LinkServer
+from app.link.outlet import MOST_EVENTS_WAITING, Listener, Outlet
+from app.link.server import MOST_AT_ONCE, MOST_REQUESTS, LinkServer
 from app.sun.position import Location
 from app.tracker.axes import Axis
 from app.tracker.commands import CommandRejected, Jog, Stop, Track
 from app.tracker.memory import SiteState
 from app.tracker.programs.show import ShowPlan
 from app.tracker.reason import Reason
-from app.tracker.snapshot import ClockState, Event, EventKind, SiteSnapshot
+from app.tracker.snapshot import ClockState, Event, EventKind, SiteSnapshot, Snapshot
+from tests.gateway.rigs import eventually
 
 NOON = datetime(2026, 6, 21, 12, tzinfo=UTC)
 
@@ -53,8 +67,16 @@ class ScriptedMachine:
     failure: Exception | None = None
     gate: asyncio.Event | None = None
     answer: SiteSnapshot | None = None
+    watched: list[frozenset[str]] = field(default_factory=list)
+    turn: int = 0
+    measured: Counter[int] = field(default_factory=Counter)
+    stop_gate: asyncio.Event | None = None
+    stops: int = 0
 
     async def execute(self, order: Order) -> SiteSnapshot:
+        self.stops += isinstance(order.command, Stop)
+        if self.stop_gate is not None and isinstance(order.command, Stop):
+            await self.stop_gate.wait()
         if self.gate is not None and not isinstance(order.command, Stop):
             await self.gate.wait()
         self.orders.append(order)
@@ -66,10 +88,26 @@ class ScriptedMachine:
         return SiteDetail(SiteState(name="Samsun"))
 
     async def metrics(self) -> MachineMetrics:
+        self.measured[self.turn] += 1
         return MachineMetrics("boot", 1.0)
+
+    async def count_turns(self) -> None:
+        """Count the turns of the loop: what else the machine has to do runs once in each."""
+        while True:
+            self.turn += 1
+            await asyncio.sleep(0)
 
     def latest(self) -> SiteSnapshot | None:
         return self.outlet.latest
+
+    async def tracker(self, tracker_id: str) -> Snapshot:
+        raise UnknownTracker(tracker_id)
+
+    async def watch(self, tracker_ids: frozenset[str], who: object = None) -> None:
+        self.watched.append(tracker_ids)
+
+    def listen(self) -> Listener:
+        return self.outlet.listen()
 
     def updates(self) -> AsyncIterator[Update]:
         return self.outlet.subscribe()
@@ -172,13 +210,25 @@ async def test_questions_are_answered(link: Link) -> None:
 async def test_a_stop_overtakes_orders_that_wait(link: Link) -> None:
     link.machine.gate = asyncio.Event()
     waiting = [asyncio.create_task(link.client.execute(Order(Track(), "a", "T1"))) for _ in range(20)]
-    await asyncio.sleep(0)
+    await asyncio.sleep(0.1)
 
     await link.client.execute(Order(Stop(), "technician", "T1"))
 
     assert [type(order.command) for order in link.machine.orders] == [Stop]
     link.machine.gate.set()
     await asyncio.gather(*waiting)
+
+
+async def test_stops_of_one_person_never_pile_up_and_those_of_another_wait_for_none(link: Link) -> None:
+    gate = link.machine.stop_gate = asyncio.Event()
+    link.client._stops = Lanes(VirtualClock(NOON))
+    asked = [asyncio.create_task(link.client.execute(Order(Stop(), "a", "T1"))) for _ in range(100)]
+    asked.append(asyncio.create_task(link.client.execute(Order(Stop(), "b", "T1"))))
+    await eventually(lambda: link.machine.stops >= 2)
+    begun = link.machine.stops
+    gate.set()
+    answers = await asyncio.gather(*asked)
+    assert (begun, link.machine.stops, len(answers)) == (2, 3, 101)
 
 
 async def test_a_stop_is_carried_out_however_many_orders_wait(link: Link) -> None:
@@ -192,6 +242,58 @@ async def test_a_stop_is_carried_out_however_many_orders_wait(link: Link) -> Non
     assert [type(order.command) for order in link.machine.orders] == [Stop]
     link.machine.gate.set()
     await asyncio.gather(*waiting, return_exceptions=True)
+
+
+async def tellings(reader: asyncio.StreamReader, count: int) -> list[Telling]:
+    """Return so many answers, without the updates in between."""
+    answers: list[Telling] = []
+    async with asyncio.timeout(10):
+        while len(answers) < count:
+            telling = decode_telling(await read_body(reader))
+            if not isinstance(telling, Told):
+                answers.append(telling)
+    return answers
+
+
+async def test_a_flood_of_questions_is_answered_one_in_a_turn_and_refused_beyond_its_budget(
+    tmp_path: Path,
+) -> None:
+    machine = ScriptedMachine()
+    machine.outlet.publish(snapshot(1))
+    server = LinkServer(machine, tmp_path / "machine.sock", VirtualClock(NOON))
+    await server.start()
+    reader, writer = await asyncio.open_unix_connection(tmp_path / "machine.sock")
+    for number in range(MOST_AT_ONCE + 100):
+        writer.write(encode_request(Ask(number, "metrics")))
+    stop = Execute(9999, Stop(), "technician", "T1", None, None, 0.0)
+    writer.write(encode_request(stop))
+    counting = asyncio.create_task(machine.count_turns())
+    answers = await tellings(reader, MOST_AT_ONCE + 101)
+    counting.cancel()
+    assert max(machine.measured.values()) <= 2
+    assert sum(isinstance(one, Measured) for one in answers) == MOST_AT_ONCE
+    assert sum(isinstance(one, Refused) for one in answers) == 100
+    assert [order.command for order in machine.orders] == [Stop()], "a stop has no budget"
+    writer.close()
+    await server.close()
+
+
+@pytest.mark.fault(88)
+async def test_a_client_that_takes_no_updates_is_cut_off(tmp_path: Path) -> None:
+    machine = ScriptedMachine()
+    machine.outlet.publish(snapshot(1))
+    server = LinkServer(machine, tmp_path / "machine.sock", take_within_s=0.2)
+    await server.start()
+    _, writer = await asyncio.open_unix_connection(tmp_path / "machine.sock")
+    await eventually(lambda: server.client_count)
+
+    def tell_more() -> bool:
+        machine.outlet.publish(snapshot(2), tuple(event(one) for one in range(200)))
+        return not server.client_count
+
+    await eventually(tell_more)
+    writer.close()
+    await server.close()
 
 
 async def test_an_order_is_given_up_in_time(link: Link) -> None:

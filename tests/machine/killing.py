@@ -73,6 +73,7 @@ class Killing:
     names: list[str] = field(default_factory=list)
     promised: int = 0
     counted: Counter[str] = field(default_factory=Counter)
+    told: str = ""
 
     async def commission(self, port: int) -> None:
         """Start it, point it at the drive, give it a place, a clock and a zero."""
@@ -254,11 +255,12 @@ class Killing:
         newest = self._starts()[0]
         assert newest.data["clean"] is False
         assert "without warning" in newest.message
+        self.told = newest.message
 
     async def _until(self, reached: Callable[[Snapshot], bool], what: str) -> None:
         def is_so() -> bool:
             latest = self.machine.link.latest()
-            return latest is not None and reached(latest.trackers[0])
+            return latest is not None and bool(latest.trackers[0].actions) and reached(latest.trackers[0])
 
         try:
             await eventually(is_so)

@@ -48,6 +48,7 @@ class Machine:
         life.start()
         self.lives.append(life)
         await self.link.start()
+        await self.link.watch(frozenset({"T1"}))
         await eventually(lambda: self.link.latest() is not None or not life.is_alive())
         assert life.is_alive(), self.log()
 

@@ -98,12 +98,13 @@ class Service:
     reading: asyncio.Task[None] | None = None
 
     @classmethod
-    async def start(cls, data_dir: Path) -> "Service":
+    async def start(cls, data_dir: Path, *, tick_ms: int = 100) -> "Service":
         port = free_port()
         environment = os.environ | {
             "HELIOPANEL_DATA_DIR": str(data_dir),
             "HELIOPANEL_PORT": str(port),
             "HELIOPANEL_LOG_FORMAT": "json",
+            "HELIOPANEL_TICK_MS": str(tick_ms),
         }
         process = await asyncio.create_subprocess_exec(
             sys.executable, "-m", "app.cli", "serve",
@@ -112,6 +113,7 @@ class Service:
         service = cls(data_dir, port, process, LinkClient(data_dir / "machine.sock"))
         service.reading = asyncio.create_task(service._read())
         await service.link.start()
+        await service.link.watch(frozenset({"T1"}))
         await eventually(lambda: service.link.latest() is not None)
         return service
 
@@ -156,7 +158,7 @@ class Service:
     async def until(self, reached: Callable[[Snapshot], bool], *, within_s: float = LONGEST_WAIT_S) -> None:
         def is_so() -> bool:
             seen = self.tracker()
-            return seen is not None and reached(seen)
+            return seen is not None and bool(seen.actions) and reached(seen)
 
         await eventually(is_so, within_s=within_s)
 

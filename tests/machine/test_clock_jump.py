@@ -14,6 +14,7 @@ from app.store.store import JournalFilter
 from app.tracker.commands import SelectMode, SetZero, Track
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName, EventKind
+from tests.fault_result import FaultResult
 from tests.machine.service import SAMSUN, Service, eventually
 
 LIBRARIES = sorted(Path("/usr/lib").glob("*/faketime/libfaketime.so.1"))
@@ -52,7 +53,9 @@ async def service(tmp_path: Path, shift: Path) -> AsyncIterator[Service]:
 
 
 @pytest.mark.fault(26)
-async def test_a_clock_that_is_set_under_the_service_moves_nothing(service: Service, shift: Path) -> None:
+async def test_a_clock_that_is_set_under_the_service_moves_nothing(
+    service: Service, shift: Path, fault: FaultResult
+) -> None:
     before = await service.link.metrics()
     for number, told in enumerate(("-365d", "+1h"), 1):
         await asyncio.to_thread(tell, shift, told)
@@ -73,6 +76,7 @@ async def test_a_clock_that_is_set_under_the_service_moves_nothing(service: Serv
     assert after.trackers["T1"].ticks > before.trackers["T1"].ticks
     assert [round(seconds / 3600.0) for seconds in jumps(service)] == [-365 * 24, 365 * 24 + 1]
     assert len(service.starts("machine")) == 1
+    fault.recovers("by itself: 60 s after the jump, or when the clock is confirmed")
 
 
 def has_jumped(service: Service, times: int) -> bool:
@@ -95,3 +99,29 @@ def shown_year(service: Service) -> int:
 def trusted(service: Service) -> bool:
     latest = service.link.latest()
     return latest is not None and latest.clock.trusted
+
+
+@pytest.mark.fault(27)
+@pytest.mark.parametrize("wrong", ["-1h", "-20780d"])
+async def test_a_clock_that_shows_less_than_the_journal_is_refused(
+    tmp_path: Path, shift: Path, wrong: str, fault: FaultResult
+) -> None:
+    """A computer without a battery begins in 1970, one whose battery is low where it was switched off."""
+    first = await Service.start(tmp_path / "data")
+    await first.ask(SetClock("system"))
+    await eventually(lambda: trusted(first))
+    await first.stop()
+    await asyncio.to_thread(tell, shift, wrong)
+    again = await Service.start(tmp_path / "data")
+    try:
+        await eventually(lambda: again.link.latest() is not None)
+        latest = again.link.latest()
+        assert latest is not None
+        assert [reason.code for reason in latest.clock.reasons] == ["clock_implausible"]
+        fault.prevented("noticed at the start, before anything moves")
+        fault.shows(latest.clock.reasons[0].message)
+        if latest.at < BUILT_AT:
+            with pytest.raises(ValueError, match="The clock cannot be"):
+                await again.ask(SetClock("system"))
+    finally:
+        await again.stop()

@@ -3,6 +3,7 @@
 import asyncio
 import signal
 import sqlite3
+import time
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, closing
 from pathlib import Path
@@ -17,6 +18,7 @@ from app.tracker.alarm_words import AlarmState
 from app.tracker.commands import CommandRejected, SelectMode, SetZero, Stop, Track
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName
+from tests.fault_result import REAL, FaultResult
 from tests.machine.failing_disk import DiskFault, failing, filled, small_disk
 from tests.machine.service import SAMSUN, Service, eventually
 from tests.soak import amount
@@ -72,8 +74,7 @@ async def watch_ticks(service: Service) -> None:
 
 
 async def eventually_after(service: Service, uptime_s: float) -> None:
-    while (await service.link.metrics()).uptime_s < uptime_s:
-        await eventually(lambda: service.link.latest() is not None)
+    await asyncio.sleep(max(0.0, uptime_s - (await service.link.metrics()).uptime_s))
 
 
 def alarms(service: Service) -> set[str]:
@@ -103,20 +104,25 @@ async def refused(service: Service, name: str) -> str:
 
 
 @pytest.mark.fault(50)
-async def test_a_stalled_card_delays_what_is_stored_and_no_tick(service: Service, tmp_path: Path) -> None:
+async def test_a_stalled_card_delays_what_is_stored_and_no_tick(
+    service: Service, tmp_path: Path, fault: FaultResult
+) -> None:
     async with failing(service.starts("machine")[-1], DiskFault.STALLED, tmp_path / "log"):
         await service.ask(RenameSite("Slowly"))
         await watch_ticks(service)
     check_database(service, "Slowly")
+    fault.prevented("no tick waits for the disk")
 
 
 @pytest.mark.fault(49)
 async def test_a_full_disk_stops_no_tracking_and_what_waited_is_stored_once_there_is_room(
-    service: Service, disk: Path, tmp_path: Path
+    service: Service, disk: Path, tmp_path: Path, fault: FaultResult
 ) -> None:
     await service.ask(RenameSite("Before"))
     async with full(service, disk, tmp_path / "log"):
+        began = time.monotonic()
         assert "The disk is full" in await refused(service, "Not stored")
+        fault.noticed(time.monotonic() - began, REAL)
         await watch_ticks(service)
         await eventually(lambda: "store_behind" in alarms(service))
         await service.ask(Stop())
@@ -147,14 +153,18 @@ def fold_log(service: Service) -> None:
 
 
 @pytest.mark.fault(48)
-async def test_a_database_that_is_locked_holds_up_no_tick_and_what_waited_is_stored(service: Service) -> None:
+async def test_a_database_that_is_locked_holds_up_no_tick_and_what_waited_is_stored(
+    service: Service, fault: FaultResult
+) -> None:
     await service.ask(RenameSite("Free"))
     path = service.data_dir / "heliopanel.db"
     with closing(sqlite3.connect(path, isolation_level=None)) as other:
         other.execute("BEGIN IMMEDIATE")
+        began = time.monotonic()
         asking = asyncio.create_task(refused(service, "Not stored"))
         await watch_ticks(service)
         assert "locked by another program" in await asking
+        fault.noticed(time.monotonic() - began, REAL)
         await asyncio.sleep(LOCKED_ON_S)
         other.execute("ROLLBACK")
     check_database(service, "Free")
@@ -164,13 +174,17 @@ async def test_a_database_that_is_locked_holds_up_no_tick_and_what_waited_is_sto
 
 
 @pytest.mark.fault(50)
-@pytest.mark.parametrize("fault", [DiskFault.NO_SYNC, DiskFault.READ_ONLY])
+@pytest.mark.parametrize("broken", [DiskFault.NO_SYNC, DiskFault.READ_ONLY])
 async def test_a_disk_that_fails_is_not_trusted_until_it_was_opened_and_checked_again(
-    service: Service, tmp_path: Path, fault: DiskFault
+    service: Service, tmp_path: Path, broken: DiskFault, fault: FaultResult
 ) -> None:
-    await service.ask(RenameSite(f"Before {fault}"))
-    async with failing(service.starts("machine")[-1], fault, tmp_path / "log"):
-        assert "Check the disk or card, then restart Heliopanel" in await refused(service, "Not stored")
+    await service.ask(RenameSite(f"Before {broken}"))
+    async with failing(service.starts("machine")[-1], broken, tmp_path / "log"):
+        began = time.monotonic()
+        told = await refused(service, "Not stored")
+        fault.noticed(time.monotonic() - began, REAL)
+        assert "Check the disk or card, then restart Heliopanel" in told
+        fault.shows(told)
         await watch_ticks(service)
         await eventually(lambda: "store_behind" in alarms(service))
     await refused(service, "Still not stored")
@@ -178,3 +192,4 @@ async def test_a_disk_that_fails_is_not_trusted_until_it_was_opened_and_checked_
     await begin_to_track(service)
     await service.ask(RenameSite("Again"))
     check_database(service, "Again")
+    fault.recovers("the disk or card is checked, and the controller started again")

@@ -2,6 +2,7 @@
 
 import os
 import random
+import re
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack
 from pathlib import Path
@@ -11,6 +12,7 @@ import pytest
 
 from tests.e2e.eyes import Eyes
 from tests.e2e.product import DriveSim
+from tests.fault_result import REAL, FaultResult
 from tests.machine.killing import Killing
 from tests.machine.lives import Machine
 
@@ -34,9 +36,14 @@ async def killing(tmp_path: Path) -> AsyncIterator[Killing]:
 
 @pytest.mark.timeout(60 + 15 * KILLS)
 @pytest.mark.fault(43)
-async def test_killed_in_motion_nothing_is_lost_and_nothing_moves_on(killing: Killing) -> None:
+async def test_killed_in_motion_nothing_is_lost_and_nothing_moves_on(
+    killing: Killing, fault: FaultResult
+) -> None:
     begun, latest_s = monotonic(), 0.0
     for _ in range(KILLS):
         latest_s = max(latest_s, await killing.kill())
     counted = ", ".join(f"{motion} {times}" for motion, times in sorted(killing.counted.items()))
     print(f"{KILLS} kills in {monotonic() - begun:.0f} s ({counted}), at rest after at most {latest_s:.2f} s")
+    fault.noticed(latest_s, REAL)
+    fault.recovers("by itself: the controller starts again; tracking that was on resumes, nothing else moves")
+    fault.shows(re.sub(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d", "AT", killing.told))

@@ -7,24 +7,29 @@ import sys
 from collections.abc import AsyncIterator
 from contextlib import suppress
 from pathlib import Path
+from struct import pack
 
 import httpx
 import pytest
 import pytest_asyncio
 
+from app.drives.profile import load_profile
 from app.link.messages import MachineUnreachable, RenameSite
 from app.machine.marker import MARKER_NAME
 from app.store.engine import open_reader
 from app.store.store import JournalFilter
 from app.tracker.axes import Axis, JogSpeed
-from app.tracker.commands import Jog, SelectMode, Stop, Track
+from app.tracker.commands import Jog, Move, SelectMode, Stop, Track
+from app.tracker.config import Orientation
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName, EventKind
+from tests.fault_result import REAL, FaultResult
 from tests.machine.service import DriveSimulator, Service, eventually
 from tests.machine.stories import WATCHDOG_AND_RAMP_S, kill_mid_show, kill_panel, until_served
 
 KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "2"))
 PANEL_KILLS = 2
+SETPOINT = load_profile("simulated-plc").registers["azimuth_setpoint"].address
 
 pytestmark = pytest.mark.asyncio(loop_scope="module")
 
@@ -55,7 +60,7 @@ async def service(running: Service) -> AsyncIterator[Service]:
 
 
 @pytest.mark.fault(44)
-async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service) -> None:
+async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service, fault: FaultResult) -> None:
     await service.until(lambda seen: not seen.actions["zero"])
     await service.ask(SelectMode(Mode.DUAL))
     await service.ask(Track())
@@ -70,6 +75,7 @@ async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service) -> 
     seen = service.tracker()
     assert seen is not None
     assert seen.tracking_on
+    fault.recovers("by itself: the web process is started again; tracking went on")
 
 
 async def test_the_panel_moves_and_the_machine_misses_no_tick(service: Service) -> None:
@@ -114,7 +120,7 @@ async def test_killed_at_any_instant_of_a_show_nothing_is_lost_and_the_axes_stop
 
 @pytest.mark.fault(45)
 async def test_a_frozen_machine_moves_nothing_and_does_not_catch_up(
-    service: Service, drive: DriveSimulator
+    service: Service, drive: DriveSimulator, fault: FaultResult
 ) -> None:
     processes = started(service)
     await service.until(lambda seen: not seen.actions["jog"])
@@ -122,7 +128,7 @@ async def test_a_frozen_machine_moves_nothing_and_does_not_catch_up(
     await service.until(lambda seen: seen.activity is ActivityName.JOGGING)
     service.signal("machine", signal.SIGSTOP)
 
-    await drive.rests(within_s=WATCHDOG_AND_RAMP_S + 1.0)
+    fault.noticed(await drive.rests(within_s=WATCHDOG_AND_RAMP_S + 1.0), REAL)
     stood_at = (await drive.look()).azimuth.position_deg
     await asyncio.sleep(1.5)
     assert service.link.latest() is None
@@ -133,6 +139,7 @@ async def test_a_frozen_machine_moves_nothing_and_does_not_catch_up(
 
     assert (await drive.look()).azimuth.position_deg == pytest.approx(stood_at, abs=0.1)
     assert started(service) == processes
+    fault.recovers("by itself: the jog is over; nothing is caught up")
 
 
 async def _hold(service: Service) -> None:
@@ -144,8 +151,51 @@ async def _hold(service: Service) -> None:
         await asyncio.sleep(0.05)
 
 
+@pytest.mark.fault(8)
+async def test_another_master_stops_the_move_and_is_named(
+    service: Service, drive: DriveSimulator, fault: FaultResult
+) -> None:
+    await service.until(lambda seen: not seen.actions["move"])
+    await service.ask(Move(Orientation(300.0 if (await azimuth_deg(drive)) < 150.0 else 20.0, 20.0)))
+    await service.until(lambda seen: seen.azimuth is not None and seen.azimuth.moving)
+    loop = asyncio.get_running_loop()
+    reader, writer = await asyncio.open_connection("127.0.0.1", drive.port)
+    began, told = loop.time(), ""
+    while not told or is_moving(service):
+        writer.write(pack(">HHHBBHHBHH", 1, 0, 11, 1, 16, SETPOINT, 2, 4, 0, 5000))
+        await reader.readexactly(12)
+        assert loop.time() - began < 2.0
+        if not told and (told := named(service)):
+            fault.noticed(loop.time() - began, REAL)
+    fault.shows(told)
+    writer.close()
+    await drive.rests(within_s=WATCHDOG_AND_RAMP_S + 1.0)
+    await service.until(lambda seen: not seen.tracking_on and seen.activity is ActivityName.HOLDING)
+    await service.until(lambda seen: not seen.actions["move"])
+    fault.recovers("by itself: once the other master is silent; the operator commands the next motion")
+
+
+async def azimuth_deg(drive: DriveSimulator) -> float:
+    return (await drive.look()).azimuth.position_deg
+
+
+def is_moving(service: Service) -> bool:
+    """Return whether the tracker is still on its way."""
+    seen = service.tracker()
+    return seen is not None and seen.activity is ActivityName.MOVING
+
+
+def named(service: Service) -> str:
+    """Return the sentence that names another master, empty while there is none."""
+    seen = service.tracker()
+    told = () if seen is None else (*seen.notices, *seen.waiting)
+    return next((one.message for one in told if "Someone else commands" in one.message), "")
+
+
 @pytest.mark.fault(47)
-async def test_a_second_machine_refuses_to_start_and_says_who_runs(service: Service) -> None:
+async def test_a_second_machine_refuses_to_start_and_says_who_runs(
+    service: Service, fault: FaultResult
+) -> None:
     environment = os.environ | {"HELIOPANEL_DATA_DIR": str(service.data_dir)}
     second = await asyncio.create_subprocess_exec(
         sys.executable, "-m", "app.cli", "machine", env=environment, stderr=asyncio.subprocess.PIPE
@@ -157,6 +207,9 @@ async def test_a_second_machine_refuses_to_start_and_says_who_runs(service: Serv
     assert sentence.startswith(f"The data folder {service.data_dir} is in use by process")
     assert str(service.starts("machine")[-1]) in sentence
     assert "\n" not in sentence
+    fault.prevented("it does not start")
+    fault.shows(sentence.replace(str(service.data_dir), "DIR"))
+    fault.recovers("nothing was lost: the first one runs on")
 
 
 async def test_serve_ends_both_processes_and_leaves_no_mark(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from app.tracker.axes import Axis
 from app.tracker.commands import CommandRejected, Jog, Park, SelectMode, SetZero, Stop, Track
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName
+from tests.fault_result import FaultResult
 from tests.machine.service import SAMSUN, Service, eventually
 from tests.machine.stories import until_served
 
@@ -52,7 +53,9 @@ async def kept(data_dir: Path) -> str:
 
 
 @pytest.mark.fault(51)
-async def test_a_damaged_database_moves_nothing_and_offers_the_backup(tmp_path: Path) -> None:
+async def test_a_damaged_database_moves_nothing_and_offers_the_backup(
+    tmp_path: Path, fault: FaultResult
+) -> None:
     data_dir = tmp_path / "data"
     backup = await kept(data_dir)
     damage(data_dir, "trackers")
@@ -64,6 +67,7 @@ async def test_a_damaged_database_moves_nothing_and_offers_the_backup(tmp_path: 
             with pytest.raises(CommandRejected) as refused:
                 await service.ask(command)
             assert [reason.code for reason in refused.value.reasons] == ["safe_mode"]
+        fault.shows(str(refused.value).replace(str(data_dir), "DIR"))
         with pytest.raises(CommandRejected, match=r"in safe mode.*is damaged.*Restore a backup"):
             await service.ask(RenameSite("Lost"))
         await service.ask(Stop())

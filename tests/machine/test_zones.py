@@ -8,6 +8,7 @@ import pytest
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.tracker.memory import SiteState
+from tests.fault_result import FaultResult
 from tests.machine.service import SAMSUN, Service, eventually
 from tests.machine.stories import until_served
 
@@ -39,7 +40,7 @@ def data_dir(tmp_path: Path) -> Path:
 
 @pytest.mark.fault(30)
 @pytest.mark.usefixtures("no_zones")
-async def test_without_time_zones_it_starts_shows_utc_and_says_so(data_dir: Path) -> None:
+async def test_without_time_zones_it_starts_shows_utc_and_says_so(data_dir: Path, fault: FaultResult) -> None:
     service = await Service.start(data_dir)
     try:
         await eventually(lambda: "zones_missing" in alarms(service))
@@ -54,6 +55,9 @@ async def test_without_time_zones_it_starts_shows_utc_and_says_so(data_dir: Path
             refused = await client.put("/api/v1/site/location", json=kept)
             assert refused.status_code == 422
             assert "Install tzdata" in refused.text
+        fault.prevented("noticed at the start; tracking needs no time zone")
+        fault.shows("Time zones are missing")
+        fault.recovers("tzdata is installed and the controller started again")
         assert len(service.starts("machine")) == 1
     finally:
         await service.stop()

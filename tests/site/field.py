@@ -10,6 +10,7 @@ from app.clock import VirtualClock
 from app.drives.faults import Fault, FaultKind
 from app.drives.simulated import SimulatedDrive
 from app.link.messages import Order, ReportWeather, SetClock, SetLocation, SiteCommand
+from app.site.gathering import BackgroundWriter
 from app.site.health import resident_bytes
 from app.site.loop import TrackerLoop
 from app.site.site import Site, SiteOptions
@@ -63,7 +64,9 @@ class Seen:
 class Field:
     """Trackers of one site on a virtual clock, whose weather and faults come from one seed."""
 
-    def __init__(self, trackers: int, begin: datetime, seed: int) -> None:
+    def __init__(
+        self, trackers: int, begin: datetime, seed: int, writer: BackgroundWriter | None = None
+    ) -> None:
         self.clock = VirtualClock(begin)
         self.drives: dict[str, SimulatedDrive] = {}
         self.chance = Random(seed)
@@ -74,7 +77,7 @@ class Field:
             for number in range(1, trackers + 1)
         )
         options = SiteOptions(period=PERIOD)
-        self.site = Site(self.clock, self._make_drive, SiteState(), states, options=options)
+        self.site = Site(self.clock, self._make_drive, SiteState(), states, writer=writer, options=options)
 
     async def live(self, minutes: int) -> None:
         """Commission every tracker, let time pass, look at every tick."""
@@ -149,8 +152,10 @@ class Field:
             await self._get_going(name)
 
     async def _tick(self) -> None:
-        self.clock.advance(PERIOD)
-        await settle()
+        end = self.clock.now() + PERIOD
+        while self.clock.now() < end:
+            self.clock.move_to(min(end, self.clock.next_wake or end))
+            await settle()
         for loop in self.site.model.loops.values():
             self._look(loop)
 
@@ -158,7 +163,7 @@ class Field:
         activity = loop.controller.activity
         self.seen.activities.add(activity)
         assert loop.broken is None, loop.broken
-        assert not loop.died
+        assert self.site.alive
         if loop.moving and activity in AUTOMATIC:
             assert loop.memory.home is not None
             assert loop.memory.fault_code is None

@@ -8,10 +8,11 @@ from datetime import UTC, datetime, timedelta
 
 from app.clock import VirtualClock
 from app.drives.drive import Drive
+from app.drives.position_memory import Memory
 from app.drives.simulated import SimulatedDrive
 from app.link.messages import Order, ReleaseControl, SetClock, SetLocation, SiteCommand
-from app.site.ledger import BackgroundWriter
-from app.site.site import Site
+from app.site.gathering import BackgroundWriter
+from app.site.site import Site, SiteOptions
 from app.sun.position import Location
 from app.tracker.commands import Command, CommandRejected, Home
 from app.tracker.config import TrackerConfig
@@ -58,7 +59,7 @@ class Plant:
     async def forward(self, *, seconds: float) -> None:
         end = self.clock.now() + timedelta(seconds=seconds)
         while self.clock.now() < end:
-            self.clock.move_to(min(end, self.clock.now() + STEP))
+            self.clock.move_to(min(end, self.clock.now() + STEP, self.clock.next_wake or end))
             await settle()
 
     async def until(self, reached: Callable[[Snapshot], bool], *, within_s: float = 300.0) -> None:
@@ -104,12 +105,16 @@ def make_plant(
     state: SiteState | None = None,
     trackers: tuple[TrackerState, ...] = (FIRST,),
     wrap: Callable[[Drive], Drive] = lambda drive: drive,
+    options: SiteOptions | None = None,
+    memory: Memory | None = None,
 ) -> Plant:
+    """Return a site on a virtual clock; with a memory every drive begins as that says."""
     clock = VirtualClock(start)
     drives: dict[str, Drive] = {}
 
     def make_drive(config: TrackerConfig) -> Drive:
-        drives[config.tracker_id] = wrap(SimulatedDrive(config, clock))
+        drives[config.tracker_id] = wrap(SimulatedDrive(config, clock, memory=memory))
         return drives[config.tracker_id]
 
-    return Plant(clock, Site(clock, make_drive, state or SiteState(), trackers, writer=writer), drives)
+    site = Site(clock, make_drive, state or SiteState(), trackers, writer=writer, options=options)
+    return Plant(clock, site, drives)

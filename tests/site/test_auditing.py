@@ -25,6 +25,7 @@ from app.tracker.config import Orientation
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName
 from app.tracker.weather import Weather
+from tests.fault_result import FaultResult
 from tests.site.direct_writer import DirectWriter
 from tests.site.plant import SAMSUN, Plant, make_plant, settle
 
@@ -110,6 +111,7 @@ async def test_a_press_is_recorded_once_and_its_refusals_are_not_repeated(audite
     for number in range(8):
         with pytest.raises(CommandRejected):
             await plant.ask(Jog("press", Axis.AZIMUTH, 1, sequence=number + 8))
+    await plant.forward(seconds=0.1)
     presses = [result for action, _, result in audited.told() if action == "jog"]
     assert presses[0] == "done"
     assert len(presses) == 2
@@ -154,7 +156,9 @@ class PatientWriter(DirectWriter):
 
 
 @pytest.mark.fault(71)
-async def test_motion_that_cannot_be_recorded_is_refused_and_stop_passes(tmp_path: Path) -> None:
+async def test_motion_that_cannot_be_recorded_is_refused_and_stop_passes(
+    tmp_path: Path, fault: FaultResult
+) -> None:
     url = f"sqlite:///{tmp_path / 'heliopanel.db'}"
     upgrade(url)
     store = open_writer(url)
@@ -166,8 +170,12 @@ async def test_motion_that_cannot_be_recorded_is_refused_and_stop_passes(tmp_pat
             await plant.ask(Move(Orientation(90.0, 30.0)))
         await plant.forward(seconds=2)
         assert plant.tracker().activity is ActivityName.HOLDING
-        with pytest.raises(CommandRejected, match="Nothing is moved, because that cannot be recorded"):
+        with pytest.raises(
+            CommandRejected, match="Nothing is moved, because that cannot be recorded"
+        ) as refused:
             await plant.ask(Jog("press", Axis.AZIMUTH, 1))
+        fault.prevented("the motion is refused at once")
+        fault.shows(str(refused.value))
         with pytest.raises(CommandRejected):
             await plant.ask(SetLocation(SAMSUN, "Europe/Berlin"))
         await plant.ask(Stop())
@@ -180,6 +188,7 @@ async def test_motion_that_cannot_be_recorded_is_refused_and_stop_passes(tmp_pat
     await plant.ask(Move(Orientation(90.0, 30.0)))
     await plant.forward(seconds=1)
     assert plant.tracker().activity is ActivityName.MOVING
+    fault.recovers("by itself: once the audit can be written")
     await plant.close()
     store.close()
 

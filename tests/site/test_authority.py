@@ -13,6 +13,7 @@ from app.site import authority as rules
 from app.site.authority import Authority, Due, Verdict, Wish
 from app.tracker.commands import CommandRejected
 from app.tracker.control import ControlHeld, ControlLost, Holder
+from tests.fault_result import FaultResult
 
 NOON = datetime(2027, 6, 21, 9, 40, tzinfo=UTC)
 OPERATOR, OTHER = Holder("ada", "session", 1), Holder("bo", "session", 1)
@@ -44,13 +45,16 @@ def test_the_first_order_takes_control_and_others_are_told_who_has_it() -> None:
 
 
 @pytest.mark.fault(60)
-def test_an_order_of_an_older_epoch_is_lost_even_for_who_has_control_again() -> None:
+def test_an_order_of_an_older_epoch_is_lost_even_for_who_has_control_again(fault: FaultResult) -> None:
     first = held_by(OPERATOR)
     again = rules.take(rules.take(first, OTHER, NOON), OPERATOR, NOON)
     for epoch in (4, first.epoch, first.epoch + 1):
-        with pytest.raises(ControlLost, match="before control of T1 changed"):
+        with pytest.raises(ControlLost, match="before control of T1 changed") as refused:
             rules.judge(again, OPERATOR, epoch, NOON, "T1")
+        fault.shows(str(refused.value))
     assert rules.judge(again, OPERATOR, again.epoch, NOON, "T1") is Verdict.GO
+    fault.prevented("the second order is refused, or answered as the first was")
+    fault.recovers("with a new order")
 
 
 def test_an_order_after_letting_go_does_not_take_control_again() -> None:

@@ -11,7 +11,8 @@ import pytest
 
 from app.drives.faults import Fault, FaultKind
 from app.drives.simulated import SimulatedDrive
-from app.link.messages import ConfigureTracker, ConfirmStep, Order, RemoveTracker, SetClock
+from app.link.messages import ConfigureTracker, ConfirmStep, Order, RemoveTracker, RenameSite, SetClock
+from app.link.weather_orders import ReportWeather
 from app.site.beginning import begin
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
@@ -22,6 +23,7 @@ from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import StepName, TrackerMemory, TrackerState
 from app.tracker.mode import Mode
 from app.tracker.transmission import LinearActuator, Point
+from app.tracker.weather import Weather
 from tests.site.plant import FIRST, SUMMER_NOON, Plant, make_plant, settle
 from tests.site.wrapped_drive import WrappedDrive, wrapped
 
@@ -113,6 +115,19 @@ async def test_a_confirmation_that_could_not_be_stored_was_not_given(slow: tuple
         await plant.ask(ConfirmStep("T1", StepName.HOMING))
 
     assert plant.site.model.tracker("T1").memory == before
+
+
+async def test_wind_is_heard_while_a_setting_waits_for_the_disk(slow: tuple[Plant, SlowWriter]) -> None:
+    plant, writer = slow
+    writer.goes_on.clear()
+    naming = asyncio.create_task(plant.site.execute(Order(RenameSite("Roof"), "technician")))
+    await settle()
+    await plant.ask(ReportWeather(Weather(wind_mps=28.0)), None)
+    await plant.forward(seconds=0.2)
+    assert not naming.done()
+    assert plant.tracker().protection is not None
+    writer.goes_on.set()
+    await naming
 
 
 async def test_an_orientation_where_the_panel_never_was_cannot_be_confirmed(

@@ -15,6 +15,7 @@ from app.tracker.config import Orientation
 from app.tracker.memory import ClockSetting
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName
+from tests.fault_result import VIRTUAL, FaultResult
 from tests.site.plant import Plant, make_plant
 
 Record = Callable[[str, object], None]
@@ -68,15 +69,15 @@ async def raised_at(plant: Plant, wall: WallClock, code: str) -> timedelta:
 
 @pytest.mark.fault(28)
 async def test_a_clock_that_creeps_is_told_from_30_s_on_and_stops_tracking_from_5_minutes_on(
-    wall: WallClock, record_property: Record
+    wall: WallClock, fault: FaultResult
 ) -> None:
     plant = await tracking(wall)
     wall.creeps = CREEP
     drifts_at = await raised_at(plant, wall, "clock_drifts")
     assert timedelta(seconds=30) < drifts_at < timedelta(seconds=34)
-    record_property("detected_s", (drifts_at - timedelta(seconds=30)) / CREEP * 0.5)
-    record_property("shown", alarms(plant)["clock_drifts"])
-    record_property("policy", "unlimited: it ends when the clock is set or NTP keeps it")
+    fault.noticed((drifts_at - timedelta(seconds=30)) / CREEP * 0.5, VIRTUAL)
+    fault.shows(alarms(plant)["clock_drifts"])
+    fault.recovers("by itself: when the clock is set or an NTP server keeps it")
     assert plant.tracker().activity is ActivityName.TRACKING
     assert plant.tracker().tracking_on
 

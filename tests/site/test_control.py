@@ -35,6 +35,7 @@ from app.tracker.control import ControlHeld, ControlLost
 from app.tracker.memory import TrackerMemory, TrackerState
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName, EventKind
+from tests.fault_result import FaultResult
 from tests.site.plant import SAMSUN, Plant, make_plant, settle
 
 AWAY = Move(Orientation(200.0, 40.0))
@@ -72,21 +73,28 @@ async def ready(plant: Plant) -> Plant:
 
 
 @pytest.mark.fault(55)
-async def test_the_first_who_moves_has_control_and_the_other_may_only_stop(ready: Plant) -> None:
+async def test_the_first_who_moves_has_control_and_the_other_may_only_stop(
+    ready: Plant, fault: FaultResult
+) -> None:
     ada, bo = Person(ready, "ada"), Person(ready, "bo")
     await ada.ask(AWAY)
     assert ready.tracker().control.holder == "ada"
-    with pytest.raises(ControlHeld, match="ada has control of Tracker 1"):
+    with pytest.raises(ControlHeld, match="ada has control of Tracker 1") as refused:
         await bo.ask(Track())
+    fault.prevented("the second user may only stop")
+    fault.shows(str(refused.value))
     await bo.ask(Stop())
     await ready.forward(seconds=2)
     assert ready.tracker().activity is ActivityName.HOLDING
     await bo.ask(LockOut("bo", "works at the gear"))
     assert ready.tracker().control.holder == "ada"
+    fault.recovers("control is handed over, or ends when nobody renews it")
 
 
 @pytest.mark.fault(56)
-async def test_taking_over_stops_the_motion_first_and_late_orders_move_nothing(ready: Plant) -> None:
+async def test_taking_over_stops_the_motion_first_and_late_orders_move_nothing(
+    ready: Plant, fault: FaultResult
+) -> None:
     ada, bo = Person(ready, "ada"), Person(ready, "bo")
     await ada.ask(AWAY)
     epoch = ada.epoch
@@ -99,10 +107,15 @@ async def test_taking_over_stops_the_motion_first_and_late_orders_move_nothing(r
     kinds = [event.kind for event in ready.events]
     assert kinds.index(EventKind.STOPPED) < len(kinds) - 1 - kinds[::-1].index(EventKind.CONTROL_TAKEN)
     for late in (AWAY, Jog("held", Axis.AZIMUTH, 1, sequence=40), Jog("new", Axis.AZIMUTH, 1), Track()):
-        with pytest.raises(ControlLost, match="bo has control now"):
+        with pytest.raises(ControlLost, match="bo has control now") as refused:
             await ada.ask(late, epoch=epoch)
+        fault.shows(str(refused.value))
     await ready.forward(seconds=1)
     assert not ready.site.model.tracker("T1").moving
+    fault.prevented("the motion is stopped before control changes")
+    await bo.ask(AWAY)
+    assert ready.tracker().activity is ActivityName.MOVING
+    fault.recovers("the new holder of control commands a motion")
 
 
 async def test_a_held_key_ends_when_control_passes(ready: Plant) -> None:
@@ -185,7 +198,7 @@ async def test_a_group_is_taken_as_a_whole_or_not_at_all() -> None:
 
 
 @pytest.mark.fault(61)
-async def test_an_order_from_before_a_restart_is_refused(ready: Plant) -> None:
+async def test_an_order_from_before_a_restart_is_refused(ready: Plant, fault: FaultResult) -> None:
     ada = Person(ready, "ada")
     await ada.ask(RequestControl(("T1",)))
     epoch, stored = ada.epoch, ready.site.model.tracker("T1").state
@@ -195,6 +208,7 @@ async def test_an_order_from_before_a_restart_is_refused(ready: Plant) -> None:
     with pytest.raises(ControlLost):
         await Person(later, "ada").ask(AWAY, epoch=epoch)
     assert later.tracker().control.epoch > epoch
+    fault.prevented("the order is refused")
     await later.close()
 
 

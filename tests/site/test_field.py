@@ -2,11 +2,16 @@
 
 import os
 from datetime import UTC, datetime
+from pathlib import Path
 from time import perf_counter
 
 import pytest
 
+from app.store.engine import open_writer
+from app.store.migrations import upgrade
+from app.tracker.recording import RecordingKind
 from app.tracker.snapshot import ActivityName
+from tests.site.direct_writer import DirectWriter
 from tests.site.field import Field
 from tests.soak import amount
 
@@ -19,10 +24,18 @@ MOST_GROWTH_BYTES = 24 * 1024 * 1024
 
 @pytest.mark.fault(46)
 @pytest.mark.timeout(amount(400, 14_400))
-async def test_a_field_lives_through_weather_and_faults_and_needs_no_more_memory() -> None:
+async def test_a_field_lives_through_weather_and_faults_and_needs_no_more_memory(
+    tmp_path: Path,
+) -> None:
     begun = perf_counter()
-    field = Field(TRACKERS, BEGIN, seed=SEED)
+    url = f"sqlite:///{tmp_path / 'heliopanel.db'}"
+    upgrade(url)
+    store = open_writer(url)
+    field = Field(TRACKERS, BEGIN, seed=SEED, writer=DirectWriter(store))
     await field.live(MINUTES)
+    samples = sum(day.frame_count for day in store.recordings(kind=RecordingKind.DAY))
+    store.close()
+    assert samples >= TRACKERS * MINUTES * 20
     seen = field.seen
     print(
         f"{TRACKERS} trackers, {MINUTES} minutes in {perf_counter() - begun:.0f} s, {seen.faults} faults; "

@@ -1,7 +1,7 @@
 """Memory that grows: an alarm in time, and a planned restart that waits until every tracker stands still."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from datetime import timedelta
 
@@ -13,6 +13,7 @@ from app.site.health import resident_bytes
 from app.tracker.commands import SelectMode, Stop, Track
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName
+from tests.fault_result import VIRTUAL, FaultResult
 from tests.site.plant import Plant, make_plant
 
 LIMIT_MB = 400
@@ -59,7 +60,7 @@ def alarms(plant: Plant) -> dict[str, str]:
 
 @pytest.mark.fault(46)
 async def test_growing_memory_is_told_and_the_restart_waits_for_standstill(
-    plant: Plant, process: Process, record_property: Callable[[str, object], None]
+    plant: Plant, process: Process, fault: FaultResult
 ) -> None:
     plant.clock.advance(EARLIEST)
     await plant.commission()
@@ -73,9 +74,9 @@ async def test_growing_memory_is_told_and_the_restart_waits_for_standstill(
     while "memory_high" not in alarms(plant):
         assert plant.clock.now() - since <= LOOK_EVERY + timedelta(seconds=5)
         await plant.forward(seconds=0.5)
-    record_property("detected_s", (plant.clock.now() - since).total_seconds())
-    record_property("shown", alarms(plant)["memory_high"])
-    record_property("policy", "unlimited: it ends with its cause, or with a restart while all stands still")
+    fault.noticed((plant.clock.now() - since).total_seconds(), VIRTUAL)
+    fault.shows(alarms(plant)["memory_high"])
+    fault.recovers("by itself: with its cause, or with a restart while all trackers are at standstill")
     assert "310 MB" in alarms(plant)["memory_high"]
 
     process.held_mb = 401.0

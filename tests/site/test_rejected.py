@@ -26,6 +26,7 @@ from app.tracker.commands import CommandRejected, Jog, Stop, Track
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import HomeTrust, TrackerMemory, TrackerState
 from app.tracker.snapshot import EventKind
+from tests.fault_result import FaultResult
 from tests.site.plant import Plant, make_plant
 
 NOW = datetime(2027, 6, 21, 9, 0, tzinfo=UTC)
@@ -180,16 +181,19 @@ async def rejected_plant(tmp_path: Path) -> Plant:
 
 
 @pytest.mark.fault(52)
-async def test_nothing_moves_until_the_settings_were_saved(tmp_path: Path) -> None:
+async def test_nothing_moves_until_the_settings_were_saved(tmp_path: Path, fault: FaultResult) -> None:
     plant = await rejected_plant(tmp_path)
     await plant.forward(seconds=1.0)
     for command in (Jog("p1", Axis.AZIMUTH, 1), Track()):
-        with pytest.raises(CommandRejected, match=r"in position deg was wide, used is 0\.05"):
+        with pytest.raises(CommandRejected, match=r"in position deg was wide, used is 0\.05") as refused:
             await plant.ask(command)
+        fault.shows(str(refused.value))
     assert "config_rejected" in {reason.code for reason in plant.tracker().notices}
     await plant.ask(Stop())
     await plant.forward(seconds=1.0)
     await plant.ask(ConfigureTracker(plant.site.model.tracker("T1").config))
     assert plant.tracker().rejected == ()
     await plant.ask(Jog("p2", Axis.AZIMUTH, 1))
+    fault.prevented("noticed at the start, before anything moves")
+    fault.recovers("the engineer saves the settings again")
     await plant.close()

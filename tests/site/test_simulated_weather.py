@@ -147,3 +147,13 @@ def test_windows_out_of_range_are_refused_with_a_sentence(name: str) -> None:
     for wrong in (low - 0.5, high + 1.0, float("inf")):
         with pytest.raises(ValueError, match=f"{title} must lie between {low:g} and {high:g} s"):
             WeatherWindows(**{name: wrong})
+
+
+async def test_a_stow_for_simulated_wind_says_that_it_is_simulated(plant: Plant) -> None:
+    await track(plant)
+    await plant.ask(SimulateWeather(SimulatedStation(wind_mps=25.0)))
+    await plant.until(lambda tracker: tracker.activity is ActivityName.STOWING)
+    protection = plant.tracker().protection
+    assert protection is not None
+    assert protection.reason.message.endswith("m/s. The reading is SIMULATED.")
+    assert [reason.message for reason in plant.tracker().waiting] == [protection.reason.message]

@@ -39,6 +39,7 @@ from app.tracker.mode import Mode
 from app.tracker.motion import DriveCapabilities
 from app.tracker.observation import Observation
 from app.tracker.snapshot import ActivityName, Event, EventKind
+from tests.fault_result import FaultResult
 from tests.site.plant import FIRST, SAMSUN, SUMMER_NOON, Plant, make_plant, settle
 from tests.site.wrapped_drive import WrappedDrive, wrapped
 
@@ -96,6 +97,36 @@ async def test_an_order_that_is_too_old_is_refused_but_not_stop(plant: Plant) ->
     assert plant.happened(EventKind.STOPPED)
 
 
+@pytest.mark.parametrize(
+    ("ahead_s", "code"),
+    [
+        (1.9, None),
+        (2.1, "from_the_future"),
+        (3600.0, "from_the_future"),
+        (70 * 365 * 86400.0, "from_the_future"),
+    ],
+)
+@pytest.mark.fault(90)
+async def test_an_order_of_the_future_is_refused_but_not_stop(
+    plant: Plant, ahead_s: float, code: str | None, fault: FaultResult
+) -> None:
+    ahead = plant.clock.now() + timedelta(seconds=ahead_s)
+    if code is None:
+        await plant.ask(RenameSite("Samsun"), issued_at=ahead)
+    for command in (RenameSite("Bafra"), Jog("p", Axis.AZIMUTH, 1)) if code else ():
+        with pytest.raises(CommandRejected, match="ahead of the site's clock") as refused:
+            await plant.ask(command, issued_at=ahead)
+        assert refused.value.reasons[0].code == code
+        assert "clock" in refused.value.reasons[0].hint
+        if ahead_s == 3600.0:
+            fault.shows(str(refused.value))
+    await plant.ask(Stop(), issued_at=ahead)
+    assert plant.happened(EventKind.STOPPED)
+    await plant.ask(RenameSite("Ünye"), issued_at=plant.clock.now())
+    fault.prevented("it is refused")
+    fault.recovers("the clock is set; the next command is obeyed")
+
+
 async def test_an_unknown_tracker_is_unknown(plant: Plant) -> None:
     with pytest.raises(UnknownTracker, match="T9"):
         await plant.ask(Track(), "T9")
@@ -128,9 +159,14 @@ async def test_trackers_come_and_go(plant: Plant) -> None:
     ],
 )
 @pytest.mark.fault(24)
-async def test_an_implausible_tracker_is_refused(plant: Plant, config: TrackerConfig, message: str) -> None:
-    with pytest.raises(ValueError, match=message):
+async def test_an_implausible_tracker_is_refused(
+    plant: Plant, config: TrackerConfig, message: str, fault: FaultResult
+) -> None:
+    with pytest.raises(ValueError, match=message) as refused:
         await plant.ask(AddTracker(config))
+    fault.prevented("refused when saved")
+    fault.shows(str(refused.value))
+    fault.recovers("with settings that fit")
 
 
 async def test_two_trackers_cannot_share_one_drive() -> None:
@@ -246,7 +282,6 @@ async def test_the_age_of_a_reading_grows_while_the_next_one_is_waited_for(plant
     assert plant.tracker().position_age_s == pytest.approx(before + 0.7)
 
 
-@pytest.mark.fault(7)
 async def test_a_command_that_is_not_taken_counts_as_no_contact() -> None:
     plant = await running(make_plant(wrap=WrappedDrive))
     await plant.forward(seconds=0.2)
@@ -384,7 +419,7 @@ async def test_a_clock_set_by_hand_does_not_follow_a_jump_of_the_system() -> Non
 
 
 @pytest.mark.fault(27)
-async def test_a_clock_that_shows_less_than_the_journal_is_not_trusted() -> None:
+async def test_a_clock_that_shows_less_than_the_journal_is_not_trusted(fault: FaultResult) -> None:
     clock = VirtualClock(SUMMER_NOON)
     keeper = Timekeeper(clock, ClockSetting("system"), not_before=SUMMER_NOON + timedelta(days=1))
     assert [reason.code for reason in keeper.reasons()] == ["clock_implausible"]
@@ -392,6 +427,7 @@ async def test_a_clock_that_shows_less_than_the_journal_is_not_trusted() -> None
     keeper.adopt(keeper.choose("system", None, "technician"))
 
     assert keeper.reasons() == ()
+    fault.recovers("the clock is set or confirmed")
 
 
 async def test_the_site_tells_of_a_clock_jump() -> None:

@@ -152,7 +152,7 @@ async def test_stop_with_a_key_that_was_used_before_stops_again() -> None:
 async def test_an_order_that_had_to_wait_too_long_for_another_is_not_carried_out() -> None:
     plant = make_plant()
     await plant.start()
-    async with plant.site._changing:
+    async with plant.site.model.changing:
         given = Order(RenameSite("Late"), "technician", issued_at=plant.site.model.now())
         waiting = asyncio.create_task(plant.site.execute(given))
         await plant.forward(seconds=3)

@@ -1,6 +1,5 @@
 """Two wind sensors on one site: the highest that can be relied on counts; both are told if they differ."""
 
-from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 
 import pytest
@@ -12,6 +11,7 @@ from app.tracker.commands import SelectMode, Track
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName
 from app.tracker.weather import Quality, Weather, WeatherNow
+from tests.fault_result import VIRTUAL, FaultResult
 from tests.site.plant import Plant
 
 BEGIN = datetime(2026, 6, 21, 6, tzinfo=UTC)
@@ -83,7 +83,7 @@ def test_what_was_silent_for_an_hour_is_no_sensor_any_more() -> None:
 
 @pytest.mark.fault(39)
 async def test_two_sensors_that_disagree_stow_by_the_higher_and_are_told_with_both(
-    plant: Plant, record_property: Callable[[str, object], None]
+    plant: Plant, fault: FaultResult
 ) -> None:
     await plant.commission()
     await plant.ask(SelectMode(Mode.DUAL))
@@ -101,9 +101,9 @@ async def test_two_sensors_that_disagree_stow_by_the_higher_and_are_told_with_bo
     assert "roof shows" in message
     assert "mast" in message
     assert "m/s" in message
-    record_property("detected_s", float(taken_s))
-    record_property("shown", message)
-    record_property("policy", "unlimited: it ends when they agree")
+    fault.noticed(float(taken_s), VIRTUAL)
+    fault.shows(message)
+    fault.recovers("by itself: when they agree")
     await plant.until(lambda seen: seen.activity is ActivityName.STOWED)
 
     for second in range(120):

@@ -1,0 +1,43 @@
+"""The controller killed in a storm: every tracker whose home position holds stows by itself afterwards."""
+
+import os
+import random
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.e2e.product import DriveSim
+from tests.fault_result import BY_ITSELF, REAL, FaultResult
+from tests.machine.storm import Field, Storm, drive_memories
+
+KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "3"))
+TRACKERS = int(os.environ.get("HELIOPANEL_TEST_TRACKERS", "12"))
+SEED = int(os.environ.get("HELIOPANEL_TEST_SEED", "1"))
+ON_A_DRIVE = 2
+
+
+@pytest.fixture
+def storm(tmp_path: Path) -> Iterator[Storm]:
+    drive = DriveSim.start(memory=drive_memories(tmp_path, ON_A_DRIVE), units=ON_A_DRIVE)
+    field = Field.of(TRACKERS, port=drive.port, drives=ON_A_DRIVE)
+    field.seed(tmp_path / "seed")
+    yield Storm(field, tmp_path / "seed", tmp_path, random.Random(SEED))
+    drive.stop()
+
+
+@pytest.mark.timeout(60 + 30 * KILLS)
+@pytest.mark.fault(80)
+async def test_killed_in_a_storm_every_homed_tracker_stows_by_itself(
+    storm: Storm, fault: FaultResult
+) -> None:
+    for number in range(KILLS):
+        await storm.kill(number)
+    fault.noticed(storm.slowest_s, REAL)
+    fault.shows(storm.text)
+    fault.recovers(f"{BY_ITSELF} once the wind has been calm for the set time")
+    counted = ", ".join(f"{when} {times}" for when, times in sorted(storm.counted.items()))
+    print(
+        f"seed {SEED}: {KILLS} kills of {TRACKERS} trackers ({counted} the report), all stowing at most "
+        f"{storm.slowest_s:.2f} s after the restart"
+    )

@@ -1,0 +1,135 @@
+"""What is written behind the loop: together, in order, and before what is waited for."""
+
+from collections.abc import Iterator
+from datetime import timedelta
+from pathlib import Path
+
+import pytest
+
+from app.clock import VirtualClock
+from app.link.messages import StopAll
+from app.link.weather_orders import ReportWeather
+from app.site.gathering import EVERY
+from app.site.ledger import Ledger
+from app.store.engine import open_writer
+from app.store.migrations import upgrade
+from app.store.store import JournalFilter, StoreFailed, Writer
+from app.tracker.protections.words import Protection
+from app.tracker.snapshot import ActivityName, Event, EventKind
+from app.tracker.weather import Weather
+from tests.site.plant import SUMMER_NOON, settle
+from tests.site.test_sample_batches import CountingWriter
+from tests.site.tracking_field import ONE_HZ, activities, field_of
+
+FIELD = 500
+STORM = ReportWeather(Weather(wind_mps=28.0))
+MOST_TRANSACTIONS = 8
+
+
+@pytest.fixture
+def writer(tmp_path: Path) -> Iterator[CountingWriter]:
+    url = f"sqlite:///{tmp_path / 'heliopanel.db'}"
+    upgrade(url)
+    opened = open_writer(url)
+    yield CountingWriter(opened)
+    opened.close()
+
+
+@pytest.fixture
+def clock() -> VirtualClock:
+    return VirtualClock(SUMMER_NOON)
+
+
+def told(number: int) -> Event:
+    return Event(SUMMER_NOON, EventKind.STOPPED, "T1", f"{number}")
+
+
+def journal(store: Writer) -> list[str]:
+    return [one.event.message for one in store.journal(JournalFilter(after=0, limit=1000))]
+
+
+async def test_what_gathers_is_stored_in_order_in_one_transaction(
+    writer: CountingWriter, clock: VirtualClock
+) -> None:
+    ledger = Ledger(writer, clock)
+    ledger.post_events((told(0),))
+    await settle()
+    assert journal(writer.writer) == ["0"], "what comes alone is stored at once"
+    for number in range(1, 301):
+        ledger.post_events((told(number),))
+        await settle()
+    assert writer.transactions == 1
+    clock.advance(EVERY - timedelta(milliseconds=1))
+    await settle()
+    assert writer.transactions == 1
+    clock.advance(timedelta(milliseconds=1))
+    await settle()
+    assert writer.transactions == 2
+    assert journal(writer.writer) == [f"{number}" for number in range(301)]
+    ledger.close()
+
+
+async def test_what_is_waited_for_is_stored_after_everything_posted_before_it(
+    writer: CountingWriter, clock: VirtualClock
+) -> None:
+    ledger = Ledger(writer, clock)
+    for number in range(3):
+        ledger.post_events((told(number),))
+        await settle()
+    await ledger.append((told(3),))
+    assert journal(writer.writer) == ["0", "1", "2", "3"]
+    ledger.close()
+
+
+async def test_one_piece_that_fails_takes_no_other_with_it(
+    writer: CountingWriter, clock: VirtualClock
+) -> None:
+    ledger = Ledger(writer, clock)
+    broken = Event(SUMMER_NOON, EventKind.STOPPED, "T1", "broken", data={"no": object()})
+    for event in (told(0), broken, told(1)):
+        ledger.post_events((event,))
+    ledger.close()
+    assert "cannot be stored" in str(writer.failures[0])
+    assert journal(writer.writer) == ["0", "1"]
+    assert ledger.behind
+
+
+async def test_a_batch_that_finds_the_disk_full_is_behind_as_a_whole(
+    writer: CountingWriter, clock: VirtualClock
+) -> None:
+    ledger = Ledger(writer, clock)
+    writer.refuses = True
+    ledger.post_events((told(0),))
+    ledger.post_events((told(1),))
+    ledger.close()
+    assert journal(writer.writer) == []
+    assert ledger.behind
+    assert isinstance(writer.failures[0], StoreFailed)
+
+
+@pytest.mark.fault(73)
+async def test_a_storm_over_a_large_field_is_a_handful_of_transactions(writer: CountingWriter) -> None:
+    """Every tracker posted its own, and with 1,000 writes waiting the next were refused."""
+    field = await field_of(FIELD, writer=writer, period=ONE_HZ)
+    await field.forward(seconds=1.0)
+    before = writer.transactions
+    await field.ask(STORM)
+    await field.forward(seconds=1.0)
+    assert activities(field) == {ActivityName.STOWING}
+    assert writer.transactions - before <= MOST_TRANSACTIONS
+    started = writer.writer.journal(JournalFilter(limit=10 * FIELD, kinds=(EventKind.STOW_STARTED,)))
+    assert len({one.event.tracker_id for one in started}) == FIELD
+    assert all(one.memory.protection is Protection.TYPHOON for one in writer.writer.trackers())
+    await field.close()
+
+
+@pytest.mark.fault(74)
+async def test_stop_all_over_a_large_field_is_stored_together_before_it_is_answered(
+    writer: CountingWriter,
+) -> None:
+    field = await field_of(FIELD, writer=writer, period=ONE_HZ)
+    before = writer.transactions
+    await field.ask(StopAll())
+    assert writer.transactions - before <= MOST_TRANSACTIONS
+    assert not any(one.memory.tracking_on for one in writer.writer.trackers())
+    await field.close()
