@@ -11,7 +11,7 @@ from app.access.tokens import Token, is_valid, token_id_of
 from app.access.tokens import permissions_of as permissions_of_scopes
 from app.access.users import User
 
-RESTING = frozenset({Permission.OPEN, Permission.READ, Permission.STOP, Permission.OWN})
+RESTING = frozenset({Permission.OPEN, Permission.KNOWN, Permission.READ, Permission.STOP, Permission.OWN})
 
 
 @dataclass(frozen=True, slots=True)

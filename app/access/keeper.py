@@ -25,6 +25,7 @@ from app.access.throttle import Failures, one_more, wait_left
 from app.access.tickets import OneShots, csrf_token, read_stop_ticket, stop_ticket
 from app.access.tokens import digest_of as token_digest
 from app.access.tokens import token_id_of
+from app.access.users import AccessRefused
 from app.clock import Clock
 from app.store.store import StoreFailed
 
@@ -171,12 +172,15 @@ class Keeper:
         """Return what the pages of a session must send with every change."""
         return csrf_token(self.book.key, session_id)
 
-    async def log_in(self, name: str, password: str, address: str, agent: str) -> str:
-        """Return the id of a new session, or raise `WrongPassword`, `Throttled` or `TooManyAtOnce`."""
+    async def log_in(self, name: str, password: str, address: str, agent: str, held: str = "") -> str:
+        """Return the id of a new session, or raise `WrongPassword`, `Throttled` or `TooManyAtOnce`.
+
+        `held` is the session id that the browser still has from before.
+        """
 
         def work() -> str:
             account = name.strip().lower()[:32]
-            self._check(account, password, address)
+            self._check(account, password, address, digest_of(held))
             return self._begin(account, "", address, agent)
 
         return await self.do(work)
@@ -199,7 +203,7 @@ class Keeper:
 
         def work() -> None:
             session = self._session(principal)
-            self._check(session.user, password, principal.address)
+            self._check(session.user, password, principal.address, principal.credential)
             now = self._clock.now()
             with self._store.writing() as change:
                 change.put_session(replace(session, proven_at=now, used_at=now))
@@ -210,7 +214,7 @@ class Keeper:
         """Change the password of whoever is signed in, who must know the old one."""
 
         def work() -> None:
-            self._check(self._session(principal).user, old, principal.address)
+            self._check(self._session(principal).user, old, principal.address, principal.credential)
             now = self._clock.now()
             self.accounts.set_password(principal, principal.name, new, now, keep=principal.credential)
 
@@ -234,7 +238,9 @@ class Keeper:
 
         def work() -> None:
             session = self._session(principal)
-            token = self.book.tokens[session.token_id]
+            token = self.book.tokens.get(session.token_id)
+            if token is None:
+                raise AccessRefused("Only the page of a cabinet has a PIN; sign in with a name and password.")
             subject = (f"pin:{token.token_id}",)
             self._wait(subject, principal)
             if not self._passwords.matches(token.pin_hash, pin):
@@ -304,16 +310,18 @@ class Keeper:
         """Close the database."""
         self._store.close()
 
-    def _check(self, account: str, password: str, address: str) -> None:
+    def _check(self, account: str, password: str, address: str, held: str) -> None:
         """Raise unless the password is right.
 
-        Mistakes count for the account at this address, the address, and the account. From an address where
-        somebody is signed in to the account only the first counts, and a first try from an address is always
-        looked at: so guesses from elsewhere lock nobody out.
+        Mistakes count for the account at this address, the address, and the account; those of a browser that
+        holds a session of the account (its digest is `held`) for that browser alone. A first try from an
+        address is always looked at: so guesses from elsewhere lock nobody out. Whether there is such an
+        account changes nothing here, so that nobody learns it.
         """
-        here = f"{account}@{address}"[:120]
+        knows = self._knows(account, held)
+        here = f"{account}@{held if knows else address}"[:120]
         elsewhere = (f"address:{address}"[:120], f"account:{account}"[:120])
-        subjects = (here,) if self._knows(account, address) else (here, *elsewhere)
+        subjects = (here,) if knows else (here, *elsewhere)
         self._wait(subjects, nobody(address), first=here)
         user = self.book.users.get(account)
         if not self._passwords.matches(user.password_hash if user else None, password):
@@ -362,10 +370,10 @@ class Keeper:
             raise SignInNeeded("This session has ended. Sign in again.")
         return session
 
-    def _knows(self, account: str, address: str) -> bool:
-        """Return whether somebody signed in to this account from this address within the last 12 hours."""
-        mine = (one for one in self.book.sessions.values() if one.user == account)
-        return any(one.address == address for one in mine)
+    def _knows(self, account: str, held: str) -> bool:
+        """Return whether this is the digest of a session of this account, begun within the last 12 hours."""
+        session = self.book.sessions.get(held)
+        return session is not None and session.user == account != ""
 
     def _turn_to(self, book: Book) -> None:
         self.book = book

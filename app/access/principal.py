@@ -72,8 +72,13 @@ class Principal:
         return self.via not in (Via.NOBODY, Via.STOP_TICKET)
 
     def may(self, permission: Permission, tracker_id: str | None = None) -> bool:
-        """Return whether this is allowed, at one tracker where one is named."""
-        within = self.trackers is None or tracker_id is None or tracker_id in self.trackers
+        """Return whether this is allowed, at one tracker where one is named; to stop is, at every tracker."""
+        within = (
+            permission is Permission.STOP
+            or self.trackers is None
+            or tracker_id is None
+            or tracker_id in self.trackers
+        )
         return permission in self.permissions and within
 
     def may_order(self, kind: str, tracker_id: str | None = None) -> bool:

@@ -7,6 +7,7 @@ class Permission(StrEnum):
     """What a request needs; every route and every order has exactly one."""
 
     OPEN = "open"
+    KNOWN = "known"
     STOP = "stop"
     OWN = "own"
     READ = "read"
@@ -27,7 +28,8 @@ class Role(StrEnum):
 
 
 NOBODY = frozenset({Permission.OPEN})
-SEEING = NOBODY | {Permission.READ, Permission.STOP, Permission.OWN}
+KNOWN = NOBODY | {Permission.KNOWN}
+SEEING = KNOWN | {Permission.READ, Permission.STOP, Permission.OWN}
 OPERATING = SEEING | {Permission.OPERATE, Permission.SIMULATE, Permission.REPORT}
 
 GRANTS: dict[Role, frozenset[Permission]] = {
@@ -43,6 +45,7 @@ RANKS = {Role.VIEWER: 0, Role.ADMINISTRATOR: 0, Role.OPERATOR: 1, Role.ENGINEER:
 
 DOES = {
     Permission.OPEN: "open this",
+    Permission.KNOWN: "ask who they are",
     Permission.STOP: "stop motion",
     Permission.OWN: "change what is their own",
     Permission.READ: "read this",
@@ -92,6 +95,7 @@ ORDERS: dict[str, Permission] = {
     "save_recording": Permission.SIMULATE,
     "delete_recording": Permission.CONFIGURE,
     "zero": Permission.CONFIGURE,
+    "undo_zero": Permission.CONFIGURE,
     "home": Permission.CONFIGURE,
     "prove_direction": Permission.CONFIGURE,
     "prove_scale": Permission.CONFIGURE,

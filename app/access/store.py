@@ -19,10 +19,9 @@ from app.access.tokens import Scope, Token
 from app.access.users import User
 from app.audit.chain import FIRST, Link
 from app.store.connections import sharing_engine, sqlite_path, transaction
-from app.store.files import make_folder
+from app.store.files import keep_private, make_folder
 
 KEY, CHANGES = "key", "changes"
-PRIVATE = 0o600
 PEOPLE = (tables.users, tables.sessions, tables.tokens, tables.failures)
 
 
@@ -118,7 +117,7 @@ class AccessStore:
         path = sqlite_path(self._url)
         if path is not None:
             make_folder(path.parent)
-            path.touch(PRIVATE)
+            keep_private(path)
         upgrade(self._engine)
         with transaction(self._engine) as connection:
             if not _rows(connection, tables.meta):

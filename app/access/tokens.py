@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from enum import StrEnum
 
-from app.access.roles import NOBODY, Permission
+from app.access.roles import KNOWN, Permission
 
 ALPHABET = string.digits + string.ascii_uppercase + string.ascii_lowercase
 PREFIX = "hp_"
@@ -89,7 +89,7 @@ def is_valid(token: Token, text: str, now: datetime) -> bool:
 
 def permissions_of(scopes: frozenset[Scope]) -> frozenset[Permission]:
     """Return everything that a token with these scopes may do."""
-    return NOBODY.union(*(SCOPES[scope] for scope in scopes))
+    return KNOWN.union(*(SCOPES[scope] for scope in scopes))
 
 
 def _random(length: int) -> str:

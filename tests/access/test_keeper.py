@@ -23,6 +23,7 @@ from app.cli_users import users
 from app.clock import VirtualClock
 from app.settings import Settings
 from tests.access.fake_hasher import FakeHasher
+from tests.fault_result import FaultResult
 
 START = datetime(2026, 11, 21, 12, tzinfo=UTC)
 PASSWORD = "violet-anvil-harbour-9"  # noqa: S105 - of people who do not exist
@@ -99,18 +100,24 @@ async def test_the_first_user_and_the_last_administrator_are_administrators(door
 
 
 @pytest.mark.fault(64)
-async def test_a_thousand_guesses_get_nowhere_and_lock_nobody_out(door: Door) -> None:
+async def test_a_thousand_guesses_get_nowhere_and_lock_nobody_out(door: Door, fault: FaultResult) -> None:
     await door.add("ada", Role.ADMINISTRATOR)
     at_home = await door.tries("ada", PASSWORD, "10.0.0.2")
-    looked_at = door.hasher.checked
+    looked_at, longest_s = door.hasher.checked, 0.0
     for number in range(1000):
-        with pytest.raises((Throttled, WrongPassword)):
+        with pytest.raises((Throttled, WrongPassword)) as refused:
             await door.tries("ada", f"guess number {number}", "10.0.0.66")
+        if isinstance(refused.value, Throttled):
+            longest_s = max(longest_s, refused.value.wait.total_seconds())
         door.clock.advance(timedelta(seconds=1))
     assert 30 <= door.hasher.checked - looked_at <= 45
     assert door.via(at_home) is Via.SESSION
     assert await door.tries("ada", PASSWORD, "10.0.0.2")
     assert await door.tries("ada", PASSWORD, "10.0.0.77")
+    assert 15.0 < longest_s <= 30.0
+    fault.prevented(f"from the second wrong password on each waits longer, {longest_s:.0f} s at most")
+    fault.shows(str(refused.value))
+    fault.recovers("nothing was lost: whoever knows the password signs in, from elsewhere at once")
 
 
 async def test_the_wait_survives_a_restart_and_is_told_in_seconds(
