@@ -210,17 +210,28 @@ class ClockPage:
     form: Form
     zones: tuple[str, ...]
     setting: ClockSetting
+    doubt: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ClockQuestion:
+    """The question before a clock is trusted that differs from this device's."""
+
+    template: ClassVar[str] = "_clock_question.html"
+
+    doubt: str
 
 
 @dataclass(frozen=True, slots=True)
 class HomingPage:
-    """Step 3."""
+    """Step 3; `doubts` are the questions before a home position that is likely to be mistaken."""
 
     template: ClassVar[str] = "homing.html"
 
     frame: Frame
     capabilities: DriveCapabilities | None
     config: TrackerConfig
+    doubts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,6 @@
 """What `create_app` built, with its types, for the routes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Annotated
 
@@ -13,10 +13,12 @@ from app.clock import Clock
 from app.link.messages import Machine, MachineUnreachable, Order, SiteCommand
 from app.settings import Settings
 from app.store.store import Reader
+from app.studies.folder import StudyUnknown
 from app.tracker.commands import Command
 from app.tracker.snapshot import SiteSnapshot
 from app.web.assets import Assets
 from app.web.hub import Hub
+from app.web.narrowed import NarrowedMachine, NarrowedReader, sees_study
 from app.web.network import NetworkDesk
 from app.web.simulations import Simulations
 from app.web.studies import Studies
@@ -39,12 +41,25 @@ class Panel:
 
 
 def panel(connection: HTTPConnection) -> Panel:
-    """Return what `create_app` built."""
+    """Return what `create_app` built; for who reaches some trackers only, with those alone."""
     built: Panel = connection.app.state.panel
+    trackers = principal(connection).trackers
+    if trackers is None:
+        return built
+    machine, reader = NarrowedMachine(built.machine, trackers), NarrowedReader(built.reader, trackers)
+    return replace(built, machine=machine, reader=reader)
+
+
+def _asked(connection: HTTPConnection) -> Panel:
+    """Return the same for a route, whose study, if it names one, must be about what may be seen."""
+    built, study_id = panel(connection), connection.path_params.get("study_id")
+    trackers = principal(connection).trackers
+    if study_id is not None and not sees_study(built.studies, study_id, trackers):
+        raise StudyUnknown(f"There is no study {study_id}.")
     return built
 
 
-PanelDep = Annotated[Panel, Depends(panel)]
+PanelDep = Annotated[Panel, Depends(_asked)]
 
 
 def _machine(built: PanelDep) -> Machine:

@@ -22,7 +22,18 @@ class DocumentedApp(FastAPI):
         for name, schema in problem.pop("$defs", {}).items():
             schemas.setdefault(name, schema)
         schemas["ProblemDetails"] = problem
+        for schema in schemas.values():
+            _tell_defaults(schema)
         return document
+
+
+def _tell_defaults(schema: dict[str, Any]) -> None:
+    """Move defaults that are objects into words: clients' generators give up a schema that has one."""
+    for field in schema.get("properties", {}).values():
+        if isinstance(field.get("default"), dict):
+            left_out = json.dumps(field.pop("default"), sort_keys=True)
+            told = field.get("description", "")
+            field["description"] = f"{told} When left out: `{left_out}`.".strip()
 
 
 def written(app: FastAPI) -> str:

@@ -29,6 +29,7 @@ from app.tracker.reason import Reason
 from app.web.edition import PageOutdated
 from app.web.network import NetworkBusy, NotOnTrial
 from app.web.network_check import NetworkRefused
+from app.web.routes import methods_of
 from app.web.security import add_headers
 
 log = structlog.get_logger()
@@ -38,6 +39,7 @@ OWN_MISTAKE = "The panel made a mistake; its log has the details. The machine go
 FOR_PROGRAMS = ("/api/", "/health", "/ready", "/metrics", "/stream", "/diagnostics.zip", "/backup")
 RETRY_LATER = {"Retry-After": "1"}
 SIGN_IN = {"WWW-Authenticate": "Bearer"}
+PROOF = {"Proof-Needed": "1"}
 PROVE = "Type the password again, then repeat what you did."
 
 
@@ -141,7 +143,9 @@ PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
     ControlHeld: lambda error: Problem(423, str(error), error.reasons),
     ControlLost: lambda error: Problem(423, str(error), error.reasons),
     SignInNeeded: lambda error: Problem(401, str(error), headers=SIGN_IN),
-    ProofNeeded: lambda error: Problem(403, str(error), (Reason("proof_needed", str(error), PROVE),)),
+    ProofNeeded: lambda error: Problem(
+        403, str(error), (Reason("proof_needed", str(error), PROVE),), headers=PROOF
+    ),
     NotAllowed: lambda error: Problem(403, str(error)),
     WrongPassword: lambda error: Problem(401, str(error), headers=SIGN_IN),
     Throttled: lambda error: Problem(429, str(error), headers=_wait(error)),
@@ -168,7 +172,9 @@ PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
     RequestValidationError: invalid,
     HTTPException: refused_by_http,
     Exception: lambda _: Problem(
-        500, "The panel made a mistake; its log has the details. Motion is not affected."
+        500,
+        "The panel made a mistake; its log has the details. Motion is not affected.",
+        headers={"Connection": "close"},
     ),
 }
 
@@ -222,7 +228,10 @@ def install(app: FastAPI) -> None:
     """Answer every error with problem+json, on pages with `app.state.error_page` where that is set."""
 
     async def answer(request: Request, error: Exception) -> Response:
-        return answer_to(request, error)
+        response = answer_to(request, error)
+        if response.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
+            response.headers["Allow"] = ", ".join(methods_of(app.state.routes, request.url.path))
+        return response
 
     for kind in PROBLEMS:
         app.add_exception_handler(kind, answer)

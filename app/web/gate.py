@@ -19,6 +19,7 @@ from app.access.sessions import is_proven
 from app.access.tokens import token_id_of
 from app.clock import Clock
 from app.web.errors import FOR_PROGRAMS, Busy, NotAcceptable, NotSetUp, answer_to
+from app.web.languages.given_names import GIVEN
 from app.web.route_conditions import PROVEN, STREAMS, TICKETED
 from app.web.route_permissions import ROUTES
 from app.web.routes import STATIC, Guarded, key_of
@@ -104,6 +105,8 @@ class Gate:
         who = self._keeper.identify(given)
         scope.setdefault("state", {})["principal"] = who
         scope["state"]["session_id"] = given.session_id
+        if who.via is Via.SESSION:
+            GIVEN.know((who.actor,))
         if route == STATIC:
             return who
         query = _query(scope)

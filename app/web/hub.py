@@ -1,9 +1,8 @@
-"""From one machine to many readers: each state is rendered once a language and handed out in batches."""
+"""From one machine to many readers: what changed is rendered once a language and handed out in batches."""
 
 import asyncio
 from collections import deque
 from collections.abc import Coroutine, Iterator
-from dataclasses import replace
 from datetime import timedelta
 from itertools import islice
 from typing import Any
@@ -14,23 +13,25 @@ import structlog
 
 from app.clock import Clock, set_or_at
 from app.link.messages import Machine, Update
-from app.tracker.snapshot import Event, SiteSnapshot
-from app.web.edition import edition
+from app.tracker.snapshot import Event
 from app.web.languages.catalogue import catalogue_of
+from app.web.languages.given_names import GIVEN
 from app.web.languages.live_texts import in_language
 from app.web.presses import Dead
+from app.web.states import States
 from app.web.viewers import Message, Viewer, Wanted
 
 log = structlog.get_logger()
 
 SOONEST = timedelta(milliseconds=100)
 LATEST = timedelta(milliseconds=500)
+RENEW = timedelta(milliseconds=450)
+"""After this long a page is told its tracker again though nothing changed: it sees that the link is up."""
 RECONNECT = timedelta(milliseconds=50)
 FAREWELL = timedelta(seconds=1)
 BATCH = 10
 MOST_VIEWERS = 1000
 EVENTS_KEPT = 2000
-LOST = Message("machine_lost", '{"type":"machine_lost"}')
 
 
 class TooManyViewers(Exception):
@@ -49,11 +50,8 @@ class Hub:
         self._run = uuid4().hex[:8]
         self._number = 0
         self._events: deque[tuple[int, Event]] = deque(maxlen=EVENTS_KEPT)
-        self._snapshot: SiteSnapshot | None = None
-        self._rendered: dict[tuple[str | None, str], Message] = {}
-        self._rendered_of: SiteSnapshot | None = None
-        self._rendered_at = self._heard_at = clock.now()
-        self._build = edition()
+        self._states = States(clock)
+        self._watched: frozenset[str] = frozenset()
         self._changed = asyncio.Event()
         self._viewers: set[Viewer] = set()
         self._tasks: set[asyncio.Task[Any]] = set()
@@ -77,13 +75,23 @@ class Hub:
         if len(self._viewers) >= MOST_VIEWERS:
             raise TooManyViewers
         viewer = Viewer(wanted)
-        viewer.show(self._present(wanted))
+        viewer.show(self._states.message(wanted, None, self.mark), self._clock.now())
         self._viewers.add(viewer)
+        self._watch()
         return viewer
 
     def leave(self, viewer: Viewer) -> None:
         """Forget a viewer."""
         self._viewers.discard(viewer)
+        self._watch()
+
+    def _watch(self) -> None:
+        """Have the machine work out what may be asked of the trackers that somebody looks at."""
+        looked_at = {viewer.wanted.tracker_id for viewer in self._viewers}
+        watched = frozenset(one for one in looked_at if one is not None)
+        if watched != self._watched:
+            self._watched = watched
+            self.spawn(self._machine.watch(watched))
 
     def missed(self, mark: str, wanted: Wanted) -> list[Message] | None:
         """Return the wanted events since a place in the stream, None where that is not known any more."""
@@ -112,13 +120,13 @@ class Hub:
         while True:
             async for update in self._machine.updates():
                 self._hear(update)
-            self._snapshot = None
+            self._states.lose()
             await self._hand_out()
             await self._clock.sleep_until(self._clock.now() + RECONNECT)
 
     def _hear(self, update: Update) -> None:
-        self._snapshot = update.snapshot
-        self._heard_at = self._clock.now()
+        GIVEN.know(_names(update))
+        self._states.take(update)
         self._changed.set()
         for event in update.events:
             self._number += 1
@@ -143,41 +151,23 @@ class Hub:
 
     async def _hand_out(self) -> None:
         for batch in _batches(tuple(self._viewers)):
+            now = self._clock.now()
             for viewer in batch:
-                viewer.show(self._present(viewer.wanted))
-            await self._clock.sleep_until(self._clock.now())
-
-    def _present(self, wanted: Wanted) -> Message:
-        """Return the present state as text, rendered once for all who are shown it within a moment."""
-        now = self._clock.now()
-        if self._rendered_of is not self._snapshot or now - self._rendered_at > SOONEST:
-            self._rendered, self._rendered_of, self._rendered_at = {}, self._snapshot, now
-        alike = wanted.tracker_id, wanted.language
-        if alike not in self._rendered:
-            self._rendered[alike] = self._render(*alike)
-        return self._rendered[alike]
-
-    def _render(self, tracker_id: str | None, language: str) -> Message:
-        snapshot = self._snapshot
-        if snapshot is None:
-            return LOST
-        if tracker_id is not None:
-            chosen = tuple(one for one in snapshot.trackers if one.tracker_id == tracker_id)
-            snapshot = replace(snapshot, trackers=chosen)
-        state = {
-            "type": "state",
-            "rev": snapshot.sequence,
-            "boot": snapshot.boot_id,
-            "build": self._build,
-            "at": snapshot.at,
-            "age_ms": round((self._clock.now() - self._heard_at) / timedelta(milliseconds=1)),
-            "snapshot": snapshot,
-        }
-        return Message("snapshot", in_language(catalogue_of(language), state), self.mark)
+                rests_since = viewer.shown_at or now
+                if self._states.is_news(viewer.wanted, viewer.since) or now - rests_since >= RENEW:
+                    viewer.show(self._states.message(viewer.wanted, viewer.since, self.mark), now)
+            await self._clock.sleep_until(now)
 
     def _message(self, number: int, event: Event, language: str) -> Message:
         text = in_language(catalogue_of(language), {"type": "event", **_fields(event)})
         return Message("event", text, f"{self._run}-{number}")
+
+
+def _names(update: Update) -> tuple[str, ...]:
+    """Return the names that people gave what an update is of."""
+    trackers = update.snapshot.trackers if update.after is None else update.changed
+    named = (name for one in trackers for name in (one.name, one.tracker_id))
+    return (update.snapshot.site_name, *named)
 
 
 def _fields(event: Event) -> dict[str, Any]:

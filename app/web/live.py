@@ -2,20 +2,31 @@
 
 import asyncio
 from contextlib import suppress
-from datetime import timedelta
+from datetime import datetime, timedelta
+from functools import partial
 from typing import Annotated, Any, Literal, assert_never
 
 import structlog
 from fastapi import APIRouter
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, TypeAdapter, ValidationError
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    TypeAdapter,
+    ValidationError,
+)
 from starlette.websockets import WebSocket
 
 from app.access.principal import NotAllowed, Principal, ProofNeeded, SignInNeeded
 from app.access.roles import Permission
+from app.link.lanes import Lanes
 from app.link.messages import MachineUnreachable, RenewControl, StopAll, UnknownTracker
 from app.tracker.axes import Axis, JogSpeed
 from app.tracker.commands import CommandRejected, EndJog, Jog, Stop
 from app.tracker.reason import Reason
+from app.web.api.numbers import no_boolean
 from app.web.deps import Panel, order_of, principal
 from app.web.edition import PageOutdated, refuse_outdated
 from app.web.errors import machine_problem
@@ -51,7 +62,7 @@ SIGNED_OUT = Message("signed_out", '{"type":"signed_out"}')
 
 
 class _Incoming(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True)
 
 
 Name = Annotated[str, Field(min_length=1, max_length=64)]
@@ -65,7 +76,7 @@ class JogBeat(_Incoming):
     tracker_id: Name
     press_id: Name
     axis: Axis
-    direction: Literal[-1, 1]
+    direction: Annotated[Literal[-1, 1], BeforeValidator(no_boolean)]
     speed: JogSpeed
     sequence: int = Field(ge=0, le=2**53)
     tc: Milliseconds
@@ -120,6 +131,8 @@ class Session:
         self._delay = LinkDelay()
         self._presses = Presses(self._delay, panel.hub.dead)
         self._in_flight = 0
+        self._endings: Lanes[None] = Lanes(panel.clock)
+        self._stray = JogEnd(type="end_jog", tracker_id="-", press_id="-")
         self._stayed_at = panel.clock.now() - STAY_EVERY
 
     def hear(self, text: str) -> None:
@@ -134,12 +147,11 @@ class Session:
             case JogBeat():
                 self._beat(message)
             case JogEnd():
-                self._presses.end(message.press_id)
-                self._hub.spawn(self._end(message.tracker_id, message.press_id))
+                self._end_soon(message)
             case StopOne(tracker_id=tracker_id):
-                self._hub.spawn(self._stop(Stop(), tracker_id))
+                self._stop_soon(Stop(), tracker_id)
             case StopEverything():
-                self._hub.spawn(self._stop(StopAll()))
+                self._stop_soon(StopAll())
             case Ping(tc=tc, visible=visible):
                 self._delay.beyond_best(tc, self._clock.now())
                 if visible:
@@ -150,23 +162,26 @@ class Session:
 
     def close(self) -> None:
         """The page is gone: end its presses at once."""
-        for tracker_id, press_id in self._presses.end_all():
+        for tracker_id, press_id in self._presses.end_all(self._clock.now()):
             self._hub.spawn(self._end(tracker_id, press_id))
 
     def _tell(self, kind: str, **fields: Any) -> None:
         told = {"type": kind, **fields}
         self._viewer.tell(Message(kind, in_language(catalogue_of(self._viewer.wanted.language), told)))
 
+    def _tell_problem(self, error: Exception) -> None:
+        problem = machine_problem(error)
+        self._tell("problem", status=problem.status, detail=problem.detail, reasons=problem.reasons)
+
     def _beat(self, beat: JogBeat) -> None:
         round_trip = None if beat.rtt_ms is None else timedelta(milliseconds=beat.rtt_ms)
-        arrived = Heartbeat(
-            beat.press_id, beat.tracker_id, beat.sequence, beat.tc, self._clock.now(), round_trip
-        )
-        verdict, lease = self._presses.judge(arrived)
+        now = self._clock.now()
+        heard = Heartbeat(beat.press_id, beat.tracker_id, beat.sequence, beat.tc, now, round_trip)
+        verdict, lease = self._presses.judge(heard)
         match verdict:
             case Verdict.RENEW if self._in_flight < MOST_IN_FLIGHT:
                 self._in_flight += 1
-                self._hub.spawn(self._renew(beat, lease))
+                self._hub.spawn(self._renew(beat, now + lease))
             case Verdict.RENEW | Verdict.IGNORE:
                 pass
             case Verdict.DEAD:
@@ -181,7 +196,9 @@ class Session:
     def _answer(self, press_id: str, status: str, *reasons: Reason) -> None:
         self._tell("jog", press_id=press_id, status=status, reasons=reasons)
 
-    async def _renew(self, beat: JogBeat, lease: timedelta) -> None:
+    async def _renew(self, beat: JogBeat, until: datetime) -> None:
+        """Renew a jog until an instant that was fixed when its heartbeat came, however busy the panel is."""
+        lease = max(until - self._clock.now(), timedelta())
         jog = Jog(beat.press_id, beat.axis, beat.direction, beat.speed, beat.sequence, lease)
         try:
             refuse_outdated(self._mark, self._machine.latest())
@@ -223,18 +240,41 @@ class Session:
             with suppress(CommandRejected, MachineUnreachable, UnknownTracker, *FORBIDDEN):
                 await self._machine.execute(order_of(who, RenewControl(mine)))
 
+    def _end_soon(self, end: JogEnd) -> None:
+        """End a press; of those that did not begin on this page the newest, for they move nothing here."""
+        if self._presses.end(end.press_id):
+            self._hub.spawn(self._end(end.tracker_id, end.press_id))
+            return
+        self._stray = end
+        if not self._endings.waits(JogEnd):
+            self._hub.spawn(self._endings.ask(JogEnd, self._end_stray))
+
+    async def _end_stray(self) -> None:
+        await self._end(self._stray.tracker_id, self._stray.press_id)
+
     async def _end(self, tracker_id: str, press_id: str) -> None:
         with suppress(CommandRejected, MachineUnreachable, UnknownTracker, ValueError, *FORBIDDEN):
             await self._machine.execute(order_of(self._who, EndJog(press_id), tracker_id))
         self._answer(press_id, "ended")
+
+    def _stop_soon(self, stop: Stop | StopAll, tracker_id: str | None = None) -> None:
+        """Stop at once, or with the next stop where one that this page asked for is under way."""
+        site = self._machine.latest()
+        if (
+            site is not None
+            and tracker_id is not None
+            and all(one.tracker_id != tracker_id for one in site.trackers)
+        ):
+            self._tell_problem(UnknownTracker(tracker_id))
+        elif not self._endings.waits(tracker_id):
+            self._hub.spawn(self._endings.ask(tracker_id, partial(self._stop, stop, tracker_id)))
 
     async def _stop(self, stop: Stop | StopAll, tracker_id: str | None = None) -> None:
         try:
             await self._machine.execute(order_of(self._who, stop, tracker_id))
         except (CommandRejected, MachineUnreachable, UnknownTracker, ValueError, *FORBIDDEN) as error:
             log.error("stop failed", tracker_id=tracker_id, error=str(error))
-            problem = machine_problem(error)
-            self._tell("problem", status=problem.status, detail=problem.detail, reasons=problem.reasons)
+            self._tell_problem(error)
         else:
             self._tell("stopped", tracker_id=tracker_id)
 
@@ -247,7 +287,7 @@ async def live(
     panel: Panel = websocket.app.state.panel
     who = principal(websocket)
     try:
-        viewer = _viewer(panel, who, Wanted(tracker, language=code_of(language)))
+        viewer = _viewer(panel, who, Wanted(tracker, language=code_of(language), trackers=who.trackers))
     except TooManyViewers:
         await websocket.close(1013, "too many viewers")
         return

@@ -39,6 +39,7 @@ from app.web.hub import Hub
 from app.web.languages import read_all
 from app.web.languages.choice import Speech
 from app.web.limits import StreamLimit
+from app.web.live_protocol import cautious_sockets
 from app.web.mdns import announced
 from app.web.nesting import NestingLimit
 from app.web.network import NOT_SERVED, NetworkDesk, Stage
@@ -56,6 +57,7 @@ from app.web.server import (
 )
 from app.web.simulations import Simulations
 from app.web.studies import Studies
+from app.web.ui.asked import AskFirst
 from app.web.ui.pages import ROUTERS, error_page
 from app.web.ui.render import environment
 
@@ -89,6 +91,7 @@ def create_app(
         docs_url=None,
         redoc_url=None,
         openapi_url="/api/v1/openapi.json",
+        separate_input_output_schemas=False,
         lifespan=_living,
     )
     hub = Hub(machine, clock)
@@ -102,6 +105,7 @@ def create_app(
     app.router.routes.extend(_doors())
     app.state.routes = guarded_routes(app.routes)
     errors.install(app)
+    app.add_middleware(AskFirst)
     app.add_middleware(NestingLimit)
     app.add_middleware(Uploads)
     app.add_middleware(RequestBodyLimitMiddleware, max_body_size=LARGEST_BODY)
@@ -123,8 +127,9 @@ DESCRIPTION = """Everything that the browser can do, through the same calls.
 Field names carry units. Azimuth is clockwise from true north, elevation above the horizon, longitude positive
 east. Instants are ISO 8601 with offset. Errors are `application/problem+json` (RFC 9457); a 409 has `reasons`
 with every unmet condition. Motion answers 202 with the snapshot; `activity` and `in_position` tell when it is
-done. A repeated request with the same `Idempotency-Key` is done once; one whose `issued_at` is older than 2 s
-is refused. The live socket of the pages is `/live`; for programs there is `/api/v1/stream`."""
+done. A repeated request with the same `Idempotency-Key` is done once; one whose `issued_at` is more than 2 s
+old, or more than 2 s ahead of the site's clock, is refused. The live socket of the pages is `/live`; for
+programs there is `/api/v1/stream`."""
 
 
 @cache
@@ -217,7 +222,7 @@ def configured(app: FastAPI, settings: Settings) -> uvicorn.Config:
         host=settings.host,
         port=settings.port,
         http=cautious(Connections(reserve_descriptors())),
-        ws="websockets-sansio",
+        ws=cautious_sockets(app.state.panel.clock),
         ws_max_size=LARGEST_MESSAGE,
         ws_ping_interval=PING_S,
         ws_ping_timeout=PING_S,

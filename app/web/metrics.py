@@ -24,6 +24,7 @@ GAUGES = {
     "frames_waiting": "Recorded frames that wait to be stored.",
     "store_queue": "Writes that wait for the database.",
     "resident_bytes": "Memory of the machine's process.",
+    "overloaded": "Whether the controller leaves out what is not motion because its ticks come late.",
 }
 COUNTERS = {
     "orders": "Orders that the machine got.",

@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from dataclasses import replace
 from datetime import datetime, timedelta
+from enum import Enum, auto
+from math import asin, cos, radians, sin, sqrt
 
 from tzfpy import get_tz
 
@@ -14,6 +16,8 @@ PLACELESS = ("UTC", SEA)
 MOST_APART_H = 4.0
 """No land keeps a civil time so far from that of its sun; what western China keeps comes nearest."""
 SAME_PLACE_DEG = 0.5
+FAR_KM = 100.0
+EARTH_KM = 6371.0
 
 
 def swapped(place: Location) -> Location | None:
@@ -31,7 +35,10 @@ def place_doubts(
     `before` is the location that is stored, `device_zone` what the clock of the device at hand keeps.
     """
     clocks = (time_zone, device_zone)
-    return (*_swap_doubts(place, clocks, before), *_zone_doubts(place, time_zone, device_zone, now))
+    mistaken = (*_swap_doubts(place, clocks, before), *_side_doubts(place, device_zone, now, before))
+    at_sea = ("This place lies in the sea.",) if not mistaken and _is_sea(place) else ()
+    far = _far_doubts(place, before)
+    return (*mistaken, *at_sea, *far, *_zone_doubts(place, time_zone, device_zone, now))
 
 
 def _swap_doubts(place: Location, clocks: tuple[str, str], before: Location | None) -> Iterator[str]:
@@ -46,6 +53,63 @@ def _swap_doubts(place: Location, clocks: tuple[str, str], before: Location | No
         yield f"With latitude and longitude exchanged the place lies where clocks keep {_zone_at(other)}."
 
 
+def _side_doubts(place: Location, device_zone: str, now: datetime, before: Location | None) -> Iterator[str]:
+    """Return that east and west, or north and south, are likely to be exchanged."""
+    east = _likelier(place, replace(place, longitude_deg=-place.longitude_deg), device_zone, now, before)
+    north = _likelier(place, replace(place, latitude_deg=-place.latitude_deg), device_zone, now, before)
+    if east is _Likelier.STORED:
+        yield "These are the numbers of the stored location with east and west exchanged."
+    elif east is _Likelier.CLOCKS:
+        yield "With east and west exchanged the place lies where the clocks keep the time of this device."
+    elif east is _Likelier.LAND:
+        yield "This place lies in the sea; with east and west exchanged it lies on land."
+    if north is _Likelier.STORED:
+        yield "These are the numbers of the stored location with north and south exchanged."
+    elif north is _Likelier.CLOCKS:
+        yield "With north and south exchanged the place lies where the clocks keep the time of this device."
+
+
+class _Likelier(Enum):
+    """Why another place is likelier than the one that was given."""
+
+    STORED = auto()
+    CLOCKS = auto()
+    LAND = auto()
+
+
+def _likelier(
+    place: Location, other: Location, device_zone: str, now: datetime, before: Location | None
+) -> _Likelier | None:
+    if before is not None and _is_near(other, before) and not _is_near(place, before):
+        return _Likelier.STORED
+    if device_zone and not _is_sea(other):
+        kept = _kept(device_zone, now)
+        if _kept(_zone_at(other), now) == kept != _kept(_zone_at(place), now):
+            return _Likelier.CLOCKS
+    return _Likelier.LAND if _is_sea(place) and not _is_sea(other) else None
+
+
+def _far_doubts(place: Location, before: Location | None) -> Iterator[str]:
+    """Return that the stored location is far away."""
+    if before is None:
+        return
+    apart_km = round(_apart_km(place, before), -1)
+    if apart_km > FAR_KM:
+        yield f"This place is {apart_km:.0f} km away from the stored location."
+
+
+def _apart_km(one: Location, other: Location) -> float:
+    """Return the distance along the surface of a sphere."""
+    north, other_north = radians(one.latitude_deg), radians(other.latitude_deg)
+    east = radians(other.longitude_deg - one.longitude_deg)
+    half = sin((other_north - north) / 2) ** 2 + cos(north) * cos(other_north) * sin(east / 2) ** 2
+    return 2.0 * EARTH_KM * asin(sqrt(min(1.0, half)))
+
+
+def _is_sea(place: Location) -> bool:
+    return _zone_at(place).startswith(SEA)
+
+
 def _zone_doubts(place: Location, time_zone: str, device_zone: str, now: datetime) -> Iterator[str]:
     if not time_zone.startswith(PLACELESS) and abs(_solar_difference_h(place, time_zone, now)) > MOST_APART_H:
         yield (
@@ -57,6 +121,11 @@ def _zone_doubts(place: Location, time_zone: str, device_zone: str, now: datetim
             f"At this longitude the sun is highest at {_solar_noon(place, device_zone, now)} by the clock of "
             "this device: are you at the tracker?"
         )
+
+
+def _kept(time_zone: str, now: datetime) -> timedelta | None:
+    """Return by how much the clocks of a zone are ahead of UTC."""
+    return now.astimezone(zone_of(time_zone)).utcoffset()
 
 
 def _zone_at(place: Location) -> str:

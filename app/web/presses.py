@@ -8,6 +8,7 @@ from collections import OrderedDict
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from enum import StrEnum
+from typing import NamedTuple
 
 from app.tracker.commands import JOG_LEASE
 
@@ -15,6 +16,8 @@ LATEST_HEARTBEAT = timedelta(milliseconds=120)
 SLOWEST_ROUND_TRIP = timedelta(milliseconds=240)
 CLOCK_DRIFT = 2e-4
 MOST_DEAD = 10_000
+MOST_LIVE = 8
+"""So many presses a connection has at most; one more ends the oldest, which its lease ends too."""
 
 
 class LinkDelay:
@@ -77,13 +80,19 @@ class Heartbeat:
     round_trip: timedelta | None = None
 
 
+class _Held(NamedTuple):
+    tracker_id: str
+    sequence: int
+    until: datetime
+
+
 class Presses:
-    """The presses of one connection."""
+    """The presses of one connection; one that was not renewed in time is dead, as it is for the machine."""
 
     def __init__(self, delay: LinkDelay, dead: Dead) -> None:
         self._delay = delay
         self._dead = dead
-        self._live: dict[str, tuple[str, int]] = {}
+        self._live: dict[str, _Held] = {}
 
     def judge(self, beat: Heartbeat) -> tuple[Verdict, timedelta]:
         """Return what to do with a heartbeat, and for `RENEW` the lease that is left of it.
@@ -92,29 +101,38 @@ class Presses:
         quickly, and what a frozen link delivers late is known by that. Before, all may be equally late.
         """
         extra = self._delay.beyond_best(beat.sent_ms, beat.arrived)
+        self._bury_overdue(beat.arrived)
         if beat.press_id in self._dead:
             return Verdict.DEAD, timedelta()
         known = self._live.get(beat.press_id)
-        if known is not None and beat.sequence <= known[1]:
+        if known is not None and beat.sequence <= known.sequence:
             return Verdict.IGNORE, timedelta()
         if known is None and beat.round_trip is None:
             return Verdict.UNMEASURED, timedelta()
         if extra > LATEST_HEARTBEAT or _too_slow(beat.round_trip):
             return (Verdict.TOO_SLOW if known is None else Verdict.IGNORE), timedelta()
-        self._live[beat.press_id] = (beat.tracker_id, beat.sequence)
-        return Verdict.RENEW, JOG_LEASE - extra
+        if known is None and len(self._live) >= MOST_LIVE:
+            self.end(next(iter(self._live)))
+        lease = JOG_LEASE - extra
+        self._live[beat.press_id] = _Held(beat.tracker_id, beat.sequence, beat.arrived + lease)
+        return Verdict.RENEW, lease
 
-    def end(self, press_id: str) -> None:
-        """Let a press be dead for ever."""
-        self._live.pop(press_id, None)
+    def end(self, press_id: str) -> bool:
+        """Let a press be dead for ever; return whether it was one of this connection and lived."""
         self._dead.bury(press_id)
+        return self._live.pop(press_id, None) is not None
 
-    def end_all(self) -> list[tuple[str, str]]:
-        """End every press of the connection; return their trackers and ids."""
-        ended = [(tracker_id, press_id) for press_id, (tracker_id, _) in self._live.items()]
+    def end_all(self, now: datetime) -> list[tuple[str, str]]:
+        """End every press that is still held; return their trackers and ids."""
+        self._bury_overdue(now)
+        ended = [(held.tracker_id, press_id) for press_id, held in self._live.items()]
         for _, press_id in ended:
             self.end(press_id)
         return ended
+
+    def _bury_overdue(self, now: datetime) -> None:
+        for press_id in [press_id for press_id, held in self._live.items() if held.until <= now]:
+            self.end(press_id)
 
 
 def _too_slow(round_trip: timedelta | None) -> bool:

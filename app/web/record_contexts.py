@@ -5,6 +5,7 @@ from datetime import datetime
 from typing import ClassVar
 
 from app.store.store import Photo, RecordHead
+from app.tracker.memory import StepName
 from app.web.contexts import Form, Frame, ModeChoice
 from app.web.record import CommissioningRecord
 from app.web.record_document import Difference, RecordDocument
@@ -27,6 +28,8 @@ class RecordPage:
     signed: tuple[RecordHead, ...]
     most_photos: int
     photo_error: str = ""
+    doubts: tuple[str, ...] = ()
+    misdated: tuple[StepName, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from app.web.errors import NotFound
 from app.web.photos import plain_photo
 from app.web.record import read_record
 from app.web.record_document import document
+from app.web.sign_doubts import sign_doubts
 from app.web.signatures import Signature
 
 Send = Callable[[RecordOrder], Awaitable[object]]
@@ -31,6 +32,13 @@ async def remove_photo(send: Send, reader: Reader, tracker_id: str, number: int)
     if photo.tracker_id != tracker_id or photo.record_number is not None:
         raise NotFound(f"No photo {number} waits for the next record of {tracker_id}.")
     await send(RemoveRecordPhoto(tracker_id, number))
+
+
+async def asked_before_signing(built: Panel, tracker_id: str) -> tuple[str, ...]:
+    """Return what must be confirmed before the record of a tracker is signed as it stands now."""
+    record = await read_record(built.machine, built.reader, tracker_id)
+    site = built.machine.latest()
+    return sign_doubts(record, () if site is None else site.alarms)
 
 
 async def sign(

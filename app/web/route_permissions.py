@@ -38,6 +38,9 @@ _TABLE: dict[Permission, str] = {
         DELETE /api/v1/trackers/{tracker_id}/jog/{press_id}
         WS /live
     """,
+    Permission.KNOWN: """
+        GET /api/v1/me
+    """,
     Permission.OWN: """
         GET /account
         POST /account/password
@@ -115,7 +118,6 @@ _TABLE: dict[Permission, str] = {
         GET /trackers/{tracker_id}/sun-path
         GET /trackers/{tracker_id}/trends
         GET /api/v1/openapi.json
-        GET /api/v1/me
         POST /api/v1/tickets
         GET /api/v1/alarms
         GET /api/v1/alarms/catalogue
@@ -284,6 +286,7 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/sun-check/forget
         POST /trackers/{tracker_id}/sun-check/take
         POST /trackers/{tracker_id}/zero
+        POST /trackers/{tracker_id}/zero/undo
         DELETE /api/v1/recordings/{recording_id}
         PATCH /api/v1/site
         PUT /api/v1/site/clock

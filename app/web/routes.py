@@ -68,6 +68,12 @@ def key_of(routes: Iterable[Guarded], scope: Scope) -> tuple[str, dict[str, str]
     return "", {}
 
 
+def methods_of(routes: Iterable[Guarded], path: str) -> list[str]:
+    """Return every method that an address takes; the framework tells those of its first route alone."""
+    found = (route.methods for route in routes if route.pattern.match(path))
+    return sorted(frozenset().union(*found) - {"WS"})
+
+
 @cache
 def _pattern(path: str) -> re.Pattern[str]:
     return compile_path(path)[0]

@@ -19,6 +19,7 @@ UPLOADS = re.compile(r"/api/v1/weather-files|/studies/weather|(?:/api/v1)?/track
 """Where files come in; everywhere else a request has at most `LARGEST_BODY`."""
 
 TOO_LARGE = "A request to this panel has at most one megabyte, an upload of a weather file or a photo eight."
+TWO_HOSTS = "This request names two hosts, so it is not clear whom it asks. Send one Host header."
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
 OWN_SITES = frozenset({"same-origin", "none"})
@@ -83,6 +84,9 @@ class Guard:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on, or answer 403 with the sentence that says why."""
+        if scope["type"] in ("http", "websocket") and _hosts_told(scope) > 1:
+            await _refuse(scope, send, 400, TWO_HOSTS)
+            return
         if scope["type"] in ("http", "websocket") and (refusal := self._refusal(scope)):
             if self._on_refusal is not None:
                 self._on_refusal(scope, refusal)
@@ -164,6 +168,10 @@ def _is_own_origin(origin: str, host: str, *, is_secure: bool) -> bool:
     except ValueError:
         return False
     return parts.netloc == host and parts.scheme in (("https",) if is_secure else ("http", "https"))
+
+
+def _hosts_told(scope: Scope) -> int:
+    return sum(name == b"host" for name, _ in scope["headers"])
 
 
 def _body_size(scope: Scope) -> int:

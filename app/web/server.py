@@ -4,7 +4,7 @@ import asyncio
 import re
 import resource
 import socket
-from collections import Counter, deque
+from collections import Counter
 from collections.abc import Callable
 from enum import Enum
 from typing import Any, Protocol, assert_never
@@ -14,6 +14,8 @@ import uvicorn
 from uvicorn.config import Config
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 from uvicorn.server import ServerState
+
+from app.turnstile import Turnstile
 
 log = structlog.get_logger()
 
@@ -139,30 +141,6 @@ class Connections:
             self._told.discard(client)
         if self._held[client] <= 0:
             del self._held[client]
-
-
-class Turnstile:
-    """Does what came at once one by one; between two of them everybody else gets a turn."""
-
-    def __init__(self) -> None:
-        self._waiting: deque[Callable[[], None]] = deque()
-
-    def __len__(self) -> int:
-        return len(self._waiting)
-
-    def add(self, work: Callable[[], None]) -> None:
-        """Do this after what waits already."""
-        self._waiting.append(work)
-        if len(self._waiting) == 1:
-            asyncio.get_running_loop().call_soon(self._turn)
-
-    def _turn(self) -> None:
-        try:
-            self._waiting[0]()
-        finally:
-            self._waiting.popleft()
-            if self._waiting:
-                asyncio.get_running_loop().call_soon(self._turn)
 
 
 class CautiousHttp(HttpToolsProtocol):

@@ -64,3 +64,9 @@ def first_made(request: Request) -> str:
 def whence(request: Request) -> tuple[str, str]:
     """Return from which address and with which browser somebody asks."""
     return principal(request).address, request.headers.get("user-agent", "")
+
+
+def session_held(request: Request) -> str:
+    """Return the session id that a browser still has from before, empty where it has none."""
+    held: str = request.scope.get("state", {}).get("session_id", "")
+    return held

@@ -16,6 +16,9 @@ const TONE_S = 0.18;
 const calls = (alarm) => CALLS.includes(alarm.state);
 const one = (id) => document.getElementById(id);
 
+// The title of an alarm; one that waits to be seen though its cause is gone does not read as if it stood.
+export const headingOf = (alarm) => (alarm.state === "returned" ? _("Gone: {title}", { title: alarm.title }) : alarm.title);
+
 const UNKNOWN = _("Alarms are not known now");
 
 // Without the machine nothing is known: what was shown last is no longer the truth.
@@ -24,7 +27,7 @@ function paintUnknown() {
   if (!one("alarm-strip").hasAttribute("data-unknown")) return;
   const last = live.site?.alarms.find((alarm) => calls(alarm) && !alarm.collapsed);
   setText("alarm-first-title", UNKNOWN);
-  setText("alarm-first-where", last ? _("Last known: {title}, {where}", last) : _("There is no connection to the machine."));
+  setText("alarm-first-where", last ? _("Last known: {title}, {where}", { title: headingOf(last), where: last.where }) : _("There is no connection to the machine."));
   for (const shape of document.querySelectorAll("[data-first-shape]")) shape.hidden = true;
   for (const item of document.querySelectorAll("[data-count] b")) item.textContent = "?";
   one("alarm-ack").querySelector("button").disabled = true;
@@ -40,7 +43,7 @@ function paintFirst(site) {
     shape.hidden = Number(shape.dataset.firstShape) !== first?.priority;
   }
   const standing = site.alarm_counts.standing.reduce((sum, count) => sum + count, 0);
-  const title = first?.title ?? (standing ? _("No new alarm") : _("No alarms"));
+  const title = first ? headingOf(first) : (standing ? _("No new alarm") : _("No alarms"));
   const where = first ? `${first.where} · ${clockTime(first.since, live.zone)}` : "";
   setText("alarm-first-title", title);
   setText("alarm-first-where", where);

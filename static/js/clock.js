@@ -6,6 +6,7 @@ import { _ } from "./said.js";
 
 const zone = Intl.DateTimeFormat().resolvedOptions().timeZone;
 const CLOSE_S = 5;
+const ASKED_FROM_S = 60;
 
 function tick() {
   const device = new Date();
@@ -14,6 +15,7 @@ function tick() {
   const now = live.machineNow();
   const seconds = now === null ? null : (Date.parse(now) - device.getTime()) / 1000;
   document.getElementById("clock-difference").textContent = seconds === null ? "–" : signedSeconds(seconds);
+  document.getElementById("clock-apart").toggleAttribute("data-off", seconds !== null && Math.abs(seconds) > ASKED_FROM_S);
   document.getElementById("clock-verdict").textContent = seconds === null ? "" : verdict(seconds);
 }
 

@@ -10,10 +10,12 @@ const SLIDE_PX = 24;
 const SLOW_LINK_MS = 120;
 const LEVELS = [40, SLOW_LINK_MS, Infinity];
 const LEVEL_WORDS = [_("not measured yet"), _("good"), _("fair"), _("too slow")];
+const TOLD_WITHIN_MS = 3000;
 const KEYS = new Set([" ", "Enter"]);
 const said = document.getElementById("jog-words");
 
 let press = null;
+let endedAt = -Infinity;
 
 const speed = () => document.querySelector('input[name="speed"]:checked')?.value ?? "slow";
 
@@ -49,6 +51,7 @@ function end(why = "") {
   const { id, key, timer, pointer, beats, sequence } = press;
   paintBeats(beats - sequence, beats);
   press = null;
+  endedAt = performance.now();
   clearInterval(timer);
   letGo();
   delete key.dataset.held;
@@ -99,9 +102,19 @@ function watch(key) {
 function judged(message) {
   if (message.press_id !== press?.id) {
     if (message.status === "refused") said.textContent = message.reasons?.map((reason) => reason.message).join(" ") ?? "";
-    return;
+    return undefined;
   }
+  if (message.status === "dead") return end(_("The axis stopped: the signal of the held button did not arrive in time. Let it go and press it again."));
   if (message.status !== "ok") end(message.reasons?.map((reason) => `${reason.message} ${reason.hint ?? ""}`).join(" ") || _("The machine ended the movement."));
+  return undefined;
+}
+
+// What the controller writes in its journal of a movement that it ended itself; the page's own word may have come first.
+function told({ kind, tracker_id: trackerId, message, data }) {
+  const mine = press || performance.now() - endedAt < TOLD_WITHIN_MS;
+  if (kind !== "jog_ended" || trackerId !== live.trackerId || data?.outcome === "released" || !mine) return;
+  end(message);
+  said.textContent = message;
 }
 
 // How many of the last press's heartbeats could not leave in time.
@@ -110,6 +123,7 @@ function paintBeats(lost, all) {
 }
 
 function paintLink() {
+  if (live.link !== "live") return paintNoLink();
   const trip = live.roundTripMs;
   const slow = trip !== null && trip > SLOW_LINK_MS;
   const level = trip === null ? 0 : LEVELS.findIndex((most) => trip <= most) + 1;
@@ -117,6 +131,13 @@ function paintLink() {
   document.getElementById("link-words-jog").textContent = LEVEL_WORDS[level];
   document.getElementById("round-trip").textContent = trip === null ? "" : _("{time} ms there and back", { time: Math.max(1, Math.round(trip)) });
   document.getElementById("link-verdict").textContent = slow ? _("Link too slow for hold-to-run: use the small steps.") : "";
+  return undefined;
+}
+
+function paintNoLink() {
+  document.getElementById("link-quality").dataset.level = 0;
+  document.getElementById("link-words-jog").textContent = _("no connection");
+  for (const id of ["round-trip", "lost-beats", "link-verdict"]) document.getElementById(id).textContent = "";
 }
 
 document.querySelectorAll("[data-jog]").forEach(watch);
@@ -130,7 +151,9 @@ document.addEventListener("htmx:before:swap", (event) => {
   if (press && !String(swap).startsWith("none") && target?.contains?.(press.key)) end();
 });
 live.on("jog", judged);
+live.on("event", told);
 live.on("pong", paintLink);
+live.on("link", paintLink);
 live.on("stopped", () => end(_("Stopped.")));
 live.on("link", () => { if (live.link !== "live") end(_("The connection was lost.")); });
 live.on("state", () => { if (press?.key.disabled) end(); });

@@ -3,6 +3,8 @@
 import { loadAgain } from "./again.js";
 import { _ } from "./said.js";
 
+const WORTH_IT = "main form.form[method=post]:not(.action)";
+const SENT = "typed-and-sent";
 const SKIPPED = new Set(["password", "file", "submit", "button"]);
 const ORDER_FIELDS = new Set(["back", "issued_at", "key", "epoch"]);
 const DRAWN = /_drawn$/;
@@ -74,19 +76,33 @@ function watch(form) {
   }
 }
 
-const formsWorthIt = () => document.querySelectorAll("main form.form[method=post]:not(.action)");
+const formsWorthIt = () => document.querySelectorAll(WORTH_IT);
+
+// A refusal, and the pages on which somebody is asked for a name or a password first, keep what was typed.
+function forgetSent() {
+  const place = sessionStorage.getItem(SENT);
+  sessionStorage.removeItem(SENT);
+  const refused = document.querySelector("[data-problem], .summary-error, main .outcome-refused, .field-error, .sign-in[action='/prove'], .sign-in[action='/login']");
+  if (place && !refused) sessionStorage.removeItem(place);
+}
 
 export function start() {
+  forgetSent();
   formsWorthIt().forEach(watch);
   for (const kind of ["input", "change"]) {
     document.addEventListener(kind, (event) => {
-      const form = event.target.closest?.("main form.form[method=post]:not(.action)");
+      const form = event.target.closest?.(WORTH_IT);
       if (form) keep(form);
     });
   }
   document.addEventListener("htmx:after:request", (event) => {
-    const { sourceElement, response } = event.detail?.ctx ?? {};
+    const { sourceElement, response, request } = event.detail?.ctx ?? {};
     const form = sourceElement?.closest?.("form");
-    if (form && response && (response.status ?? 500) < 400) sessionStorage.removeItem(placeOf(form));
+    if (!form || !response || (response.status ?? 500) >= 400) return;
+    if (new URL(request.action, location).pathname === new URL(form.action).pathname) sessionStorage.removeItem(placeOf(form));
+  });
+  // A form that goes as a page: what was typed is forgotten once the page that comes back refuses nothing.
+  document.addEventListener("submit", ({ target }) => {
+    if (target.matches(WORTH_IT) && !target.hasAttribute("hx-post")) sessionStorage.setItem(SENT, placeOf(target));
   });
 }

@@ -7,6 +7,7 @@ import { _ } from "./said.js";
 const OLD_MS = 1500;
 const DEAD_MS = 3000;
 const RETRY_MS = 300;
+const FLOODED = 4029;
 const root = document.documentElement;
 const listeners = { state: new Set(), jog: new Set(), stopped: new Set(), event: new Set(), link: new Set(), pong: new Set(), problem: new Set() };
 
@@ -24,7 +25,7 @@ export const live = {
     return () => listeners[kind].delete(listener);
   },
   trackerOf(id) {
-    return live.site?.trackers.find((one) => one.tracker_id === id) ?? null;
+    return known.get(id) ?? null;
   },
   // Sends at once or not at all; says which.
   send(message) {
@@ -40,6 +41,7 @@ export const live = {
 };
 
 let socket = null;
+let known = new Map();
 let heardAt = 0;
 let stateAt = 0;
 let openedAt = 0;
@@ -63,18 +65,26 @@ function connect() {
   live.roundTripMs = null;
   mine.onopen = ping;
   mine.onmessage = (message) => mine === socket && hear(JSON.parse(message.data));
-  mine.onclose = () => {
+  mine.onclose = (closing) => {
     if (mine !== socket) return;
     socket = null;
+    if (closing.code === FLOODED) tell("problem", { detail: _("This page sent more messages than Heliopanel takes and was cut off. It connects again by itself; STOP works.") });
     judge("closed");
     setTimeout(connect, RETRY_MS);
   };
 }
 
+// A state has all trackers; a part of one only those that changed, in the order of no list.
+function merged({ part, snapshot }) {
+  if (!part) known = new Map();
+  for (const one of snapshot.trackers) known.set(one.tracker_id, one);
+  return { ...snapshot, trackers: [...known.values()] };
+}
+
 const HEARD = {
   state(message) {
     heardAt = stateAt = performance.now();
-    live.site = message.snapshot;
+    live.site = merged(message);
     live.build = message.build;
     live.tracker = live.trackerOf(live.trackerId);
     setLink("live");
@@ -170,13 +180,17 @@ export function fillReasons(list, reasons) {
 
 const reasonsFor = (element, action) => scopeOf(element)?.actions?.[action] ?? [];
 
+// What is allowed is worked out for who looks: until it comes, the buttons of a tracker's page stay as they are.
+const unanswered = () => live.link === "live" && live.tracker !== null && Object.keys(live.tracker.actions).length === 0;
+
 function paintActions() {
   for (const key of document.querySelectorAll("[data-action]")) {
     // A key that moves while it is held waits until the connection was measured.
     const unmeasured = "jog" in key.dataset && live.roundTripMs === null;
+    if (unanswered() && !unmeasured) continue;
     key.disabled = live.link !== "live" || unmeasured || reasonsFor(key, key.dataset.action).length > 0;
   }
-  for (const list of document.querySelectorAll("[data-reasons]")) fillReasons(list, reasonsFor(list, list.dataset.reasons));
+  for (const list of unanswered() ? [] : document.querySelectorAll("[data-reasons]")) fillReasons(list, reasonsFor(list, list.dataset.reasons));
   for (const list of document.querySelectorAll("[data-list]")) fillReasons(list, scopeOf(list)?.[list.dataset.list] ?? []);
 }
 
@@ -222,14 +236,23 @@ function paintLink() {
     const age = ageSeconds();
     const since = age === null ? "" : ` ${_("Values are {age} s old.", { age: Math.round(age) })}`;
     document.getElementById("link-banner-words").textContent = `${OFF_WORDS[live.link]}${since}`;
+    const advice = document.getElementById("link-banner-advice");
+    advice.hidden = live.link === "signed-out";
+    if (!advice.hidden) advice.textContent = OFF_ADVICE[live.link];
   }
   if (live.link !== "live") paintActions();
 }
 
 const OFF_WORDS = {
   lost: _("The controller service does not answer."),
-  stale: _("No connection to the panel."),
+  stale: _("No connection to the controller."),
   "signed-out": _("Your session has ended: load the page again to sign in. STOP still works."),
+};
+
+// Without its service nothing tracks or stows: whether it runs is not known here, so nothing is promised.
+const OFF_ADVICE = {
+  lost: _("Movement is off here; tracking and stowing may have stopped."),
+  stale: _("Movement is off here; tracking and stowing do not need this connection."),
 };
 
 export function paint() {

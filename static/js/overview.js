@@ -1,5 +1,6 @@
 // The overview: moves the bars of every tracker, counts its alarms, and counts what the trackers do.
 
+import { headingOf } from "./alarms.js";
 import { live } from "./live.js";
 
 const WIDTH = 200;
@@ -29,7 +30,7 @@ function paintAlarms(holder) {
   const worst = Math.min(...mine.map((alarm) => alarm.priority));
   holder.hidden = !mine.length;
   holder.querySelector("b").textContent = String(mine.length);
-  holder.querySelector(".glance-trouble").textContent = mine.find((alarm) => alarm.priority === worst)?.title ?? "";
+  holder.querySelector(".glance-trouble").textContent = mine.length ? headingOf(mine.find((alarm) => alarm.priority === worst)) : "";
   const card = holder.closest("[data-tracker]");
   card.querySelector("[data-urgent]").hidden = worst !== 1;
   card.querySelector("[data-calm]").hidden = worst === 1;
@@ -43,7 +44,8 @@ function paintCount(item, isMeant) {
 }
 
 function paintDoing() {
-  for (const item of document.querySelectorAll("[data-doing]")) paintCount(item, (one) => one.activity === item.dataset.doing);
+  for (const item of document.querySelectorAll("[data-doing]")) paintCount(item, (one) => !one.approaching && one.activity === item.dataset.doing);
+  for (const item of document.querySelectorAll("[data-approaching]")) paintCount(item, (one) => one.approaching);
   for (const item of document.querySelectorAll("[data-unstowed]")) paintCount(item, (one) => Boolean(one.not_stowed));
 }
 

@@ -10,14 +10,14 @@ const card = () => document.getElementById("weather");
 
 function shown() {
   const names = [...card().querySelectorAll(`[data-live^="${READINGS}"]`)].map((element) => element.dataset.live.slice(READINGS.length));
-  return keyOf(names, card().hasAttribute("data-simulated"));
+  return keyOf(names, card().hasAttribute("data-simulated"), card().hasAttribute("data-before-restart"));
 }
 
-function known({ readings, simulated } = { readings: {}, simulated: false }) {
-  return keyOf(Object.keys(readings).filter((name) => readings[name] !== null), simulated);
+function known({ readings, simulated, before_restart: old } = { readings: {}, simulated: false, before_restart: false }) {
+  return keyOf(Object.keys(readings).filter((name) => readings[name] !== null), simulated, old);
 }
 
-const keyOf = (names, simulated) => [...names.sort(), simulated].join(" ");
+const keyOf = (names, simulated, old) => [...names.sort(), simulated, old].join(" ");
 
 async function follow() {
   if (performance.now() - askedAt < LEAST_MS || shown() === known(live.site.weather ?? undefined)) return;

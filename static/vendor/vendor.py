@@ -74,6 +74,17 @@ def copy(archive: Path, inside: str, files: list[str], target: Path) -> dict[str
     return checksums
 
 
+def cut(folder: Path, subsets: dict[str, dict[str, str]]) -> dict[str, str]:
+    """Make fonts with a few letters of a copied one and return their checksums by path, as `copy` does."""
+    checksums = {}
+    for name, subset in subsets.items():
+        options = ["--flavor=woff2", "--layout-features=*", f"--output-file={folder / name}"]
+        fonttools = [sys.executable, "-m", "fontTools.subset", str(folder / subset["of"])]
+        subprocess.run([*fonttools, f"--text={subset['letters']}", *options], check=True)  # noqa: S603 - our own pins
+        checksums[str((folder / name).relative_to(HERE))] = digest((folder / name).read_bytes())
+    return checksums
+
+
 def update() -> None:
     """Fetch everything that vendor.toml lists and write the manifest."""
     manifest: dict[str, Vendored] = {}
@@ -84,6 +95,7 @@ def update() -> None:
             archive, integrity = fetch(package, version, Path(scratch))
             target = HERE / name / version.rpartition(":")[2]
             files = copy(archive, inside, list(entry["files"]), target)  # type: ignore[call-overload]
+            files |= cut(target, entry.get("subset", {}))  # type: ignore[arg-type]
             manifest[name] = Vendored(
                 package=package,
                 version=version,

@@ -28,7 +28,10 @@ async def happened(desk: Desk) -> None:
     site = desk.plant.site
     site.note(site.model.event(EventKind.MACHINE_RESTARTS, "Memory runs short.", "machine"))
     await desk.forward(1.0)
-    signed = {"signatures": [{"role": "technician", "name": "machine operator", "strokes": []}]}
+    signed = {
+        "signatures": [{"role": "technician", "name": "machine operator", "strokes": []}],
+        "confirmed": True,
+    }
     assert (await desk.ask("POST", "/api/v1/trackers/T1/records", json=signed)).status_code == 201
 
 

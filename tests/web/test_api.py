@@ -24,6 +24,7 @@ from app.tracker.reason import Reason
 from app.web import errors
 from app.web.errors import problem_of
 from tests.fakes import FakeMachine, fake_app, serving
+from tests.fault_result import FaultResult
 from tests.web.desk import Desk
 
 NEAR = Reason("near", "The panel is near something.", "Move it away.")
@@ -201,10 +202,13 @@ async def test_commissioning_record_comes_as_json_page_and_pdf(api: httpx.AsyncC
 
 
 @pytest.mark.fault(69)
-async def test_names_are_text_in_the_record_not_markup(api: httpx.AsyncClient) -> None:
+async def test_names_are_text_in_the_record_not_markup(api: httpx.AsyncClient, fault: FaultResult) -> None:
     await api.patch("/trackers/T1", json={"name": "<script>alert(1)</script>"})
     page = (await api.get("/trackers/T1/record", params={"format": "html"})).text
     assert "<script>" not in page
+    fault.prevented("what a user typed is text on every page")
+    fault.shows_nothing("the name is shown as it was typed")
+    fault.recovers("nothing was lost")
 
 
 async def test_diagnostics_have_state_and_no_secrets(machine: FakeMachine) -> None:
@@ -244,7 +248,7 @@ async def test_a_show_too_fast_for_the_axes_says_what_would_work(api: httpx.Asyn
 async def test_simulation_and_backups_against_the_real_store(tmp_path: Path) -> None:
     async with Desk(tmp_path) as desk:
         place = {"latitude_deg": 41.2867, "longitude_deg": 36.33, "time_zone": "Europe/Istanbul"}
-        await desk.ask("PUT", "/api/v1/site/location", json=place)
+        await desk.ask("PUT", "/api/v1/site/location", json=place | {"confirmed": True})
         span = {"begin_at": "2027-06-21T12:00:00+03:00", "end_at": "2027-06-21T13:00:00+03:00"}
         new = {"tracker_id": "T1", "step_s": 60, **span}
         made = await desk.ask("POST", "/api/v1/simulations", json=new)

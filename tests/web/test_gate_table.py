@@ -1,6 +1,7 @@
 """Every way in, held against the table of permissions: with each role and scope, and with what is no good."""
 
 import copy
+import json
 import re
 from collections.abc import AsyncIterator, Iterable
 from dataclasses import dataclass, field
@@ -16,6 +17,7 @@ from app.access.accounts import TokenWish
 from app.access.roles import GRANTS, Permission, Role
 from app.access.tokens import SCOPES, Scope
 from app.web.route_permissions import ROUTES
+from tests.fault_result import FaultResult
 from tests.web.office import COOKIE, HERE, ORIGIN, PORT, Office
 
 pytestmark = pytest.mark.asyncio(loop_scope="module")
@@ -187,7 +189,7 @@ async def test_every_scope_gets_through_where_the_table_says_so(
     doors: Doors, keys: Keys, scope: Scope
 ) -> None:
     bearer = {"host": OWN["host"], "authorization": f"Bearer {keys.tokens[scope]}"}
-    assert await doors.passed(bearer) == with_permission(Permission.OPEN, *SCOPES[scope])
+    assert await doors.passed(bearer) == with_permission(Permission.OPEN, Permission.KNOWN, *SCOPES[scope])
 
 
 async def test_without_credentials_only_what_is_open_is_answered(doors: Doors, keys: Keys) -> None:
@@ -204,10 +206,13 @@ async def test_a_session_that_is_no_good_is_none(doors: Doors, keys: Keys, why: 
 @pytest.mark.fault(63)
 @pytest.mark.parametrize("why", ["nonsense", "none at all", "expired", "revoked"])
 async def test_a_token_that_is_no_good_opens_nothing_even_beside_a_session(
-    doors: Doors, keys: Keys, why: str
+    doors: Doors, keys: Keys, why: str, fault: FaultResult
 ) -> None:
     best = signed_in(doors, keys.sessions[Role.ENGINEER])
     assert await doors.passed(best | {"authorization": f"Bearer {keys.bad_tokens[why]}"}) == set()
+    refused = await doors.ask("GET /api/v1/site", best | {"authorization": f"Bearer {keys.bad_tokens[why]}"})
+    assert refused.status == 401
+    fault.shows(json.loads(refused.body)["detail"])
 
 
 FOREIGN = (
@@ -222,11 +227,16 @@ FOREIGN = (
 @pytest.mark.fault(70)
 @pytest.mark.parametrize("foreign", FOREIGN, ids=str)
 async def test_a_foreign_page_changes_nothing_whoever_is_signed_in(
-    doors: Doors, keys: Keys, foreign: dict[str, str]
+    doors: Doors, keys: Keys, foreign: dict[str, str], fault: FaultResult
 ) -> None:
     for role in (Role.ENGINEER, Role.ADMINISTRATOR):
         headers = signed_in(doors, keys.sessions[role]) | foreign
         assert await doors.passed(headers, CHANGING) == set()
+    fault.prevented("a request of a foreign page is refused, whoever is signed in")
+    refused = await doors.ask("POST /api/v1/stop", signed_in(doors, keys.sessions[Role.ENGINEER]) | foreign)
+    assert refused.status == 403
+    fault.shows(json.loads(refused.body)["detail"])
+    fault.recovers("nothing was lost")
 
 
 @pytest.mark.fault(70)

@@ -6,6 +6,7 @@ import pytest
 from app.instants import without_leap_second
 from app.link.messages import SetClock
 from tests.fakes import FakeMachine
+from tests.fault_result import FaultResult
 
 CLOCK = "/trackers/T1/commissioning/clock"
 
@@ -28,9 +29,9 @@ def test_only_a_second_60_is_clamped(text: str, taken: str) -> None:
 
 @pytest.mark.fault(31)
 async def test_the_api_and_the_pages_take_a_leap_second_as_the_second_before(
-    machine: FakeMachine, client: httpx.AsyncClient
+    machine: FakeMachine, client: httpx.AsyncClient, fault: FaultResult
 ) -> None:
-    asked = {"source": "manual", "at": "2026-12-31T23:59:60Z"}
+    asked = {"source": "manual", "at": "2026-12-31T23:59:60Z", "confirmed": True}
     assert (await client.put("/api/v1/site/clock", json=asked)).status_code == 200
     assert (await client.post(f"{CLOCK}/device", data={"at": "2026-12-31T23:59:60Z"})).status_code == 303
     typed = {"date": "2026-12-31", "time": "23:59:60", "time_zone": "UTC"}
@@ -44,6 +45,9 @@ async def test_the_api_and_the_pages_take_a_leap_second_as_the_second_before(
     assert sun.json()["at"] == "2026-12-31T23:59:59Z"
     later = {"since": "2026-12-31T23:59:60Z", "until": "2027-01-01T00:00:00Z"}
     assert (await client.get("/api/v1/journal", params=later)).status_code == 200
+    fault.prevented("it is taken as the second before")
+    fault.shows_nothing("it is taken as the second before")
+    fault.recovers("nothing was lost")
 
 
 async def test_what_no_clock_shows_is_refused_still(client: httpx.AsyncClient) -> None:

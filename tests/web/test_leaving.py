@@ -17,6 +17,7 @@ from app.access.tokens import Scope
 from app.clock import VirtualClock
 from tests.access.fake_hasher import FakeHasher
 from tests.fake_data import NOON
+from tests.fault_result import VIRTUAL, FaultResult
 from tests.web.asgi import Reading, streaming
 from tests.web.office import COOKIE, HERE, ORIGIN, Office
 from tests.web.sockets import Socket, connected
@@ -73,7 +74,7 @@ async def test_what_a_page_revokes_ends_at_once(office: Office, way: str, openin
 @pytest.mark.parametrize("way", WAYS_IN)
 @pytest.mark.parametrize("opening", [streaming, connected])
 async def test_what_the_command_line_revokes_ends_within_a_second(
-    office: Office, clock: VirtualClock, way: str, opening: Opening
+    office: Office, clock: VirtualClock, way: str, opening: Opening, fault: FaultResult
 ) -> None:
     headers, take_away = await way_in(office, way)
     elsewhere = open_store(office.settings)
@@ -83,6 +84,8 @@ async def test_what_the_command_line_revokes_ends_within_a_second(
         elsewhere.close()
         clock.advance(WITHIN)
         await asyncio.wait_for(stream.ended.wait(), 5)
+    fault.noticed(WITHIN.total_seconds(), VIRTUAL)
+    fault.recovers("a new token is made, or the user signs in again")
 
 
 @pytest.mark.fault(63)

@@ -20,7 +20,10 @@ from tests.web.office import HERE, PASSWORD, Office
 FILE = re.compile(r'href="(/api/[^"]+)" download="[^"]+\.json"')
 KEY = re.compile(r'json_key\("(/api/[^,]+?)"(?:,| ~ \()')
 TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
-SIGNED = {"signatures": [{"role": "technician", "name": "Ayşe Yılmaz", "strokes": [[[10, 20], [400, 250]]]}]}
+SIGNED = {
+    "signatures": [{"role": "technician", "name": "Ayşe Yılmaz", "strokes": [[[10, 20], [400, 250]]]}],
+    "confirmed": True,
+}
 SECRETS = re.compile(r"password|hash|secret|pin", re.IGNORECASE)
 
 

@@ -1,7 +1,10 @@
 """The live WebSocket: state for all, hold-to-run that ends by itself, a stop that waits for nothing."""
 
 import asyncio
+import gc
+import tracemalloc
 from collections.abc import AsyncIterator
+from contextlib import AsyncExitStack
 from datetime import timedelta
 from typing import Any
 
@@ -9,12 +12,14 @@ import pytest
 from fastapi import FastAPI
 
 from app.clock import VirtualClock
-from app.link.messages import Order
+from app.link.messages import Order, StopAll
 from app.tracker.commands import EndJog, Jog, Stop
 from app.tracker.reason import Reason
-from app.tracker.snapshot import Event, EventKind
+from app.tracker.snapshot import Event, EventKind, SiteSnapshot
+from app.web.presses import Dead, Heartbeat, LinkDelay, Presses, Verdict
 from tests.fake_data import NOON
 from tests.fakes import FakeMachine, fake_app, serving
+from tests.fault_result import REAL, FaultResult
 from tests.web.sockets import Socket, connected
 
 
@@ -50,6 +55,13 @@ def jogs(machine: FakeMachine) -> list[Order]:
 async def settle() -> None:
     for _ in range(20):
         await asyncio.sleep(0)
+
+
+async def until_heard(page: Socket) -> None:
+    """Return once everything that was sent has been heard."""
+    await page.send(type="ping", tc=1.0)
+    await page.next("pong")
+    await settle()
 
 
 async def forward(clock: VirtualClock, seconds: float) -> None:
@@ -157,7 +169,9 @@ async def test_late_heartbeats_do_not_extend_and_small_delays_shorten_the_lease(
 
 
 @pytest.mark.fault(59)
-async def test_burst_after_a_frozen_link_does_not_start_motion(app: FastAPI, machine: FakeMachine) -> None:
+async def test_burst_after_a_frozen_link_does_not_start_motion(
+    app: FastAPI, machine: FakeMachine, fault: FaultResult
+) -> None:
     async with connected(app) as page:
         await page.send(type="ping", tc=100_000.0)
         await page.next("pong")
@@ -167,6 +181,9 @@ async def test_burst_after_a_frozen_link_does_not_start_motion(app: FastAPI, mac
     assert [answer["status"] for answer in answers] == ["refused"] + ["dead"] * 9
     assert answers[0]["reasons"][0]["code"] == "link_too_slow"
     assert jogs(machine) == []
+    fault.prevented("what comes late counts as never sent")
+    fault.shows(answers[0]["reasons"][0]["message"])
+    fault.recovers("the button is released and pressed again")
 
 
 async def test_slow_round_trip_does_not_start_motion(app: FastAPI, machine: FakeMachine) -> None:
@@ -266,6 +283,72 @@ async def test_stop_is_carried_out_and_told(app: FastAPI, machine: FakeMachine) 
     assert not machine.trackers["T2"].memory.tracking_on
 
 
+class Stuck(FakeMachine):
+    """A machine whose answers to whoever ends motion wait for a gate."""
+
+    def __init__(self, clock: VirtualClock) -> None:
+        super().__init__(clock)
+        self.gate = asyncio.Event()
+        self.begun: list[Order] = []
+
+    async def execute(self, order: Order) -> SiteSnapshot:
+        self.begun.append(order)
+        if isinstance(order.command, Stop | StopAll | EndJog):
+            await self.gate.wait()
+        return await super().execute(order)
+
+
+@pytest.mark.fault(93)
+async def test_stops_of_one_page_are_one_at_a_time_for_each_tracker(clock: VirtualClock) -> None:
+    """3,000 stops killed the controller; now a second one waits for the first, and stands for all others."""
+    machine = Stuck(clock)
+    app = fake_app(machine)
+    async with serving(app), connected(app) as page:
+        for _ in range(3000):
+            await page.send(type="stop", tracker_id="T1")
+        await page.send(type="stop", tracker_id="T2")
+        await page.send(type="stop_all")
+        await until_heard(page)
+        assert [order.tracker_id for order in machine.begun] == ["T1", "T2", None]
+        machine.gate.set()
+        for _ in range(4):
+            await page.next("stopped")
+        await settle()
+    assert sorted(str(order.tracker_id) for order in machine.begun) == ["None", "T1", "T1", "T2"]
+
+
+@pytest.mark.fault(93)
+async def test_ends_of_presses_that_never_began_here_are_one_at_a_time(clock: VirtualClock) -> None:
+    machine = Stuck(clock)
+    app = fake_app(machine)
+    async with serving(app), connected(app) as page:
+        await beat(page, "mine", 0, 1000.0)
+        await page.next("jog")
+        for number in range(3000):
+            await page.send(type="end_jog", tracker_id="T1", press_id=f"p{number}")
+        await page.send(type="end_jog", tracker_id="T1", press_id="mine")
+        await until_heard(page)
+        ends = [order.command.press_id for order in machine.begun if isinstance(order.command, EndJog)]
+        assert sorted(ends) == ["mine", "p2999"]
+        machine.gate.set()
+        await settle()
+    ends = [order.command.press_id for order in machine.begun if isinstance(order.command, EndJog)]
+    assert sorted(ends) == ["mine", "p2999", "p2999"]
+
+
+def test_a_page_has_eight_presses_and_one_more_ends_the_oldest(clock: VirtualClock) -> None:
+    presses = Presses(LinkDelay(), Dead())
+    quick = timedelta(milliseconds=5)
+
+    def judged(press: str, sequence: int) -> Verdict:
+        return presses.judge(Heartbeat(press, "T1", sequence, 1000.0, clock.now(), quick))[0]
+
+    assert [judged(f"p{number}", 0) for number in range(9)] == [Verdict.RENEW] * 9
+    assert judged("p1", 1) is Verdict.RENEW
+    assert judged("p0", 1) is Verdict.DEAD
+    assert [press for _, press in presses.end_all(clock.now())] == [f"p{number}" for number in range(1, 9)]
+
+
 async def test_stop_of_an_unknown_tracker_says_so(app: FastAPI) -> None:
     async with connected(app) as page:
         await page.send(type="stop", tracker_id="T9")
@@ -285,9 +368,10 @@ async def test_stop_of_a_page_that_reads_nothing_is_carried_out(app: FastAPI, ma
 
 @pytest.mark.fault(66)
 async def test_reader_that_takes_nothing_is_dropped_and_the_others_go_on(
-    app: FastAPI, machine: FakeMachine, clock: VirtualClock
+    app: FastAPI, machine: FakeMachine, clock: VirtualClock, fault: FaultResult
 ) -> None:
     hub = app.state.panel.hub
+    assert hub.patience == timedelta(seconds=5)
     hub.patience = timedelta(milliseconds=20)
     async with connected(app) as stuck, connected(app) as good:
         await stuck.next("state")
@@ -301,6 +385,27 @@ async def test_reader_that_takes_nothing_is_dropped_and_the_others_go_on(
         await forward(clock, 0.2)
         states = [await good.next("state") for _ in range(good.inbox.qsize())]
     assert states[-1]["rev"] == machine.sequence
+    fault.noticed(5.0, REAL)
+    fault.shows_nothing("nobody reads it")
+    fault.recovers("by itself: a page that comes back connects again")
+
+
+@pytest.mark.fault(66)
+async def test_fifty_readers_that_take_nothing_cost_no_memory(app: FastAPI, machine: FakeMachine) -> None:
+    async with AsyncExitStack() as pages:
+        for _ in range(50):
+            page = await pages.enter_async_context(connected(app))
+            await page.next("state")
+            page.reads.clear()
+        gc.collect()
+        tracemalloc.start()
+        for _ in range(200):
+            machine.emit()
+            await settle()
+        gc.collect()
+        held_bytes, _ = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+    assert held_bytes < 5_000_000
 
 
 GARBAGE = (

@@ -20,7 +20,10 @@ from app.web.limits import MOST_STREAMS_A_CLIENT, StreamLimit
 from app.web.main import create_app
 from app.web.mdns import addresses
 from app.web.security import HSTS, Guard, SecurityHeaders, host_names
+from app.web.viewers import Wanted
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
+from tests.fault_result import FaultResult
+from tests.web.sockets import connected
 
 NOW = datetime(2027, 6, 21, 9, 40, tzinfo=UTC)
 
@@ -168,6 +171,45 @@ async def test_streams_are_shared_out_and_other_requests_pass(client: str, admit
     await asyncio.gather(*asking)
     await limit(stream, hear, hear)
     assert answers[-1] == {"type": "passed"}
+
+
+@pytest.mark.fault(67)
+async def test_a_thousand_viewers_are_served_and_one_more_may_only_stop(fault: FaultResult) -> None:
+    machine = FakeMachine()
+    app = fake_app(machine)
+    async with serving(app) as client:
+        viewers = [app.state.panel.hub.join(Wanted()) for _ in range(1000)]
+        async with connected(app) as late:
+            await late.ended.wait()
+        assert late.closed == 1013
+        refused = await client.get("/api/v1/stream")
+        assert refused.status_code == 503
+        assert (await client.post("/api/v1/trackers/T1/stop")).status_code == 202
+        fault.prevented("the 1,001st viewer is turned away; Stop is obeyed")
+        fault.shows(refused.json()["detail"])
+        app.state.panel.hub.leave(viewers.pop())
+        async with connected(app) as page:
+            await page.next("state")
+    fault.recovers("by itself: once a viewer has left")
+
+
+@pytest.mark.fault(67)
+async def test_of_streams_there_are_1024(fault: FaultResult) -> None:
+    ended, answers = asyncio.Event(), []
+
+    async def lasting(scope: Any, receive: Any, send: Any) -> None:
+        await ended.wait()
+
+    async def hear(message: Any) -> None:
+        answers.append(message["code"])
+
+    limit = StreamLimit(lasting, clock=VirtualClock(NOW))
+    scopes = [{"type": "websocket", "path": "/live", "client": ("127.0.0.1", port)} for port in range(1030)]
+    asking = [asyncio.create_task(limit(scope, hear, hear)) for scope in scopes]
+    await asyncio.sleep(0)
+    assert answers == [1013] * 6
+    ended.set()
+    await asyncio.gather(*asking)
 
 
 async def test_a_network_without_a_certificate_is_warned_of_on_every_page(tmp_path: Path) -> None:

@@ -1,7 +1,6 @@
 """A page of another build or from before the machine's last start orders nothing but Stop, and is told so."""
 
 import re
-from collections.abc import Callable
 from typing import Any
 
 import httpx
@@ -9,6 +8,7 @@ import pytest
 
 from app.web.edition import PageOutdated, edition, mark_of
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
+from tests.fault_result import FaultResult
 from tests.web.sockets import connected
 
 JOG = {
@@ -31,7 +31,7 @@ def mark_in(page: httpx.Response) -> str:
 
 @pytest.mark.fault(61)
 async def test_a_page_from_before_a_restart_orders_nothing_but_stop(
-    record_property: Callable[[str, object], None],
+    fault: FaultResult,
 ) -> None:
     machine = FakeMachine()
     async with serving(fake_app(machine, FakeReader())) as client:
@@ -43,11 +43,13 @@ async def test_a_page_from_before_a_restart_orders_nothing_but_stop(
             refused = await client.post("/trackers/T1/park", **sent)
             assert (refused.status_code, refused.headers["page-outdated"]) == (409, "1")
             assert str(PageOutdated()) in refused.text
-        record_property("shown", str(PageOutdated()))
+        fault.shows(str(PageOutdated()))
         assert (await client.post("/trackers/T1/stop", data={"page": mark})).status_code == 303
         again = mark_in(await client.get("/trackers/T1"))
         assert (await client.post("/trackers/T1/park", data={"page": again})).status_code == 303
     assert [order.command.kind for order in machine.orders] == ["park", "stop", "park"]
+    fault.prevented("refused at the first request")
+    fault.recovers("by itself: the page is loaded again")
 
 
 @pytest.mark.fault(61)

@@ -7,9 +7,9 @@ from typing import Any
 
 from app.clock import SystemClock, VirtualClock
 from app.link.messages import Update
+from app.turnstile import Turnstile
 from app.web.hub import BATCH, SOONEST, Hub
 from app.web.limits import StreamLimit
-from app.web.server import Turnstile
 from app.web.viewers import Wanted
 from tests.fake_data import NOON
 from tests.fakes import FakeMachine

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import AsyncIterator
-from dataclasses import fields
+from dataclasses import fields, replace
 from importlib import import_module
 from pkgutil import iter_modules
 
@@ -80,7 +80,13 @@ async def test_unknown_tracker_is_a_page_that_says_so(client: httpx.AsyncClient)
 
 
 async def test_location_is_saved_and_leads_on(machine: FakeMachine, client: httpx.AsyncClient) -> None:
-    typed = {"latitude": "33° 55' 12\"", "latitude_side": "S", "longitude": "18,4233", "longitude_side": "E"}
+    typed = {
+        "latitude": "33° 55' 12\"",
+        "latitude_side": "S",
+        "longitude": "18,4233",
+        "longitude_side": "E",
+        "sun_there": "yes",
+    }
     answer = await client.post(f"{T1}/commissioning/location", data=typed)
     assert answer.status_code == 303
     assert answer.headers["location"] == f"{T1}/commissioning/clock"
@@ -187,7 +193,7 @@ async def test_clock_that_means_nothing_is_refused(machine: FakeMachine, client:
 
 
 async def test_zero_and_steps_go_to_the_machine(machine: FakeMachine, client: httpx.AsyncClient) -> None:
-    await client.post(f"{T1}/zero", data={"key": "press-1"})
+    await client.post(f"{T1}/zero", data={"key": "press-1", "confirmed": "yes"})
     await client.post(f"{T1}/step", data={"move": "elevation-minus", "size": "0.1"})
     assert sent(machine, SetZero)
     assert sent(machine, Step)[0].degrees == pytest.approx(-0.1)
@@ -204,7 +210,7 @@ async def test_refusal_names_every_reason_below_the_key(
     machine: FakeMachine, client: httpx.AsyncClient
 ) -> None:
     machine.rejects["zero"] = (Reason("a", "The axes move.", "Wait."), Reason("b", "The drive is silent."))
-    answer = await client.post(f"{T1}/zero", headers=HTMX)
+    answer = await client.post(f"{T1}/zero", data={"confirmed": "yes"}, headers=HTMX)
     assert answer.status_code == 409
     assert "Not done." in answer.text
     assert "The axes move." in answer.text
@@ -333,3 +339,16 @@ async def test_a_tracker_that_tracks_says_so_instead_of_offering_it(
     is_tracking = activity is ActivityName.TRACKING
     assert bool(re.search(r'data-when="activity=tracking" hidden', text)) is not is_tracking
     assert bool(re.search(r'data-when="activity!=tracking" hidden', text)) is is_tracking
+
+
+async def test_the_speeds_by_hand_are_those_of_each_axis(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    page = f"{T1}/commissioning/homing"
+    assert "Fast 3 / 2°/s" in (await client.get(page)).text
+    tracker = machine.trackers["T1"]
+    tracker.config = replace(tracker.config, elevation=replace(tracker.config.elevation, jog_fast_dps=3.0))
+    machine.emit()
+    shown = (await client.get(page)).text
+    assert "Fast 3°/s" in shown
+    assert "Slow 0.5°/s" in shown

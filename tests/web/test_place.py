@@ -1,6 +1,5 @@
 """A location that is likely to be mistaken: the page shows where its sun would be now, and asks."""
 
-from collections.abc import Callable
 from datetime import UTC, datetime
 
 import httpx
@@ -11,6 +10,7 @@ from app.sun.position import Location
 from app.web.place import place_doubts
 from app.web.ui.location import LocationForm, read
 from tests.fakes import FakeMachine
+from tests.fault_result import FaultResult
 
 SUMMER = datetime(2027, 6, 21, 9, tzinfo=UTC)
 SAMSUN = Location(41.2867, 36.33)
@@ -44,7 +44,10 @@ def form(latitude_deg: float, longitude_deg: float, **others: str) -> dict[str, 
         (Location(39.5, 75.9), "Asia/Shanghai", ""),
         (Location(1.87, -157.4), "Pacific/Kiritimati", ""),
         (Location(-23.65, -70.4), "America/Santiago", ""),
-        (Location(0.0, 170.0), "Etc/GMT-11", ""),
+        (Location(0.0, 170.0), "Etc/GMT-11", "lies in the sea"),
+        (Location(41.2867, -36.33), "Etc/GMT+2", "with east and west exchanged it lies on land"),
+        (Location(-41.2867, 36.33), "Etc/GMT-2", "lies in the sea"),
+        (Location(-37.0, 144.9), "Australia/Melbourne", ""),
     ],
 )
 def test_what_speaks_against_a_place(place: Location, time_zone: str, said: str) -> None:
@@ -56,6 +59,13 @@ def test_numbers_of_the_stored_place_exchanged_and_a_device_far_away() -> None:
     exchanged = Location(36.33, 41.2867)
     assert "stored location" in place_doubts(exchanged, "UTC", SUMMER, before=SAMSUN)[0]
     assert place_doubts(SAMSUN, "UTC", SUMMER, before=exchanged)[0].startswith("These are the numbers")
+    (sign, far) = place_doubts(Location(41.2867, -36.33), "Etc/GMT+2", SUMMER, before=SAMSUN)
+    assert sign == "These are the numbers of the stored location with east and west exchanged."
+    assert far == "This place is 5880 km away from the stored location."
+    south = place_doubts(Location(-41.2867, 36.33), "Etc/GMT-2", SUMMER, before=SAMSUN)
+    assert south[0] == "These are the numbers of the stored location with north and south exchanged."
+    west = place_doubts(Location(52.0, -7.9), "Europe/Dublin", SUMMER, device_zone="Europe/Amsterdam")
+    assert west[0].startswith("With east and west exchanged the place lies where")
     assert place_doubts(SAMSUN, "UTC", SUMMER, before=Location(41.3, 36.4)) == ()
     (far,) = place_doubts(SAMSUN, "Europe/Istanbul", SUMMER, device_zone="America/New_York")
     assert "are you at the tracker" in far
@@ -63,7 +73,7 @@ def test_numbers_of_the_stored_place_exchanged_and_a_device_far_away() -> None:
 
 @pytest.mark.fault(37)
 async def test_exchanged_numbers_are_asked_about_with_the_sun_there_now(
-    machine: FakeMachine, client: httpx.AsyncClient, record_property: Callable[[str, object], None]
+    machine: FakeMachine, client: httpx.AsyncClient, fault: FaultResult
 ) -> None:
     place = stored(machine)
     typed = form(place.longitude_deg, place.latitude_deg, device_zone=machine.site.time_zone)
@@ -73,10 +83,9 @@ async def test_exchanged_numbers_are_asked_about_with_the_sun_there_now(
     assert "latitude and longitude exchanged" in answer.text
     assert "There the sun stands now:" in answer.text
     assert f'value="{place.longitude_deg}"' in answer.text, "what was typed stays"
-    record_property(
-        "shown", "These are the numbers of the stored location with latitude and longitude exchanged."
-    )
-    record_property("policy", "unlimited: it ends with the right numbers, or when they are confirmed")
+    fault.prevented("refused when saved")
+    fault.shows("These are the numbers of the stored location with latitude and longitude exchanged.")
+    fault.recovers("with the right numbers, or when they are confirmed")
 
     answer = await client.post(PAGE, data=typed | {"sun_there": "yes"})
     assert answer.status_code == 303

@@ -43,7 +43,7 @@ def turkish() -> Iterator[None]:
 
 
 async def sign(desk: Desk, name: str = "Ayşe Yılmaz", **more: Any) -> None:
-    signed = {"signatures": [{"role": "technician", "name": name, "strokes": []}]} | more
+    signed = {"signatures": [{"role": "technician", "name": name, "strokes": []}], "confirmed": True} | more
     answer = await desk.ask("POST", "/api/v1/trackers/T1/records", json=signed)
     assert answer.status_code == 201, answer.text
 

@@ -5,16 +5,30 @@ import hashlib
 import io
 import json
 from collections.abc import AsyncIterator
+from dataclasses import replace
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
 from PIL import Image
 
+from app.link.messages import SetLocation
+from app.store.engine import open_reader
+from app.sun.position import Location
+from app.tracker.alarm_words import AlarmState
+from app.tracker.commissioning import Step, StepStatus
+from app.tracker.memory import StepName
+from app.web.record import read_record
+from app.web.sign_doubts import sign_doubts
+from tests.fake_alarms import alarm
 from tests.web.desk import Desk
 
 T1 = "/api/v1/trackers/T1"
 STROKES = [[[10, 20], [400, 250], [900, 30]], [[5, 5], [6, 9]]]
-SIGNED = {"signatures": [{"role": "technician", "name": "Ayşe Yılmaz", "strokes": STROKES}]}
+SIGNED = {
+    "signatures": [{"role": "technician", "name": "Ayşe Yılmaz", "strokes": STROKES}],
+    "confirmed": True,
+}
 
 
 def picture(kind: str = "JPEG", size: tuple[int, int] = (640, 480)) -> bytes:
@@ -139,7 +153,9 @@ async def test_the_form_signs_and_keeps_what_was_typed_where_it_cannot(desk: Des
     assert "type the name of whoever signed" in answer.text
     assert "Sign here" in answer.text
     assert "[400, 250]" in answer.text
-    good = await desk.ask("POST", "/trackers/T1/record", data=form | {"technician": "Ion Popescu"})
+    good = await desk.ask(
+        "POST", "/trackers/T1/record", data=form | {"technician": "Ion Popescu", "confirmed": "yes"}
+    )
     assert good.status_code == 303
     assert good.headers["location"] == "/records/1"
     assert "Ion Popescu" in (await desk.ask("GET", "/records/1")).text
@@ -175,3 +191,43 @@ async def test_the_label_opens_the_trackers_page(desk: Desk) -> None:
 async def test_what_is_not_there_is_not_found(path: str, desk: Desk) -> None:
     assert (await desk.ask("GET", path)).status_code == 404
     assert (await desk.ask("GET", "/records/compare?pick=1")).status_code == 422
+
+
+async def test_open_steps_and_drive_tests_are_asked_about_before_signing(desk: Desk) -> None:
+    unasked = {"signatures": SIGNED["signatures"]}
+    answer = await desk.ask("POST", f"{T1}/records", json=unasked)
+    assert answer.status_code == 422
+    for words in ("Step 1, Location, is open.", "Drive tests that are open: ", "with `confirmed`"):
+        assert words in answer.json()["detail"]
+    form = {"technician": "Ion", "remark": "Sign here"}
+    shown = await desk.ask("POST", "/trackers/T1/record", data=form)
+    assert shown.status_code == 422
+    assert "Step 1, Location, is open." in shown.text
+    assert 'name="confirmed" value="yes"' in shown.text
+    assert "Sign here" in shown.text
+    assert (await desk.ask("GET", "/api/v1/records")).json() == []
+    assert (await desk.ask("POST", f"{T1}/records", json=unasked | {"confirmed": True})).status_code == 201
+
+
+async def test_what_is_alarming_or_dated_in_the_future_is_named(desk: Desk) -> None:
+    found = await read_record(desk.plant.site, open_reader(desk.settings.url), "T1")
+    at = found.written_at
+    step = Step(StepName.CLOCK, StepStatus.DONE, (), at + timedelta(hours=11), "zoe")
+    record = replace(found, steps=(step, replace(step, confirmed_at=at)), proofs=())
+    mine = alarm("drive_lost", at)
+    others = (alarm("drive_lost", at, "T2"), replace(mine, state=AlarmState.RETURNED))
+    told = "Step 1, Clock, is dated in the future: the clock was wrong then."
+    assert sign_doubts(record, others) == (told,)
+    assert sign_doubts(record, (mine, *others)) == (told, f"An alarm is active: {mine.title}.")
+
+
+async def test_a_step_confirmed_in_the_future_is_marked_on_the_page(desk: Desk) -> None:
+    plant = desk.plant
+    await plant.ask(SetLocation(Location(41.2867, 36.33, 4.0), "Europe/Istanbul"))
+    shown = await desk.ask("GET", "/trackers/T1/record")
+    assert 'class="misdated"' not in shown.text
+    state = plant.site.model.state
+    later = replace(state.confirmations[StepName.LOCATION], at=plant.clock.now() + timedelta(hours=11))
+    plant.site.model.state = replace(state, confirmations=state.confirmations | {StepName.LOCATION: later})
+    shown = await desk.ask("GET", "/trackers/T1/record")
+    assert shown.text.count('class="misdated"') == 1

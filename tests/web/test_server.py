@@ -10,25 +10,31 @@ import pytest
 import uvicorn
 from websockets.asyncio.client import connect
 
-from app.clock import SystemClock
+from app.clock import Clock, SystemClock
+from app.web.live_protocol import cautious_sockets
 from app.web.server import (
     LARGEST_HEAD,
-    UNACKNOWLEDGED_MS,
     Connections,
     PanelServer,
     cautious,
 )
 from tests.fakes import FakeMachine, fake_app
+from tests.fault_result import REAL, FaultResult
 
 
 @contextlib.asynccontextmanager
-async def serving(connections: Connections, deadline_s: float) -> AsyncIterator[tuple[PanelServer, int]]:
-    app = fake_app(FakeMachine())
+async def serving(
+    connections: Connections,
+    deadline_s: float | None = None,
+    socket_clock: Clock | None = None,
+    machine: FakeMachine | None = None,
+) -> AsyncIterator[tuple[PanelServer, int]]:
+    app = fake_app(machine or FakeMachine())
     listener = socket.create_server(("127.0.0.1", 0))
     config = uvicorn.Config(
         app,
-        http=cautious(connections, deadline_s),
-        ws="websockets-sansio",
+        http=cautious(connections) if deadline_s is None else cautious(connections, deadline_s),
+        ws=cautious_sockets(socket_clock or SystemClock()),
         log_config=None,
         timeout_graceful_shutdown=2,
     )
@@ -54,6 +60,23 @@ async def test_request_that_never_ends_is_hung_up_on() -> None:
         with contextlib.suppress(ConnectionResetError):
             assert await asyncio.wait_for(reader.read(), 10) == b""
         writer.close()
+
+
+@pytest.mark.fault(65)
+async def test_a_request_has_eight_seconds_to_arrive(fault: FaultResult) -> None:
+    """The very timer of a real connection is read: nobody waits for it."""
+    async with serving(Connections(100)) as (server, port):
+        _, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(b"GET /health HTTP/1.1\r\nHost: 127.0")
+        assert await _status(port) == b"200", "the connection before it was accepted"
+        (held,) = server.server_state.connections
+        remaining_s = held._deadline.when() - asyncio.get_running_loop().time()
+        assert 7.0 < remaining_s <= 8.0
+        fault.noticed(8.0, REAL)
+        fault.shows_nothing("the connection is closed")
+        writer.close()
+        assert await _status(port) == b"200"
+        fault.recovers("nothing was lost: other requests are answered")
 
 
 ASKING = b"GET /api/v1/stream HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
@@ -125,15 +148,18 @@ async def test_a_head_that_does_not_end_is_refused() -> None:
 
 
 @pytest.mark.fault(68)
-async def test_a_viewer_that_has_gone_silently_is_noticed_by_the_system() -> None:
+async def test_a_viewer_that_has_gone_silently_is_noticed_by_the_system(fault: FaultResult) -> None:
     async with serving(Connections(100), 5.0) as (server, port):
         _, writer = await asyncio.open_connection("127.0.0.1", port)
         assert await _status(port) == b"200"
         (held,) = server.server_state.connections
         raw = held.transport.get_extra_info("socket")
-        assert raw.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT) == UNACKNOWLEDGED_MS
+        assert raw.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT) == 10_000
         assert raw.getsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE) == 1
         writer.close()
+        fault.noticed(10.0, REAL)
+        fault.shows_nothing("nobody is there to read it")
+        fault.recovers("by itself: a page that comes back connects again")
 
 
 async def test_live_sockets_do_not_use_up_the_share_of_requests() -> None:

@@ -80,7 +80,7 @@ async def test_the_zero_says_who_granted_it_and_why_it_was_lost(desk: Desk) -> N
     never = (await desk.ask("GET", "/trackers/T1")).text
     assert "No zero has been set yet." in never
     assert (await seen(desk))["home"] is None
-    await desk.ask("POST", f"{API}/commands", json={"type": "zero"})
+    await desk.ask("POST", f"{API}/commands", json={"type": "zero", "confirmed": True})
     await desk.forward(3.0)
     granted = await seen(desk)
     assert granted["home_trusted"]

@@ -22,7 +22,7 @@ TYPED = {"tracker": "T1", "date": "2027-06-21", "mode": "dual", "azimuth": "180"
 async def test_a_storm_in_a_simulated_hour_stows_and_is_in_the_frames(tmp_path: Path) -> None:
     async with Desk(tmp_path) as desk:
         place = {"latitude_deg": 41.2867, "longitude_deg": 36.33, "time_zone": "Europe/Istanbul"}
-        await desk.ask("PUT", "/api/v1/site/location", json=place)
+        await desk.ask("PUT", "/api/v1/site/location", json=place | {"confirmed": True})
         steps = [{"time": "09:00", "wind_mps": 3}, {"time": "09:20", "wind_mps": 25}]
         made = await desk.ask("POST", API, json=HOUR | {"weather": {"steps": steps}})
         assert made.status_code == 201, made.text

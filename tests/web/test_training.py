@@ -10,6 +10,7 @@ import pytest
 from app.drives.faults import FaultKind
 from app.tracker.simulated_weather import WeatherFault
 from app.tracker.training import LESSONS, Subject, lesson
+from tests.fault_result import FaultResult
 from tests.web.desk import Desk
 
 HTMX = {"HX-Request": "true", "HX-Request-Type": "partial"}
@@ -114,7 +115,7 @@ async def wind(desk: Desk) -> str:
 
 
 @pytest.mark.fault(17)
-async def test_a_pressed_switch_is_named_with_the_way_out_on_the_page(desk: Desk) -> None:
+async def test_a_pressed_switch_is_named_with_the_way_out_on_the_page(desk: Desk, fault: FaultResult) -> None:
     assert (await desk.ask("POST", API, json={"fault": "upper_limit_stuck"})).status_code == 204
     await desk.forward(1.0)
     seen = (await desk.ask("GET", "/api/v1/trackers/T1/snapshot")).json()
@@ -123,6 +124,7 @@ async def test_a_pressed_switch_is_named_with_the_way_out_on_the_page(desk: Desk
     assert told["at_limit_switch"].startswith(sentence)
     assert told["at_limit_switch"].endswith("it moves west (anticlockwise) only.")
     assert sentence in (await desk.ask("GET", "/trackers/T1/training")).text
+    fault.shows(told["at_limit_switch"])
     await desk.ask("POST", API, json={"fault": "both_limits"})
     await desk.forward(1.0)
     both = (await desk.ask("GET", "/api/v1/trackers/T1/snapshot")).json()

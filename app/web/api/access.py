@@ -11,7 +11,7 @@ from app.access.roles import Permission, Role
 from app.web.api.base import TOO_MANY, Input, Output, api_router
 from app.web.api.users import SignedIn
 from app.web.deps import PanelDep, PrincipalDep
-from app.web.sign_ins import forget_session, set_session, whence
+from app.web.sign_ins import forget_session, session_held, set_session, whence
 
 router = api_router(tags=["access"])
 
@@ -78,7 +78,8 @@ async def own_sessions(built: PanelDep, who: PrincipalDep) -> list[SignedIn]:
 @router.post("/session", status_code=204, summary="Sign in", responses=TOO_MANY)
 async def sign_in(request: Request, typed: SignIn, built: PanelDep) -> Response:
     """Begin a session, whose cookie comes back; wrong passwords make the next try wait, up to 30 s."""
-    session_id = await built.keeper.log_in(typed.name, typed.password.get_secret_value(), *whence(request))
+    password, held = typed.password.get_secret_value(), session_held(request)
+    session_id = await built.keeper.log_in(typed.name, password, *whence(request), held)
     response = Response(status_code=204)
     set_session(request, response, session_id)
     return response

@@ -10,7 +10,7 @@ from app.alarms.view import told
 from app.link.alarm_orders import AcknowledgeAlarm, AlarmOrder, ShelveAlarm, UnshelveAlarm
 from app.store.store import AlarmFilter, KeptAlarm
 from app.tracker.alarm_words import AlarmCounts, AlarmNow
-from app.web.api.base import NOT_FOUND, Input, Output, api_router
+from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, api_router
 from app.web.api.orders import Sender, SenderDep
 from app.web.deps import ReaderDep, SnapshotDep
 
@@ -102,19 +102,21 @@ async def read_catalogue() -> list[AlarmKind]:
     ]
 
 
-@router.post("/{alarm_id}/acknowledge", summary="Acknowledge an alarm", responses=NOT_FOUND)
+@router.post("/{alarm_id}/acknowledge", summary="Acknowledge an alarm", responses=NOT_FOUND | REFUSED)
 async def acknowledge(alarm_id: AlarmId, sender: SenderDep) -> AlarmsNow:
     """Say that somebody has seen it; one that is acknowledged already stays so."""
     return await _ordered(sender, AcknowledgeAlarm(alarm_id))
 
 
-@router.post("/{alarm_id}/shelve", summary="Shelve an alarm", responses=NOT_FOUND)
+@router.post("/{alarm_id}/shelve", summary="Shelve an alarm", responses=NOT_FOUND | REFUSED)
 async def shelve(alarm_id: AlarmId, shelving: Shelving, sender: SenderDep) -> AlarmsNow:
     """Put it aside for some minutes; one of priority 1 cannot be shelved."""
     return await _ordered(sender, ShelveAlarm(alarm_id, shelving.minutes, shelving.reason))
 
 
-@router.post("/{alarm_id}/unshelve", summary="Take an alarm back from the shelf", responses=NOT_FOUND)
+@router.post(
+    "/{alarm_id}/unshelve", summary="Take an alarm back from the shelf", responses=NOT_FOUND | REFUSED
+)
 async def unshelve(alarm_id: AlarmId, sender: SenderDep) -> AlarmsNow:
     """Announce it again if it is still active."""
     return await _ordered(sender, UnshelveAlarm(alarm_id))

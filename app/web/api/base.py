@@ -1,13 +1,14 @@
 """What all API schemas and routes share."""
 
 from enum import Enum
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 from fastapi import APIRouter, Path, Query
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, ModelWrapValidatorHandler, model_validator
 
 from app.instants import Instant
 from app.tracker.reason import Reason
+from app.web.api.numbers import true_to_kind
 
 ROOT = "/api/v1"
 Responses = dict[int | str, dict[str, Any]]
@@ -17,16 +18,21 @@ TrackerId = Annotated[
 RecordingId = Annotated[str, Path(min_length=1, max_length=64, description="Id of the recording.")]
 IssuedAt = Annotated[
     Instant | None,
-    Query(description="When this was asked, by the site's clock; refused when older than 2 s."),
+    Query(description="When this was asked, by the site's clock; refused when more than 2 s old or ahead."),
 ]
 Azimuth = Annotated[float, Field(ge=0, lt=360, description="Degrees clockwise from true north.")]
 Elevation = Annotated[float, Field(ge=-90, le=90, description="Degrees above the horizon.")]
 
 
 class Input(BaseModel):
-    """What comes in: nothing unknown, no NaN, no infinity."""
+    """What comes in: nothing unknown, no NaN, no infinity, and no text or truth value for a number."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _true_to_kind(cls, given: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        return true_to_kind(given, handler)
 
 
 class Output(BaseModel):

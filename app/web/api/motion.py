@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from app.instants import Instant
-from app.link.messages import StopAll
+from app.link.messages import Machine, StopAll
 from app.tracker.axes import Axis, JogSpeed
 from app.tracker.commands import (
     BeginService,
@@ -31,6 +31,7 @@ from app.tracker.commands import (
     Stop,
     Stow,
     Track,
+    UndoZero,
 )
 from app.tracker.config import Orientation
 from app.tracker.mode import Mode
@@ -38,8 +39,11 @@ from app.tracker.proofs import StopSpeed
 from app.tracker.protections.words import StowName
 from app.tracker.snapshot import SiteSnapshot, Snapshot
 from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, TrackerId, api_router
-from app.web.api.orders import SenderDep, tracker_of
-from app.web.deps import SnapshotDep
+from app.web.api.orders import SenderDep, listed, tracker_of
+from app.web.api.trackers import detail_of
+from app.web.deps import MachineDep, SnapshotDep
+from app.web.errors import NotAcceptable
+from app.web.zero import JUMP_DEG, zero_doubts
 
 router = api_router(tags=["motion"])
 
@@ -50,7 +54,8 @@ PressId = Annotated[
 
 class _Command(Input):
     issued_at: Instant | None = Field(
-        None, description="When this was asked, by the site's clock; refused when older than 2 s."
+        None,
+        description="When this was asked, by the site's clock; refused when more than 2 s old or ahead.",
     )
 
 
@@ -83,10 +88,24 @@ class ZeroCommand(_Command):
 
     type: Literal["zero"]
     axes: tuple[Axis, ...] = Field((Axis.AZIMUTH, Axis.ELEVATION), min_length=1, max_length=2)
+    confirmed: bool = Field(
+        False,
+        description=f"The panel really is there although the drive reads more than {JUMP_DEG:g} degrees.",
+    )
 
     def command(self, held: Orientation) -> Command:
         """Return what the machine is asked; `held` is the orientation that is set now."""
         return SetZero(tuple(dict.fromkeys(self.axes)))
+
+
+class UndoZeroCommand(_Command):
+    """Bring back the home position as it was before it was set last; refused once the axes have moved."""
+
+    type: Literal["undo_zero"]
+
+    def command(self, held: Orientation) -> Command:
+        """Return what the machine is asked; `held` is the orientation that is set now."""
+        return UndoZero()
 
 
 class HomeCommand(_Command):
@@ -268,6 +287,7 @@ AnyCommand = Annotated[
     MoveCommand
     | StepCommand
     | ZeroCommand
+    | UndoZeroCommand
     | HomeCommand
     | ModeCommand
     | TrackCommand
@@ -307,7 +327,7 @@ async def stop(tracker_id: TrackerId, sender: SenderDep) -> Snapshot:
 @router.post("/stop", status_code=202, summary="Stop every tracker now")
 async def stop_all(sender: SenderDep) -> SiteSnapshot:
     """Stop every tracker of the site at once."""
-    return await sender.send(StopAll())
+    return listed(await sender.send(StopAll()))
 
 
 @router.post(
@@ -331,8 +351,20 @@ async def end_jog(tracker_id: TrackerId, press_id: str, sender: SenderDep) -> Sn
     "/trackers/{tracker_id}/commands", status_code=202, summary="Command", responses=NOT_FOUND | REFUSED
 )
 async def command(
-    tracker_id: TrackerId, request: AnyCommand, sender: SenderDep, site: SnapshotDep
+    tracker_id: TrackerId, request: AnyCommand, sender: SenderDep, site: SnapshotDep, machine: MachineDep
 ) -> Snapshot:
-    """Start what is asked; `activity` and `in_position` of the snapshot tell when it is done."""
-    held = tracker_of(site, tracker_id).orientation
+    """Start what is asked; `activity` and `in_position` of the snapshot tell when it is done.
+
+    `zero` where the drive reads another angle is refused with the question until it is `confirmed`.
+    """
+    tracker = tracker_of(site, tracker_id)
+    if isinstance(request, ZeroCommand) and not request.confirmed:
+        await _ask(machine, tracker, request)
+    held = tracker.orientation
     return await sender.command(tracker_id, request.command(held), request.issued_at)
+
+
+async def _ask(machine: Machine, tracker: Snapshot, request: ZeroCommand) -> None:
+    mount = (await detail_of(machine, tracker.tracker_id)).state.config.mount
+    if doubts := zero_doubts(mount, tracker, request.axes):
+        raise NotAcceptable(" ".join((*doubts, "If the panel is there, send it again with `confirmed`.")))

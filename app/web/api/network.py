@@ -20,7 +20,7 @@ class NetworkInput(Input):
     """Where the panel shall listen."""
 
     host: str = Field(
-        min_length=1, max_length=60, description="Address to listen on.", examples=["192.168.1.20"]
+        min_length=1, max_length=60, description="Address to listen on.", examples=["127.0.0.1"]
     )
     port: int = Field(ge=1, le=65535, examples=[8443])
     allowed_hosts: tuple[Name, ...] = Field((), max_length=20, description="Other names of the panel.")

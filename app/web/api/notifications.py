@@ -1,12 +1,17 @@
 """Where alarms are sent."""
 
+from dataclasses import replace
+
 from pydantic import Field
 
+from app.access.principal import Principal
+from app.access.roles import Permission
 from app.link.alarm_orders import SetNotifications, TestNotification
+from app.masking import masked
 from app.tracker.notifications import Channel, Notifications
 from app.web.api.base import REFUSED, Input, api_router
 from app.web.api.orders import SenderDep
-from app.web.deps import MachineDep
+from app.web.deps import MachineDep, PrincipalDep
 from app.web.errors import NotAcceptable
 
 router = api_router(prefix="/site/notifications", tags=["alarms"])
@@ -15,16 +20,16 @@ router = api_router(prefix="/site/notifications", tags=["alarms"])
 class NotificationsIn(Input):
     """Addresses and the priorities that are sent there; an empty address: nowhere."""
 
-    webhook_url: str = Field("", max_length=500, examples=["https://example.org/alarms"])
+    webhook_url: str = Field("", max_length=500, examples=["http://127.0.0.1:9/alarms"])
     webhook_priorities: tuple[int, ...] = Field((1, 2), max_length=4)
-    mail_to: tuple[str, ...] = Field((), max_length=10, examples=[["night@example.org"]])
+    mail_to: tuple[str, ...] = Field((), max_length=10, examples=[["night@localhost"]])
     mail_priorities: tuple[int, ...] = Field((1, 2), max_length=4)
 
 
 @router.get("", summary="Where alarms are sent")
-async def read_notifications(machine: MachineDep) -> Notifications:
-    """Return addresses and priorities."""
-    return (await machine.detail()).site.notifications
+async def read_notifications(machine: MachineDep, who: PrincipalDep) -> Notifications:
+    """Return addresses and priorities; of the webhook who may not set it is told the host alone."""
+    return shown_to(who, (await machine.detail()).site.notifications)
 
 
 @router.put("", summary="Say where alarms are sent", responses=REFUSED)
@@ -36,6 +41,12 @@ async def write_notifications(wanted: NotificationsIn, sender: SenderDep) -> Not
         raise NotAcceptable(str(error)) from error
     await sender.send(SetNotifications(notifications))
     return notifications
+
+
+def shown_to(who: Principal, now: Notifications) -> Notifications:
+    """Return where alarms are sent, with the webhook's address whole for who may set it."""
+    sees = who.may_order("set_notifications") or who.may(Permission.ADMINISTER)
+    return now if sees else replace(now, webhook_url=masked(now.webhook_url))
 
 
 @router.post("/{channel}/test", status_code=202, summary="Send a test message", responses=REFUSED)

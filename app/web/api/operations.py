@@ -18,6 +18,7 @@ from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
 from app.link.messages import MachineUnreachable
+from app.masking import without_secrets
 from app.settings import Settings
 from app.store.backup import backup
 from app.store.store import JournalFilter
@@ -156,7 +157,8 @@ def _zipped(parts: dict[str, Any]) -> bytes:
     options = orjson.OPT_INDENT_2 | orjson.OPT_NON_STR_KEYS
     with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, part in parts.items():
-            archive.writestr(name, orjson.dumps(part, option=options))
+            plain = orjson.loads(orjson.dumps(part, option=options))
+            archive.writestr(name, orjson.dumps(without_secrets(plain), option=options))
     return content.getvalue()
 
 

@@ -1,5 +1,7 @@
 """From a request to one order of the machine."""
 
+from contextlib import suppress
+from dataclasses import replace
 from typing import Annotated
 
 from fastapi import Depends, Header
@@ -18,7 +20,8 @@ Key = Annotated[
         alias="Idempotency-Key",
         min_length=1,
         max_length=64,
-        description="A repeated request with the same key is answered as the first was, and done once.",
+        description="A repeated request with the same key is answered as the first was, and done once; "
+        "with another command it is refused with 409.",
     ),
 ]
 Epoch = Annotated[
@@ -65,8 +68,12 @@ class Sender:
             raise NotAcceptable(str(error)) from error
 
     async def command(self, tracker_id: str, command: Command, issued_at: Instant | None = None) -> Snapshot:
-        """Carry out a tracker's command and return the tracker after it."""
-        return tracker_of(await self.send(command, tracker_id, issued_at), tracker_id)
+        """Carry out a tracker's command and return the tracker after it, with what is allowed then."""
+        became = tracker_of(await self.send(command, tracker_id, issued_at), tracker_id)
+        if not became.actions:
+            with suppress(UnknownTracker):
+                became = await self._machine.tracker(tracker_id)
+        return became
 
 
 SenderDep = Annotated[Sender, Depends()]
@@ -78,3 +85,9 @@ def tracker_of(site: SiteSnapshot, tracker_id: str) -> Snapshot:
         if snapshot.tracker_id == tracker_id:
             return snapshot
     raise UnknownTracker(tracker_id)
+
+
+def listed(site: SiteSnapshot) -> SiteSnapshot:
+    """Return a site as lists tell it: what is allowed now is told of one tracker, to who asks for it."""
+    trackers = tuple(replace(one, actions={}) if one.actions else one for one in site.trackers)
+    return replace(site, trackers=trackers)

@@ -5,7 +5,7 @@ from typing import Annotated, Self
 from fastapi import Query
 
 from app.papers.library import papers
-from app.papers.result import Erratum, Figure, Gap, Group, Paper, Standing
+from app.papers.result import Basis, Erratum, Figure, Gap, Group, Paper, Standing
 from app.web.api.base import NOT_FOUND, TOO_MANY, Output, api_router
 from app.web.deps import PanelDep
 
@@ -21,6 +21,7 @@ class FigureReport(Output):
     ours: float
     difference: float | None
     standing: Standing
+    basis: Basis
     remark: str
 
     @classmethod
@@ -33,6 +34,7 @@ class FigureReport(Output):
             ours=figure.ours,
             difference=figure.difference,
             standing=figure.standing,
+            basis=figure.basis,
             remark=figure.remark,
         )
 
@@ -51,8 +53,29 @@ class GroupReport(Output):
         return cls(title=group.title, note=group.note, figures=figures)
 
 
+class ErratumReport(Output):
+    """A misprint: where, what is printed, what it must be, and its effect; whether that could be measured."""
+
+    where: str
+    printed: str
+    right: str
+    effect: str
+    measured: bool
+
+    @classmethod
+    def of(cls, one: Erratum) -> Self:
+        """Return an erratum as the API tells it."""
+        return cls(
+            where=one.where,
+            printed=one.printed,
+            right=one.right,
+            effect=one.effect.text,
+            measured=one.effect.measured,
+        )
+
+
 class PaperReport(Output):
-    """A paper: its figures, its errata with their measured effect, and what cannot be computed."""
+    """A paper: its figures, its errata with their effect, and what cannot be computed."""
 
     key: str
     name: str
@@ -60,7 +83,7 @@ class PaperReport(Output):
     agreeing: int
     published: int
     groups: list[GroupReport]
-    errata: list[Erratum]
+    errata: list[ErratumReport]
     gaps: list[Gap]
 
     @classmethod
@@ -73,7 +96,7 @@ class PaperReport(Output):
             agreeing=paper.agreeing,
             published=paper.published,
             groups=[GroupReport.of(group) for group in paper.groups],
-            errata=list(paper.errata),
+            errata=[ErratumReport.of(one) for one in paper.errata],
             gaps=list(paper.gaps),
         )
 

@@ -16,6 +16,7 @@ from app.web.photos import LARGEST_UPLOAD, PhotoRefused
 from app.web.record_document import LONGEST_REMARK, differences, paper, read_document
 from app.web.record_orders import (
     add_photo,
+    asked_before_signing,
     photo_of,
     remove_photo,
     require_tracker,
@@ -64,6 +65,9 @@ class NewRecord(Input):
 
     signatures: tuple[Signed, ...] = Field(min_length=1, max_length=2)
     remark: str = Field("", max_length=LONGEST_REMARK)
+    confirmed: bool = Field(
+        False, description="It is to be signed although steps or drive tests are open or an alarm is active."
+    )
 
 
 class Line(Output):
@@ -139,10 +143,15 @@ def compare_records(
 async def sign_record(
     tracker_id: TrackerId, new: NewRecord, sender: SenderDep, built: PanelDep, who: PrincipalDep
 ) -> RecordHead:
-    """Keep the record as it stands now for good, with the photos that wait for it."""
+    """Keep the record as it stands now for good, with the photos that wait for it.
+
+    With open steps, open drive tests or an active alarm it is refused with these until it is `confirmed`.
+    """
     roles = [one.role for one in new.signatures]
     if SignatureRole.TECHNICIAN not in roles or len(set(roles)) != len(roles):
         raise NotAcceptable("A record needs the technician's signature, and at most one of each role.")
+    if not new.confirmed and (doubts := await asked_before_signing(built, tracker_id)):
+        raise NotAcceptable(" ".join((*doubts, "To sign all the same, send it again with `confirmed`.")))
     signatures = [Signature(one.role, one.name, one.strokes) for one in new.signatures]
     return await sign(sender.send, built, tracker_id, who.actor, new.remark, signatures)
 

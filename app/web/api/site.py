@@ -12,7 +12,8 @@ from app.sun.position import Location
 from app.tracker.reason import Reason
 from app.tracker.snapshot import SiteSnapshot
 from app.web.api.base import REFUSED, Input, Output, api_router
-from app.web.api.orders import SenderDep
+from app.web.api.orders import SenderDep, listed
+from app.web.clock_doubt import clock_doubt
 from app.web.deps import MachineDep, PanelDep, SnapshotDep
 from app.web.errors import NotAcceptable
 from app.web.place import place_doubts
@@ -37,7 +38,8 @@ class SitePlace(Input):
     )
     confirmed: bool = Field(
         False,
-        description="The place is right although it lies in the sea, or its sun and its time zone disagree.",
+        description="The place is right although it lies in the sea or far from the stored one, or its sun "
+        "and its time zone disagree.",
     )
 
 
@@ -47,6 +49,13 @@ class ClockChange(Input):
     source: Literal["system", "manual"] = Field(examples=["system"])
     at: Instant | None = Field(None, description="What the clock shall show now; with `manual` only.")
     time_zone: str | None = Field(None, min_length=1, max_length=64, description="IANA name; None keeps it.")
+
+    device_at: Instant | None = Field(
+        None, description="What the clock of whoever asks shows now; the controller's is compared with it."
+    )
+    confirmed: bool = Field(
+        False, description="The controller's clock is right although it differs by more than a minute."
+    )
 
     @model_validator(mode="after")
     def _instant_with_manual(self) -> Self:
@@ -77,13 +86,13 @@ class Clock(Output):
 @router.get("", summary="The whole site now")
 async def read_site(snapshot: SnapshotDep) -> SiteSnapshot:
     """Return name, location, clock, sun and every tracker at this instant."""
-    return snapshot
+    return listed(snapshot)
 
 
 @router.patch("", summary="Rename the site", responses=REFUSED)
 async def rename_site(change: SiteName, sender: SenderDep) -> SiteSnapshot:
     """Give the site another name."""
-    return await sender.send(RenameSite(change.name))
+    return listed(await sender.send(RenameSite(change.name)))
 
 
 @router.post(
@@ -94,7 +103,7 @@ async def rename_site(change: SiteName, sender: SenderDep) -> SiteSnapshot:
 )
 async def undo_site_settings(sender: SenderDep) -> SiteSnapshot:
     """Set name, horizon, weather and notifications as they were before the last change; once more redoes."""
-    return await sender.send(UndoSiteSettings())
+    return listed(await sender.send(UndoSiteSettings()))
 
 
 @router.put("/location", summary="Step 1: set the location", responses=REFUSED)
@@ -110,7 +119,7 @@ async def set_location(
     doubts = place_doubts(location, place.time_zone, built.clock.now(), before=before)
     if doubts and not place.confirmed:
         raise NotAcceptable(" ".join((*doubts, "If the place is right, send it again with `confirmed`.")))
-    return await sender.send(SetLocation(location, place.time_zone))
+    return listed(await sender.send(SetLocation(location, place.time_zone)))
 
 
 @router.get("/clock", summary="The site's clock")
@@ -120,8 +129,16 @@ async def read_clock(snapshot: SnapshotDep) -> Clock:
 
 
 @router.put("/clock", summary="Step 2: set the clock", responses=REFUSED)
-async def set_clock(change: ClockChange, sender: SenderDep) -> Clock:
-    """Trust the computer's clock or set the site's clock by hand."""
+async def set_clock(change: ClockChange, sender: SenderDep, built: PanelDep) -> Clock:
+    """Trust the computer's clock or set the site's clock by hand.
+
+    One that differs by more than a minute from `device_at`, or, where it is set by hand without that, from
+    the computer's clock, is refused with the difference until it is `confirmed`.
+    """
+    now = built.clock.now()
+    other = change.device_at or (now if change.at else None)
+    if (doubt := clock_doubt(change.at or now, other)) and not change.confirmed:
+        raise NotAcceptable(f"{doubt} If the controller's is right, send it again with `confirmed`.")
     return _clock(await sender.send(SetClock(change.source, change.at, change.time_zone)))
 
 

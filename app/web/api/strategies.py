@@ -7,7 +7,7 @@ from typing import Annotated
 
 from fastapi import Body
 from fastapi.responses import PlainTextResponse, Response
-from pydantic import Field, TypeAdapter
+from pydantic import Field, TypeAdapter, WrapValidator
 from starlette.requests import Request
 
 from app.link.messages import ConfigureTracker
@@ -17,6 +17,7 @@ from app.tracker.programs.step_table import TableWrong, from_table, to_table
 from app.tracker.programs.stepped import StepProgram
 from app.tracker.strategy import Stepped, Strategy
 from app.web.api.base import NOT_FOUND, REFUSED, TOO_MANY, Input, TrackerId, api_router
+from app.web.api.numbers import true_to_kind
 from app.web.api.orders import SenderDep
 from app.web.api.sun import location_of, midnights
 from app.web.api.trackers import detail_of
@@ -28,7 +29,13 @@ router = api_router(prefix="/trackers/{tracker_id}", tags=["trackers"])
 
 CivilDate = date
 CSV = "text/csv; charset=utf-8"
-CSV_BODY = {"requestBody": {"required": True, "content": {"text/csv": {"schema": {"type": "string"}}}}}
+CSV_BODY = {
+    "requestBody": {
+        "description": "The table in UTF-8; `text/csv` is taken as well, but few client generators know it.",
+        "required": True,
+        "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
+    }
+}
 _program: TypeAdapter[StepProgram] = TypeAdapter(StepProgram)
 
 
@@ -62,7 +69,7 @@ async def read_program(
 @router.put("/program", summary="Have a tracker follow a step program", responses=NOT_FOUND | REFUSED)
 async def write_program(
     tracker_id: TrackerId,
-    program: Annotated[StepProgram, Body()],
+    program: Annotated[StepProgram, Body(), WrapValidator(true_to_kind)],
     sender: SenderDep,
     machine: MachineDep,
 ) -> StepProgram:

@@ -12,7 +12,7 @@ from starlette.types import Receive, Scope, Send
 from app.link.messages import MachineUnreachable
 from app.tracker.snapshot import EventKind
 from app.web.api.base import Responses, api_router
-from app.web.deps import PanelDep
+from app.web.deps import PanelDep, PrincipalDep
 from app.web.hub import Hub, TooManyViewers
 from app.web.viewers import Message, TooSlow, Viewer, Wanted, pump
 
@@ -82,12 +82,13 @@ def framed(message: Message) -> bytes:
 @router.get("/stream", summary="Live snapshots and events", response_class=Response, responses=STREAM)
 async def stream(
     panel: PanelDep,
+    who: PrincipalDep,
     tracker_id: Annotated[str | None, Query(max_length=64, description="Only this tracker.")] = None,
     kind: Annotated[list[EventKind] | None, Query(description="Only events of these kinds.")] = None,
     last_event_id: Annotated[str | None, Header(alias="Last-Event-ID", max_length=64)] = None,
 ) -> Response:
     """Send the whole state, what was missed since `Last-Event-ID`, and from then on every change."""
-    wanted = Wanted(tracker_id, frozenset(kind or ()))
+    wanted = Wanted(tracker_id, frozenset(kind or ()), trackers=who.trackers, always_whole=True)
     try:
         viewer = panel.hub.join(wanted)
     except TooManyViewers as error:

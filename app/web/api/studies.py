@@ -20,8 +20,9 @@ from app.tracker.strategy import Stepped
 from app.web.api.base import NOT_FOUND, REFUSED, TOO_MANY, Output, Responses, api_router
 from app.web.api.orders import SenderDep
 from app.web.api.trackers import detail_of
-from app.web.deps import MachineDep, PanelDep
+from app.web.deps import MachineDep, PanelDep, PrincipalDep
 from app.web.errors import NotAcceptable
+from app.web.narrowed import sees_study
 from app.web.study_orders import NewProgram, NewStudy, chosen_program, glance_question
 
 router = api_router(tags=["studies"])
@@ -76,9 +77,10 @@ async def start(new: NewStudy, panel: PanelDep, machine: MachineDep, response: R
 
 
 @router.get("/studies", summary="All studies, newest first")
-def studies(panel: PanelDep) -> list[StudyState]:
+def studies(panel: PanelDep, who: PrincipalDep) -> list[StudyState]:
     """Return how far each study is."""
-    return panel.studies.states()
+    states = panel.studies.states()
+    return [one for one in states if sees_study(panel.studies, one.study_id, who.trackers)]
 
 
 @router.get(

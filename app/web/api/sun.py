@@ -13,9 +13,10 @@ from fastapi.responses import Response
 from pydantic import Field
 
 from app.instants import Instant
+from app.sun.accuracy import FIRST_YEAR, LAST_YEAR
 from app.sun.algorithms import PUBLISHED
 from app.sun.events import PolarDay, day_events
-from app.sun.position import Algorithm, Location, sun_path, sun_position
+from app.sun.position import Algorithm, InstantRefused, Location, sun_path, sun_position
 from app.tracker.commands import CommandRejected
 from app.tracker.reason import Reason
 from app.tracker.snapshot import SiteSnapshot
@@ -128,7 +129,9 @@ def location_of(site: SiteSnapshot) -> Location:
 
 
 def midnights(day: date, time_zone: str) -> tuple[datetime, datetime]:
-    """Return the instants at which a civil day begins and ends."""
+    """Return the instants at which a civil day begins and ends, or raise `InstantRefused`."""
+    if not FIRST_YEAR <= day.year <= LAST_YEAR:
+        raise InstantRefused(f"The sun is known for the years {FIRST_YEAR} to {LAST_YEAR}, not for {day}.")
     zone = zone_of(time_zone)
     begin, end = (datetime.combine(one, time(), zone) for one in (day, day + timedelta(days=1)))
     return begin.astimezone(UTC), end.astimezone(UTC)

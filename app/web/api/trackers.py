@@ -20,7 +20,7 @@ from app.tracker.strategy import Strategy
 from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, Output, TrackerId, api_router
 from app.web.api.machine_inputs import MachineChange
 from app.web.api.mount_inputs import ActuatorIn, MountChange
-from app.web.api.orders import SenderDep, tracker_of
+from app.web.api.orders import SenderDep
 from app.web.api.protection_inputs import ProtectionChange, kept_azimuths
 from app.web.deps import MachineDep, SnapshotDep
 from app.web.errors import NotAcceptable, NotFound
@@ -71,7 +71,7 @@ class DriveChange(Input):
 
     kind: DriveKind | None = None
     profile: str | None = Field(None, min_length=1, max_length=64, examples=["simulated-plc"])
-    host: str | None = Field(None, min_length=1, max_length=253, examples=["192.168.0.20"])
+    host: str | None = Field(None, min_length=1, max_length=253, examples=["127.0.0.1"])
     port: int | None = Field(None, ge=1, le=65535, examples=[502])
     unit: int | None = Field(None, ge=0, le=255, description="Modbus unit id.")
     serial: SerialChange | None = Field(None, description="For Modbus RTU.")
@@ -211,9 +211,9 @@ async def remove_tracker(tracker_id: TrackerId, sender: SenderDep) -> None:
 
 
 @router.get("/{tracker_id}/snapshot", summary="Everything about a tracker now", responses=NOT_FOUND)
-async def read_snapshot(tracker_id: TrackerId, site: SnapshotDep) -> Snapshot:
-    """Return the tracker at this instant."""
-    return tracker_of(site, tracker_id)
+async def read_snapshot(tracker_id: TrackerId, machine: MachineDep) -> Snapshot:
+    """Return the tracker at this instant, with what is allowed now and what forbids the rest."""
+    return await machine.tracker(tracker_id)
 
 
 @router.get("/{tracker_id}/capabilities", summary="What drive and mount can do", responses=NOT_FOUND)
@@ -227,9 +227,9 @@ async def read_capabilities(tracker_id: TrackerId, machine: MachineDep) -> Capab
 
 
 @router.get("/{tracker_id}/actions", summary="What is allowed now", responses=NOT_FOUND)
-async def read_actions(tracker_id: TrackerId, site: SnapshotDep) -> list[ActionState]:
+async def read_actions(tracker_id: TrackerId, machine: MachineDep) -> list[ActionState]:
     """Return each action with whether it is allowed and every reason that forbids it."""
-    actions = tracker_of(site, tracker_id).actions
+    actions = (await machine.tracker(tracker_id)).actions
     return [
         ActionState(action=action, allowed=not reasons, reasons=reasons)
         for action, reasons in actions.items()

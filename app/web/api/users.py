@@ -9,7 +9,7 @@ from pydantic import Field, SecretStr
 from app.access.accounts import TokenWish
 from app.access.roles import Role
 from app.access.sessions import Session
-from app.access.tokens import Scope, Token
+from app.access.tokens import Scope, Token, token_id_of
 from app.access.users import User
 from app.web.api.base import NOT_FOUND, Input, Output, api_router
 from app.web.deps import PanelDep, PrincipalDep
@@ -97,6 +97,7 @@ class Listed(Output):
 class Minted(Output):
     """A new token, shown this once."""
 
+    token_id: str = Field(description="By this it is listed and revoked.")
     token: str = Field(description="Send it as `Authorization: Bearer`; it is not kept.")
 
 
@@ -166,7 +167,8 @@ async def mint(typed: NewToken, built: PanelDep, who: PrincipalDep) -> Minted:
         typed.pin.get_secret_value() if typed.pin else "",
     )
     now = built.clock.now()
-    return Minted(token=await built.keeper.do(lambda: built.keeper.accounts.mint(who, wish, now)))
+    token = await built.keeper.do(lambda: built.keeper.accounts.mint(who, wish, now))
+    return Minted(token_id=token_id_of(token) or "", token=token)
 
 
 @router.delete("/tokens/{token_id}", status_code=204, summary="Revoke a token", responses=NOT_FOUND)

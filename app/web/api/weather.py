@@ -40,16 +40,16 @@ class WeatherReport(Input):
 
 @router.get("", summary="The newest weather report", responses=NOT_FOUND)
 async def read_weather(snapshot: SnapshotDep) -> WeatherNow:
-    """Return the newest report with its age; 404 as long as no station has sent one."""
+    """Return the newest report with its age, also one from before a restart; 404 before the first."""
     if snapshot.weather is None:
-        raise NotFound("No weather has been reported since the controller service started.")
+        raise NotFound("No measured weather is known yet. Set up a weather station, or send a report.")
     return snapshot.weather
 
 
 class MetStationIn(Input):
     """A weather station that is read over Modbus TCP: SunSpec model 307."""
 
-    host: str = Field(min_length=1, max_length=253, examples=["192.168.0.30"])
+    host: str = Field(min_length=1, max_length=253, examples=["127.0.0.1"])
     port: int = Field(502, ge=1, le=65535)
     unit: int = Field(1, ge=0, le=255)
 

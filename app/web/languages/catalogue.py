@@ -8,6 +8,7 @@ from itertools import chain
 from pathlib import Path
 from typing import IO
 
+from app.web.languages.given_names import GIVEN, with_names
 from app.web.languages.known import ENGLISH, LANGUAGES, LOCALE, Language
 from app.web.languages.patterns import GAP, Pattern, Patterns
 
@@ -72,7 +73,7 @@ class Catalogue(_Stored):
             self._catalog.pop("", None)
             self.blocks()
         self._patterns = Patterns(text for text in self._catalog if isinstance(text, str))
-        self.said: Callable[[str], str] = lru_cache(maxsize=KEPT)(self._said)
+        self._said_once = lru_cache(maxsize=KEPT)(self._said_with_names)
 
     @property
     def texts(self) -> Mapping[object, str]:
@@ -94,12 +95,28 @@ class Catalogue(_Stored):
         apart = GROUPED.sub(lambda found: found[0].replace(",", THIN_SPACE), text)
         return NUMBER.sub(rf"\1{self.language.point}\2", apart)
 
-    def _said(self, sentence: str) -> str:
-        """Return a sentence of the program in this language; one that is not known stays English."""
+    def said(self, sentence: str) -> str:
+        """Return a sentence of the program in this language; one that is not known stays English.
+
+        Names that people gave stay as they are, whatever texts there are with the same words.
+        """
+        return self._said_once(sentence, GIVEN.version)
+
+    def _said_with_names(self, sentence: str, _version: int) -> str:
         if not self._catalog or len(sentence) > LONGEST:
             return sentence
+        if found := self._catalog.get(sentence):
+            return found if sentence not in GIVEN else sentence
+        has_names = False
+        for masked, names in GIVEN.variants(sentence):
+            has_names = True
+            if (said := self._said(masked)) is not None:
+                return with_names(said, names)
+        return sentence if has_names else self._said(sentence) or sentence
+
+    def _said(self, sentence: str) -> str | None:
         known = self._all_known(sentence) or self._known(sentence)
-        return known or self._by_sentences(sentence) or self._piece(sentence) or sentence
+        return known or self._by_sentences(sentence) or self._piece(sentence)
 
     def _all_known(self, text: str) -> str | None:
         """Return several sentences that are known to the letter; no pattern is better than that."""

@@ -11,7 +11,8 @@ from starlette.responses import Response
 from app.instants import without_leap_second
 from app.link.messages import SetClock, SiteDetail
 from app.tracker.memory import StepName
-from app.web.contexts import ClockPage
+from app.web.clock_doubt import clock_doubt
+from app.web.contexts import ClockPage, ClockQuestion
 from app.web.deps import MachineDep, PanelDep
 from app.web.errors import NotAcceptable
 from app.web.ui.formats import local
@@ -22,6 +23,8 @@ from app.web.ui.render import go, page
 from app.web.ui.wizard import tracker_of, wizard_frame
 
 router = APIRouter(prefix="/trackers/{tracker_id}/commissioning/clock")
+DeviceAt = Annotated[str, Form(max_length=40)]
+Confirmed = Annotated[str, Form(max_length=10)]
 NAMES = ("date", "time", "time_zone")
 
 
@@ -31,6 +34,8 @@ class ClockForm(BaseModel):
     date: str = ""
     time: str = ""
     time_zone: str = ""
+    at: str = ""
+    confirmed: str = ""
 
 
 @router.get("")
@@ -47,8 +52,13 @@ async def show(request: Request, tracker_id: str, built: PanelDep) -> Response:
 
 
 @router.post("/system")
-async def keep_system(tracker_id: str, press: PressDep) -> Response:
-    """Trust the clock of the controller's computer."""
+async def keep_system(
+    tracker_id: str, press: PressDep, built: PanelDep, at: DeviceAt = "", confirmed: Confirmed = ""
+) -> Response:
+    """Trust the clock of the controller's computer; ask first where it differs from this device's."""
+    doubt = clock_doubt(built.clock.now(), _told(at))
+    if doubt and confirmed != "yes":
+        return page(press.request, ClockQuestion(doubt), status=422)
     await press.send(SetClock("system"))
     return go(press.request, _page(tracker_id))
 
@@ -74,15 +84,29 @@ async def copy_device(
 async def set_by_hand(
     tracker_id: str, press: PressDep, machine: MachineDep, typed: Annotated[ClockForm, Form()]
 ) -> Response:
-    """Set the controller's clock to a typed date and time."""
-    found = Typed(typed.model_dump())
+    """Set the controller's clock to a typed date and time; ask first where this device's differs."""
+    at, confirmed = typed.at, typed.confirmed
+    found = Typed(typed.model_dump(include=set(NAMES)))
     day, time = found.day("date", "Date"), found.clock_time("time", "Time")
     if typed.time_zone not in zones():
         found.errors["time_zone"] = "Choose a time zone from the list."
     if found.errors:
         return _answer(press.request, tracker_id, await machine.detail(), found, status=422)
-    await press.send(SetClock("manual", in_zone(day, time, typed.time_zone), typed.time_zone))
+    instant = in_zone(day, time, typed.time_zone)
+    doubt = clock_doubt(instant, _told(at))
+    if doubt and confirmed != "yes":
+        return _answer(press.request, tracker_id, await machine.detail(), found, status=422, doubt=doubt)
+    await press.send(SetClock("manual", instant, typed.time_zone))
     return go(press.request, _page(tracker_id))
+
+
+def _told(at: str) -> datetime | None:
+    """Return what this device's clock showed, None where its browser did not tell."""
+    try:
+        instant = datetime.fromisoformat(without_leap_second(at))
+    except ValueError:
+        return None
+    return instant if instant.tzinfo else None
 
 
 def _page(tracker_id: str) -> str:
@@ -90,8 +114,16 @@ def _page(tracker_id: str) -> str:
 
 
 def _answer(
-    request: Request, tracker_id: str, detail: SiteDetail, typed: Typed, *, status: int = 200
+    request: Request,
+    tracker_id: str,
+    detail: SiteDetail,
+    typed: Typed,
+    *,
+    status: int = 200,
+    doubt: str = "",
 ) -> Response:
     frame = wizard_frame(request, tracker_of(detail, tracker_id), StepName.CLOCK)
-    context = ClockPage(frame=frame, form=typed.form(NAMES), zones=zones(), setting=detail.site.clock)
+    context = ClockPage(
+        frame=frame, form=typed.form(NAMES), zones=zones(), setting=detail.site.clock, doubt=doubt
+    )
     return page(request, context, block="manual", status=status)

@@ -14,6 +14,7 @@ from app.web.contexts import Forward, Frame, Link, StepMark
 from app.web.deps import panel, principal
 from app.web.edition import mark_of
 from app.web.languages import said
+from app.web.ui.asked import asked
 from app.web.ui.themes import choice_of, theme_of
 from app.web.who import Who
 from app.zones import shown_zone
@@ -134,7 +135,7 @@ def _frame(
         theme_choice=chosen,
         zone=shown_zone(site.time_zone) if site else "UTC",
         site=site,
-        tracker=snapshot_of(site, tracker_id),
+        tracker=snapshot_of(site, tracker_id) and (asked(request) or snapshot_of(site, tracker_id)),
         tracker_id=tracker_id,
         tabs=tabs,
         steps=steps,

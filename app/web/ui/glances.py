@@ -60,15 +60,15 @@ def glance(
         wind=quantities.index(Quantity.WIND) if Quantity.WIND in quantities else None,
         priority=worst.priority if worst else 0,
         alarms=len(mine),
-        trouble=worst.title if worst else "",
+        trouble=worst.heading if worst else "",
         done=progress[0],
         next_step=progress[1],
     )
 
 
 def doing(trackers: Iterable[Snapshot]) -> tuple[tuple[ActivityName, int], ...]:
-    """Return of everything that a tracker may do how many do it."""
-    counted = Counter(one.activity for one in trackers)
+    """Return of everything that a tracker may do how many do it, those on the way to the sun aside."""
+    counted = Counter(one.activity for one in trackers if not one.approaching)
     return tuple((name, counted[name]) for name in ActivityName)
 
 

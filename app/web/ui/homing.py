@@ -6,15 +6,18 @@ from fastapi import APIRouter, Form
 from starlette.requests import Request
 from starlette.responses import Response
 
+from app.link.messages import TrackerDetail
 from app.tracker.axes import Axis
-from app.tracker.commands import EndJog, Home, SetZero, Step
+from app.tracker.commands import EndJog, Home, SetZero, Step, UndoZero
 from app.tracker.memory import StepName
 from app.web.contexts import HomingPage
 from app.web.deps import MachineDep
 from app.web.errors import NotAcceptable
+from app.web.ui.frame import snapshot_of
 from app.web.ui.orders import PressDep
 from app.web.ui.render import page
 from app.web.ui.wizard import tracker_of, wizard_frame
+from app.web.zero import zero_doubts
 
 pages = APIRouter(prefix="/trackers/{tracker_id}/commissioning/homing")
 router = APIRouter(prefix="/trackers/{tracker_id}")
@@ -30,20 +33,36 @@ MOVES = {
 @pages.get("")
 async def show(request: Request, tracker_id: str, machine: MachineDep) -> Response:
     """Show the hold keys, the live position and "Set as zero"."""
-    tracker = tracker_of(await machine.detail(), tracker_id)
-    context = HomingPage(
+    return page(request, _page(request, tracker_of(await machine.detail(), tracker_id)))
+
+
+def _page(request: Request, tracker: TrackerDetail, doubts: tuple[str, ...] = ()) -> HomingPage:
+    return HomingPage(
         frame=wizard_frame(request, tracker, StepName.HOMING),
         capabilities=tracker.capabilities,
         config=tracker.state.config,
+        doubts=doubts,
     )
-    return page(request, context)
 
 
 @router.post("/zero")
-async def zero(tracker_id: str, press: PressDep) -> Response:
-    """Call the present position zero on both axes."""
+async def zero(
+    tracker_id: str, press: PressDep, machine: MachineDep, confirmed: Annotated[str, Form()] = ""
+) -> Response:
+    """Call the present position zero on both axes; ask first where the drive reads another angle."""
+    tracker, now = tracker_of(await machine.detail(), tracker_id), snapshot_of(machine.latest(), tracker_id)
+    doubts = () if now is None else zero_doubts(tracker.state.config.mount, now, tuple(Axis))
+    if doubts and confirmed != "yes":
+        return page(press.request, _page(press.request, tracker, doubts), block="question", status=422)
     await press.send(SetZero(), tracker_id)
     return press.answer("The drive was told to set zero.")
+
+
+@router.post("/zero/undo")
+async def undo_zero(tracker_id: str, press: PressDep) -> Response:
+    """Bring back the home position as it was before it was set last."""
+    await press.send(UndoZero(), tracker_id)
+    return press.answer("The former home position counts again.")
 
 
 @router.post("/home")

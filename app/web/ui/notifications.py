@@ -10,8 +10,9 @@ from app.link.alarm_orders import SetNotifications, TestNotification
 from app.tracker.alarm_words import PRIORITIES
 from app.tracker.notifications import Channel, Notifications
 from app.web.alarm_contexts import NotificationsPage
+from app.web.api.notifications import shown_to
 from app.web.contexts import Link
-from app.web.deps import MachineDep
+from app.web.deps import MachineDep, PrincipalDep
 from app.web.ui.frame import site_frame
 from app.web.ui.orders import PressDep
 from app.web.ui.render import page
@@ -21,9 +22,9 @@ BACK = Link("Site", "/site")
 
 
 @router.get("")
-async def notifications(request: Request, machine: MachineDep) -> Response:
+async def notifications(request: Request, machine: MachineDep, who: PrincipalDep) -> Response:
     """Show where alarms are sent."""
-    now = (await machine.detail()).site.notifications
+    now = shown_to(who, (await machine.detail()).site.notifications)
     return page(request, _page(request, now, now.webhook_url, ", ".join(now.mail_to)))
 
 

@@ -14,7 +14,8 @@ from app.web.photos import LARGEST_UPLOAD, PhotoRefused
 from app.web.record import read_record
 from app.web.record_contexts import RecordPage
 from app.web.record_document import LONGEST_REMARK
-from app.web.record_orders import Send, add_photo, photo_of, remove_photo, sign
+from app.web.record_orders import Send, add_photo, asked_before_signing, photo_of, remove_photo, sign
+from app.web.sign_doubts import is_future
 from app.web.signatures import Signature, SignatureRefused, SignatureRole, signature
 from app.web.ui.forms import Typed
 from app.web.ui.frame import STATUS_TEXT, STEP_LABELS, tracker_frame
@@ -35,6 +36,7 @@ class SignForm(BaseModel):
     technician_drawn: str = ""
     customer: str = ""
     customer_drawn: str = ""
+    confirmed: str = ""
 
 
 @router.get("")
@@ -54,6 +56,8 @@ async def sign_record(
         typed.errors["remark"] = f"A remark has at most {LONGEST_REMARK} letters."
     if typed.errors:
         return await _answer(press.request, tracker_id, built, typed, status=422)
+    if form.confirmed != "yes" and (doubts := await asked_before_signing(built, tracker_id)):
+        return await _answer(press.request, tracker_id, built, typed, status=422, doubts=doubts)
     actor = principal(press.request).actor
     head = await sign(_sender(press), built, tracker_id, actor, form.remark.strip(), signatures)
     return go(press.request, f"/records/{head.number}")
@@ -124,6 +128,7 @@ async def _answer(
     block: str = "sign",
     status: int = 200,
     photo_error: str = "",
+    doubts: tuple[str, ...] = (),
 ) -> Response:
     found = await read_record(built.machine, built.reader, tracker_id)
     labels = {name.value: label for name, label in STEP_LABELS.items()}
@@ -138,5 +143,7 @@ async def _answer(
         signed=tuple(await run_in_threadpool(built.reader.signed_records, tracker_id)),
         most_photos=MOST_PHOTOS,
         photo_error=photo_error,
+        doubts=doubts,
+        misdated=tuple(step.name for step in found.steps if is_future(step.confirmed_at, found.written_at)),
     )
     return page(request, context, block=block, status=status)

@@ -13,7 +13,15 @@ from app.web.access_contexts import SignInPage
 from app.web.contexts import Field
 from app.web.deps import PanelDep, PrincipalDep, panel
 from app.web.errors import problem_of
-from app.web.sign_ins import first_made, forget_first, forget_session, remember_first, set_session, whence
+from app.web.sign_ins import (
+    first_made,
+    forget_first,
+    forget_session,
+    remember_first,
+    session_held,
+    set_session,
+    whence,
+)
 from app.web.ui.frame import site_frame
 from app.web.ui.paths import own_path
 from app.web.ui.render import page
@@ -54,7 +62,7 @@ async def login(
 ) -> Response:
     """Begin a session; one that this browser had before ends."""
     try:
-        session_id = await built.keeper.log_in(name, password, *whence(request))
+        session_id = await built.keeper.log_in(name, password, *whence(request), session_held(request))
     except REFUSALS as error:
         return _form(request, "login", {"name": name}, back, error)
     await built.keeper.log_out(who)

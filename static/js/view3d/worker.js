@@ -5,6 +5,7 @@ import { GlPainter } from "./gl.js";
 
 let painter = null;
 let fixed = [];
+loadLetters();
 
 const ORDERS = {
   // The first picture is for nobody: the driver builds what painting needs.
@@ -36,6 +37,15 @@ async function open(canvas, first) {
     await painter.finished();
   }
   postMessage("ready");
+}
+
+// A worker has none of the page's fonts: it loads the letters of its labels itself.
+async function loadLetters() {
+  const file = new URL("../../vendor/atkinson/5.3.0/atkinson-hyperlegible-next-latin-wght-normal.woff2", import.meta.url);
+  const letters = new FontFace("Heliopanel", `url(${file})`, { weight: "200 800" });
+  fonts.add(letters);
+  await letters.load();
+  painter?.repaint();
 }
 
 // What never moves comes when it has changed.

@@ -1,0 +1,29 @@
+"""Whether a home position is likely to be mistaken: the drive reads another angle than is claimed."""
+
+from app.tracker.axes import Axis
+from app.tracker.config import MountConfig, MountKind
+from app.tracker.mounts.abilities import axis_title
+from app.tracker.snapshot import Snapshot
+
+JUMP_DEG = 2.0
+"""By eye an axis is turned to its home position within a degree; a reading farther off is asked about."""
+
+
+def zero_doubts(mount: MountConfig, tracker: Snapshot, axes: tuple[Axis, ...]) -> tuple[str, ...]:
+    """Return what speaks against setting the home position here, as questions; it may be right."""
+    states = {Axis.AZIMUTH: tracker.azimuth, Axis.ELEVATION: tracker.elevation}
+    read = {axis: states[axis] for axis in mount.axes if axis in axes}
+    return tuple(
+        _question(mount, axis, state.position_deg)
+        for axis, state in read.items()
+        if state is not None and state.position_deg is not None and abs(state.position_deg) > JUMP_DEG
+    )
+
+
+def _question(mount: MountConfig, axis: Axis, read_deg: float) -> str:
+    if mount.kind is not MountKind.AZIMUTH_ELEVATION:
+        name = axis_title(mount, axis)
+        return f"The drive reads {read_deg:.1f}° for the {name} axis. You say that it is at 0°?"
+    if axis is Axis.AZIMUTH:
+        return f"The measured azimuth is {read_deg:.1f}°. You say that the panel faces north (0°)?"
+    return f"The measured elevation is {read_deg:.1f}°. You say that the panel stands upright (0°)?"

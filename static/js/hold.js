@@ -1,0 +1,66 @@
+// A button that must be held for 2 s before it counts: what it does is easily done by mistake, and hard to see.
+
+import { live } from "./live.js";
+
+const HOLD_MS = 2000;
+const KEYS = new Set([" ", "Enter"]);
+const BY_HAND = new Set(["jogging", "moving"]);
+
+let held = null;
+
+function look() {
+  if (!held) return;
+  const { key, at } = held;
+  const share = (performance.now() - at) / HOLD_MS;
+  if (key.disabled || !key.isConnected) return end();
+  if (share >= 1) {
+    end();
+    return key.form.requestSubmit(key);
+  }
+  key.style.setProperty("--held", `${share * 100}%`);
+  held.frame = requestAnimationFrame(look);
+  return undefined;
+}
+
+function begin(key) {
+  if (held || key.disabled) return;
+  held = { key, at: performance.now() };
+  held.frame = requestAnimationFrame(look);
+}
+
+function end() {
+  if (!held) return;
+  cancelAnimationFrame(held.frame);
+  held.key.style.removeProperty("--held");
+  held = null;
+}
+
+const keyOf = (event) => event.target.closest?.("[data-hold]");
+
+document.addEventListener("pointerdown", (event) => {
+  const key = keyOf(event);
+  if (!key || event.button !== 0 || !event.isPrimary) return end();
+  key.setPointerCapture(event.pointerId);
+  return begin(key);
+});
+for (const name of ["pointerup", "pointercancel"]) document.addEventListener(name, end);
+for (const name of ["blur", "pagehide"]) addEventListener(name, end);
+document.addEventListener("contextmenu", (event) => { if (keyOf(event)) event.preventDefault(); });
+document.addEventListener("keydown", (event) => {
+  if (!keyOf(event) || !KEYS.has(event.key)) return;
+  event.preventDefault();
+  if (!event.repeat) begin(keyOf(event));
+});
+document.addEventListener("keyup", (event) => {
+  if (!keyOf(event) || !KEYS.has(event.key)) return;
+  event.preventDefault();
+  end();
+});
+// A touch or a click alone does nothing; the click of a screen reader, which cannot hold, has no detail.
+document.addEventListener("click", (event) => { if (keyOf(event) && event.detail > 0) event.preventDefault(); });
+
+// Once an axis was moved by hand, setting the home position is what this page is for.
+live.on("state", ({ tracker }) => {
+  if (!BY_HAND.has(tracker?.activity)) return;
+  for (const key of document.querySelectorAll("[data-after-jog]")) key.classList.add("key-primary");
+});

@@ -1,0 +1,72 @@
+"""A clock that differs from that of the device at hand is asked about before step 2 is done."""
+
+from datetime import timedelta
+
+import httpx
+import pytest
+
+from app.link.messages import SetClock
+from tests.fakes import FakeMachine
+
+PAGE = "/trackers/T1/commissioning/clock"
+CLOCK = "/api/v1/site/clock"
+HTMX = {"HX-Request": "true"}
+AHEAD = timedelta(hours=11, minutes=39)
+
+
+def orders(machine: FakeMachine) -> list[SetClock]:
+    return [order.command for order in machine.orders if isinstance(order.command, SetClock)]
+
+
+async def test_the_system_clock_is_asked_about_with_the_difference(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    device = {"at": (machine.clock.now() - AHEAD).isoformat()}
+    asked = await client.post(f"{PAGE}/system", data=device, headers=HTMX)
+    assert asked.status_code == 422
+    assert "The controller&#39;s clock is 11 h 39 min ahead of this device&#39;s clock." in asked.text
+    assert 'name="confirmed" value="yes"' in asked.text
+    assert not orders(machine)
+    answer = await client.post(f"{PAGE}/system", data=device | {"confirmed": "yes"}, headers=HTMX)
+    assert answer.status_code == 204
+    assert [one.source for one in orders(machine)] == ["system"]
+
+
+@pytest.mark.parametrize(("by_s", "asks"), [(-55, False), (55, False), (-70, True), (70, True)])
+async def test_a_minute_is_not_asked_about(
+    machine: FakeMachine, client: httpx.AsyncClient, by_s: int, asks: bool
+) -> None:
+    device = {"at": (machine.clock.now() + timedelta(seconds=by_s)).isoformat()}
+    answer = await client.post(f"{PAGE}/system", data=device, headers=HTMX)
+    assert answer.status_code == (422 if asks else 204)
+
+
+async def test_a_typed_time_is_asked_about_and_kept(machine: FakeMachine, client: httpx.AsyncClient) -> None:
+    typed = {"date": "2026-06-21", "time": "12:00:30", "time_zone": "UTC"}
+    device = {"at": "2026-06-21T21:00:30+00:00"}
+    asked = await client.post(PAGE, data=typed | device, headers=HTMX)
+    assert asked.status_code == 422
+    assert "9 h 00 min behind this device" in asked.text
+    assert 'value="12:00:30"' in asked.text
+    assert not orders(machine)
+    done = await client.post(PAGE, data=typed | device | {"confirmed": "yes"}, headers=HTMX)
+    assert (done.status_code, len(orders(machine))) == (204, 1)
+
+
+async def test_a_program_confirms_a_clock_that_differs(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    late = (machine.clock.now() - AHEAD).isoformat()
+    for asked in (
+        {"source": "system", "device_at": late},
+        {"source": "manual", "at": late},
+        {"source": "manual", "at": late, "device_at": machine.clock.now().isoformat()},
+    ):
+        refused = await client.put(CLOCK, json=asked)
+        assert refused.status_code == 422
+        assert "11 h 39 min" in refused.json()["detail"]
+        assert "confirmed" in refused.json()["detail"]
+        assert (await client.put(CLOCK, json=asked | {"confirmed": True})).status_code == 200
+    agreed = {"source": "manual", "at": late, "device_at": late}
+    assert (await client.put(CLOCK, json=agreed)).status_code == 200
+    assert len(orders(machine)) == 4
