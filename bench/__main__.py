@@ -6,6 +6,7 @@ import os
 import pkgutil
 import platform
 import re
+import subprocess
 import sys
 from datetime import UTC, datetime
 from pathlib import Path
@@ -18,9 +19,11 @@ NOT_BENCHMARKS = {"__main__", "table"}
 
 HEAD = """# Benchmarks
 
-Made by `make bench`, which runs every section below; each says when and where it was measured. A time
-holds only within its own run: the ratio to the peer of the same run is what to compare. Every row names
-its command.
+Made by `make bench`, which runs every section below; each says when, where and at which commit it was
+measured. A time holds only within its own run: what to compare is how many times better ours is than the
+bound or than the peer of the same run. From 1 on that is good, in every row; a row below its bound says
+**missed**, one below its peer **behind**. A p99.9 is told of a thousand values or more; of fewer the maximum
+is. Every row names its command.
 """
 
 
@@ -37,13 +40,35 @@ def section(name: str, rows: list[Row]) -> str:
     lines = [
         f"## {name}: {title.rstrip('.')}",
         "",
-        f"Measured on {datetime.now(UTC).date()}, {where}.",
+        f"Measured on {datetime.now(UTC).date()} at commit {commit()}, {where}{_priority()}.",
         "",
-        "| what | ours | peer or bound | ratio | command |",
+        "| what | ours | bound or peer | times better | command |",
         "| --- | --- | --- | --- | --- |",
     ]
-    lines += [f"| {row.name} | {row.ours} | {row.peer} | {row.ratio} | `{row.command}` |" for row in rows]
+    lines += [
+        f"| {row.name} | {row.ours} | {row.against} | {row.verdict} | `{row.command}` |" for row in rows
+    ]
     return "\n".join(lines) + "\n"
+
+
+def commit() -> str:
+    """Return the commit that is measured, and whether something was changed since."""
+    asked = (
+        "git",
+        "-C",
+        str(REPORT.parent),
+        "describe",
+        "--always",
+        "--dirty=, changed since",
+        "--exclude=*",
+    )
+    told = subprocess.run(asked, capture_output=True, text=True)
+    return told.stdout.strip() or "unknown"
+
+
+def _priority() -> str:
+    """Return what is to be known of who measured: as root the controller gets real-time scheduling."""
+    return "; as root, so that the controller ran under SCHED_FIFO" if os.geteuid() == 0 else ""
 
 
 def renewed(report: str, measured: dict[str, str]) -> str:

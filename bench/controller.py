@@ -4,6 +4,8 @@ The peer is the bare closed loop in plain Python: sun's direction, axis target, 
 one row of numbers; no activities, guards, trust, limits, events.
 """
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from statistics import median
 from time import perf_counter
@@ -18,13 +20,11 @@ from app.tracker.controller import Controller
 from app.tracker.memory import TrackerMemory
 from app.tracker.mode import Mode
 from app.tracker.observation import Observation
-from bench.table import Row
+from bench.table import Row, at_most, beside
 
 COMMAND = "python -m bench controller"
 DAY_S = 86_400
-BOUND_S = 2.0
-ROUNDS = 5
-TICKS = 20_000
+DAY_BOUND_S, TICK_BOUND_US = 0.7, 5.0
 SECOND = timedelta(seconds=1)
 SAMSUN = Location(41.2867, 36.33, 4.0)
 MIDNIGHT = datetime(2026, 6, 21, tzinfo=UTC)
@@ -73,49 +73,65 @@ class BareLoop:
         return (azimuth_deg, elevation_deg, self.azimuth_deg, self.elevation_deg, off_deg)
 
 
-def measure() -> list[Row]:
+@dataclass(frozen=True, slots=True)
+class Size:
+    """How many ticks, how often, and how many seconds of a day."""
+
+    ticks: int = 20_000
+    rounds: int = 5
+    seconds: int = DAY_S
+
+
+SMALL = Size(ticks=100, rounds=1, seconds=600)
+
+
+def measure(size: Size = Size()) -> list[Row]:
     """Return the table."""
-    return [_one_tick(), _one_day()]
+    return [*_one_tick(size), *_one_day(size.seconds)]
 
 
-def _one_tick() -> Row:
-    rig = Rig(MIDNIGHT + timedelta(hours=6))
+def _one_tick(size: Size) -> list[Row]:
+    rig, bare = Rig(MIDNIGHT + timedelta(hours=6)), BareLoop(0.5)
     now = rig.clock.now()
     sun, feedback = sun_position(Algorithm.PSA, SAMSUN, now), rig.drive.observe()
-    instants = [now + timedelta(milliseconds=number) for number in range(TICKS)]
+    instants = [now + timedelta(milliseconds=number) for number in range(size.ticks)]
     seen = [Observation(at, at, sun, sun, feedback, True, SAMSUN, 1) for at in instants]
-    bare = BareLoop(0.5)
     ours_s, peer_s = [], []
-    for _ in range(ROUNDS):
-        begun = perf_counter()
-        for one in seen:
-            rig.controller.tick(one)
-        ours_s.append(perf_counter() - begun)
-        begun = perf_counter()
-        for one in seen:
-            bare.tick(one.sun or sun)
-        peer_s.append(perf_counter() - begun)
-    ours, peer = median(ours_s) / TICKS * 1e6, median(peer_s) / TICKS * 1e6
-    name = "One tick, tracking within the deadband (bound 10 us); peer: the bare loop"
-    return Row(name, f"{ours:.2f} us", f"{peer:.2f} us", f"{ours / peer:.1f}", COMMAND)
+    for _ in range(size.rounds):
+        ours_s.append(_seconds(lambda: [rig.controller.tick(one) for one in seen]))
+        peer_s.append(_seconds(lambda: [bare.tick(sun) for _ in seen]))
+    ours_us, peer_us = (median(times_s) / size.ticks * 1e6 for times_s in (ours_s, peer_s))
+    name = "one tick, tracking within the deadband"
+    return [
+        at_most(name, ours_us, TICK_BOUND_US, "us", COMMAND),
+        beside(name, f"{ours_us:.2f} us", f"the bare loop {peer_us:.2f} us", peer_us / ours_us, COMMAND),
+    ]
 
 
-def _one_day() -> Row:
-    rig = Rig(MIDNIGHT - timedelta(minutes=10))
-    begin = rig.clock.now()
-    bare = BareLoop(0.5)
+def _one_day(seconds: int) -> list[Row]:
+    rig, bare = Rig(MIDNIGHT - timedelta(minutes=10)), BareLoop(0.5)
+    begin, frames = rig.clock.now(), list[Frame]()
+
+    def ours() -> None:
+        for _ in range(seconds):
+            rig.second()
+            frames.append(rig.controller.frame())
+
+    def peer() -> None:
+        for number in range(seconds):
+            bare.tick(sun_position(Algorithm.PSA, SAMSUN, begin + SECOND * number))
+
+    ours_s, peer_s = _seconds(ours), _seconds(peer)
+    assert len(frames) == seconds
+    name = f"a day, {seconds:,} ticks with sun, drive and frames"
+    told = f"the bare loop with sun {peer_s:.2f} s"
+    return [
+        at_most(name, ours_s, DAY_BOUND_S, "s", COMMAND),
+        beside(name, f"{ours_s:.2f} s", told, peer_s / ours_s, COMMAND),
+    ]
+
+
+def _seconds(work: Callable[[], object]) -> float:
     begun = perf_counter()
-    frames: list[Frame] = []
-    for _ in range(DAY_S):
-        rig.second()
-        frames.append(rig.controller.frame())
-    ours_s = perf_counter() - begun
-    begun = perf_counter()
-    for number in range(DAY_S):
-        bare.tick(sun_position(Algorithm.PSA, SAMSUN, begin + SECOND * number))
-    peer_s = perf_counter() - begun
-    assert len(frames) == DAY_S
-    name = (
-        f"A day, 86,400 ticks with sun, drive and frames (bound {BOUND_S:g} s); peer: the bare loop with sun"
-    )
-    return Row(name, f"{ours_s:.2f} s", f"{peer_s:.2f} s", f"{ours_s / peer_s:.1f}", COMMAND)
+    work()
+    return perf_counter() - begun
