@@ -3,19 +3,21 @@
 # make check: formatting, lint, types, import contracts, migrations, vendored files, catalogues of languages
 # make fuzz : 10,000 cases against the API and hostile values for every form; takes minutes
 # make soak : the long proofs: millions of random ticks, 1,000 kills, 300 power cuts, a day of 20 trackers
-# make mutants: changes the guards' code in a copy, one place at a time, and counts what their tests notice
+# make mutants: changes guards, access, limits, drives and control in a copy, one place at a time, and counts
+#   what their tests notice; ONLY='app.access.*' does one part
 # make bench: measures and writes docs/benchmarks.md
 
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 # Tests that judge how punctual things are, each with the computer to itself; the others share the cores.
-ALONE := tests/drives/timed $(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk kills process)) \
+ALONE := tests/drives/timed tests/test_benches.py \
+	$(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk kills process storm storm_kill)) \
 	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop two_operators)) \
-	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost hold_to_run kill stop_and_tabs))
+	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost hold_to_run kill many_holds stop_and_tabs))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup fast run test check translations fuzz bench format lock browser system-packages clean
+.PHONY: help setup fast client run test check translations fuzz bench format lock browser system-packages clean
 
 help: ## Show what each command does
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-10s %s\n", $$1, $$2}'
@@ -32,6 +34,14 @@ $(VENV)/.dev: requirements-dev.txt $(VENV)/.runtime
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.txt
 	@touch $@
 
+$(VENV)/.client: requirements-client.txt $(VENV)/.runtime
+	@echo "Setting up $(VENV)/client, an integrator's own environment ..."
+	@test -x $(VENV)/client/bin/python || $(PYTHON) -m venv $(VENV)/client
+	@$(VENV)/client/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-client.txt
+	@touch $@
+
+client: $(VENV)/.client ## Add the generator of clients that a test of the API's document needs
+
 setup: $(VENV)/.runtime ## Make .venv with the command heliopanel
 	@echo "Ready: $(BIN)/heliopanel --help"
 
@@ -45,7 +55,7 @@ run: setup ## Serve the panel with a simulated tracker at http://127.0.0.1:8000
 system-packages:
 	@sh tests/system-packages.sh
 
-test: $(VENV)/.dev system-packages ## Set up what tests need and run them all, browser tests included
+test: $(VENV)/.dev $(VENV)/.client system-packages ## Set up what tests need and run them all, browser tests included
 	@echo "Running the tests that share the computer's cores ..."
 	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder $(ALONE:%=--ignore=%)
 	@echo "Running the tests that judge how punctual things are, one at a time ..."
@@ -56,9 +66,10 @@ soak: $(VENV)/.dev system-packages ## Run the long proofs (hours): random operat
 	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/machine/test_clock_jump.py tests/machine/test_viewers.py $(addprefix tests/browser/test_,$(addsuffix .py,axe keyboard languages_fit walk))
 	@HELIOPANEL_TEST_KILLS=$${HELIOPANEL_TEST_KILLS:-1000} $(BIN)/python -m pytest -s tests/machine/test_kills.py
 	@HELIOPANEL_TEST_KILLS=20 $(BIN)/python -m pytest -s tests/e2e/test_kill.py tests/machine/test_process.py
+	@HELIOPANEL_TEST_KILLS=30 HELIOPANEL_TEST_TRACKERS=100 $(BIN)/python -m pytest -s tests/machine/test_storm_kill.py
 
-mutants: $(VENV)/.dev ## Change the guards' code place by place, in a copy, and count what their tests notice
-	@$(BIN)/mutmut run --max-children 2 >mutants.log 2>&1 || { tail -n 20 mutants.log; exit 1; }
+mutants: $(VENV)/.dev ## Change what guards and limits place by place, in a copy, and count what tests notice
+	@$(BIN)/mutmut run --max-children 2 $(ONLY) >mutants.log 2>&1 || { tail -n 20 mutants.log; exit 1; }
 	@$(BIN)/mutmut results
 
 browser: $(VENV)/.dev system-packages ## Run the browser tests alone; screenshots go to build/screens
@@ -93,6 +104,7 @@ lock: ## Renew the locked dependencies (needs uv)
 	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build pyproject.toml -o requirements.txt
 	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra fast -c requirements.txt pyproject.toml -o requirements-fast.txt
 	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra fast --extra mdns --extra dev -c requirements.txt pyproject.toml -o requirements-dev.txt
+	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --group client -o requirements-client.txt
 
 clean: ## Remove what was built (not the data)
 	rm -rf $(VENV) build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache

@@ -1,9 +1,19 @@
 """What all tests share: the same drawn examples in every run, new ones in the long proofs; none is timed."""
 
 import os
+from collections.abc import Callable
 
+import pytest
 from hypothesis import settings
+
+from tests.fault_result import FaultResult
 
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.register_profile("new", deadline=None)
 settings.load_profile("new" if "HELIOPANEL_SOAK" in os.environ else "same")
+
+
+@pytest.fixture
+def fault(record_property: Callable[[str, object], None]) -> FaultResult:
+    """Hand what a test of a row of the fault table measured to the page of faults."""
+    return FaultResult(record_property)

@@ -25,6 +25,7 @@ from app.tracker.commands import (
     Stop,
     StopShow,
     Track,
+    UndoZero,
 )
 from app.tracker.config import Orientation
 from app.tracker.drive_check import DriveCheck
@@ -40,6 +41,7 @@ from app.tracker.snapshot import (
     ActivityName,
     AxisState,
     Pair,
+    SensorState,
     ShowPhase,
     ShowProgress,
     Snapshot,
@@ -47,11 +49,12 @@ from app.tracker.snapshot import (
 from tests.fake_data import made_up_sun
 
 ACTIONS = (
-    "jog", "step", "zero", "home", "set_mode", "move", "park", "track", "go_to_start", "run_show",
-    "pause_show", "resume_show", "stop_show", "stop", "reset_fault",
+    "jog", "step", "zero", "undo_zero", "home", "set_mode", "move", "park", "track", "go_to_start",
+    "run_show", "pause_show", "resume_show", "stop_show", "stop", "reset_fault",
 )  # fmt: skip
 STOP_FIRST = Reason("moving", "The tracker is moving.", "Stop it first.")
 NO_SWITCHES = Reason("no_origin_switches", "This drive has no origin switches.", "Set the zero by hand.")
+NO_FORMER_HOME = Reason("nothing_to_undo", "There is no former home position.", "")
 NO_SHOW = Reason("no_show", "No show is under way.", "Plan a show and go to its start.")
 BUSY = Reason("busy", "Somebody else is moving this axis.", "Wait until it stands.")
 CAPABILITIES = DriveCapabilities(False, 0.5, False, True, "Simulated drive", verified=True)
@@ -65,12 +68,15 @@ class FakeTracker:
         self.memory = state.memory
         self.position = position
         self.activity = ActivityName.TRACKING if state.memory.tracking_on else ActivityName.HOLDING
+        self.approaching = False
+        self.sensors: tuple[SensorState, ...] = ()
         self.show: tuple[ShowPlan, ShowPhase] | None = None
         self.shown = 0.4
         self.press: str | None = None
         self.dead: set[str] = set()
         self.sequence = -1
         self.check: DriveCheck | None = None
+        self.before_zero: tuple[Pair, HomeTrust | None] | None = None
 
     def handle(self, command: Command, now: datetime, actor: str) -> None:  # noqa: C901 - one flat table of cases
         """Do what was asked, at once."""
@@ -82,8 +88,14 @@ class FakeTracker:
             case Step(axis=axis, degrees=degrees):
                 self._turn(axis, degrees)
             case SetZero():
+                self.before_zero = (self.position, self.memory.home)
                 self.position = Pair(0.0, 0.0)
                 self.memory = replace(self.memory, home=HomeTrust(now, actor, "set by hand", 3))
+            case UndoZero():
+                if self.before_zero is None:
+                    raise CommandRejected(NO_FORMER_HOME)
+                self.position, home = self.before_zero
+                self.memory, self.before_zero = replace(self.memory, home=home), None
             case Home():
                 raise CommandRejected(NO_SWITCHES)
             case SelectMode(mode=mode, orientation=held):
@@ -163,6 +175,8 @@ class FakeTracker:
             at=at,
             tick=tick,
             activity=self.activity,
+            approaching=self.approaching,
+            sensors=self.sensors,
             activity_text=f"{self.activity.value.capitalize()}.",
             mode=self.memory.mode or Mode.FIXED,
             orientation=self.memory.orientation,
@@ -178,8 +192,9 @@ class FakeTracker:
             off_sun_deg=off if sun.elevation_deg > 0 else None,
             in_position=not moving,
             home_trusted=self.memory.home is not None,
-            azimuth=axis,
-            elevation=axis,
+            azimuth=replace(axis, position_deg=where.azimuth_deg),
+            elevation=replace(axis, position_deg=where.elevation_deg),
+            can_undo_home=self.before_zero is not None,
             fault=None,
             show=self._progress(at),
             actions=self._actions(),

@@ -72,6 +72,7 @@ from app.tracker.snapshot import (
     EventKind,
     Pair,
     SiteSnapshot,
+    Snapshot,
 )
 from app.tracker.weather import WeatherNow
 from app.web.main import create_app
@@ -296,6 +297,15 @@ class FakeMachine:
         proofs = proof_states(tracker.config, tracker.memory, CAPABILITIES)
         state = TrackerState(tracker.config, tracker.memory)
         return TrackerDetail(state, tuple(steps), CAPABILITIES, proofs, tracker.check)
+
+    async def tracker(self, tracker_id: str) -> Snapshot:
+        """Return one tracker now."""
+        if not self.reachable:
+            raise MachineUnreachable("The controller service does not answer.")
+        return self._tracker(tracker_id).snapshot(self.clock.now(), self.sequence)
+
+    async def watch(self, tracker_ids: frozenset[str]) -> None:
+        """Do nothing: actions are always told here."""
 
     def latest(self) -> SiteSnapshot | None:
         """Return the newest snapshot, None while the link is cut."""

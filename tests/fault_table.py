@@ -1,8 +1,7 @@
-"""The table of faults: every row with its tests, what they measured, and the page made from their results.
+"""The table of faults: every row with its tests, what they measured, and the page made of their results.
 
 python -m tests.fault_table             run every test that proves a row, and write docs/faults.md
 python -m tests.fault_table PART PARTS  run one of so many parts; the page is written once all have passed
-python -m tests.fault_table --measured  run those that measure alone, and write the page
 """
 
 import ast
@@ -16,6 +15,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.fault_result import VIRTUAL
+
 TESTS = Path(__file__).parent
 GOLDEN = TESTS / "golden" / "fault_table.csv"
 PAGE = TESTS.parent / "docs" / "faults.md"
@@ -25,14 +26,13 @@ HEAD = """# What can go wrong
 
 Every row of the fault table with what notices it, what follows, what the operator reads and how it ends.
 Made by `python -m tests.fault_table` from the results of the tests that each row names; change those, not
-this page. Fault, detection and reaction are the design's; what a test measured stands beside them.
+this page. Fault, detection and reaction are the design's; the rest is what the tests measured and saw.
 
-*Noticed after* is the time on the virtual clock, a tick every 0.1 s, from the fault to the first word of it,
-the longest of several tests (on a site's clock looks at alarms come twice a second, and some alarms wait 3 s
-before they are raised); "not measured" where the subject is a real clock, socket, process or page, or
-nothing is noticed. A sentence without "designed:" is the one that was shown. A latched fault is left by a
-person unless an engineer set another policy for its class; see
-[decision 0026](decisions/0026-recovery-is-a-policy.md).
+*Noticed after* is the time from the fault to its first sign, the longest of several tests: on the virtual
+clock with a tick every 0.1 s, or on the real clock, at a real socket, process, disk or page. Where it says
+why instead, the product refuses the fault or is immune to it. *Shown* is the sentence that a user was shown
+or answered. *Recovery* is what ended the fault in the test; an engineer may set another policy for some
+classes of faults, see [decision 0026](decisions/0026-recovery-is-a-policy.md).
 
 | row | fault | detection | noticed after | reaction | shown | recovery | tests |
 | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -47,30 +47,43 @@ class Row:
     fault: str
     detection: str
     reaction: str
-    shown: str
 
 
 @dataclass(slots=True)
 class Result:
-    """What the tests of one row said."""
+    """What the tests of one row measured and saw."""
 
-    detected_s: float | None = None
+    noticed_s: float | None = None
+    noticed_on: str = ""
+    prevented: list[str] = field(default_factory=list)
     shown: list[str] = field(default_factory=list)
-    policy: str = ""
+    recovery: list[str] = field(default_factory=list)
 
     def take(self, other: "Result") -> None:
         """Take in what more tests said: the longest time, every sentence."""
-        if other.detected_s is not None:
-            self.detected_s = max(self.detected_s or 0.0, other.detected_s)
-        self.shown.extend(one for one in other.shown if one not in self.shown)
-        self.policy = other.policy or self.policy
+        if other.noticed_s is not None and other.noticed_s >= (self.noticed_s or 0.0):
+            self.noticed_s, self.noticed_on = other.noticed_s, other.noticed_on
+        for mine, others in (
+            (self.prevented, other.prevented),
+            (self.shown, other.shown),
+            (self.recovery, other.recovery),
+        ):
+            mine.extend(one for one in others if one not in mine)
+
+    @property
+    def noticed(self) -> str:
+        """Return the cell that says how long the fault took to be noticed, or why it need not be."""
+        if self.noticed_s is None:
+            return self.prevented[0] if self.prevented else ""
+        digits = 1 if self.noticed_on == VIRTUAL else 2
+        return f"{self.noticed_s:.{digits}f} s, {self.noticed_on}"
 
 
 def rows() -> list[Row]:
     """Return every row of the table, in order."""
     with GOLDEN.open(newline="") as file:
         return [
-            Row(int(one["number"]), one["fault"], one["detection"], one["reaction"], one["shown"])
+            Row(int(one["number"]), one["fault"], one["detection"], one["reaction"])
             for one in csv.DictReader(file)
         ]
 
@@ -115,9 +128,14 @@ class _Collector:
             return
         said = dict(report.user_properties)
         for number in self._rows.get(report.nodeid, []):
-            detected_s = float(str(said["detected_s"])) if "detected_s" in said else None
-            shown = [str(said["shown"])] if "shown" in said else []
-            self.results[number].take(Result(detected_s, shown, str(said.get("policy", ""))))
+            self.results[number].take(_result(said))
+
+
+def _result(said: Mapping[str, object]) -> Result:
+    """Return what one test handed over by `FaultResult`."""
+    words = {name: [str(said[name])] if name in said else [] for name in ("prevented", "shown", "recovery")}
+    noticed_s = float(str(said["noticed_s"])) if "noticed_s" in said else None
+    return Result(noticed_s, str(said.get("noticed_on", "")), **words)
 
 
 def _marked(tree: ast.Module) -> Iterator[tuple[str, int]]:
@@ -131,13 +149,10 @@ def _marked(tree: ast.Module) -> Iterator[tuple[str, int]]:
 
 
 def _line(row: Row, result: Result, tests: Mapping[int, list[str]]) -> str:
-    noticed = "not measured" if result.detected_s is None else f"{result.detected_s:.1f} s"
-    shown = result.shown[0] if result.shown else f"designed: {row.shown}"
-    named = (
-        "<br>".join(f"`{test.removeprefix('tests/')}`" for test in tests.get(row.number, [])) or "none yet"
-    )
-    cells = (str(row.number), row.fault, row.detection, noticed, row.reaction, shown, result.policy, named)
-    return "| " + " | ".join(cell.replace("|", "/") for cell in cells) + " |\n"
+    shown, recovery = "<br>".join(result.shown), "<br>".join(result.recovery)
+    named = "<br>".join(f"`{test.removeprefix('tests/')}`" for test in tests.get(row.number, []))
+    cells = (str(row.number), row.fault, row.detection, result.noticed, row.reaction, shown, recovery, named)
+    return "| " + " | ".join(cell.replace("|", "/").replace("\n", " ") for cell in cells) + " |\n"
 
 
 def run_part(part: int, parts: int, paths: Sequence[str]) -> dict[int, Result] | None:
@@ -161,13 +176,8 @@ def run_part(part: int, parts: int, paths: Sequence[str]) -> dict[int, Result] |
 def main() -> None:
     """Write the page."""
     paths = sorted({test.split("::")[0] for tests in proofs().values() for test in tests})
-    if "--measured" in sys.argv:
-        measuring = [path for path in paths if "record_property" in (TESTS.parent / path).read_text()]
-        results: Mapping[int, Result] | None = run(*measuring)
-    elif len(sys.argv) == 3:
-        results = run_part(int(sys.argv[1]), int(sys.argv[2]), paths)
-    else:
-        results = run(*paths)
+    in_parts = len(sys.argv) == 3
+    results = run_part(int(sys.argv[1]), int(sys.argv[2]), paths) if in_parts else run(*paths)
     if results is not None:
         PAGE.write_text(page(results))
 

@@ -8,6 +8,8 @@ from typing import Protocol
 from playwright.sync_api import Locator, Page, TimeoutError
 
 HOLD_MS = 700
+CONFIRM_MS = 2300
+"""Longer than what counts only when it is held for 2 s."""
 LOOK_EVERY_MS = 50
 LINK_MEASURED = '#link-quality:is([data-level="1"], [data-level="2"])'
 """Before a page has measured its link, and while it is too slow, a held key begins nothing."""
@@ -21,7 +23,7 @@ class Hands(Protocol):
     def press(self, key: Locator) -> None: ...
     def choose(self, radio: Locator) -> None: ...
     def write(self, field: Locator, text: str) -> None: ...
-    def hold(self, key: Locator) -> None: ...
+    def hold(self, key: Locator, for_ms: int = HOLD_MS) -> None: ...
 
 
 def shown(page: Page) -> str:
@@ -72,11 +74,11 @@ class Mouse:
         field.click()
         field.fill(text)
 
-    def hold(self, key: Locator) -> None:
+    def hold(self, key: Locator, for_ms: int = HOLD_MS) -> None:
         self.page.wait_for_selector(LINK_MEASURED)
         self.page.mouse.move(*middle(key))
         self.page.mouse.down()
-        self.page.wait_for_timeout(HOLD_MS)
+        self.page.wait_for_timeout(for_ms)
         self.page.mouse.up()
 
 
@@ -94,13 +96,13 @@ class Finger:
         field.tap()
         field.fill(text)
 
-    def hold(self, key: Locator) -> None:
+    def hold(self, key: Locator, for_ms: int = HOLD_MS) -> None:
         self.page.wait_for_selector(LINK_MEASURED)
         x, y = middle(key)
         session = self.page.context.new_cdp_session(self.page)
         point = {"x": x, "y": y, "id": 0}
         session.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": [point]})
-        self.page.wait_for_timeout(HOLD_MS)
+        self.page.wait_for_timeout(for_ms)
         session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
 
 
@@ -121,9 +123,9 @@ class Keyboard:
         self.page.keyboard.press("Control+A")
         self.page.keyboard.type(text)
 
-    def hold(self, key: Locator) -> None:
+    def hold(self, key: Locator, for_ms: int = HOLD_MS) -> None:
         self.page.wait_for_selector(LINK_MEASURED)
         key.focus()
         self.page.keyboard.down(" ")
-        self.page.wait_for_timeout(HOLD_MS)
+        self.page.wait_for_timeout(for_ms)
         self.page.keyboard.up(" ")

@@ -137,7 +137,10 @@ def furnish(where: Where, panel: Panel) -> None:
             SHOW_ID, NOON - timedelta(hours=8), NOON + timedelta(hours=7), timedelta(minutes=3), SAMSUN
         )
         machine.store.shows[SHOW_ID] = PlannedShow("T1", plan)
-        signed = {"signatures": [{"role": "technician", "name": "Ada", "strokes": [[[9, 9], [500, 200]]]}]}
+        signed = {
+            "signatures": [{"role": "technician", "name": "Ada", "strokes": [[[9, 9], [500, 200]]]}],
+            "confirmed": True,
+        }
         for remark in ("Frost on the ground.", "After the sun check."):
             address = f"{panel.url}/api/v1/trackers/T1/records"
             httpx.post(address, json=signed | {"remark": remark}, timeout=60).raise_for_status()

@@ -1,6 +1,7 @@
 """The alarm strip is live on every page; alarms are acknowledged, shelved and heard."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import httpx
 import pytest
@@ -30,6 +31,12 @@ def raised(plant: Plant, *codes: str) -> None:
     plant.do(put)
 
 
+def returned(plant: Plant) -> None:
+    machine = plant.machine
+    machine.alarms = tuple(replace(one, state=AlarmState.RETURNED) for one in machine.alarms)
+    machine.emit()
+
+
 def test_the_strip_is_live_and_never_jumps(
     plant: Plant, opened: Opened, picture: Callable[[Page, str], None]
 ) -> None:
@@ -46,6 +53,19 @@ def test_the_strip_is_live_and_never_jumps(
     page.locator("#alarm-ack button").click()
     expect(page.locator("#alarm-first-title")).to_have_text("Drive does not answer")
     assert [one.alarm_id for one in plant.orders("acknowledge_alarm")] == ["not_stowed@T1"]
+
+
+def test_an_alarm_that_is_gone_does_not_read_as_if_it_stood(plant: Plant, opened: Opened) -> None:
+    raised(plant, "not_stowed")
+    page = opened("/", "tablet")
+    expect(page.locator("#alarm-first-title")).to_have_text("Not stowed")
+    plant.do(lambda: returned(plant))
+    trouble = page.locator('[data-alarms="T1"] .glance-trouble')
+    for seen in (page.locator("#alarm-first-title"), trouble):
+        expect(seen).to_have_text("Gone: Not stowed")
+    page.reload()
+    for seen in (page.locator("#alarm-first-title"), trouble):
+        expect(seen).to_have_text("Gone: Not stowed")
 
 
 def test_the_overview_leads_to_the_tracker_that_is_in_danger(

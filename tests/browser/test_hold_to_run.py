@@ -8,6 +8,7 @@ from playwright.sync_api import CDPSession, Page
 from app.tracker.snapshot import ActivityName
 from tests.browser.conftest import Opened, Plant, running
 from tests.browser.hands import LINK_MEASURED
+from tests.fault_result import FaultResult
 
 HOMING = "/trackers/T1/commissioning/homing"
 KEY = '[data-jog="azimuth"][data-direction="1"]'
@@ -114,7 +115,9 @@ def test_finger_holds_and_lets_go(size: str, release: str, opened: Opened, plant
 
 
 @pytest.mark.fault(58)
-def test_small_drift_keeps_the_hold_and_sliding_off_ends_it(opened: Opened, plant: Plant) -> None:
+def test_small_drift_keeps_the_hold_and_sliding_off_ends_it(
+    opened: Opened, plant: Plant, fault: FaultResult
+) -> None:
     page = opened(HOMING, "tablet", touch=True)
     session, (x, y) = hold_with_finger(page, plant)
     touch(session, "touchMove", (x + 20, y + 20))
@@ -123,6 +126,9 @@ def test_small_drift_keeps_the_hold_and_sliding_off_ends_it(opened: Opened, plan
     assert len(plant.orders("jog")) > before
     touch(session, "touchMove", (x, y - 220))
     assert is_at_rest(plant, page)
+    touch(session, "touchEnd")
+    hold_with_finger(page, plant)
+    fault.recovers("the button is pressed again")
 
 
 def test_second_finger_ends_it(opened: Opened, plant: Plant) -> None:
@@ -163,11 +169,13 @@ HIDE = (
     ],
 )
 @pytest.mark.fault(58)
-def test_window_that_goes_away_ends_it(event: str, opened: Opened, plant: Plant) -> None:
+def test_window_that_goes_away_ends_it(event: str, opened: Opened, plant: Plant, fault: FaultResult) -> None:
     page = opened(HOMING)
     hold_with_mouse(page, plant)
     page.evaluate(f"() => {{ {event} }}")
     assert is_at_rest(plant, page)
+    fault.prevented("the page ends the jog; without a word of it the lease does")
+    fault.shows_nothing("the button is not held any more")
 
 
 @pytest.mark.fault(57)
@@ -180,12 +188,16 @@ def test_closed_tab_ends_it(opened: Opened, plant: Plant) -> None:
 
 
 @pytest.mark.fault(57)
-def test_blocked_page_sends_nothing_late(opened: Opened, plant: Plant) -> None:
+def test_blocked_page_sends_nothing_late(opened: Opened, plant: Plant, fault: FaultResult) -> None:
     page = opened(HOMING)
     hold_with_mouse(page, plant)
     page.evaluate("() => { const until = performance.now() + 800; while (performance.now() < until); }")
     page.mouse.up()
     assert is_at_rest(plant, page)
+    fault.prevented("the lease ends without a renewal; benchmarks say when the axis was told")
+    hold_with_mouse(page, plant)
+    fault.recovers("the button is pressed again")
+    page.mouse.up()
 
 
 def test_stop_ends_the_press_of_a_held_key(opened: Opened, plant: Plant) -> None:

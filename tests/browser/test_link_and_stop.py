@@ -5,6 +5,7 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Opened, Plant
 from tests.browser.hands import until
+from tests.fault_result import REAL, FaultResult
 
 LIVE = "/trackers/T1"
 T2 = "/trackers/T2"
@@ -42,7 +43,7 @@ def test_stop_works_without_javascript(plant: Plant, opened: Opened) -> None:
 
 
 @pytest.mark.fault(62)
-def test_stop_on_eight_tabs_is_still_at_once(opened: Opened, plant: Plant) -> None:
+def test_stop_on_eight_tabs_is_still_at_once(opened: Opened, plant: Plant, fault: FaultResult) -> None:
     pages = [opened(T2) for _ in range(8)]
     took_ms = pages[-1].evaluate(
         """async () => { const begun = performance.now();
@@ -54,6 +55,9 @@ def test_stop_on_eight_tabs_is_still_at_once(opened: Opened, plant: Plant) -> No
     )
     assert plant.orders("stop")
     assert took_ms < 1000
+    fault.noticed(took_ms / 1000.0, REAL)
+    fault.shows(pages[-1].locator("#stopped-words").inner_text())
+    fault.recovers("nothing was lost")
 
 
 def lose_machine(plant: Plant) -> None:
@@ -65,6 +69,7 @@ def test_lost_machine_is_seen_within_two_seconds(opened: Opened, plant: Plant) -
     lose_machine(plant)
     expect(page.locator("#link-banner")).to_be_visible(timeout=2000)
     expect(page.locator("#link-banner")).to_contain_text("controller service does not answer")
+    expect(page.locator("#link-banner-advice")).to_contain_text("tracking and stowing may have stopped")
     expect(page.locator('[data-action="track"]')).to_be_disabled()
     value = page.locator('[data-live="measured.azimuth_deg"]').first
     assert value.evaluate("e => getComputedStyle(e).fontStyle") == "italic"
@@ -80,6 +85,7 @@ def test_silent_socket_is_seen_within_two_seconds(opened: Opened, plant: Plant) 
     freeze(page)
     page.reload()
     expect(page.locator("#link-banner")).to_be_visible(timeout=2500)
+    expect(page.locator("#link-banner-advice")).to_contain_text("do not need this connection")
     expect(page.locator('[data-action="track"]')).to_be_disabled()
 
 

@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import Browser, BrowserContext, Locator, Page, expect
 
 from tests.browser.conftest import PATIENCE_MS, SIZES
-from tests.browser.hands import Hands, arrive
+from tests.browser.hands import CONFIRM_MS, Hands, arrive
 from tests.e2e.product import Product
 
 PRESSES = 5
@@ -54,7 +54,7 @@ def walker(rooms: dict[bool, BrowserContext]) -> Iterator[Walker]:
     yield start
     for page in pages:
         page.close()
-    assert complaints == []
+    assert [one for one in complaints if "422" not in one] == [], "setting home is asked about"
 
 
 def onwards(page: Page, hands: Hands, to: str) -> None:
@@ -94,11 +94,20 @@ def move_by_hand(hands: Hands, key: Locator, reading: Locator) -> None:
     pytest.fail(f"The axis never moved while the key was held: {before}.")
 
 
+def set_home(page: Page, hands: Hands) -> None:
+    """Set the home position, and say that it is right where the drive reads another angle."""
+    key, sure = page.locator('[data-action="zero"]').first, page.locator('[name="confirmed"]')
+    expect(key).to_be_enabled()
+    hands.hold(key, CONFIRM_MS)
+    expect(sure.or_(page.locator(".outcome-ok")).first).to_be_visible()
+    if sure.count():
+        hands.hold(sure, CONFIRM_MS)
+
+
 def home(page: Page, hands: Hands) -> None:
     reading = page.locator('[data-live="measured.azimuth_deg"]').first
     move_by_hand(hands, page.locator('[data-jog="azimuth"][data-direction="1"]'), reading)
-    expect(page.locator('[data-action="zero"]')).to_be_enabled()
-    hands.press(page.locator('[data-action="zero"]'))
+    set_home(page, hands)
     page.wait_for_selector("#forward a.key")
     expect(reading).to_have_text("0.00°")
     onwards(page, hands, "/mode")

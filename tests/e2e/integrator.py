@@ -97,8 +97,8 @@ class Integrator:
 
     def place_and_time(self, at: str = SOLSTICE_MORNING, place: dict[str, Any] = SAMSUN) -> None:
         """Walk steps 1 and 2: Samsun, on a summer's morning, if nothing else is said."""
-        self.call("PUT", "/api/v1/site/location", json=place)
-        self.call("PUT", "/api/v1/site/clock", json={"source": "manual", "at": at})
+        self.call("PUT", "/api/v1/site/location", json={**place, "confirmed": True})
+        self.call("PUT", "/api/v1/site/clock", json={"source": "manual", "at": at, "confirmed": True})
 
     def jog(self, seconds: float, axis: str = "azimuth", speed: str = "fast") -> None:
         """Hold a key for a while by renewing its lease, then let it go."""
@@ -117,7 +117,7 @@ class Integrator:
     def zero(self) -> None:
         """Walk step 3 where the panel stands: here is zero."""
         self.until_allowed("zero")
-        self.command("zero")
+        self.command("zero", confirmed=True)
         self.until(lambda seen: seen["home_trusted"], "the zero is trusted")
 
     def commission(self, port: int, **change: Any) -> None:

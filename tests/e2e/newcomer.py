@@ -9,6 +9,8 @@ from pathlib import Path
 from PIL import Image
 from playwright.sync_api import Locator, Page, expect
 
+from tests.browser.hands import CONFIRM_MS
+
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 WRITES_DOCS = os.environ.get("HELIOPANEL_DOCS") == "1"
 COLOURS = 64
@@ -49,6 +51,17 @@ class Newcomer:
     def key(self, words: str) -> None:
         """Tap the first key with these words."""
         self.tap(self.page.get_by_role("button", name=words).first, words)
+
+    def hold(self, words: str) -> None:
+        """Hold the first key with these words for as long as it asks for."""
+        key = self.page.get_by_role("button", name=words).first
+        key.scroll_into_view_if_needed()
+        key.hover()
+        self.page.mouse.down()
+        self.page.wait_for_timeout(CONFIRM_MS)
+        self.page.mouse.up()
+        self.taps += 1
+        self.tell(f"Hold *{words}* for 2 s.")
 
     def link(self, words: str) -> None:
         """Tap the first link with these words."""

@@ -53,13 +53,14 @@ class DriveSim:
     process: "subprocess.Popen[bytes]"
 
     @classmethod
-    def start(cls, port: int | None = None, memory: Path | None = None) -> "DriveSim":
+    def start(cls, port: int | None = None, memory: Path | None = None, units: int = 1) -> "DriveSim":
         """Return once it listens; with a memory it knows its position after a power cut at rest.
 
         A real drive has a computer of its own: other programs must not make this one answer late.
         """
         port = port or free_port()
         kept = [] if memory is None else ["--memory", str(memory)]
+        kept += [f"--unit={unit}" for unit in range(1, units + 1)]
         process = subprocess.Popen([*DRIVE_SIM, "--tcp", f"127.0.0.1:{port}", *kept], stdout=subprocess.PIPE)
         with suppress(PermissionError):
             os.sched_setscheduler(process.pid, os.SCHED_FIFO, os.sched_param(FIFO_PRIORITY + 1))
@@ -85,13 +86,14 @@ class Product:
     reading: threading.Thread | None = None
 
     @classmethod
-    def start(cls, data_dir: Path) -> "Product":
-        """Return once panel, machine and database answer."""
+    def start(cls, data_dir: Path, **more: str) -> "Product":
+        """Return once panel, machine and database answer; `more` are further settings."""
         port = free_port()
         environment = os.environ | {
             "HELIOPANEL_DATA_DIR": str(data_dir),
             "HELIOPANEL_PORT": str(port),
             "HELIOPANEL_LOG_FORMAT": "json",
+            **{f"HELIOPANEL_{name.upper()}": value for name, value in more.items()},
         }
         process = subprocess.Popen(
             [COMMAND, "serve"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE

@@ -17,6 +17,7 @@ from tests.e2e.integrator import Integrator
 from tests.e2e.killing import LATEST_FEED_S, RAMP_S, WATCHDOG_S
 from tests.e2e.product import DriveSim, eventually
 from tests.e2e.proxy import network
+from tests.fault_result import REAL, FaultResult
 
 SETTLED_S = 1.3
 STEP_DEG = 0.06
@@ -92,7 +93,10 @@ def test_a_frozen_drive_stops_by_its_watchdog_and_keeps_its_zero(
     integrator.until(lambda seen: seen["activity"] == "holding", "the axes rest")
 
 
-def test_a_cut_cable_leaves_a_drive_that_stops_itself(integrator: Integrator, sim: DriveSim) -> None:
+@pytest.mark.fault(1)
+def test_a_cut_cable_leaves_a_drive_that_stops_itself(
+    integrator: Integrator, sim: DriveSim, fault: FaultResult
+) -> None:
     with network(sim.port) as cable:
         integrator.commission(int(cable.url.rpartition(":")[2]))
         turn_away(integrator)
@@ -100,7 +104,9 @@ def test_a_cut_cable_leaves_a_drive_that_stops_itself(integrator: Integrator, si
         cut_at = cable.freeze()
         rested_s = eyes.rest_after(cut_at)
         assert rested_s <= WATCHDOG_S + LATEST_FEED_S + RAMP_S
-        lost(integrator, "did not answer in time")
+        seen = lost(integrator, "did not answer in time")
+        fault.noticed(time.monotonic() - cut_at, REAL)
+        fault.shows(seen["activity_text"])
         cable.thaw()
         seen = back(integrator, "its watchdog")
         assert seen["home_trusted"] is True
@@ -110,6 +116,7 @@ def test_a_cut_cable_leaves_a_drive_that_stops_itself(integrator: Integrator, si
         events = {event["data"].get("code") for event in integrator.journal("drive_found")}
         assert events & {"watchdog_tripped", "stopped_meanwhile"}
     print(f"at rest {rested_s:.2f} s after the cable was cut")
+    fault.recovers("by itself: the drive is found again; the operator commands the next motion")
 
 
 def test_a_killed_drive_loses_its_zero_exactly_when_it_lost_its_place(

@@ -91,7 +91,9 @@ def commission(person: Newcomer, town: Town) -> None:
     person.link("Next")
     person.sees("Turn the panel to north")
     person.picture("homing", "The homing page")
-    person.key("Set as zero")
+    person.hold("Set as zero")
+    expect(page.get_by_text("You say that the panel faces north")).to_be_visible()
+    person.hold("Yes, set home here")
     expect(page.get_by_text("Both axes are zeroed and read back.")).to_be_visible()
     person.link("Next")
     person.sees("How shall it work?")
@@ -104,7 +106,9 @@ def commission(person: Newcomer, town: Town) -> None:
 def track(person: Newcomer) -> None:
     person.begin("Tracking")
     person.key("Start tracking")
-    expect(person.page.get_by_label("State")).to_contain_text(re.compile("Tracking|sunrise"))
+    expect(person.page.get_by_label("State")).to_contain_text(
+        re.compile("Tracking|Moving to the sun|sunrise")
+    )
     person.picture("tracking", "Tracking")
 
 
@@ -154,6 +158,9 @@ def sign(person: Newcomer) -> None:
     person.draw(page.get_by_role("img", name=re.compile("Signature")).first)
     person.picture("sign", "The signature drawn")
     person.key("Sign and keep the record")
+    person.sees("Not everything is done")
+    person.picture("asked", "What is open is asked about")
+    person.key("Sign all the same")
     person.sees("Commissioning record: Tracker 1")
     expect(page.get_by_role("img", name="Signature of A. Technician")).to_be_visible()
     person.picture("record", "The signed record")

@@ -12,6 +12,7 @@ from tests.e2e.eyes import Eyes
 from tests.e2e.integrator import Integrator
 from tests.e2e.product import DriveSim, Product
 from tests.e2e.proxy import Network, network
+from tests.fault_result import REAL, FaultResult
 
 HOMING = "/trackers/T1/commissioning/homing"
 KEY = '[data-jog="azimuth"][data-direction="1"]'
@@ -80,12 +81,13 @@ def at_speed(eyes: Eyes, begun_deg: float) -> None:
         time.sleep(0.005)
 
 
-def comes_to_rest(eyes: Eyes, fault_at: float, *, more_s: float = 0.0) -> None:
-    """Fail unless the axis rests in time after a fault and then stays where it is."""
+def comes_to_rest(eyes: Eyes, fault_at: float, *, more_s: float = 0.0) -> float:
+    """Return when the axis was at rest after a fault; fail unless that is in time and it stays there."""
     took_s = eyes.rest_after(fault_at)
     print(f"at rest after {took_s * 1000:.0f} ms, ramp {RAMP_S * 1000:.0f} ms included")
     assert took_s <= PROMISED_S + RAMP_S + more_s
     stays(eyes, fault_at + took_s)
+    return took_s
 
 
 def stays(eyes: Eyes, since: float) -> None:
@@ -111,12 +113,14 @@ def test_pointer_slid_off_the_key(opened: Callable[..., Tab], eyes: Eyes) -> Non
     comes_to_rest(eyes, at)
 
 
-def test_tab_closed(opened: Callable[..., Tab], eyes: Eyes) -> None:
+@pytest.mark.fault(57)
+def test_tab_closed(opened: Callable[..., Tab], eyes: Eyes, fault: FaultResult) -> None:
     tab = opened()
     hold(tab, eyes)
     at = time.monotonic()
     tab.close()
-    comes_to_rest(eyes, at)
+    fault.noticed(comes_to_rest(eyes, at), REAL)
+    fault.shows_nothing("the page is gone")
 
 
 def test_page_left(opened: Callable[..., Tab], eyes: Eyes) -> None:
@@ -127,12 +131,15 @@ def test_page_left(opened: Callable[..., Tab], eyes: Eyes) -> None:
     comes_to_rest(eyes, at)
 
 
-def test_page_hidden_behind_another_tab(opened: Callable[..., Tab], browser: Chromium, eyes: Eyes) -> None:
+@pytest.mark.fault(58)
+def test_page_hidden_behind_another_tab(
+    opened: Callable[..., Tab], browser: Chromium, eyes: Eyes, fault: FaultResult
+) -> None:
     tab = opened()
     hold(tab, eyes)
     at = time.monotonic()
     target = browser.send("Target.createTarget", url="about:blank")["targetId"]
-    comes_to_rest(eyes, at)
+    fault.noticed(comes_to_rest(eyes, at), REAL)
     assert tab.evaluate("document.visibilityState") == "hidden"
     browser.send("Target.closeTarget", targetId=target)
 

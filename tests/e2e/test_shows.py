@@ -84,7 +84,7 @@ def planner(product: Product) -> Iterator[Integrator]:
 
 
 def stand_at(planner: Integrator, place: dict[str, Any]) -> None:
-    planner.call("PUT", "/api/v1/site/location", json=place)
+    planner.call("PUT", "/api/v1/site/location", json={**place, "confirmed": True})
 
 
 def kept_plan(product: Product, show_id: str) -> ShowPlan:
@@ -170,7 +170,9 @@ def test_too_fast_show_is_refused_with_the_shortest_that_works(planner: Integrat
 
 def test_a_simulated_day_is_on_the_sun_from_rise_to_set(planner: Integrator) -> None:
     stand_at(planner, SAMSUN)
-    planner.call("PUT", "/api/v1/site/clock", json={"source": "manual", "at": SOLSTICE_MORNING})
+    planner.call(
+        "PUT", "/api/v1/site/clock", json={"source": "manual", "at": SOLSTICE_MORNING, "confirmed": True}
+    )
     info = planner.post("/api/v1/simulations", {"tracker_id": "T1", "mode": "dual", **SOLSTICE})
     frames = columns(planner.get(f"/api/v1/recordings/{info['recording_id']}/frames"))
 

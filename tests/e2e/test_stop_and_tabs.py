@@ -12,6 +12,7 @@ from tests.e2e.eyes import Eyes
 from tests.e2e.integrator import Integrator
 from tests.e2e.product import DriveSim, Product
 from tests.e2e.proxy import Network, network
+from tests.fault_result import REAL, FaultResult
 
 LIVE = "/trackers/T1"
 HOMING = f"{LIVE}/commissioning/homing"
@@ -127,10 +128,17 @@ def watch_link(tab: Tab) -> None:
     tab.evaluate(WATCH_LINK)
 
 
+@pytest.mark.fault(44)
+@pytest.mark.fault(45)
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
 @pytest.mark.parametrize(("child", "path"), [("machine", LIVE), ("web", HOMING)])
 def test_lost_process_is_shown_within_two_seconds(
-    child: str, path: str, number: signal.Signals, opened: Callable[..., Tab], ready: Product
+    child: str,
+    path: str,
+    number: signal.Signals,
+    opened: Callable[..., Tab],
+    ready: Product,
+    fault: FaultResult,
 ) -> None:
     tab = opened(path)
     watch_link(tab)
@@ -141,6 +149,8 @@ def test_lost_process_is_shown_within_two_seconds(
         ready.signal(child, signal.SIGCONT)
     print(f"{child} {number.name}: shown after {took_s:.2f} s")
     assert took_s <= STALE_WITHIN_S
+    fault.noticed(took_s, REAL)
+    fault.shows(tab.evaluate("document.getElementById('link-banner').innerText"))
     ready.until_ready()
     tab.until("document.documentElement.dataset.link === 'live'", "the page is live again")
     tab.until("document.getElementById('link-banner').hidden", "the banner is gone")

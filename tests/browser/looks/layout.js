@@ -23,7 +23,12 @@
   };
   const across = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left);
   const down = (a, b) => Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
-  const layer = (e) => (e.closest(".footer") ? "footer" : e.closest(".language .languages") ? "list" : "page");
+  // What stays in sight when the page is scrolled lies over it then.
+  const stays = (e) => scrollY > 0 && [".strips", ".alarm-strip"].some((name) => {
+    const strip = e.closest(name);
+    return strip !== null && getComputedStyle(strip).position === "sticky";
+  });
+  const layer = (e) => (e.closest(".footer") ? "footer" : e.closest(".language .languages") ? "list" : stays(e) ? "strip" : "page");
 
   const beside = document.documentElement.scrollWidth - innerWidth;
   if (beside > 0) tell("beside the screen", `${beside} px`);

@@ -1,0 +1,52 @@
+"""A clock that differs from this device's, and a longitude on the wrong side, are asked about on the page."""
+
+import re
+
+from playwright.sync_api import expect
+
+from app.link.messages import SetClock, SetLocation
+from tests.browser.conftest import Opened, Plant
+
+CLOCK = "/trackers/T1/commissioning/clock"
+PLACE = "/trackers/T1/commissioning/location"
+LATE = """() => {
+  const [now, Real] = [Date.now, Date];
+  const late = 41_940_000;
+  window.Date = class extends Real {
+    constructor(...given) { given.length ? super(...given) : super(now() - late); }
+  };
+  window.Date.now = () => now() - late;
+}"""
+
+
+def asked(plant: Plant, kind: type) -> int:
+    return len([order for order in plant.machine.orders if isinstance(order.command, kind)])
+
+
+def test_a_clock_11_hours_off_is_amber_and_asked_about(opened: Opened, plant: Plant) -> None:
+    page = opened(CLOCK, "phone", allow=("422",))
+    expect(page.locator("#clock-apart[data-off]")).to_have_count(0)
+    page.evaluate(LATE)
+    apart = page.locator("#clock-apart[data-off]")
+    expect(apart).to_contain_text("+11 h 39 min")
+    assert apart.evaluate("e => getComputedStyle(e).backgroundColor") == "rgb(255, 176, 0)"
+    page.locator('form[action$="/clock/system"] > button').click()
+    expect(page.locator(".ask-clock")).to_contain_text("11 h 39 min ahead of this device's clock")
+    assert asked(plant, SetClock) == 0
+    page.locator('.ask-clock [name="confirmed"]').click()
+    expect(page.locator(".ask-clock")).to_have_count(0)
+    assert asked(plant, SetClock) == 1
+
+
+def test_a_longitude_on_the_wrong_side_is_asked_about(opened: Opened, plant: Plant) -> None:
+    page = opened(PLACE, "tablet", allow=("422",))
+    page.locator('input[name="longitude_side"][value="W"]').check()
+    page.locator("#forward .key").click()
+    doubts = page.locator("#place-doubts")
+    expect(doubts).to_contain_text("with east and west exchanged")
+    expect(doubts).to_contain_text("km away from the stored location")
+    assert asked(plant, SetLocation) == 0
+    page.locator('[name="sun_there"]').check()
+    page.locator("#forward .key").click()
+    expect(page).to_have_url(re.compile("/clock$"))
+    assert asked(plant, SetLocation) == 1

@@ -1,0 +1,97 @@
+"""Host names and addresses: what can be one, and that every place where one is typed asks the same check."""
+
+from dataclasses import replace
+
+import pytest
+from pydantic import ValidationError
+
+from app.hosts import checked_host, host_fault
+from app.link.alarm_orders import SetNotifications
+from app.link.messages import CheckConnection, ConfigureTracker
+from app.link.weather_orders import SetMetStation
+from app.settings import Settings
+from app.tracker.config import DriveConfig, DriveKind
+from app.tracker.memory import MetStation
+from app.tracker.notifications import Notifications
+from tests.site.plant import make_plant
+
+GOOD = (
+    "127.0.0.1", "::1", "fe80::1%eth0", "localhost", "plc-1", "plc_1.local", "a.example.", "x" * 63,
+    "192.168.0.20", "3com.example",
+)  # fmt: skip
+BAD = {
+    "": "nothing",
+    "http://x": "a web address",
+    "127.0.0.1;rm": "a command behind it",
+    "127.0.0.1\n": "a line feed",
+    "plc\x00": "a control character",
+    "plc 1": "a space",
+    "plc:502": "a port",
+    "a..b": "an empty label",
+    "-plc": "a hyphen before",
+    "plc-": "a hyphen behind",
+    "x" * 64: "a label that is too long",
+    ".".join(["x" * 60] * 5): "a name that is too long",
+    "999.1.1.1": "an address that is none",
+    "192.168.0": "three of four numbers",
+    "127.0.0.1%eth0": "an interface of IPv4",
+    "fe80::1%": "no interface",
+    "größe": "letters beyond ASCII",
+}
+
+
+@pytest.mark.parametrize("host", GOOD)
+def test_a_host_is_taken_as_it_is(host: str) -> None:
+    assert checked_host(host) == host
+
+
+@pytest.mark.parametrize("host", BAD, ids=BAD.values())
+def test_what_can_be_no_host_is_refused_with_a_sentence(host: str) -> None:
+    with pytest.raises(ValueError, match=r"is not a host name or an address\. Enter only the host"):
+        checked_host(host)
+    told = host_fault(host)
+    assert told is not None
+    assert told.isascii()
+    assert told.isprintable()
+    assert len(told) < 250
+
+
+@pytest.mark.parametrize("host", ["http://x", "127.0.0.1;rm", "127.0.0.1\n"])
+async def test_every_order_that_names_a_host_refuses_what_is_none(host: str) -> None:
+    plant = make_plant()
+    await plant.start()
+    config = plant.site.model.tracker("T1").config
+    drive = DriveConfig(DriveKind.MODBUS_TCP, "simulated-plc", host=host)
+    orders = [
+        SetMetStation(MetStation(host)),
+        ConfigureTracker(replace(config, drive=drive)),
+        CheckConnection("T1", drive),
+    ]
+    for order in orders:
+        with pytest.raises(ValueError, match="is not a host name or an address"):
+            await plant.ask(order)
+    await plant.close()
+
+
+@pytest.mark.parametrize(
+    "where",
+    [
+        Notifications("https://127.0.0.1;rm/alarms"),
+        Notifications("https://:8443/alarms"),
+        Notifications("https://plc\x00/alarms"),
+        Notifications(mail_to=("name@example..org",)),
+        Notifications(mail_to=("name@http://x",)),
+    ],
+)
+async def test_alarms_are_sent_to_no_host_that_is_none(where: Notifications) -> None:
+    plant = make_plant()
+    await plant.start()
+    with pytest.raises(ValueError, match="is not a host name or an address"):
+        await plant.ask(SetNotifications(where))
+    await plant.close()
+
+
+@pytest.mark.parametrize("field", ["mqtt_host", "smtp_host"])
+def test_a_setting_that_is_no_host_ends_the_start(field: str) -> None:
+    with pytest.raises(ValidationError, match="is not a host name or an address"):
+        Settings(**{field: "127.0.0.1;rm"})  # type: ignore[arg-type]
