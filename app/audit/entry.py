@@ -8,6 +8,7 @@ from datetime import datetime
 from typing import Any
 
 from app.audit.chain import Link, canonical, link
+from app.masking import without_secrets
 
 DONE = "done"
 LONGEST = 8192
@@ -67,8 +68,11 @@ def with_change(entry: Entry, before: str, after: str) -> Entry:
 
 
 def told(value: Any) -> str:
-    """Return the JSON of a value in ASCII, which every database can hold, cut short where it is too long."""
-    text = json.dumps(value, sort_keys=True, separators=(",", ":"))
+    """Return the JSON of a value in ASCII, which every database can hold, cut short where it is too long.
+
+    Addresses that may hold a secret are masked.
+    """
+    text = json.dumps(without_secrets(value), sort_keys=True, separators=(",", ":"))
     if len(text) <= LONGEST:
         return text
     digest = hashlib.sha256(text.encode()).hexdigest()
