@@ -75,6 +75,7 @@ class FakeTracker:
         self.press: str | None = None
         self.dead: set[str] = set()
         self.sequence = -1
+        self.not_stowed: Reason | None = None
         self.check: DriveCheck | None = None
         self.before_zero: tuple[Pair, HomeTrust | None] | None = None
 
@@ -196,6 +197,7 @@ class FakeTracker:
             elevation=replace(axis, position_deg=where.elevation_deg),
             can_undo_home=self.before_zero is not None,
             fault=None,
+            not_stowed=self.not_stowed,
             show=self._progress(at),
             actions=self._actions(),
         )

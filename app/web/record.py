@@ -1,7 +1,7 @@
 """The commissioning record: who, when, as-left settings, and what was verified."""
 
 from dataclasses import dataclass, field
-from datetime import datetime
+from datetime import datetime, timedelta
 from importlib.metadata import version
 
 from starlette.concurrency import run_in_threadpool
@@ -37,6 +37,13 @@ VERIFYING = (
     EventKind.DRIVE_CHECKED,
 )
 MOST_EVENTS = 200
+CLOCK_GRACE = timedelta(minutes=1)
+MISDATED = "In the future: the clock was wrong then. Confirm the step again."
+
+
+def is_future(at: datetime | None, written_at: datetime) -> bool:
+    """Return whether something is dated after the record that tells it: its clock was wrong then."""
+    return at is not None and at - written_at > CLOCK_GRACE
 
 
 @dataclass(frozen=True, slots=True)

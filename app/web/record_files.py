@@ -7,9 +7,10 @@ from enum import Enum
 from typing import Any
 
 from app.store.store import JournalEntry
+from app.tracker.commissioning import Step
 from app.tracker.drive_check import DriveCheck
 from app.tracker.proof_states import ProofState
-from app.web.record import CommissioningRecord
+from app.web.record import MISDATED, CommissioningRecord, is_future
 from app.web.signatures import Signature, SignatureRole
 from app.zones import zone_of
 
@@ -69,7 +70,7 @@ def _sections(record: CommissioningRecord, zone: tzinfo) -> Iterator[tuple[str, 
     yield "Written", [("at", _local(record.written_at, zone)), ("by", record.software)]
     yield "Site", [("name", record.site_name), *_fields("location", record.location, zone)]
     yield "Clock", _fields("", record.clock, zone)
-    yield "Steps", [_step(step, zone) for step in record.steps]
+    yield "Steps", [_step(step, record.written_at, zone) for step in record.steps]
     yield "Homing", _fields("", record.home, zone) or [("zero", "not set")]
     yield "Settings as left", [("mode", record.mode or "not selected"), *_fields("", record.tracker, zone)]
     yield "Drive", _fields("", record.drive, zone) or [("drive", "not reached yet")]
@@ -85,9 +86,10 @@ def _event(entry: JournalEntry, zone: tzinfo) -> Row:
     return _local(entry.event.at, zone), f"{entry.event.message} ({entry.event.actor})"
 
 
-def _step(step: Any, zone: tzinfo) -> tuple[str, str]:
+def _step(step: Step, written_at: datetime, zone: tzinfo) -> tuple[str, str]:
     when = f", {_local(step.confirmed_at, zone)} by {step.confirmed_by}" if step.confirmed_at else ""
-    why = "".join(f" {reason.message}" for reason in step.reasons)
+    misdated = f" {MISDATED}" if is_future(step.confirmed_at, written_at) else ""
+    why = misdated + "".join(f" {reason.message}" for reason in step.reasons)
     return step.name, f"{STATUS_WORDS[step.status]}{when}.{why}"
 
 

@@ -6,6 +6,7 @@ from datetime import datetime
 
 from app.web.languages import CATALOGUE, said
 from app.web.languages.known import ENGLISH, in_words
+from app.web.record import MISDATED
 from app.web.record_files import Paper, Row, Section
 from app.web.ui.formats import who
 
@@ -64,7 +65,7 @@ UNITS = {" mm (s)": " (mm/s)", " mm": " (mm)", " h": " (h)", " v": " (V)"}
 TITLED = re.compile("Commissioning record: (.*)", re.DOTALL)
 MARKED, PICTURED = re.compile(r"No\. (\d+)"), re.compile(r"photo (\d+)")
 STATUS = re.compile(rf"(done|to do|to be confirmed)(?:, ({INSTANT}) by (.*?))?\.( .*)?", re.DOTALL)
-NEXT_STEP = re.compile(r" (?=Step \d, )")
+NEXT_SENTENCE = re.compile(rf" (?=Step \d, )|(?<={re.escape(MISDATED)}) ")
 BY = re.compile(rf"(.*) ({INSTANT}) by (.*)", re.DOTALL)
 EVENT = re.compile(r"(.*) \(([^()]*)\)", re.DOTALL)
 
@@ -167,7 +168,7 @@ def _sentence(value: str) -> str:
     if status := STATUS.fullmatch(value):
         word, at, name, rest = status.groups()
         when = filled(VALUES[-1], status=_own(word), at=_instant(at), name=who(name)) if at else _own(word)
-        reasons = map(said, NEXT_STEP.split((rest or "").strip()))
+        reasons = map(said, NEXT_SENTENCE.split((rest or "").strip()))
         return " ".join(filter(None, (f"{when}{CATALOGUE.get().language.stop}", *reasons)))
     if checked := BY.fullmatch(value):
         return f"{said(checked[1])} {filled(VALUES[-2], at=_instant(checked[2]), name=who(checked[3]))}"

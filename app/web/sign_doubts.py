@@ -1,20 +1,12 @@
 """What speaks against signing a record now: what is open, what alarms, and what a wrong clock dated."""
 
 from collections.abc import Iterable, Iterator
-from datetime import datetime, timedelta
-
 from app.tracker.alarm_words import AlarmNow, AlarmState
 from app.tracker.commissioning import StepStatus
-from app.web.record import CommissioningRecord
+from app.web.record import CommissioningRecord, is_future
 from app.web.ui.frame import STEP_LABELS
 
-CLOCK_GRACE = timedelta(minutes=1)
 PRESENT = (AlarmState.UNACKNOWLEDGED, AlarmState.ACKNOWLEDGED, AlarmState.SHELVED)
-
-
-def is_future(at: datetime | None, written_at: datetime) -> bool:
-    """Return whether something is dated after the record that tells it: its clock was wrong then."""
-    return at is not None and at - written_at > CLOCK_GRACE
 
 
 def sign_doubts(record: CommissioningRecord, alarms: Iterable[AlarmNow]) -> tuple[str, ...]:

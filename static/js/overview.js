@@ -2,6 +2,7 @@
 
 import { headingOf } from "./alarms.js";
 import { live } from "./live.js";
+import { _ } from "./said.js";
 
 const WIDTH = 200;
 const QUIET = ["shelved", "suppressed", "out_of_service"];
@@ -25,8 +26,15 @@ function paintBar(svg, one) {
   }
 }
 
+// That a tracker does not stow is its own state: the list of alarms is cut off in a storm and may not name it.
+function alarmsOf(trackerId) {
+  const mine = live.site.alarms.filter((alarm) => alarm.tracker_id === trackerId && !QUIET.includes(alarm.state));
+  const unlisted = live.trackerOf(trackerId)?.not_stowed && !mine.some((alarm) => alarm.code === "not_stowed");
+  return unlisted ? [...mine, { priority: 1, title: _("Not stowed") }] : mine;
+}
+
 function paintAlarms(holder) {
-  const mine = live.site.alarms.filter((alarm) => alarm.tracker_id === holder.dataset.alarms && !QUIET.includes(alarm.state));
+  const mine = alarmsOf(holder.dataset.alarms);
   const worst = Math.min(...mine.map((alarm) => alarm.priority));
   holder.hidden = !mine.length;
   holder.querySelector("b").textContent = String(mine.length);

@@ -9,6 +9,7 @@ from playwright.sync_api import Page, expect
 
 from app.alarms.catalogue import CATALOGUE
 from app.tracker.alarm_words import AlarmState
+from app.tracker.reason import Reason
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import LANGUAGES
 from tests.browser.conftest import Opened, Plant
@@ -83,6 +84,32 @@ def test_the_overview_leads_to_the_tracker_that_is_in_danger(
     picture(page, "overview-in-danger-tablet")
     urgent.click()
     expect(page).to_have_url(f"{plant.url}/trackers/T1")
+
+
+def test_a_card_whose_alarm_is_not_listed_does_not_look_calm_in_a_storm(
+    plant: Plant, opened: Opened, picture: Callable[[Page, str], None]
+) -> None:
+    tracker = plant.machine.trackers["T2"]
+    page = opened("/", "phone", allow=("Failed to load resource", "WebSocket"))
+    card = page.locator('.glance[data-tracker="T2"]')
+    expect(card.locator("[data-calm]")).to_be_visible()
+    why = Reason("not_stowed", "South field does not stow.", "Stow it by hand.")
+    plant.do(lambda: setattr(tracker, "not_stowed", why))
+
+    def expect_danger() -> None:
+        expect(card.get_by_role("link", name="Look at the alarm")).to_be_visible()
+        expect(card.locator("[data-calm]")).to_be_hidden()
+        expect(card.locator(".glance-trouble")).to_have_text("Not stowed")
+        expect(card.locator(".glance-alarms b")).to_have_text("1")
+        expect(page.locator('.glance[data-tracker="T1"] [data-calm]')).to_be_visible()
+
+    expect_danger()
+    page.route("**/overview.js*", lambda route: route.abort())
+    with page.expect_response("**/"):
+        page.reload()
+    expect_danger()
+    picture(page, "overview-unlisted-phone")
+    plant.do(lambda: setattr(tracker, "not_stowed", None))
 
 
 def test_an_alarm_is_shelved_with_a_reason(

@@ -21,6 +21,7 @@ from app.tracker.snapshot import ClockState
 from app.web.languages import CATALOGUE, read_all
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import LANGUAGES, TRANSLATED
+from app.web.record import MISDATED
 from app.web.record_files import _label, _text
 from app.web.record_words import told_name, told_value
 from tests.web.desk import Desk
@@ -92,6 +93,12 @@ def splits(name: str) -> Iterator[list[str]]:
         ("deadband (°)", "0.5", "0,5"),
         ("set at", INSTANT, "21.06.2027 09:40:00 UTC+03:00"),
         ("location", f"done, {INSTANT} by Ayşe.", "yapıldı, 21.06.2027 09:40:00 UTC+03:00, Ayşe."),
+        (
+            "clock",
+            f"done, {INSTANT} by Ayşe. {MISDATED} The clock has not been set.",
+            "yapıldı, 21.06.2027 09:40:00 UTC+03:00, Ayşe. "
+            "Gelecekte: saat o zaman yanlıştı. Adımı yeniden onaylayın. Saat ayarlanmadı.",
+        ),
         ("clock", "to do. The clock has not been set.", "yapılacak. Saat ayarlanmadı."),
         ("strategy kind", "encoder-deadband", "kodlayıcı ölü bandı"),
         ("mount kind", "azimuth-elevation", "Azimut-yükseliş"),

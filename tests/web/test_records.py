@@ -18,10 +18,11 @@ from app.sun.position import Location
 from app.tracker.alarm_words import AlarmState
 from app.tracker.commissioning import Step, StepStatus
 from app.tracker.memory import StepName
-from app.web.record import read_record
+from app.web.record import MISDATED, read_record
 from app.web.sign_doubts import sign_doubts
 from tests.fake_alarms import alarm
 from tests.web.desk import Desk
+from tests.web.pdf_words import words_of
 
 T1 = "/api/v1/trackers/T1"
 STROKES = [[[10, 20], [400, 250], [900, 30]], [[5, 5], [6, 9]]]
@@ -231,3 +232,10 @@ async def test_a_step_confirmed_in_the_future_is_marked_on_the_page(desk: Desk) 
     plant.site.model.state = replace(state, confirmations=state.confirmations | {StepName.LOCATION: later})
     shown = await desk.ask("GET", "/trackers/T1/record")
     assert shown.text.count('class="misdated"') == 1
+    printed = await desk.ask("GET", f"{T1}/record", params={"format": "html"})
+    assert printed.text.count(MISDATED) == 1
+    pdf = await desk.ask("GET", f"{T1}/record", params={"format": "pdf"})
+    assert words_of(pdf.content).count(MISDATED) == 1
+    head = await sign(desk)
+    kept = (await desk.ask("GET", f"/api/v1/records/{head['number']}")).json()
+    assert str(kept["sections"]).count(MISDATED) == 1

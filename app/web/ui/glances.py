@@ -3,7 +3,9 @@
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
+from operator import itemgetter
 
+from app.alarms.catalogue import CATALOGUE
 from app.tracker.alarm_words import AlarmNow, AlarmState
 from app.tracker.config import MountKind, TrackerConfig
 from app.tracker.snapshot import ActivityName, Pair, Snapshot
@@ -11,6 +13,7 @@ from app.tracker.weather import Quantity
 
 BAR = 200.0
 WHOLE_TURN_DEG, ZENITH_DEG = (0.0, 360.0), (0.0, 90.0)
+NOT_STOWED = CATALOGUE["not_stowed"]
 QUIET = frozenset({AlarmState.SHELVED, AlarmState.SUPPRESSED, AlarmState.OUT_OF_SERVICE})
 
 
@@ -34,7 +37,8 @@ class Bar:
 class Glance:
     """A tracker on the overview; `wind` is the place of its wind sensor among `one.sensors`, None without.
 
-    `trouble` names the most urgent of its alarms, of which `priority` is 0 without any.
+    `trouble` names the most urgent of its alarms, of which `priority` is 0 without any. That it does not stow
+    in a storm is its own state: it is told although the list of alarms, which is cut off, does not name it.
     """
 
     one: Snapshot
@@ -52,15 +56,18 @@ def glance(
 ) -> Glance:
     """Return what the overview shows of a tracker."""
     mine = [alarm for alarm in alarms if alarm.tracker_id == one.tracker_id and alarm.state not in QUIET]
-    worst = min(mine, key=lambda alarm: alarm.priority, default=None)
+    unlisted = one.not_stowed is not None and all(alarm.code != NOT_STOWED.code for alarm in mine)
+    standing = [(alarm.priority, alarm.heading) for alarm in mine]
+    standing += [(NOT_STOWED.priority, NOT_STOWED.title)] * unlisted
+    priority, trouble = min(standing, key=itemgetter(0), default=(0, ""))
     quantities = [sensor.quantity for sensor in one.sensors]
     return Glance(
         one=one,
         bars=bars(one, config),
         wind=quantities.index(Quantity.WIND) if Quantity.WIND in quantities else None,
-        priority=worst.priority if worst else 0,
-        alarms=len(mine),
-        trouble=worst.heading if worst else "",
+        priority=priority,
+        alarms=len(standing),
+        trouble=trouble,
         done=progress[0],
         next_step=progress[1],
     )

@@ -11,11 +11,10 @@ from starlette.responses import Response
 from app.link.record_orders import RecordOrder
 from app.web.deps import Panel, PanelDep, principal
 from app.web.photos import LARGEST_UPLOAD, PhotoRefused
-from app.web.record import read_record
+from app.web.record import is_future, read_record
 from app.web.record_contexts import RecordPage
 from app.web.record_document import LONGEST_REMARK
 from app.web.record_orders import Send, add_photo, asked_before_signing, photo_of, remove_photo, sign
-from app.web.sign_doubts import is_future
 from app.web.signatures import Signature, SignatureRefused, SignatureRole, signature
 from app.web.ui.forms import Typed
 from app.web.ui.frame import STATUS_TEXT, STEP_LABELS, tracker_frame
