@@ -1,6 +1,7 @@
 """What speaks against signing a record now: what is open, what alarms, and what a wrong clock dated."""
 
 from collections.abc import Iterable, Iterator
+
 from app.tracker.alarm_words import AlarmNow, AlarmState
 from app.tracker.commissioning import StepStatus
 from app.web.record import CommissioningRecord, is_future
