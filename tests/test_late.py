@@ -2,20 +2,20 @@
 
 import gc
 
-from app.late import hurry, late, settle
+from app.late import USUAL, hurry, late, settle
 
 
 def test_the_collector_rests_until_everything_is_loaded() -> None:
-    usual = gc.get_threshold()
+    found = gc.get_threshold()
     try:
         hurry()
-        assert gc.get_threshold()[0] > usual[0]
+        assert gc.get_threshold()[0] > USUAL[0]
         settle()
-        assert gc.get_threshold() == usual
+        assert gc.get_threshold() == USUAL
         assert gc.get_freeze_count() > 0
     finally:
         gc.unfreeze()
-        gc.set_threshold(*usual)
+        gc.set_threshold(*found)
 
 
 def test_a_late_module_is_the_same_one_every_time() -> None:

@@ -1,4 +1,4 @@
-// The page of the site: its weather card is read again when other quantities are known than those that it shows.
+// The weather card is read again when other quantities are known than those that it shows, or when they are made up.
 
 import { live } from "./live.js";
 
@@ -20,12 +20,12 @@ function known({ readings, simulated, before_restart: old } = { readings: {}, si
 const keyOf = (names, simulated, old) => [...names.sort(), simulated, old].join(" ");
 
 async function follow() {
-  if (performance.now() - askedAt < LEAST_MS || shown() === known(live.site.weather ?? undefined)) return;
+  if (!card() || performance.now() - askedAt < LEAST_MS || shown() === known(live.site.weather ?? undefined)) return;
   askedAt = performance.now();
   const answer = await fetch("/site");
   if (!answer.ok) return;
   const fresh = new DOMParser().parseFromString(await answer.text(), "text/html").getElementById("weather");
-  if (fresh) card().replaceWith(fresh);
+  if (fresh) card()?.replaceWith(fresh);
 }
 
 live.on("state", () => { follow().catch(() => {}); });

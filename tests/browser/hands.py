@@ -5,12 +5,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from playwright.sync_api import Locator, Page, TimeoutError
+from playwright.sync_api import CDPSession, Locator, Page, TimeoutError
 
 HOLD_MS = 700
 CONFIRM_MS = 2300
 """Longer than what counts only when it is held for 2 s."""
 LOOK_EVERY_MS = 50
+MARGIN_PX = 6
+"""Beside everything that can be touched."""
 LINK_MEASURED = '#link-quality:is([data-level="1"], [data-level="2"])'
 """Before a page has measured its link, and while it is too slow, a held key begins nothing."""
 TOLD = '[role="alert"], .reasons, .field-error, .outcome, .kept-note, #link-words, #place-doubts, h1'
@@ -98,12 +100,26 @@ class Finger:
 
     def hold(self, key: Locator, for_ms: int = HOLD_MS) -> None:
         self.page.wait_for_selector(LINK_MEASURED)
-        x, y = middle(key)
         session = self.page.context.new_cdp_session(self.page)
+        self._swipe_to(key, session)
+        x, y = middle(key)
         point = {"x": x, "y": y, "id": 0}
         session.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": [point]})
         self.page.wait_for_timeout(for_ms)
         session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+
+    def _swipe_to(self, key: Locator, session: CDPSession) -> None:
+        """Bring a key to the middle of the screen as a hand does: the page knows a swipe from its own scrolling."""
+        box, size = key.bounding_box(), self.page.viewport_size
+        assert box is not None
+        assert size is not None
+        away = size["height"] / 2 - box["y"] - box["height"] / 2
+        if abs(away) > size["height"] / 4:
+            swipe = {"x": MARGIN_PX, "y": size["height"] / 2, "yDistance": away, "speed": 4000}
+            session.send(
+                "Input.synthesizeScrollGesture",
+                {**swipe, "gestureSourceType": "touch", "preventFling": True},
+            )
 
 
 @dataclass

@@ -158,7 +158,7 @@ def sign(person: Newcomer) -> None:
     person.draw(page.get_by_role("img", name=re.compile("Signature")).first)
     person.picture("sign", "The signature drawn")
     person.key("Sign and keep the record")
-    person.sees("Not everything is done")
+    expect(page.get_by_role("heading", name="Not everything is done")).to_be_visible()
     person.picture("asked", "What is open is asked about")
     person.key("Sign all the same")
     person.sees("Commissioning record: Tracker 1")

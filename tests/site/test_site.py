@@ -82,8 +82,9 @@ async def test_a_repeated_order_that_was_refused_is_refused_again(plant: Plant) 
 async def test_a_key_belongs_to_one_order(plant: Plant) -> None:
     await plant.ask(RenameSite("Samsun"), key="k3")
 
-    with pytest.raises(ValueError, match="another command"):
+    with pytest.raises(CommandRejected) as refused:
         await plant.ask(RenameSite("Bafra"), key="k3")
+    assert [reason.code for reason in refused.value.reasons] == ["key_reused"]
 
 
 async def test_an_order_that_is_too_old_is_refused_but_not_stop(plant: Plant) -> None:
