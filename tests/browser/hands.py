@@ -109,7 +109,7 @@ class Finger:
         session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
 
     def _swipe_to(self, key: Locator, session: CDPSession) -> None:
-        """Bring a key to the middle of the screen as a hand does: the page knows a swipe from its own scrolling."""
+        """Bring a key to the middle of the screen as a hand does, by a swipe that the page knows."""
         box, size = key.bounding_box(), self.page.viewport_size
         assert box is not None
         assert size is not None
