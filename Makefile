@@ -1,7 +1,7 @@
 # make run  : sets everything up and serves the panel with a simulated tracker at http://127.0.0.1:8000
 # make test : sets up what tests need and runs them all, browser tests included
 # make check: formatting, lint, types, import contracts, migrations, vendored files, catalogues of languages
-# make fuzz : 10,000 cases against the API and hostile values for every form; takes minutes
+# make fuzz : 10,000 cases against the API and hostile values for every form, in a network of its own; minutes
 # make soak : the long proofs: millions of random ticks, 1,000 kills, 300 power cuts, a day of 20 trackers
 # make mutants: changes guards, access, limits, drives and control in a copy, one place at a time, and counts
 #   what their tests notice; ONLY='app.access.*' does one part

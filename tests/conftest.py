@@ -1,4 +1,4 @@
-"""What all tests share: the same drawn examples in every run, new ones in the long proofs; none is timed."""
+"""What all tests share: they stay on this computer; the same drawn examples in every run; none is timed."""
 
 import os
 from collections.abc import Callable
@@ -7,7 +7,9 @@ import pytest
 from hypothesis import settings
 
 from tests.fault_result import FaultResult
+from tests.loopback import sitecustomize as guard
 
+guard.stay_here()
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.register_profile("new", deadline=None)
 settings.load_profile("new" if "HELIOPANEL_SOAK" in os.environ else "same")

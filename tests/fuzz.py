@@ -2,7 +2,8 @@
 
 The panel is the real one on a machine in memory that keeps its two trackers and its recordings. Parts run
 alone with `forms`, or with `api` and `--only REGEX` of paths, `--without REGEX` of others; the exit code is 1
-after any failure.
+after any failure. It runs in a network of its own where that is allowed: the document's examples name hosts,
+and what is fuzzed may call them.
 """
 
 import argparse
@@ -22,6 +23,7 @@ from app.store.migrations import upgrade
 from app.tracker.commands import CommandRejected
 from app.tracker.reason import Reason
 from app.tracker.snapshot import SiteSnapshot
+from tests.alone import begin_alone
 from tests.fakes import FakeMachine, fake_app
 from tests.web.test_forms import fuzz
 
@@ -99,6 +101,7 @@ def main() -> int:
     arguments.add_argument("--without", default=LEFT_OUT, help="regular expression of paths left out")
     arguments.add_argument("--examples", type=int, default=EXAMPLES, help="cases for each operation")
     given = arguments.parse_args()
+    begin_alone("tests.fuzz", *sys.argv[1:])
     forms = 0 if given.part == "api" else _forms()
     return forms or (0 if given.part == "forms" else _api(given.only, given.without, given.examples))
 

@@ -15,12 +15,13 @@ from typing import Any
 from websockets.sync.client import ClientConnection, connect
 
 from tests.e2e.product import eventually
+from tests.loopback.sitecustomize import CHROMIUM_FLAGS
 
 PROGRAM = os.environ.get("HELIOPANEL_TEST_BROWSER", "/usr/bin/chromium")
 FLAGS = [
     "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
     "--disable-background-networking", "--disable-component-update", "--disable-dev-shm-usage",
-    "--remote-debugging-port=0", "--window-size=1280,800",
+    "--remote-debugging-port=0", "--window-size=1280,800", *CHROMIUM_FLAGS,
 ]  # fmt: skip
 ANSWERS_WITHIN_S = 15.0
 LARGEST_ANSWER = 64 * 1024 * 1024
