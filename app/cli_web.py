@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from app.machine.process import raise_priority_of_panel
 from app.machine.supervisor import end_with_parent
 from app.settings import Settings, SettingsWrong, read_settings
 from app.web.main import run
@@ -18,11 +19,12 @@ def web(supervised: Supervised = None) -> None:
         end_with_parent(supervised)
     settings = read_settings()
     _check_port(settings)
-    run(settings, on_answer=_tell_address)
+    run(settings, on_answer=_answers)
 
 
-def _tell_address(settings: Settings) -> None:
-    """Say where a browser finds the panel, which answers now."""
+def _answers(settings: Settings) -> None:
+    """Be punctual from now on, and say where a browser finds the panel."""
+    raise_priority_of_panel()
     host = f"[{settings.host}]" if ":" in settings.host else settings.host
     typer.echo(f"Heliopanel answers: open {settings.scheme}://{host}:{settings.port}")
 

@@ -68,7 +68,7 @@ def commit() -> str:
 
 def _priority() -> str:
     """Return what is to be known of who measured: as root the controller gets real-time scheduling."""
-    return "; as root, so that the controller ran under SCHED_FIFO" if os.geteuid() == 0 else ""
+    return "; as root, so that controller and panel ran in real time" if os.geteuid() == 0 else ""
 
 
 def renewed(report: str, measured: dict[str, str]) -> str:

@@ -6,7 +6,7 @@ import sys
 from dataclasses import dataclass
 
 from bench.table import Row, alone, at_most, must_hold, spread, worst
-from tests.e2e.holds import ONE_BY_ONE, Rig, Tally, rig
+from tests.e2e.holds import ONE_BY_ONE, Rig, Tally, busy, rig
 from tests.e2e.socket_page import LetGo
 
 COMMAND = "python -m bench jog"
@@ -18,20 +18,21 @@ MOST_BY_ITSELF = 1e-4
 
 @dataclass(frozen=True, slots=True)
 class Size:
-    """How many holds: of each way, of the network's cut, how many freezes, by how many hands."""
+    """How many holds: of each way, of the network's cut; freezes, hands, and busy programs beside."""
 
     of_each: int = 1250
     of_cut: int = 10_000
     freezes: int = 32
     trackers: int = 16
+    busy: int = 10
 
 
-SMALL = Size(of_each=2, of_cut=4, freezes=1, trackers=2)
+SMALL = Size(of_each=2, of_cut=4, freezes=1, trackers=2, busy=2)
 
 
 def measure(size: Size = Size()) -> list[Row]:
     """Return how long a jog outlives its button, for every way of letting go."""
-    with rig(size.trackers) as held:
+    with rig(size.trackers) as held, busy(size.busy):
         return asyncio.run(_rows(held, size))
 
 
@@ -47,7 +48,8 @@ async def _rows(held: Rig, size: Size) -> list[Row]:
 def _row(way: LetGo, tally: Tally, size: Size) -> Row:
     took_ms = tally.took_ms[way]
     name, value = worst(took_ms)
-    what = f"{way}: {len(took_ms):,} holds at {size.trackers} trackers at once, {name}"
+    beside = f"{size.trackers} trackers at once, {size.busy} busy programs beside"
+    what = f"{way}: {len(took_ms):,} holds at {beside}, {name}"
     limit_ms = WATCHDOG_LIMIT_MS if way is LetGo.CONTROLLER_FROZEN else LIMIT_MS
     return at_most(what, value, limit_ms, "ms", COMMAND, ours=spread(took_ms))
 

@@ -1,4 +1,4 @@
-"""What the controller service asks of the system: to be told when to end, and to be punctual."""
+"""What controller service and panel ask of the system: to be told when to end, and to be punctual."""
 
 import asyncio
 import os
@@ -7,6 +7,8 @@ import signal
 import structlog
 
 FIFO_PRIORITY = 10
+PANEL_PRIORITY = 3
+"""Below the controller's: no page and no client delays a tick."""
 
 log = structlog.get_logger(__name__)
 
@@ -25,7 +27,19 @@ def raise_priority() -> None:
     The thread that writes needs it too: while it holds the interpreter the loop waits, and other programs
     must not make both wait.
     """
+    _ask(os.SCHED_FIFO, FIFO_PRIORITY)
+
+
+def raise_priority_of_panel() -> None:
+    """Ask for real-time scheduling of the panel's loop alone: it passes heartbeats and stops on.
+
+    What it starts (hashes of passwords, studies, documents) shares the processors as any other program.
+    """
+    _ask(os.SCHED_RR | os.SCHED_RESET_ON_FORK, PANEL_PRIORITY)
+
+
+def _ask(policy: int, priority: int) -> None:
     try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(FIFO_PRIORITY))
+        os.sched_setscheduler(0, policy, os.sched_param(priority))
     except OSError as error:
         log.info("no_real_time_scheduling", reason=error.strerror)

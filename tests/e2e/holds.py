@@ -5,18 +5,20 @@ import gc
 import os
 import random
 import signal
+import subprocess
+import sys
 import tempfile
 from collections.abc import AsyncIterator, Iterator, Sequence
 from contextlib import asynccontextmanager, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from uuid import uuid4
 
 import httpx
 
 from tests.e2e.drive_farm import Watched, farm, keep_punctual
+from tests.e2e.held_press import Press
 from tests.e2e.integrator import Integrator
-from tests.e2e.product import Product
+from tests.e2e.product import Product, end
 from tests.e2e.socket_page import LetGo, Page
 
 ONE_BY_ONE = (LetGo.RELEASED, LetGo.CLOSED, LetGo.HIDDEN, LetGo.CUT, LetGo.KILLED)
@@ -53,33 +55,36 @@ class Button:
     page: Page
     drive: Watched
     tally: Tally
+    product: Product
     presses: int = 0
 
     async def hold(self, way: LetGo) -> None:
         """Press, hold, let go, and count what came of it."""
-        loop, press_id = asyncio.get_running_loop(), self._next()
-        last_s, gap_s = await self._held(press_id, random.randint(*BEATS))
-        if not await self._moves(press_id, gap_s):
+        loop, press = asyncio.get_running_loop(), self._press()
+        await self._beat(press, random.randint(*BEATS))
+        if not await self._moves(press):
             await asyncio.sleep(random.uniform(*PAUSE_S))
             return
+        last_s = press.sent_s[-1]
         if way is not LetGo.CUT:
             await asyncio.sleep(random.uniform(0.0, BEAT_S / 2))
             last_s = loop.time()
-        letting_go = asyncio.create_task(self.page.let_go(way, press_id))
+        letting_go = asyncio.create_task(self.page.let_go(way, press.press_id))
         self.tally.count(way, await self.drive.until_told() - last_s)
         await letting_go
         await asyncio.sleep(random.uniform(*PAUSE_S))
         self.tally.moved_again += await self.drive.turns()
         self.page.answers.clear()
+        self.page.ends.clear()
         await self.page.again()
 
     async def hold_until(self, way: LetGo, frozen: "Frozen") -> None:
         """Hold while a service of all is frozen; heartbeats go on, as those of a page that knows nothing."""
-        press_id = self._next()
-        _, gap_s = await self._held(press_id, BEATS[-1])
-        moves = await self._moves(press_id, gap_s)
+        press = self._press()
+        await self._beat(press, BEATS[-1])
+        moves = await self._moves(press)
         await frozen.by_all()
-        beating = asyncio.create_task(self._held(press_id, round(FROZEN_S["web"] / BEAT_S), BEATS[-1]))
+        beating = asyncio.create_task(self._beat(press, round(FROZEN_S["web"] / BEAT_S)))
         if moves:
             self.tally.count(way, await self.drive.until_told() - frozen.at_s)
         await beating
@@ -87,41 +92,40 @@ class Button:
         await asyncio.sleep(PAUSE_S[-1] * 2)
         self.tally.moved_again += await self.drive.turns()
 
-    def _next(self) -> str:
+    def _press(self) -> Press:
         self.presses += 1
-        return uuid4().hex
+        return Press(self.product, f"press {self.presses} of {self.page.tracker_id}")
 
-    @property
-    def _direction(self) -> int:
-        return 1 - self.presses % 2 * 2
-
-    async def _held(self, press_id: str, beats: int, first: int = 0) -> tuple[float, float]:
-        """Say some times that the button is held; return when for the last time, and the longest gap."""
-        loop = asyncio.get_running_loop()
-        due_s = last_s = loop.time()
-        gap_s = 0.0
-        for sequence in range(first, first + beats):
-            sent_s = await self.page.beat(press_id, self._direction, sequence)
-            gap_s, last_s = max(gap_s, sent_s - last_s), sent_s
+    async def _beat(self, press: Press, beats: int) -> None:
+        """Say some times that the button is held."""
+        loop, direction = asyncio.get_running_loop(), 1 - self.presses % 2 * 2
+        due_s = loop.time()
+        for _ in range(beats):
+            sent_s = await self.page.beat(press.press_id, direction, len(press.sent_s))
+            press.sent(sent_s)
             due_s = max(due_s, sent_s) + BEAT_S
             await asyncio.sleep(max(0.0, due_s - loop.time()))
-        return last_s, gap_s
 
-    async def _moves(self, press_id: str, gap_s: float) -> bool:
+    async def _moves(self, press: Press) -> bool:
         """Return whether the axis turns by this press; count why not."""
-        if await self.drive.turns():
+        looked_s = asyncio.get_running_loop().time()
+        moves = await self.drive.turns()
+        press.look()
+        if moves:
             self.tally.held += 1
             return True
-        answers = self.page.answers.get(press_id, [])
-        if gap_s > RIG_LATE_S:
+        answers = self.page.answers.get(press.press_id, [])
+        if press.longest_gap_s(looked_s) > RIG_LATE_S:
             self.tally.not_held += 1
-        elif answers and answers[0] != "ok":
+            cause = "not held"
+        elif answers and answers[0].text != "ok":
             self.tally.refused += 1
-            self.tally.why.append(f"refused: {answers}")
+            cause = "refused"
         else:
             self.tally.held += 1
             self.tally.stopped_by_itself += 1
-            self.tally.why.append(f"stopped by itself: {answers}")
+            cause = "stopped by itself"
+        self.tally.why.append(f"{cause}: {press.tell(looked_s, answers, self.page.ends)}")
         return False
 
 
@@ -184,7 +188,9 @@ class Rig:
         drives = [await Watched.at(port) for port in self.ports]
         await asyncio.gather(*(page.open() for page in pages))
         try:
-            yield [Button(page, drive, tally) for page, drive in zip(pages, drives, strict=True)]
+            yield [
+                Button(page, drive, tally, self.product) for page, drive in zip(pages, drives, strict=True)
+            ]
         finally:
             await asyncio.gather(*(page.close() for page in pages), return_exceptions=True)
             await asyncio.gather(*(drive.close() for drive in drives), return_exceptions=True)
@@ -211,6 +217,17 @@ def rig(trackers: int) -> Iterator[Rig]:
             with suppress(OSError):
                 os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
             product.stop()
+
+
+@contextmanager
+def busy(programs: int) -> Iterator[None]:
+    """Keep the processors busy with other programs meanwhile."""
+    spinning = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(programs)]
+    try:
+        yield
+    finally:
+        for program in spinning:
+            end(program)
 
 
 def _add(url: str, tracker_id: str, port: int) -> None:

@@ -3,6 +3,7 @@
 import asyncio
 from contextlib import suppress
 from enum import StrEnum
+from typing import NamedTuple
 
 import httpx
 import orjson
@@ -25,12 +26,20 @@ class LetGo(StrEnum):
     CONTROLLER_FROZEN = "controller frozen, by the drive's watchdog"
 
 
+class Answer(NamedTuple):
+    """What came of a heartbeat or of a jog, and when that was heard."""
+
+    at_s: float
+    text: str
+
+
 class Page:
     """One page of one tracker: its WebSocket, and the button that is held on it."""
 
     def __init__(self, panel_port: int, tracker_id: str) -> None:
         self.tracker_id = tracker_id
-        self.answers: dict[str, list[str]] = {}
+        self.answers: dict[str, list[Answer]] = {}
+        self.ends: list[Answer] = []
         self._url = f"http://127.0.0.1:{panel_port}"
         self._address = f"ws://127.0.0.1:{panel_port}/live?tracker={tracker_id}"
         self._http = httpx.AsyncClient(base_url=self._url)
@@ -44,13 +53,13 @@ class Page:
         await self._http.get("/health")
         self._socket = await connect(self._address, origin=Origin(self._url))
         self._listening = asyncio.create_task(self._listen(self._socket))
-        await self._send(type="ping", tc=asyncio.get_running_loop().time() * 1000.0)
+        await self._send(type="ping", tc=_now_s() * 1000.0)
         async with asyncio.timeout(GIVE_UP_S):
             await self._measured.wait()
 
     async def beat(self, press_id: str, direction: int, sequence: int) -> float:
         """Say that the button is still held, and return when."""
-        now_s = asyncio.get_running_loop().time()
+        now_s = _now_s()
         await self._send(
             type="jog", tracker_id=self.tracker_id, press_id=press_id, axis="azimuth", direction=direction,
             speed="slow", sequence=sequence, tc=now_s * 1000.0, rtt_ms=1.0,
@@ -97,9 +106,16 @@ class Page:
             elif text.startswith('{"type":"jog"'):
                 told = orjson.loads(text)
                 codes = [reason["code"] for reason in told.get("reasons", ())]
-                self.answers.setdefault(told["press_id"], []).append(" ".join((told["status"], *codes)))
+                answer = Answer(_now_s(), " ".join((told["status"], *codes)))
+                self.answers.setdefault(told["press_id"], []).append(answer)
+            elif text.startswith('{"type":"event"') and '"jog_ended"' in text:
+                self.ends.append(Answer(_now_s(), orjson.loads(text)["message"]))
 
     async def _send(self, **message: object) -> None:
         assert self._socket is not None
         with suppress(ConnectionClosed):
             await self._socket.send(orjson.dumps(message).decode())
+
+
+def _now_s() -> float:
+    return asyncio.get_running_loop().time()

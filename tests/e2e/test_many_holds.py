@@ -1,26 +1,34 @@
 """A thousand buttons held behind a network that is cut: the tail of what is promised, not its median."""
 
 import asyncio
+import os
 import random
 
-from tests.e2e.holds import ONE_BY_ONE, Tally, rig
+from tests.e2e.holds import ONE_BY_ONE, Tally, busy, rig
 from tests.e2e.socket_page import LetGo
 
 TRACKERS = 8
 CUTS, OTHERS = 1000, 25
+BUSY = 10
 LONGEST_MS = 300.0
 P999_MS = 280.0
 
 
 def test_a_thousand_cut_networks_and_every_other_way_of_letting_go() -> None:
-    """One late end in two hundred, as there was, is seen here with a probability of 99.3 %."""
+    """One late end in two hundred, as there was, is seen here with a probability of 99.3 %.
+
+    Ten other programs keep the processors busy: where the panel has to wait as they do, one press in 150 ends
+    while it is held, and as many are refused for a slow link.
+    """
     ways = [way for way in ONE_BY_ONE for _ in range(CUTS if way is LetGo.CUT else OTHERS)]
     random.Random(13).shuffle(ways)
-    with rig(TRACKERS) as held:
+    with rig(TRACKERS) as held, busy(BUSY):
         tally = asyncio.run(held.let_go(ways))
-    print(tally.held, tally.refused, tally.stopped_by_itself, tally.not_held, tally.why[:3])
+    print(*tally.why, sep="\n")
     assert tally.moved_again == 0
-    assert tally.stopped_by_itself + tally.refused + tally.not_held <= len(ways) // 100
+    assert tally.not_held <= len(ways) // 100
+    in_real_time = os.geteuid() == 0
+    assert tally.stopped_by_itself + tally.refused <= (0 if in_real_time else len(ways) // 20)
     _in_time(tally)
 
 
