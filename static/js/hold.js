@@ -7,6 +7,7 @@ const KEYS = new Set([" ", "Enter"]);
 const BY_HAND = new Set(["jogging", "moving"]);
 
 let held = null;
+let spent = false;
 
 function look() {
   if (!held) return;
@@ -15,6 +16,7 @@ function look() {
   if (key.disabled || !key.isConnected) return end();
   if (share >= 1) {
     end();
+    spent = true;
     return key.form.requestSubmit(key);
   }
   key.style.setProperty("--held", `${share * 100}%`);
@@ -38,6 +40,7 @@ function end() {
 const keyOf = (event) => event.target.closest?.("[data-hold]");
 
 document.addEventListener("pointerdown", (event) => {
+  spent = false;
   const key = keyOf(event);
   if (!key || event.button !== 0 || !event.isPrimary) return end();
   key.setPointerCapture(event.pointerId);
@@ -56,8 +59,13 @@ document.addEventListener("keyup", (event) => {
   event.preventDefault();
   end();
 });
-// A touch or a click alone does nothing; the click of a screen reader, which cannot hold, has no detail.
-document.addEventListener("click", (event) => { if (keyOf(event) && event.detail > 0) event.preventDefault(); });
+// A touch or a click alone does nothing; the click of a screen reader, which cannot hold, has no detail. Letting go
+// of what was held presses nothing that came under the finger meanwhile, as the key that takes it back.
+document.addEventListener("click", (event) => {
+  if (event.detail === 0 || (!keyOf(event) && !spent)) return;
+  event.preventDefault();
+  event.stopPropagation();
+}, { capture: true });
 
 // Once an axis was moved by hand, setting the home position is what this page is for.
 live.on("state", ({ tracker }) => {

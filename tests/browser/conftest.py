@@ -123,7 +123,7 @@ def listen(page: Page, complaints: list[str]) -> None:
 
     def complain(message: ConsoleMessage) -> None:
         if message.type in ("error", "warning") and SOFTWARE_NOTE not in message.text:
-            complaints.append(f"{message.type}: {message.text}")
+            complaints.append(f"{message.type}: {message.text} {message.location.get('url', '')}")
 
     page.on("console", complain)
     page.on("pageerror", lambda error: complaints.append(f"uncaught: {error}"))
