@@ -5,7 +5,9 @@ from functools import cache
 from importlib import import_module
 from typing import Any
 
-USUAL = gc.get_threshold()
+SELDOM = (3_000, 5, 50)
+"""Most of what a field makes is replaced, not lost in circles: usual thresholds look for those in vain, and
+through everything there is, every few seconds and for longer than a tick may be late."""
 RELAXED = (200_000, 50, 100)
 
 
@@ -21,7 +23,7 @@ def hurry() -> None:
 
 
 def settle() -> None:
-    """Leave what was loaded out of every later collection, and collect as usual from now on."""
+    """Leave what was loaded out of every later collection, and collect seldom from now on."""
     gc.collect()
     gc.freeze()
-    gc.set_threshold(*USUAL)
+    gc.set_threshold(*SELDOM)

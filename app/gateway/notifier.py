@@ -74,6 +74,10 @@ class Notifier:
         if not self._begun:
             await asyncio.to_thread(self._outbox.begin)
             self._begun = True
+        newest = await asyncio.to_thread(self._outbox.newest)
+        if newest is not None and not self._door.notifications.reaches(self._channel):
+            self._turn("")
+            await asyncio.to_thread(self._outbox.acknowledge, newest)
         while entries := await asyncio.to_thread(self._outbox.events, AT_ONCE):
             for entry in entries:
                 if not await self._send(entry):

@@ -78,6 +78,12 @@ class Outbox:
             cursor.number, cursor.at = entry.number, entry.event.at.isoformat()
             self._save()
 
+    def newest(self) -> JournalEntry | None:
+        """Return the newest event if it was not acknowledged."""
+        with self._one_at_a_time:
+            newest = self._reader.journal(JournalFilter(limit=1))
+            return newest[0] if newest and newest[0].number > self._known().number else None
+
     def recordings(self) -> list[RecordingInfo]:
         """Return recordings whose state was not announced yet, oldest first."""
         with self._one_at_a_time:

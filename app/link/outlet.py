@@ -8,7 +8,7 @@ from app.link.messages import Update
 from app.tracker.snapshot import Event, SiteSnapshot, Snapshot
 
 MOST_EVENTS_WAITING = 10_000
-MOST_TRACKERS_AT_ONCE = 50
+MOST_TRACKERS_AT_ONCE = 20
 
 
 class Listener:

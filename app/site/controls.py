@@ -16,6 +16,12 @@ class Controls:
         """Return the authority over a tracker."""
         return self._authorities.setdefault(tracker_id, Authority(stored_epoch + 1))
 
+    @property
+    def held(self) -> tuple[str, ...]:
+        """Return the trackers that somebody has control of, or wants: time changes nothing about others."""
+        found = self._authorities.items()
+        return tuple(name for name, one in found if one.lease is not None or one.wish is not None)
+
     def put(self, tracker_id: str, authority: Authority) -> None:
         """Let this be the authority over a tracker from now on."""
         self._authorities[tracker_id] = authority

@@ -27,7 +27,7 @@ SLOWLY = timedelta(seconds=1)
 WHILE_MOVING = timedelta(milliseconds=95)
 AT_REST = timedelta(milliseconds=495)
 UNHEARD = timedelta(milliseconds=1200)
-MOST_AT_ONCE = 50
+MOST_AT_ONCE = 20
 URGENT = {
     EventKind.STOPPED,
     EventKind.FAULT_RAISED,

@@ -1,8 +1,8 @@
 """Drives all trackers of a controller: every tick begins at its instant, and no drive delays another tracker.
 
-Each tracker has a phase of its own within the period, so that ticks are spread over it. Asked-for ticks take
-turns with ends of leases and what is due longest. A drive that answers at once is driven here; every
-other one has its tick in a task beside, and until that has ended no second tick of it begins.
+Each tracker has a phase of its own within the period, so that ticks are spread over it. A turn is some
+of what was asked for, then ends of leases, then what is due longest. A drive that answers at once is driven
+here; every other one has its tick in a task beside, and until that has ended no second tick of it begins.
 """
 
 import asyncio
@@ -23,7 +23,7 @@ from app.site.overload import Overload
 SLOT = timedelta(milliseconds=5)
 GOLDEN = 0.6180339887498949
 """Multiples of it, without their whole part, lie spread evenly however many there are."""
-MOST_AT_ONCE = 16
+MOST_ASKED_AT_ONCE, MOST_DUE_AT_ONCE = 8, 16
 """So many ticks at most before everything else that waits for the loop (a stop, a heartbeat) has its turn."""
 GRACE = timedelta(milliseconds=10)
 """So long a tick may outlast the end of a lease before the drive is stopped beside it."""
@@ -172,14 +172,11 @@ class Scheduler:
     def _turn(self) -> bool:
         """Begin what is to tick now, and return whether there may be more.
 
-        What was asked for and what is due take turns: a field that is woken at once makes no tick late.
+        What was asked for comes first, but only some of it: a field that is woken at once makes no tick late.
         """
-        return all(
-            (self._begin_asked() or self._begin_timed())
-            if number % 2 == 0
-            else (self._begin_timed() or self._begin_asked())
-            for number in range(MOST_AT_ONCE)
-        )
+        more_asked = all(self._begin_asked() for _ in range(MOST_ASKED_AT_ONCE))
+        more_due = all(self._begin_timed() for _ in range(MOST_DUE_AT_ONCE))
+        return more_asked or more_due
 
     def _begin_asked(self) -> bool:
         if not self._asked:

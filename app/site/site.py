@@ -331,9 +331,10 @@ class Site:
     async def _watch_control(self) -> None:
         """Four times a second: let control pass whose countdown has run out, and end what nobody renews."""
         while True:
-            for loop in tuple(self.model.loops.values()):
-                events = await control.settle(self.model, loop)
-                if events:
+            for tracker_id in self.model.control.held:
+                loop = self.model.loops.get(tracker_id)
+                events = () if loop is None else await control.settle(self.model, loop)
+                if loop is not None and events:
                     self.publisher.publish((loop.config.tracker_id,), events)
             await self._clock.sleep_until(self._clock.now() + CONTROL_EVERY)
 

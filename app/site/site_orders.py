@@ -7,6 +7,7 @@ from typing import assert_never
 
 import structlog
 
+from app.clock import give_way
 from app.drives.drive import DriveError
 from app.link.messages import (
     AddTracker,
@@ -55,6 +56,8 @@ from app.tracker.snapshot import ActivityName, Event, EventKind
 
 FOLLOWS_THE_SUN = {ActivityName.TRACKING, ActivityName.SHOWING}
 CLOCK_SET_WITHIN_S = 2.0
+MOST_AT_ONCE = 20
+"""So many trackers are stopped before whatever else is due, a tick among it, has its turn."""
 KEEPS_NOTHING = Reason("no_store", "This machine runs without a store and keeps no recordings.")
 
 log = structlog.get_logger(__name__)
@@ -300,9 +303,13 @@ def _not_confirmable(model: SiteModel, command: ConfirmStep) -> Reason | None:
 
 async def _stop_all(model: SiteModel, actor: str) -> tuple[Event, ...]:
     happened: list[Event] = []
-    for loop in tuple(model.loops.values()):
+    stopping: list[asyncio.Task[bool]] = []
+    for number, loop in enumerate(tuple(model.loops.values()), 1):
         happened.extend(tracker_orders.handle_stop(model, loop, actor))
-    await asyncio.gather(*(loop.stop_drive() for loop in tuple(model.loops.values())))
+        stopping.append(asyncio.create_task(loop.stop_drive()))
+        if number % MOST_AT_ONCE == 0:
+            await give_way()
+    await asyncio.gather(*stopping)
     await tracker_orders.until_stored(model)
     if not model.loops:
         happened.append(model.event(EventKind.STOPPED, "Stop was asked; there is no tracker.", actor))

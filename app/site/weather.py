@@ -15,6 +15,8 @@ NAMES = tuple(field.name for field in fields(Weather))
 WIND = "wind_mps"
 MOVES_WITH = {WIND: "wind_direction_deg"}
 """A vane that turns while the anemometer shows no wind says that the anemometer is stuck."""
+SENSED_FOR = timedelta(milliseconds=10)
+"""So long what one tick is told is told to the next ones too, unless something is reported."""
 OLD = (Quality.STALE, Quality.BEFORE_RESTART)
 
 
@@ -31,6 +33,7 @@ class WeatherStation:
         self._source = ""
         self._recalled: KeptWeather | None = None
         self._unheard_at: datetime | None = None
+        self._sensed: tuple[datetime, Sensed] | None = None
 
     @property
     def windows(self) -> WeatherWindows:
@@ -39,7 +42,7 @@ class WeatherStation:
 
     def judge_by(self, windows: WeatherWindows) -> None:
         """Go by other windows from now on; a mean over a longer one grows into it."""
-        self._windows = windows
+        self._windows, self._sensed = windows, None
         for series in self._series.values():
             series.windows = windows
 
@@ -68,10 +71,11 @@ class WeatherStation:
             value = 0.0 if last is None else last.value
             self._series[name].take(Sample(at, value, source), impossible=True)
         self._reported_at, self._measured_at, self._source = at, measured_at, source
-        self._unheard_at = None
+        self._unheard_at = self._sensed = None
 
     def recall(self, kept: KeptWeather, site_time: datetime, now: datetime) -> None:
         """Know what was reported before the restart."""
+        self._sensed = None
 
         def sample(kept: KeptValue) -> Sample:
             return Sample(now - max(site_time - kept.at, timedelta(0)), kept.value, kept.source)
@@ -136,6 +140,11 @@ class WeatherStation:
         """Return what one tick of a tracker is told."""
         if self._reported_at is None:
             return NOTHING_SENSED
+        if self._sensed is None or not timedelta(0) <= now - self._sensed[0] < SENSED_FOR:
+            self._sensed = now, self._judged(now)
+        return self._sensed[1]
+
+    def _judged(self, now: datetime) -> Sensed:
         vane_turns = self._turns(WIND, now)
         wind, gust_mps = self._reading(WIND, now), self._winds.gust(now, others_vary=vane_turns)
         mean_mps = self._winds.mean(now, others_vary=vane_turns)

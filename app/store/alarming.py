@@ -3,9 +3,9 @@
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, Row, Select, delete, func, insert, select, update
+from sqlalchemy import Connection, Row, Select, delete, func, insert, select
 
-from app.store import tables
+from app.store import putting, tables
 from app.store.documents import ALARM
 from app.store.store import AlarmFilter, KeptAlarm
 
@@ -38,17 +38,14 @@ def kept(row: Row[*tuple[Any, ...]]) -> KeptAlarm:
 
 def put(connection: Connection, one: KeptAlarm) -> None:
     """Store an alarm in the place of what was stored of it since it was raised."""
-    alarm, columns = one.alarm, tables.alarms.c
+    alarm = one.alarm
     values = {
         "tracker_id": alarm.tracker_id,
         "priority": alarm.entry.priority,
         "ended_at": one.ended_at,
         "document": ALARM.write(alarm),
     }
-    mine = (columns.alarm_id == alarm.alarm_id, columns.raised_at == alarm.raised_at)
-    if connection.execute(update(tables.alarms).where(*mine).values(values)).rowcount == 0:
-        key = {"alarm_id": alarm.alarm_id, "raised_at": alarm.raised_at}
-        connection.execute(insert(tables.alarms).values(key | values))
+    putting.put(connection, tables.alarms, {"alarm_id": alarm.alarm_id, "raised_at": alarm.raised_at}, values)
 
 
 def prune(connection: Connection, before: datetime) -> int:

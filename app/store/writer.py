@@ -1,10 +1,10 @@
 """Writing: the machine's side. Every call is one transaction that is on disk when the call returns."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from datetime import datetime
 
-from sqlalchemy import ColumnElement, Connection, Engine, Table, delete, insert, select, update
+from sqlalchemy import ColumnElement, Connection, Engine, Table, delete, select
 from sqlalchemy.exc import SQLAlchemyError
 
 from app.audit.entry import Entry
@@ -13,6 +13,7 @@ from app.store.chunks import ChunkDamaged
 from app.store.connections import require_revision
 from app.store.documents import CONFIG, EVENT_DATA, PLAN, SITE, TRACKER, plain
 from app.store.failures import explained, is_lasting
+from app.store.putting import adding, put
 from app.store.reader import DatabaseReader, head
 from app.store.store import KeptAlarm, Photo, PlannedShow, Recorded, RecordHead, StoreFailed
 from app.tracker.memory import SiteState, TrackerState
@@ -88,7 +89,7 @@ class DatabaseWriter(DatabaseReader):
         with self._write() as connection:
             document = SITE.write(site)
             self._note(connection, tables.site, tables.site.c.number == SITE_NUMBER, document)
-            _put(connection, tables.site, {"number": SITE_NUMBER}, {"document": document})
+            put(connection, tables.site, {"number": SITE_NUMBER}, {"document": document})
             _append(connection, events)
 
     def save_tracker(self, tracker: TrackerState, events: Sequence[Event] = ()) -> None:
@@ -102,7 +103,7 @@ class DatabaseWriter(DatabaseReader):
             document = TRACKER.write(tracker)
             self._note(connection, tables.trackers, mine, document)
             accepted = {} if tracker.memory.rejected else {"accepted": CONFIG.write(tracker.config)}
-            _put(connection, tables.trackers, key, {"document": document, **accepted})
+            put(connection, tables.trackers, key, {"document": document, **accepted})
             _append(connection, events)
 
     def remove_tracker(self, tracker_id: str, events: Sequence[Event] = ()) -> None:
@@ -119,7 +120,7 @@ class DatabaseWriter(DatabaseReader):
         values = {"tracker_id": planned.tracker_id, "document": PLAN.write(planned.plan)}
         oldest_kept = select(columns.number).order_by(columns.number.desc()).offset(SHOWS_KEPT - 1).limit(1)
         with self._write() as connection:
-            _put(connection, tables.shows, {"show_id": planned.plan.show_id}, values)
+            put(connection, tables.shows, {"show_id": planned.plan.show_id}, values)
             connection.execute(delete(tables.shows).where(columns.number < oldest_kept.scalar_subquery()))
 
     def append_events(self, events: Sequence[Event]) -> None:
@@ -243,15 +244,6 @@ class DatabaseWriter(DatabaseReader):
         self._writing.dispose()
 
 
-def _put(
-    connection: Connection, table: Table, key: Mapping[str, object], values: Mapping[str, object]
-) -> None:
-    """Replace the row with this key, or add it; a row that is replaced keeps its place."""
-    mine = [table.c[name] == value for name, value in key.items()]
-    if connection.execute(update(table).where(*mine).values(values)).rowcount == 0:
-        connection.execute(insert(table).values({**key, **values}))
-
-
 def _append(connection: Connection, events: Sequence[Event]) -> None:
     rows = [
         {
@@ -265,4 +257,4 @@ def _append(connection: Connection, events: Sequence[Event]) -> None:
         for event in events
     ]
     if rows:
-        connection.execute(insert(tables.events), rows)
+        connection.execute(adding(tables.events), rows)

@@ -9,7 +9,7 @@ from app.drives.simulated_machine import STOP_ALL
 from app.link.messages import StopAll
 from app.link.weather_orders import ReportWeather
 from app.site.overload import BEGINS_AFTER, CODE, ENDS_AFTER, LATE_MS, Overload
-from app.site.scheduler import MOST_AT_ONCE
+from app.site.scheduler import MOST_ASKED_AT_ONCE
 from app.tracker.snapshot import ActivityName, EventKind
 from app.tracker.weather import Weather
 from app.web.metrics import exposition
@@ -95,7 +95,7 @@ async def test_a_hundred_trackers_are_on_their_way_to_shelter_within_a_second_of
 async def test_five_hundred_trackers_that_tick_once_a_second_do_not_wait_for_their_ticks_to_stow() -> None:
     field = await field_of(500, period=ONE_HZ)
     await field.ask(ReportWeather(Weather(wind_mps=28.0)))
-    for _ in range(500 // MOST_AT_ONCE):
+    for _ in range(500 // MOST_ASKED_AT_ONCE + 1):
         await settle()
 
     assert activities(field) == {ActivityName.STOWING}

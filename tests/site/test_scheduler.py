@@ -8,7 +8,7 @@ from datetime import datetime, timedelta
 import pytest
 
 from app.clock import VirtualClock
-from app.site.scheduler import GRACE, MOST_AT_ONCE, Scheduler, Slot
+from app.site.scheduler import GRACE, MOST_ASKED_AT_ONCE, MOST_DUE_AT_ONCE, Scheduler, Slot
 from app.tracker.axes import Axis, JogSpeed
 from app.tracker.commands import JOG_LEASE, Jog
 from app.tracker.motion import HALT, DriveCommand, Feedback, Velocity
@@ -213,7 +213,7 @@ async def test_a_tick_that_goes_on_beyond_the_deadline_is_seen_out_beside_it(fie
 
 
 async def test_what_is_asked_for_and_deadlines_come_before_what_is_due(field_: Field) -> None:
-    crowd = [Ticker(field_.clock) for _ in range(3 * MOST_AT_ONCE)]
+    crowd = [Ticker(field_.clock) for _ in range(3 * MOST_DUE_AT_ONCE)]
     order: list[str] = []
     for number, one in enumerate(crowd):
         one.ticks = Noted(order, str(number))
@@ -243,8 +243,28 @@ class Noted(list[float]):
         self._order.append(self._name)
 
 
+async def test_a_field_that_is_woken_at_once_lets_what_is_due_begin_in_every_turn(field_: Field) -> None:
+    crowd = [Ticker(field_.clock) for _ in range(10 * MOST_ASKED_AT_ONCE)]
+    order: list[str] = []
+    for one in crowd:
+        one.ticks = Noted(order, "asked")
+    slots = [field_.add(one) for one in crowd]
+    due = Ticker(field_.clock)
+    phase = field_.add(due).phase
+    await field_.forward(99 + phase // MS)
+    due.ticks = Noted(order, "due")
+    order.clear()
+    for slot in slots:
+        field_.scheduler.ask(slot)
+    field_.clock.advance(MS)
+    await settle()
+
+    assert order.index("due") <= MOST_ASKED_AT_ONCE + MOST_DUE_AT_ONCE
+    assert order[:MOST_ASKED_AT_ONCE] == ["asked"] * MOST_ASKED_AT_ONCE
+
+
 async def test_many_ticks_at_once_let_everything_else_have_its_turn(field_: Field) -> None:
-    crowd = [Ticker(field_.clock) for _ in range(10 * MOST_AT_ONCE)]
+    crowd = [Ticker(field_.clock) for _ in range(10 * MOST_DUE_AT_ONCE)]
     for one in crowd:
         field_.add(one)
     await field_.forward(100)
@@ -257,7 +277,7 @@ async def test_many_ticks_at_once_let_everything_else_have_its_turn(field_: Fiel
 
     assert turns[-1] == len(crowd)
     steps = [after - earlier for earlier, after in zip([0, *turns], turns, strict=False)]
-    assert max(steps) == MOST_AT_ONCE
+    assert max(steps) == MOST_DUE_AT_ONCE
 
 
 @pytest.mark.parametrize("at_once", [True, False])
