@@ -3,7 +3,7 @@
 import asyncio
 import os
 from collections.abc import Iterator
-from datetime import UTC, datetime, timedelta
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
@@ -12,42 +12,16 @@ from typer.testing import CliRunner
 
 from app.access.accounts import TokenWish
 from app.access.events import chained
-from app.access.keeper import Credentials, Keeper, Throttled, WrongPassword
-from app.access.opening import open_keeper, open_store
-from app.access.principal import Via, this_computer
+from app.access.keeper import Credentials, Throttled, WrongPassword
+from app.access.opening import open_store
+from app.access.principal import Via
 from app.access.roles import Permission, Role
 from app.access.setup import CODE_FILE, RESET_FILE
 from app.access.users import AccessRefused
 from app.audit.chain import FIRST
 from app.cli_users import users
-from app.clock import VirtualClock
-from app.settings import Settings
-from tests.access.fake_hasher import FakeHasher
+from tests.access.door import HERE, PASSWORD, Door
 from tests.fault_result import FaultResult
-
-START = datetime(2026, 11, 21, 12, tzinfo=UTC)
-PASSWORD = "violet-anvil-harbour-9"  # noqa: S105 - of people who do not exist
-HERE = this_computer("127.0.0.1")
-
-
-class Door:
-    """A keeper with quick hashes on a clock that stands until it is moved."""
-
-    def __init__(self, folder: Path, database: str | None = None, *, host: str = "127.0.0.1") -> None:
-        self.clock = VirtualClock(START)
-        self.hasher = FakeHasher()
-        self.settings = Settings(data_dir=folder, database_url=database).model_copy(update={"host": host})
-        self.keeper: Keeper = open_keeper(self.settings, self.clock, self.hasher)
-
-    async def add(self, name: str, *roles: Role) -> None:
-        now = self.clock.now()
-        await self.keeper.do(lambda: self.keeper.accounts.add(HERE, name, roles, PASSWORD, now))
-
-    async def tries(self, name: str, password: str, address: str = "10.0.0.9") -> str:
-        return await self.keeper.log_in(name, password, address, "test")
-
-    def via(self, session_id: str) -> Via:
-        return self.keeper.identify(Credentials("10.0.0.9", session_id)).via
 
 
 @pytest.fixture
