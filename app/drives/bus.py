@@ -11,15 +11,14 @@ import structlog
 
 from app.clock import Clock
 from app.drives.drive import DriveError, DriveRefused, DriveSilent
+from app.drives.line_turn import LineTurn, Part
+from app.drives.silences import Silences
 from app.drives.wire import Ask, Broken, GivenUp, Refused, Timing, Unanswered, Wire
 
 FIRST_DELAY = timedelta(milliseconds=100)
 LONGEST_DELAY = timedelta(seconds=1)
 MOST_WAITING = 200
-SILENT_TIMES = 3
 AGAIN_AFTER_S = 0.05
-FIRST_REST = timedelta(milliseconds=250)
-LONGEST_REST = timedelta(seconds=4)
 
 
 class Priority(IntEnum):
@@ -67,15 +66,22 @@ class BusUnit:
     under an older one is not sent, so that nothing moves before the state has been read again.
     """
 
-    def __init__(self, name: str, unit: int, timing: Timing, find_bus: Callable[[], "Bus"]) -> None:
+    def __init__(
+        self,
+        name: str,
+        unit: int,
+        timing: Timing,
+        find_bus: Callable[[], "Bus"],
+        *,
+        reckoned_s: float = 0.0,
+    ) -> None:
         self.unit = unit
         self.timing = timing
+        self.part = Part(reckoned_s)
         self._name = name
         self._find_bus = find_bus
         self._bus: Bus | None = None
         self._stops = 0
-        self._silences = 0
-        self._rests_until: datetime | None = None
         self._closed = False
 
     def __str__(self) -> str:
@@ -90,6 +96,12 @@ class BusUnit:
     def unit_count(self) -> int:
         """Return how many devices share the bus, this one included."""
         return 1 if self._bus is None else self._bus.unit_count
+
+    @property
+    def line_turn(self) -> LineTurn:
+        """Return how the bus is shared, and this device's part of a turn."""
+        turn_s = self.part.takes_s if self._bus is None else self._bus.turn_s
+        return LineTurn(self.unit_count, turn_s, self.part.reckoned_s)
 
     async def read(
         self, address: int, count: int, *, what: str, priority: Priority = Priority.POLL
@@ -127,21 +139,6 @@ class BusUnit:
         if self._bus is not None:
             await self._bus.leave(self)
 
-    def resting(self, now: datetime) -> bool:
-        """Return whether this silent device is left alone for a moment, for the others' sake."""
-        return self.unit_count > 1 and self._rests_until is not None and now < self._rests_until
-
-    def heard(self) -> None:
-        """Note that the device answered."""
-        self._silences, self._rests_until = 0, None
-
-    def unheard(self, now: datetime) -> None:
-        """Note that the device did not answer; a bus with other devices asks it less and less often."""
-        self._silences += 1
-        if self._silences >= SILENT_TIMES:
-            doubled = FIRST_REST * 2 ** min(self._silences - SILENT_TIMES, 8)
-            self._rests_until = now + min(LONGEST_REST, doubled)
-
     async def _submit(self, priority: Priority, ask: Ask, ticket: int | None, what: str) -> list[int]:
         if self._closed:
             raise DriveSilent(f"The connection to the drive at {self} was closed.")
@@ -166,11 +163,20 @@ class Bus:
         self._number = 0
         self._delay = FIRST_DELAY
         self._next_attempt_at: datetime | None = None
+        self._turn_s: float | None = None
+        self._silences = Silences()
 
     @property
     def unit_count(self) -> int:
         """Return how many devices are in use on this bus."""
         return len(self._units)
+
+    @property
+    def turn_s(self) -> float:
+        """Return how long it takes until every device was asked and told once."""
+        if self._turn_s is None:
+            self._turn_s = sum(unit.part.takes_s for unit in self._units)
+        return self._turn_s
 
     def unit(self, unit: int, timing: Timing) -> BusUnit:
         """Return a handle for a device on this bus."""
@@ -179,6 +185,7 @@ class Bus:
     def join(self, unit: BusUnit) -> None:
         """Count a device in."""
         self._units.append(unit)
+        self._turn_s = None
 
     @property
     def _stop_waits(self) -> bool:
@@ -190,20 +197,33 @@ class Bus:
 
     def overtake(self, unit: BusUnit) -> None:
         """Drop the writes of a device that wait, and shorten the wait for a reply that does not come."""
-        self._waiting = [job for job in self._waiting if not job.answer.done()]
-        heapify(self._waiting)
+        self._forget_abandoned(unit)
         for job in self._waiting:
             if job.unit is unit and job.ask.words and job.ticket is not None:
                 _fail(job, DriveError(f"A stop overtook this: {job.what} was not written."))
         if self._flying is not None:
             self._wire.hurry()
 
+    def _forget_abandoned(self, stopped: BusUnit | None = None) -> None:
+        """Drop the requests that nobody waits for any more; of stops only those that a newer one replaces."""
+        self._waiting = [
+            job
+            for job in self._waiting
+            if not job.answer.done() or (job.priority is Priority.STOP and job.unit is not stopped)
+        ]
+        heapify(self._waiting)
+
     async def submit(
         self, unit: BusUnit, priority: Priority, ask: Ask, ticket: int | None, what: str
     ) -> list[int]:
         """Queue a request and return its reply, or raise `DriveError`."""
         if len(self._waiting) >= MOST_WAITING and priority is not Priority.STOP:
+            self._forget_abandoned()
+        if len(self._waiting) >= MOST_WAITING and priority is not Priority.STOP:
             raise DriveSilent(f"The drive at {unit} is too slow: {MOST_WAITING} requests wait.")
+        is_busy = self._flying is not None or bool(self._waiting)
+        if self._silences.all_silent and is_busy and priority is not Priority.STOP:
+            raise _silent(unit)
         if self._owner is None:
             self._owner = asyncio.create_task(self._own(), name=f"modbus {self.name}")
         self._number += 1
@@ -221,6 +241,8 @@ class Bus:
         if self._flying is not None and self._flying.unit is unit:
             _fail(self._flying, closed)
         self._units.remove(unit)
+        self._silences.forget(unit)
+        self._turn_s = None
         if self._units:
             return
         owner, self._owner = self._owner, None
@@ -276,31 +298,44 @@ class Bus:
     async def _ask(self, job: _Job) -> list[int]:
         await self._make_ready(job)
         urgent = job.priority is Priority.STOP
+        time = asyncio.get_running_loop().time
+        begun_s = time()
         try:
             if not urgent and self._stop_waits:
                 raise GivenUp
             found = await self._wire.exchange(job.ask, job.unit.timing, urgent=urgent)
         except Refused as refused:
             if refused.code in UNREACHABLE:
-                job.unit.unheard(self._clock.now())
+                self._note_silence(job.unit)
             else:
-                job.unit.heard()
+                self._silences.heard(job.unit)
             raise _refusal(refused.code, job) from refused
         except GivenUp as given_up:
             raise DriveSilent(
                 f"The wait for the drive at {job.unit} was given up for a stop ({job.what})."
             ) from given_up
         except Unanswered as unanswered:
-            job.unit.unheard(self._clock.now())
+            self._note_silence(job.unit)
             raise DriveSilent(_unanswered(job)) from unanswered
-        job.unit.heard()
+        self._silences.heard(job.unit)
+        job.unit.part.note(job.ask.address, time() - begun_s, written=bool(job.ask.words))
+        self._turn_s = None
         return found
+
+    def _note_silence(self, unit: BusUnit) -> None:
+        """Note that a device did not answer; if nobody does, who waits is told, and one at a time asks."""
+        self._silences.unheard(unit, self._clock.now(), timedelta(seconds=unit.timing.timeout_s))
+        if not self._silences.all_silent:
+            return
+        for job in self._waiting:
+            if job.priority is not Priority.STOP:
+                _fail(job, _silent(job.unit))
 
     async def _make_ready(self, job: _Job) -> None:
         """Connect and check that the request may still be sent, or raise `DriveError`."""
         urgent = job.priority is Priority.STOP
-        if not urgent and job.unit.resting(self._clock.now()):
-            raise DriveSilent(f"The drive at {job.unit} does not answer; it is asked again in a moment.")
+        if not urgent and self.unit_count > 1 and self._silences.resting(job.unit, self._clock.now()):
+            raise _silent(job.unit)
         if not self._wire.connected:
             await self._connect(job.unit, urgent=urgent)
         if job.ticket is not None and job.ticket != job.unit.ticket:
@@ -321,6 +356,10 @@ class Bus:
             self._delay = min(LONGEST_DELAY, self._delay * 2)
         missing = f"There is no connection to the drive at {unit}."
         raise DriveSilent(f"{missing} {self._wire.advice}")
+
+
+def _silent(unit: BusUnit) -> DriveSilent:
+    return DriveSilent(f"The drive at {unit} does not answer; it is asked again in a moment.")
 
 
 def _unanswered(job: _Job) -> str:

@@ -8,6 +8,7 @@ from app.clock import Clock
 from app.drives.bus import Bus, BusUnit
 from app.drives.drive import DriveError
 from app.drives.line import SerialLine, TcpLine
+from app.drives.line_turn import serial_part_s
 from app.drives.modbus_rtu import RtuWire
 from app.drives.modbus_tcp import TcpWire
 from app.drives.wire import Timing, Wire
@@ -27,7 +28,8 @@ class Buses:
 
     def unit(self, drive: DriveConfig, unit: int, timing: Timing) -> BusUnit:
         """Return a device; its bus is found or made with the first request."""
-        return BusUnit(drive.line, unit, timing, lambda: self._bus(drive))
+        reckoned_s = serial_part_s(drive.serial, timing) if drive.kind is DriveKind.MODBUS_RTU else 0.0
+        return BusUnit(drive.line, unit, timing, lambda: self._bus(drive), reckoned_s=reckoned_s)
 
     def _bus(self, drive: DriveConfig) -> Bus:
         """Return the bus of a drive, or raise `DriveError` if its line is in use with other settings."""

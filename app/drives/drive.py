@@ -3,6 +3,7 @@
 from datetime import datetime
 from typing import Protocol, runtime_checkable
 
+from app.drives.line_turn import LineTurn
 from app.foreseen import Foreseen
 from app.tracker.motion import DriveCapabilities, DriveCommand, Feedback
 
@@ -49,6 +50,20 @@ class PromptDrive(Protocol):
     @property
     def answers_at_once(self) -> bool:
         """Return whether reading and writing never wait."""
+
+
+@runtime_checkable
+class SharingDrive(Protocol):
+    """A drive that can tell how it shares its line with others."""
+
+    @property
+    def line_turn(self) -> LineTurn | None:
+        """Return how the line is shared, None where there is none."""
+
+
+def line_turn(drive: Drive) -> LineTurn | None:
+    """Return how a drive shares its line with others, None where it has none or does not tell."""
+    return drive.line_turn if isinstance(drive, SharingDrive) else None
 
 
 def answers_at_once(drive: Drive) -> bool:

@@ -18,6 +18,8 @@ SILENT_CHARACTERS = 3.5
 SHORTEST_SILENCE_S, GATEWAY_SILENCE_S = 0.00175, 0.0005
 WARY_SILENCE_S = 0.025
 """After damage a shorter silence proves nothing: USB adapters hand bytes over every 16 ms by default."""
+WARY_FOR_S = 1.0
+"""So long after the last damage every device is asked warily; later only those with a reply still to come."""
 BROKEN_OFF_S = 0.1
 TURNAROUND_S = 0.03
 NEVER_SILENT_S, STOP_SPEAKS_AFTER_S = 0.1, 0.02
@@ -43,7 +45,7 @@ class RtuWire:
         self._waking: asyncio.Future[None] | None = None
         self._ending: asyncio.TimerHandle | None = None
         self._hurrying: asyncio.TimerHandle | None = None
-        self._heard_at_s = self._sent_at_s = self._quiet_until_s = 0.0
+        self._heard_at_s = self._sent_at_s = self._quiet_until_s = self._wary_until_s = 0.0
         self._rest_s = 0.0
         self._urgent = self._hurried = False
         self._last: Ask | None = None
@@ -77,12 +79,12 @@ class RtuWire:
     async def exchange(self, ask: Ask, timing: Timing, *, urgent: bool) -> list[int]:
         """Return the registers of the reply; raise `Broken`, `Unanswered` or `Refused`."""
         self._urgent, self._hurried = urgent, False
-        await self._silence(urgent=urgent)
+        await self._silence(ask.unit, urgent=urgent)
         if ask.unit in self._unsettled and not urgent:
             await self._settle(ask, timing)
             if self._hurried:
                 raise GivenUp
-            await self._silence(urgent=False)
+            await self._silence(ask.unit, urgent=False)
         return await self._send(ask, timing, urgent=urgent)
 
     def hurry(self) -> None:
@@ -150,21 +152,22 @@ class RtuWire:
                 await self._send(Ask(ask.unit, address, counts[0]), timing)
                 self._unsettled.pop(ask.unit, None)
                 return
-        await self._silence(urgent=False)
+        await self._silence(ask.unit, urgent=False)
         self._keep_silent(asyncio.get_running_loop().time() + timing.silence_s)
         heard_at_s = self._heard_at_s
-        await self._silence(urgent=False)
+        await self._silence(ask.unit, urgent=False)
         if self._heard_at_s != heard_at_s:
             raise Broken("a late reply came")
         self._unsettled.pop(ask.unit, None)
 
-    async def _silence(self, *, urgent: bool) -> None:
+    async def _silence(self, unit: int, *, urgent: bool) -> None:
         """Wait until the line was silent long enough; a stop waits neither for late replies nor for noise."""
         loop = asyncio.get_running_loop()
         begun_s = loop.time()
         while True:
             now_s = loop.time()
-            wary_s = WARY_SILENCE_S if self._unsettled and not urgent else 0.0
+            is_wary = unit in self._unsettled or now_s < self._wary_until_s
+            wary_s = WARY_SILENCE_S if is_wary and not urgent else 0.0
             spoken_s = max(self._heard_at_s + wary_s, self._sent_at_s)
             due_s = spoken_s + max(self._silence_s, self._rest_s)
             quiet_s = begun_s if urgent else max(begun_s, self._quiet_until_s)
@@ -244,6 +247,7 @@ class RtuWire:
         if len(unsettled) >= MOST_PROBES:
             unsettled.clear()
         unsettled.add(0 if ask.words else ask.count)
+        self._wary_until_s = asyncio.get_running_loop().time() + WARY_FOR_S
         self._lost[ask.unit] = self._lost.get(ask.unit, 0) + 1
 
     def _keep_silent(self, until_s: float) -> None:

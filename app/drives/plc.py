@@ -8,6 +8,7 @@ from datetime import UTC, datetime
 from app.clock import Clock
 from app.drives.bus import BusUnit, Priority
 from app.drives.drive import DriveError, DriveRefused
+from app.drives.line_turn import LineTurn
 from app.drives.plausibility import Plausibility
 from app.drives.plc_map import CLOCK_PARTS, PlcMap
 from app.drives.plc_signs import SignsOfLife
@@ -53,6 +54,11 @@ class PlcDrive:
     def link(self) -> BusUnit:
         """Return the way to the PLC."""
         return self._link
+
+    @property
+    def line_turn(self) -> LineTurn:
+        """Return how its line is shared."""
+        return self._link.line_turn
 
     @property
     def capabilities(self) -> DriveCapabilities:

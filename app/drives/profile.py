@@ -119,7 +119,8 @@ class Profile:
     def timing(self) -> Timing:
         """Return what the device needs on its bus."""
         longest_s = self.longest_reply_ms / 1000.0 if self.longest_reply_ms else None
-        return Timing(self.timeout_ms / 1000.0, self.rest_ms / 1000.0, longest_s)
+        polled = sum(block.count for name, block in self.blocks.items() if name != "clock")
+        return Timing(self.timeout_ms / 1000.0, self.rest_ms / 1000.0, longest_s, polled)
 
     def block_of(self, register: Register) -> Block | None:
         """Return the block that a register is read with, None if it is read alone."""

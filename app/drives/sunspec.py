@@ -12,6 +12,7 @@ from typing import assert_never
 
 from app.clock import Clock
 from app.drives.drive import DriveError
+from app.drives.line_turn import LineTurn
 from app.drives.plausibility import Plausibility
 from app.drives.profile import Profile
 from app.drives.register_axis import LEASE_S
@@ -76,6 +77,11 @@ class SunSpecDrive:
         self._request: DriveRequest | None = None
         self._number = self._done = self._stops = 0
         self._failed = False
+
+    @property
+    def line_turn(self) -> LineTurn:
+        """Return how its line is shared."""
+        return self._link.line_turn
 
     @property
     def capabilities(self) -> DriveCapabilities:

@@ -8,7 +8,8 @@ from dataclasses import replace
 from datetime import datetime
 from typing import assert_never
 
-from app.drives.drive import Drive, answers_at_once
+from app.drives.drive import Drive, answers_at_once, line_turn
+from app.drives.line_turn import LineTurn
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import TrackerConfig
 from app.tracker.motion import (
@@ -44,6 +45,11 @@ class TransmittedDrive:
     def answers_at_once(self) -> bool:
         """Return whether the drive behind this one never waits."""
         return answers_at_once(self._inner)
+
+    @property
+    def line_turn(self) -> LineTurn | None:
+        """Return how the drive behind this one shares its line."""
+        return line_turn(self._inner)
 
     @property
     def capabilities(self) -> DriveCapabilities:

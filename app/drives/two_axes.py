@@ -8,6 +8,7 @@ from datetime import datetime
 from app.clock import Clock
 from app.drives.bus import Priority
 from app.drives.drive import DriveError
+from app.drives.line_turn import LineTurn
 from app.drives.plausibility import Plausibility
 from app.drives.profile import Profile
 from app.drives.register_axis import AxisReading, RegisterAxis
@@ -55,6 +56,12 @@ class TwoAxisDrive:
         self._failed = False
         self._stops = 0
         self._homed: dict[Axis, bool] = {}
+
+    @property
+    def line_turn(self) -> LineTurn:
+        """Return how the line of both axes is shared."""
+        turns = [axis.unit.line_turn for axis in self._axes.values()]
+        return turns[0]._replace(reckoned_s=sum(turn.reckoned_s for turn in turns))
 
     @property
     def capabilities(self) -> DriveCapabilities:

@@ -5,6 +5,7 @@ from typing import Protocol
 
 from app.drives.bus import Priority
 from app.drives.drive import DriveError, DriveRefused
+from app.drives.line_turn import LineTurn
 from app.drives.profile import Block, Profile
 from app.drives.register import runs
 
@@ -15,6 +16,10 @@ class Link(Protocol):
     @property
     def ticket(self) -> int:
         """Return the number under which a write may still be sent."""
+
+    @property
+    def line_turn(self) -> LineTurn:
+        """Return how its line is shared."""
 
     async def read(
         self, address: int, count: int, *, what: str, priority: Priority = Priority.POLL
@@ -56,6 +61,11 @@ class Unit:
     def is_fresh(self) -> bool:
         """Return whether it was read since the connection was made and since the last stop."""
         return self._ticket == self._link.ticket
+
+    @property
+    def line_turn(self) -> LineTurn:
+        """Return how its line is shared."""
+        return self._link.line_turn
 
     @property
     def was_read(self) -> bool:

@@ -32,12 +32,13 @@ class Timing:
     """What a device needs: how long a reply is waited for, how long the line rests after one.
 
     `longest_reply_s` is the longest that a reply can take; after a missed one nothing is sent before. None
-    takes one and a half times the time-out.
+    takes one and a half times the time-out. `registers` is how many of them a poll reads.
     """
 
     timeout_s: float = 0.3
     rest_s: float = 0.0
     longest_reply_s: float | None = None
+    registers: int = 0
 
     @property
     def silence_s(self) -> float:

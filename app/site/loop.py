@@ -10,13 +10,14 @@ from typing import Protocol
 import structlog
 
 from app.clock import Clock
-from app.drives.drive import Drive, DriveError, answers_at_once
+from app.drives.drive import Drive, DriveError, answers_at_once, line_turn
 from app.site.lateness import TickCounter
+from app.site.line_pace import LinePace
 from app.site.link_quality import RoundTrips
 from app.site.scheduler import Scheduler, Slot
 from app.tracker.commands import Command
 from app.tracker.conditions import Action
-from app.tracker.config import DriveKind, TrackerConfig
+from app.tracker.config import TrackerConfig
 from app.tracker.controller import Controller
 from app.tracker.home_shift import shifted, unshifted
 from app.tracker.memory import TrackerMemory, TrackerState
@@ -25,9 +26,6 @@ from app.tracker.observation import Observation
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
 
-READ_SHARE = 0.8
-LINE_WITHIN_S = 0.7
-ON_A_LINE = (DriveKind.MODBUS_RTU, DriveKind.MODBUS_RTU_OVER_TCP)
 STOP_WITHIN_S = 0.5
 CLOSE_WITHIN_S = 1.0
 STANDSTILL = Velocity(0.0)
@@ -67,6 +65,7 @@ class TrackerLoop:
         self._clock = clock
         self._surroundings = surroundings
         self._scheduler = scheduler
+        self._line = LinePace(state.config.drive.kind, period)
         self._period = period
         self._on_tick = on_tick
         self._trouble: Reason | None = None
@@ -175,8 +174,9 @@ class TrackerLoop:
         if self.broken is not None and self._last_snapshot is not None:
             return _broken_snapshot(self._last_snapshot, at, self.broken, asked=asked)
         shown = self.controller.snapshot(at, self._clock.now(), asked=asked)
-        if self._trouble is not None:
-            shown = replace(shown, notices=(*shown.notices, self._trouble))
+        said = tuple(filter(None, (self._trouble, self._line.notice(self.config.name))))
+        if said:
+            shown = replace(shown, notices=(*shown.notices, *said))
         self._last_snapshot = shown
         return shown
 
@@ -192,6 +192,8 @@ class TrackerLoop:
 
     async def tick(self, scheduled: datetime | None) -> None:
         """Tick, whatever goes wrong; how late that is counts where it was scheduled."""
+        if scheduled is not None and self._is_others_turn(scheduled):
+            return
         if scheduled is not None:
             self.counter.late(self._scheduler.late(scheduled))
         if self.broken is not None:
@@ -203,28 +205,39 @@ class TrackerLoop:
             log.exception("tick_failed", tracker=self.config.tracker_id)
             await self._break_off(error)
 
+    def _is_others_turn(self, scheduled: datetime) -> bool:
+        """Return whether this instant is the others' on the line; what has a deadline is not put off."""
+        every, slot = self._line.pace.every, self._slot
+        if every == 1 or slot is None or self.broken is not None or self.deadline() is not None:
+            return False
+        return (int(scheduled.timestamp() / self._period.total_seconds()) + slot.number) % every != 0
+
+    def _keep_pace(self) -> None:
+        """Follow the turn of the line that the drive shares."""
+        turn = line_turn(self.drive)
+        if turn is not None:
+            shared = turn.devices > 1
+            self._line.follow(turn, self.drive.capabilities.watchdog_s if shared else None)
+
     async def _tick(self) -> None:
         """Read, decide, write; after a write that failed nothing moves until one was taken and judged."""
         self.counter.ticks += 1
         unheard = self._write_failed
+        if not self.answers_at_once:
+            self._keep_pace()
         raw = await self._read()
         self.feedback = shifted(self.memory.home_shift, raw)
         seen = self._surroundings.observe(self.config, self.feedback)
-        seen = seen._replace(link=self.round_trips.quality(self._within_s))
+        pace = self._line.pace
+        seen = seen._replace(link=self.round_trips.quality(pace.within_s), silence=pace.silence)
         tick = self.controller.tick(seen)
         if not self.controller.is_silent:
             told = _unmoved(tick.command) if unheard or self._ending else tick.command
             await self._write(unshifted(self.memory.home_shift, told))
         self._on_tick(self, seen, tick.events)
 
-    @property
-    def _within_s(self) -> float:
-        """Return how long the drive may take: a serial line has its own pace, and others on it take turns."""
-        within_s = self._period.total_seconds() * READ_SHARE
-        return max(within_s, LINE_WITHIN_S) if self.config.drive.kind in ON_A_LINE else within_s
-
     def _in_time(self) -> AbstractAsyncContextManager[object]:
-        return nullcontext() if self.answers_at_once else asyncio.timeout(self._within_s)
+        return nullcontext() if self.answers_at_once else asyncio.timeout(self._line.pace.within_s)
 
     async def _read(self) -> Feedback | None:
         asked_at = self._clock.now()

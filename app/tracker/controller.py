@@ -225,7 +225,7 @@ class Controller:
     def _blind(self, seen: Observation) -> DriveCommand:
         """Go on for one failed reading, then stop: absence of information is a reason to stop."""
         mind = self._mind
-        miss(mind, seen.now)
+        miss(mind, seen.now, seen.silence)
         mind.sun = seen.sun
         if isinstance(mind.activity, Jogging) and seen.now >= mind.activity.until:
             jogging.end(mind, mind.activity, "it was not renewed in time.", "expired")

@@ -28,17 +28,16 @@ from app.tracker.reason import Reason
 from app.tracker.snapshot import EventKind
 from app.tracker.transitions import fail, interrupt, leave, lose_home
 
-SILENCE = timedelta(seconds=0.6)
 JOG_MISSES = 2
 
 
-def miss(mind: Mind, now: datetime) -> None:
-    """Count a reading that failed: two end a jog, and after 0.6 s the drive is lost and everything ends."""
+def miss(mind: Mind, now: datetime, silence: timedelta) -> None:
+    """Count a reading that failed: two end a jog, and after the silence the drive is lost and all ends."""
     mind.misses += 1
     if mind.misses >= JOG_MISSES and isinstance(mind.activity, Jogging):
         leave(mind, "the drive did not answer.")
     since = mind.feedback_at or mind.started_at or now
-    if mind.lost or now - since <= SILENCE:
+    if mind.lost or now - since <= silence:
         return
     mind.lost = True
     mind.aftermath = None
