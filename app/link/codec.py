@@ -5,6 +5,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from enum import StrEnum
+from pathlib import Path
 from typing import Annotated, Literal
 
 import orjson
@@ -39,7 +40,7 @@ class FrameBroken(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Execute:
-    """An `Order` on the wire. `good_until_s` is on the monotonic counter that both processes share.
+    """An `Order` on the wire; `good_until_s` and `given_s` are on the counter that both processes share.
 
     A jog is good for its lease, so that the way to the machine takes time from it and never adds any.
     """
@@ -55,6 +56,7 @@ class Execute:
     address: str = ""
     epoch: int | None = None
     rank: int = 0
+    given_s: float | None = None
     do: Literal["execute"] = "execute"
 
     def order(self, at_s: float) -> Order:
@@ -64,7 +66,7 @@ class Execute:
             command = replace(command, lease=min(command.lease, timedelta(seconds=self.good_until_s - at_s)))
         return Order(
             command, self.actor, self.tracker_id, self.key, self.issued_at, self.via, self.address,
-            self.epoch, self.rank,
+            self.epoch, self.rank, self.given_s,
         )  # fmt: skip
 
 
@@ -134,11 +136,12 @@ class Problem:
 class Done:
     """An order was carried out; what its tracker became, None if it has none or changed nothing.
 
-    What else the order changed was told before this.
+    What else the order changed is told with the snapshot `sequence`, or was before this (None).
     """
 
     number: int
     tracker: Snapshot | None
+    sequence: int | None = None
     tell: Literal["done"] = "done"
 
 
@@ -250,6 +253,11 @@ def told(update: Update) -> Told:
     return Told(site, update.events, update.after, ids, update.same_alarms, update.more)
 
 
+def stop_path(path: Path) -> Path:
+    """Return the socket for stops beside the one for everything: no order and no answer is ahead of them."""
+    return path.with_suffix(".stop")
+
+
 def _framed(body: bytes) -> bytes:
     return len(body).to_bytes(LENGTH_BYTES, "big") + body
 
@@ -270,6 +278,14 @@ def decode_request(body: bytes) -> Request:
         return _requests.validate_json(body, strict=True)
     except ValueError as error:
         raise FrameBroken(str(error)) from error
+
+
+def decode_stop(body: bytes) -> Execute:
+    """Return the stop in a frame's body, or raise `FrameBroken`: nothing else comes by the lane for stops."""
+    request = decode_request(body)
+    if isinstance(request, Execute) and ends_motion(request):
+        return request
+    raise FrameBroken(f"Only stops come this way, no {request.do}.")
 
 
 def decode_telling(body: bytes) -> Telling:

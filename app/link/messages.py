@@ -290,7 +290,8 @@ class Order:
     own clock, as told by snapshots) makes an order refused that is older than 2 s, or as much ahead. `via`
     and `address` say how whoever ordered was known, and from where. `epoch` is the one of control that the
     order was given under (None: whichever holds on arrival), `rank` whose word counts more: 2 engineer, 1
-    operator.
+    operator. `given_s` is when it was given, on the monotonic counter that both processes share (None: on
+    arrival): no motion begins that was ordered before its tracker was stopped.
     """
 
     command: Command | SiteCommand
@@ -302,6 +303,7 @@ class Order:
     address: str = ""
     epoch: int | None = None
     rank: int = 0
+    given_s: float | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True)

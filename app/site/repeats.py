@@ -1,19 +1,44 @@
-"""A repeated order is a no-op that answers as the first did; one too old or of the future is refused."""
+"""A repeated order is a no-op that answers as the first did; one out of its time is refused."""
 
 import asyncio
 from collections import OrderedDict
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterable
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 from app.link.messages import Order, StopAll
-from app.tracker.commands import CommandRejected, EndJog, Stop
+from app.tracker.commands import (
+    Command,
+    CommandRejected,
+    EndJog,
+    GoToStart,
+    Home,
+    Jog,
+    MeasureLinkLoss,
+    MeasureStop,
+    Move,
+    Park,
+    ProveDirection,
+    ProveScale,
+    Resume,
+    ResumeShow,
+    RunShow,
+    Step,
+    Stop,
+    Stow,
+    Track,
+)
+from app.tracker.config import TrackerConfig
 from app.tracker.reason import Reason
 from app.tracker.snapshot import SiteSnapshot
 
 MOST_REMEMBERED = 500
 OLDEST_ORDER = MOST_AHEAD = timedelta(seconds=2)
 ENDS_MOTION = Stop | StopAll | EndJog
+BEGINS_MOTION = (
+    Jog | Step | Home | Move | Park | Track | GoToStart | RunShow | ResumeShow | Stow | Resume
+    | ProveDirection | ProveScale | MeasureStop | MeasureLinkLoss
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +85,34 @@ class Repeats:
             raise
         answer.set_result(snapshot)
         return snapshot
+
+
+class Overtaken:
+    """Remembers when each tracker was stopped last: what was given before that moves it no more.
+
+    A stop overtakes orders on the link, and orders that wait for control; none of them may undo it. Instants
+    are on the monotonic counter of the computer, which panel and controller share.
+    """
+
+    def __init__(self) -> None:
+        self._stopped_s: dict[str, float] = {}
+
+    def stopped(self, given_s: float, tracker_ids: Iterable[str]) -> None:
+        """Note a stop of these trackers."""
+        for name in tracker_ids:
+            self._stopped_s[name] = max(given_s, self._stopped_s.get(name, given_s))
+
+    def refuse(self, command: Command, tracker: TrackerConfig, given_s: float) -> None:
+        """Raise `CommandRejected` for a motion that was ordered before its tracker was stopped."""
+        stopped_s = self._stopped_s.get(tracker.tracker_id, given_s)
+        if isinstance(command, BEGINS_MOTION) and given_s < stopped_s:
+            raise CommandRejected(
+                Reason(
+                    "stopped_since",
+                    f"{tracker.name} was stopped after this command was given, so it is not carried out.",
+                    "Look at the live values and give it again.",
+                )
+            )
 
 
 def refuse_untimely(order: Order, now: datetime) -> None:

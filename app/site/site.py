@@ -45,7 +45,7 @@ from app.site.model import SiteModel
 from app.site.overload import CODE, Overload
 from app.site.publishing import Publisher, concerned
 from app.site.recorder import Recorder
-from app.site.repeats import Repeats, refuse_untimely
+from app.site.repeats import Overtaken, Repeats, refuse_untimely
 from app.site.timekeeping import Timekeeper
 from app.site.weather import WeatherStation
 from app.tracker.commands import CommandRejected, EndJog, Jog, Stop
@@ -130,6 +130,7 @@ class Site:
         self._alarms = AlarmDesk.open(self.model, alarms, self._options.disk_free)
         self._outlet = Outlet()
         self._repeats = Repeats()
+        self._overtaken = Overtaken()
         self.publisher = Publisher(self.model, self._alarms, self._outlet, self._options.boot_id)
         self._started_at = self._caught_up_at = self._pruned_at = clock.now()
         self._orders = self._refused = 0
@@ -268,7 +269,12 @@ class Site:
 
     async def _carry_out(self, order: Order) -> SiteSnapshot:
         refuse_untimely(order, self.model.now())
-        command = order.command
+        command, given_s = order.command, order.given_s
+        if given_s is None:
+            given_s = asyncio.get_running_loop().time()
+        if isinstance(command, Stop | StopAll):
+            stopped = (one for one in self.model.loops if order.tracker_id in (None, one))
+            self._overtaken.stopped(given_s, stopped)
         if self._options.safe_mode is not None and not isinstance(command, Stop | StopAll | AlarmOrder):
             raise CommandRejected(self._options.safe_mode)
         if isinstance(command, SiteCommand):
@@ -280,6 +286,7 @@ class Site:
             if taken:
                 self.publisher.publish((loop.config.tracker_id,), taken)
             loop = self.model.tracker(order.tracker_id)
+            self._overtaken.refuse(command, loop.config, given_s)
             events = await tracker_orders.command(self.model, loop, command, order.actor, order.via)
             if isinstance(command, Jog | EndJog) and not events:
                 return self.publisher.newest

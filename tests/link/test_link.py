@@ -9,6 +9,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
+from structlog.testing import capture_logs
 
 from app.clock import VirtualClock
 from app.link.client import LinkClient
@@ -17,12 +18,15 @@ from app.link.codec import (
     Execute,
     Measured,
     Refused,
+    Request,
     Telling,
     Told,
     decode_telling,
     encode_request,
     read_body,
+    stop_path,
 )
+from app.link.conversation import MOST_AT_ONCE, MOST_REQUESTS
 from app.link.lanes import Lanes
 from app.link.messages import (
     MachineUnreachable,
@@ -30,13 +34,14 @@ from app.link.messages import (
     SavePlan,
     SetLocation,
     SiteDetail,
+    StopAll,
     UnknownRecording,
     UnknownTracker,
     Update,
 )
 from app.link.metrics import MachineMetrics
 from app.link.outlet import MOST_EVENTS_WAITING, Listener, Outlet
-from app.link.server import MOST_AT_ONCE, MOST_REQUESTS, LinkServer
+from app.link.server import LinkServer
 from app.sun.position import Location
 from app.tracker.axes import Axis
 from app.tracker.commands import CommandRejected, Jog, Stop, Track
@@ -47,6 +52,8 @@ from app.tracker.snapshot import ClockState, Event, EventKind, SiteSnapshot, Sna
 from tests.gateway.rigs import eventually
 
 NOON = datetime(2026, 6, 21, 12, tzinfo=UTC)
+MOST_AHEAD = 20
+"""Of 500 orders in the sockets so many may begin while a stop is carried from one process to the other."""
 
 
 def snapshot(sequence: int) -> SiteSnapshot:
@@ -217,6 +224,130 @@ async def test_a_stop_overtakes_orders_that_wait(link: Link) -> None:
     assert [type(order.command) for order in link.machine.orders] == [Stop]
     link.machine.gate.set()
     await asyncio.gather(*waiting)
+
+
+async def told_to(writer: asyncio.StreamWriter, *requests: Request) -> None:
+    for request in requests:
+        writer.write(encode_request(request))
+    await writer.drain()
+
+
+async def test_a_stop_on_its_lane_overtakes_500_orders_that_are_on_their_way(link: Link) -> None:
+    """Ordered, not timed: all 500 are in the panel's own stream before the stop is; each takes a turn."""
+    far = asyncio.get_running_loop().time() + 60.0
+    for number in range(10_000, 10_500):
+        link.client._main.send(Execute(number, Track(), "a", "T1", None, None, far))
+    await link.client.execute(Order(Stop(), "technician", "T1"))
+    ahead = [type(order.command) for order in link.machine.orders].index(Stop)
+    await eventually(lambda: len(link.machine.orders) == 501)
+    assert ahead <= MOST_AHEAD
+
+
+async def test_orders_tell_when_they_were_given_on_both_ways(link: Link) -> None:
+    """The machine tells by it what a stop has overtaken."""
+    link.machine.gate = asyncio.Event()
+    moving = asyncio.create_task(link.client.execute(Order(Track(), "technician", "T1")))
+    await asyncio.sleep(0)
+    await link.client.execute(Order(Stop(), "technician", "T1"))
+    link.machine.gate.set()
+    await moving
+    stop, track = link.machine.orders
+    assert isinstance(stop.command, Stop)
+    assert track.given_s < stop.given_s < asyncio.get_running_loop().time()
+
+
+async def test_a_stop_is_answered_though_nothing_is_taken_from_the_machine(link: Link) -> None:
+    _, writer = await asyncio.open_unix_connection(link.path)
+    await eventually(lambda: link.server.client_count == 2)
+    link.client._main._writer.transport.pause_reading()
+    link.machine.outlet.publish(snapshot(2), tuple(event(one) for one in range(9_000)))
+    site = await link.client.execute(Order(StopAll(), "technician"))
+    assert isinstance(link.machine.orders[0].command, StopAll)
+    assert site.sequence == 1, "what was not heard yet cannot be shown"
+    writer.close()
+
+
+async def test_the_answer_to_a_stop_shows_what_was_told_before_it(link: Link) -> None:
+    link.machine.outlet.publish(snapshot(2))
+    link.machine.answer = link.machine.outlet.latest
+    assert (await link.client.execute(Order(StopAll(), "technician"))).sequence == 2
+
+
+@pytest.mark.parametrize(
+    "request_",
+    [Execute(1, Track(), "a", "T1", None, None, 1e12), Ask(2, "metrics")],
+    ids=["order", "question"],
+)
+async def test_nothing_but_stops_comes_by_the_lane(link: Link, request_: Request) -> None:
+    reader, writer = await asyncio.open_unix_connection(stop_path(link.path))
+    await told_to(writer, request_)
+    assert await asyncio.wait_for(reader.read(), 5) == b""
+    assert link.machine.orders == []
+    assert stat.S_IMODE(stop_path(link.path).stat().st_mode) == 0o600
+    writer.close()
+
+
+async def test_a_stop_goes_with_everything_else_while_its_lane_is_down(link: Link) -> None:
+    link.machine.stop_gate = asyncio.Event()
+    for lane in link.server._lanes:
+        lane.cancel()
+    await eventually(lambda: not link.client._stop_lane.up)
+    asked = asyncio.create_task(link.client.execute(Order(Stop(), "technician", "T1")))
+    await eventually(lambda: link.machine.stops == 1)
+    link.machine.stop_gate.set()
+    await asked
+    await eventually(lambda: link.client._stop_lane.up)
+
+
+async def test_a_stop_whose_lane_breaks_is_sent_again_with_everything_else(link: Link) -> None:
+    gate = link.machine.stop_gate = asyncio.Event()
+    asked = asyncio.create_task(link.client.execute(Order(Stop(), "technician", "T1")))
+    await eventually(lambda: link.machine.stops == 1)
+    link.client._stop_lane._writer.transport.abort()
+    await eventually(lambda: link.machine.stops == 2)
+    gate.set()
+    await asked
+
+
+async def test_a_mistake_with_what_was_heard_is_logged_and_the_link_comes_back(
+    link: Link, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    heard = link.client._main._hear
+    mistakes = iter([KeyError("unforeseen")])
+
+    def hear(told: Told) -> None:
+        for mistake in mistakes:
+            raise mistake
+        heard(told)
+
+    monkeypatch.setattr(link.client._main, "_hear", hear)
+    with capture_logs() as logs:
+        link.machine.outlet.publish(snapshot(2))
+        await eventually(lambda: link.client.latest() is None)
+        await eventually(lambda: link.client.latest() == snapshot(2))
+    assert [line["event"] for line in logs if line["log_level"] == "error"] == ["link_dropped"]
+
+
+async def test_what_cannot_be_told_is_logged_and_the_panel_begins_anew(
+    link: Link, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    encode = link.server._encode
+    mistakes = iter([TypeError("no JSON")])
+
+    def encode_or_fail(update: Update) -> bytes:
+        for mistake in mistakes:
+            raise mistake
+        return encode(update)
+
+    monkeypatch.setattr(LinkServer, "_encode", lambda self, update: encode_or_fail(update))
+    again = LinkServer(link.machine, link.path)
+    with capture_logs() as logs:
+        await link.server.close()
+        await again.start()
+        await link.until_up()
+        await eventually(lambda: link.client.latest() == snapshot(1))
+    assert [line["event"] for line in logs if line["log_level"] == "error"] == ["link_not_told"]
+    await again.close()
 
 
 async def test_stops_of_one_person_never_pile_up_and_those_of_another_wait_for_none(link: Link) -> None:

@@ -1,12 +1,16 @@
-"""A key stands for one command: repeated it is answered as the first was, with another body it is refused."""
+"""A key stands for one command, repeated it is answered as the first was; what a stop overtook is refused."""
+
+import asyncio
 
 import pytest
 
-from app.link.messages import Order
+from app.link.messages import Order, StopAll
 from app.site.repeats import Repeats
-from app.tracker.commands import CommandRejected, Park, Track
-from app.tracker.snapshot import SiteSnapshot
+from app.tracker.axes import Axis
+from app.tracker.commands import Command, CommandRejected, EndJog, Jog, LockOut, Park, Step, Stop, Track
+from app.tracker.snapshot import ActivityName, SiteSnapshot
 from tests.fakes import FakeMachine
+from tests.site.plant import Plant, settle
 
 
 def park(tracker_id: str = "T1") -> Order:
@@ -35,3 +39,44 @@ async def test_a_key_that_is_used_again_for_something_else_is_refused_and_nothin
     assert reason.code == "key_reused"
     assert reason.message == "This idempotency key was used for another command, so nothing was done."
     assert len(done) == 1
+
+
+MOTIONS = [Jog("p", Axis.AZIMUTH, 1), Step(Axis.AZIMUTH, 1.0), Park()]
+
+
+@pytest.mark.parametrize("stop", [Stop(), StopAll()])
+@pytest.mark.parametrize("motion", MOTIONS)
+async def test_a_motion_that_a_stop_overtook_is_not_begun(
+    plant: Plant, motion: Command, stop: Stop | StopAll
+) -> None:
+    await plant.commission()
+    await plant.ask(stop, given_s=100.0)
+    with pytest.raises(CommandRejected, match="Tracker 1 was stopped after this command was given"):
+        await plant.ask(motion, given_s=99.999)
+    assert plant.tracker().activity in {ActivityName.HOLDING, ActivityName.STOPPING}
+    await plant.ask(Stop(), given_s=50.0)
+    with pytest.raises(CommandRejected, match="stopped after"):
+        await plant.ask(motion, given_s=99.999)
+
+
+async def test_what_was_given_after_a_stop_or_moves_nothing_is_carried_out(plant: Plant) -> None:
+    await plant.commission()
+    await plant.ask(Stop(), given_s=100.0)
+    await plant.forward(seconds=2)
+    await plant.ask(EndJog("p"), given_s=99.0)
+    await plant.ask(Park(), given_s=100.001)
+    await plant.ask(Stop(), given_s=101.0)
+    await plant.ask(LockOut("ada", "works at the gear"), given_s=99.0)
+    assert plant.tracker().lock is not None
+
+
+async def test_an_order_that_waits_for_control_while_its_tracker_is_stopped_moves_nothing(
+    plant: Plant,
+) -> None:
+    await plant.commission()
+    async with plant.site.model.control.lock("T1"):
+        waits = asyncio.create_task(plant.site.execute(Order(Park(), "technician", "T1")))
+        await settle()
+        await plant.ask(Stop())
+    with pytest.raises(CommandRejected, match="stopped after"):
+        await waits
