@@ -128,7 +128,8 @@ class StopLane(_Stream):
             await asyncio.gather(*self._tasks, return_exceptions=True)
 
     async def _carry_out(self, request: Request) -> Telling:
-        assert isinstance(request, Execute)
+        if not isinstance(request, Execute):
+            raise TypeError(request)
         return await self._execute(request.number, request.order(asyncio.get_running_loop().time()))
 
 
