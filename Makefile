@@ -5,6 +5,7 @@
 # make soak : the long proofs: millions of random ticks, 1,000 kills, 300 power cuts, a day of 20 trackers
 # make mutants: changes guards, access, limits, drives and control in a copy, one place at a time, and counts
 #   what their tests notice; ONLY='app.access.*' does one part
+# make dist : builds the sdist and the wheel into dist/
 # make bench: measures and writes docs/benchmarks.md
 
 PYTHON ?= python3
@@ -17,7 +18,7 @@ ALONE := tests/drives/timed tests/test_benches.py \
 	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost hold_to_run kill many_holds stop_and_tabs))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup fast client run test check translations fuzz bench format lock browser system-packages clean
+.PHONY: help setup dist fast client run test check translations fuzz bench format lock browser system-packages clean
 
 help: ## Show what each command does
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-10s %s\n", $$1, $$2}'
@@ -44,6 +45,12 @@ client: $(VENV)/.client ## Add the generator of clients that a test of the API's
 
 setup: $(VENV)/.runtime ## Make .venv with the command heliopanel
 	@echo "Ready: $(BIN)/heliopanel --help"
+
+dist: $(VENV)/.runtime ## Build the sdist, and the wheel from it, into dist/
+	@$(BIN)/python -c "from setuptools.build_meta import build_sdist; build_sdist('dist')" >/dev/null
+	@$(BIN)/python -m pip wheel --quiet --disable-pip-version-check --no-index --no-build-isolation --no-deps -w dist \
+		dist/heliopanel-$$($(BIN)/heliopanel version).tar.gz
+	@ls dist
 
 fast: $(VENV)/.runtime ## Add the compiled loops (numba) that make studies and comparisons quick
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-fast.txt
@@ -107,4 +114,4 @@ lock: ## Renew the locked dependencies (needs uv)
 	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --group client -o requirements-client.txt
 
 clean: ## Remove what was built (not the data)
-	rm -rf $(VENV) build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
+	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache

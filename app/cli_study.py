@@ -1,7 +1,6 @@
 """The command that works out an energy study, in the same worker process as the panel's."""
 
 import subprocess
-import sys
 from collections.abc import Iterator
 from datetime import datetime
 from pathlib import Path
@@ -12,6 +11,7 @@ import typer
 from app.energy.motion import DriveCosts
 from app.energy.plane import Around, Transposition
 from app.fast.comparison import ClearSky, Comparison
+from app.own import own_process
 from app.studies.folder import RESULT
 from app.studies.jobs import JOB, TOLD, Began, CompareSite, Job, Refused, SiteCompared, Studied, Told, WorkOut
 from app.studies.request import LightModel, Module, Span, StudyMode, StudyRequest, StudyStrategy
@@ -147,7 +147,7 @@ def _work_out(job: WorkOut) -> StudyResult:
 
 
 def _told(job: Job) -> Iterator[Told]:
-    command = (sys.executable, "-m", "app.studies.worker")
+    command = own_process("app.studies.worker")
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:  # noqa: S603 - ours
         if process.stdin is None or process.stdout is None:
             raise TypeError("A worker has pipes.")

@@ -8,10 +8,11 @@ from sqlalchemy import Connection, Engine, column, table
 
 from app.access.tables import REVISION, VERSION_TABLE, metadata
 from app.late import late
+from app.own import own_folder
 from app.store.connections import revision_of, sharing_engine, transaction
 from app.store.store import StoreFailed
 
-SCRIPTS = Path(__file__).parents[2] / "alembic" / "access"
+SCRIPTS = own_folder("alembic") / "access"
 VERSIONS = table(VERSION_TABLE, column("version_num"))
 
 

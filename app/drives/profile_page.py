@@ -1,14 +1,14 @@
 """A profile's register map as a page for people; `python -m app.drives.profile_page` renews docs/drives."""
 
 from collections.abc import Iterable, Mapping
-from pathlib import Path
 
 from app.drives.faults import FaultKind
 from app.drives.profile import Adapter, Profile, known_profiles, load_profile
 from app.drives.register import Register, WordOrder
 from app.drives.sim_training import REGISTERS as TRAINING
+from app.own import own_folder
 
-DOCS = Path(__file__).resolve().parents[2] / "docs" / "drives"
+DOCS = own_folder("docs") / "drives"
 MARK = (
     "<!-- From here on made by `python -m app.drives.profile_page`: change the profile, not this page. -->\n"
 )

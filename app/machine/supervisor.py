@@ -4,7 +4,6 @@ import asyncio
 import ctypes
 import os
 import signal
-import sys
 from dataclasses import dataclass
 from datetime import timedelta
 
@@ -12,6 +11,7 @@ import structlog
 
 from app.clock import Clock, SystemClock
 from app.logs import set_up_logs
+from app.own import own_process
 from app.settings import Settings
 
 FIRST_PAUSE = timedelta(milliseconds=200)
@@ -36,10 +36,8 @@ class Child:
 
     async def start(self) -> asyncio.subprocess.Process:
         """Start it in a session of its own: the terminal's signals reach it only through the supervisor."""
-        arguments = ("-m", *self.module, f"--supervised={os.getpid()}")
-        self.process = await asyncio.create_subprocess_exec(
-            sys.executable, *arguments, start_new_session=True
-        )
+        command = (*own_process(self.module[0]), *self.module[1:], f"--supervised={os.getpid()}")
+        self.process = await asyncio.create_subprocess_exec(*command, start_new_session=True)
         log.info("child_started", child=self.name, process_id=self.process.pid)
         return self.process
 

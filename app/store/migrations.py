@@ -12,13 +12,14 @@ from typing import Any
 from sqlalchemy import Connection
 
 from app.late import late
+from app.own import own_folder
 from app.store.connections import revision_of, sqlite_path, transaction, writing_engine
 from app.store.files import copy_sqlite, keep_private, make_folder
 from app.store.integrity import check_file
 from app.store.store import StoreFailed
 from app.store.tables import REVISION, metadata
 
-SCRIPTS = Path(__file__).parents[2] / "alembic"
+SCRIPTS = own_folder("alembic")
 
 
 def upgrade(url: str, *, scripts: Path = SCRIPTS) -> str | None:

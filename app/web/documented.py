@@ -1,14 +1,14 @@
 """The OpenAPI document, with its errors."""
 
 import json
-from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI
 
+from app.own import own_folder
 from app.web.api.base import ProblemDetails
 
-DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "openapi.json"
+DOCUMENT = own_folder("docs") / "openapi.json"
 
 
 class DocumentedApp(FastAPI):

@@ -3,12 +3,11 @@
 import hashlib
 import re
 from functools import cache
-from pathlib import Path
 
+from app.own import PROGRAM, own_folder
 from app.tracker.snapshot import SiteSnapshot
 
-ROOT = Path(__file__).resolve().parents[2]
-PARTS = (("app", "*.py"), ("templates", "*.html"), ("static", "*"))
+PARTS = ((PROGRAM, "*.py"), (own_folder("templates"), "*.html"), (own_folder("static"), "*"))
 LENGTH = 12
 MARK = re.compile(r"([0-9a-f]{12})\.([A-Za-z0-9_-]{0,64})")
 
@@ -25,9 +24,9 @@ def edition() -> str:
     """Return the word for this build: it differs when program, templates, scripts or styles do."""
     total = hashlib.sha256()
     for folder, pattern in PARTS:
-        for path in sorted((ROOT / folder).rglob(pattern)):
+        for path in sorted(folder.rglob(pattern)):
             if path.is_file():
-                total.update(str(path.relative_to(ROOT)).encode())
+                total.update(str(path.relative_to(folder)).encode())
                 total.update(path.read_bytes())
     return total.hexdigest()[:LENGTH]
 

@@ -15,11 +15,12 @@ from markdown_it.token import Token
 from markdown_it.utils import EnvType, OptionsDict
 from markupsafe import Markup, escape
 
+from app.own import own_folder
 from app.web.languages import CATALOGUE, IN_ENGLISH
 from app.web.languages.catalogue import Catalogue
 from app.web.languages.known import ENGLISH, TRANSLATED
 
-DOCS = Path(__file__).resolve().parents[2] / "docs"
+DOCS = own_folder("docs")
 GUIDE = "operators-guide"
 TITLES = {
     GUIDE: "Operator's guide",

@@ -5,8 +5,6 @@ import gc
 from collections.abc import AsyncIterator, Callable
 from contextlib import AsyncExitStack, asynccontextmanager
 from functools import cache, partial
-from importlib.metadata import version
-from pathlib import Path
 
 import structlog
 import uvicorn
@@ -18,12 +16,14 @@ from starlette.routing import BaseRoute
 
 from app.access.opening import open_keeper
 from app.access.passwords import Hasher
+from app.build import VERSION
 from app.clock import Clock, SystemClock
 from app.foreseen import Foreseen
 from app.late import settle
 from app.link.client import LinkClient
 from app.link.messages import Machine
 from app.logs import set_up_logs
+from app.own import own_folder
 from app.settings import Settings, fixed_by_environment
 from app.store.engine import open_reader
 from app.store.reader import DatabaseReader
@@ -63,7 +63,6 @@ from app.web.ui.render import environment
 
 log = structlog.get_logger()
 
-STATIC = Path(__file__).resolve().parents[2] / "static"
 SMALLEST_COMPRESSED = 600
 
 
@@ -86,7 +85,7 @@ def create_app(
     reader = reader or open_reader(settings.url)
     app = DocumentedApp(
         title="Heliopanel",
-        version=version("heliopanel"),
+        version=VERSION,
         description=DESCRIPTION,
         docs_url=None,
         redoc_url=None,
@@ -150,7 +149,7 @@ def _doors() -> tuple[BaseRoute, ...]:
 @cache
 def _assets() -> Assets:
     """Return the static files; their hash is worked out once."""
-    return Assets(STATIC)
+    return Assets(own_folder("static"))
 
 
 @asynccontextmanager

@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
-from importlib.metadata import version
 
 from starlette.concurrency import run_in_threadpool
 
+from app.build import VERSION
 from app.link.messages import Machine, MachineUnreachable, SiteDetail, TrackerDetail, UnknownTracker
 from app.store.store import JournalEntry, JournalFilter, Reader
 from app.sun.position import Location
@@ -91,7 +91,7 @@ def _record(
     now = _now(site, tracker.state.config.tracker_id)
     return CommissioningRecord(
         written_at=site.at,
-        software=f"Heliopanel {version('heliopanel')}",
+        software=f"Heliopanel {VERSION}",
         site_name=state.name,
         location=state.location,
         time_zone=state.time_zone,

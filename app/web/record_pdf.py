@@ -3,19 +3,19 @@
 import re
 from collections.abc import Iterator
 from io import BytesIO
-from pathlib import Path
 
 from fpdf import FPDF
 
+from app.own import own_folder
 from app.web.languages import said
 from app.web.record_files import Paper, Row
 from app.web.record_words import PAGE, filled, heads, told_heading
 from app.web.signatures import HEIGHT, WIDTH, Signature
 
 FONT = "DejaVu"
-FONTS = Path(__file__).parents[2] / "static" / "vendor" / "dejavu" / "2.37.3"
+FONTS = own_folder("static") / "vendor" / "dejavu" / "2.37.3"
 WIDE_FONT = "Droid"
-WIDE_FONTS = Path(__file__).parents[2] / "static" / "vendor" / "droid" / "6.0.1r16-1.1"
+WIDE_FONTS = own_folder("static") / "vendor" / "droid" / "6.0.1r16-1.1"
 WIDE = re.compile("[\u2e80-\u9fff\uf900-\ufaff\ufe30-\ufe4f\uff00-\uffef\U00020000-\U0003ffff]")
 """Letters that the first font has not: Chinese and Japanese, and their signs."""
 BREAKS = re.compile("(?<=[\u2e80-\u9fff\uff00-\uffef])(?=[\u3041-\u9fff])")

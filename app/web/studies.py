@@ -2,7 +2,6 @@
 
 import asyncio
 import secrets
-import sys
 from collections.abc import AsyncGenerator, AsyncIterator
 from contextlib import aclosing, asynccontextmanager, suppress
 from dataclasses import replace
@@ -14,6 +13,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.clock import Clock
 from app.fast.comparison import Comparison
+from app.own import own_process
 from app.studies.folder import StudyFolder, StudyState, StudyStatus, StudyUnknown, WeatherFile
 from app.studies.jobs import (
     JOB,
@@ -199,9 +199,7 @@ async def _told(job: Job) -> AsyncGenerator[Told, None]:
 @asynccontextmanager
 async def _worker() -> AsyncIterator[asyncio.subprocess.Process]:
     process = await asyncio.create_subprocess_exec(
-        sys.executable,
-        "-m",
-        WORKER,
+        *own_process(WORKER),
         stdin=asyncio.subprocess.PIPE,
         stdout=asyncio.subprocess.PIPE,
         limit=LONGEST_LINE,

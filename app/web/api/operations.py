@@ -4,7 +4,6 @@ import io
 import tempfile
 import zipfile
 from datetime import UTC, datetime
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal
 
@@ -17,6 +16,7 @@ from sqlalchemy import make_url
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
+from app.build import VERSION
 from app.link.messages import MachineUnreachable
 from app.masking import without_secrets
 from app.settings import Settings
@@ -76,7 +76,7 @@ class Backup(Output):
 @router.get("/health", summary="Does the panel answer?")
 async def health() -> Health:
     """Say that the panel runs, whatever the machine does."""
-    return Health(status="ok", version=version("heliopanel"))
+    return Health(status="ok", version=VERSION)
 
 
 @router.get("/ready", summary="Do machine and database answer?")
@@ -102,7 +102,7 @@ async def diagnostics(panel: PanelDep) -> Response:
     detail = await panel.machine.detail()
     entries = await run_in_threadpool(panel.reader.journal, JournalFilter(limit=1000))
     parts: dict[str, Any] = {
-        "about.json": {"version": version("heliopanel"), "written_at": panel.clock.now()},
+        "about.json": {"version": VERSION, "written_at": panel.clock.now()},
         "settings.json": _without_secrets(panel.settings),
         "site.json": detail,
         "snapshot.json": panel.machine.latest(),

@@ -3,11 +3,11 @@
 import re
 from collections.abc import Iterable, Iterator
 from functools import cache
-from pathlib import Path
 
 import orjson
 from markupsafe import Markup
 
+from app.own import own_folder
 from app.tracker.hybrid import HybridPhase
 from app.tracker.mode import Mode
 from app.tracker.protections.words import Protection
@@ -15,7 +15,7 @@ from app.tracker.snapshot import ActivityName, ShowPhase
 from app.web.languages.catalogue import Catalogue, catalogue_of
 from app.web.languages.known import ENGLISH, in_words
 
-SCRIPTS = Path(__file__).resolve().parents[3] / "static" / "js"
+SCRIPTS = own_folder("static") / "js"
 SCRIPT_TEXT = re.compile(r"(?<![\w.])_\(\s*\"((?:[^\"\\\n]|\\.)*)\"")
 LIVE_WORDS = (ActivityName, HybridPhase, Mode, Protection, ShowPhase)
 """What a script shows as words: the same as `words` in app/web/ui/formats.py."""

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterable
 from dataclasses import fields
 from functools import cache, wraps
-from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, pass_context
@@ -14,6 +13,7 @@ from markupsafe import Markup
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
+from app.own import own_folder
 from app.tracker.mounts.abilities import abilities
 from app.web import languages
 from app.web.contexts import Context
@@ -30,7 +30,6 @@ def options_said(options: Iterable[tuple[object, str]]) -> tuple[tuple[object, s
     return tuple((value, languages.said(text)) for value, text in options)
 
 
-TEMPLATES = Path(__file__).resolve().parents[3] / "templates"
 FILTERS: dict[str, Callable[..., Any]] = {
     "angle": formats.angle,
     "compass": formats.compass,
@@ -56,7 +55,7 @@ def environment() -> Environment:
     Every panel of a process shares it: a template is compiled once, which takes 10 to 100 ms.
     """
     env = Environment(
-        loader=FileSystemLoader(TEMPLATES),
+        loader=FileSystemLoader(own_folder("templates")),
         undefined=StrictUndefined,
         autoescape=True,
         trim_blocks=True,
@@ -108,7 +107,7 @@ def _macros(env: Environment, template: str) -> dict[str, object]:
 @cache
 def world() -> Markup:
     """Return the outline of the world's land as SVG path data."""
-    drawn = (TEMPLATES.parent / "static" / "img" / "world.svg").read_text()
+    drawn = (own_folder("static") / "img" / "world.svg").read_text()
     return Markup(drawn.split(' d="', 1)[1].split('"', 1)[0])  # noqa: S704 - our own committed file
 
 
