@@ -15,6 +15,7 @@ from app.link.codec import (
     Answer,
     Ask,
     Detailed,
+    Details,
     Done,
     Execute,
     Look,
@@ -22,10 +23,12 @@ from app.link.codec import (
     Request,
     Seen,
     Told,
+    Unasked,
     Watch,
     stop_path,
 )
 from app.link.connection import DOWN, TOO_LATE, Connection, ConnectionEnded
+from app.link.details import Received
 from app.link.lanes import Lanes
 from app.link.messages import (
     MachineUnreachable,
@@ -58,11 +61,12 @@ class LinkClient:
     def __init__(self, path: Path, clock: Clock | None = None) -> None:
         self._clock = clock or SystemClock()
         self._main = Connection(
-            path, self._clock, hear=self._take, begin=self._begin, end=self._mark_down, silence_s=SILENCE_S
+            path, self._clock, hear=self._hear, begin=self._begin, end=self._mark_down, silence_s=SILENCE_S
         )
         self._stop_lane = Connection(stop_path(path), self._clock)
         self._outlet = Outlet()
         self._whole = Whole()
+        self._details = Received()
         self._asked_again = False
         self._watched: frozenset[str] = frozenset()
         self._stops: Lanes[SiteSnapshot] = Lanes(self._clock)
@@ -157,10 +161,13 @@ class LinkClient:
 
     async def detail(self) -> SiteDetail:
         """Return stored settings, steps and capabilities."""
-        answer = await self._ask(Ask(next(self._numbers), "detail"), ANSWER_S)
+        answer = await self._ask(Ask(next(self._numbers), "detail"), STORED_ANSWER_S)
         if not isinstance(answer, Detailed):
             raise _out_of_place(answer)
-        return answer.detail
+        try:
+            return self._details.whole(answer)
+        except KeyError as error:
+            raise MachineUnreachable(TOO_LATE) from error
 
     async def metrics(self) -> MachineMetrics:
         """Return what the machine counts about itself."""
@@ -192,6 +199,12 @@ class LinkClient:
         if self._watched:
             self._main.send(Watch(next(self._numbers), self._watched))
 
+    def _hear(self, told: Unasked) -> None:
+        if isinstance(told, Details):
+            self._details.take(told)
+        else:
+            self._take(told)
+
     def _take(self, told: Told) -> None:
         """Merge what was told into the whole; after a gap ask for everything once."""
         if told.after is None:
@@ -205,7 +218,7 @@ class LinkClient:
             self._outlet.publish(taken.snapshot, taken.events, taken.changed, arrivals=arrivals)
 
     def _mark_down(self) -> None:
-        self._whole, self._asked_again = Whole(), False
+        self._whole, self._details, self._asked_again = Whole(), Received(), False
         self._outlet.end()
 
 

@@ -19,6 +19,7 @@ from app.link.messages import (
     SiteCommand,
     SiteDetail,
     StopAll,
+    TrackerDetail,
     UnknownRecording,
     UnknownTracker,
     Update,
@@ -147,11 +148,20 @@ class Done:
 
 @dataclass(frozen=True, slots=True)
 class Detailed:
-    """The answer to `detail`."""
+    """The answer to `detail` but for the trackers, which were told before: `tracker_ids` are all of them."""
 
     number: int
     detail: SiteDetail
+    tracker_ids: tuple[str, ...]
     tell: Literal["detail"] = "detail"
+
+
+@dataclass(frozen=True, slots=True)
+class Details:
+    """Details of trackers that are not as they were told last, before the answer to `detail`."""
+
+    trackers: dict[str, TrackerDetail]
+    tell: Literal["details"] = "details"
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,7 +218,8 @@ class Told:
 
 Request = Execute | Ask | Look | Watch
 Answer = Done | Detailed | Seen | Measured | Pong | Refused
-Telling = Answer | Told
+Unasked = Told | Details
+Telling = Answer | Unasked
 
 _requests: TypeAdapter[Request] = TypeAdapter(Annotated[Request, Discriminator("do")])
 _tellings: TypeAdapter[Telling] = TypeAdapter(Annotated[Telling, Discriminator("tell")])

@@ -15,7 +15,7 @@ from app.link.codec import (
     FrameBroken,
     Refused,
     Request,
-    Told,
+    Unasked,
     decode_telling,
     encode_request,
     let_go,
@@ -53,7 +53,7 @@ class Connection:
         path: Path,
         clock: Clock,
         *,
-        hear: Callable[[Told], None] = lambda told: None,
+        hear: Callable[[Unasked], None] = lambda told: None,
         begin: Callable[[], None] = lambda: None,
         end: Callable[[], None] = lambda: None,
         silence_s: float | None = None,
@@ -143,7 +143,7 @@ class Connection:
                 async with asyncio.timeout(self._silence_s):
                     body = await read_body(reader)
                 telling = decode_telling(body)
-                if isinstance(telling, Told):
+                if isinstance(telling, Unasked):
                     self._hear(telling)
                 else:
                     self._take(telling)

@@ -11,7 +11,6 @@ from app.budget import Budget
 from app.clock import give_way
 from app.link.codec import (
     Ask,
-    Detailed,
     Done,
     Execute,
     Look,
@@ -31,6 +30,7 @@ from app.link.codec import (
     problem_of,
     read_body,
 )
+from app.link.details import Sent, answer
 from app.link.messages import Machine, Order, Update
 from app.link.metrics import MachineMetrics
 from app.link.outlet import Listener
@@ -151,6 +151,7 @@ class Conversation(_Stream):
         self._client_count = client_count
         self._budget = budget
         self._take_within_s = take_within_s
+        self._details, self._detailing = Sent(), asyncio.Lock()
 
     async def run(self, reader: asyncio.StreamReader) -> None:
         """Answer and tell until the client leaves; an order that was begun is carried to its end."""
@@ -219,7 +220,7 @@ class Conversation(_Stream):
     async def _reply(self, asked: Ask) -> Telling:
         match asked.do:
             case "detail":
-                return Detailed(asked.number, await self._machine.detail())
+                return await self._detail(asked.number)
             case "metrics":
                 metrics = await self._machine.metrics()
                 return Measured(asked.number, replace(metrics, link_clients=self._client_count()))
@@ -230,3 +231,12 @@ class Conversation(_Stream):
                 return Pong(asked.number)
             case _:
                 assert_never(asked.do)
+
+    async def _detail(self, number: int) -> Telling:
+        """Tell what has changed and return the answer; one question after the other, and ticks between."""
+        async with self._detailing:
+            detail = await self._machine.detail()
+            for part in self._details.parts(detail):
+                self._put(encode_telling(part))
+                await give_way()
+        return answer(number, detail)

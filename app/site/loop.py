@@ -16,6 +16,7 @@ from app.site.line_pace import LinePace
 from app.site.link_quality import RoundTrips
 from app.site.scheduler import Scheduler, Slot
 from app.tracker.commands import Command
+from app.tracker.commissioning import Standing, standing_of
 from app.tracker.conditions import Action
 from app.tracker.config import TrackerConfig
 from app.tracker.controller import Controller
@@ -179,6 +180,13 @@ class TrackerLoop:
             shown = replace(shown, notices=(*shown.notices, *said))
         self._last_snapshot = shown
         return shown
+
+    @property
+    def standing(self) -> Standing:
+        """Return what the five steps go by of how the tracker stands."""
+        if self.broken is None:
+            return self.controller.standing
+        return standing_of(self.snapshot(self._clock.now(), asked=False))
 
     def deadline(self) -> datetime | None:
         """Return the instant by which it must tick again, such as the end of a jog's lease."""

@@ -24,7 +24,6 @@ from app.link.messages import (
     SiteCommand,
     SiteDetail,
     StopAll,
-    TrackerDetail,
     Update,
 )
 from app.link.metrics import MachineMetrics
@@ -35,6 +34,7 @@ from app.site import changes, control, sightings, site_orders, tracker_orders
 from app.site.alarming import AlarmDesk
 from app.site.auditing import Auditor, as_action
 from app.site.checking import Checks, DriveTools
+from app.site.details import Details
 from app.site.gathering import BackgroundWriter
 from app.site.health import resident_bytes
 from app.site.kept_weather import WeatherFile
@@ -49,12 +49,10 @@ from app.site.repeats import Overtaken, Repeats, refuse_untimely
 from app.site.timekeeping import Timekeeper
 from app.site.weather import WeatherStation
 from app.tracker.commands import CommandRejected, EndJog, Jog, Stop
-from app.tracker.commissioning import steps
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import MetStation, SiteState, TrackerState
 from app.tracker.notifications import Notifications
 from app.tracker.observation import Observation
-from app.tracker.proof_states import proof_states
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind, SiteSnapshot, Snapshot
 from app.tracker.weather_windows import USUAL_OLD_S, same_age
@@ -131,6 +129,7 @@ class Site:
         self._outlet = Outlet()
         self._repeats = Repeats()
         self._overtaken = Overtaken()
+        self._details = Details(self.model)
         self.publisher = Publisher(self.model, self._alarms, self._outlet, self._options.boot_id)
         self._started_at = self._caught_up_at = self._pruned_at = clock.now()
         self._orders = self._refused = 0
@@ -200,17 +199,7 @@ class Site:
 
     async def detail(self) -> SiteDetail:
         """Return stored settings, steps and capabilities."""
-        at, clock = self.model.now(), self.model.timekeeper.state()
-        trackers = {
-            tracker_id: TrackerDetail(
-                loop.state,
-                steps(self.model.state, loop.memory, loop.snapshot(at, asked=False), clock),
-                loop.drive.capabilities,
-                proof_states(loop.config, loop.memory, loop.drive.capabilities),
-                self.model.checks.newest(tracker_id),
-            )
-            for tracker_id, loop in self.model.loops.items()
-        }
+        trackers = await self._details.all()
         state = replace(self.model.state, weather_windows=self.model.weather.windows)
         return SiteDetail(state, trackers, await self.model.checks.choices())
 

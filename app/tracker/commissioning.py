@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
+from typing import NamedTuple
 
 from app.tracker.memory import Confirmation, SiteState, StepName, TrackerMemory
 from app.tracker.mode import Mode
@@ -30,20 +31,32 @@ class Step:
     confirmed_by: str
 
 
-def steps(
-    site: SiteState, memory: TrackerMemory, snapshot: Snapshot | None, clock: ClockState
-) -> tuple[Step, ...]:
+class Standing(NamedTuple):
+    """What the steps go by of how a tracker stands now: nothing that differs from tick to tick."""
+
+    seen: bool = False
+    runs: bool = False
+    waits: tuple[Reason, ...] = ()
+
+
+def standing_of(snapshot: Snapshot) -> Standing:
+    """Return how a tracker stands that is seen so."""
+    runs = _is_running(snapshot)
+    return Standing(snapshot.measured is not None, runs, () if runs else snapshot.waiting)
+
+
+def steps(site: SiteState, memory: TrackerMemory, standing: Standing, clock: ClockState) -> tuple[Step, ...]:
     """Return the five steps of one tracker, in order, as they stand now.
 
-    `snapshot` is None while the tracker has not been looked at: what needs the drive is then not done.
+    What needs the drive is not done while the tracker is not seen.
     """
     earlier = (
         _location(site),
         _clock(site, clock),
-        _homing(site, memory, snapshot),
+        _homing(site, memory, standing),
         _mode(site, memory),
     )
-    return (*earlier, _run(earlier, snapshot))
+    return (*earlier, _run(earlier, standing))
 
 
 def _location(site: SiteState) -> Step:
@@ -60,12 +73,12 @@ def _clock(site: SiteState, clock: ClockState) -> Step:
     return _step(StepName.CLOCK, site.confirmations, to_do=(unset,), to_confirm=(*doubts, moved))
 
 
-def _homing(site: SiteState, memory: TrackerMemory, snapshot: Snapshot | None) -> Step:
+def _homing(site: SiteState, memory: TrackerMemory, standing: Standing) -> Step:
     if memory.home is None:
         lost = memory.home_lost
         reason = _home_lost(lost) if lost else _HOME_UNSET
         return _step(StepName.HOMING, memory.confirmations, to_do=(reason,))
-    unseen = _DRIVE_SILENT if snapshot is None or snapshot.measured is None else None
+    unseen = None if standing.seen else _DRIVE_SILENT
     moved = _moved(site, memory.confirmations.get(StepName.HOMING))
     return _step(StepName.HOMING, memory.confirmations, to_confirm=(unseen, moved))
 
@@ -85,12 +98,11 @@ def _mode(site: SiteState, memory: TrackerMemory) -> Step:
     )
 
 
-def _run(earlier: Sequence[Step], snapshot: Snapshot | None) -> Step:
+def _run(earlier: Sequence[Step], standing: Standing) -> Step:
     """Return step 5: done while the tracker tracks or shows and every earlier step holds."""
     open_steps = tuple(_open(step) for step in earlier if step.status is not StepStatus.DONE)
-    running = None if snapshot is not None and _is_running(snapshot) else _NOT_RUNNING
-    waiting = snapshot.waiting if snapshot is not None and running is not None else ()
-    return _step(StepName.RUN, {}, to_do=(*open_steps, *waiting, running))
+    running = None if standing.runs else _NOT_RUNNING
+    return _step(StepName.RUN, {}, to_do=(*open_steps, *standing.waits, running))
 
 
 def _is_running(snapshot: Snapshot) -> bool:

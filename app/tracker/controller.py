@@ -36,6 +36,7 @@ from app.tracker.announce import is_announced
 from app.tracker.approach import has_reached
 from app.tracker.authority import watch_local, watch_service
 from app.tracker.commands import Command
+from app.tracker.commissioning import Standing
 from app.tracker.config import TrackerConfig
 from app.tracker.home_shift import forget
 from app.tracker.machine_guard import watch_machine
@@ -155,6 +156,11 @@ class Controller:
         Unless `asked`, `actions` are left out.
         """
         return report.snapshot(self._mind, at, now or self._mind.now, asked=asked)
+
+    @property
+    def standing(self) -> Standing:
+        """Return what the five steps go by of how the tracker stands."""
+        return report.standing(self._mind)
 
     def frame(self) -> tuple[float, ...]:
         """Return the last tick as one row of `recording.COLUMNS`; the first two columns are NaN."""

@@ -20,6 +20,7 @@ from app.tracker.activity import (
 )
 from app.tracker.approach import is_approaching
 from app.tracker.authority import service_state
+from app.tracker.commissioning import Standing
 from app.tracker.conditions import Action, reachable, undoable, unmet
 from app.tracker.config import MountKind, Orientation, TrackerConfig
 from app.tracker.hybrid import Corrected
@@ -34,7 +35,7 @@ from app.tracker.rejected import accepted
 from app.tracker.runs import arrived, at_rest, close_to
 from app.tracker.sensors import sensors
 from app.tracker.shelter import doubts, hold_reason, protection_state, reason
-from app.tracker.snapshot import ActivityName, AxisState, HybridState, Pair, ShowProgress, Snapshot
+from app.tracker.snapshot import ActivityName, AxisState, HybridState, Pair, ShowPhase, ShowProgress, Snapshot
 from app.tracker.weather import NOTHING_SENSED
 from app.tracker.words import activity_text
 
@@ -98,6 +99,21 @@ def snapshot(mind: Mind, at: datetime, now: datetime, *, asked: bool = True) -> 
         can_undo_home=undoable(mind) is None,
         rejected=mind.memory.rejected,
     )
+
+
+def standing(mind: Mind) -> Standing:
+    """Return what the five steps go by: the same as `standing_of` a snapshot, at a tenth of the cost."""
+    match mind.activity:
+        case Tracking():
+            runs = True
+        case Stowing() | Stowed():
+            runs = mind.memory.tracking_on
+        case Showing(phase=phase):
+            runs = phase in (ShowPhase.RUNNING, ShowPhase.PAUSED)
+        case _:
+            runs = False
+    seen = mind.seen is not None and mind.seen.feedback is not None
+    return Standing(seen, runs, () if runs else _waiting(mind))
 
 
 def frame(mind: Mind) -> tuple[float, ...]:

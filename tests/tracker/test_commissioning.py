@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from app.tracker.commands import Move, RunShow, SelectMode, SetZero, Track
-from app.tracker.commissioning import Step, StepStatus, steps
+from app.tracker.commissioning import Standing, Step, StepStatus, standing_of, steps
 from app.tracker.config import Orientation
 from app.tracker.memory import ClockSetting, Confirmation, SiteState, StepName, TrackerMemory
 from app.tracker.mode import Mode
@@ -28,7 +28,7 @@ DONE, TO_DO, CONFIRM = StepStatus.DONE, StepStatus.TO_DO, StepStatus.TO_BE_CONFI
 def judge(
     memory: TrackerMemory, snapshot: Snapshot | None, *, site: SiteState = SITE, clock: ClockState = CLOCK
 ) -> dict[StepName, Step]:
-    known = steps(site, memory, snapshot, clock)
+    known = steps(site, memory, Standing() if snapshot is None else standing_of(snapshot), clock)
     assert [step.name for step in known] == list(StepName)
     for step in known:
         assert (step.status is DONE) == (not step.reasons)
@@ -37,6 +37,7 @@ def judge(
 
 
 def of(plant: Plant, *, site: SiteState = SITE, clock: ClockState = CLOCK) -> list[StepStatus]:
+    assert plant.controller.standing == standing_of(plant.snapshot)
     known = judge(plant.controller.memory, plant.snapshot, site=site, clock=clock)
     return [step.status for step in known.values()]
 
