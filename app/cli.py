@@ -3,20 +3,25 @@
 import sys
 from collections.abc import Callable
 from importlib import import_module
+from typing import Annotated, NoReturn
 
 import typer
 from typer._click.core import Command, Context  # typer carries a click of its own
 from typer.core import TyperGroup
 from typer.main import get_command, get_group
 
-from app.foreseen import Foreseen
+from app.build import VERSION
+from app.foreseen import AT_RUN_TIME, WRONG, Foreseen
 from app.late import hurry
+from app.options import Config, DataDir, take
 
-FAILED = 2
 COMMANDS = {
     "serve": "app.cli_serve:serve",
     "machine": "app.cli_machine:machine",
     "web": "app.cli_web:web",
+    "status": "app.cli_status:status",
+    "diagnostics": "app.cli_status:diagnostics",
+    "config": "app.cli_config:config",
     "users": "app.cli_users:users",
     "audit": "app.cli_audit:audit",
     "tls": "app.cli_tls:tls",
@@ -64,24 +69,48 @@ cli = typer.Typer(
     name="heliopanel",
     cls=Commands,
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
 )
 
 
+def _tell_version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"Heliopanel {VERSION}")
+        raise typer.Exit
+
+
 @cli.callback()
-def heliopanel() -> None:
+def heliopanel(
+    *,
+    version: Annotated[
+        bool, typer.Option("--version", is_eager=True, callback=_tell_version, help="Print the version.")
+    ] = False,
+    config: Config = None,
+    data_dir: DataDir = None,
+) -> None:
     """Commission a solar tracker in the browser and keep it on the sun."""
+    take(config, data_dir)
 
 
 def main() -> None:
-    """Run the command line; what was foreseen to fail is one sentence and exit code 2."""
+    """Run the command line; what fails is one sentence.
+
+    The exit code is 2 for what was asked or set wrongly, and 1 for what may work another time.
+    """
     hurry()
     try:
         cli()
-    except (Foreseen, ValueError, OSError) as error:
-        typer.echo(str(error) or type(error).__name__, err=True)
-        sys.exit(FAILED)
+    except Foreseen as error:
+        _end(error, error.exit_code)
+    except ValueError as error:
+        _end(error, WRONG)
+    except OSError as error:
+        _end(error, AT_RUN_TIME)
+
+
+def _end(error: Exception, code: int) -> NoReturn:
+    typer.echo(str(error) or type(error).__name__, err=True)
+    sys.exit(code)
 
 
 if __name__ == "__main__":

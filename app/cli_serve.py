@@ -6,12 +6,17 @@ from typing import Annotated
 import typer
 
 from app.build import VERSION
+from app.machine.starting import as_service, check_data_dir, check_port
 from app.machine.supervisor import supervise
-from app.settings import read_settings
+from app.options import Config, DataDir, Host, Port, settle
 
 
 def serve(
     *,
+    config: Config = None,
+    data_dir: DataDir = None,
+    host: Host = None,
+    port: Port = None,
     insecure_lan: Annotated[
         bool,
         typer.Option("--insecure-lan", help="Listen on a network without a certificate; every page warns."),
@@ -20,9 +25,12 @@ def serve(
     """Run the controller service and the panel, and start either again when it dies."""
     if insecure_lan:
         os.environ["HELIOPANEL_INSECURE_LAN"] = "1"
-    settings = read_settings()
+    settings = settle(config, data_dir, host, port)
+    check_data_dir(settings.data_dir)
+    check_port(settings)
     typer.echo(f"Heliopanel {VERSION}: starting ... (Ctrl-C ends it)")
-    raise typer.Exit(supervise(settings))
+    with as_service():
+        raise typer.Exit(supervise(settings))
 
 
 def version() -> None:

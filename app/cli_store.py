@@ -27,7 +27,9 @@ def backup(file: Annotated[Path, typer.Argument(help="File to write.")]) -> None
         )
 
 
-def restore(file: Annotated[Path, typer.Argument(help="File that `backup` wrote.")]) -> None:
+def restore(
+    file: Annotated[Path, typer.Argument(help="File that `backup` wrote.", exists=True, dir_okay=False)],
+) -> None:
     """Bring back what a backup holds; a running machine stops its drives and starts again on it."""
     settings = read_settings()
     match request_restore(file, settings.url, settings.data_dir, SystemClock().now()):

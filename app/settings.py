@@ -17,7 +17,7 @@ from pydantic_settings import (
     SettingsConfigDict,
 )
 
-from app.foreseen import Foreseen
+from app.foreseen import WRONG, Foreseen
 from app.hosts import checked_host
 from app.network import FILE_NAME, NETWORK_FIELDS, Network, read_network
 
@@ -30,6 +30,8 @@ LOOPBACK = {"127.0.0.1", "::1", "localhost"}
 
 class SettingsWrong(Foreseen):
     """Heliopanel cannot start with these settings; the text says which one and why."""
+
+    exit_code = WRONG
 
 
 class Settings(BaseSettings):

@@ -2,8 +2,6 @@
 
 import csv
 import json
-import sys
-from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -11,28 +9,14 @@ import pyarrow.parquet as pq
 import pytest
 
 from app.build import VERSION
-from app.cli import main
 from app.store.engine import open_reader, open_writer
 from app.store.migrations import upgrade
 from app.sun.position import Algorithm, Location, sun_position
 from app.tracker.memory import SiteState
+from tests.command_line import Run, run
 
-Run = Callable[..., tuple[int, str, str]]
+__all__ = ["run"]
 SAMSUN = ["--lat", "41.2867", "--lon", "36.33"]
-
-
-@pytest.fixture
-def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
-    """Return a call that runs the command line and returns its exit code, output and errors."""
-
-    def call(*words: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["heliopanel", *words])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        told = capsys.readouterr()
-        return int(ended.value.code or 0), told.out, told.err
-
-    return call
 
 
 @pytest.mark.parametrize("algorithm", list(Algorithm))

@@ -10,7 +10,7 @@ from app.access.tables import REVISION, VERSION_TABLE, metadata
 from app.late import late
 from app.own import own_folder
 from app.store.connections import revision_of, sharing_engine, transaction
-from app.store.store import StoreFailed
+from app.store.store import StoreUnfit
 
 SCRIPTS = own_folder("alembic") / "access"
 VERSIONS = table(VERSION_TABLE, column("version_num"))
@@ -27,7 +27,7 @@ def upgrade(engine: Engine) -> None:
 def _migrate(connection: Connection, found: str | None) -> None:
     directory = late("alembic.script").ScriptDirectory(str(SCRIPTS))
     if found not in {None, *(script.revision for script in directory.walk_revisions())}:
-        raise StoreFailed(
+        raise StoreUnfit(
             f"The users were written by a newer version of Heliopanel (revision {found}). Install that "
             "version, or begin with new users: docs/operators-guide.md, Users, tells how."
         )

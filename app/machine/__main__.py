@@ -2,11 +2,10 @@
 
 import sys
 
+from app.foreseen import Foreseen
 from app.late import hurry, late
-from app.machine.lock import AlreadyRunning
-from app.machine.supervisor import WRONG_SETTINGS, end_with_parent
-from app.settings import SettingsWrong, read_settings
-from app.store.store import StoreFailed
+from app.machine.supervisor import end_with_parent
+from app.settings import read_settings
 
 SUPERVISED = "--supervised="
 
@@ -19,9 +18,9 @@ def main() -> int:
     hurry()
     try:
         late("app.machine.main").run(read_settings())
-    except (SettingsWrong, AlreadyRunning, StoreFailed) as error:
+    except Foreseen as error:
         sys.stderr.write(f"{error}\n")
-        return WRONG_SETTINGS
+        return error.exit_code
     return 0
 
 

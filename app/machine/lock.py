@@ -8,13 +8,15 @@ from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 
-from app.foreseen import Foreseen
+from app.foreseen import WRONG, Foreseen
 
 LOCK_NAME = "machine.lock"
 
 
 class AlreadyRunning(Foreseen):
     """Another controller service holds this data folder."""
+
+    exit_code = WRONG
 
 
 @contextmanager

@@ -27,6 +27,7 @@ from app.machine.marker import mark_running, mark_stopped, mark_version, version
 from app.machine.memory import MemoryGuard
 from app.machine.process import on_signals, raise_priority
 from app.machine.safe_mode import serve_safely
+from app.machine.starting import check_data_dir
 from app.machine.systemd import notify
 from app.machine.watchdog import LoopWatchdog
 from app.settings import Settings
@@ -51,11 +52,11 @@ log = structlog.get_logger(__name__)
 def run(settings: Settings) -> None:
     """Run the controller service until it is told to stop.
 
-    With a damaged database it runs in safe mode. Raises `AlreadyRunning` if another holds the data folder,
-    `StoreFailed` if the store cannot be opened for another reason.
+    With a damaged database it runs in safe mode. Raises `SettingsWrong` if the data folder cannot be
+    written, `AlreadyRunning` if another holds it, `StoreFailed` if the store cannot be opened otherwise.
     """
     set_up_logs("machine", log_format=settings.log_format, log_level=settings.log_level)
-    settings.data_dir.mkdir(mode=0o700, parents=True, exist_ok=True)
+    check_data_dir(settings.data_dir)
     clock = SystemClock()
     with only_instance(settings.data_dir, clock.now()):
         keep_all_private(settings.data_dir)

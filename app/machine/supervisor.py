@@ -10,6 +10,7 @@ from datetime import timedelta
 import structlog
 
 from app.clock import Clock, SystemClock
+from app.foreseen import WRONG
 from app.logs import set_up_logs
 from app.own import own_process
 from app.settings import Settings
@@ -18,7 +19,6 @@ FIRST_PAUSE = timedelta(milliseconds=200)
 LONGEST_PAUSE = timedelta(seconds=5)
 LIVED_LONG = timedelta(seconds=10)
 GIVE_UP_AFTER_S = 8.0
-WRONG_SETTINGS = 2
 PR_SET_PDEATHSIG = 1
 
 log = structlog.get_logger(__name__)
@@ -80,7 +80,7 @@ class Supervisor:
             code = await (await child.start()).wait()
             if self._clock.now() - began >= LIVED_LONG:
                 child.pause, child.has_worked = FIRST_PAUSE, True
-            if code == WRONG_SETTINGS and not child.has_worked:
+            if code == WRONG and not child.has_worked:
                 return code
             log.error("child_died", child=child.name, code=code, again_in_s=child.pause.total_seconds())
             await self._clock.sleep_until(self._clock.now() + child.pause)

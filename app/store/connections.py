@@ -23,7 +23,7 @@ from sqlalchemy import column as sql_column
 from sqlalchemy.exc import ArgumentError, SQLAlchemyError
 
 from app.store.failures import explained
-from app.store.store import StoreFailed
+from app.store.store import StoreFailed, StoreUnfit
 from app.store.tables import REVISION
 
 BUSY_MS = 3000
@@ -55,17 +55,17 @@ VERSION_TABLE = table("alembic_version", sql_column("version_num"))
 
 
 def parse_url(url: str) -> URL:
-    """Return the parsed address of a database, or raise `StoreFailed` if it is of no known kind."""
+    """Return the parsed address of a database, or raise `StoreUnfit` if it is of no known kind."""
     try:
         parsed = make_url(url)
     except ArgumentError as error:
-        raise StoreFailed(
+        raise StoreUnfit(
             f"{url!r} is not a database URL, such as sqlite:////var/lib/heliopanel/a.db."
         ) from error
     if parsed.drivername == "postgresql+psycopg":
         return parsed
     if parsed.get_backend_name() != "sqlite" or parsed.database in (None, "", ":memory:"):
-        raise StoreFailed(
+        raise StoreUnfit(
             f"{parsed.render_as_string()} cannot be used: give sqlite:///FILE or postgresql+psycopg://USER@HOST/NAME."
         )
     return parsed

@@ -16,7 +16,7 @@ from app.own import own_folder
 from app.store.connections import revision_of, sqlite_path, transaction, writing_engine
 from app.store.files import copy_sqlite, keep_private, make_folder
 from app.store.integrity import check_file
-from app.store.store import StoreFailed
+from app.store.store import StoreUnfit
 from app.store.tables import REVISION, metadata
 
 SCRIPTS = own_folder("alembic")
@@ -26,7 +26,7 @@ def upgrade(url: str, *, scripts: Path = SCRIPTS) -> str | None:
     """Bring a database to the newest tables, making it if there is none; return the revision it had.
 
     A SQLite file that a migration changes is copied first, beside it; all migrations are one transaction.
-    Raises `StoreFailed` for a database that is damaged or newer than this software.
+    Raises `StoreDamaged`, or `StoreUnfit` for a database that is newer than this software.
     """
     path = sqlite_path(url)
     if path is not None:
@@ -67,12 +67,12 @@ def differences(connection: Connection) -> list[object]:
 
 
 def _newest(scripts: Path, found: str | None) -> str | None:
-    """Return the newest revision, or raise `StoreFailed` if the database is at one that is not known."""
+    """Return the newest revision, or raise `StoreUnfit` if the database is at one that is not known."""
     directory = late("alembic.script").ScriptDirectory(str(scripts))
     newest: str | None = directory.get_current_head()
     known = {script.revision for script in directory.walk_revisions()}
     if found is not None and found not in known:
-        raise StoreFailed(
+        raise StoreUnfit(
             f"The database was written by a newer version of Heliopanel (revision {found}; this one knows "
             f"up to {newest}). Install that version, or restore a backup that this version wrote."
         )

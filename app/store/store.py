@@ -8,7 +8,7 @@ from typing import Protocol
 
 from app.alarms.alarm import Alarm
 from app.audit.entry import Entry, Sealed
-from app.foreseen import Foreseen
+from app.foreseen import WRONG, Foreseen
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.programs.show import ShowPlan
@@ -18,6 +18,12 @@ from app.tracker.snapshot import Event, EventKind
 
 class StoreFailed(Foreseen):
     """The database could not do it; the text says what to do. Nothing was half written."""
+
+
+class StoreUnfit(StoreFailed):
+    """It is the wrong database for this software: trying again does not help."""
+
+    exit_code = WRONG
 
 
 class StoreDamaged(StoreFailed):

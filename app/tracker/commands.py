@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from datetime import timedelta
 from typing import Literal
 
-from app.foreseen import Foreseen
+from app.foreseen import WRONG, Foreseen
 from app.tracker.axes import Axis, JogSpeed
 from app.tracker.config import Orientation
 from app.tracker.mode import Mode
@@ -18,6 +18,8 @@ JOG_LEASE = timedelta(milliseconds=240)
 
 class CommandRejected(Foreseen):
     """The tracker will not do this now; `reasons` lists every unmet condition."""
+
+    exit_code = WRONG
 
     def __init__(self, *reasons: Reason) -> None:
         super().__init__(" ".join(reason.message for reason in reasons))

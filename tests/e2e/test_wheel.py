@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 from urllib.parse import urlsplit
@@ -125,3 +126,18 @@ def test_the_database_is_made(served: Product) -> None:
     with engine.connect() as connection:
         assert revision_of(connection) == REVISION
     engine.dispose()
+
+
+def test_the_command_tells_of_what_runs(served: Product, tmp_path: Path) -> None:
+    options = ["--data-dir", str(served.data_dir)]
+    asked = os.environ | {"HELIOPANEL_PORT": str(served.port)}
+    told = [
+        subprocess.run([product.COMMAND, *words, *options], env=asked, capture_output=True, text=True)
+        for words in (["status"], ["diagnostics", str(tmp_path / "told.zip")], ["config", "check"], ["serve"])
+    ]
+    assert [one.returncode for one in told] == [0, 0, 0, 2]
+    assert f"Panel: answers at {served.url}\nT1 Tracker 1: " in told[0].stdout
+    with zipfile.ZipFile(tmp_path / "told.zip") as archive:
+        assert {"site.json", "metrics.json", "journal.json"} <= set(archive.namelist())
+    assert "Address already in use" in told[3].stderr
+    assert told[3].stderr.count("\n") == 1

@@ -19,11 +19,12 @@ import pytest
 import structlog
 
 from app.clock import SystemClock, VirtualClock
+from app.foreseen import WRONG
 from app.logs import set_up_logs
 from app.machine.lock import LOCK_NAME, AlreadyRunning, holder, only_instance
 from app.machine.main import audit_version
 from app.machine.marker import mark_running, mark_stopped
-from app.machine.supervisor import WRONG_SETTINGS, Child, Supervisor
+from app.machine.supervisor import Child, Supervisor
 from app.machine.systemd import notify
 from app.machine.watchdog import EXIT_CODE, LoopWatchdog
 from app.settings import SettingsWrong, read_settings
@@ -164,7 +165,7 @@ async def test_a_loop_that_lives_is_left_alone() -> None:
 def written(tmp_path: Path) -> Iterator[Path]:
     """A folder with the modules that the supervisor's children run."""
     (tmp_path / "dies.py").write_text("import sys; sys.exit(3)")
-    (tmp_path / "wrong.py").write_text(f"import sys; sys.exit({WRONG_SETTINGS})")
+    (tmp_path / "wrong.py").write_text(f"import sys; sys.exit({WRONG})")
     (tmp_path / "stays.py").write_text("import time; time.sleep(60)")
     before = os.environ.get("PYTHONPATH")
     os.environ["PYTHONPATH"] = str(tmp_path)
@@ -201,7 +202,7 @@ async def test_a_child_that_dies_is_started_again_with_a_growing_pause() -> None
 async def test_wrong_settings_of_one_child_end_both() -> None:
     wrong, other = Child("wrong", ("wrong",)), Child("stays", ("stays",))
 
-    assert await Supervisor(SystemClock(), wrong, other).run() == WRONG_SETTINGS
+    assert await Supervisor(SystemClock(), wrong, other).run() == WRONG
 
     assert other.process is not None
     assert other.process.returncode == -signal.SIGTERM
@@ -293,7 +294,7 @@ def test_settings_come_from_the_environment_before_the_file(
 
 @pytest.mark.usefixtures("written")
 async def test_settings_that_worked_once_and_do_not_any_more_end_nobody_else(written: Path) -> None:
-    (written / "later.py").write_text(f"import sys; sys.exit({WRONG_SETTINGS})")
+    (written / "later.py").write_text(f"import sys; sys.exit({WRONG})")
     clock, child, other = (
         VirtualClock(NOW),
         Child("later", ("later",), has_worked=True),

@@ -1,29 +1,24 @@
 """Health, metrics, diagnostics and backups."""
 
-import io
 import tempfile
-import zipfile
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
-import orjson
 import structlog
 from fastapi import APIRouter
 from fastapi.responses import FileResponse, Response
 from pydantic import Field
-from sqlalchemy import make_url
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
 from app.build import VERSION
 from app.link.messages import MachineUnreachable
-from app.masking import without_secrets
-from app.settings import Settings
 from app.store.backup import backup
 from app.store.store import JournalFilter
 from app.web.api.base import Output, Responses
 from app.web.deps import PanelDep
+from app.web.diagnostics import about, live, stored, zipped
 from app.web.metrics import counted, exposition
 
 log = structlog.get_logger()
@@ -99,17 +94,9 @@ async def metrics(panel: PanelDep) -> Response:
 @router.get("/diagnostics.zip", summary="Everything for support", response_class=Response, responses=ZIP)
 async def diagnostics(panel: PanelDep) -> Response:
     """Return versions, settings without secrets, state and the newest 1,000 events."""
-    detail = await panel.machine.detail()
-    entries = await run_in_threadpool(panel.reader.journal, JournalFilter(limit=1000))
-    parts: dict[str, Any] = {
-        "about.json": {"version": VERSION, "written_at": panel.clock.now()},
-        "settings.json": _without_secrets(panel.settings),
-        "site.json": detail,
-        "snapshot.json": panel.machine.latest(),
-        "metrics.json": await counted(panel.machine),
-        "journal.json": entries,
-    }
-    return _attached(await run_in_threadpool(_zipped, parts), "application/zip", "heliopanel-diagnostics.zip")
+    parts = about(panel.settings, panel.clock.now()) | await live(panel.machine)
+    parts |= await run_in_threadpool(stored, panel.reader)
+    return _attached(await run_in_threadpool(zipped, parts), "application/zip", "heliopanel-diagnostics.zip")
 
 
 @router.get("/backup", summary="Download a backup", response_class=FileResponse, responses=FILE)
@@ -143,23 +130,6 @@ def write_backup(panel: PanelDep) -> Backup:
 
 def _backup_name(now: datetime) -> str:
     return f"heliopanel-{now.astimezone(UTC):%Y%m%d-%H%M%S-%f}.backup"
-
-
-def _without_secrets(settings: Settings) -> dict[str, Any]:
-    shown: dict[str, Any] = settings.model_dump(mode="json")
-    if settings.database_url:
-        shown["database_url"] = make_url(settings.database_url).render_as_string(hide_password=True)
-    return shown
-
-
-def _zipped(parts: dict[str, Any]) -> bytes:
-    content = io.BytesIO()
-    options = orjson.OPT_INDENT_2 | orjson.OPT_NON_STR_KEYS
-    with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, part in parts.items():
-            plain = orjson.loads(orjson.dumps(part, option=options))
-            archive.writestr(name, orjson.dumps(without_secrets(plain), option=options))
-    return content.getvalue()
 
 
 def _attached(body: bytes, media_type: str, name: str) -> Response:
