@@ -243,9 +243,11 @@ async def _pass_on(
 
 
 def _is_ordered_motion(model: SiteModel, loop: TrackerLoop) -> bool:
-    """Return whether something turns by order; following the sun and stowing are the machine's own."""
-    follows = loop.activity is ActivityName.TRACKING and loop.snapshot(model.now(), asked=False).in_position
-    return loop.activity not in GOES_ON and not follows
+    """Return whether something turns by order, or is announced; following the sun is the machine's own."""
+    if loop.activity is not ActivityName.TRACKING:
+        return loop.activity not in GOES_ON
+    shown = loop.snapshot(model.now(), asked=False)
+    return shown.approaching or not shown.in_position
 
 
 async def _keep(model: SiteModel, loop: TrackerLoop, changed: Authority, event: Event) -> tuple[Event, ...]:
