@@ -90,3 +90,22 @@ async def test_a_retained_stop_stops_and_everything_else_that_is_retained_is_ref
         await eventually(lambda: len(answers) == 2)
     told = {one["key"]: [reason["code"] for reason in one["reasons"]] for one in answers}
     assert told == {"t": ["retained"], "s": []}
+
+
+async def test_every_command_goes_to_its_own_tracker_and_is_answered_there() -> None:
+    door, told = Door(), []
+
+    async def answer(tracker_id: str, text: bytes) -> None:
+        told.append((tracker_id, json.loads(text)["key"]))
+
+    door.gate.set()
+    made = CommandLanes(door, VirtualClock(SUMMER_NOON), answer)  # type: ignore[arg-type]
+    async with asyncio.TaskGroup() as tasks:
+        serving = tasks.create_task(_serve(made))
+        for tracker_id, kind in (("T1", "track"), ("T2", "park"), ("T3", "stop"), ("T4", "stop")):
+            made.take(tracker_id, message(kind, kind + tracker_id), retained=False)
+        await eventually(lambda: len(told) == 4)
+        serving.cancel()
+    carried_out = {(order.tracker_id, order.command.kind) for order in door.orders}
+    assert carried_out == {("T1", "track"), ("T2", "park"), ("T3", "stop"), ("T4", "stop")}
+    assert set(told) == {("T1", "trackT1"), ("T2", "parkT2"), ("T3", "stopT3"), ("T4", "stopT4")}

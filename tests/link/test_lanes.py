@@ -1,6 +1,7 @@
 """Lanes: one call a key, the next one for all who asked meanwhile, none later than 250 ms."""
 
 import asyncio
+import gc
 from collections.abc import Callable, Coroutine
 from datetime import timedelta
 from typing import Any
@@ -117,4 +118,43 @@ async def test_who_leaves_does_not_end_the_call() -> None:
     assert len(lanes) == 1
     work.answers[0].set_result(1)
     await turns()
+    assert len(lanes) == 0
+
+
+async def test_only_a_call_that_has_not_begun_yet_waits() -> None:
+    lanes: Lanes[int] = Lanes(VirtualClock(NOON))
+    work = Work()
+    asked = [asyncio.create_task(lanes.ask("T1", work.do)) for _ in range(1)]
+    await turns()
+    assert not lanes.waits("T1")
+    asked.append(asyncio.create_task(lanes.ask("T1", work.do)))
+    await turns()
+    assert lanes.waits("T1")
+    assert not lanes.waits("T2")
+    for answer in (0, 1):
+        work.answers[answer].set_result(answer)
+        await turns()
+    assert not lanes.waits("T1")
+    assert await asyncio.gather(*asked) == [0, 1]
+
+
+async def test_nobody_is_told_of_an_error_that_nobody_waits_for() -> None:
+    """Whoever asked has gone: the loop's own complaint about it would be the only trace."""
+    complaints: list[object] = []
+    asyncio.get_running_loop().set_exception_handler(lambda _, context: complaints.append(context))
+    lanes: Lanes[int] = Lanes(VirtualClock(NOON))
+    for end in (OSError("no drive"), asyncio.CancelledError()):
+        work = Work()
+        leaving = asyncio.create_task(lanes.ask("T1", work.do))
+        await turns()
+        leaving.cancel()
+        await turns()
+        if isinstance(end, OSError):
+            work.answers[0].set_exception(end)
+        else:
+            work.answers[0].cancel()
+        del work, leaving
+        await turns()
+        gc.collect()
+    assert complaints == []
     assert len(lanes) == 0

@@ -130,3 +130,38 @@ async def test_as_shipped_a_client_has_64_and_all_have_1024() -> None:
     assert [await held.ask(LIVE, NEAR) for _ in range(960)] == [[]] * 960
     assert await held.ask(LIVE, NEAR) != []
     await held.end()
+
+
+async def test_one_that_ends_makes_room_for_one_and_the_others_still_count() -> None:
+    ends: list[asyncio.Event] = []
+    came = asyncio.Event()
+
+    async def last(scope: Any, receive: Any, send: Any) -> None:
+        ends.append(asyncio.Event())
+        came.set()
+        await ends[-1].wait()
+
+    limit = StreamLimit(last, clock=SystemClock(), most_a_client=2)
+
+    async def ask() -> asyncio.Task[None]:
+        async def send(message: Any) -> None:
+            refused.append(message)
+
+        asked = asyncio.ensure_future(limit({"type": "http", "path": STREAM, "client": (FAR, 1)}, ask, send))
+        begun = asyncio.ensure_future(came.wait())
+        await asyncio.wait({asked, begun}, return_when=asyncio.FIRST_COMPLETED)
+        came.clear()
+        begun.cancel()
+        return asked
+
+    refused: list[dict[str, Any]] = []
+    asked = [await ask(), await ask()]
+    ends[0].set()
+    await asked[0]
+    asked.append(await ask())
+    assert not refused
+    await ask()
+    assert refused[0]["status"] == 503
+    for end in ends:
+        end.set()
+    await asyncio.gather(*asked)
