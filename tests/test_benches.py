@@ -7,8 +7,8 @@ import pytest
 from bench.__main__ import names, renewed, section
 from bench.table import NotMeasured, Row, at_least, at_most, beside, must_hold, spread, worst
 
-NOT_SMALL = {"disk", "lighthouse", "storm", "store"}
-"""Lighthouse needs Node.js from the network and half a minute a page; the others have tests of their own."""
+NOT_SMALL = {"lighthouse"}
+"""Lighthouse needs Node.js from the network and half a minute a page."""
 
 
 def has_small(name: str) -> bool:

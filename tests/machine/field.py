@@ -2,7 +2,7 @@
 
 import asyncio
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from itertools import accumulate
 from pathlib import Path
@@ -15,7 +15,7 @@ from app.link.metrics import Lateness, MachineMetrics
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.sun.position import Algorithm, Location, sun_position
-from app.tracker.config import DriveConfig, DriveKind, Orientation, TrackerConfig
+from app.tracker.config import DriveConfig, DriveKind, NightBehaviour, Orientation, TrackerConfig
 from app.tracker.memory import (
     ClockSetting,
     Confirmation,
@@ -26,6 +26,7 @@ from app.tracker.memory import (
     TrackerState,
 )
 from app.tracker.mode import Mode
+from app.tracker.shelter import TWILIGHT_DEG
 from app.tracker.snapshot import ActivityName, EventKind, SiteSnapshot
 from tests.machine.service import Service
 
@@ -36,11 +37,25 @@ LATITUDE = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """Drives that share one serial line behind a gateway: where that is, how many there are."""
+    """Drives that share one line: how it is reached, how many there are, and their own watchdogs."""
 
-    port: int
+    drive: DriveConfig
     drives: int
     memory: Path
+    watchdog_ms: int = 500
+
+    @property
+    def doors(self) -> tuple[str, ...]:
+        """Return the words that have `heliopanel drive-sim` serve them."""
+        drive, serial = self.drive, self.drive.serial
+        reached = {
+            DriveKind.MODBUS_TCP: ("--tcp", drive.line),
+            DriveKind.MODBUS_RTU_OVER_TCP: ("--rtu-over-tcp", drive.line),
+            DriveKind.MODBUS_RTU: ("--rtu", serial.port, "--baud-rate", str(serial.baud_rate), "--paced"),
+        }[drive.kind]
+        units = [word for unit in range(1, self.drives + 1) for word in ("--unit", str(unit))]
+        kept = ("--memory", str(self.memory), "--watchdog-ms", str(self.watchdog_ms))
+        return (*reached, *units, *kept)
 
     def memory_of(self, unit: int) -> Path:
         """Return where `heliopanel drive-sim` keeps the position of one of them."""
@@ -54,13 +69,13 @@ def noon_place(at: datetime) -> Location:
 
 
 def dawn_place(at: datetime) -> Location:
-    """Return a place where the sun rises at an instant."""
+    """Return a place where the sun wakes trackers at an instant."""
     west, east = 60.0, 120.0
     noon_deg = noon_place(at).longitude_deg
     for _ in range(40):
         middle = (west + east) / 2.0
         sun = sun_position(Algorithm.PSA, _at_longitude(noon_deg - middle), at)
-        west, east = (middle, east) if sun.apparent_elevation_deg > 0.0 else (west, middle)
+        west, east = (middle, east) if sun.apparent_elevation_deg > TWILIGHT_DEG else (west, middle)
     return _at_longitude(noon_deg - west)
 
 
@@ -124,8 +139,9 @@ def _trackers(count: int, now: datetime, line: Line | None) -> Iterable[TrackerS
     for number in range(1, count + 1):
         drive = DriveConfig()
         if line is not None and number <= line.drives:
-            drive = DriveConfig(DriveKind.MODBUS_RTU_OVER_TCP, port=line.port, unit=number)
-        yield TrackerState(TrackerConfig(f"T{number}", f"Tracker {number}", drive=drive), memory)
+            drive = replace(line.drive, unit=number)
+        config = TrackerConfig(f"T{number}", f"Tracker {number}", drive=drive, night=NightBehaviour.HOLD)
+        yield TrackerState(config, memory)
 
 
 def sheltered(site: SiteSnapshot | None) -> int:
