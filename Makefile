@@ -13,7 +13,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 # Tests that judge how punctual things are, each with the computer to itself; the others share the cores.
 ALONE := tests/drives/timed tests/test_benches.py \
-	$(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk kills process storm storm_kill)) \
+	$(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk field_events kills process storm storm_kill)) \
 	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop two_operators)) \
 	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost hold_to_run kill many_holds stop_and_tabs))
 

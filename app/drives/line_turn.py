@@ -10,6 +10,8 @@ READ_REQUEST, READ_HEAD, WRITE_BOTH = 8, 5, 16
 SILENCES, SILENT_CHARACTERS, SHORTEST_SILENCE_S = 4, 3.5, 0.00175
 DEVICE_S = 0.005
 """How long a device usually thinks before it replies."""
+UNKNOWN_S = 0.01
+"""What a device behind a gateway takes of a turn until that is measured; most take less."""
 REPLIES = 2
 NEWEST_SHARE = 0.1
 
@@ -47,7 +49,7 @@ class Part:
     @property
     def takes_s(self) -> float:
         """Return how long this device keeps the line busy in a turn."""
-        return sum(self._reads.values()) + self._write_s if self._reads else self.reckoned_s
+        return sum(self._reads.values()) + self._write_s if self._reads else self.reckoned_s or UNKNOWN_S
 
     def note(self, address: int, took_s: float, *, written: bool) -> None:
         """Take in how long one good exchange took."""

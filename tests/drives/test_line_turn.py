@@ -21,6 +21,7 @@ def test_a_part_of_a_serial_line_is_what_its_characters_silences_and_replies_tak
 def test_a_part_is_measured_once_the_device_has_answered() -> None:
     part = Part(0.08)
     assert part.takes_s == 0.08
+    assert Part(0.0).takes_s == 0.01, "behind a gateway nothing is known before"
     part.note(0, 0.05, written=False)
     part.note(20, 0.01, written=True)
     part.note(21, 0.01, written=True)

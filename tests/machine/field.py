@@ -83,8 +83,13 @@ def _at_longitude(longitude_deg: float) -> Location:
     return Location(LATITUDE, (longitude_deg + 180.0) % 360.0 - 180.0)
 
 
-def prepare(data_dir: Path, count: int, location: Location, line: Line | None = None) -> None:
-    """Store a site with its trackers, and where its simulated drives stand."""
+def prepare(
+    data_dir: Path, count: int, location: Location, line: Line | None = None, *, revision: int = 1
+) -> None:
+    """Store a site with its trackers, and where its simulated drives stand.
+
+    Steps are confirmed for a revision of the location: for the next one, trackers wait for that.
+    """
     now = datetime.now(UTC) - timedelta(minutes=1)
     data_dir.mkdir(mode=0o700, parents=True, exist_ok=True)
     url = f"sqlite:///{data_dir / 'heliopanel.db'}"
@@ -92,7 +97,7 @@ def prepare(data_dir: Path, count: int, location: Location, line: Line | None = 
     store = open_writer(url)
     try:
         store.save_site(_site(location, now))
-        for state in _trackers(count, now, line):
+        for state in _trackers(count, now, line, revision):
             store.save_tracker(state)
     finally:
         store.close()
@@ -127,8 +132,8 @@ def _site(location: Location, now: datetime) -> SiteState:
     )
 
 
-def _trackers(count: int, now: datetime, line: Line | None) -> Iterable[TrackerState]:
-    said = Confirmation(now, "technician", 1)
+def _trackers(count: int, now: datetime, line: Line | None, revision: int) -> Iterable[TrackerState]:
+    said = Confirmation(now, "technician", revision)
     memory = TrackerMemory(
         mode=Mode.DUAL,
         orientation=Orientation(180.0, 45.0),

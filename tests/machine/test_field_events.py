@@ -25,8 +25,7 @@ FIELD = Size(amount(12, 100), 100, amount(240, 12_000))
 LARGEST = Size(amount(40, 1000), 1000, amount(80, 12_000))
 LATEST_MS = 50.0
 AT_ONCE_S, LOST_WITHIN_S, BACK_WITHIN_S, READY_WITHIN_S = 1.0, 2.0, 5.0, 20.0
-SUNRISE_IN_S = amount(14.0, 40.0)
-"""Long enough to start, and to announce and be done with what follows a restart."""
+SUNRISE_IN_S = amount(3.0, 15.0)
 VIEWERS = 20
 
 
