@@ -1,12 +1,15 @@
 """A key that is held stays under the finger, whatever appears or goes above it."""
 
 from collections.abc import Callable
+from dataclasses import replace
+from datetime import datetime
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, expect
 
+from app.tracker.snapshot import Snapshot
 from app.web.languages.known import LANGUAGES
-from tests.browser.conftest import SIZES, Opened
+from tests.browser.conftest import SIZES, Opened, Plant
 from tests.browser.hands import LINK_MEASURED, until
 from tests.browser.walking import service
 
@@ -122,3 +125,51 @@ def test_on_a_tablet_step_three_is_worked_without_scrolling_in_every_language(
         assert page.evaluate(BELOW, list(SEEN_AT_ONCE)) == [], language
         assert page.evaluate(SMALLEST_JOG_KEY) >= 112, language
     context.close()
+
+
+KEYS = """() => [...document.querySelectorAll("main :is([data-jog], [data-action], .speed .key)")]
+  .filter((one) => one.checkVisibility())
+  .map((one) => one.getBoundingClientRect())
+  .map((box) => [box.x, box.y + scrollY, box.width, box.height])"""
+SPILLED = """() => {
+  const note = document.querySelector("[data-stale-note]");
+  const [box, place] = [note.getBoundingClientRect(), note.parentElement.getBoundingClientRect()];
+  return box.top < place.top - 1 || box.bottom > place.bottom + 1 || note.scrollWidth > note.clientWidth;
+}"""
+
+
+def lost(plant: Plant) -> None:
+    """Have T1 read no position from now on."""
+    tracker = plant.machine.trackers["T1"]
+    heard = tracker.snapshot
+
+    def unheard(at: datetime, tick: int) -> Snapshot:
+        return replace(heard(at, tick), measured=None, position_age_s=75.4)
+
+    plant.do(lambda: setattr(tracker, "snapshot", unheard))
+
+
+@pytest.mark.parametrize("path", [HOMING, "/trackers/T1"])
+@pytest.mark.parametrize("size", ["tablet", "phone"])
+def test_the_last_reading_has_its_room_and_moves_no_key(
+    size: str, path: str, opened: Opened, plant: Plant
+) -> None:
+    pages = {}
+    for language in LANGUAGES:
+        page = pages[language] = opened(path, size)
+        page.context.add_cookies([{"name": "language", "value": language, "url": plant.url}])
+        page.reload()
+        page.wait_for_selector('html[data-link="live"]')
+    page.context.clear_cookies(name="language")
+    before = {language: page.evaluate(KEYS) for language, page in pages.items()}
+    lost(plant)
+    for language, page in pages.items():
+        expect(page.locator("[data-stale-note]")).to_contain_text("180")
+        after = page.evaluate(KEYS)
+        moved = [
+            abs(x - y)
+            for a, b in zip(before[language], after, strict=True)
+            for x, y in zip(a, b, strict=True)
+        ]
+        assert max(moved) <= 1, language
+        assert not page.evaluate(SPILLED), language
