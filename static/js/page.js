@@ -2,6 +2,7 @@
 
 import { start as startControl } from "./control.js";
 import { start as startAlarms } from "./alarms.js";
+import { start as startAsking } from "./asked.js";
 import { start as startKeeping } from "./keep.js";
 import { start as startLive } from "./live.js";
 import { start as startOrders } from "./orders.js";
@@ -16,6 +17,7 @@ startStop();
 startTheme();
 startKeeping();
 startOrders();
+startAsking();
 startProving();
 startSteps();
 startControl();

@@ -1,13 +1,17 @@
 """A clock that differs from this device's, and a longitude on the wrong side, are asked about on the page."""
 
 import re
+from collections.abc import Callable
 
-from playwright.sync_api import expect
+import pytest
+from playwright.sync_api import Locator, Page, expect
 
 from app.link.messages import SetClock, SetLocation
 from tests.browser.conftest import Opened, Plant
+from tests.browser.hands import CONFIRM_MS, Mouse
 
 CLOCK = "/trackers/T1/commissioning/clock"
+HOMING = "/trackers/T1/commissioning/homing"
 PLACE = "/trackers/T1/commissioning/location"
 LATE = """() => {
   const [now, Real] = [Date.now, Date];
@@ -50,3 +54,55 @@ def test_a_longitude_on_the_wrong_side_is_asked_about(opened: Opened, plant: Pla
     page.locator("#forward .key").click()
     expect(page).to_have_url(re.compile("/clock$"))
     assert asked(plant, SetLocation) == 1
+
+
+COVERED = """(key) => {
+  const box = key.getBoundingClientRect();
+  const top = (x, y) => document.elementFromPoint(x, y);
+  const points = [box.left + 8, box.x + box.width / 2, box.right - 8]
+    .flatMap((x) => [box.top + 8, box.y + box.height / 2, box.bottom - 8].map((y) => [x, y]));
+  return points.filter(([x, y]) => top(x, y)?.closest("button, label") !== key);
+}"""
+
+
+def reached(page: Page, key: Locator) -> None:
+    """Wait until a key of a question is there; every corner of it can be touched as the page stands then."""
+    key.wait_for()
+    page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    assert key.evaluate(COVERED) == []
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+@pytest.mark.parametrize("size", ["tablet", "phone"])
+def test_the_key_of_a_question_is_not_covered_when_it_appears(
+    size: str, language: str, opened: Opened, plant: Plant, picture: Callable[[Page, str], None]
+) -> None:
+    def asking(path: str) -> Page:
+        page = opened(path, size, allow=("422", "409"))
+        page.context.add_cookies([{"name": "language", "value": language, "url": plant.url}])
+        page.goto(plant.url + path)
+        page.wait_for_selector('html[data-link="live"]')
+        return page
+
+    page = asking("/trackers/T1/record")
+    page.locator("#f-technician").fill("Ada")
+    page.locator("[data-sign]").click()
+    reached(page, page.locator('[data-sign][name="confirmed"]'))
+    picture(page, f"asked-sign-{size}-{language}")
+    page = asking(HOMING)
+    Mouse(page).hold(page.locator('[data-action="zero"][data-after-jog]'), CONFIRM_MS)
+    reached(page, page.locator('.ask-zero [name="confirmed"]'))
+    picture(page, f"asked-home-{size}-{language}")
+    page = asking(CLOCK)
+    page.evaluate(LATE)
+    page.locator('form[action$="/clock/system"] > button').click()
+    reached(page, page.locator('.ask-clock [name="confirmed"]'))
+    page = asking(PLACE)
+    page.locator('input[name="longitude_side"][value="W"]').check()
+    page.locator("#forward .key").click()
+    reached(page, page.locator("#place-doubts label"))
+    page = asking("/trackers/T1/settings")
+    page.locator('[name="azimuth_maximum"]').fill("400")
+    page.locator("#settings-form .key-primary, form:has(#settings-outcome) > .key-primary").first.click()
+    reached(page, page.locator("#limit-review button"))
+    page.context.clear_cookies(name="language")

@@ -1,0 +1,26 @@
+// A question that an answer brings is read and answered where it stands: it is scrolled to above the footer.
+
+const KEEP_PX = 12;
+const seen = new WeakSet();
+
+// Of a question higher than the screen its end is shown, where its key is.
+function bring(question) {
+  const least = KEEP_PX + (parseFloat(getComputedStyle(document.documentElement).scrollPaddingTop) || 0);
+  const above = least - question.getBoundingClientRect().top;
+  if (above > 0) scrollBy({ top: -above, behavior: "instant" });
+  const most = document.querySelector(".footer").getBoundingClientRect().top - KEEP_PX;
+  const below = question.getBoundingClientRect().bottom - most;
+  if (below > 0) scrollBy({ top: below, behavior: "instant" });
+}
+
+function look() {
+  for (const question of document.querySelectorAll("[data-question]")) {
+    if (!seen.has(question)) bring(question);
+    seen.add(question);
+  }
+}
+
+export function start() {
+  document.addEventListener("htmx:after:swap", look);
+  look();
+}
