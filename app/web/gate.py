@@ -48,6 +48,9 @@ NOT_SET_UP = (
     "This panel has no administrator yet and serves only its set-up page. Open /setup with the code "
     "from its console, or run: heliopanel users add NAME --role administrator"
 )
+LONGEST_BACK = 300
+"""As long as the way back may be in the address of the pages that ask for a password."""
+
 MOST_FIELDS = 50
 TOO_MANY_FIELDS = f"The address of a request has at most {MOST_FIELDS} fields: leave out the others."
 OLD_PAGE = "This page is too old to change anything. Load it again, then repeat what you did."
@@ -268,7 +271,7 @@ def way_in(request: Request, error: Exception) -> Response | None:
         return None
     is_form = request.method not in SAFE_METHODS
     back = _page_of(request, "/") if is_form else str(request.url.path)
-    path = login_path("/" if is_form else back) if isinstance(error, SignInNeeded) else proof_path(back)
+    path = login_path(back) if isinstance(error, SignInNeeded) else proof_path(back)
     if "hx-request" in request.headers:
         return Response(status_code=204, headers={"HX-Redirect": path})
     return RedirectResponse(path, 303)
@@ -278,7 +281,8 @@ def _page_of(request: Request, otherwise: str) -> str:
     """Return the page that a form was on, by the address that the browser tells."""
     current = request.headers.get("hx-current-url") or request.headers.get("referer") or ""
     at = current.find("/", current.find("//") + 2)
-    return current[at:] if at > 0 else otherwise
+    page = current[at:] if at > 0 else otherwise
+    return page if len(page) <= LONGEST_BACK else page.partition("?")[0]
 
 
 async def _answer(scope: Scope, receive: Receive, send: Send, response: Response) -> None:

@@ -1,16 +1,20 @@
 // What was typed outlives a reload, in this tab: it comes back with a word about it, until it is saved or discarded.
+// Secrets are never stored: of these only that they were typed, so that the page can say that they are gone.
 
 import { loadAgain } from "./again.js";
 import { _ } from "./said.js";
 
-const WORTH_IT = "main form.form[method=post]:not(.action)";
+const WORTH_IT = "main form:is(.form, [data-keep])[method=post]:not(.action)";
 const SENT = "typed-and-sent";
-const SKIPPED = new Set(["password", "file", "submit", "button"]);
+const SKIPPED = new Set(["file", "submit", "button"]);
+const SECRET_TYPED = "secret typed";
 const ORDER_FIELDS = new Set(["back", "issued_at", "key", "epoch"]);
+const ASKS_FIRST = /^\/(login|prove)\b/;
 const DRAWN = /_drawn$/;
 
 const placeOf = (form) => `typed:${location.pathname}:${form.id || form.getAttribute("action")}`;
 
+const isSecret = (field) => field.type === "password" || "secret" in field.dataset;
 const kept = (field) => field.name && !SKIPPED.has(field.type) && !ORDER_FIELDS.has(field.name)
   && (field.type !== "hidden" || DRAWN.test(field.name));
 
@@ -26,7 +30,9 @@ const nameOf = (field) => (field.type === "radio" ? `${field.name}=${field.value
 function changes(form) {
   const found = {};
   for (const field of form.elements) {
-    if (kept(field) && nowOf(field) !== standsAt(field)) found[nameOf(field)] = { from: standsAt(field), to: nowOf(field) };
+    if (!kept(field) || nowOf(field) === standsAt(field)) continue;
+    if (isSecret(field)) found[SECRET_TYPED] = true;
+    else found[nameOf(field)] = { from: standsAt(field), to: nowOf(field) };
   }
   return found;
 }
@@ -45,17 +51,20 @@ function put(field, value) {
 // A field whose stored value has changed meanwhile keeps the new one: what was typed belonged to the old.
 function bringBack(form) {
   const stored = JSON.parse(sessionStorage.getItem(placeOf(form)) ?? "{}");
-  const back = [...form.elements].filter((field) => kept(field) && stored[nameOf(field)]?.from === standsAt(field));
+  const back = [...form.elements].filter((field) => kept(field) && !isSecret(field) && stored[nameOf(field)]?.from === standsAt(field));
   for (const field of back) put(field, stored[nameOf(field)].to);
-  return back.length;
+  return { typed: back.length > 0, secret: Boolean(stored[SECRET_TYPED]) };
 }
 
-function tell(form) {
+function tell(form, { typed, secret }) {
   const note = document.createElement("div");
   note.className = "kept-note";
   note.setAttribute("role", "status");
   const words = document.createElement("span");
-  words.textContent = _("The page was loaded again. What you had typed is back, and not saved yet.");
+  words.textContent = [
+    typed && _("The page was loaded again. What you had typed is back, and not saved yet."),
+    secret && _("Passwords and other secrets are not kept: type them again. Nothing is saved yet."),
+  ].filter(Boolean).join(" ");
   const key = document.createElement("button");
   key.type = "button";
   key.className = "key";
@@ -68,15 +77,20 @@ function tell(form) {
   form.prepend(note);
 }
 
+const watched = new WeakSet();
+
 function watch(form) {
+  if (watched.has(form)) return;
+  watched.add(form);
   for (const field of form.elements) if (field.type === "hidden") field.dataset.served = field.value;
-  if (bringBack(form)) {
-    tell(form);
-    form.dispatchEvent(new Event("input", { bubbles: true }));
-  }
+  const back = bringBack(form);
+  if (!back.typed && !back.secret) return;
+  form.closest("details")?.setAttribute("open", "");
+  tell(form, back);
+  if (back.typed) form.dispatchEvent(new Event("input", { bubbles: true }));
 }
 
-const formsWorthIt = () => document.querySelectorAll(WORTH_IT);
+const watchAll = () => document.querySelectorAll(WORTH_IT).forEach(watch);
 
 // A refusal, and the pages on which somebody is asked for a name or a password first, keep what was typed.
 function forgetSent() {
@@ -88,7 +102,8 @@ function forgetSent() {
 
 export function start() {
   forgetSent();
-  formsWorthIt().forEach(watch);
+  watchAll();
+  document.addEventListener("htmx:after:swap", watchAll);
   for (const kind of ["input", "change"]) {
     document.addEventListener(kind, (event) => {
       const form = event.target.closest?.(WORTH_IT);
@@ -96,9 +111,9 @@ export function start() {
     });
   }
   document.addEventListener("htmx:after:request", (event) => {
-    const { sourceElement, response, request } = event.detail?.ctx ?? {};
+    const { sourceElement, response, request, hx } = event.detail?.ctx ?? {};
     const form = sourceElement?.closest?.("form");
-    if (!form || !response || (response.status ?? 500) >= 400) return;
+    if (!form || !response || (response.status ?? 500) >= 400 || ASKS_FIRST.test(hx?.redirect)) return;
     if (new URL(request.action, location).pathname === new URL(form.action).pathname) sessionStorage.removeItem(placeOf(form));
   });
   // A form that goes as a page: what was typed is forgotten once the page that comes back refuses nothing.

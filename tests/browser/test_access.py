@@ -74,9 +74,9 @@ class Door:
         page.goto(self.url + path)
         return page
 
-    def signed_in(self, name: str, path: str) -> Page:
+    def signed_in(self, name: str, path: str, size: str = "desk") -> Page:
         """Sign in by hand and open a page."""
-        page = self.stranger(f"/login?back={path}")
+        page = self.stranger(f"/login?back={path}", size)
         sign_in(page, name, PASSWORD)
         page.wait_for_selector('html[data-link="live"]')
         return page

@@ -14,7 +14,7 @@ from app.web.contexts import Field
 from app.web.deps import PanelDep, PrincipalDep, panel, principal
 from app.web.errors import problem_of
 from app.web.ui.frame import site_frame
-from app.web.ui.render import page
+from app.web.ui.render import whole_page
 
 router = APIRouter()
 
@@ -43,10 +43,10 @@ async def change_password(
 
 
 @router.post("/account/sessions/{digest}/end")
-async def end_session(digest: str, built: PanelDep, who: PrincipalDep) -> Response:
+async def end_session(request: Request, digest: str, built: PanelDep, who: PrincipalDep) -> Response:
     """End one of one's own sessions."""
     await built.keeper.end_own_session(who, digest)
-    return RedirectResponse("/account", 303)
+    return _answer(request, done="The session has ended.")
 
 
 @router.post("/kiosk/pin")
@@ -73,4 +73,4 @@ def _answer(request: Request, *, error: Exception | None = None, done: str = "")
         mine=who.credential,
         now=built.clock.now(),
     )
-    return page(request, context, status=problem.status if problem else 200)
+    return whole_page(request, context, status=problem.status if problem else 200)

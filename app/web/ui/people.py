@@ -16,7 +16,7 @@ from app.web.deps import PanelDep, PrincipalDep, panel, principal
 from app.web.errors import problem_of
 from app.web.sign_ins import remember_first
 from app.web.ui.frame import site_frame
-from app.web.ui.render import go, page
+from app.web.ui.render import go, whole_page
 
 router = APIRouter(prefix="/users")
 
@@ -132,4 +132,4 @@ def _answer(
         done=done,
         mine=principal(request).credential,
     )
-    return page(request, context, status=problem.status if problem else 200)
+    return whole_page(request, context, status=problem.status if problem else 200)

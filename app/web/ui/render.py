@@ -45,6 +45,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "said": languages.said,
     "options_said": options_said,
 }
+IN_PLACE = {"HX-Retarget": "#content", "HX-Reselect": "#content", "HX-Reswap": "outerHTML"}
 VARY = {"Vary": "HX-Request, HX-Request-Type, Cookie, Accept-Language"}
 
 
@@ -153,6 +154,13 @@ def page(request: Request, context: Context, *, block: str | None = None, status
         text = env.get_template(context.template).render(given)
     text = shut(text, principal(request), request.app.state.routes)
     return HTMLResponse(text, status, VARY)
+
+
+def whole_page(request: Request, context: Context, *, status: int = 200) -> Response:
+    """Answer a form with its whole page, whose content htmx puts in place; a refusal stays at the form."""
+    response = page(request, context, status=status)
+    response.headers.update(IN_PLACE)
+    return response
 
 
 def go(request: Request, url: str) -> Response:

@@ -16,7 +16,7 @@ from app.web.deps import PanelDep, PrincipalDep, panel
 from app.web.errors import problem_of
 from app.web.ui.forms import Typed
 from app.web.ui.frame import site_frame
-from app.web.ui.render import go, page
+from app.web.ui.render import whole_page
 
 router = APIRouter(prefix="/tokens")
 FIELDS = ("name", "trackers", "days", "pin")
@@ -61,7 +61,7 @@ async def mint(
 async def revoke(request: Request, token_id: str, built: PanelDep, who: PrincipalDep) -> Response:
     """Revoke a token; what it opened ends within a second."""
     await built.keeper.do(lambda: built.keeper.accounts.revoke(who, token_id, built.clock.now()))
-    return go(request, "/tokens")
+    return _answer(request, Typed(EMPTY), frozenset({Scope.READ}))
 
 
 def _answer(
@@ -83,4 +83,4 @@ def _answer(
         made=made,
         now=built.clock.now(),
     )
-    return page(request, context, status=status)
+    return whole_page(request, context, status=status)
