@@ -3,6 +3,7 @@
 
 import { loadAgain } from "./again.js";
 import { _ } from "./said.js";
+import { linesOf, start as startSaying, tell as tellSaved, tellAfterReload } from "./saved.js";
 
 const WORTH_IT = "main form:is(.form, [data-keep])[method=post]:not(.action)";
 const SENT = "typed-and-sent";
@@ -27,14 +28,24 @@ function standsAt(field) {
 const nowOf = (field) => (field.type === "checkbox" || field.type === "radio" ? field.checked : field.value);
 const nameOf = (field) => (field.type === "radio" ? `${field.name}=${field.value}` : field.name);
 
+const changed = (form) => [...form.elements].filter((field) => kept(field) && nowOf(field) !== standsAt(field))
+  .map((field) => [field, { from: standsAt(field), to: nowOf(field), secret: isSecret(field) }]);
+
 function changes(form) {
   const found = {};
-  for (const field of form.elements) {
-    if (!kept(field) || nowOf(field) === standsAt(field)) continue;
-    if (isSecret(field)) found[SECRET_TYPED] = true;
-    else found[nameOf(field)] = { from: standsAt(field), to: nowOf(field) };
+  for (const [field, { from, to, secret }] of changed(form)) {
+    if (secret) found[SECRET_TYPED] = true;
+    else found[nameOf(field)] = { from, to };
   }
   return found;
+}
+
+// What is stored now is what the next change differs from.
+function settle(field, value) {
+  if (field.type === "checkbox" || field.type === "radio") field.defaultChecked = value;
+  else if (field.tagName === "SELECT") for (const option of field.options) option.defaultSelected = option.value === value;
+  else if (field.type === "hidden") field.dataset.served = value;
+  else field.defaultValue = value;
 }
 
 function keep(form) {
@@ -100,8 +111,36 @@ function forgetSent() {
   if (place && !refused) sessionStorage.removeItem(place);
 }
 
+const sent = new WeakMap();
+
+function remember({ detail: { ctx } }) {
+  const form = ctx.sourceElement?.closest?.("form");
+  if (form?.matches(WORTH_IT)) sent.set(form, changed(form));
+}
+
+function answered({ detail }) {
+  const { sourceElement, response, request, hx, text } = detail?.ctx ?? {};
+  const form = sourceElement?.closest?.("form");
+  if (!form || !response || (response.status ?? 500) >= 400 || ASKS_FIRST.test(hx?.redirect)) return;
+  if (text?.includes("data-question")) return;
+  if (new URL(request.action, location).pathname !== new URL(form.action).pathname) return;
+  sessionStorage.removeItem(placeOf(form));
+  if (hx?.redirect && new URL(hx.redirect, location).pathname === location.pathname) tellAfterReload(linesOf(form, sent.get(form) ?? []));
+}
+
+// The answer of a form that stays says below its key that it is saved.
+function swapped({ detail }) {
+  const form = detail?.ctx?.sourceElement?.closest?.("form");
+  if (!form?.isConnected || !sent.has(form) || !form.querySelector(".outcome .outcome-ok")) return;
+  const saved = sent.get(form);
+  tellSaved(form, linesOf(form, saved));
+  for (const [field, { to, secret }] of saved) if (!secret) settle(field, to);
+  sent.delete(form);
+}
+
 export function start() {
   forgetSent();
+  startSaying();
   watchAll();
   document.addEventListener("htmx:after:swap", watchAll);
   for (const kind of ["input", "change"]) {
@@ -110,12 +149,9 @@ export function start() {
       if (form) keep(form);
     });
   }
-  document.addEventListener("htmx:after:request", (event) => {
-    const { sourceElement, response, request, hx } = event.detail?.ctx ?? {};
-    const form = sourceElement?.closest?.("form");
-    if (!form || !response || (response.status ?? 500) >= 400 || ASKS_FIRST.test(hx?.redirect)) return;
-    if (new URL(request.action, location).pathname === new URL(form.action).pathname) sessionStorage.removeItem(placeOf(form));
-  });
+  document.addEventListener("htmx:config:request", remember);
+  document.addEventListener("htmx:after:request", answered);
+  document.addEventListener("htmx:after:swap", swapped);
   // A form that goes as a page: what was typed is forgotten once the page that comes back refuses nothing.
   document.addEventListener("submit", ({ target }) => {
     if (target.matches(WORTH_IT) && !target.hasAttribute("hx-post")) sessionStorage.setItem(SENT, placeOf(target));

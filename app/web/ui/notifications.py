@@ -47,7 +47,7 @@ async def save(
         context = _page(press.request, typed, webhook_url, mail_to, str(error))
         return page(press.request, context, block="form", status=422)
     await press.send(SetNotifications(wanted))
-    return press.answer("Saved.")
+    return press.answer("The notifications are saved.")
 
 
 @router.post("/test")
