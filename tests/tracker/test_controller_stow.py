@@ -322,6 +322,20 @@ def test_a_latched_storm_survives_a_restart_and_its_calm_time_begins_anew() -> N
     assert doing(fresh) is ActivityName.TRACKING
 
 
+def test_after_a_restart_in_a_storm_the_journal_says_that_the_panel_stows_first() -> None:
+    plant = restarted(tracking().blow(STORM))
+    plant.forward(40)
+    assert doing(plant) is ActivityName.STOWED
+    assert not plant.happened(EventKind.TRACKING_RESUMED)
+    told = [event.message for event in plant.events]
+    waits, goes = "Tracking is on, but the panel stows first.", "Tracker 1 goes to the stow position wind."
+    assert told.index(waits) < told.index(goes)
+    plant.blow(5.0).forward(CALM_S + 60)
+    assert doing(plant) is ActivityName.TRACKING
+    (event,) = plant.happened(EventKind.TRACKING_RESUMED)
+    assert event.message == "Tracking goes on after the stow."
+
+
 def test_after_a_restart_a_storm_that_was_not_seen_over_still_holds() -> None:
     plant = tracking()
     plant.blow(STORM).forward(60)

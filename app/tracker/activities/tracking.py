@@ -67,9 +67,11 @@ def resume(mind: Mind, after: str = "the restart") -> None:
     if not reasons:
         mind.activity = TRACKING[TrackPhase.FOLLOWING]
         mind.wait = None
+        if demanded_stow(mind) is not None:
+            mind.say(EventKind.TRACKING_WAITING, "Tracking is on, but the panel stows first.")
+            return
         mind.say(EventKind.TRACKING_RESUMED, f"Tracking goes on after {after}.", mode=mind.memory.mode)
-        if demanded_stow(mind) is None:
-            announce(mind, f"{mind.config.name} goes on tracking after {after}.")
+        announce(mind, f"{mind.config.name} goes on tracking after {after}.")
         return
     mind.wait = mind.held_back = reasons[0]
     why = " ".join(reason.message for reason in reasons)
