@@ -104,6 +104,11 @@ def undo_zero(mind: Mind) -> None:
     mind.say(EventKind.ZERO_UNDONE, "The home position is again the one before it was set last.")
 
 
+def is_undone(mind: Mind) -> bool:
+    """Return whether the drive counts from a zero that was undone, with no trusted one before it."""
+    return mind.memory.home is None and mind.memory.home_shift != UNSHIFTED
+
+
 def _confirmations(mind: Mind, former: FormerHome) -> dict[StepName, Confirmation]:
     confirmations = dict(mind.memory.confirmations)
     confirmations.pop(StepName.HOMING, None)

@@ -23,6 +23,7 @@ from app.tracker.authority import service_state
 from app.tracker.commissioning import Standing
 from app.tracker.conditions import Action, reachable, undoable, unmet
 from app.tracker.config import MountKind, Orientation, TrackerConfig
+from app.tracker.home_shift import is_undone
 from app.tracker.hybrid import Corrected
 from app.tracker.mind import Mind
 from app.tracker.motion import AxisFeedback, Feedback, Position
@@ -73,8 +74,8 @@ def snapshot(mind: Mind, at: datetime, now: datetime, *, asked: bool = True) -> 
         off_sun_deg=_off_deg(mind.config, _uncorrected(mind, fresh), mind.sun) if sun_is_up else None,
         in_position=_in_position(mind, fresh),
         home_trusted=mind.memory.home is not None,
-        azimuth=_axis_state(fresh.azimuth) if fresh else None,
-        elevation=_axis_state(fresh.elevation) if fresh and not mind.config.mount.single_axis else None,
+        azimuth=_axis_state(mind, fresh.azimuth) if fresh else None,
+        elevation=_axis_state(mind, fresh.elevation) if fresh and not mind.config.mount.single_axis else None,
         fault=mind.activity.reason if isinstance(mind.activity, Faulted) else None,
         waiting=_waiting(mind),
         notices=_notices(mind),
@@ -262,9 +263,15 @@ def _in_position(mind: Mind, feedback: Feedback | None) -> bool:
     return arrived(mind.setpoint, feedback, mind.config.in_position_deg)
 
 
-def _axis_state(axis: AxisFeedback) -> AxisState:
+def _axis_state(mind: Mind, axis: AxisFeedback) -> AxisState:
+    """Return an axis as it is shown; a drive goes on saying that it is homed where that was undone."""
     return AxisState(
-        axis.moving, axis.homed, axis.at_lower_limit, axis.at_upper_limit, axis.at_origin, axis.position_deg
+        moving=axis.moving,
+        homed=axis.homed and not is_undone(mind),
+        at_lower_limit=axis.at_lower_limit,
+        at_upper_limit=axis.at_upper_limit,
+        at_origin=axis.at_origin,
+        position_deg=axis.position_deg,
     )
 
 

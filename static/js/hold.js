@@ -15,6 +15,7 @@ function look() {
   const share = (performance.now() - at) / HOLD_MS;
   if (key.disabled || !key.isConnected) return end();
   if (share >= 1) {
+    spent = held.byPointer;
     end();
     spent = true;
     return key.form.requestSubmit(key);
@@ -24,9 +25,9 @@ function look() {
   return undefined;
 }
 
-function begin(key) {
+function begin(key, byPointer) {
   if (held || key.disabled) return;
-  held = { key, at: performance.now() };
+  held = { key, at: performance.now(), byPointer };
   held.frame = requestAnimationFrame(look);
 }
 
@@ -44,15 +45,22 @@ document.addEventListener("pointerdown", (event) => {
   const key = keyOf(event);
   if (!key || event.button !== 0 || !event.isPrimary) return end();
   key.setPointerCapture(event.pointerId);
-  return begin(key);
+  return begin(key, true);
 });
+// What the answer puts under a finger that is still there is not tapped by letting go.
+document.addEventListener("click", (event) => {
+  if (!spent || !event.detail) return;
+  spent = false;
+  event.preventDefault();
+  event.stopImmediatePropagation();
+}, { capture: true });
 for (const name of ["pointerup", "pointercancel"]) document.addEventListener(name, end);
 for (const name of ["blur", "pagehide"]) addEventListener(name, end);
 document.addEventListener("contextmenu", (event) => { if (keyOf(event)) event.preventDefault(); });
 document.addEventListener("keydown", (event) => {
   if (!keyOf(event) || !KEYS.has(event.key)) return;
   event.preventDefault();
-  if (!event.repeat) begin(keyOf(event));
+  if (!event.repeat) begin(keyOf(event), false);
 });
 document.addEventListener("keyup", (event) => {
   if (!keyOf(event) || !KEYS.has(event.key)) return;
@@ -66,6 +74,18 @@ document.addEventListener("click", (event) => {
   event.preventDefault();
   event.stopPropagation();
 }, { capture: true });
+
+// That the home position was set is said until it is undone, by whomever, or the axes are turned away from it.
+const outcome = document.getElementById("zero-outcome");
+let told = null;
+let undoable = false;
+document.addEventListener("htmx:after:swap", ({ detail }) => {
+  if (detail?.ctx?.sourceElement?.closest?.("form")?.contains(outcome)) told = outcome.querySelector(".outcome-ok");
+});
+live.on("state", ({ tracker }) => {
+  if (undoable && !tracker?.can_undo_home) told?.remove();
+  undoable = Boolean(tracker?.can_undo_home);
+});
 
 // Once an axis was moved by hand, setting the home position is what this page is for.
 live.on("state", ({ tracker }) => {

@@ -1,9 +1,11 @@
 """*Set as zero* is held for 2 s, asks where the drive reads another angle, and is undone."""
 
+from dataclasses import replace
+
 import pytest
 from playwright.sync_api import Page, expect
 
-from app.tracker.commands import SetZero
+from app.tracker.commands import SetZero, UndoZero
 from tests.browser.conftest import Opened, Plant
 from tests.browser.hands import CONFIRM_MS, LINK_MEASURED, Finger, Hands, Keyboard, Mouse
 
@@ -35,8 +37,43 @@ def test_it_is_held_asked_about_and_undone(hand: str, opened: Opened, plant: Pla
     assert zeros(plant) == 1
     undo = page.locator('form[action$="/zero/undo"] button')
     expect(undo).to_be_visible()
+    page.wait_for_timeout(300)
+    assert plant.orders("undo_zero") == [], "letting go pressed the key that came under the finger"
     Keyboard(page).press(undo)
     expect(page.locator('[data-live="measured.azimuth_deg"]').first).to_have_text("180.00°")
+
+
+LAMPS = '[data-lamp$=".homed"]'
+TOLD = "The drive was told to set zero."
+
+
+@pytest.mark.parametrize("size", ["tablet", "phone"])
+@pytest.mark.parametrize("elsewhere", [False, True], ids=["here", "elsewhere"])
+def test_message_and_lamps_follow_when_it_is_undone(
+    size: str, elsewhere: bool, opened: Opened, plant: Plant
+) -> None:
+    tracker = plant.machine.trackers["T1"]
+    plant.do(lambda: setattr(tracker, "memory", replace(tracker.memory, home=None)))
+    page = opened(HOMING, size, allow=("422",))
+    hands = Mouse(page)
+    expect(page.locator(f'{LAMPS}[data-on="true"]')).to_have_count(0)
+    hands.hold(page.locator(SET), CONFIRM_MS)
+    hands.hold(page.locator(SURE), CONFIRM_MS)
+    expect(page.locator("#zero-outcome")).to_have_text(TOLD)
+    expect(page.locator(f'{LAMPS}[data-on="true"]')).to_have_count(2)
+    undo = page.locator('form[action$="/zero/undo"] button')
+    expect(undo).to_be_visible()
+    if elsewhere:
+        now = plant.machine.clock.now()
+        plant.do(lambda: tracker.handle(UndoZero(), now, "somebody else"))
+        expect(page.locator("#zero-outcome")).to_have_text("")
+    else:
+        undo.click()
+        expect(page.locator("#zero-outcome")).to_have_text("The former home position counts again.")
+        expect(page.locator("#zero-outcome")).to_be_visible()
+    expect(page.get_by_text(TOLD)).to_have_count(0)
+    expect(page.locator(f'{LAMPS}[data-on="true"]')).to_have_count(0)
+    expect(undo).to_be_hidden()
 
 
 def test_it_is_blue_only_after_a_movement_by_hand(opened: Opened) -> None:

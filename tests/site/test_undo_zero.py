@@ -7,7 +7,7 @@ import pytest
 from app.tracker.axes import Axis
 from app.tracker.commands import CommandRejected, Move, SetZero, Step, UndoZero
 from app.tracker.config import Orientation
-from app.tracker.snapshot import ActivityName, EventKind, Snapshot
+from app.tracker.snapshot import ActivityName, AxisState, EventKind, Snapshot
 from tests.site.plant import Plant, make_plant
 
 
@@ -77,3 +77,24 @@ async def test_what_has_moved_since_is_not_undone(plant: Plant) -> None:
     with pytest.raises(CommandRejected, match="have moved since"):
         await plant.ask(UndoZero())
     assert angles(plant.tracker()) == (0.0, 1.0)
+
+
+async def test_an_axis_that_was_not_homed_before_is_not_shown_as_homed_again() -> None:
+    plant = make_plant()
+    await plant.start()
+    await plant.ask(Step(Axis.AZIMUTH, 5.0))
+    await plant.until(lambda seen: seen.activity is ActivityName.HOLDING)
+    await set_here(plant)
+    assert [axis.homed for axis in axes(plant)] == [True, True]
+    await plant.ask(UndoZero())
+    await plant.forward(seconds=1.0)
+    assert not plant.tracker().home_trusted
+    assert [axis.homed for axis in axes(plant)] == [False, False]
+    await set_here(plant)
+    assert [axis.homed for axis in axes(plant)] == [True, True]
+    await plant.close()
+
+
+def axes(plant: Plant) -> list[AxisState]:
+    seen = plant.tracker()
+    return [axis for axis in (seen.azimuth, seen.elevation) if axis is not None]
