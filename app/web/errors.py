@@ -198,7 +198,7 @@ def problem_response(problem: Problem) -> Response:
         "type": "about:blank",
         "title": problem.title,
         "status": problem.status,
-        "detail": problem.detail,
+        "detail": problem.detail.encode(errors="replace").decode(),
     }
     if problem.reasons:
         body["reasons"] = problem.reasons

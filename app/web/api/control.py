@@ -1,6 +1,7 @@
 """Who has control of a tracker; to ask for it, take it over, hand it over, keep it or let go of it."""
 
 from enum import StrEnum
+from typing import Annotated
 
 from pydantic import Field
 
@@ -46,7 +47,7 @@ class ControlInput(Input):
 class GroupInput(Input):
     """Control of several trackers at once: of all of them, or of none."""
 
-    tracker_ids: tuple[str, ...] = Field(
+    tracker_ids: tuple[Annotated[str, Field(min_length=1, max_length=64)], ...] = Field(
         min_length=1, max_length=500, description="The trackers.", examples=[["T1", "T2"]]
     )
     reason: str = Field("", max_length=200, description="Why; everyone reads it.")
