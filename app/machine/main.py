@@ -23,7 +23,7 @@ from app.link.server import LinkServer
 from app.logs import set_up_logs
 from app.machine.lock import only_instance
 from app.machine.loop import run_loop
-from app.machine.marker import mark_running, mark_stopped, mark_version, version_before
+from app.machine.marker import mark_running, mark_stopped, version_before
 from app.machine.memory import MemoryGuard
 from app.machine.process import on_signals, raise_priority
 from app.machine.safe_mode import serve_safely
@@ -81,16 +81,17 @@ def _note_zones(site: Site) -> None:
 
 
 def audit_version(data_dir: Path, writer: Writer, version: str, now: datetime) -> None:
-    """Have the audit tell that another version runs from now on: an upgrade, or a step back."""
-    before = version_before(data_dir)
-    if before == version:
-        return
-    if before:
+    """Note in the database which version writes it from now on; the audit tells of another one."""
+    noted = writer.software()
+    before = noted or version_before(data_dir) or version
+    if before != version:
         given = told({"before": before, "after": version})
         entry = Entry(now, 0, "", "unknown", "this computer", "console", "", "change_version", "site", given)
         with writer.audited(entry):
-            log.warning("version_changed", before=before, after=version)
-    mark_version(data_dir, version)
+            writer.save_software(version)
+        log.warning("version_changed", before=before, after=version)
+    elif noted is None:
+        writer.save_software(version)
 
 
 def _restore_if_asked(settings: Settings, now: datetime) -> None:

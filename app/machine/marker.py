@@ -1,4 +1,4 @@
-"""Files that tell the next life of the machine how this one ended, and which version it was."""
+"""Files that tell the next life of the machine how this one ended, and which version an old one was."""
 
 import os
 from datetime import datetime
@@ -27,18 +27,11 @@ def mark_stopped(data_dir: Path) -> None:
 
 
 def version_before(data_dir: Path) -> str:
-    """Return the version that ran here last, empty where none did."""
+    """Return the version that a file tells of; up to 0.1.0 it stood there instead of in the database."""
     try:
         return (data_dir / VERSION_NAME).read_text(encoding="utf-8").strip()
     except OSError:
         return ""
-
-
-def mark_version(data_dir: Path, version: str) -> None:
-    """Remember the version that runs here."""
-    fresh = data_dir / f"{VERSION_NAME}.new"
-    fresh.write_text(version, encoding="utf-8")
-    fresh.replace(data_dir / VERSION_NAME)
 
 
 def _began_at(path: Path) -> datetime | None:

@@ -16,6 +16,7 @@ from app.own import own_folder
 from app.store.connections import revision_of, sqlite_path, transaction, writing_engine
 from app.store.files import copy_sqlite, keep_private, make_folder
 from app.store.integrity import check_file
+from app.store.software import refuse_newer
 from app.store.store import StoreUnfit
 from app.store.tables import REVISION, metadata
 
@@ -37,6 +38,7 @@ def upgrade(url: str, *, scripts: Path = SCRIPTS) -> str | None:
     try:
         with transaction(engine) as connection:
             found = revision_of(connection)
+            refuse_newer(connection)
         if (found, scripts) == (REVISION, SCRIPTS):
             return found
         newest = _newest(scripts, found)

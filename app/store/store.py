@@ -212,6 +212,12 @@ class Writer(Reader, Protocol):
         The entry gets the changed values; with `only_changes` it is left out where none changed.
         """
 
+    def software(self) -> str | None:
+        """Return the version that wrote this database last, None where none was noted yet."""
+
+    def save_software(self, version: str) -> None:
+        """Note which version writes from now on: an older one refuses the database then."""
+
     def accepted_settings(self, tracker_id: str) -> TrackerConfig | None:
         """Return the settings with which a tracker ran last; None: not known, or they do not fit any more."""
 

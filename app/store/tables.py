@@ -21,7 +21,7 @@ from sqlalchemy import (
     UniqueConstraint,
 )
 
-REVISION = "0006"
+REVISION = "0007"
 """The newest migration: what the tables of a database must be for this software to use them."""
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
@@ -59,6 +59,13 @@ site = Table(
     metadata,
     Column("number", Integer, primary_key=True, autoincrement=False),
     Column("document", Text, nullable=False),
+)
+
+software = Table(
+    "software",
+    metadata,
+    Column("number", Integer, primary_key=True, autoincrement=False),
+    Column("version", String(50), nullable=False),
 )
 
 trackers = Table(

@@ -15,6 +15,7 @@ from app.store.documents import CONFIG, EVENT_DATA, PLAN, SITE, TRACKER, plain
 from app.store.failures import explained, is_lasting
 from app.store.putting import adding, put
 from app.store.reader import DatabaseReader, head
+from app.store.software import note_version, version_of
 from app.store.store import KeptAlarm, Photo, PlannedShow, Recorded, RecordHead, StoreFailed
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.recording import Frames, RecordingInfo, RecordingKind
@@ -83,6 +84,16 @@ class DatabaseWriter(DatabaseReader):
             if is_lasting(error):
                 self._broken = failure
             raise failure from error
+
+    def software(self) -> str | None:
+        """Return the version that wrote this database last, None where none was noted yet."""
+        with self._read() as connection:
+            return version_of(connection)
+
+    def save_software(self, version: str) -> None:
+        """Note which version writes from now on."""
+        with self._write() as connection:
+            note_version(connection, version)
 
     def save_site(self, site: SiteState, events: Sequence[Event] = ()) -> None:
         """Store the site and the events that belong to the change, together."""

@@ -23,7 +23,7 @@ from app.foreseen import WRONG
 from app.logs import set_up_logs
 from app.machine.lock import LOCK_NAME, AlreadyRunning, holder, only_instance
 from app.machine.main import audit_version
-from app.machine.marker import mark_running, mark_stopped
+from app.machine.marker import VERSION_NAME, mark_running, mark_stopped
 from app.machine.supervisor import Child, Supervisor
 from app.machine.systemd import notify
 from app.machine.watchdog import EXIT_CODE, LoopWatchdog
@@ -312,14 +312,18 @@ async def test_settings_that_worked_once_and_do_not_any_more_end_nobody_else(wri
     assert await running == 0
 
 
-def test_another_version_is_in_the_audit_from_its_first_start(tmp_path: Path) -> None:
+@pytest.mark.parametrize("noted_by_a_file", [False, True])
+def test_another_version_is_in_the_audit_from_its_first_start(tmp_path: Path, noted_by_a_file: bool) -> None:
     url = f"sqlite:///{tmp_path}/heliopanel.db"
     upgrade(url)
+    if noted_by_a_file:
+        (tmp_path / VERSION_NAME).write_text("1.2.0")
     writer = open_writer(url)
-    for version in ("1.2.0", "1.2.0", "1.1.0"):
+    for version in ("1.2.0", "1.2.0", "1.3.0"):
         audit_version(tmp_path, writer, version, NOW)
+        assert writer.software() == version
     found = writer.audit(AuditFilter())
     writer.close()
     assert [(one.entry.action, json.loads(one.entry.given)) for one in found] == [
-        ("change_version", {"before": "1.2.0", "after": "1.1.0"})
+        ("change_version", {"before": "1.2.0", "after": "1.3.0"})
     ]

@@ -7,6 +7,7 @@ from dataclasses import asdict, replace
 import httpx
 import pytest
 
+from app.build import VERSION
 from app.tracker.config import DriveConfig, DriveKind
 from app.tracker.control import ControlState
 from app.tracker.simulated_weather import Scenario, SimulatedStation
@@ -39,6 +40,10 @@ async def test_a_report_of_the_weather_is_shown_with_its_age(
         assert "−3.4 °C" in text
         assert "Wind, snow and light act on each tracker" in text
         assert "Humidity" not in text, "what the station does not measure is not shown"
+
+
+async def test_the_page_ends_with_the_version(panel: httpx.AsyncClient) -> None:
+    assert f">Heliopanel {VERSION}</p>" in (await panel.get("/site")).text
 
 
 async def test_without_the_machine_nothing_is_said_to_be_well(

@@ -13,6 +13,7 @@ from markupsafe import Markup
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
+from app.build import VERSION
 from app.own import own_folder
 from app.tracker.mounts.abilities import abilities
 from app.web import languages
@@ -74,7 +75,7 @@ def environment() -> Environment:
     env.filters |= {name: _when_shown(told) for name, told in FILTERS.items()}
     env.globals |= {"help_for": help_for, "live": live, "world": world(), "abilities": abilities}
     env.globals |= {"languages": offered()}
-    env.globals |= {"spoken": languages.spoken, "script_texts": for_page}
+    env.globals |= {"spoken": languages.spoken, "script_texts": for_page, "version": VERSION}
     for shared in (
         "_icons.html",
         "_parts.html",
