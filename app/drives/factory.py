@@ -1,6 +1,7 @@
 """The one place that knows which kinds of drives there are."""
 
 from collections.abc import Callable
+from datetime import timedelta
 from pathlib import Path
 from typing import assert_never
 
@@ -13,10 +14,13 @@ from app.drives.drive import Drive
 from app.drives.kept_positions import KeptPositions
 from app.drives.profile_library import ProfileLibrary
 from app.drives.simulated import SimulatedDrive
+from app.drives.simulated_machine import WATCHDOG
 from app.drives.sunlight import Sunlight
 from app.drives.transmitted import TransmittedDrive, has_actuators, in_millimetres
 from app.sun.position import SunPosition
 from app.tracker.config import DriveKind, TrackerConfig
+
+WATCHDOG_TICKS = 2.5
 
 
 class DriveFactory:
@@ -24,6 +28,7 @@ class DriveFactory:
 
     Simulated drives keep their positions in the data folder; without one they forget. If a tracker is
     corrected by light, its simulated drive has photo-sensors, and `sun` says where the sun stands over them.
+    Its watchdog lets a tick of `tick` come late: a shorter one would stop every motion between two ticks.
     """
 
     def __init__(
@@ -32,12 +37,14 @@ class DriveFactory:
         data_dir: Path | None = None,
         *,
         sun: Callable[[], SunPosition | None] = lambda: None,
+        tick: timedelta = timedelta(0),
     ) -> None:
         self.buses = Buses(clock)
         self.profiles = ProfileLibrary(data_dir / "profiles" if data_dir is not None else None)
         self._clock = clock
         self._positions = None if data_dir is None else KeptPositions(data_dir / "drives")
         self._sun = sun
+        self._watchdog = max(WATCHDOG, WATCHDOG_TICKS * tick)
 
     def make(self, config: TrackerConfig) -> Drive:
         """Return the drive of a tracker, not yet connected, or raise `ProfileError` for a bad profile."""
@@ -58,7 +65,7 @@ class DriveFactory:
     def _simulated(self, config: TrackerConfig) -> Drive:
         light = Sunlight(config, self._sun) if config.hybrid.enabled else None
         memory = None if self._positions is None else self._positions.of(config.tracker_id)
-        return SimulatedDrive(config, self._clock, memory=memory, light=light)
+        return SimulatedDrive(config, self._clock, memory=memory, light=light, watchdog=self._watchdog)
 
     def _modbus(self, config: TrackerConfig) -> Drive:
         profile = self.profiles.load(config.drive.profile)

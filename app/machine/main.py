@@ -177,7 +177,8 @@ def _site(
         kernel=kernel_clock,
         not_before=_newest_event(writer),
     )
-    factory = DriveFactory(clock, settings.data_dir, sun=lambda: site.model.sun())
+    period = timedelta(milliseconds=settings.tick_ms)
+    factory = DriveFactory(clock, settings.data_dir, sun=lambda: site.model.sun(), tick=period)
     site = Site(
         clock,
         factory.make,
@@ -187,7 +188,7 @@ def _site(
         writer=background,
         options=SiteOptions(
             boot_id=uuid4().hex,
-            period=timedelta(milliseconds=settings.tick_ms),
+            period=period,
             retention=timedelta(days=settings.telemetry_retention_days),
             recordings_keep=settings.recordings_keep,
             samples_every=timedelta(seconds=settings.sample_store_s),
