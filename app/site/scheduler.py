@@ -23,7 +23,7 @@ from app.site.overload import Overload
 SLOT = timedelta(milliseconds=5)
 GOLDEN = 0.6180339887498949
 """Multiples of it, without their whole part, lie spread evenly however many there are."""
-MOST_ASKED_AT_ONCE, MOST_DUE_AT_ONCE = 8, 16
+MOST_ASKED_AT_ONCE, MOST_DUE_AT_ONCE = 8, 32
 """So many ticks at most before everything else that waits for the loop (a stop, a heartbeat) has its turn."""
 GRACE = timedelta(milliseconds=10)
 """So long a tick may outlast the end of a lease before the drive is stopped beside it."""

@@ -56,7 +56,7 @@ from app.tracker.snapshot import ActivityName, Event, EventKind
 
 FOLLOWS_THE_SUN = {ActivityName.TRACKING, ActivityName.SHOWING}
 CLOCK_SET_WITHIN_S = 2.0
-MOST_AT_ONCE = 20
+MOST_AT_ONCE = 50
 """So many trackers are stopped before whatever else is due, a tick among it, has its turn."""
 KEEPS_NOTHING = Reason("no_store", "This machine runs without a store and keeps no recordings.")
 

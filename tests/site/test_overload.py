@@ -1,15 +1,18 @@
 """An overloaded controller leaves out what is not motion, tells it, and keeps every tick and every stop."""
 
+import asyncio
 from datetime import timedelta
+from itertools import pairwise
 
 import pytest
 
 from app.drives.simulated import SimulatedDrive
 from app.drives.simulated_machine import STOP_ALL
-from app.link.messages import StopAll
+from app.link.messages import Order, StopAll
 from app.link.weather_orders import ReportWeather
 from app.site.overload import BEGINS_AFTER, CODE, ENDS_AFTER, LATE_MS, Overload
 from app.site.scheduler import MOST_ASKED_AT_ONCE
+from app.site.site_orders import MOST_AT_ONCE as STOPPED_AT_ONCE
 from app.tracker.snapshot import ActivityName, EventKind
 from app.tracker.weather import Weather
 from app.web.metrics import exposition
@@ -139,3 +142,16 @@ async def test_an_overloaded_controller_tells_seldom_records_nothing_and_still_s
 
 def simulated(plant: Plant) -> list[SimulatedDrive]:
     return [drive for drive in plant.drives.values() if isinstance(drive, SimulatedDrive)]
+
+
+async def test_stop_all_lets_ticks_and_heartbeats_have_their_turn_between_the_trackers() -> None:
+    field = await field_of(4 * STOPPED_AT_ONCE, period=ONE_HZ)
+    asking = asyncio.create_task(field.site.execute(Order(StopAll(), "technician")))
+    stopped = [0]
+    while stopped[-1] < 4 * STOPPED_AT_ONCE:
+        await asyncio.sleep(0)
+        stopped.append(sum(not loop.memory.tracking_on for loop in field.site.model.loops.values()))
+    assert max(after - before for before, after in pairwise(stopped)) == STOPPED_AT_ONCE
+    while not asking.done():
+        await settle()
+    await field.close()

@@ -141,3 +141,10 @@ def test_faults_are_kind_axis_and_amount() -> None:
 def test_a_wrong_fault_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match="is no fault"):
         parse_fault(text)
+
+
+@pytest.mark.parametrize(("tick_ms", "watchdog_s"), [(0, 0.5), (100, 0.5), (1000, 2.5)])
+def test_the_watchdog_of_a_simulated_drive_outlasts_a_late_tick(tick_ms: int, watchdog_s: float) -> None:
+    """With 0.5 s at a tick a second every drive stopped on its way to shelter."""
+    factory = DriveFactory(VirtualClock(START), tick=timedelta(milliseconds=tick_ms))
+    assert factory.make(CONFIG).capabilities.watchdog_s == watchdog_s
