@@ -12,6 +12,7 @@ from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from app.link.messages import MachineUnreachable
 from app.tracker.config import DriveKind
 from bench.table import Row, at_most, must_hold
 from tests.machine import fieldwork
@@ -54,9 +55,21 @@ def measure(size: Size = Size()) -> list[Row]:
 
 async def _rows(size: Size) -> list[Row]:
     rows = [
-        await TRIALS[name](size, field) for field in size.fields for name in size.trials if _fits(name, field)
+        await _tried(f"{name}, {field}", TRIALS[name](size, field))
+        for field in size.fields
+        for name in size.trials
+        if _fits(name, field)
     ]
     return [*rows, *await _largest(size.largest)]
+
+
+async def _tried(name: str, trial: Awaitable[Row]) -> Row:
+    """Return the row of a trial; one that came to nothing is missed, and the others go on."""
+    try:
+        return await trial
+    except (AssertionError, MachineUnreachable, TimeoutError) as why:
+        told = str(why).partition("\n")[0] or type(why).__name__
+        return must_hold(name, told, "it is done", COMMAND, holds=False)
 
 
 def _fits(name: str, field: FieldSize) -> bool:

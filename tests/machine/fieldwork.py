@@ -13,7 +13,7 @@ import httpx
 from websockets.asyncio.client import connect
 from websockets.typing import Origin
 
-from app.link.messages import SetLocation, StopAll
+from app.link.messages import MachineUnreachable, SetLocation, StopAll
 from app.link.metrics import MachineMetrics
 from app.link.weather_orders import ReportWeather
 from app.sun.position import Location
@@ -112,7 +112,7 @@ class Fieldwork:
             while self.latest is None or doing(self.latest, ActivityName.TRACKING) < self.size.trackers:
                 for one in () if self.latest is None else self.latest.trackers:
                     if one.activity is ActivityName.HOLDING and one.unreachable is None:
-                        with suppress(CommandRejected):
+                        with suppress(CommandRejected, MachineUnreachable):
                             await self.service.ask(Track(), one.tracker_id)
                 await asyncio.sleep(1.0)
 
@@ -306,7 +306,7 @@ async def web_restart(size: Size, *, viewers: int) -> Trial:
         watching = [Viewer(work.service.port) for _ in range(viewers)]
         for one in watching:
             await pages.enter_async_context(one.open())
-        await eventually(lambda: all(one.told for one in watching))
+        await eventually(lambda: all(one.told for one in watching), within_s=LIMIT_S)
 
         async def act() -> Done:
             stowing = asyncio.create_task(
