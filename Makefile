@@ -107,9 +107,9 @@ format: $(VENV)/.dev ## Format the code
 	@$(BIN)/ruff check --fix .
 
 lock: ## Renew the locked dependencies (needs uv)
-	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build pyproject.toml -o requirements.txt
-	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra fast -c requirements.txt pyproject.toml -o requirements-fast.txt
-	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra fast --extra mdns --extra dev -c requirements.txt pyproject.toml -o requirements-dev.txt
+	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all pyproject.toml -o requirements.txt
+	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all --extra fast -c requirements.txt pyproject.toml -o requirements-fast.txt
+	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all --extra fast --extra mdns --extra dev -c requirements.txt pyproject.toml -o requirements-dev.txt
 	uv pip compile --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --group client -o requirements-client.txt
 
 clean: ## Remove what was built (not the data)

@@ -10,6 +10,7 @@ import typer
 
 from app.energy.motion import DriveCosts
 from app.energy.plane import Around, Transposition
+from app.extras import need
 from app.fast.comparison import ClearSky, Comparison
 from app.own import own_process
 from app.studies.folder import RESULT
@@ -147,6 +148,7 @@ def _work_out(job: WorkOut) -> StudyResult:
 
 
 def _told(job: Job) -> Iterator[Told]:
+    need("studies")
     command = own_process("app.studies.worker")
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:  # noqa: S603 - ours
         if process.stdin is None or process.stdout is None:

@@ -22,6 +22,7 @@ from sqlalchemy import (
 from sqlalchemy import column as sql_column
 from sqlalchemy.exc import ArgumentError, SQLAlchemyError
 
+from app.extras import need
 from app.store.failures import explained
 from app.store.store import StoreFailed, StoreUnfit
 from app.store.tables import REVISION
@@ -63,6 +64,7 @@ def parse_url(url: str) -> URL:
             f"{url!r} is not a database URL, such as sqlite:////var/lib/heliopanel/a.db."
         ) from error
     if parsed.drivername == "postgresql+psycopg":
+        need("postgres")
         return parsed
     if parsed.get_backend_name() != "sqlite" or parsed.database in (None, "", ":memory:"):
         raise StoreUnfit(

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from app.extras import need
 from app.late import late
 from app.store.documents import RECORDING
 from app.tracker.recording import COLUMNS, Frames, RecordingInfo
@@ -40,6 +41,7 @@ def measured_csv(begin: datetime, frames: Frames) -> Iterator[bytes]:
 
 def to_parquet(info: RecordingInfo, frames: Frames) -> bytes:
     """Return the recording as Parquet (zstd); its head is JSON in the metadata `heliopanel_recording`."""
+    need("parquet")
     pa, pq = late("pyarrow"), late("pyarrow.parquet")
     columns: dict[str, Any] = {
         "time_utc": _instants(info.began_at.timestamp(), frames.column("elapsed_s")),

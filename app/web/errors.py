@@ -17,6 +17,7 @@ from app.access.keeper import Throttled, TooManyAtOnce, WrongPassword
 from app.access.principal import NotAllowed, ProofNeeded, SignInNeeded
 from app.access.users import AccessRefused
 from app.alarms.book import UnknownAlarm
+from app.extras import ExtraMissing
 from app.link.messages import MachineUnreachable, UnknownRecording, UnknownTracker
 from app.papers.library import UnknownPaper
 from app.store.store import StoreFailed
@@ -155,6 +156,7 @@ PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
     UnknownRecording: _no_recording,
     UnknownAlarm: lambda error: Problem(404, str(error)),
     MachineUnreachable: _unreachable,
+    ExtraMissing: lambda error: Problem(501, str(error)),
     StoreFailed: lambda error: Problem(503, str(error), headers=RETRY_LATER),
     InstantRefused: lambda error: Problem(422, str(error)),
     UnknownPaper: lambda error: Problem(404, str(error)),

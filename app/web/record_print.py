@@ -3,6 +3,7 @@
 from base64 import b64encode
 from html import escape
 
+from app.extras import need
 from app.late import late
 from app.web.languages import said, spoken
 from app.web.record_files import Paper, PaperPhoto
@@ -48,5 +49,6 @@ def _signature_html(one: Signature) -> str:
 
 def record_pdf(signed: Paper) -> bytes:
     """Return the record as a PDF on A4: every section a table, photos, and signatures or lines to sign on."""
+    need("pdf")
     printed: bytes = late("app.web.record_pdf").printed(told(signed))
     return printed

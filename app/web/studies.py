@@ -12,6 +12,7 @@ import structlog
 from starlette.concurrency import run_in_threadpool
 
 from app.clock import Clock
+from app.extras import need
 from app.fast.comparison import Comparison
 from app.own import own_process
 from app.studies.folder import StudyFolder, StudyState, StudyStatus, StudyUnknown, WeatherFile
@@ -65,6 +66,7 @@ class Studies:
 
     async def start(self, request: StudyRequest) -> StudyState:
         """Keep a study, begin it as soon as those before it have ended, and return its state."""
+        need("studies")
         if len(self._tasks) >= MOST_OPEN:
             raise Busy(TOO_MANY)
         weather = self.folder.weather_path(request.weather_file) if request.weather_file else None
@@ -169,6 +171,7 @@ class Studies:
 
     async def _answer(self, job: Job) -> Told:
         """Return the one answer to a question; raise `ValueError` for a refusal."""
+        need("studies")
         if self._questions >= MOST_QUESTIONS:
             raise Busy(TOO_BUSY)
         self._questions += 1

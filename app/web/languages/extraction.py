@@ -27,9 +27,9 @@ JINJA = {
 
 _SPEAKING = """
     app/tracker app/alarms app/web app/site app/drives app/show app/access app/store app/studies app/energy
-    app/sun app/link app/hosts.py app/gateway/gateways.py app/gateway/notices.py app/gateway/notifier.py
-    app/gateway/mqtt.py app/gateway/mqtt_commands.py app/gateway/sunspec.py app/gateway/sunspec_controls.py
-    app/gateway/sunspec_device.py app/gateway/calibration.py
+    app/sun app/link app/extras.py app/hosts.py app/gateway/gateways.py app/gateway/notices.py
+    app/gateway/notifier.py app/gateway/mqtt.py app/gateway/mqtt_commands.py app/gateway/sunspec.py
+    app/gateway/sunspec_controls.py app/gateway/sunspec_device.py app/gateway/calibration.py
     app/machine/safe_mode.py app/machine/memory.py"""
 """What has texts that reach a page, in the order in which they are listed."""
 

@@ -1,0 +1,23 @@
+"""Libraries that few need and that weigh much: an extra each, asked for by name where one is missing."""
+
+from importlib.util import find_spec
+
+from app.foreseen import WRONG, Foreseen
+
+LIBRARIES = {"parquet": "pyarrow", "pdf": "fpdf", "postgres": "psycopg", "studies": "pvlib"}
+"""The library by which an extra of pyproject.toml is known to be installed."""
+
+
+class ExtraMissing(Foreseen):
+    """What was asked for needs an extra that is not installed; the text has the command that installs it."""
+
+    exit_code = WRONG
+
+
+def need(extra: str) -> None:
+    """Raise `ExtraMissing` unless an extra is installed."""
+    if find_spec(LIBRARIES[extra]) is None:
+        raise ExtraMissing(
+            f"This needs the extra {extra}, which is not installed. "
+            f'Install it with: pip install "heliopanel[{extra}]".'
+        )
