@@ -11,7 +11,7 @@ from app.access.events import AccessEvent
 from app.access.keeper import Credentials
 from app.access.principal import Principal, Via, nobody
 from app.access.roles import Permission, Role
-from app.access.tokens import Scope, digest_of, token_id_of
+from app.access.tokens import Scope, digest_of, permissions_of, token_id_of
 from app.access.users import AccessRefused
 from tests.access.door import ADDRESS, HERE, PASSWORD, START, Door
 
@@ -157,6 +157,7 @@ async def test_a_token_is_stored_as_it_was_wished(door: Door, name: str, lifetim
         name.strip(), Via.TOKEN, ADDRESS, {"T1", "T2"},
     )  # fmt: skip
     assert (who.roles, who.credential) == (frozenset(), token.token_id)
+    assert who.permissions == permissions_of(READ)
 
 
 @pytest.mark.parametrize(

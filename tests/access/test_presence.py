@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from app.access.accounts import TokenWish
+from app.access.book import RESTING
 from app.access.keeper import (
     LOOK_EVERY,
     MOST_WAITING,
@@ -109,8 +110,10 @@ async def test_the_password_is_fresh_for_five_minutes_and_typed_again_for_five_m
     await door.add("ada", Role.ADMINISTRATOR)
     session = await door.tries("ada", PASSWORD)
     assert not is_proven(door.who(session).proven_at, START + PROOF)
+    assert door.who(session).may(Permission.ADMINISTER)
     door.clock.advance(timedelta(minutes=31))
     assert door.who(session).rests
+    assert door.who(session).permissions == RESTING
     with pytest.raises(WrongPassword):
         await door.keeper.prove(door.who(session), "wrong wrong wrong")
     await door.keeper.prove(door.who(session), PASSWORD)
@@ -223,6 +226,7 @@ async def test_wrong_pins_make_the_panel_wait_and_the_right_one_forgives_them(do
     assert (refused.actor, refused.action) == ("gate 3 (kiosk)", "refused_log_in")
     assert refused.object == f"pin:{next(iter(door.keeper.book.tokens))}"
     assert refused.at == door.clock.now()
+    assert refused.result == "There were too many wrong passwords. Wait 1 s, then try again."
 
 
 async def test_a_person_has_no_pin(door: Door) -> None:
@@ -298,6 +302,10 @@ async def test_guesses_are_recorded_one_by_one_until_there_are_too_many(door: Do
     assert (told[-1].actor, told[-1].object, told[-1].address) == ("nobody", "user199", "10.1.0.199")
     (left_out,) = door.keeper.refusals.take(door.clock.now())
     assert left_out.result == "1 refusals were not recorded one by one."
+    door.clock.advance(timedelta(minutes=1))
+    with pytest.raises(WrongPassword):
+        await door.tries("ada", "wrong wrong wrong", "10.2.0.1")
+    assert (await door.recorded())[-1].address == "10.2.0.1", "one more a minute"
 
 
 async def test_twenty_may_wait_to_sign_in_and_one_more_is_told_so(door: Door) -> None:
@@ -315,6 +323,8 @@ async def test_refusals_and_what_others_wrote_are_looked_at_twice_a_second(door:
     door.keeper.refusals.note("refused", nobody(ADDRESS), "POST /x", "No.", door.clock.now())
     other = Door(door.settings.data_dir)
     await other.add("olga", Role.OPERATOR)
+    for _ in range(5):
+        await asyncio.to_thread(int)
     assert "olga" not in door.keeper.book.users
     looked = asyncio.create_task(_changed(door))
     await asyncio.sleep(0)
@@ -341,3 +351,48 @@ async def test_events_are_told_in_pages_the_newest_first(door: Door) -> None:
     assert [one.event.object for one in newest] == ["4", "3"]
     older = await door.keeper.events(newest[-1].number, 2)
     assert [one.event.object for one in older] == ["2", "1"]
+
+
+async def test_guesses_of_many_names_make_their_address_wait_and_of_one_name_every_address(
+    door: Door,
+) -> None:
+    await door.add("ada", Role.ADMINISTRATOR)
+    for name in ("bo", "cy", "di"):
+        with pytest.raises(WrongPassword):
+            await door.tries(name, "wrong wrong wrong", "10.0.0.66")
+    with pytest.raises(Throttled):
+        await door.tries("ed", "wrong wrong wrong", "10.0.0.66")
+    for number in (1, 2, 3):
+        with pytest.raises(WrongPassword):
+            await door.tries("ada", "wrong wrong wrong", f"10.0.1.{number}")
+    with pytest.raises(WrongPassword):
+        await door.tries("ada", "wrong wrong wrong", "10.0.2.1")
+    with pytest.raises(Throttled):
+        await door.tries("ada", PASSWORD, "10.0.2.1")
+    assert await door.tries("ada", PASSWORD, "10.0.2.2"), "a first try is always looked at"
+
+
+async def test_a_browser_that_holds_a_session_waits_for_its_own_mistakes_alone(door: Door) -> None:
+    await door.add("ada", Role.ADMINISTRATOR)
+    held = await door.tries("ada", PASSWORD)
+    for _ in range(3):
+        with pytest.raises(WrongPassword):
+            await door.keeper.log_in("ada", "wrong wrong wrong", ADDRESS, "test", held)
+    with pytest.raises(Throttled):
+        await door.keeper.log_in("ada", PASSWORD, ADDRESS, "test", held)
+    assert await door.tries("ada", PASSWORD), "another browser at the same address does not"
+
+
+async def test_who_was_let_in_is_judged_by_what_they_may_now(door: Door) -> None:
+    await door.add("ada", Role.ADMINISTRATOR)
+    await door.add("olga", Role.OPERATOR)
+    who = door.who(await door.tries("olga", PASSWORD))
+    staying = asyncio.create_task(door.keeper.until_gone(who))
+    roles = {Role.VIEWER}
+    await door.keeper.do(lambda: door.keeper.accounts.set_roles(HERE, "olga", roles, door.clock.now()))
+    assert door.keeper.current(who).roles == roles
+    await asyncio.sleep(0)
+    assert not staying.done(), "other roles send nobody away"
+    await door.keeper.log_out(who)
+    async with asyncio.timeout(5):
+        await staying

@@ -2,8 +2,9 @@
 
 from datetime import UTC, datetime, timedelta
 
+from app.access.events import AccessEvent
 from app.access.principal import nobody
-from app.access.refusals import BURST, LEFT_OUT, MOST_REMEMBERED, Refusals
+from app.access.refusals import BURST, LEFT_OUT, MOST_REMEMBERED, SAME_WITHIN, TELL_EVERY, Allowance, Refusals
 
 NOW = datetime(2026, 11, 21, 9, tzinfo=UTC)
 
@@ -36,3 +37,72 @@ def test_a_long_text_is_cut() -> None:
     refusals.note("refused", nobody("a" * 500), "x" * 500, "y" * 5000, NOW)
     (told,) = refusals.take(NOW)
     assert (len(told.address), len(told.object), len(told.result)) == (64, 100, 300)
+
+
+def refuse(refusals: Refusals, number: int, now: datetime = NOW) -> None:
+    refusals.note("refused", nobody("10.0.0.7"), f"POST /{number}", "No.", now)
+
+
+def left_out(refusals: Refusals, now: datetime) -> list[AccessEvent]:
+    return [one for one in refusals.take(now) if one.action == LEFT_OUT]
+
+
+def test_what_is_left_out_is_counted_and_told_once_an_hour() -> None:
+    refusals = Refusals()
+    for number in range(BURST + 3):
+        refuse(refusals, number)
+    refusals.leave_out()
+    refusals.leave_out()
+    told = AccessEvent(
+        NOW, "nobody", "nobody", "", LEFT_OUT, "panel", "5 refusals were not recorded one by one."
+    )
+    assert refusals.take(NOW)[BURST:] == [told]
+    refusals.leave_out()
+    assert left_out(refusals, NOW + TELL_EVERY - timedelta(microseconds=1)) == []
+    (later,) = left_out(refusals, NOW + TELL_EVERY)
+    assert later.result == "1 refusals were not recorded one by one."
+    assert left_out(refusals, NOW + 3 * TELL_EVERY) == []
+
+
+def test_repeats_of_what_is_left_out_are_left_out_with_it() -> None:
+    refusals = Refusals()
+    for number in range(BURST + 1):
+        refuse(refusals, number)
+    for _ in range(4):
+        refuse(refusals, BURST)
+    refuse(refusals, BURST, NOW + SAME_WITHIN)
+    assert left_out(refusals, NOW + SAME_WITHIN)[0].result.startswith("6 refusals")
+
+
+def test_the_same_instant_is_a_repeat_and_a_clock_that_is_set_back_none() -> None:
+    refusals = Refusals()
+    refuse(refusals, 1)
+    refuse(refusals, 1)
+    assert len(refusals.take(NOW)) == 1
+    refuse(refusals, 1, NOW - timedelta(hours=1))
+    (again,) = refusals.take(NOW)
+    assert again.result == "No. (1 more times before)"
+
+
+def test_of_very_many_the_oldest_is_forgotten_and_what_was_counted_of_it_left_out() -> None:
+    refusals = Refusals()
+    for _ in range(3):
+        refuse(refusals, 0)
+    for number in range(1, MOST_REMEMBERED):
+        refuse(refusals, number)
+    refuse(refusals, 0)
+    before = MOST_REMEMBERED - BURST
+    assert left_out(refusals, NOW)[0].result.startswith(f"{before} ")
+    refuse(refusals, MOST_REMEMBERED)
+    assert left_out(refusals, NOW + TELL_EVERY)[0].result.startswith("4 "), "itself, and three of the oldest"
+
+
+def test_an_allowance_comes_back_bit_by_bit_up_to_its_most() -> None:
+    allowance, minute = Allowance(2, timedelta(minutes=1)), timedelta(minutes=1)
+    assert [allowance.take(NOW) for _ in range(3)] == [True, True, False]
+    assert not allowance.take(NOW + minute / 2)
+    assert allowance.take(NOW + minute)
+    assert not allowance.take(NOW + minute)
+    assert [allowance.take(NOW + 99 * minute) for _ in range(3)] == [True, True, False]
+    assert not allowance.take(NOW + 98 * minute), "a clock that is set back gives nothing"
+    assert allowance.take(NOW + 99 * minute), "and counts on from there"

@@ -5,6 +5,7 @@ from typing import get_args
 
 import pytest
 
+from app.access.keeper import Throttled, new_key
 from app.access.passwords import Argon, Passwords, weakness
 from app.access.principal import (
     NotAllowed,
@@ -16,7 +17,7 @@ from app.access.principal import (
     this_computer,
 )
 from app.access.roles import GRANTS, ORDERS, Permission, Role, permissions_of
-from app.access.sessions import Session, SessionState, state
+from app.access.sessions import Session, SessionState, is_proven, new_id, state
 from app.access.throttle import Failures, delay, one_more, wait_left
 from app.access.tickets import OneShots, read_stop_ticket, stop_ticket
 from app.access.tokens import SCOPES, mint, token_id_of
@@ -56,6 +57,7 @@ def test_a_clock_that_is_set_back_makes_nobody_wait_longer() -> None:
 
 def test_mistakes_of_yesterday_are_forgotten() -> None:
     assert one_more(Failures(9, NOW), NOW + timedelta(hours=25)).count == 1
+    assert one_more(Failures(9, NOW), NOW + timedelta(hours=24)).count == 10
     assert one_more(Failures(9, NOW), NOW + timedelta(hours=1)).count == 10
 
 
@@ -108,6 +110,8 @@ def test_a_stop_ticket_names_its_page_and_lasts_a_day() -> None:
         "abcabcabcabc",
         "123456789012",
         "qwertyuiopas",
+        "xqzxqzxqzxqz",
+        "fdsapoiuytre",
         "Heliopanel2026!",
         "S0larTr4cker99",
         "passwordpassword",
@@ -119,7 +123,15 @@ def test_passwords_that_people_guess_are_refused(password: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "password", ["violet-anvil-harbour-9", "ğüşiöç ve üç ördek", "lower case is fine too", "z9" + "qk7" * 40]
+    "password",
+    [
+        "violet-anvil-harbour-9",
+        "z9" + "qk7" * 42,
+        "plum-9-kites",
+        "ğüşiöç ve üç ördek",
+        "lower case is fine too",
+        "z9" + "qk7" * 40,
+    ],
 )
 def test_other_passwords_are_taken_whatever_they_are_made_of(password: str) -> None:
     assert weakness(password, "anna") is None
@@ -173,3 +185,59 @@ def test_a_token_for_some_trackers_reaches_no_other_and_not_the_site_but_stops_a
     assert who.may_order("stop_all")
     with pytest.raises(NotAllowed, match="T2"):
         who.require_order("move", "T2")
+
+
+class Recorder(FakeHasher):
+    """Notes against what was checked."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.looked_at: list[tuple[str, str]] = []
+
+    def verify(self, password_hash: str, password: str) -> bool:
+        self.looked_at.append((password_hash, password))
+        return super().verify(password_hash, password)
+
+
+def test_an_unknown_name_is_checked_against_a_hash_that_is_made_once() -> None:
+    hasher = Recorder()
+    passwords = Passwords(hasher)
+    passwords.warm()
+    passwords.warm()
+    assert hasher.made == 1
+    assert not passwords.matches(None, "wrong")
+    ((against, _),) = hasher.looked_at
+    assert against.startswith("fake$")
+    stored = passwords.hash("violet-anvil-harbour-9")
+    assert passwords.matches(stored, "violet-anvil-harbour-9")
+    assert hasher.looked_at[-1][0] == stored
+
+
+def test_of_a_password_without_end_so_much_is_hashed_that_it_is_wrong() -> None:
+    hasher = Recorder()
+    passwords = Passwords(hasher)
+    longest = "z9" + "qk7" * 42
+    assert len(longest) == 128
+    stored = passwords.hash(longest)
+    assert passwords.matches(stored, longest)
+    assert not passwords.matches(stored, longest + "x")
+    passwords.matches(stored, "x" * 10_000)
+    assert len(hasher.looked_at[-1][1]) == 129
+
+
+def test_ids_and_keys_are_256_random_bits() -> None:
+    assert len(new_key()) == 32
+    assert len({new_id() for _ in range(100)}) == 100
+    assert {len(new_id()) for _ in range(100)} == {43}
+
+
+def test_who_never_typed_a_password_has_not_proven_anything() -> None:
+    assert not is_proven(None, NOW)
+    assert is_proven(NOW, NOW + timedelta(minutes=4, seconds=59))
+
+
+@pytest.mark.parametrize(
+    ("wait_s", "told"), [(0.01, 1), (0.5, 1), (1.0, 1), (1.2, 2), (29.6, 30), (30.0, 30)]
+)
+def test_a_wait_is_told_in_whole_seconds_never_too_short(wait_s: float, told: int) -> None:
+    assert f"Wait {told} s," in str(Throttled(timedelta(seconds=wait_s)))
