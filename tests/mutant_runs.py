@@ -9,6 +9,7 @@ import sys
 import time
 from collections import defaultdict
 from collections.abc import Callable
+from dataclasses import dataclass
 from mmap import mmap
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -20,19 +21,39 @@ from tests.mutants import AREAS, changes
 
 AT_ONCE = os.cpu_count() or 1
 CPU_FACTOR, CPU_MORE_S = 5, 8
-WAIT_FACTOR, WAIT_MORE_S = 8, 60
-"""A change is endless when its tests take so much longer than without it."""
+IDLE_FOR_S, IDLE_CPU_S = 12.0, 0.1
+"""A change is endless when its tests compute so much longer than without it, or wait and compute nothing.
+
+How long they last says little: other programs may keep the processors busy.
+"""
 
 ENDS = {0: "left", 1: "noticed"}
 COUNTER = struct.Struct("<I")
 
 
 class Timed(NamedTuple):
-    """A test that comes by a function: the processor's time it takes, and how long it lasts."""
+    """A test that comes by a function, and the processor's time that it takes."""
 
     item: pytest.Item
     cpu_s: float
-    lasts_s: float
+
+
+@dataclass
+class Fork:
+    """The fork that tries a change; what it had computed when, last that it was seen to compute."""
+
+    change: str
+    cpu_s: float
+    at_s: float
+
+    def waits(self, process_id: int) -> bool:
+        """Return whether it has computed nothing for a while."""
+        fields = Path(f"/proc/{process_id}/stat").read_text().rpartition(")")[2].split()
+        cpu_s = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+        now_s = time.monotonic()
+        if cpu_s - self.cpu_s > IDLE_CPU_S:
+            self.cpu_s, self.at_s = cpu_s, now_s
+        return now_s - self.at_s > IDLE_FOR_S
 
 
 class Trying:
@@ -43,7 +64,7 @@ class Trying:
         self._failed = False
         self._on_failure: Callable[[pytest.Item], None] | None = None
         self._by_function: dict[str, list[Timed]] = defaultdict(list)
-        self._running: dict[int, tuple[str, float]] = {}
+        self._running: dict[int, Fork] = {}
         self._ends: dict[str, str] = {}
 
     @pytest.hookimpl(tryfirst=True)
@@ -60,8 +81,10 @@ class Trying:
         self._look(session.items)
         self._order = {item: number for number, item in enumerate(session.items)}
         self._noticed = mmap(-1, COUNTER.size * len(session.items))
-        for change in changes(self._area):
+        for number, change in enumerate(changes(self._area)):
             self._try(change)
+            if number % 100 == 0:
+                print(number, "tried", file=sys.__stderr__, flush=True)
         while self._running:
             self._wait()
         self._result.write_text(json.dumps(self._ends, indent=0))
@@ -73,11 +96,11 @@ class Trying:
         os.environ["MUTANT_UNDER_TEST"] = "stats"
         for item in items:
             came_by.clear()
-            cpu_s, begun_s = time.process_time(), time.monotonic()
+            cpu_s = time.process_time()
             self._run(item)
             if self._failed:
                 raise pytest.UsageError(f"{item.nodeid} fails without any change.")
-            timed = Timed(item, time.process_time() - cpu_s, time.monotonic() - begun_s)
+            timed = Timed(item, time.process_time() - cpu_s)
             for function in came_by:
                 self._by_function[function].append(timed)
         os.environ["MUTANT_UNDER_TEST"] = ""
@@ -99,8 +122,7 @@ class Trying:
         process_id = os.fork()
         if not process_id:
             self._run_all(change, tests)
-        longest_s = sum(timed.lasts_s for timed in tests) * WAIT_FACTOR + WAIT_MORE_S
-        self._running[process_id] = change, time.monotonic() + longest_s
+        self._running[process_id] = Fork(change, 0.0, time.monotonic())
 
     def _run_all(self, change: str, tests: list[Timed]) -> None:
         longest_s = time.process_time() + sum(timed.cpu_s for timed in tests) * CPU_FACTOR + CPU_MORE_S
@@ -120,14 +142,14 @@ class Trying:
         return count
 
     def _wait(self) -> None:
-        """Take the end of one fork if there is one; end those that take too long."""
+        """Take the end of one fork if there is one; end those that wait for what never comes."""
         process_id, status = os.waitpid(-1, os.WNOHANG)
         if process_id:
-            change, _ = self._running.pop(process_id)
+            change = self._running.pop(process_id).change
             self._ends[change] = ENDS.get(os.waitstatus_to_exitcode(status), "endless")
             return
-        for running, (_, until_s) in self._running.items():
-            if time.monotonic() > until_s:
+        for running, fork in self._running.items():
+            if fork.waits(running):
                 os.kill(running, signal.SIGKILL)
         time.sleep(0.01)
 
