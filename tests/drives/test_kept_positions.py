@@ -137,3 +137,24 @@ async def test_a_disk_that_fails_stops_no_drive(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(kept_positions.Twins, "write", refuse)
     drive = await homed(VirtualClock(START), tmp_path)
     assert (await drive.read()).azimuth.homed
+
+
+async def test_what_is_kept_is_told_and_a_later_life_writes_into_the_same_record(tmp_path: Path) -> None:
+    """A tracker's name may hold what a file's name must not; it is none of an older version's."""
+    folder = tmp_path / "drives"
+    axis = AxisMemory(33.0, 1.0, homed=True)
+    first, second = PositionMemory(axis, axis, 7, trusted=True), PositionMemory(axis, axis, 8, trusted=False)
+    (folder / "row").mkdir(parents=True)
+    PositionFile(folder / "row%2F6.json").keep(first)
+    positions = kept_positions.KeptPositions(folder)
+    assert positions.of("row/6").recall() == first
+    positions.of("T1").keep(first)
+    positions.of("T2").keep(second)
+    assert (positions.of("T1").recall(), positions.of("T2").recall()) == (first, second)
+    size = (folder / "positions").stat().st_size
+    for _ in range(3):
+        later = kept_positions.KeptPositions(folder)
+        assert (later.of("T1").recall(), later.of("T2").recall()) == (first, second)
+        later.of("T2").keep(second)
+        later.of("T1").keep(first)
+    assert (folder / "positions").stat().st_size == size
