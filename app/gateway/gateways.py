@@ -1,7 +1,7 @@
 """All of the machine's other doors together: begun with it, ended with it, never in its way."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Coroutine
+from collections.abc import AsyncIterator, Callable
 from dataclasses import replace
 from typing import Protocol
 
@@ -15,6 +15,7 @@ from app.gateway.notifier import Deliver, Notifier
 from app.gateway.outbox import Outbox
 from app.gateway.sunspec import RTU, TCP, SunSpecRtu, SunSpecTcp
 from app.gateway.sunspec_device import SERIAL, SunSpecDevice
+from app.lasting import begun
 from app.link.messages import Order, SiteDetail, Update
 from app.link.metrics import GatewayMetrics, GatewayStatus, MachineMetrics
 from app.link.outlet import Listener
@@ -62,6 +63,7 @@ class Gateways:
 
     def __init__(self, machine: MeteredDoor, clock: Clock, settings: Settings, reader: Reader) -> None:
         self._machine = machine
+        self._clock = clock
         device = SunSpecDevice(
             machine, clock, unit=settings.sunspec_unit, write_hosts=settings.sunspec_write_hosts
         )
@@ -92,14 +94,9 @@ class Gateways:
     def start(self) -> None:
         """Open the doors."""
         for gateway in (*self._open, *self._notifiers):
-            self._begin(gateway.run(), gateway.metrics().name)
+            self._tasks.append(begun(gateway.metrics().name, gateway.run, self._clock))
         if self._open:
-            self._begin(self._sunspec.follow(), "SunSpec controls")
-
-    def _begin(self, work: Coroutine[None, None, None], name: str) -> None:
-        task = asyncio.create_task(work, name=name)
-        task.add_done_callback(_log_end)
-        self._tasks.append(task)
+            self._tasks.append(begun("SunSpec controls", self._sunspec.follow, self._clock))
 
     async def close(self) -> None:
         """Close the doors; one that goes on, because an error came together with its end, is told again."""
@@ -156,9 +153,3 @@ def writes(settings: Settings) -> dict[str, str]:
         else "Nobody may write.",
         MQTT: commands if settings.mqtt_commands else "No commands are taken.",
     }
-
-
-def _log_end(task: asyncio.Task[None]) -> None:
-    """Say that a door is shut by an error nobody foresaw; the machine goes on."""
-    if not task.cancelled() and task.exception() is not None:
-        log.error("gateway_ended", gateway=task.get_name(), error=repr(task.exception()))

@@ -117,6 +117,7 @@ class MqttGateway:
         while isinstance(first, BaseExceptionGroup):
             first = first.exceptions[0]
         self._status = GatewayStatus.CONNECTING
+        self._protocol = ProtocolVersion.V5
         if isinstance(first, MqttConnectError) and first.rc == UNSUPPORTED_VERSION:
             self._protocol = ProtocolVersion.V311
             log.warning("mqtt_older_broker", broker=self._where, commands="none are taken")

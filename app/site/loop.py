@@ -234,6 +234,7 @@ class TrackerLoop:
         if not self.answers_at_once:
             self._keep_pace()
         raw = await self._read()
+        self.controller.know(self.drive.capabilities)
         self.feedback = shifted(self.memory.home_shift, raw)
         seen = self._surroundings.observe(self.config, self.feedback)
         pace = self._line.pace

@@ -16,6 +16,8 @@ from app.tracker.weather import Weather
 EVERY = timedelta(seconds=1)
 Station = MetStation | SimulatedStation
 
+UNFORESEEN = "The weather station cannot be read because of an unexpected error; the log says which."
+
 log = structlog.get_logger(__name__)
 
 
@@ -71,10 +73,14 @@ class MetPoll:
         """Read once; a station that does not answer says nothing, and its values grow old."""
         try:
             readings, impossible = await reader.read()
+            self._on_reading(readings, impossible, station.name)
         except DriveError as error:
             if not self.trouble:
                 log.warning("weather_station_not_read", station=station.name, reason=str(error))
             self.trouble = str(error)
-            return
-        self.trouble = ""
-        self._on_reading(readings, impossible, station.name)
+        except Exception:
+            if self.trouble != UNFORESEEN:
+                log.exception("weather_station_not_read", station=station.name)
+            self.trouble = UNFORESEEN
+        else:
+            self.trouble = ""

@@ -193,6 +193,11 @@ class Controller:
         if mind.memory.rejected:
             mind.remember(rejected=())
 
+    def know(self, capabilities: DriveCapabilities) -> None:
+        """Take over what the drive is able to do as it was read last: its watchdog may be off, or another."""
+        if capabilities != self._mind.capabilities:
+            self._mind.capabilities = capabilities
+
     def set_pointing(self, pointing: Pointing) -> None:
         """Take over a correction from sightings; what the light sensors found goes with the old one."""
         self._mind.remember(pointing=pointing)

@@ -12,6 +12,7 @@ import orjson
 import structlog
 
 from app.clock import Clock, set_or_at
+from app.lasting import begun
 from app.link.messages import Machine, Update
 from app.tracker.snapshot import Event
 from app.web.languages.catalogue import catalogue_of
@@ -107,7 +108,8 @@ class Hub:
 
     async def run(self) -> None:
         """Follow the machine until cancelled; then let what was asked for last be finished."""
-        following, pacing = asyncio.create_task(self._follow()), asyncio.create_task(self._pace())
+        following = begun("hub_follows", self._follow, self._clock)
+        pacing = begun("hub_paces", self._pace, self._clock)
         try:
             await asyncio.gather(following, pacing)
         finally:
@@ -118,9 +120,11 @@ class Hub:
 
     async def _follow(self) -> None:
         while True:
-            async for update in self._machine.updates():
-                self._hear(update)
-            self._states.lose()
+            try:
+                async for update in self._machine.updates():
+                    self._hear(update)
+            finally:
+                self._states.lose()
             await self._hand_out()
             await self._clock.sleep_until(self._clock.now() + RECONNECT)
 

@@ -19,6 +19,7 @@ from app.access.passwords import Hasher
 from app.build import VERSION
 from app.clock import Clock, SystemClock
 from app.foreseen import Foreseen
+from app.lasting import lasting
 from app.late import settle
 from app.link.client import LinkClient
 from app.link.messages import Machine
@@ -164,7 +165,11 @@ async def _living(app: FastAPI) -> AsyncIterator[None]:
         stack.callback(panel.keeper.close)
         if panel.settings.mdns:
             await stack.enter_async_context(announced(panel.settings))
-        following = asyncio.gather(panel.hub.run(), panel.keeper.run(), panel.network.run())
+        following = asyncio.gather(
+            lasting("live values", panel.hub.run, panel.clock),
+            lasting("access", panel.keeper.run, panel.clock),
+            lasting("network", panel.network.run, panel.clock),
+        )
         try:
             yield
         finally:

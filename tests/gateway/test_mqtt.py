@@ -352,6 +352,38 @@ async def test_an_older_broker_is_told_everything_and_no_commands_are_taken(
     await older.wait_closed()
 
 
+async def test_a_broker_that_learns_mqtt_5_is_asked_for_commands_at_the_next_connection(
+    tmp_path: Path, broker: Broker
+) -> None:
+    talking: list[asyncio.Task[None]] = []
+    old = asyncio.Event()
+    old.set()
+
+    async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        work = _older if old.is_set() else _through
+        talking.append(asyncio.create_task(work(reader, writer, broker.port)))
+
+    server = await asyncio.start_server(serve, "127.0.0.1", 0)
+    wanted = settings(tmp_path, broker, mqtt_commands=True)
+    wanted = wanted.model_copy(update={"mqtt_port": server.sockets[0].getsockname()[1]})
+    async with kept_plant(tmp_path) as (plant, store), opened(plant, wanted, store) as gateways:
+        await _until(gateways, lambda seen: "does not speak MQTT 5" in seen.error)
+        old.clear()
+        for task in talking:
+            task.cancel()
+        seen = await _until(gateways, lambda seen: seen.status is GatewayStatus.CONNECTED and not seen.error)
+        assert seen.error == ""
+    server.close()
+    for task in talking:
+        task.cancel()
+
+
+async def _through(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, port: int) -> None:
+    behind, to_broker = await asyncio.open_connection("127.0.0.1", port)
+    with contextlib.closing(to_broker):
+        await asyncio.gather(_pass_on(reader, to_broker), _pass_on(behind, writer))
+
+
 async def _older(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, port: int) -> None:
     """A broker that knows MQTT 3.1.1: it refuses version 5 as that version's document says."""
     connect = await reader.read(4096)
@@ -362,7 +394,8 @@ async def _older(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, por
         return
     behind, to_broker = await asyncio.open_connection("127.0.0.1", port)
     to_broker.write(connect)
-    await asyncio.gather(_pass_on(reader, to_broker), _pass_on(behind, writer))
+    with contextlib.closing(writer), contextlib.closing(to_broker):
+        await asyncio.gather(_pass_on(reader, to_broker), _pass_on(behind, writer))
 
 
 async def _pass_on(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:

@@ -4,10 +4,11 @@ import asyncio
 from datetime import UTC, datetime, timedelta
 
 import pytest
+from structlog.testing import capture_logs
 
 from app.clock import VirtualClock
 from app.drives.drive import DriveError
-from app.site.met_poll import MetPoll
+from app.site.met_poll import UNFORESEEN, MetPoll
 from app.tracker.memory import MetStation
 from app.tracker.weather import Weather
 from tests.site.plant import settle
@@ -55,6 +56,29 @@ async def test_a_station_is_read_every_second_until_another_is_set() -> None:
     await settle()
     assert (len(told), mast.closed) == (5, 1)
     assert len(asyncio.all_tasks()) == 1
+
+
+async def test_a_mistake_in_reading_is_told_and_the_station_is_read_on() -> None:
+    clock, mast = VirtualClock(datetime(2026, 6, 21, tzinfo=UTC)), Mast()
+    mistakes: list[Exception] = [KeyError("unforeseen"), ZeroDivisionError()]
+    told: list[Weather | None] = []
+
+    def hear(weather: Weather | None, impossible: tuple[str, ...], station: str) -> None:
+        if mistakes:
+            raise mistakes.pop()
+        told.append(weather)
+
+    poll = MetPoll(clock, lambda _: mast, hear)
+    with capture_logs() as logs:
+        await poll.follow(MAST)
+        for _ in range(2):
+            await settle()
+            assert (told, poll.trouble) == ([], UNFORESEEN)
+            clock.advance(timedelta(seconds=1))
+        await settle()
+    assert (told, poll.trouble) == ([Weather(wind_mps=4.0)], "")
+    assert [line["log_level"] for line in logs] == ["error"]
+    await poll.close()
 
 
 @pytest.mark.parametrize(("host", "port", "unit"), [(" ", 502, 1), ("a", 0, 1), ("a", 502, 256)])

@@ -190,3 +190,15 @@ async def test_stop_is_answered_although_the_disk_is_stalled() -> None:
 
     assert plant.happened(EventKind.STOPPED)
     await plant.close()
+
+
+async def test_a_watchdog_that_a_drive_turns_out_not_to_have_is_known_from_the_first_reading_on() -> None:
+    """A profile promises one; what it is set to is read with everything else, and may be 0 from the start."""
+    plant = make_plant(wrap=WrappedDrive)
+    await plant.start()
+    drive = wrapped(plant, "T1")
+    assert "no_watchdog" not in [one.code for one in plant.tracker().notices]
+    drive.watchdog_off = True
+    await plant.forward(seconds=0.2)
+    assert "no_watchdog" in [one.code for one in plant.tracker().notices]
+    await plant.close()

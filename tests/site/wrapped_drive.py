@@ -1,7 +1,7 @@
 """A drive with something between it and the site: hanging, failing, refusing or talking nonsense."""
 
 import asyncio
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 
 from app.drives.drive import Drive, DriveSilent
@@ -19,12 +19,14 @@ class WrappedDrive:
     refuses: bool = False
     deaf: bool = False
     cannot_stop: bool = False
+    watchdog_off: bool = False
     stops: int = 0
     written: list[DriveCommand] = field(default_factory=list)
 
     @property
     def capabilities(self) -> DriveCapabilities:
-        return self.inner.capabilities
+        known = self.inner.capabilities
+        return replace(known, watchdog_s=None) if self.watchdog_off else known
 
     async def read(self) -> Feedback:
         if self.hangs:

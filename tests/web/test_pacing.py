@@ -5,6 +5,9 @@ from datetime import datetime, timedelta
 from itertools import pairwise
 from typing import Any
 
+import pytest
+from structlog.testing import capture_logs
+
 from app.clock import SystemClock, VirtualClock
 from app.link.messages import Update
 from app.turnstile import Turnstile
@@ -13,6 +16,7 @@ from app.web.limits import StreamLimit
 from app.web.viewers import Wanted
 from tests.fake_data import NOON
 from tests.fakes import FakeMachine
+from tests.site.plant import settle
 
 A_BATCH_TAKES = timedelta(milliseconds=40)
 
@@ -99,3 +103,39 @@ async def test_a_hand_out_that_takes_long_is_followed_by_as_long_a_rest() -> Non
     pauses = [later - earlier for earlier, later in pairwise(shown_at)]
     assert len(pauses) >= 4
     assert min(pauses) >= 2 * 10 * A_BATCH_TAKES > 10 * A_BATCH_TAKES + SOONEST
+
+
+async def test_a_mistake_with_an_update_shows_no_stale_values_and_the_next_ones_are_heard(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    clock = VirtualClock(NOON)
+    machine = FakeMachine(clock)
+    hub = Hub(machine, clock)
+    hear, mistakes = hub._hear, list[Exception]()
+
+    def hear_or_fail(update: Update) -> None:
+        if mistakes:
+            raise mistakes.pop()
+        hear(update)
+
+    monkeypatch.setattr(hub, "_hear", hear_or_fail)
+    running = asyncio.create_task(hub.run())
+    with capture_logs() as logs:
+        machine.emit()
+        await settle()
+        (told,) = await hub.join(Wanted()).take()
+        assert told.name == "snapshot"
+        mistakes.append(KeyError("unforeseen"))
+        machine.emit()
+        await settle()
+        (told,) = await hub.join(Wanted()).take()
+        assert told.name == "machine_lost"
+        clock.advance(timedelta(seconds=1))
+        await settle()
+        machine.emit()
+        await settle()
+    (told,) = await hub.join(Wanted()).take()
+    assert told.name == "snapshot"
+    assert [line["event"] for line in logs] == ["task_broke"]
+    running.cancel()
+    await asyncio.gather(running, return_exceptions=True)
