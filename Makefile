@@ -70,7 +70,7 @@ test: $(VENV)/.dev $(VENV)/.client system-packages ## Set up what tests need and
 
 soak: $(VENV)/.dev system-packages ## Run the long proofs (hours): random operation, kills, power cuts, a day of a field
 	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/store/test_power_cut.py tests/tracker/test_stateful.py tests/site/test_field.py
-	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/machine/test_clock_jump.py tests/machine/test_field_events.py tests/machine/test_viewers.py $(addprefix tests/browser/test_,$(addsuffix .py,axe keyboard languages_fit walk))
+	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/machine/test_clock_jump.py tests/machine/test_field_events.py tests/machine/test_storm.py tests/machine/test_viewers.py $(addprefix tests/browser/test_,$(addsuffix .py,axe keyboard languages_fit walk))
 	@HELIOPANEL_TEST_KILLS=$${HELIOPANEL_TEST_KILLS:-1000} $(BIN)/python -m pytest -s tests/machine/test_kills.py
 	@HELIOPANEL_TEST_KILLS=20 $(BIN)/python -m pytest -s tests/e2e/test_kill.py tests/machine/test_process.py
 	@HELIOPANEL_TEST_KILLS=30 HELIOPANEL_TEST_TRACKERS=100 $(BIN)/python -m pytest -s tests/machine/test_storm_kill.py

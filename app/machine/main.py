@@ -114,6 +114,7 @@ async def _serve(settings: Settings, clock: SystemClock, writer: Writer) -> None
     server = LinkServer(gateways, settings.link_path)
     stopped = on_signals()
     _note_zones(site)
+    settle()
     await site.start(*beginning.events)
     await server.start()
     gateways.start()
@@ -121,7 +122,6 @@ async def _serve(settings: Settings, clock: SystemClock, writer: Writer) -> None
         LoopWatchdog(clock, alive=lambda: site.alive, stop_drives=site.stop_drives).run()
     )
     guarding = asyncio.create_task(_memory_guard(settings, clock, site, stopped).run(), name="memory guard")
-    settle()
     log.info("machine_ready", version=VERSION, link=str(settings.link_path), sqlite=sqlite3.sqlite_version)
     notice = sqlite_notice()
     if notice is not None:
