@@ -23,10 +23,12 @@
   };
   const across = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left);
   const down = (a, b) => Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
-  // What stays in sight when the page is scrolled lies over it then.
+  // What stays in sight when the page is scrolled lies over it then; what has no box of its own does not stay.
   const stays = (e) => scrollY > 0 && [".strips", ".alarm-strip"].some((name) => {
     const strip = e.closest(name);
-    return strip !== null && getComputedStyle(strip).position === "sticky";
+    if (strip === null) return false;
+    const { position, display } = getComputedStyle(strip);
+    return position === "sticky" && display !== "contents";
   });
   const layer = (e) => (e.closest(".footer") ? "footer" : e.closest(".language .languages") ? "list" : stays(e) ? "strip" : "page");
 
