@@ -26,6 +26,23 @@ FLAGS = [
 SCREENS = Path(__file__).resolve().parents[2] / "build" / "screens"
 TAKES_PICTURES = "HELIOPANEL_SCREENS" in os.environ
 """Whether pages are photographed: `make browser` wants that, as it takes time."""
+PICTURES = Path(__file__).resolve().parents[2] / "docs" / "pictures"
+WRITES_DOCS = os.environ.get("HELIOPANEL_DOCS") == "1"
+GUIDE = {
+    "step-location": "location-1024",
+    "step-clock": "clock-1024",
+    "step-homing": "homing-1024",
+    "step-mode": "mode-1024",
+    "step-run": "run-1024",
+    "log-in-wait": "log-in-1024",
+    "kiosk-pin": "kiosk-1024",
+    "session-ended": "session-ended-1280",
+    "network": "network-1280",
+    "network-try": "network-try-1280",
+    "show-on-the-machine": "show-running-1280",
+    "replay": "player-1280",
+}
+"""Which pictures of the guide the tests take where documents are written, by what the tests call them."""
 SIZES = {"desk": (1280, 800), "tablet": (1024, 768), "phone": (390, 844)}
 SOFTWARE_NOTE = "GPU stall due to ReadPixels"
 """Chromium's remark on WebGL without a graphics card, when a page is photographed; it says nothing of it."""
@@ -194,7 +211,10 @@ def picture() -> Callable[[Page, str], None]:
     """Photograph a page where pictures are wanted; either way its letters have come."""
 
     def take(page: Page, name: str) -> None:
-        if TAKES_PICTURES:
+        if WRITES_DOCS and name in GUIDE:
+            page.evaluate("document.fonts.ready.then(() => null)")
+            page.screenshot(path=PICTURES / f"{GUIDE[name]}.png")
+        elif TAKES_PICTURES:
             page.screenshot(path=SCREENS / f"{name}.png")
         else:
             page.evaluate("document.fonts.ready.then(() => null)")

@@ -6,11 +6,13 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Locator, Page, expect
 
-from tests.browser.conftest import PATIENCE_MS, SIZES
+from tests.browser.conftest import PATIENCE_MS, SIZES, TAKES_PICTURES, WRITES_DOCS
 from tests.browser.hands import CONFIRM_MS, Hands, arrive
 from tests.e2e.product import Product
 
 PRESSES = 5
+PHOTOGRAPHED = "Applying inline style violates"
+"""The browser's remark on the style that Playwright adds while it photographs a page."""
 Picture = Callable[[Page, str], None]
 
 
@@ -54,7 +56,9 @@ def walker(rooms: dict[bool, BrowserContext]) -> Iterator[Walker]:
     yield start
     for page in pages:
         page.close()
-    assert [one for one in complaints if "422" not in one] == [], "setting home is asked about"
+    expected = ["422", *([PHOTOGRAPHED] if TAKES_PICTURES or WRITES_DOCS else [])]
+    beyond_what_is_asked = [one for one in complaints if not any(words in one for words in expected)]
+    assert not beyond_what_is_asked, beyond_what_is_asked
 
 
 def onwards(page: Page, hands: Hands, to: str) -> None:
