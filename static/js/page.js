@@ -3,7 +3,6 @@
 import { start as startControl } from "./control.js";
 import { start as startAlarms } from "./alarms.js";
 import { start as startAsking } from "./asked.js";
-import { start as startKeeping } from "./keep.js";
 import { start as startLive } from "./live.js";
 import { start as startOrders } from "./orders.js";
 import { start as startOutdated } from "./outdated.js";
@@ -15,7 +14,6 @@ import { start as stayAwake } from "./wake.js";
 
 startStop();
 startTheme();
-startKeeping();
 startOrders();
 startAsking();
 startProving();
@@ -25,6 +23,15 @@ startAlarms();
 startOutdated();
 startLive();
 stayAwake();
+
+// Pages on which nothing is typed do not load what keeps it.
+let keeping = null;
+function keepTyped() {
+  if (keeping || !(document.querySelector("main form[method=post]:not(.action)") || sessionStorage.length)) return;
+  keeping = import("./keep.js").then(({ start }) => start());
+}
+document.addEventListener("htmx:after:swap", keepTyped);
+keepTyped();
 
 // On a narrow screen the tabs are one row that scrolls: the page's own stands in sight.
 const tab = document.querySelector(".tabs a[aria-current]");
