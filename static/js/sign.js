@@ -70,6 +70,12 @@ function watch(pad) {
     strokes = [];
     keep();
   });
+  // What was drawn before a reload comes back into the field (keep.js), and is drawn again.
+  pad.closest("form").addEventListener("input", ({ target, currentTarget }) => {
+    if (target !== currentTarget) return;
+    strokes = strokesOf(pad);
+    draw(pad, strokes);
+  });
   draw(pad, strokes);
 }
 
