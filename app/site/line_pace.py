@@ -25,6 +25,19 @@ MISSED_ONCE = 1.5
 OLDEST_S, OLDEST_PERIODS = 1.0, 3.0
 
 
+def short_watchdog(watchdog_s: float | None, period_s: float) -> Reason | None:
+    """Return that a drive stops by itself between two commands of a controller; None if it does not."""
+    if watchdog_s is None or period_s <= FULL * watchdog_s:
+        return None
+    return Reason(
+        "watchdog_short",
+        f"The drive stops by itself after {watchdog_s:g} s without a command, and this controller commands "
+        f"it every {period_s:g} s.",
+        f"Give its watchdog at least {period_s / FULL:g} s, or set HELIOPANEL_TICK_MS to "
+        f"{FULL * watchdog_s * 1000.0:.0f} or less.",
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class Pace:
     """A drive is asked at every so many ticks, may take `within_s`, and is lost after `silence`."""
@@ -61,6 +74,8 @@ class LinePace:
     def notice(self, name: str) -> Reason | None:
         """Return that a drive is asked less often than trackers tick, or too seldom; None if it is not."""
         turn, watchdog_s = self._turn, self._watchdog_s
+        if against := short_watchdog(watchdog_s, self._period_s):
+            return against
         if turn is None or turn.devices < 2:
             return None
         if watchdog_s is not None and turn.turn_s > watchdog_s:

@@ -1,14 +1,22 @@
-"""Whether a serial line has room for one more drive: that is reckoned before anything is connected."""
+"""Whether a drive can be told often enough that it goes on: that is reckoned before anything is connected."""
 
 from app.drives.drive import line_turn
-from app.site.line_pace import FULL
+from app.site.line_pace import FULL, short_watchdog
 from app.site.model import SiteModel
 from app.tracker.commands import CommandRejected
 from app.tracker.config import DriveKind, TrackerConfig
 from app.tracker.reason import Reason
 
 
-def refuse_full_line(model: SiteModel, config: TrackerConfig) -> None:
+def refuse_starved_drive(model: SiteModel, config: TrackerConfig) -> None:
+    """Raise `CommandRejected` if the drive would stop by itself between two commands."""
+    against = short_watchdog(model.make_drive(config).capabilities.watchdog_s, model.period.total_seconds())
+    if against is not None:
+        raise CommandRejected(against)
+    _refuse_full_line(model, config)
+
+
+def _refuse_full_line(model: SiteModel, config: TrackerConfig) -> None:
     """Raise `CommandRejected` if a line cannot reach all of its drives before a watchdog stops one."""
     serial = config.drive.serial
     if config.drive.kind is not DriveKind.MODBUS_RTU:

@@ -5,7 +5,7 @@ from datetime import datetime
 
 from app.site.auditing import as_action
 from app.site.checks import check_config, check_name
-from app.site.line_room import refuse_full_line
+from app.site.line_room import refuse_starved_drive
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
 from app.tracker.axes import Axis
@@ -34,7 +34,7 @@ async def add(model: SiteModel, config: TrackerConfig, actor: str) -> tuple[Even
         raise CommandRejected(Reason("site_full", f"A site has at most {MOST_TRACKERS} trackers."))
     _refuse_shared_drive(model, config)
     model.check_drive(config)
-    refuse_full_line(model, config)
+    refuse_starved_drive(model, config)
     event = model.event(
         EventKind.TRACKER_ADDED, f"Tracker {config.name} was added.", actor, config.tracker_id
     )
@@ -60,7 +60,7 @@ async def configure(model: SiteModel, config: TrackerConfig, actor: str) -> tupl
     _refuse_shared_drive(model, config)
     model.check_drive(config)
     if config.drive != loop.config.drive:
-        refuse_full_line(model, config)
+        refuse_starved_drive(model, config)
     event = model.event(
         EventKind.TRACKER_CHANGED,
         f"The configuration of {config.name} was changed.",

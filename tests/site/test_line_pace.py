@@ -9,7 +9,7 @@ from app.drives.factory import DriveFactory
 from app.drives.line_turn import LineTurn
 from app.link.messages import AddTracker, ConfigureTracker
 from app.site.line_pace import LinePace, Pace
-from app.site.site import Site
+from app.site.site import Site, SiteOptions
 from app.tracker.commands import CommandRejected
 from app.tracker.config import DriveConfig, DriveKind, SerialConfig, TrackerConfig
 from app.tracker.memory import SiteState, TrackerMemory, TrackerState
@@ -118,6 +118,24 @@ async def test_another_drive_is_refused_on_a_full_line_and_another_name_is_not()
     await plant.ask(ConfigureTracker(TrackerConfig("T6", "North", drive=on_a_line(6).drive)))
     with pytest.raises(CommandRejected, match="has room for 4 such drives"):
         await plant.ask(ConfigureTracker(TrackerConfig("T6", "North", drive=on_a_line(7).drive)))
+    await plant.site.close()
+
+
+async def test_a_drive_that_stops_between_two_commands_is_refused_and_told() -> None:
+    clock = VirtualClock(SUMMER_NOON)
+    options = SiteOptions(boot_id="1", period=timedelta(seconds=1))
+    plant = Plant(clock, Site(clock, DriveFactory(clock).make, SiteState(), (), options=options), {})
+    await plant.site.start()
+    with pytest.raises(CommandRejected) as refused:
+        await plant.ask(AddTracker(on_a_line(1)))
+    (reason,) = refused.value.reasons
+    assert reason.code == "watchdog_short"
+    assert reason.hint == "Give its watchdog at least 1.25 s, or set HELIOPANEL_TICK_MS to 400 or less."
+    line = LinePace(DriveKind.MODBUS_TCP, timedelta(seconds=1))
+    line.follow(None, 0.5)
+    assert line.notice("T1") == reason
+    line.follow(None, 1.25)
+    assert line.notice("T1") is None
     await plant.site.close()
 
 
