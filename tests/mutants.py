@@ -55,7 +55,7 @@ AREAS = {
             "tests/test_budget.py", "tests/test_turnstile.py", "tests/link/test_lanes.py",
             "tests/gateway/test_mqtt_lanes.py", "tests/gateway/test_quiet_door.py", "tests/web/test_gate.py",
             "tests/web/test_leases.py", "tests/web/test_network.py", "tests/web/test_pacing.py",
-            "tests/web/test_server.py", "tests/web/test_stream_limit.py",
+            "tests/web/test_presses.py", "tests/web/test_server.py", "tests/web/test_stream_limit.py",
         ),
     ),
     "drives": Area(
