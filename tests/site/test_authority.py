@@ -11,8 +11,10 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, 
 
 from app.site import authority as rules
 from app.site.authority import Authority, Due, Verdict, Wish
+from app.site.controls import Controls
 from app.tracker.commands import CommandRejected
-from app.tracker.control import ControlHeld, ControlLost, Holder
+from app.tracker.control import ControlHeld, ControlLost, ControlState, Holder, refusal
+from app.tracker.reason import Reason
 from tests.fault_result import FaultResult
 
 NOON = datetime(2027, 6, 21, 9, 40, tzinfo=UTC)
@@ -216,3 +218,92 @@ class Contest(RuleBasedStateMachine):
 
 TestContest = Contest.TestCase
 TestContest.settings = settings(max_examples=60, stateful_step_count=30, deadline=None)
+
+
+def told_to(who: Holder, *, holder: Holder = OPERATOR) -> tuple[str, str]:
+    reason = rules.held(holder, who, "T1")
+    return reason.code, reason.hint
+
+
+def test_who_is_refused_is_told_how_to_come_to_control() -> None:
+    take_over = "Ask for control at the top of the page, or take it over there with a reason."
+    wait = "Ask for control at the top of the page and wait until it is handed over."
+    post = "Ask for control (POST .../control), or wait until it is released."
+    assert told_to(OTHER) == ("control_held", take_over), "of the same rank"
+    assert told_to(ENGINEER) == ("control_held", take_over)
+    assert told_to(OPERATOR, holder=ENGINEER) == ("control_held", wait)
+    assert told_to(PROGRAM) == ("control_held", post)
+
+
+def test_an_order_of_an_older_epoch_is_told_who_has_control_now_if_somebody_has() -> None:
+    with pytest.raises(ControlLost) as free:
+        rules.judge(Authority(4), OPERATOR, 3, NOON, "T1")
+    assert free.value.reasons[0].message == (
+        "This order was given before control of T1 changed, and is not carried out any more."
+    )
+
+
+def test_a_wish_outlives_the_lease_of_whom_it_was_for() -> None:
+    asked = replace(held_by(OPERATOR), wish=wish(OTHER, seconds=60, takes=False))
+    free = rules.without_expired(asked, at(15))
+    assert (free.epoch, free.lease, free.wish) == (asked.epoch + 1, None, asked.wish)
+    assert rules.without_expired(asked, at(14.9)) is asked
+
+
+def test_letting_go_is_one_epoch() -> None:
+    assert rules.release(held_by(OPERATOR)) == Authority(held_by(OPERATOR).epoch + 1)
+
+
+@pytest.mark.parametrize("authority", [Authority(4), held_by(OPERATOR), Authority(4, wish=wish(OTHER))])
+def test_where_nobody_wants_control_there_is_nothing_to_refuse(authority: Authority) -> None:
+    with pytest.raises(CommandRejected) as rejected:
+        rules.refuse(authority, NOON)
+    assert [reason.code for reason in rejected.value.reasons] == ["no_wish"]
+
+
+def test_what_everyone_sees_is_in_site_time() -> None:
+    held = rules.renew(rules.take(Authority(4), ENGINEER, NOON), ENGINEER, at(3))
+    wanted = replace(held, wish=wish(OTHER, seconds=12))
+    hours = timedelta(hours=2)
+    seen = rules.control_state(wanted, at(8), at(8) + hours)
+    assert (seen.epoch, seen.holder, seen.via, seen.rank, seen.is_program) == (5, "cy", "session", 2, False)
+    assert (seen.since, seen.expires) == (NOON + hours, at(18) + hours)
+    assert seen.is_silent is False, "for 5 s everybody may be quiet"
+    assert seen.request is not None
+    assert (seen.request.by, seen.request.until) == ("bo", at(12) + hours)
+    assert rules.control_state(wanted, at(8.001), at(8.001)).is_silent is True
+    assert rules.control_state(Authority(4), NOON, NOON) == ControlState(4)
+
+
+def test_a_lower_role_that_takes_is_told_whose_is_higher() -> None:
+    with pytest.raises(ControlHeld) as refused:
+        rules.want(held_by(ENGINEER), wish(OPERATOR), "T1")
+    assert refused.value.reasons[0].message == "cy has control of T1 and has the higher role."
+
+
+@pytest.mark.parametrize(
+    ("codes", "kind"),
+    [
+        (("not_homed",), CommandRejected),
+        (("not_homed", "control_held"), ControlHeld),
+        (("control_lost",), ControlLost),
+        (("control_held", "control_lost"), ControlLost),
+    ],
+)
+def test_reasons_about_control_that_come_over_the_link_are_errors_about_control(
+    codes: tuple[str, ...], kind: type[CommandRejected]
+) -> None:
+    reasons = tuple(Reason(code, "Why.") for code in codes)
+    error = refusal(*reasons)
+    assert type(error) is kind
+    assert error.reasons == reasons
+
+
+def test_a_tracker_begins_free_under_the_epoch_after_the_stored_one() -> None:
+    controls = Controls()
+    assert controls.of("T1", 7) == Authority(8)
+    controls.put("T1", held_by(OPERATOR))
+    assert controls.of("T1", 99) == held_by(OPERATOR)
+    assert controls.of("T2", 0) == Authority(1)
+    assert controls.lock("T1") is controls.lock("T1")
+    assert controls.lock("T1") is not controls.lock("T2")

@@ -1,5 +1,7 @@
 """What everybody is told of control, word by word, and what of it is stored before it counts."""
 
+import asyncio
+
 import pytest
 
 from app.link.messages import (
@@ -11,11 +13,14 @@ from app.link.messages import (
     UnknownTracker,
 )
 from app.site.authority import ASK_LASTS, COUNTDOWN, LEASE
+from app.tracker.axes import Axis
 from app.tracker.commands import (
+    JOG_LEASE,
     BeginService,
     CommandRejected,
     ConfirmClear,
     EndService,
+    Jog,
     LockOut,
     Move,
     ReleaseLock,
@@ -30,7 +35,7 @@ from app.tracker.memory import TrackerMemory, TrackerState
 from app.tracker.mode import Mode
 from app.tracker.protections.words import StowName
 from app.tracker.snapshot import ActivityName, EventKind
-from tests.site.plant import Plant, make_plant
+from tests.site.plant import Plant, make_plant, settle
 from tests.site.test_control import AWAY, SECOND, TAKE, Person
 
 ABOUT_CONTROL = {
@@ -301,3 +306,89 @@ async def test_an_order_of_an_older_epoch_does_not_take_control_that_is_free(rea
     order = Order(Move(Orientation(170.0, 30.0)), "ada", "T1", via="session", rank=1)
     await ready.site.execute(order)
     assert ready.tracker().control.holder == "ada", "who does not say an epoch takes what is free"
+
+
+@pytest.mark.parametrize("waited_s", [0.0, 0.1, 0.2])
+async def test_a_jog_loses_of_its_lease_what_it_waited_while_control_passed(
+    ready: Plant, waited_s: float
+) -> None:
+    ada, loop = Person(ready, "ada"), ready.site.model.tracker("T1")
+    pressed_at = ready.clock.now()
+    async with ready.site.model.control.lock("T1"):
+        asking = asyncio.create_task(ada.ask(Jog("p", Axis.AZIMUTH, 1)))
+        await settle()
+        await ready.forward(seconds=waited_s)
+        assert not asking.done(), "while control passes an order waits"
+        assert loop.activity is ActivityName.HOLDING
+    await settle()
+    assert loop.activity is ActivityName.JOGGING
+    assert loop.deadline() == pressed_at + JOG_LEASE
+    await asking
+
+
+async def test_a_jog_that_waited_for_longer_than_its_lease_turns_nothing(ready: Plant) -> None:
+    ada = Person(ready, "ada")
+    async with ready.site.model.control.lock("T1"):
+        asking = asyncio.create_task(ada.ask(Jog("p", Axis.AZIMUTH, 1)))
+        await settle()
+        await ready.forward(seconds=5)
+    before = ready.tracker().measured
+    await asking
+    await ready.forward(seconds=1)
+    assert ready.tracker().measured == before
+
+
+@pytest.mark.parametrize(("name", "epochs", "kind"), [("bo", 0, ControlHeld), ("ada", -2, ControlLost)])
+async def test_an_order_that_waited_is_judged_by_who_ordered_it_and_when(
+    ready: Plant, name: str, epochs: int, kind: type[CommandRejected]
+) -> None:
+    await Person(ready, "ada").ask(RequestControl(("T1",)))
+    who = Person(ready, name)
+    async with ready.site.model.control.lock("T1"):
+        asking = asyncio.create_task(who.ask(AWAY, epoch=who.epoch + epochs))
+        await settle()
+    with pytest.raises(kind):
+        await asking
+    assert ready.tracker().activity is ActivityName.HOLDING
+
+
+@pytest.mark.parametrize(
+    "said", [RequestControl(("T1",)), AnswerControl("T1", grants=True), ReleaseControl("T1")]
+)
+async def test_what_is_said_about_control_waits_until_it_has_passed(
+    ready: Plant, said: RequestControl | AnswerControl | ReleaseControl
+) -> None:
+    ada, bo = Person(ready, "ada"), Person(ready, "bo")
+    await ada.ask(RequestControl(("T1",)))
+    await bo.ask(RequestControl(("T1",)))
+    since = len(ready.events)
+    async with ready.site.model.control.lock("T1"):
+        asking = asyncio.create_task((bo if isinstance(said, RequestControl) else ada).ask(said))
+        for _ in range(5):
+            await settle()
+        assert not asking.done()
+        assert told(ready, since) == []
+    await asking
+
+
+async def test_what_was_ordered_at_the_moment_in_which_control_was_taken_goes(ready: Plant) -> None:
+    ada = Person(ready, "ada")
+    free = ada.epoch
+    await ada.ask(AWAY)
+    assert ada.epoch == free + 1
+    await ada.ask(Stow(StowName.WIND), epoch=free)
+    assert ready.tracker().activity is ActivityName.STOWING
+    with pytest.raises(ControlLost):
+        await ada.ask(AWAY, epoch=free - 1)
+
+
+async def test_a_wish_without_a_reason_is_told_without_one(ready: Plant) -> None:
+    await Person(ready, "ada").ask(RequestControl(("T1",)))
+    await Person(ready, "bo").ask(RequestControl(("T1",)))
+    assert told(ready)[-1] == asked("bo", "asks for", "ada", takes=False)
+
+
+async def test_who_takes_over_is_who_stopped_the_motion(ready: Plant) -> None:
+    await Person(ready, "scada (token)", via="token").ask(AWAY)
+    await Person(ready, "bo").ask(RequestControl(("T1",)))
+    assert ready.happened(EventKind.STOPPED)[-1].actor == "bo"

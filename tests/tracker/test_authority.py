@@ -203,3 +203,9 @@ def test_the_next_service_wants_the_area_to_be_looked_at_anew() -> None:
     assert plant.reasons("move") >= {"area_not_clear"}
     plant.forward(1000.0)
     assert not plant.happened(EventKind.AREA_DOUBTED), "the former word is forgotten"
+
+
+def test_service_without_a_name_is_refused_with_what_bears_one() -> None:
+    plant = ready()
+    with pytest.raises(CommandRejected, match=r"^Service mode bears a name of 1 to 60 letters"):
+        plant.ask(BeginService("  "))
