@@ -48,14 +48,21 @@ AREAS = {
     "access": Area(("app.access.",), ("tests/access",)),
     "limits": Area(
         (
-            "app.budget.", "app.turnstile.", "app.link.lanes.", "app.gateway.", "app.web.gate.",
-            "app.web.limits.", "app.web.live_protocol.", "app.web.presses.", "app.web.server.",
+            "app.budget.", "app.gateway.", "app.link.lanes.", "app.turnstile.", "app.web.limits.",
+            "app.web.presses.",
         ),
         (
             "tests/test_budget.py", "tests/test_turnstile.py", "tests/link/test_lanes.py",
-            "tests/gateway/test_mqtt_lanes.py", "tests/gateway/test_quiet_door.py", "tests/web/test_gate.py",
-            "tests/web/test_leases.py", "tests/web/test_network.py", "tests/web/test_pacing.py",
-            "tests/web/test_presses.py", "tests/web/test_server.py", "tests/web/test_stream_limit.py",
+            "tests/gateway/test_mqtt_lanes.py", "tests/gateway/test_quiet_door.py",
+            "tests/gateway/test_sunspec.py", "tests/web/test_leases.py", "tests/web/test_presses.py",
+            "tests/web/test_stream_limit.py",
+        ),
+    ),
+    "panel": Area(
+        ("app.web.gate.", "app.web.live_protocol.", "app.web.server."),
+        (
+            "tests/web/test_connections.py", "tests/web/test_gate.py", "tests/web/test_network.py",
+            "tests/web/test_pacing.py", "tests/web/test_server.py",
         ),
     ),
     "drives": Area(
