@@ -47,13 +47,10 @@ def test_an_order_of_an_outdated_page_is_refused_and_the_page_is_loaded_again(
 def test_a_page_that_answers_a_form_is_loaded_again_without_sending_the_form(
     plant: Plant, opened: Opened
 ) -> None:
-    page = opened("/users", allow=("422",))
-    page.locator("input[name=name]").fill("carl")
-    page.locator("input[name=password]").fill("four words that stand together")
-    page.locator("label").filter(has_text="Administrator").click()
-    page.locator("label").filter(has_text="Viewer").click()
+    page = opened("/network", allow=("422",))
+    page.locator("input[name=port]").fill("99999")
     with page.expect_response(lambda answer: answer.status == 422):
-        page.get_by_role("button", name="Add").click()
+        page.get_by_role("button", name="Try this for 60 s").click()
     expect(page.locator("#link-words")).to_have_text("live")
     sent: list[str] = []
     page.on("request", lambda request: sent.append(request.method))
