@@ -163,7 +163,8 @@ class FakeTracker:
 
     def snapshot(self, at: datetime, tick: int) -> Snapshot:
         """Return what the panel shows of this tracker."""
-        sun = made_up_sun(at)
+        shown = self._progress(at)
+        sun = made_up_sun(shown.sun_time if shown else at)
         if self.activity is ActivityName.TRACKING and sun.elevation_deg > 0:
             self.position = Pair(round(sun.azimuth_deg, 1), round(sun.elevation_deg, 1))
         where = self.position

@@ -1,17 +1,17 @@
-"""A quick start: the collector rests while modules are loaded, and works as usual afterwards."""
+"""A quick start: the collector rests while modules are loaded, and works seldom afterwards."""
 
 import gc
 
-from app.late import USUAL, hurry, late, settle
+from app.late import RELAXED, SELDOM, hurry, late, settle
 
 
 def test_the_collector_rests_until_everything_is_loaded() -> None:
     found = gc.get_threshold()
     try:
         hurry()
-        assert gc.get_threshold()[0] > USUAL[0]
+        assert gc.get_threshold() == RELAXED
         settle()
-        assert gc.get_threshold() == USUAL
+        assert gc.get_threshold() == SELDOM
         assert gc.get_freeze_count() > 0
     finally:
         gc.unfreeze()

@@ -21,7 +21,8 @@ from tests.loopback.sitecustomize import CHROMIUM_FLAGS
 CHROMIUM = os.environ.get("HELIOPANEL_TEST_BROWSER", "/usr/bin/chromium")
 FLAGS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage", *CHROMIUM_FLAGS,
+    "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage",
+    "--disable-features=WebUIOmniboxPopup,WebUIOmniboxAimPopup", *CHROMIUM_FLAGS,
 ]  # fmt: skip
 SCREENS = Path(__file__).resolve().parents[2] / "build" / "screens"
 TAKES_PICTURES = "HELIOPANEL_SCREENS" in os.environ

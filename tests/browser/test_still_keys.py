@@ -160,6 +160,9 @@ def test_the_last_reading_has_its_room_and_moves_no_key(
         page.context.add_cookies([{"name": "language", "value": language, "url": plant.url}])
         page.reload()
         page.wait_for_selector('html[data-link="live"]')
+        if path == HOMING:
+            page.wait_for_selector(LINK_MEASURED)
+        page.evaluate("document.fonts.ready.then(() => null)")
     page.context.clear_cookies(name="language")
     before = {language: page.evaluate(KEYS) for language, page in pages.items()}
     lost(plant)

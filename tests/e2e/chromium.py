@@ -21,7 +21,8 @@ PROGRAM = os.environ.get("HELIOPANEL_TEST_BROWSER", "/usr/bin/chromium")
 FLAGS = [
     "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
     "--disable-background-networking", "--disable-component-update", "--disable-dev-shm-usage",
-    "--remote-debugging-port=0", "--window-size=1280,800", *CHROMIUM_FLAGS,
+    "--remote-debugging-port=0", "--window-size=1280,800",
+    "--disable-features=WebUIOmniboxPopup,WebUIOmniboxAimPopup", *CHROMIUM_FLAGS,
 ]  # fmt: skip
 ANSWERS_WITHIN_S = 15.0
 LARGEST_ANSWER = 64 * 1024 * 1024
