@@ -45,10 +45,7 @@ _NO_ORIENTATION = (nan, nan)
 
 
 def snapshot(mind: Mind, at: datetime, now: datetime, *, asked: bool = True) -> Snapshot:
-    """Return everything known after the last tick, stamped `at`; ages are counted to `now`, steady time.
-
-    `asked`: somebody wants to know which actions are forbidden, and why; else they are left out.
-    """
+    """Return what is known after the last tick, stamped `at`; ages count to `now`; actions if `asked`."""
     fresh = mind.seen.feedback if mind.seen else None
     faced = _faced(mind, fresh)
     sun_is_up = mind.sun is not None and sun_height_deg(mind.config, mind.sun) > 0.0

@@ -15,15 +15,10 @@ import uvicorn
 from fastapi import FastAPI
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, expect, sync_playwright
 
+from tests.e2e.chromium import PROGRAM as CHROMIUM
+from tests.e2e.chromium import QUIET as FLAGS
 from tests.fakes import FakeMachine, fake_app
-from tests.loopback.sitecustomize import CHROMIUM_FLAGS
 
-CHROMIUM = os.environ.get("HELIOPANEL_TEST_BROWSER", "/usr/bin/chromium")
-FLAGS = [
-    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage",
-    "--disable-features=WebUIOmniboxPopup,WebUIOmniboxAimPopup", *CHROMIUM_FLAGS,
-]  # fmt: skip
 SCREENS = Path(__file__).resolve().parents[2] / "build" / "screens"
 TAKES_PICTURES = "HELIOPANEL_SCREENS" in os.environ
 """Whether pages are photographed: `make browser` wants that, as it takes time."""
