@@ -330,7 +330,7 @@ async def web_restart(size: Size, *, viewers: int) -> Trial:
 
 
 class Viewer:
-    """A page that is open, and that opens its stream again when it is cut."""
+    """A page that is open, and that opens its stream again when it is cut; like a browser it takes any size."""
 
     def __init__(self, port: int) -> None:
         self._port = port
@@ -351,7 +351,7 @@ class Viewer:
         address, origin = f"ws://127.0.0.1:{self._port}/live", Origin(f"http://127.0.0.1:{self._port}")
         while True:
             with suppress(Exception):
-                async with connect(address, origin=origin) as page:
+                async with connect(address, origin=origin, max_size=None) as page:
                     self.lives, self.told = self.lives + 1, False
                     async for _ in page:
                         self.told = True
