@@ -6,7 +6,8 @@
 # make mutants: changes guards, access, limits, drives and control in a copy, one place at a time, and counts
 #   what their tests notice; ONLY=access does one area
 # make dist : builds the sdist and the wheel into dist/
-# make bench: measures and writes docs/benchmarks.md
+# make docs : builds the site of the documents into manual/, and fails at a broken link or anchor
+# make bench: measures and writes docs/develop/benchmarks.md
 
 PYTHON ?= python3
 VENV := .venv
@@ -18,7 +19,7 @@ ALONE := tests/drives/timed tests/test_benches.py \
 	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost hold_to_run kill many_holds stop_and_tabs))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup dist fast client run test check translations fuzz bench format lock browser system-packages clean
+.PHONY: help setup docs dist fast client run test check translations fuzz bench format lock browser system-packages clean
 
 help: ## Show what each command does
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-10s %s\n", $$1, $$2}'
@@ -51,6 +52,9 @@ dist: $(VENV)/.runtime ## Build the sdist, and the wheel from it, into dist/
 	@$(BIN)/python -m pip wheel --quiet --disable-pip-version-check --no-index --no-build-isolation --no-deps -w dist \
 		dist/heliopanel-$$($(BIN)/heliopanel version).tar.gz
 	@ls dist
+
+docs: $(VENV)/.dev ## Build the site of the documents into manual/; a broken link or anchor fails
+	@$(BIN)/zensical build --strict
 
 fast: $(VENV)/.runtime ## Add the compiled loops (numba) that make studies and comparisons quick
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-fast.txt
@@ -99,7 +103,7 @@ translations: $(VENV)/.dev ## Bring the catalogues of all languages up to date w
 fuzz: $(VENV)/.dev ## Send 10,000 bad requests to the API, and hostile values into every form
 	@$(BIN)/python -m tests.fuzz
 
-bench: $(VENV)/.dev system-packages ## Measure, as ratios against peers in the same run, and write docs/benchmarks.md
+bench: $(VENV)/.dev system-packages ## Measure, as ratios against peers in the same run, and write docs/develop/benchmarks.md
 	@$(BIN)/python -m bench
 
 format: $(VENV)/.dev ## Format the code

@@ -36,7 +36,7 @@ def reproduce(
     paper: Annotated[list[str] | None, typer.Option(help=f"One of {', '.join(LIBRARY)}; or all.")] = None,
     *,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
-    markdown: Annotated[bool, typer.Option("--markdown", help="Print Markdown, as docs/papers.md.")] = False,
+    markdown: Annotated[bool, typer.Option("--markdown", help="Print Markdown.")] = False,
 ) -> None:
     """Print what the five papers publish, what comes out when it is computed, and the difference."""
     found = papers(tuple(paper or ()))

@@ -1,4 +1,4 @@
-"""Measure, print, and renew the measured sections of docs/benchmarks.md: `python -m bench [NAME ...]`."""
+"""Measure, print, and renew what is measured in docs/develop/benchmarks.md: `python -m bench [NAME ...]`."""
 
 import argparse
 import importlib
@@ -14,7 +14,7 @@ from pathlib import Path
 import bench
 from bench.table import NotMeasured, Row
 
-REPORT = Path(__file__).resolve().parents[1] / "docs" / "benchmarks.md"
+REPORT = Path(__file__).resolve().parents[1] / "docs" / "develop" / "benchmarks.md"
 NOT_BENCHMARKS = {"__main__", "table"}
 
 HEAD = """# Benchmarks

@@ -1,4 +1,4 @@
-"""What a test says of the row of the fault table that it proves: `docs/faults.md` is made of it."""
+"""What a test says of the row of the fault table that it proves: `docs/reference/faults.md` is made of it."""
 
 from collections.abc import Callable
 

@@ -1,6 +1,6 @@
 """The table of faults: every row with its tests, what they measured, and the page made of their results.
 
-python -m tests.fault_table             run every test that proves a row, and write docs/faults.md
+python -m tests.fault_table             run every test that proves a row, and write docs/reference/faults.md
 python -m tests.fault_table PART PARTS  run one of so many parts; the page is written once all have passed
 """
 
@@ -19,7 +19,7 @@ from tests.fault_result import VIRTUAL
 
 TESTS = Path(__file__).parent
 GOLDEN = TESTS / "golden" / "fault_table.csv"
-PAGE = TESTS.parent / "docs" / "faults.md"
+PAGE = TESTS.parent / "docs" / "reference" / "faults.md"
 PARTS = TESTS.parent / "build" / "faults"
 
 HEAD = """# What can go wrong
@@ -32,7 +32,7 @@ this page. Fault, detection and reaction are the design's; the rest is what the 
 clock with a tick every 0.1 s, or on the real clock, at a real socket, process, disk or page. Where it says
 why instead, the product refuses the fault or is immune to it. *Shown* is the sentence that a user was shown
 or answered. *Recovery* is what ended the fault in the test; an engineer may set another policy for some
-classes of faults, see [decision 0026](decisions/0026-recovery-is-a-policy.md).
+classes of faults, see [decision 0026](../decisions/0026-recovery-is-a-policy.md).
 
 | row | fault | detection | noticed after | reaction | shown | recovery | tests |
 | --- | --- | --- | --- | --- | --- | --- | --- |

@@ -29,7 +29,7 @@ def _migrate(connection: Connection, found: str | None) -> None:
     if found not in {None, *(script.revision for script in directory.walk_revisions())}:
         raise StoreUnfit(
             f"The users were written by a newer version of Heliopanel (revision {found}). Install that "
-            "version, or begin with new users: docs/operators-guide.md, Users, tells how."
+            "version, or begin with new users: the operator's guide, Users, tells how."
         )
     config = late("alembic.config").Config()
     config.set_main_option("script_location", str(SCRIPTS).replace("%", "%%"))

@@ -3,7 +3,7 @@
 The priority comes from what follows if nobody acts and from the time there is to act, as ANSI/ISA-18.2 has
 it: 1 within a minute or two, 2 within 10 minutes, 3 within hours, 4 within days. What needs no action of an
 operator is no alarm but an event in the journal. To add an alarm: one entry here, one in the operator's
-guide (docs/operators-guide.md, Alarms).
+guide (docs/operate/operators-guide.md, Alarms).
 """
 
 from dataclasses import dataclass

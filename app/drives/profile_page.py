@@ -1,4 +1,4 @@
-"""A profile's register map as a page for people; `python -m app.drives.profile_page` renews docs/drives."""
+"""A profile's register map as a page for people; `python -m app.drives.profile_page` renews docs/connect."""
 
 from collections.abc import Iterable, Mapping
 
@@ -8,7 +8,7 @@ from app.drives.register import Register, WordOrder
 from app.drives.sim_training import REGISTERS as TRAINING
 from app.own import own_folder
 
-DOCS = own_folder("docs") / "drives"
+DOCS = own_folder("docs") / "connect"
 MARK = (
     "<!-- From here on made by `python -m app.drives.profile_page`: change the profile, not this page. -->\n"
 )

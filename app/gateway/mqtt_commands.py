@@ -112,7 +112,7 @@ def _malformed(error: ValidationError) -> Reason:
     places = "; ".join(
         f"{'.'.join(map(str, one['loc'])) or 'message'}: {one['msg']}" for one in error.errors()
     )
-    return Reason("malformed", f"This is no command: {places}.", "docs/mqtt.md shows every command.")
+    return Reason("malformed", f"This is no command: {places}.", "The document MQTT shows every command.")
 
 
 def _answer(key: str | None, *reasons: Reason) -> bytes:

@@ -1,4 +1,4 @@
-"""The five papers as the document that docs/papers.md is."""
+"""The five papers as the document that docs/explain/papers.md is."""
 
 from collections.abc import Iterator
 

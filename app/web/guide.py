@@ -22,25 +22,31 @@ from app.web.languages.known import ENGLISH, TRANSLATED
 
 DOCS = own_folder("docs")
 GUIDE = "operators-guide"
-TITLES = {
-    GUIDE: "Operator's guide",
-    "strategies": "Strategies",
-    "mounts": "Mounts",
-    "studies": "Studies",
-    "papers": "The five papers",
-    "faults": "Faults",
-    "glossary": "Glossary",
-    "integrators-guide": "Integrator's guide",
-    "sunspec": "SunSpec",
-    "mqtt": "MQTT",
+SHOWN = {
+    "operate/operators-guide": "Operator's guide",
+    "explain/strategies": "Strategies",
+    "explain/mounts": "Mounts",
+    "explain/studies": "Studies",
+    "explain/papers": "The five papers",
+    "reference/faults": "Faults",
+    "reference/glossary": "Glossary",
+    "integrate/integrators-guide": "Integrator's guide",
+    "integrate/sunspec": "SunSpec",
+    "integrate/mqtt": "MQTT",
 }
-"""The documents that the panel shows, by the name of their file."""
+"""The documents that the panel shows, by where they are in the folder of documents."""
+PLACES = {place.rpartition("/")[2]: place for place in SHOWN}
+TITLES = {name: SHOWN[place] for name, place in PLACES.items()}
+"""Their titles by the name of their file, which their pages are called by."""
 SPOKEN = (GUIDE, "strategies", "mounts", "studies", "glossary")
 """Those of them that are shown in the reader's language; the others are for who programs and stay English."""
 MOST_KEPT = len(TITLES) + len(SPOKEN) * len(TRANSLATED)
 TABLE, COMMANDS = "Table", "Commands"
 
 ANCHOR = re.compile(r'<a id="[\w.-]+">|</a>')
+SECTIONS = "|".join(sorted({place.partition("/")[0] for place in SHOWN}))
+FOLDERS = re.compile(rf"(?<=\]\()(?:\.\./)+(?:(?:{SECTIONS})/)?")
+"""The folders in a link to another document: left out, so that a document may move and stays translated."""
 PICTURE = re.compile(r"pictures/([\w-]+\.png)")
 WORD = re.compile("[A-Za-z]{2}")
 UNSEEN = re.compile("[\u0300-\u036f\u00ad]")
@@ -96,7 +102,7 @@ def blocks(document: str) -> Iterator[tuple[int, str]]:
 
 
 def _text(document: str) -> str:
-    return (DOCS / f"{document}.md").read_text()
+    return FOLDERS.sub("", (DOCS / f"{PLACES[document]}.md").read_text())
 
 
 def _parser() -> MarkdownIt:

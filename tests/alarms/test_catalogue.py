@@ -10,7 +10,7 @@ from app.tracker.protections.fault_classes import CLASSES
 from app.tracker.protections.machine_config import FaultClass
 
 ROOT = Path(__file__).resolve().parents[2]
-GUIDE = (ROOT / "docs" / "operators-guide.md").read_text()
+GUIDE = (ROOT / "docs" / "operate" / "operators-guide.md").read_text()
 FAULTS = ("guards.py", "machine_guard.py", "protect.py", "activities/faulted.py")
 WHERE = ROOT / "app" / "tracker"
 EVENTS_ONLY = {"drive_back", "not_homed", "at_limit_switch"}
@@ -29,7 +29,7 @@ def test_every_fault_of_the_guards_is_an_alarm() -> None:
     found = {code for name in FAULTS for code in _codes(WHERE / name)}
     assert len(found) > 8
     assert found - {one.code for one in ENTRIES} - EVENTS_ONLY == set(), (
-        "write an entry for each in app/alarms/catalogue.py and in docs/operators-guide.md, chapter Alarms"
+        "write an entry for each in app/alarms/catalogue.py and in docs/operate/operators-guide.md, chapter Alarms"
     )
 
 

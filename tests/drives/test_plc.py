@@ -45,7 +45,7 @@ def block(words: dict[int, int]) -> list[int]:
 
 
 def test_a_command_in_words() -> None:
-    """The numbers of docs/drives/simulated-plc.md: 0.001 degrees, high word first."""
+    """The numbers of docs/connect/simulated-plc.md: 0.001 degrees, high word first."""
     request = DriveRequest(65537, RequestKind.HOME)
     words = MAP.command_words(DriveCommand(Position(102.4, 6.0), Velocity(-0.5), request))
     assert words == {

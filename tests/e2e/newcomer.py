@@ -102,7 +102,7 @@ class Newcomer:
 
     def picture(self, name: str, says: str) -> None:
         """Photograph what is seen, for the documents."""
-        self.tell(f"![{says}](pictures/first-{name}.png)")
+        self.tell(f"![{says}](../pictures/first-{name}.png)")
         if WRITES_DOCS:
             taken = Image.open(BytesIO(self.page.screenshot())).convert("RGB")
             taken.quantize(COLOURS).save(DOCS / "pictures" / f"first-{name}.png", optimize=True)

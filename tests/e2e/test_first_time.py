@@ -1,7 +1,7 @@
 """Somebody sees the panel for the first time: from an empty database to tracking, a show, a replay, a record.
 
 Nothing but visible words is used: no ids, no addresses but the first. The taps are counted, and
-`HELIOPANEL_DOCS=1` writes them and the pictures to docs/first-time.md.
+`HELIOPANEL_DOCS=1` writes them and the pictures to docs/start/first-time.md.
 """
 
 import re
@@ -178,5 +178,5 @@ def test_a_newcomer_gets_from_an_empty_database_to_a_signed_record(page: Page, t
     assert person.taps <= MOST_TAPS
     told = f"{ABOUT}**{person.taps} taps** in all, one for each field that is typed into.\n\n{person.story()}"
     if WRITES_DOCS:
-        (DOCS / "first-time.md").write_text(told)
-    assert f"**{person.taps} taps**" in (DOCS / "first-time.md").read_text()
+        (DOCS / "start" / "first-time.md").write_text(told)
+    assert f"**{person.taps} taps**" in (DOCS / "start" / "first-time.md").read_text()

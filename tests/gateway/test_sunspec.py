@@ -555,7 +555,7 @@ async def test_a_tracker_that_the_controller_does_not_have_is_told(tmp_path: Pat
 
 
 def test_the_document_has_the_map_of_the_code() -> None:
-    document = (Path(__file__).parents[2] / "docs" / "sunspec.md").read_text()
+    document = (Path(__file__).parents[2] / "docs" / "integrate" / "sunspec.md").read_text()
     assert map_table(sunspec_map(("T1",), weather=True)) in document
 
 

@@ -16,7 +16,7 @@ from tests.golden.table import numbers
 
 ROOT = Path(__file__).parents[2]
 NUMBER = re.compile(r"\d+(?:\.\d+)?")
-RENEW = "Renew it with: heliopanel papers --markdown > docs/papers.md"
+RENEW = "Renew it with: heliopanel papers --markdown > docs/explain/papers.md"
 
 
 def figures(key: str, title: str) -> dict[str, Figure]:
@@ -186,7 +186,7 @@ def test_measured_effects_are_never_powers_of_ten(value: float, count: int, show
 
 def test_the_document_of_the_papers_is_what_is_computed() -> None:
     """Words to the letter, numbers to a hundredth: their last digits may differ on another processor."""
-    kept, now = (ROOT / "docs" / "papers.md").read_text(), document(papers())
+    kept, now = (ROOT / "docs" / "explain" / "papers.md").read_text(), document(papers())
     assert NUMBER.sub("#", kept).strip() == NUMBER.sub("#", now).strip(), RENEW
     for told, found in zip(NUMBER.findall(kept), NUMBER.findall(now), strict=True):
         assert float(told) == pytest.approx(float(found), rel=0.01, abs=0.001), RENEW

@@ -11,7 +11,7 @@ import pytest
 
 from tests.web.desk import Desk
 
-GUIDE = Path(__file__).resolve().parents[2] / "docs" / "integrators-guide.md"
+GUIDE = Path(__file__).resolve().parents[2] / "docs" / "integrate" / "integrators-guide.md"
 ROOT = "http://127.0.0.1:8000"
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
 CAPTURE = re.compile(r"(\w+)=\$\((curl .*) \| jq -r \.(?:\[0\]\.)?(\w+)\)")

@@ -16,7 +16,7 @@ from tests.web.asgi import streaming
 from tests.web.office import HERE, Office
 from tests.web.sockets import connected
 
-GUIDE = Path(__file__).parents[2] / "docs" / "integrators-guide.md"
+GUIDE = Path(__file__).parents[2] / "docs" / "integrate" / "integrators-guide.md"
 OTHER = re.compile(r"\bT1\b|North field")
 IDS = {"tracker_id": "T2", "document": "operators", "name": "overview", "step": "location"}
 READ = sorted(key for key, needs in ROUTES.items() if needs is Permission.READ and key.startswith("GET "))

@@ -23,7 +23,7 @@ from babel.messages.pofile import read_po, write_po
 from app.web.languages.extraction import texts
 from app.web.languages.known import LOCALE, TRANSLATED
 
-HEADER = "# Heliopanel's texts. The .mo file beside this one is made from it: see docs/languages.md."
+HEADER = "# Heliopanel's texts. The .mo file beside this one is made from it: see docs/develop/languages.md."
 WIDTH = 108
 NO_DATE = datetime(2000, 1, 1, tzinfo=UTC)
 """Stands for the dates of a catalogue, so that the same texts make the same file."""

@@ -116,7 +116,7 @@ def _of_profile(path: Path, root: Path) -> Iterator[Text]:
 
 def _of_document(name: str) -> Iterator[Text]:
     for line, markdown in guide.blocks(name):
-        yield Text(f"docs/{name}.md", line, markdown, context=DOCUMENTS)
+        yield Text(f"docs/{guide.PLACES[name]}.md", line, markdown, context=DOCUMENTS)
 
 
 def _of_template(path: Path, root: Path) -> Iterator[Text]:
