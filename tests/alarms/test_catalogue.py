@@ -29,7 +29,7 @@ def test_every_fault_of_the_guards_is_an_alarm() -> None:
     found = {code for name in FAULTS for code in _codes(WHERE / name)}
     assert len(found) > 8
     assert found - {one.code for one in ENTRIES} - EVENTS_ONLY == set(), (
-        "write an entry for each in app/alarms/catalogue.py and in docs/operate/operators-guide.md, chapter Alarms"
+        "write an entry for each in app/alarms/catalogue.py and in the operator's guide, Alarms"
     )
 
 

@@ -330,7 +330,7 @@ async def web_restart(size: Size, *, viewers: int) -> Trial:
 
 
 class Viewer:
-    """A page that is open, and that opens its stream again when it is cut; like a browser it takes any size."""
+    """A page that opens its stream again when it is cut; like a browser it takes a frame of any size."""
 
     def __init__(self, port: int) -> None:
         self._port = port
