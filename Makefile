@@ -5,6 +5,8 @@
 # make soak : the long proofs: millions of random ticks, 1,000 kills, 300 power cuts, a day of 20 trackers
 # make mutants: changes guards, access, limits, drives and control in a copy, one place at a time, and counts
 #   what their tests notice; ONLY=access does one area
+# make fresh: the two commands of the README on pristine Debian machines in folders, as a user and as root (needs root);
+#   DEBIAN="12 13", WHO="user root", ONLY="run test", PYTHON=python3.14 do a part
 # make dist : builds the sdist and the wheel into dist/
 # make docs : builds the site of the documents into manual/, and fails at a broken link or anchor
 # make bench: measures and writes docs/develop/benchmarks.md
@@ -19,7 +21,7 @@ ALONE := tests/drives/timed tests/test_benches.py \
 	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost hold_to_run kill many_holds stop_and_tabs))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup docs dist fast client run test check translations fuzz bench format lock browser system-packages clean
+.PHONY: help setup docs dist fast client run test fresh check translations fuzz bench format lock browser system-packages clean
 
 help: ## Show what each command does
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-10s %s\n", $$1, $$2}'
@@ -66,11 +68,15 @@ run: setup ## Serve the panel with a simulated tracker at http://127.0.0.1:8000
 system-packages:
 	@sh tests/system-packages.sh
 
-test: $(VENV)/.dev $(VENV)/.client system-packages ## Set up what tests need and run them all, browser tests included
+test: system-packages $(VENV)/.dev $(VENV)/.client ## Set up what tests need and run them all, browser tests included
 	@echo "Running the tests that share the computer's cores ..."
 	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder $(ALONE:%=--ignore=%)
 	@echo "Running the tests that judge how punctual things are, one at a time ..."
 	@$(BIN)/python -m pytest $(ALONE)
+
+fresh: ## Run the README's two commands on pristine Debian machines; DEBIAN=13 WHO=user ONLY=run does a part
+	@python3 -m tests.fresh $(DEBIAN:%=--debian %) $(WHO:%=--who %) $(ONLY:%=--only %) \
+		$(if $(filter file,$(origin PYTHON)),,--python $(PYTHON))
 
 soak: $(VENV)/.dev system-packages ## Run the long proofs (hours): random operation, kills, power cuts, a day of a field
 	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/store/test_power_cut.py tests/tracker/test_stateful.py tests/site/test_field.py

@@ -1,0 +1,1 @@
+"""`make fresh`: the README's commands on pristine Debian machines, each of them a folder."""
