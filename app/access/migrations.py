@@ -4,33 +4,65 @@ import sys
 import tempfile
 from pathlib import Path
 
-from sqlalchemy import Connection, Engine, column, table
+from sqlalchemy import Connection, Engine, column, select, table
 
-from app.access.tables import REVISION, VERSION_TABLE, metadata
+from app.access.tables import REVISION, VERSION_TABLE, meta, metadata
+from app.build import VERSION
 from app.late import late
 from app.own import own_folder
 from app.store.connections import revision_of, sharing_engine, transaction
+from app.store.files import copy_sqlite
+from app.store.putting import put
+from app.store.software import is_newer
 from app.store.store import StoreUnfit
 
 SCRIPTS = own_folder("alembic") / "access"
 VERSIONS = table(VERSION_TABLE, column("version_num"))
+WRITTEN_BY = "version"
+"""Beside the key and the number of changes: which version of Heliopanel wrote here last."""
 
 
 def upgrade(engine: Engine) -> None:
-    """Bring the tables up to date in one transaction, making them if there are none."""
+    """Bring the tables up to date, making them if there are none, and note that this version writes them.
+
+    A SQLite file that a migration changes is copied first, beside it; all migrations are one transaction.
+    Raises `StoreUnfit` for users that a newer version wrote.
+    """
     with transaction(engine) as connection:
         found = revision_of(connection, VERSIONS)
+        noted = _refuse_newer(connection, found)
+    if found not in (None, REVISION) and engine.dialect.name == "sqlite":
+        path = Path(engine.url.database or "")
+        copy_sqlite(path, path.with_name(f"{path.name}.before-{REVISION}"))
+    if (found, noted) == (REVISION, VERSION):
+        return
+    with transaction(engine) as connection:
         if found != REVISION:
-            _migrate(connection, found)
+            _migrate(connection)
+        put(connection, meta, {"name": WRITTEN_BY}, {"value": VERSION})
 
 
-def _migrate(connection: Connection, found: str | None) -> None:
-    directory = late("alembic.script").ScriptDirectory(str(SCRIPTS))
-    if found not in {None, *(script.revision for script in directory.walk_revisions())}:
-        raise StoreUnfit(
-            f"The users were written by a newer version of Heliopanel (revision {found}). Install that "
-            "version, or begin with new users: the operator's guide, Users, tells how."
-        )
+def _refuse_newer(connection: Connection, found: str | None) -> str | None:
+    """Return which version wrote the users last, None where none was noted; raise for a newer one."""
+    if found is None:
+        return None
+    if found > REVISION:
+        raise _newer(f"revision {found}; this one knows up to {REVISION}")
+    asked = select(meta.c.value).where(meta.c.name == WRITTEN_BY)
+    noted: str | None = connection.execute(asked).scalar_one_or_none()
+    if noted is not None and is_newer(noted, VERSION):
+        raise _newer(f"{noted}; this one is {VERSION}")
+    return noted
+
+
+def _newer(what: str) -> StoreUnfit:
+    return StoreUnfit(
+        f"The users were written by a newer version of Heliopanel ({what}). Install that version, or begin "
+        "with new users: move access.db out of the data folder, or drop the tables access_* of PostgreSQL."
+    )
+
+
+def _migrate(connection: Connection) -> None:
     config = late("alembic.config").Config()
     config.set_main_option("script_location", str(SCRIPTS).replace("%", "%%"))
     config.attributes["connection"] = connection

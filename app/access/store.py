@@ -26,7 +26,10 @@ PEOPLE = (tables.users, tables.sessions, tables.tokens, tables.failures)
 
 
 class AccessStore:
-    """The database of access, made with the first thing that is written; `key` is then its secret."""
+    """The database of access, made with the first thing that is written; `key` is then its secret.
+
+    An older one is brought up to date when it is first read; a newer one is refused with `StoreUnfit`.
+    """
 
     def __init__(self, url: str, key: bytes) -> None:
         self._url = url
@@ -45,7 +48,10 @@ class AccessStore:
             if path is not None and not path.exists():
                 return False
             with transaction(self._engine) as connection:
-                self._made = inspect(connection).has_table(tables.meta.name)
+                found = inspect(connection).has_table(tables.meta.name) and _has_key(connection)
+            if found:
+                upgrade(self._engine)
+                self._made = True
         return self._made
 
     def load(self) -> Book:
@@ -120,7 +126,7 @@ class AccessStore:
             keep_private(path)
         upgrade(self._engine)
         with transaction(self._engine) as connection:
-            if not _rows(connection, tables.meta):
+            if not _has_key(connection):
                 start = [{"name": KEY, "value": self._key.hex()}, {"name": CHANGES, "value": "0"}]
                 connection.execute(insert(tables.meta), start)
         self._made = True
@@ -216,6 +222,11 @@ def _failures(connection: Connection, subjects: Iterable[str]) -> dict[str, Fail
     wanted = tables.failures.c.subject.in_(list(subjects))
     rows = connection.execute(select(tables.failures).where(wanted)).mappings()
     return {row["subject"]: Failures(row["count"], row["last_at"]) for row in rows}
+
+
+def _has_key(connection: Connection) -> bool:
+    asked = select(tables.meta.c.name).where(tables.meta.c.name == KEY)
+    return connection.execute(asked).scalar_one_or_none() is not None
 
 
 def _meta(connection: Connection, name: str) -> str:

@@ -8,17 +8,22 @@ from pathlib import Path
 import pytest
 from sqlalchemy import text
 
+from app.access import migrations
 from app.access.events import AccessEvent, chained
 from app.access.migrations import check, differences, upgrade
 from app.access.opening import open_store
+from app.access.roles import Role
 from app.access.store import AccessStore, Change
+from app.access.users import User
 from app.audit.chain import FIRST
+from app.build import VERSION
 from app.settings import Settings
 from app.store.connections import sharing_engine, transaction
-from app.store.store import StoreFailed
+from app.store.store import StoreFailed, StoreUnfit
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 WRITERS, EACH = 4, 5
+ADA = User("ada", frozenset({Role.ADMINISTRATOR}), "hash", NOW, NOW)
 
 
 @pytest.fixture
@@ -31,6 +36,16 @@ def store(settings: Settings) -> Iterator[AccessStore]:
     opened = open_store(settings)
     yield opened
     opened.close()
+
+
+def execute(settings: Settings, statement: str) -> object:
+    """Run one statement on the database of users; return the first value that it found."""
+    engine = sharing_engine(settings.access_url)
+    with transaction(engine) as connection:
+        done = connection.execute(text(statement))
+        found = done.scalar_one_or_none() if done.returns_rows else None
+    engine.dispose()
+    return found
 
 
 def told(number: int) -> AccessEvent:
@@ -54,14 +69,70 @@ def test_the_check_of_every_change_finds_no_difference() -> None:
     assert check() == []
 
 
-def test_users_of_a_newer_version_are_left_alone(settings: Settings) -> None:
+@pytest.mark.parametrize(
+    ("statement", "told"),
+    [
+        ("UPDATE access_version SET version_num = '9999'", "revision 9999; this one knows up to 0001"),
+        (
+            "UPDATE access_meta SET value = '999.0.1' WHERE name = 'version'",
+            f"999.0.1; this one is {VERSION}",
+        ),
+    ],
+)
+def test_users_of_a_newer_version_are_left_alone(
+    settings: Settings, store: AccessStore, statement: str, told: str
+) -> None:
+    with store.writing() as change:
+        change.put_user(ADA)
+    store.close()
+    execute(settings, statement)
+    newer = f"The users were written by a newer version of Heliopanel ({told}). Install that version, or"
+    for use in (AccessStore.load, AccessStore.changes, lambda store: store.writing().__enter__()):
+        opened = open_store(settings)
+        with pytest.raises(StoreUnfit) as refused:
+            use(opened)
+        opened.close()
+        assert str(refused.value).startswith(newer)
+        assert refused.value.exit_code == 2
+
+
+def test_users_that_no_version_was_noted_for_are_taken_and_noted(
+    settings: Settings, store: AccessStore
+) -> None:
+    with store.writing() as change:
+        change.put_user(ADA)
+    store.close()
+    execute(settings, "DELETE FROM access_meta WHERE name = 'version'")
+    opened = open_store(settings)
+    assert opened.load().users == {"ada": ADA}
+    opened.close()
+    assert execute(settings, "SELECT value FROM access_meta WHERE name = 'version'") == VERSION
+
+
+def test_users_are_copied_before_their_tables_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    settings = Settings(data_dir=tmp_path)
+    store = open_store(settings)
+    with store.writing() as change:
+        change.put_user(ADA)
+    store.close()
+    execute(settings, "UPDATE access_version SET version_num = '0000'")
+    monkeypatch.setattr(migrations, "_migrate", lambda _: None)
+    opened = open_store(settings)
+    assert opened.load().users == {"ada": ADA}
+    opened.close()
+    copy = AccessStore(f"sqlite:///{tmp_path / 'access.db.before-0001'}", b"")
+    assert copy.load().users == {"ada": ADA}
+    copy.close()
+
+
+def test_what_was_begun_and_never_finished_is_finished(settings: Settings, store: AccessStore) -> None:
     engine = sharing_engine(settings.access_url)
     upgrade(engine)
-    with transaction(engine) as connection:
-        connection.execute(text("UPDATE access_version SET version_num = '9999'"))
-    with pytest.raises(StoreFailed, match="newer version"):
-        upgrade(engine)
     engine.dispose()
+    assert (store.exists(), store.load().users, store.changes()) == (False, {}, 0)
+    with store.writing() as change:
+        change.put_user(ADA)
+    assert store.load().users == {"ada": ADA}
 
 
 def test_events_are_only_appended(store: AccessStore) -> None:
