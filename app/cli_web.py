@@ -6,7 +6,7 @@ import typer
 
 from app.machine.process import raise_priority_of_panel
 from app.machine.starting import as_service, check_data_dir, check_port
-from app.machine.supervisor import end_with_parent
+from app.machine.supervisor import end_with_parent, tell_ready
 from app.options import Config, DataDir, Host, Port, settle
 from app.settings import Settings
 from app.web.main import run
@@ -34,5 +34,6 @@ def web(
 def _answers(settings: Settings) -> None:
     """Be punctual from now on, and say where a browser finds the panel."""
     raise_priority_of_panel()
+    tell_ready()
     host = f"[{settings.host}]" if ":" in settings.host else settings.host
     typer.echo(f"Heliopanel answers: open {settings.scheme}://{host}:{settings.port}")

@@ -28,6 +28,7 @@ from app.machine.memory import MemoryGuard
 from app.machine.process import on_signals, raise_priority
 from app.machine.safe_mode import serve_safely
 from app.machine.starting import check_data_dir
+from app.machine.supervisor import tell_ready
 from app.machine.systemd import notify
 from app.machine.watchdog import LoopWatchdog
 from app.settings import Settings
@@ -127,6 +128,7 @@ async def _serve(settings: Settings, clock: SystemClock, writer: Writer) -> None
     if notice is not None:
         log.warning("sqlite_is_old", notice=notice)
     notify("READY=1")
+    tell_ready()
     await stopped.wait()
     notify("STOPPING=1")
     guarding.cancel()

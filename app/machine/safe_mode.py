@@ -14,6 +14,7 @@ from app.clock import Clock, SystemClock
 from app.drives.factory import DriveFactory
 from app.link.server import LinkServer
 from app.machine.process import on_signals, raise_priority
+from app.machine.supervisor import tell_ready
 from app.machine.systemd import notify
 from app.machine.watchdog import LoopWatchdog
 from app.settings import Settings
@@ -86,6 +87,7 @@ async def serve_safely(settings: Settings, clock: SystemClock, damage: StoreDama
     )
     waiting = asyncio.create_task(_restore_handed_over(clock, settings.data_dir, stopped))
     notify("READY=1")
+    tell_ready()
     await stopped.wait()
     notify("STOPPING=1")
     await site.stop_drives()

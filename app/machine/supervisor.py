@@ -4,6 +4,7 @@ import asyncio
 import ctypes
 import os
 import signal
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import timedelta
 
@@ -20,6 +21,8 @@ LONGEST_PAUSE = timedelta(seconds=5)
 LIVED_LONG = timedelta(seconds=10)
 GIVE_UP_AFTER_S = 8.0
 PR_SET_PDEATHSIG = 1
+READY = "SUPERVISED_READY_PIPE"
+"""Names the pipe through which a child tells that it has begun to work."""
 
 log = structlog.get_logger(__name__)
 
@@ -34,12 +37,26 @@ class Child:
     pause: timedelta = FIRST_PAUSE
     has_worked: bool = False
 
-    async def start(self) -> asyncio.subprocess.Process:
-        """Start it in a session of its own: the terminal's signals reach it only through the supervisor."""
+    async def live(self) -> int:
+        """Start it, wait for its end and return the exit code.
+
+        It has a session of its own: the terminal's signals reach it only through the supervisor.
+        """
         command = (*own_process(self.module[0]), *self.module[1:], f"--supervised={os.getpid()}")
-        self.process = await asyncio.create_subprocess_exec(*command, start_new_session=True)
-        log.info("child_started", child=self.name, process_id=self.process.pid)
-        return self.process
+        heard, telling = os.pipe()
+        with os.fdopen(heard, "rb", buffering=0) as pipe:
+            os.set_blocking(heard, False)
+            try:
+                environment = os.environ | {READY: str(telling)}
+                self.process = await asyncio.create_subprocess_exec(
+                    *command, start_new_session=True, pass_fds=(telling,), env=environment
+                )
+            finally:
+                os.close(telling)
+            log.info("child_started", child=self.name, process_id=self.process.pid)
+            code = await self.process.wait()
+            self.has_worked |= bool(pipe.read(1))
+        return code
 
     def signal(self, number: signal.Signals) -> None:
         """Send it a signal if it runs."""
@@ -77,9 +94,9 @@ class Supervisor:
     async def _keep(self, child: Child) -> int:
         while True:
             began = self._clock.now()
-            code = await (await child.start()).wait()
+            code = await child.live()
             if self._clock.now() - began >= LIVED_LONG:
-                child.pause, child.has_worked = FIRST_PAUSE, True
+                child.pause = FIRST_PAUSE
             if code == WRONG and not child.has_worked:
                 return code
             log.error("child_died", child=child.name, code=code, again_in_s=child.pause.total_seconds())
@@ -112,6 +129,14 @@ async def _supervise() -> int:
     for number in (signal.SIGTERM, signal.SIGINT):
         asyncio.get_running_loop().add_signal_handler(number, supervisor.stop)
     return await supervisor.run()
+
+
+def tell_ready() -> None:
+    """Tell the supervisor, where there is one, that this child has begun to work."""
+    descriptor = os.environ.pop(READY, None)
+    if descriptor is not None:
+        with suppress(OSError), os.fdopen(int(descriptor), "wb", buffering=0) as pipe:
+            pipe.write(b"1")
 
 
 def end_with_parent(parent: int) -> None:

@@ -292,17 +292,29 @@ def test_settings_come_from_the_environment_before_the_file(
         read_settings()
 
 
-@pytest.mark.usefixtures("written")
+WORKED_THEN_WRONG = f"""
+from app.machine.supervisor import tell_ready
+tell_ready()
+tell_ready()
+raise SystemExit({WRONG})
+"""
+SLOW_THEN_WRONG = f"""
+import sys, time
+from pathlib import Path
+Path(sys.argv[1], "begun").touch()
+while not Path(sys.argv[1], "go").exists():
+    time.sleep(0.01)
+raise SystemExit({WRONG})
+"""
+
+
 async def test_settings_that_worked_once_and_do_not_any_more_end_nobody_else(written: Path) -> None:
-    (written / "later.py").write_text(f"import sys; sys.exit({WRONG})")
-    clock, child, other = (
-        VirtualClock(NOW),
-        Child("later", ("later",), has_worked=True),
-        Child("stays", ("stays",)),
-    )
+    (written / "later.py").write_text(WORKED_THEN_WRONG)
+    clock, child, other = VirtualClock(NOW), Child("later", ("later",)), Child("stays", ("stays",))
     supervisor = Supervisor(clock, child, other)
     running = asyncio.create_task(supervisor.run())
     await eventually(partial(waits, clock, child, timedelta(milliseconds=200)))
+    (written / "later.py").write_text(f"raise SystemExit({WRONG})")
     clock.advance(timedelta(milliseconds=200))
     await eventually(partial(waits, clock, child, timedelta(milliseconds=400)))
 
@@ -310,6 +322,17 @@ async def test_settings_that_worked_once_and_do_not_any_more_end_nobody_else(wri
     assert other.process.returncode is None
     supervisor.stop()
     assert await running == 0
+
+
+async def test_who_took_long_to_say_that_settings_are_wrong_is_not_asked_again(written: Path) -> None:
+    (written / "slow.py").write_text(SLOW_THEN_WRONG)
+    clock, slow = VirtualClock(NOW), Child("slow", ("slow", str(written)))
+    running = asyncio.create_task(Supervisor(clock, slow).run())
+    await eventually((written / "begun").exists)
+    clock.advance(timedelta(minutes=1))
+    (written / "go").touch()
+
+    assert await running == WRONG
 
 
 @pytest.mark.parametrize("noted_by_a_file", [False, True])
