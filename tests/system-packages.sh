@@ -16,6 +16,7 @@ need gcc gcc
 need strace strace
 need faketime faketime
 need npm npm
+need systemd-analyze systemd
 [ -e /usr/include/modbus/modbus.h ] || missing="$missing libmodbus-dev libc6-dev"
 ls /usr/lib/postgresql/*/bin/initdb >/dev/null 2>&1 || missing="$missing postgresql"
 if [ -n "$missing" ]; then
