@@ -61,8 +61,8 @@ AREAS = {
     "panel": Area(
         ("app.web.gate.", "app.web.live_protocol.", "app.web.server."),
         (
-            "tests/web/test_connections.py", "tests/web/test_gate.py", "tests/web/test_network.py",
-            "tests/web/test_pacing.py", "tests/web/test_server.py",
+            "tests/web/test_connections.py", "tests/web/test_gate_alone.py", "tests/web/test_gate_rules.py",
+            "tests/web/test_http_alone.py", "tests/web/test_socket_alone.py",
         ),
     ),
     "drives": Area(

@@ -78,19 +78,19 @@ class Gate:
         try:
             route, path_parameters = key_of(self._routes, scope)
             who = self._admit(scope, route, path_parameters)
-        except NotAcceptable as error:
+        except (NotAcceptable, NotSetUp) as error:
             await _turn_away(scope, receive, send, error)
             return
         except (NotAllowed, ProofNeeded, SignInNeeded, Busy) as error:
             self._record(scope, error)
             await _turn_away(scope, receive, send, error)
             return
-        if self._keeper.is_closed and route not in WHILE_CLOSED:
-            await _answer(scope, receive, send, _not_set_up(Request(scope, receive)))
-            return
         if is_activity(scope, route):
             await self._keeper.used(who)
-        await (self._while_allowed if route in STREAMS else self._pass)(scope, receive, send, who)
+        if route in STREAMS:
+            await self._while_allowed(scope, receive, send, who)
+        else:
+            await self._app(scope, receive, send)
 
     def _record(self, scope: Scope, error: Exception) -> None:
         """Have it recorded that somebody was turned away; who has only to sign in was not."""
@@ -110,13 +110,15 @@ class Gate:
         scope["state"]["session_id"] = given.session_id
         if who.via is Via.SESSION:
             GIVEN.know((who.actor,))
+        if self._keeper.is_closed:
+            if route not in WHILE_CLOSED:
+                raise NotSetUp(NOT_SET_UP)
+            return who
         if route == STATIC:
             return who
         query = _query(scope)
         told = (path_parameters.get("tracker_id"), query.get("tracker_id"), query.get("tracker"))
         named: set[str | None] = {name for name in told if name}
-        if self._keeper.is_closed:
-            return who
         for tracker_id in named or {None}:
             who.require(ROUTES.get(route, Permission.READ), tracker_id)
         if who.via in (Via.SESSION, Via.KIOSK):
@@ -133,11 +135,8 @@ class Gate:
         if route in PROVEN and who.via is Via.SESSION and not is_proven(who.proven_at, self._clock.now()):
             raise ProofNeeded("This is of weight: type your password again, then repeat what you did.")
 
-    async def _pass(self, scope: Scope, receive: Receive, send: Send, who: Principal) -> None:
-        await self._app(scope, receive, send)
-
     async def _while_allowed(self, scope: Scope, receive: Receive, send: Send, who: Principal) -> None:
-        serving = asyncio.ensure_future(_run(self._app, scope, receive, send))
+        serving = asyncio.ensure_future(self._app(scope, receive, send))
         leaving = asyncio.create_task(self._keeper.until_gone(who))
         try:
             await asyncio.wait({serving, leaving}, return_when=asyncio.FIRST_COMPLETED)
@@ -236,7 +235,7 @@ def check_origin(scope: Scope, csrf: str) -> None:
     by_script = headers.get("hx-request") == "true"
     if token is None and told and not by_script:
         return
-    if not compare_digest((token or "").encode(), csrf.encode()):
+    if token is None or not compare_digest(token.encode(), csrf.encode()):
         raise NotAllowed(OLD_PAGE)
 
 
@@ -247,46 +246,30 @@ def is_activity(scope: Scope, route: str) -> bool:
     return scope["method"] not in SAFE_METHODS or "hx-request" not in Headers(scope=scope)
 
 
-async def _run(app: ASGIApp, scope: Scope, receive: Receive, send: Send) -> None:
-    await app(scope, receive, send)
-
-
 async def _turn_away(scope: Scope, receive: Receive, send: Send, error: Exception) -> None:
     if scope["type"] == "websocket":
         await send({"type": "websocket.close", "code": 1008, "reason": "not allowed"})
         return
-    request = Request(scope, receive)
-    await _answer(scope, receive, send, way_in(request, error) or answer_to(request, error))
-
-
-def _not_set_up(request: Request) -> Response:
-    """Return the way to the set-up page, for programs what is wrong."""
-    for_programs = request.url.path.startswith(FOR_PROGRAMS)
-    return answer_to(request, NotSetUp(NOT_SET_UP)) if for_programs else RedirectResponse("/setup", 303)
+    request = Request(scope)
+    answer = way_in(request, error) or answer_to(request, error)
+    await answer(scope, receive, send)
 
 
 def way_in(request: Request, error: Exception) -> Response | None:
-    """Return the way to the page where one signs in or types the password again; None for programs."""
+    """Return the way to the page where one signs in, proves who one is or begins; None for programs."""
     if request.url.path.startswith(FOR_PROGRAMS) or isinstance(error, NotAllowed | Busy | NotAcceptable):
         return None
-    is_form = request.method not in SAFE_METHODS
-    back = _page_of(request, "/") if is_form else str(request.url.path)
+    if isinstance(error, NotSetUp):
+        return RedirectResponse("/setup", 303)
+    back = request.url.path if request.method in SAFE_METHODS else _page_of(request)
     path = login_path(back) if isinstance(error, SignInNeeded) else proof_path(back)
     if "hx-request" in request.headers:
         return Response(status_code=204, headers={"HX-Redirect": path})
     return RedirectResponse(path, 303)
 
 
-def _page_of(request: Request, otherwise: str) -> str:
+def _page_of(request: Request) -> str:
     """Return the page that a form was on, by the address that the browser tells."""
-    current = request.headers.get("hx-current-url") or request.headers.get("referer") or ""
-    at = current.find("/", current.find("//") + 2)
-    page = current[at:] if at > 0 else otherwise
+    current = request.headers.get("hx-current-url") or request.headers.get("referer", "")
+    page = "/" + current.partition("//")[2].partition("/")[2]
     return page if len(page) <= LONGEST_BACK else page.partition("?")[0]
-
-
-async def _answer(scope: Scope, receive: Receive, send: Send, response: Response) -> None:
-    if scope["type"] == "websocket":
-        await send({"type": "websocket.close", "code": 1008, "reason": "not set up"})
-        return
-    await response(scope, receive, send)

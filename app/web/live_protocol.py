@@ -74,7 +74,7 @@ class CautiousSocket(WebSocketsSansIOProtocol):
     def _take(self) -> None:
         piece = bytes(self._rest[:PIECE])
         del self._rest[:PIECE]
-        if self.disconnected or self.transport.is_closing():
+        if self.transport.is_closing():
             self._rest.clear()
             return
         super().data_received(piece)

@@ -137,7 +137,7 @@ class Connections:
     def release(self, client: str) -> None:
         """Count one less."""
         self._held[client] -= 1
-        if self._held[client] <= self._most_a_client // 2:
+        if 2 * self._held[client] <= self._most_a_client:
             self._told.discard(client)
         if self._held[client] <= 0:
             del self._held[client]
@@ -162,8 +162,8 @@ class CautiousHttp(HttpToolsProtocol):
         self._turnstile = turnstile
         self._deadline_s = deadline_s
         self._deadline: asyncio.TimerHandle | None = None
-        self._name = ""
-        self._admission = Admission.NOTHING
+        self._name: str
+        self._admission: Admission
         self._head_bytes = 0
         self._head_is_open = True
 
@@ -188,11 +188,11 @@ class CautiousHttp(HttpToolsProtocol):
 
     def data_received(self, data: bytes) -> None:
         """Take what came, unless a request's head has become too large."""
-        self._head_bytes += len(data)
-        if self._head_is_open and self._head_bytes > LARGEST_HEAD + len(data):
+        if self._head_is_open and self._head_bytes > LARGEST_HEAD:
             self.transport.write(HEAD_TOO_LARGE)
             self.transport.close()
             return
+        self._head_bytes += len(data)
         super().data_received(data)
 
     def on_headers_complete(self) -> None:
@@ -224,10 +224,16 @@ class CautiousHttp(HttpToolsProtocol):
         self._expect()
         super().on_message_begin()
 
+    def on_body(self, body: bytes) -> None:
+        """Take a part of a request; of one that was refused nothing is kept."""
+        if not self.transport.is_closing():
+            super().on_body(body)
+
     def on_message_complete(self) -> None:
         """The request is there."""
         self._settle()
-        super().on_message_complete()
+        if not self.transport.is_closing():
+            super().on_message_complete()
 
     def handle_websocket_upgrade(self) -> None:
         """The connection becomes a WebSocket, which is counted elsewhere, when its turn comes.

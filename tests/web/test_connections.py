@@ -66,6 +66,15 @@ def test_who_leaves_makes_room_for_one(admission: Admission) -> None:
     assert entered(connections, 3) == [admission, admission, Admission.NOTHING]
 
 
+def test_what_is_kept_for_stop_is_counted_to_the_last() -> None:
+    connections = Connections(most=100, most_a_client=1)
+    entered(connections, 1 + RESERVED_A_CLIENT)
+    for _ in range(RESERVED_A_CLIENT - 1):
+        connections.leave(FAR, Admission.STOP)
+    later = [Admission.STOP] * (RESERVED_A_CLIENT - 1) + [Admission.NOTHING]
+    assert entered(connections, RESERVED_A_CLIENT) == later
+
+
 def test_a_client_of_which_nothing_is_left_is_forgotten() -> None:
     connections = Connections(most=100, most_a_client=1)
     members = [Member(connections) for _ in range(3)]
@@ -86,6 +95,7 @@ def test_the_oldest_connection_without_an_answer_under_way_makes_room() -> None:
     assert (busy.hung_up, first.hung_up, second.hung_up) == (False, True, False)
     assert Member(connections).join() is Admission.ANYTHING
     assert second.hung_up
+    assert not connections._reserved
     assert Member(connections).join() is Admission.STOP, "nobody is idle any more"
     assert connections.enter(OTHER) is Admission.ANYTHING
     first.part()
@@ -121,11 +131,16 @@ def test_so_many_clients_are_told_of_and_no_more() -> None:
 
 
 @pytest.fixture
-def limits(monkeypatch: pytest.MonkeyPatch) -> dict[str, tuple[int, int]]:
-    """The limit of descriptors of a process that is not this one."""
-    now = {"limit": (1024, 524_288)}
-    monkeypatch.setattr(resource, "getrlimit", lambda which: now["limit"])
-    monkeypatch.setattr(resource, "setrlimit", lambda which, limit: now.update(limit=limit))
+def limits(monkeypatch: pytest.MonkeyPatch) -> dict[int, tuple[int, int]]:
+    """The limits of a process that is not this one; one that is as it was is not set."""
+    now: dict[int, tuple[int, int]] = {}
+
+    def set_limit(which: int, limit: tuple[int, int]) -> None:
+        assert now[which] != limit
+        now[which] = limit
+
+    monkeypatch.setattr(resource, "getrlimit", now.__getitem__)
+    monkeypatch.setattr(resource, "setrlimit", set_limit)
     return now
 
 
@@ -141,8 +156,8 @@ def limits(monkeypatch: pytest.MonkeyPatch) -> dict[str, tuple[int, int]]:
     ],
 )
 def test_descriptors_are_asked_for_and_some_are_kept_for_files(
-    limits: dict[str, tuple[int, int]], before: tuple[int, int], after: tuple[int, int], connections: int
+    limits: dict[int, tuple[int, int]], before: tuple[int, int], after: tuple[int, int], connections: int
 ) -> None:
-    limits["limit"] = before
+    limits[resource.RLIMIT_NOFILE] = before
     assert server.reserve_descriptors() == connections
-    assert limits["limit"] == after
+    assert limits == {resource.RLIMIT_NOFILE: after}

@@ -60,6 +60,13 @@ async def test_a_notice_of_use_stands_before_the_log_in_and_nowhere_else(tmp_pat
             assert "alone." not in (await viewer.get("/prove")).text
 
 
+async def test_a_live_page_of_a_panel_without_an_administrator_is_closed(tmp_path: Path) -> None:
+    office = Office(tmp_path, host="0.0.0.0")
+    async with office.app.router.lifespan_context(office.app), connected(office.app) as page:
+        await page.ended.wait()
+    assert page.closed == 1008
+
+
 async def test_without_a_notice_the_log_in_has_none(office: Office) -> None:
     async with office.browser() as stranger:
         found = await stranger.get("/login")
