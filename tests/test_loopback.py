@@ -2,16 +2,17 @@
 
 import asyncio
 import os
+import shutil
 import socket
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
 import uvloop
 
-from tests.alone import UNSHARE, may_be_alone
+from tests.alone import INSIDE, UNSHARE, begin_alone, may_be_alone
 
 ELSEWHERE = ("192.0.2.1", 9)
 """An address of TEST-NET-1, which no network has."""
@@ -38,14 +39,18 @@ for attempt in tries:
     except (OSError, TimeoutError) as refused:
         print(type(refused).__name__)
 """
-NETWORK_CALLS = "--trace=connect,sendto,sendmsg,sendmmsg"
+NETWORK_CALLS = "connect,sendto,sendmsg,sendmmsg"
+UNREACHABLE = f"--inject={NETWORK_CALLS}:error=ENETUNREACH"
 
 
-def traced(tmp_path: Path, *before: str, guarded: bool) -> tuple[list[str], int]:
+def traced(
+    tmp_path: Path, before: Sequence[str] = (), more: Sequence[str] = (), *, guarded: bool
+) -> tuple[list[str], int]:
     """Return how each try of another process ended, and how many calls to there Linux got."""
     log = tmp_path / "calls"
     environment = os.environ if guarded else {**os.environ, "PYTHONPATH": ""}
-    command = [*before, "strace", "-f", NETWORK_CALLS, "-o", str(log), sys.executable, "-c", TRIES]
+    trace = ("strace", "-f", f"--trace={NETWORK_CALLS}", "-o", str(log))
+    command = [*before, *trace, *more, sys.executable, "-c", TRIES]
     told = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     return told.stdout.split(), log.read_text().count(f'"{ELSEWHERE[0]}"')
 
@@ -56,12 +61,26 @@ def test_linux_never_hears_of_a_call_to_another_computer(tmp_path: Path) -> None
     assert calls == 0
 
 
-@pytest.mark.skipif(not may_be_alone(), reason="this computer allows no network namespace")
 def test_in_a_network_of_its_own_linux_refuses_what_the_guard_would_not(tmp_path: Path) -> None:
-    """Without the guard the same tries reach Linux: the proof above would see them."""
-    ends, calls = traced(tmp_path, *UNSHARE, guarded=False)
+    """Without the guard the same tries reach Linux: the proof above would see them.
+
+    Where a user may have no network namespace, strace answers in the place of Linux, so that none gets out.
+    """
+    alone = may_be_alone()
+    ends, calls = traced(
+        tmp_path, before=UNSHARE if alone else (), more=() if alone else (UNREACHABLE,), guarded=False
+    )
     assert ends == ["OSError"] * 6, "connect_ex tells it without an exception"
     assert calls >= 7
+
+
+def test_where_no_network_of_its_own_is_allowed_a_program_says_so(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv(INSIDE, raising=False)
+    monkeypatch.setattr(shutil, "which", lambda program: None)
+    begin_alone("tests.fuzz")
+    assert capsys.readouterr().out.startswith("No network namespace is allowed here: every Python process")
 
 
 def on_socket(ask: Callable[[socket.socket], object], **kind: int) -> None:
