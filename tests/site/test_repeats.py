@@ -10,6 +10,7 @@ from app.tracker.axes import Axis
 from app.tracker.commands import Command, CommandRejected, EndJog, Jog, LockOut, Park, Step, Stop, Track
 from app.tracker.snapshot import ActivityName, SiteSnapshot
 from tests.fakes import FakeMachine
+from tests.fault_result import FaultResult
 from tests.site.plant import Plant, settle
 
 
@@ -44,6 +45,7 @@ async def test_a_key_that_is_used_again_for_something_else_is_refused_and_nothin
 MOTIONS = [Jog("p", Axis.AZIMUTH, 1), Step(Axis.AZIMUTH, 1.0), Park()]
 
 
+@pytest.mark.fault(97)
 @pytest.mark.parametrize("stop", [Stop(), StopAll()])
 @pytest.mark.parametrize("motion", MOTIONS)
 async def test_a_motion_that_a_stop_overtook_is_not_begun(
@@ -70,13 +72,23 @@ async def test_what_was_given_after_a_stop_or_moves_nothing_is_carried_out(plant
     assert plant.tracker().lock is not None
 
 
+@pytest.mark.fault(97)
 async def test_an_order_that_waits_for_control_while_its_tracker_is_stopped_moves_nothing(
-    plant: Plant,
+    plant: Plant, fault: FaultResult
 ) -> None:
     await plant.commission()
     async with plant.site.model.control.lock("T1"):
         waits = asyncio.create_task(plant.site.execute(Order(Park(), "technician", "T1")))
         await settle()
         await plant.ask(Stop())
-    with pytest.raises(CommandRejected, match="stopped after"):
+    with pytest.raises(CommandRejected) as refused:
         await waits
+    (reason,) = refused.value.reasons
+    assert reason.code == "stopped_since"
+    assert plant.tracker().activity in {ActivityName.HOLDING, ActivityName.STOPPING}
+    fault.prevented("an order from before a stop is refused, however long it waited")
+    fault.shows(reason.message)
+    await plant.forward(seconds=2)
+    await plant.ask(Park())
+    assert plant.tracker().activity is ActivityName.MOVING
+    fault.recovers("the order is given again")
