@@ -1,9 +1,8 @@
 """Network: what becomes of ticks, Stop, requests and memory while one computer attacks every way in
 
 The attacker is a process of its own at nice 19, as if it had a computer of its own, and asks from the same
-address as whoever is measured, of which the panel takes 256 connections: beside 500 streams only Stop is
-answered, and every other request that is not counts as missed. Meanwhile one tracker is stopped again and
-again, each time over a new connection, and another one tracks: the ticks are that one's.
+address as whoever is measured, of which the panel takes 256 connections. Meanwhile one tracker is stopped
+again and again, each time over a new connection, and another one tracks: the ticks are that one's.
 """
 
 import asyncio

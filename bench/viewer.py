@@ -1,4 +1,4 @@
-"""Pages that look on: `viewer.py PORT VIEWERS ADDRESS JOINED_S LASTS_S`; prints how late each state came."""
+"""Pages that look on: `viewer.py PORT VIEWERS JOINED_S LASTS_S`; prints how late each state came."""
 
 import asyncio
 import gc
@@ -15,7 +15,7 @@ from websockets.typing import Origin
 STAMP = re.compile(r'"at":"([^"]+)"')
 
 
-async def _view(port: int, address: str, after_s: float, late_ms: list[float]) -> bool:
+async def _view(port: int, after_s: float, late_ms: list[float]) -> bool:
     """Read for as long as it is let; return whether it was served at all."""
     served, url = False, f"http://127.0.0.1:{port}"
     loop = asyncio.get_running_loop()
@@ -26,7 +26,6 @@ async def _view(port: int, address: str, after_s: float, late_ms: list[float]) -
             compression=None,
             ping_interval=None,
             open_timeout=None,
-            local_addr=(address, 0),
         ) as page:
             async for text in page:
                 now, stamp = time.time(), STAMP.search(str(text))
@@ -38,14 +37,14 @@ async def _view(port: int, address: str, after_s: float, late_ms: list[float]) -
     return served
 
 
-async def _views(port: int, viewers: int, address: str, joined_s: float, lasts_s: float) -> None:
+async def _views(port: int, viewers: int, joined_s: float, lasts_s: float) -> None:
     loop, late_ms = asyncio.get_running_loop(), list[float]()
     gc.freeze()
     begun_s = loop.time()
     views = []
     for number in range(viewers):
         await asyncio.sleep(max(0.0, begun_s + number * joined_s / 2 / viewers - loop.time()))
-        views.append(asyncio.create_task(_view(port, address, begun_s + joined_s, late_ms)))
+        views.append(asyncio.create_task(_view(port, begun_s + joined_s, late_ms)))
     await asyncio.sleep(max(0.0, begun_s + joined_s + lasts_s - loop.time()))
     served = len(late_ms) > 0 and sum(not view.done() or view.result() for view in views)
     sys.stdout.buffer.write(orjson.dumps({"served": int(served), "late_ms": late_ms}))
@@ -56,5 +55,5 @@ async def _views(port: int, viewers: int, address: str, joined_s: float, lasts_s
 
 
 if __name__ == "__main__":
-    PORT, VIEWERS, ADDRESS, JOINED_S, LASTS_S = sys.argv[1:]
-    asyncio.run(_views(int(PORT), int(VIEWERS), ADDRESS, float(JOINED_S), float(LASTS_S)))
+    PORT, VIEWERS, JOINED_S, LASTS_S = sys.argv[1:]
+    asyncio.run(_views(int(PORT), int(VIEWERS), float(JOINED_S), float(LASTS_S)))

@@ -11,6 +11,8 @@ from app.clock import Clock
 LASTING = frozenset({"/live", "/api/v1/stream"})
 MOST_STREAMS = 1024
 MOST_STREAMS_A_CLIENT = 64
+MOST_ON_PLAIN_CONNECTIONS = 192
+"""An HTTP stream holds one of a client's plain connections; some are left for every other request."""
 LOOPBACK = frozenset({"127.0.0.1", "::1"})
 """Programs on this computer, and tunnels that end here, share the total alone."""
 
@@ -27,13 +29,16 @@ class StreamLimit:
         clock: Clock,
         most: int = MOST_STREAMS,
         most_a_client: int = MOST_STREAMS_A_CLIENT,
+        most_plain: int = MOST_ON_PLAIN_CONNECTIONS,
     ) -> None:
         self._app = app
         self._clock = clock
         self._turnstile = asyncio.Lock()
         self._most = most
         self._most_a_client = most_a_client
+        self._most_plain = most_plain
         self._open: Counter[str] = Counter()
+        self._plain: Counter[str] = Counter()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on, or answer 503 (a WebSocket: close it with 1013, try again later)."""
@@ -41,18 +46,27 @@ class StreamLimit:
             await self._app(scope, receive, send)
             return
         client = scope["client"][0] if scope.get("client") else ""
-        share = self._most if client in LOOPBACK else self._most_a_client
-        if self._open[client] >= share or self._open.total() >= self._most:
+        plain = scope["type"] == "http"
+        if not self._has_room(client, plain=plain):
             await _refuse(scope, send)
             return
-        self._open[client] += 1
+        counted = (self._open, self._plain) if plain else (self._open,)
+        for count in counted:
+            count[client] += 1
         try:
             await self._one_by_one()
             await self._app(scope, receive, send)
         finally:
-            self._open[client] -= 1
-            if not self._open[client]:
-                del self._open[client]
+            for count in counted:
+                count[client] -= 1
+                if not count[client]:
+                    del count[client]
+
+    def _has_room(self, client: str, *, plain: bool) -> bool:
+        share = self._most if client in LOOPBACK else self._most_a_client
+        if plain and self._plain[client] >= self._most_plain:
+            return False
+        return self._open[client] < share and self._open.total() < self._most
 
     async def _one_by_one(self) -> None:
         """Wait for one's turn to begin: of many that come at once each lets other requests pass before it."""

@@ -7,7 +7,8 @@ import orjson
 import pytest
 
 from app.clock import SystemClock
-from app.web.limits import MOST_STREAMS, MOST_STREAMS_A_CLIENT, StreamLimit
+from app.web.limits import MOST_ON_PLAIN_CONNECTIONS, MOST_STREAMS, MOST_STREAMS_A_CLIENT, StreamLimit
+from app.web.server import MOST_A_CLIENT
 
 LIVE, STREAM = "/live", "/api/v1/stream"
 FAR, NEAR = "192.0.2.7", "127.0.0.1"
@@ -76,6 +77,17 @@ async def test_beyond_its_share_a_client_is_refused_with_503_and_a_reason() -> N
     await held.end()
 
 
+async def test_streams_of_this_computer_leave_some_of_its_plain_connections_to_other_requests() -> None:
+    held = Held(most=10, most_plain=2)
+    assert [await held.ask(STREAM, NEAR) for _ in range(2)] == [[], []]
+    start, _ = await held.ask(STREAM, NEAR)
+    assert start["status"] == 503
+    assert await held.ask(LIVE, NEAR, "websocket") == []
+    await held.end()
+    assert await held.ask(STREAM, NEAR) == []
+    await held.end()
+
+
 async def test_a_socket_beyond_the_share_is_closed_with_try_again_later() -> None:
     held = Held(most=10, most_a_client=1)
     assert await held.ask(LIVE, FAR, "websocket") == []
@@ -124,11 +136,12 @@ async def test_other_requests_pass_however_much_is_open() -> None:
 
 async def test_as_shipped_a_client_has_64_and_all_have_1024() -> None:
     assert (MOST_STREAMS_A_CLIENT, MOST_STREAMS) == (64, 1024)
+    assert MOST_ON_PLAIN_CONNECTIONS + 64 == MOST_A_CLIENT
     held = Held()
     assert [await held.ask(LIVE, FAR) for _ in range(64)] == [[]] * 64
     assert await held.ask(LIVE, FAR) != []
-    assert [await held.ask(LIVE, NEAR) for _ in range(960)] == [[]] * 960
-    assert await held.ask(LIVE, NEAR) != []
+    assert [await held.ask(LIVE, NEAR, "websocket") for _ in range(960)] == [[]] * 960
+    assert await held.ask(LIVE, NEAR, "websocket") != []
     await held.end()
 
 
