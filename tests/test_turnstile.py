@@ -52,3 +52,29 @@ async def test_what_adds_more_work_is_not_done_twice() -> None:
     turnstile.add(first)
     await turns()
     assert done == ["first", "second"]
+
+
+async def test_while_it_is_held_everything_waits_and_nothing_is_done_twice() -> None:
+    done: list[str] = []
+    turnstile = Turnstile()
+    turnstile.add(lambda: done.append("a"))
+    turnstile.hold(60.0)
+    turnstile.add(lambda: done.append("b"))
+    await turns()
+    assert (done, len(turnstile)) == ([], 2)
+    turnstile.release()
+    turnstile.release()
+    await turns()
+    assert (done, len(turnstile)) == (["a", "b"], 0)
+
+
+async def test_it_is_held_no_longer_than_was_said() -> None:
+    done, gone_on = [], asyncio.Event()
+    turnstile = Turnstile()
+    turnstile.hold(60.0)
+    turnstile.hold(0.001)
+    turnstile.add(lambda: done.append("a"))
+    turnstile.add(gone_on.set)
+    assert done == []
+    await gone_on.wait()
+    assert done == ["a"]

@@ -110,9 +110,8 @@ class CautiousSocket(WebSocketsSansIOProtocol):
         self.close_timer = self.loop.call_later(FAREWELL_S, self.transport.close)
 
 
-def cautious_sockets(clock: Clock) -> type[WebSocketsSansIOProtocol]:
+def cautious_sockets(clock: Clock, turnstile: Turnstile) -> type[WebSocketsSansIOProtocol]:
     """Return the protocol with a turnstile that its sockets share, as uvicorn wants it: a class."""
-    turnstile = Turnstile()
 
     class Limited(CautiousSocket):
         def __init__(

@@ -29,6 +29,7 @@ from app.settings import Settings, fixed_by_environment
 from app.store.engine import open_reader
 from app.store.reader import DatabaseReader
 from app.store.store import Reader
+from app.turnstile import Turnstile
 from app.web import errors, live
 from app.web.api.operations import router as operations
 from app.web.api.router import api_routes
@@ -221,12 +222,13 @@ def _serve(stage: Stage, clock: Clock | None, on_answer: OnAnswer | None) -> Sta
 def configured(app: FastAPI, settings: Settings) -> uvicorn.Config:
     """Return how uvicorn serves a panel: its limits, its certificate, the proxies that it believes."""
     certificate = settings.certificate
+    turnstile = Turnstile()
     return uvicorn.Config(
         app,
         host=settings.host,
         port=settings.port,
-        http=cautious(Connections(reserve_descriptors())),
-        ws=cautious_sockets(app.state.panel.clock),
+        http=cautious(Connections(reserve_descriptors()), turnstile),
+        ws=cautious_sockets(app.state.panel.clock, turnstile),
         ws_max_size=LARGEST_MESSAGE,
         ws_ping_interval=PING_S,
         ws_ping_timeout=PING_S,

@@ -43,6 +43,8 @@ RESERVED_A_CLIENT = 8
 DESCRIPTORS_RESERVED = 128
 DESCRIPTORS_WANTED = 8192
 LARGEST_MESSAGE = 16 * 1024
+STOP_FIRST_S = 0.05
+"""So long at most whatever comes over live sockets waits for a stop that is under way."""
 
 
 class Admission(Enum):
@@ -198,11 +200,19 @@ class CautiousHttp(HttpToolsProtocol):
     def on_headers_complete(self) -> None:
         """Begin to answer; a connection beyond the client's share is answered only if it stops something."""
         self._head_is_open = False
-        if self._admission is Admission.STOP and not self._is_stop():
+        is_stop = self._is_stop()
+        if self._admission is Admission.STOP and not is_stop:
             self.transport.write(FULL)
             self.transport.close()
             return
+        if is_stop:
+            self._turnstile.hold(STOP_FIRST_S)
         super().on_headers_complete()
+
+    def on_response_complete(self) -> None:
+        """Let live sockets go on that waited for a stop."""
+        self._turnstile.release()
+        super().on_response_complete()
 
     @property
     def is_idle(self) -> bool:
@@ -291,9 +301,10 @@ class PanelServer(uvicorn.Server):
         await super().shutdown(sockets)
 
 
-def cautious(connections: Connections, deadline_s: float = REQUEST_DEADLINE_S) -> type[HttpToolsProtocol]:
+def cautious(
+    connections: Connections, turnstile: Turnstile, deadline_s: float = REQUEST_DEADLINE_S
+) -> type[HttpToolsProtocol]:
     """Return the protocol with its limits, as uvicorn wants it: a class."""
-    turnstile = Turnstile()
 
     class Limited(CautiousHttp):
         def __init__(

@@ -11,9 +11,13 @@ import uvicorn
 from websockets.asyncio.client import connect
 
 from app.clock import Clock, SystemClock
+from app.link.messages import Order
+from app.tracker.snapshot import SiteSnapshot
+from app.turnstile import Turnstile
 from app.web.live_protocol import cautious_sockets
 from app.web.server import (
     LARGEST_HEAD,
+    REQUEST_DEADLINE_S,
     Connections,
     PanelServer,
     cautious,
@@ -28,13 +32,15 @@ async def serving(
     deadline_s: float | None = None,
     socket_clock: Clock | None = None,
     machine: FakeMachine | None = None,
+    turnstile: Turnstile | None = None,
 ) -> AsyncIterator[tuple[PanelServer, int]]:
     app = fake_app(machine or FakeMachine())
+    turnstile = Turnstile() if turnstile is None else turnstile
     listener = socket.create_server(("127.0.0.1", 0))
     config = uvicorn.Config(
         app,
-        http=cautious(connections) if deadline_s is None else cautious(connections, deadline_s),
-        ws=cautious_sockets(socket_clock or SystemClock()),
+        http=cautious(connections, turnstile, deadline_s or REQUEST_DEADLINE_S),
+        ws=cautious_sockets(socket_clock or SystemClock(), turnstile),
         log_config=None,
         timeout_graceful_shutdown=2,
     )
@@ -169,6 +175,42 @@ async def test_live_sockets_do_not_use_up_the_share_of_requests() -> None:
             page = await pages.enter_async_context(connect(f"ws://127.0.0.1:{port}/live"))
             assert '"state"' in await page.recv()
         assert await _status(port) == b"200"
+
+
+class SlowToStop(FakeMachine):
+    """A machine whose stops take until they are let go."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.begun, self.let_go = asyncio.Event(), asyncio.Event()
+
+    async def execute(self, order: Order) -> SiteSnapshot:
+        self.begun.set()
+        await self.let_go.wait()
+        return await super().execute(order)
+
+
+async def test_what_comes_over_live_sockets_waits_for_a_stop_that_is_under_way(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("app.web.server.STOP_FIRST_S", 60.0)
+    machine, turnstile, clock = SlowToStop(), Turnstile(), SystemClock()
+    limits = serving(Connections(100), machine=machine, turnstile=turnstile)
+    async with asyncio.timeout(10), limits as (_, port), connect(f"ws://127.0.0.1:{port}/live") as page:
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(b"POST /api/v1/trackers/T1/stop HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
+        await machine.begun.wait()
+        await page.send('{"type":"ping","tc":1,"visible":false}')
+        while not turnstile:
+            await clock.sleep_until(clock.now() + timedelta(milliseconds=1))
+        for _ in range(20):
+            await asyncio.sleep(0)
+        assert len(turnstile) == 1
+        machine.let_go.set()
+        assert (await reader.readline()).startswith(b"HTTP/1.1 202")
+        while "pong" not in str(await page.recv()):
+            pass
+        writer.close()
 
 
 async def test_server_ends_quickly_though_streams_are_open() -> None:
