@@ -7,7 +7,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -86,7 +86,7 @@ class Product:
     reading: threading.Thread | None = None
 
     @classmethod
-    def start(cls, data_dir: Path, **more: str) -> "Product":
+    def start(cls, data_dir: Path, *, command: Sequence[str] = (), **more: str) -> "Product":
         """Return once panel, machine and database answer; `more` are further settings."""
         port = free_port()
         environment = os.environ | {
@@ -96,7 +96,10 @@ class Product:
             **{f"HELIOPANEL_{name.upper()}": value for name, value in more.items()},
         }
         process = subprocess.Popen(
-            [COMMAND, "serve"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+            [*(command or (COMMAND,)), "serve"],
+            env=environment,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
         )
         product = cls(data_dir, port, process)
         product.reading = threading.Thread(target=product._read, daemon=True)
