@@ -7,7 +7,7 @@
 #   what their tests notice; ONLY=access does one area
 # make fresh: the two commands of the README on pristine Debian machines in folders, as a user and as root (needs root);
 #   DEBIAN="12 13", WHO="user root", ONLY="run test", PYTHON=python3.14 do a part
-# make dist : builds the sdist and the wheel into dist/
+# make dist : builds the sdist and the wheel into dist/, with the manual where zensical is installed
 # make docs : builds the site of the documents into manual/, and fails at a broken link or anchor
 # make bench: measures and writes docs/develop/benchmarks.md
 
@@ -49,14 +49,15 @@ client: $(VENV)/.client ## Add the generator of clients that a test of the API's
 setup: $(VENV)/.runtime ## Make .venv with the command heliopanel
 	@echo "Ready: $(BIN)/heliopanel --help"
 
-dist: $(VENV)/.runtime ## Build the sdist, and the wheel from it, into dist/
+dist: $(VENV)/.runtime ## Build the sdist, and the wheel from it, into dist/ (with the manual where zensical is there)
+	@test ! -x $(BIN)/zensical || $(BIN)/python -m tests.manual
 	@$(BIN)/python -c "from setuptools.build_meta import build_sdist; build_sdist('dist')" >/dev/null
 	@$(BIN)/python -m pip wheel --quiet --disable-pip-version-check --no-index --no-build-isolation --no-deps -w dist \
 		dist/heliopanel-$$($(BIN)/heliopanel version).tar.gz
 	@ls dist
 
 docs: $(VENV)/.dev ## Build the site of the documents into manual/; a broken link or anchor fails
-	@$(BIN)/zensical build --strict
+	@$(BIN)/python -m tests.manual
 
 fast: $(VENV)/.runtime ## Add the compiled loops (numba) that make studies and comparisons quick
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-fast.txt

@@ -1,5 +1,6 @@
 """Carries the folders beside the program into the wheel, where `app.own` finds them."""
 
+import os
 import shutil
 from pathlib import Path
 
@@ -7,6 +8,9 @@ from setuptools import setup
 from setuptools.command.build_py import build_py
 
 FOLDERS = ("alembic", "docs", "static", "templates")
+BUILT = ("manual",)
+"""Carried where `make docs` has built it."""
+
 LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.pyc", ".*")
 
 
@@ -20,7 +24,7 @@ class BuildWithFolders(build_py):
             shutil.rmtree(built, ignore_errors=True)
         super().run()
         if not self.editable_mode:
-            for folder in FOLDERS:
+            for folder in (*FOLDERS, *filter(os.path.isdir, BUILT)):
                 shutil.copytree(folder, built / "_carried" / folder, ignore=LEFT_OUT)
 
 

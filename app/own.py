@@ -12,7 +12,7 @@ CARRIED = PROGRAM / "_carried"
 
 
 def own_folder(name: str) -> Path:
-    """Return one of the folders `alembic`, `docs`, `static` and `templates`."""
+    """Return one of the folders `alembic`, `docs`, `manual`, `static` and `templates`."""
     carried = CARRIED / name
     return carried if carried.is_dir() else PROGRAM.parent / name
 

@@ -1,6 +1,6 @@
 """What `create_app` built, with its types, for the routes."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from typing import Annotated
 
@@ -18,6 +18,7 @@ from app.tracker.commands import Command
 from app.tracker.snapshot import SiteSnapshot
 from app.web.assets import Assets
 from app.web.hub import Hub
+from app.web.manual import Manual, own_manual
 from app.web.narrowed import NarrowedMachine, NarrowedReader, sees_study
 from app.web.network import NetworkDesk
 from app.web.simulations import Simulations
@@ -38,6 +39,7 @@ class Panel:
     studies: Studies
     keeper: Keeper
     network: NetworkDesk
+    manual: Manual = field(default_factory=own_manual)
 
 
 def panel(connection: HTTPConnection) -> Panel:

@@ -9,7 +9,10 @@ from app.web.guide import GuideSection
 
 @dataclass(frozen=True, slots=True)
 class GuidePage:
-    """One document, its sections and the list of all documents; `is_foreign` where only English is there."""
+    """One document, its sections and the list of all documents; `is_foreign` where only English is there.
+
+    `has_manual` where the site of all documents was built.
+    """
 
     template: ClassVar[str] = "guide.html"
 
@@ -19,6 +22,7 @@ class GuidePage:
     sections: tuple[GuideSection, ...]
     titles: dict[str, str]
     is_foreign: bool
+    has_manual: bool
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,7 +30,7 @@ from app.store.engine import open_reader
 from app.store.reader import DatabaseReader
 from app.store.store import Reader
 from app.turnstile import Turnstile
-from app.web import errors, live
+from app.web import errors, live, manual
 from app.web.api.operations import router as operations
 from app.web.api.router import api_routes
 from app.web.assets import Assets
@@ -103,6 +103,7 @@ def create_app(
     app.state.panel = panel
     app.state.templates, app.state.error_page = environment(), error_page
     app.mount("/s", panel.assets, name="static")
+    app.mount(manual.PATH, panel.manual, name="manual")
     app.router.routes.extend(_doors())
     app.state.routes = guarded_routes(app.routes)
     errors.install(app)

@@ -64,6 +64,7 @@ _TABLE: dict[Permission, str] = {
         GET /guide
         GET /guide/pictures/{name}
         GET /guide/{document}
+        GET /manual
         GET /search
         GET /journal
         GET /metrics

@@ -95,9 +95,9 @@ class Served:
 
 
 @contextlib.contextmanager
-def running() -> Iterator[Plant]:
+def running(served: Served | None = None) -> Iterator[Plant]:
     """Serve a panel on a free port for as long as the block lasts."""
-    served = Served(FakeMachine())
+    served = served or Served(FakeMachine())
     thread = threading.Thread(target=lambda: asyncio.run(served.run()), daemon=True)
     thread.start()
     assert served.ready.wait(20), "the panel did not start"

@@ -46,6 +46,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
             shutil.copytree(ROOT / name, sources / name, ignore=shutil.ignore_patterns("__pycache__"))
         else:
             shutil.copy2(ROOT / name, sources / name)
+    run(sys.executable, "-m", "tests.manual", str(sources / "manual"), cwd=ROOT)
     (sources / "build" / "lib" / "app").mkdir(parents=True)
     (sources / "build" / "lib" / "app" / "gone.py").touch()
     run(sys.executable, "-c", BUILD_SDIST, str(wheels), cwd=sources)
@@ -108,6 +109,16 @@ def test_the_pages_and_all_that_they_load_and_lead_to_are_served(served: Product
     assert not missing
     assert {"/s/" in place for place in places} == {True, False}
     assert "/guide/pictures/" in " ".join(places)
+
+
+def test_the_manual_is_served_offline(served: Product) -> None:
+    with httpx.Client(base_url=served.url, timeout=PATIENCE_S) as browser:
+        front = browser.get("/manual/")
+        loaded = re.findall(r'(?:href|src)="(?:\./)?(assets/[^"]+|manual\.css)"', front.text)
+        answers = {name: browser.get(f"/manual/{name}").status_code for name in loaded}
+    assert "Heliopanel" in front.text
+    assert set(answers.values()) == {200}
+    assert len(answers) > 4
 
 
 def test_it_speaks_languages_and_prints(served: Product) -> None:

@@ -7,6 +7,7 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
 from app.web import guide as documents
+from app.web.deps import panel
 from app.web.errors import NotFound
 from app.web.guide_contexts import GuidePage, SearchPage
 from app.web.ui.frame import site_frame
@@ -56,5 +57,6 @@ def _show(request: Request, name: str) -> Response:
         sections=documents.sections(name),
         titles=documents.TITLES,
         is_foreign=documents.is_foreign(name),
+        has_manual=panel(request).manual.is_built,
     )
     return page(request, context)

@@ -1,0 +1,45 @@
+"""The manual: the site of all documents as `make docs` builds it, served to who may read pages."""
+
+from pathlib import Path
+
+from starlette.responses import Response
+from starlette.staticfiles import StaticFiles
+from starlette.types import Scope
+
+from app.own import own_folder
+from app.web.assets import ASK_AGAIN
+from app.web.errors import NotFound
+
+PATH = "/manual"
+NOT_BUILT = (
+    "This installation has no manual. In a checkout, make docs builds it; the guide is here without it."
+)
+
+
+class Manual(StaticFiles):
+    """The built site, or a sentence that says how it is built."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(directory=folder, check_dir=False, html=True)
+        self._front = folder / "index.html"
+
+    @property
+    def is_built(self) -> bool:
+        """Return whether there is anything to read."""
+        return self._front.is_file()
+
+    async def check_config(self) -> None:
+        """Accept that the folder is not there: `get_response` tells what to do about it."""
+
+    async def get_response(self, path: str, scope: Scope) -> Response:
+        """Return a file of the site."""
+        if not self.is_built:
+            raise NotFound(NOT_BUILT)
+        response = await super().get_response(path, scope)
+        response.headers["Cache-Control"] = ASK_AGAIN
+        return response
+
+
+def own_manual() -> Manual:
+    """Return the manual of this installation."""
+    return Manual(own_folder("manual"))
