@@ -7,6 +7,7 @@ import shutil
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 import urllib.request
 from dataclasses import dataclass
@@ -106,17 +107,17 @@ def test(on: Machine, who: str, make: str) -> tuple[bool, str]:
     return code == 0, first + ("; ".join(COUNTED.findall(told)) or "did not get to the tests")
 
 
-def prepare(on: Machine, who: str, python: str) -> bool:
+def prepare(on: Machine, who: str, python: str, project: Path) -> bool:
     """Install what the README names, and clone the project."""
     more = f" {python} {python}-venv" if python and "/" not in python else ""
     needed = named_by_readme(Path("README.md").read_text())
     installed, _ = on.do(f"apt-get update -qq && DEBIAN_FRONTEND=noninteractive {needed}{more} -qq", "root")
-    shutil.copy(BUILD / "heliopanel.bundle", on.root / "srv")
-    cloned, _ = on.do("git clone -q /srv/heliopanel.bundle heliopanel", who)
+    shutil.copy(project, on.root / "srv/heliopanel.bundle")
+    cloned, _ = on.do("git clone -q -c advice.detachedHead=false /srv/heliopanel.bundle heliopanel", who)
     return not (installed or cloned)
 
 
-def one(debian: str, who: str, asked: argparse.Namespace) -> list[Row]:
+def one(debian: str, who: str, asked: argparse.Namespace, project: Path) -> list[Row]:
     """Do what is asked on one machine, and say it as it comes."""
     path = Path(asked.python).resolve() if "/" in asked.python else None
     python = f"{INTERPRETER}/bin/{path.name}" if path else asked.python
@@ -124,7 +125,7 @@ def one(debian: str, who: str, asked: argparse.Namespace) -> list[Row]:
     rows: list[Row] = []
     user = "root" if who == "root" else USER
     with machine(debian, who, path) as on:
-        ready = prepare(on, user, asked.python)
+        ready = prepare(on, user, asked.python, project)
         _, version = on.do(f"{python or 'python3'} --version", user)
         version = version.rpartition("Python ")[2].strip()
         for command, try_it in (("run", run), ("test", test)):
@@ -163,18 +164,13 @@ def main() -> None:
         sys.exit("make fresh makes mounts, so it needs root: sudo make fresh")
     BUILD.mkdir(parents=True, exist_ok=True)
     BUILD.chmod(0o700)
-    project = [
-        "git",
-        "-c",
-        "safe.directory=*",
-        "bundle",
-        "create",
-        "-q",
-        str(BUILD / "heliopanel.bundle"),
-        "HEAD",
-    ]
-    subprocess.run(project, check=True)
-    rows = [row for debian in asked.debian for who in asked.who for row in one(debian, who, asked)]
+    git = ["git", "-c", "safe.directory=*"]
+    with tempfile.TemporaryDirectory() as folder:
+        project = Path(folder) / "heliopanel.bundle"
+        subprocess.run([*git, "bundle", "create", "-q", project, "HEAD"], check=True)
+        rows = [
+            row for debian in asked.debian for who in asked.who for row in one(debian, who, asked, project)
+        ]
     print("\ndebian  who   python  command    result    time  what was seen")
     print("\n".join(line(row) for row in rows))
     sys.exit(not all(row.good for row in rows))

@@ -1,5 +1,6 @@
 """A pristine Debian in a folder, with mounts and processes of its own; they end with the machine."""
 
+import fcntl
 import os
 import shutil
 import signal
@@ -144,11 +145,25 @@ def machine(debian: str, name: str, interpreter: Path | None) -> Iterator[Machin
     """Give a new machine, and take it away at the end."""
     archive = pristine(debian)
     root = (BUILD / f"debian-{debian}-{name}").resolve()
-    remove(root)
-    root.mkdir()
-    subprocess.run(
-        ["tar", "--extract", "--numeric-owner", "--file", archive, "--directory", root], check=True
-    )
+    with root.with_suffix(".log").open("a") as log:
+        try:
+            fcntl.flock(log, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            sys.exit(f"Another make fresh has a machine in {root}.")
+        log.truncate(0)
+        remove(root)
+        root.mkdir()
+        try:
+            subprocess.run(["tar", "-x", "--numeric-owner", "-f", archive, "-C", root], check=True)
+            with started(root, interpreter) as (first, settings):
+                yield Machine(root, first, settings, log)
+        finally:
+            remove(root)
+
+
+@contextmanager
+def started(root: Path, interpreter: Path | None) -> Iterator[tuple[int, dict[str, str]]]:
+    """Give the first process of a machine and the variables for those after it; at the end all are ended."""
     pip, settings = host.pip(), host.environment()
     furnish(root, pip)
     seen = [f"{path}={path}" for path in host.folders(pip, *settings.values())]
@@ -156,16 +171,15 @@ def machine(debian: str, name: str, interpreter: Path | None) -> Iterator[Machin
         seen.append(f"{interpreter.parent.parent}={INTERPRETER}")
     words = ["unshare", *OWN, "--fork", "--kill-child", "sh", "-c", FIRST, "first", str(root), *seen]
     outer = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
-    try:
-        if not outer.stdout or outer.stdout.readline() != "ready\n":
-            sys.exit("The machine could not be made: mounts of its own are refused here.")
-        first = int(Path(f"/proc/{outer.pid}/task/{outer.pid}/children").read_text())
-        with (BUILD / f"debian-{debian}-{name}.log").open("w") as log:
-            yield Machine(root, first, settings, log)
-    finally:
-        outer.kill()
+    if not outer.stdout or outer.stdout.readline() != "ready\n":
         outer.wait()
-        remove(root)
+        sys.exit("The machine could not be made: mounts of its own are refused here.")
+    first = int(Path(f"/proc/{outer.pid}/task/{outer.pid}/children").read_text())
+    try:
+        yield first, settings
+    finally:
+        os.kill(first, signal.SIGKILL)
+        outer.wait()
 
 
 def furnish(root: Path, pip: str) -> None:
