@@ -11,6 +11,7 @@ install.sh [WHEEL]                  install, or upgrade what is installed; witho
     --wheels FOLDER                 take the libraries from this folder; nothing is downloaded
     --lock FILE                     the locked libraries; default is requirements.txt beside WHEEL or the checkout's
     --python PROGRAM                Python 3.11 or newer; default is python3
+    --restore FILE                  restore this backup before the start: the way back to an older version
 install.sh --remove [--purge]       take programs and units away; with --purge also settings, data and the user
     --root FOLDER                   put files under this folder; no user is made and nothing is started
 TEXT
@@ -22,10 +23,10 @@ fail() {
     exit "${code:-2}"
 }
 
-wheel="" extras="" wheels="" lock="" python=python3 root="" remove="" purge=""
+wheel="" extras="" wheels="" lock="" python=python3 restore="" root="" remove="" purge=""
 while [ $# -gt 0 ]; do
     case $1 in
-    --extras | --wheels | --lock | --python | --root)
+    --extras | --wheels | --lock | --python | --restore | --root)
         [ $# -gt 1 ] || fail "$1 needs a value."
         eval "${1#--}=\$2"
         shift
@@ -204,6 +205,13 @@ use_environment() {
     for service in $services; do install -D -m 0644 "$here/$service.service" "$units/$service.service"; done
 }
 
+# An older version refuses a newer one's data, so this is done before it starts.
+restore_backup() {
+    [ -n "$restore" ] || return 0
+    ! runs_systemd || systemctl stop heliopanel-web heliopanel-machine
+    as_user "$programs/current/bin/heliopanel" restore "$restore" || code=1 fail "The backup was not restored."
+}
+
 start() {
     if [ -z "$root" ] && command -v systemctl >/dev/null; then
         systemctl --quiet enable heliopanel-machine heliopanel-web
@@ -254,6 +262,7 @@ if [ -n "$remove" ]; then
 fi
 [ -z "$purge" ] || fail "--purge goes with --remove."
 check_tools
+[ -z "$restore" ] || [ -f "$restore" ] || fail "There is no file $restore."
 scratch=$(mktemp -d)
 if [ -n "$wheels" ]; then
     [ -d "$wheels" ] || fail "There is no folder $wheels."
@@ -265,4 +274,5 @@ make_environment
 make_user
 make_folders
 use_environment
+restore_backup
 start

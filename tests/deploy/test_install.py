@@ -17,6 +17,8 @@ def main():
     settings = pathlib.Path(os.environ["HELIOPANEL_CONFIG"]).read_text()
     if sys.argv[1:3] == ["config", "check"] and "wrong = 1" in settings:
         sys.exit("wrong is wrong.")
+    if sys.argv[1] == "restore":
+        pathlib.Path(os.environ["HELIOPANEL_DATA_DIR"], "heliopanel.db").write_text("restored by {version}")
     if sys.argv[1] == "backup":
         target = pathlib.Path(sys.argv[2])
         target.parent.mkdir(exist_ok=True)
@@ -123,8 +125,9 @@ def test_an_upgrade_keeps_settings_extras_a_backup_and_one_version(computer: Com
     computer.settings.write_text("port = 8001\n")
     (computer.data / "heliopanel.db").touch()
     (computer.programs / "0.9-20260101T000000").mkdir()
-    done = computer.install("1.1")
+    done = computer.install("1.1", "--restore", str(computer.lock))
     assert done.returncode == 0, done.stderr
+    assert (computer.data / "heliopanel.db").read_text() == "restored by 1.1"
     assert (computer.versions, computer.current) == (["1.0", "1.1"], "1.1")
     assert computer.libraries == {"heliopanel", "small_sun", "small_pen"}
     assert computer.settings.read_text() == "port = 8001\n"
@@ -162,6 +165,7 @@ def test_what_goes_wrong_is_one_sentence_and_changes_nothing(computer: Computer)
         (("--lock",), "--lock needs a value."),
         (("--python", "no-such-python"), "There is no no-such-python. Install it with: apt-get"),
         (("gone.whl",), "There is no file gone.whl."),
+        (("--restore", "gone.db"), "There is no file gone.db."),
         (("--wheels", "no-such-folder"), "There is no folder no-such-folder."),
     ],
 )
