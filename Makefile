@@ -21,7 +21,7 @@ ALONE := tests/drives/timed tests/test_benches.py \
 	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost hold_to_run kill many_holds stop_and_tabs))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup docs dist fast client run test fresh check translations fuzz bench format lock browser system-packages clean
+.PHONY: help setup docs reference dist fast client run test fresh check translations fuzz bench format lock browser system-packages clean
 
 help: ## Show what each command does
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-10s %s\n", $$1, $$2}'
@@ -58,6 +58,9 @@ dist: $(VENV)/.runtime ## Build the sdist, and the wheel from it, into dist/ (wi
 
 docs: $(VENV)/.dev ## Build the site of the documents into manual/; a broken link or anchor fails
 	@$(BIN)/python -m tests.manual
+
+reference: $(VENV)/.dev ## Renew the pages of Reference that are made of the code
+	@$(BIN)/python -m tests.manual.made
 
 fast: $(VENV)/.runtime ## Add the compiled loops (numba) that make studies and comparisons quick
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-fast.txt

@@ -77,7 +77,9 @@ class Settings(BaseSettings):
     log_format: Literal["json", "text"] = Field(
         "text", description="Structured log as JSON lines or as readable text."
     )
-    log_level: Literal["debug", "info", "warning", "error"] = "info"
+    log_level: Literal["debug", "info", "warning", "error"] = Field(
+        "info", description="Least severe messages that the log has."
+    )
     tick_ms: int = Field(100, ge=20, le=1000, description="Period of the control loop.")
     telemetry_retention_days: int = Field(400, ge=1, description="Recorded days older than this are removed.")
     journal_retention_days: int = Field(

@@ -58,7 +58,7 @@ RETAINED = Reason(
     "A retained command is not carried out: it would be repeated with every connection.",
     "Send it again without the retain flag, and clear the retained one with an empty message.",
 )
-_messages: TypeAdapter[_Plain | _Move] = TypeAdapter(Annotated[_Plain | _Move, Field(discriminator="type")])
+MESSAGES: TypeAdapter[_Plain | _Move] = TypeAdapter(Annotated[_Plain | _Move, Field(discriminator="type")])
 
 
 TOO_MANY = Reason(
@@ -73,7 +73,7 @@ async def obey(door: Door, tracker_id: str, payload: bytes, *, against: tuple[Re
     else is wrong with the message.
     """
     try:
-        message = _messages.validate_json(payload)
+        message = MESSAGES.validate_json(payload)
     except ValidationError as error:
         if not is_stop(payload):
             return _answer(None, _malformed(error))
