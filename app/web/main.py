@@ -38,7 +38,6 @@ from app.web.deps import Panel
 from app.web.documented import DocumentedApp
 from app.web.gate import Gate, record_foreign
 from app.web.hub import Hub
-from app.web.languages import read_all
 from app.web.languages.choice import Speech
 from app.web.limits import StreamLimit
 from app.web.live_protocol import cautious_sockets
@@ -81,7 +80,6 @@ def create_app(
 
     `stage` says whether these settings are on trial; without one they are for good.
     """
-    read_all()
     clock = clock or SystemClock()
     machine = machine or LinkClient(settings.link_path, clock)
     reader = reader or open_reader(settings.url)

@@ -18,7 +18,7 @@ from app.tracker.config import TrackerConfig
 from app.tracker.memory import HomeTrust, Pointing
 from app.tracker.motion import DriveCapabilities
 from app.tracker.snapshot import ClockState
-from app.web.languages import CATALOGUE, read_all
+from app.web.languages import CATALOGUE
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import LANGUAGES, TRANSLATED
 from app.web.record import MISDATED
@@ -130,7 +130,6 @@ def test_a_record_in_english_is_told_as_it_was_signed() -> None:
 
 async def test_what_was_signed_is_the_same_in_every_language(desk: Desk) -> None:
     await sign(desk)
-    read_all()
     assert len({(await read(desk, code, "json")).content for code in LANGUAGES}) == 1
 
 

@@ -3,17 +3,11 @@
 from contextvars import ContextVar
 
 from app.web.languages.catalogue import Catalogue, catalogue_of
-from app.web.languages.known import ENGLISH, LANGUAGES, Language
+from app.web.languages.known import ENGLISH, Language
 
 IN_ENGLISH = catalogue_of(ENGLISH.code)
 CATALOGUE: ContextVar[Catalogue] = ContextVar("catalogue", default=IN_ENGLISH)
 """The catalogue of the request that is being answered."""
-
-
-def read_all() -> None:
-    """Read all catalogues, so that no request has to wait for one."""
-    for code in LANGUAGES:
-        catalogue_of(code)
 
 
 def spoken() -> Language:

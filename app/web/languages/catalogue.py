@@ -1,6 +1,7 @@
 """What a language has for each English text, sentences with gaps included."""
 
 import re
+from asyncio import to_thread
 from collections.abc import Callable, Mapping
 from functools import cache, lru_cache, partial
 from gettext import GNUTranslations, NullTranslations
@@ -222,9 +223,13 @@ class Catalogue(_Stored):
         return None
 
 
+def _path(language: Language) -> Path:
+    return LOCALE / language.code / "LC_MESSAGES" / "heliopanel.mo"
+
+
 def load(language: Language) -> Catalogue:
     """Return the catalogue of a language, an empty one where none is stored."""
-    path = LOCALE / language.code / "LC_MESSAGES" / "heliopanel.mo"
+    path = _path(language)
     if not path.exists():
         return Catalogue(language)
     with path.open("rb") as stored:
@@ -238,13 +243,24 @@ def _blocks_of(path: Path) -> Mapping[str, str]:
         return _Stored(stored).blocks()
 
 
-@lru_cache(maxsize=len(LANGUAGES))
+_READ: dict[str, Catalogue] = {}
+"""Each catalogue takes 2 MB: those are held whose language somebody has asked for."""
+
+
 def catalogue_of(code: str) -> Catalogue:
-    """Return the catalogue of a language by its code; each is read once."""
-    return load(LANGUAGES.get(code, ENGLISH))
+    """Return the catalogue of a language by its code, English for any other; each is read once."""
+    language = LANGUAGES.get(code, ENGLISH)
+    if language.code not in _READ:
+        _READ[language.code] = load(language)
+    return _READ[language.code]
+
+
+async def catalogue_for(code: str) -> Catalogue:
+    """Return the same for a request; reading takes 50 ms, so that a thread does it and others do not wait."""
+    return catalogue_of(code) if code in _READ else await to_thread(catalogue_of, code)
 
 
 @cache
 def offered() -> tuple[Language, ...]:
     """Return the languages that a page can be shown in: English, and those that are translated."""
-    return tuple(one for code, one in LANGUAGES.items() if one is ENGLISH or catalogue_of(code).texts)
+    return tuple(one for one in LANGUAGES.values() if one is ENGLISH or _path(one).exists())

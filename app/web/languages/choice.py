@@ -7,7 +7,7 @@ from starlette.requests import cookie_parser
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.web.languages import CATALOGUE
-from app.web.languages.catalogue import catalogue_of, offered
+from app.web.languages.catalogue import catalogue_for, offered
 from app.web.languages.known import ENGLISH, LANGUAGES
 
 COOKIE = "language"
@@ -29,7 +29,7 @@ class Speech:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Choose the language and pass the request on."""
         if scope["type"] in ("http", "websocket"):
-            CATALOGUE.set(catalogue_of(chosen(Headers(scope=scope))))
+            CATALOGUE.set(await catalogue_for(chosen(Headers(scope=scope))))
         await self._app(scope, receive, send)
 
 

@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator
 import httpx
 import pytest
 
+from app.web.languages import catalogue
 from app.web.languages.catalogue import offered
 from app.web.languages.choice import asked_for
 from app.web.languages.known import LANGUAGES, code_of
@@ -46,6 +47,17 @@ async def test_a_page_tells_which_language_it_speaks(client: httpx.AsyncClient) 
     assert '<html lang="es"' in page.text
     assert {"Cookie", "Accept-Language"} <= set(page.headers["vary"].split(", "))
     assert '<html lang="en"' in (await client.get("/")).text
+
+
+async def test_a_catalogue_is_held_once_somebody_asks_for_its_language(
+    client: httpx.AsyncClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    held: dict[str, catalogue.Catalogue] = {}
+    monkeypatch.setattr(catalogue, "_READ", held)
+    await client.get("/")
+    assert set(held) == {"en"}
+    await client.get("/", headers={"Accept-Language": "es-MX"})
+    assert set(held) == {"en", "es"}
 
 
 async def test_the_list_keeps_the_choice_for_a_year(client: httpx.AsyncClient) -> None:
