@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from app.build import VERSION
-from app.machine.starting import as_service, check_data_dir, check_port
+from app.machine.starting import check_data_dir, check_port
 from app.machine.supervisor import supervise
 from app.options import Config, DataDir, Host, Port, settle
 
@@ -29,8 +29,7 @@ def serve(
     check_data_dir(settings.data_dir)
     check_port(settings)
     typer.echo(f"Heliopanel {VERSION}: starting ... (Ctrl-C ends it)")
-    with as_service():
-        raise typer.Exit(supervise(settings))
+    supervise(settings.log_format, settings.log_level)
 
 
 def version() -> None:

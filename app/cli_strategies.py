@@ -6,7 +6,8 @@ from zoneinfo import ZoneInfo
 
 import typer
 
-from app.show.strategy_day import StrategyDay, strategy_day
+from app.show.strategy_day import strategy_day
+from app.show.strategy_told import StrategyDay
 from app.sun.position import Location
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import Pointing

@@ -4,8 +4,9 @@ from typing import Annotated
 
 import typer
 
-from app.certificates import AUTHORITY, SERVER, init, own_names, read
+from app.certificates import AUTHORITY, SERVER, init, read
 from app.clock import SystemClock
+from app.own_names import own_names
 from app.settings import SettingsWrong, read_settings
 
 tls = typer.Typer(name="tls", help="The panel's certificate.", no_args_is_help=True)

@@ -40,7 +40,7 @@ def never_served(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object) -> None:
         raise AssertionError("It was started.")
 
-    for module in ("app.cli_serve.supervise", "app.cli_web.run"):
+    for module in ("app.cli_serve.supervise", "app.web.main.run"):
         monkeypatch.setattr(module, fail)
 
 
@@ -84,7 +84,7 @@ def test_options_count_before_the_environment_and_reach_what_is_started(
 ) -> None:
     port, file = free_port(), tmp_path / "settings.toml"
     file.write_text("tick_ms = 200\n")
-    monkeypatch.setattr("app.cli_serve.supervise", lambda _: 0)
+    monkeypatch.setattr("app.cli_serve.supervise", lambda *_: None)
     options = ["--config", str(file), "--data-dir", str(tmp_path / "other"), "--port", str(port)]
     code, out, _ = run("serve", *options, "--host", "::1" if socket.has_ipv6 else "127.0.0.1")
     assert (code, "starting" in out) == (0, True)

@@ -4,17 +4,13 @@ import sys
 
 from app.foreseen import Foreseen
 from app.late import hurry, late
-from app.machine.supervisor import end_with_parent
+from app.machine.supervised import end_with_supervisor
 from app.settings import read_settings
-
-SUPERVISED = "--supervised="
 
 
 def main() -> int:
     """Run until told to stop and return the exit code."""
-    for argument in sys.argv[1:]:
-        if argument.startswith(SUPERVISED):
-            end_with_parent(int(argument.removeprefix(SUPERVISED)))
+    end_with_supervisor(sys.argv[1:])
     hurry()
     try:
         late("app.machine.main").run(read_settings())

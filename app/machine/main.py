@@ -28,7 +28,7 @@ from app.machine.memory import MemoryGuard
 from app.machine.process import on_signals, raise_priority
 from app.machine.safe_mode import serve_safely
 from app.machine.starting import check_data_dir
-from app.machine.supervisor import tell_ready
+from app.machine.supervised import tell_ready
 from app.machine.systemd import notify
 from app.machine.watchdog import LoopWatchdog
 from app.settings import Settings

@@ -14,7 +14,7 @@ from app.clock import Clock, SystemClock
 from app.drives.factory import DriveFactory
 from app.link.server import LinkServer
 from app.machine.process import on_signals, raise_priority
-from app.machine.supervisor import tell_ready
+from app.machine.supervised import tell_ready
 from app.machine.systemd import notify
 from app.machine.watchdog import LoopWatchdog
 from app.settings import Settings

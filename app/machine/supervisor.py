@@ -1,28 +1,28 @@
-"""Runs machine and panel as two processes and starts either again when it dies."""
+"""Runs machine and panel as two processes and starts either again when it dies.
+
+It lives as long as they do and does little: it loads next to nothing besides the standard library.
+"""
 
 import asyncio
-import ctypes
 import os
 import signal
-from contextlib import suppress
+import sys
 from dataclasses import dataclass
 from datetime import timedelta
+from typing import NoReturn
 
 import structlog
 
 from app.clock import Clock, SystemClock
 from app.foreseen import WRONG
 from app.logs import set_up_logs
+from app.machine.supervised import READY, SUPERVISED
 from app.own import own_process
-from app.settings import Settings
 
 FIRST_PAUSE = timedelta(milliseconds=200)
 LONGEST_PAUSE = timedelta(seconds=5)
 LIVED_LONG = timedelta(seconds=10)
 GIVE_UP_AFTER_S = 8.0
-PR_SET_PDEATHSIG = 1
-READY = "SUPERVISED_READY_PIPE"
-"""Names the pipe through which a child tells that it has begun to work."""
 
 log = structlog.get_logger(__name__)
 
@@ -42,7 +42,7 @@ class Child:
 
         It has a session of its own: the terminal's signals reach it only through the supervisor.
         """
-        command = (*own_process(self.module[0]), *self.module[1:], f"--supervised={os.getpid()}")
+        command = (*own_process(self.module[0]), *self.module[1:], f"{SUPERVISED}{os.getpid()}")
         heard, telling = os.pipe()
         with os.fdopen(heard, "rb", buffering=0) as pipe:
             os.set_blocking(heard, False)
@@ -116,31 +116,26 @@ class Supervisor:
             await child.process.wait()
 
 
-def supervise(settings: Settings) -> int:
-    """Run both processes until SIGTERM or SIGINT and return the exit code."""
-    set_up_logs("supervisor", log_format=settings.log_format, log_level=settings.log_level)
-    return asyncio.run(_supervise())
+def supervise(log_format: str, log_level: str) -> NoReturn:
+    """Become the supervisor, in the place of the command line and all that it loaded."""
+    sys.stdout.flush()
+    command = (*own_process("app.machine.supervisor"), log_format, log_level)
+    os.execv(command[0], command)  # noqa: S606 - our own module, and no shell
 
 
 async def _supervise() -> int:
-    supervisor = Supervisor(
-        SystemClock(), Child("machine", ("app.machine",)), Child("web", ("app.cli", "web"))
-    )
+    supervisor = Supervisor(SystemClock(), Child("machine", ("app.machine",)), Child("web", ("app.panel",)))
     for number in (signal.SIGTERM, signal.SIGINT):
         asyncio.get_running_loop().add_signal_handler(number, supervisor.stop)
     return await supervisor.run()
 
 
-def tell_ready() -> None:
-    """Tell the supervisor, where there is one, that this child has begun to work."""
-    descriptor = os.environ.pop(READY, None)
-    if descriptor is not None:
-        with suppress(OSError), os.fdopen(int(descriptor), "wb", buffering=0) as pipe:
-            pipe.write(b"1")
+def main() -> int:
+    """Run both processes until SIGTERM or SIGINT and return the exit code."""
+    log_format, log_level = sys.argv[1:]
+    set_up_logs("supervisor", log_format="json" if log_format == "json" else "text", log_level=log_level)
+    return asyncio.run(_supervise())
 
 
-def end_with_parent(parent: int) -> None:
-    """Have the kernel send SIGTERM here when the supervisor dies; end now if it is dead already."""
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
-    if os.getppid() != parent:
-        raise SystemExit(0)
+if __name__ == "__main__":
+    sys.exit(main())

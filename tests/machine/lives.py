@@ -10,7 +10,7 @@ from pathlib import Path
 from app.link.client import LinkClient
 from app.link.messages import Order, SiteCommand
 from app.machine.main import run
-from app.machine.supervisor import end_with_parent
+from app.machine.supervised import end_with_parent
 from app.settings import Settings
 from app.tracker.commands import Command
 from app.tracker.snapshot import SiteSnapshot, Snapshot

@@ -293,7 +293,7 @@ def test_settings_come_from_the_environment_before_the_file(
 
 
 WORKED_THEN_WRONG = f"""
-from app.machine.supervisor import tell_ready
+from app.machine.supervised import tell_ready
 tell_ready()
 tell_ready()
 raise SystemExit({WRONG})

@@ -1,0 +1,43 @@
+"""`python -m app.panel`: the panel as a process of its own, without what the command line loads."""
+
+import sys
+
+from app.foreseen import Foreseen
+from app.late import hurry, late
+from app.machine.process import raise_priority_of_panel
+from app.machine.starting import as_service, check_data_dir, check_port
+from app.machine.supervised import end_with_supervisor, tell_ready
+from app.settings import Settings, read_settings
+
+
+def serve(settings: Settings) -> None:
+    """Run the panel until it is told to end; raises `SettingsWrong` for what keeps it from starting."""
+    check_data_dir(settings.data_dir)
+    check_port(settings)
+    with as_service():
+        late("app.web.main").run(settings, on_answer=_answers)
+
+
+def _answers(settings: Settings) -> None:
+    """Be punctual from now on, and say where a browser finds the panel."""
+    raise_priority_of_panel()
+    tell_ready()
+    host = f"[{settings.host}]" if ":" in settings.host else settings.host
+    sys.stdout.write(f"Heliopanel answers: open {settings.scheme}://{host}:{settings.port}\n")
+    sys.stdout.flush()
+
+
+def main() -> int:
+    """Run until told to stop and return the exit code."""
+    end_with_supervisor(sys.argv[1:])
+    hurry()
+    try:
+        serve(read_settings())
+    except Foreseen as error:
+        sys.stderr.write(f"{error}\n")
+        return error.exit_code
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
