@@ -4,7 +4,6 @@ import ipaddress
 import os
 import socket
 from collections.abc import Iterable
-from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from pathlib import Path
@@ -23,9 +22,6 @@ SERVER_DAYS = 397
 RENEW_WITHIN = timedelta(days=30)
 EARLIER = timedelta(days=1)
 PRIVATE = 0o600
-ALWAYS = ("heliopanel.local", "localhost", "127.0.0.1", "::1")
-ELSEWHERE = ((socket.AF_INET, "192.0.2.1"), (socket.AF_INET6, "2001:db8::1"))
-"""Addresses of RFC 5737 and RFC 3849 that nobody has; connecting a datagram socket sends nothing."""
 
 Key = ec.EllipticCurvePrivateKey
 
@@ -55,27 +51,6 @@ def read(path: Path) -> Certified:
     """Return what the first certificate of a file says, or raise `OSError` or `ValueError`."""
     found = x509.load_pem_x509_certificate(path.read_bytes())
     return Certified(_names(found), found.not_valid_after_utc, _fingerprint(found))
-
-
-def own_names() -> tuple[str, ...]:
-    """Return the names and addresses by which this computer may be called."""
-    name = socket.gethostname()
-    try:
-        addresses = [str(found[4][0]).partition("%")[0] for found in socket.getaddrinfo(name, None)]
-    except OSError:
-        addresses = []
-    short = name.partition(".")[0]
-    return tuple(dict.fromkeys((*ALWAYS, name, f"{short}.local", *addresses, *_outward())))
-
-
-def _outward() -> list[str]:
-    """Return the addresses from which this computer reaches others; a host file may name only loopback."""
-    found = []
-    for family, elsewhere in ELSEWHERE:
-        with socket.socket(family, socket.SOCK_DGRAM) as probe, suppress(OSError):
-            probe.connect((elsewhere, 9))
-            found.append(str(probe.getsockname()[0]))
-    return found
 
 
 def _authority(folder: Path, now: datetime) -> tuple[x509.Certificate, Key]:

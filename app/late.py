@@ -1,5 +1,6 @@
 """What makes a start quick: modules that are needed seldom come late, and the collector rests meanwhile."""
 
+import ctypes
 import gc
 from functools import cache
 from importlib import import_module
@@ -23,7 +24,13 @@ def hurry() -> None:
 
 
 def settle() -> None:
-    """Leave what was loaded out of every later collection, and collect seldom from now on."""
+    """Leave what was loaded out of every later collection, and collect seldom from now on.
+
+    What loading took and let go of is given back to the system, where its C library can do that.
+    """
     gc.collect()
     gc.freeze()
     gc.set_threshold(*SELDOM)
+    give_back = getattr(ctypes.CDLL(None), "malloc_trim", None)
+    if give_back is not None:
+        give_back(0)

@@ -1,25 +1,28 @@
 """The five papers by name, and as text."""
 
 from collections.abc import Callable, Iterator, Mapping
-from functools import cache
+from functools import cache, partial
 from textwrap import fill
 from types import MappingProxyType
 from typing import Final
 
-from app.papers.alexandru import alexandru
-from app.papers.gezegin import gezegin
-from app.papers.nalini import nalini
-from app.papers.psa_rexroth import psa_rexroth
+from app.late import late
 from app.papers.result import Basis, Figure, Group, Paper, Standing
-from app.papers.xia import xia
+
+
+def _worked_out(name: str) -> Paper:
+    """Return what the module of a paper finds; it is loaded only then, with all that computing needs."""
+    found: Paper = getattr(late(f"app.papers.{name}"), name)()
+    return found
+
 
 LIBRARY: Final[Mapping[str, Callable[[], Paper]]] = MappingProxyType(
     {
-        "gezegin-dirik": gezegin,
-        "nalini-hemavathi": nalini,
-        "xia": xia,
-        "psa-rexroth": psa_rexroth,
-        "alexandru": alexandru,
+        "gezegin-dirik": partial(_worked_out, "gezegin"),
+        "nalini-hemavathi": partial(_worked_out, "nalini"),
+        "xia": partial(_worked_out, "xia"),
+        "psa-rexroth": partial(_worked_out, "psa_rexroth"),
+        "alexandru": partial(_worked_out, "alexandru"),
     }
 )
 WIDE = 110

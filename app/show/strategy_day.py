@@ -1,6 +1,5 @@
 """What a strategy does with a day: moves, greatest error and travel, told by the real controller."""
 
-from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 import numpy as np
@@ -9,6 +8,7 @@ from numpy.typing import NDArray
 from app.angles import separation_deg
 from app.show.axis_angles import axis_angles, faced
 from app.show.simulate import simulate
+from app.show.strategy_told import CURVE_S, StrategyDay
 from app.sun.position import Location, SunPosition, sun_path
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import Pointing
@@ -18,28 +18,6 @@ from app.tracker.recording import Frames
 
 FRAME_S = 5
 STILL_DEG = 1e-6
-CURVE_S = 120
-
-
-@dataclass(frozen=True, slots=True)
-class StrategyDay:
-    """A day by one strategy, and its curves: one value for every 120 s, sky degrees.
-
-    `moves` counts motions from standstill to standstill. Errors are the angle between the panel and where it
-    would face following its mode all the time, while the sun is up; None if it never is. Where light sensors
-    correct, panel means where it really faces: the axis angles less the misalignment that is simulated.
-    """
-
-    moves: int
-    largest_error_deg: float | None
-    mean_error_deg: float | None
-    travel_azimuth_deg: float
-    travel_elevation_deg: float
-    elapsed_s: tuple[float, ...]
-    sun_azimuth_deg: tuple[float, ...]
-    sun_elevation_deg: tuple[float, ...]
-    panel_azimuth_deg: tuple[float, ...]
-    panel_elevation_deg: tuple[float, ...]
 
 
 def strategy_day(

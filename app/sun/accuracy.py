@@ -141,7 +141,7 @@ def draw(question: Question) -> tuple[Sample, ...]:
     return tuple(sample for sample in drawn if sample.unix_s.size)
 
 
-def _sample(question: Question, random: np.random.Generator, count: int) -> Sample:
+def _sample(question: Question, random: "np.random.Generator", count: int) -> Sample:
     location = question.location or Location(
         float(random.uniform(*question.latitudes)), float(random.uniform(-180.0, 180.0))
     )

@@ -6,7 +6,7 @@ from contextlib import asynccontextmanager
 
 import structlog
 
-from app.certificates import own_names
+from app.own_names import own_names
 from app.settings import Settings, SettingsWrong
 
 log = structlog.get_logger()

@@ -10,8 +10,9 @@ from datetime import datetime
 
 from pydantic import ValidationError
 
-from app.certificates import SERVER, init, own_names, read
+from app.late import late
 from app.network import Network
+from app.own_names import own_names
 from app.settings import LOOPBACK, PREFIX, Settings
 
 NAME = re.compile(r"(?!-)[A-Za-z0-9-]{1,63}(?<!-)(\.(?!-)[A-Za-z0-9-]{1,63}(?<!-))*\.?")
@@ -118,10 +119,11 @@ def _certify(now_served: Settings, wanted: Network, now: datetime) -> None:
         else (wanted.host,)
     )
     needed = (*own_names(), *wanted.allowed_hosts, *host)
-    path = now_served.tls_dir / SERVER
-    have = read(path).names if path.is_file() else ()
+    certificates = late("app.certificates")
+    path = now_served.tls_dir / certificates.SERVER
+    have = certificates.read(path).names if path.is_file() else ()
     if not set(needed) <= set(have):
-        init(now_served.tls_dir, (*needed, *have), now)
+        certificates.init(now_served.tls_dir, (*needed, *have), now)
 
 
 def _settings(now_served: Settings, wanted: Network) -> Settings:

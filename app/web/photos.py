@@ -2,8 +2,12 @@
 
 from dataclasses import dataclass
 from io import BytesIO
+from typing import TYPE_CHECKING
 
-from PIL import Image, ImageOps, UnidentifiedImageError
+from app.late import late
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 LONGEST_EDGE = 1600
 MOST_PIXELS = 60_000_000
@@ -29,22 +33,24 @@ def plain_photo(upload: bytes) -> PlainPhoto:
     """Return an upload as an upright JPEG of at most 1600 pixels a side, or raise `PhotoRefused`."""
     if len(upload) > LARGEST_UPLOAD:
         raise PhotoRefused("A photo has at most 8 MB: let the camera take a smaller one.")
+    pictures = late("PIL.Image")
     try:
-        with Image.open(BytesIO(upload), formats=FORMATS) as opened:
+        with pictures.open(BytesIO(upload), formats=FORMATS) as opened:
             return _plain(opened)
-    except (UnidentifiedImageError, OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
+    except (OSError, SyntaxError, ValueError, pictures.DecompressionBombError) as error:
         if isinstance(error, PhotoRefused):
             raise
         raise PhotoRefused("This file is no JPEG or PNG picture, or it is damaged: choose another.") from None
 
 
-def _plain(opened: Image.Image) -> PlainPhoto:
+def _plain(opened: "Image") -> PlainPhoto:
     if opened.width * opened.height > MOST_PIXELS:
         raise PhotoRefused("A photo has at most 60 million pixels: let the camera take a smaller one.")
     opened.draft("RGB", (LONGEST_EDGE, LONGEST_EDGE))
-    upright = ImageOps.exif_transpose(opened).convert("RGBA")
+    upright = late("PIL.ImageOps").exif_transpose(opened).convert("RGBA")
     upright.thumbnail((LONGEST_EDGE, LONGEST_EDGE))
-    paper = Image.new("RGB", upright.size, "white")  # a new picture has none of the old one's metadata
+    # A new picture has none of the old one's metadata.
+    paper = late("PIL.Image").new("RGB", upright.size, "white")
     paper.paste(upright, mask=upright)
     out = BytesIO()
     paper.save(out, "JPEG", quality=QUALITY, optimize=True)

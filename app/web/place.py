@@ -6,8 +6,7 @@ from datetime import datetime, timedelta
 from enum import Enum, auto
 from math import asin, cos, radians, sin, sqrt
 
-from tzfpy import get_tz
-
+from app.late import late
 from app.sun.position import Location
 from app.zones import zone_of
 
@@ -129,7 +128,12 @@ def _kept(time_zone: str, now: datetime) -> timedelta | None:
 
 
 def _zone_at(place: Location) -> str:
-    return str(get_tz(place.longitude_deg, place.latitude_deg))
+    return zone_at(place.latitude_deg, place.longitude_deg)
+
+
+def zone_at(latitude_deg: float, longitude_deg: float) -> str:
+    """Return the IANA time zone of a place, one of `Etc/` at sea."""
+    return str(late("tzfpy").get_tz(longitude_deg, latitude_deg))
 
 
 def _is_near(one: Location, other: Location) -> bool:

@@ -1,6 +1,6 @@
 """QR codes as SVG path data."""
 
-import segno
+from app.late import late
 
 QUIET = 4
 """Empty modules around a code, as ISO/IEC 18004 wants them."""
@@ -8,7 +8,7 @@ QUIET = 4
 
 def qr_path(text: str) -> tuple[str, int]:
     """Return the dark modules of a QR code as path data on a grid, and how many units the grid is wide."""
-    matrix = segno.make(text, error="m", micro=False).matrix
+    matrix = late("segno").make(text, error="m", micro=False).matrix
     rows = (
         f"M{x + QUIET} {y + QUIET}h1v1h-1z"
         for y, row in enumerate(matrix)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from typing import TypeVar
 
-from app.show.simulate import encoded, simulate
+from app.late import late
 from app.sun.horizon import FLAT, Horizon
 from app.sun.position import Location
 from app.tracker.config import Orientation, TrackerConfig
@@ -91,7 +91,8 @@ class Simulations:
 
 def simulated(request: SimulationRequest) -> Simulated:
     """Return the simulation of a span of time, in the worker."""
-    info, frames = simulate(
+    show = late("app.show.simulate")
+    info, frames = show.simulate(
         request.config,
         request.pointing,
         request.location,
@@ -104,4 +105,4 @@ def simulated(request: SimulationRequest) -> Simulated:
         title=request.title,
         weather=request.weather,
     )
-    return replace(info, horizon=request.horizon), encoded(frames)
+    return replace(info, horizon=request.horizon), show.encoded(frames)

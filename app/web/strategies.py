@@ -3,8 +3,9 @@
 from dataclasses import dataclass, replace
 from datetime import datetime
 
+from app.late import late
 from app.link.messages import TrackerDetail
-from app.show.strategy_day import StrategyDay, strategy_day
+from app.show.strategy_told import StrategyDay
 from app.sun.position import Location
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import Pointing
@@ -40,7 +41,7 @@ def asked_day(
 
 def day_of(question: DayQuestion) -> StrategyDay:
     """Return what the tracker does that day, in the worker; raises `ValueError` for what cannot be."""
-    return strategy_day(
+    told: StrategyDay = late("app.show.strategy_day").strategy_day(
         question.config,
         question.pointing,
         question.location,
@@ -49,6 +50,7 @@ def day_of(question: DayQuestion) -> StrategyDay:
         question.begin,
         question.end,
     )
+    return told
 
 
 def kept_program(tracker: TrackerDetail) -> StepProgram:

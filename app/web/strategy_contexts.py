@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from app.show.strategy_day import StrategyDay
+from app.show.strategy_told import StrategyDay
 from app.web.contexts import Form, Frame
 from app.web.ui.plot import Plot
 

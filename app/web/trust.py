@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from datetime import datetime
 
-from app.certificates import AUTHORITY, read
+from app.late import late
 from app.settings import Settings
 
 
@@ -21,8 +21,10 @@ def trusted(settings: Settings) -> Trust:
     """Return what these settings serve; an authority only where the panel made its certificate itself."""
     if settings.certificate is None:
         return Trust()
-    served = read(settings.certificate[0])
-    authority = settings.tls_dir / AUTHORITY
+    certificates = late("app.certificates")
+    served = certificates.read(settings.certificate[0])
+    authority = settings.tls_dir / certificates.AUTHORITY
     if settings.tls_cert_file is not None or not authority.is_file():
         return Trust(served.names, served.not_after)
-    return Trust(served.names, served.not_after, authority.read_text("ascii"), read(authority).fingerprint)
+    fingerprint = certificates.read(authority).fingerprint
+    return Trust(served.names, served.not_after, authority.read_text("ascii"), fingerprint)

@@ -8,7 +8,8 @@ import pytest
 
 from app.angles import separation_deg
 from app.show.simulate import simulate, simulate_show
-from app.show.strategy_day import StrategyDay, strategy_day
+from app.show.strategy_day import strategy_day
+from app.show.strategy_told import StrategyDay
 from app.sun.position import Location, sun_position
 from app.sun.trigonometry import SCALAR
 from app.tracker.axes import AxisConfig

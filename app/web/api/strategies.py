@@ -11,7 +11,7 @@ from pydantic import Field, TypeAdapter, WrapValidator
 from starlette.requests import Request
 
 from app.link.messages import ConfigureTracker
-from app.show.strategy_day import StrategyDay
+from app.show.strategy_told import StrategyDay
 from app.tracker.programs.examples import EXAMPLES
 from app.tracker.programs.step_table import TableWrong, from_table, to_table
 from app.tracker.programs.stepped import StepProgram

@@ -10,7 +10,6 @@ from fastapi import APIRouter, Form, Query
 from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
-from tzfpy import get_tz
 
 from app.link.messages import SetLocation, SiteDetail
 from app.sun.events import PolarDay, SunEvents, day_events
@@ -20,7 +19,7 @@ from app.tracker.memory import SiteState, StepName
 from app.web.contexts import LocationPage, LocationPreview
 from app.web.deps import Panel, PanelDep
 from app.web.languages import pgettext
-from app.web.place import place_doubts, swapped
+from app.web.place import place_doubts, swapped, zone_at
 from app.web.ui import forms
 from app.web.ui.formats import compass, decimals, formatted, local
 from app.web.ui.forms import Typed
@@ -150,7 +149,7 @@ def _angle(text: str, texts: dict[str, str], name: str, sides: str, limit: float
 
 def proposed(latitude_deg: float, longitude_deg: float) -> str:
     """Return the IANA time zone of a place; UTC where none is known, as on the high sea."""
-    name = get_tz(longitude_deg, latitude_deg)
+    name = zone_at(latitude_deg, longitude_deg)
     return name if name in zones() else "UTC"
 
 

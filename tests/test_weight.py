@@ -1,0 +1,44 @@
+"""What each process loads before it serves: what is needed seldom stays out of its memory and its start."""
+
+import subprocess
+import sys
+
+import pytest
+
+SELDOM = {"PIL", "alembic", "babel", "cryptography", "fpdf", "mako", "pandas", "pvlib", "pyarrow", "segno"}
+COMMAND_LINE = {"typer", "shellingham"}
+OF_THE_PANEL = {"argon2", "fastapi", "jinja2", "markdown_it", "starlette", "tzfpy", "uvicorn", "websockets"}
+OF_THE_CONTROLLER = {"aiomqtt", "paho", "pymodbus", "serial", "app.drives", "app.gateway", "app.site"}
+WORKED_OUT_ELSEWHERE = {
+    "app.papers.gezegin",
+    "app.show.simulate",
+    "app.studies.compute",
+    "numpy.fft",
+    "numpy.polynomial",
+    "numpy.random",
+}
+
+
+def loaded(module: str) -> set[str]:
+    """Return what a process has loaded once it has loaded a module."""
+    code = f"import sys, {module}; print(*sys.modules)"
+    return set(
+        subprocess.run(
+            [sys.executable, "-c", code], check=True, capture_output=True, text=True
+        ).stdout.split()
+    )
+
+
+@pytest.mark.parametrize(
+    ("module", "not_needed"),
+    [
+        (
+            "app.machine.supervisor",
+            {*SELDOM, *COMMAND_LINE, *OF_THE_PANEL, "numpy", "pydantic", "sqlalchemy"},
+        ),
+        ("app.machine.main", {*SELDOM, *COMMAND_LINE, *OF_THE_PANEL, *WORKED_OUT_ELSEWHERE, "app.web"}),
+        ("app.panel, app.web.main", {*SELDOM, *COMMAND_LINE, *OF_THE_CONTROLLER, *WORKED_OUT_ELSEWHERE}),
+    ],
+)
+def test_a_process_loads_only_what_it_needs_all_the_time(module: str, not_needed: set[str]) -> None:
+    assert loaded(module) & not_needed == set()
