@@ -12,8 +12,8 @@ from app.studies.request import CLEAR_SKIES, Fidelity, LightModel, StudyRequest
 from app.studies.result import CaseResult, StudyResult, curves_csv, table_csv
 from app.web.contexts import Link
 from app.web.deps import PanelDep
+from app.web.languages.dates import day_and_month, spelled
 from app.web.study_contexts import StudyPage, StudyView
-from app.web.ui.dates import day_and_month, spelled
 from app.web.ui.formats import UNKNOWN, decimals, words
 from app.web.ui.frame import site_frame
 from app.web.ui.heatmap import heat_map

@@ -7,8 +7,8 @@ from babel.dates import format_date, format_skeleton
 
 from app.web.languages import CATALOGUE
 from app.web.languages.catalogue import catalogue_of
+from app.web.languages.dates import WRITTEN, day_and_month, spelled
 from app.web.languages.known import LANGUAGES, TRANSLATED
-from app.web.ui.dates import WRITTEN, day_and_month, spelled
 
 NEW_YEAR = date(2026, 1, 1)
 
