@@ -1,4 +1,7 @@
-"""Copies pinned third-party files from npm and Debian packages; checks offline that nobody changed them."""
+"""Copies pinned third-party files from npm and Debian packages, and cuts from fonts what pages need of them.
+
+`check` says, offline, whether anybody changed one, and whether the catalogues use a letter that was not cut.
+"""
 
 import base64
 import hashlib
@@ -9,10 +12,15 @@ import tarfile
 import tempfile
 import tomllib
 from pathlib import Path
-from typing import TypedDict
+from typing import NotRequired, TypedDict
+
+from babel.messages.pofile import read_po
 
 HERE = Path(__file__).parent
 MANIFEST = HERE / "manifest.json"
+LANGUAGES = HERE.parents[1] / "app" / "web"
+FIRST_OF_CHINESE = "\u2e80"
+"""From here on Unicode has the letters and punctuation of Chinese; what stands before has our Latin font."""
 
 
 class Vendored(TypedDict):
@@ -23,6 +31,7 @@ class Vendored(TypedDict):
     licence: str
     integrity: str
     files: dict[str, str]
+    letters: NotRequired[dict[str, str]]
 
 
 def wanted() -> dict[str, dict[str, object]]:
@@ -74,15 +83,47 @@ def copy(archive: Path, inside: str, files: list[str], target: Path) -> dict[str
     return checksums
 
 
-def cut(folder: Path, subsets: dict[str, dict[str, str]]) -> dict[str, str]:
-    """Make fonts with a few letters of a copied one and return their checksums by path, as `copy` does."""
-    checksums = {}
+def letters_of(language: str) -> str:
+    """Return every Chinese letter that a catalogue, or the table of languages, says."""
+    with (LANGUAGES / "locale" / language / "LC_MESSAGES" / "heliopanel.po").open("rb") as file:
+        said = [message.string for message in read_po(file)]
+    texts = [text for one in said for text in ((one,) if isinstance(one, str) else one)]
+    texts.append((LANGUAGES / "languages" / "known.py").read_text(encoding="utf-8"))
+    return "".join(sorted({letter for letter in "".join(texts) if letter >= FIRST_OF_CHINESE}))
+
+
+def wanted_letters(subset: dict[str, str]) -> str:
+    """Return the letters of a font that vendor.toml says by themselves or by the language that uses them."""
+    return subset["letters"] if "letters" in subset else letters_of(subset["language"])
+
+
+def cut(folder: Path, subsets: dict[str, dict[str, str]]) -> tuple[dict[str, str], dict[str, str]]:
+    """Make fonts with a few letters of a copied one; return their checksums and their letters by path."""
+    checksums, letters = {}, {}
     for name, subset in subsets.items():
-        options = ["--flavor=woff2", "--layout-features=*", f"--output-file={folder / name}"]
+        path = str((folder / name).relative_to(HERE))
+        letters[path] = wanted_letters(subset)
+        options = ["--flavor=woff2", "--layout-features=*", "--no-hinting", f"--output-file={folder / name}"]
         fonttools = [sys.executable, "-m", "fontTools.subset", str(folder / subset["of"])]
-        subprocess.run([*fonttools, f"--text={subset['letters']}", *options], check=True)  # noqa: S603 - our own pins
-        checksums[str((folder / name).relative_to(HERE))] = digest((folder / name).read_bytes())
-    return checksums
+        subprocess.run([*fonttools, f"--text={letters[path]}", *options], check=True)  # noqa: S603 - our own pins
+        checksums[path] = digest((folder / name).read_bytes())
+    return checksums, letters
+
+
+def recut() -> None:
+    """Cut the fonts anew from the copies that are here, and put them into the manifest; needs no network."""
+    manifest: dict[str, Vendored] = json.loads(MANIFEST.read_text())
+    for name, entry in wanted().items():
+        if subsets := entry.get("subset"):
+            target = HERE / name / str(entry["version"]).rpartition(":")[2]
+            checksums, manifest[name]["letters"] = cut(target, subsets)  # type: ignore[arg-type]
+            manifest[name]["files"] |= checksums
+    write(manifest)
+
+
+def write(manifest: dict[str, Vendored]) -> None:
+    """Write the manifest with letters as people read them."""
+    MANIFEST.write_text(json.dumps(manifest, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
 def update() -> None:
@@ -95,7 +136,6 @@ def update() -> None:
             archive, integrity = fetch(package, version, Path(scratch))
             target = HERE / name / version.rpartition(":")[2]
             files = copy(archive, inside, list(entry["files"]), target)  # type: ignore[call-overload]
-            files |= cut(target, entry.get("subset", {}))  # type: ignore[arg-type]
             manifest[name] = Vendored(
                 package=package,
                 version=version,
@@ -103,7 +143,8 @@ def update() -> None:
                 integrity=integrity,
                 files=files,
             )
-    MANIFEST.write_text(json.dumps(manifest, indent=2) + "\n")
+    write(manifest)
+    recut()
 
 
 def problems() -> list[str]:
@@ -125,20 +166,35 @@ def problems() -> list[str]:
         str(file.relative_to(HERE)) for folder in folders for file in folder.rglob("*") if file.is_file()
     }
     found += [f"{path} is not listed in vendor.toml; remove it." for path in sorted(actual - listed.keys())]
+    return found + uncut(manifest)
+
+
+def uncut(manifest: dict[str, Vendored]) -> list[str]:
+    """Return one sentence for every cut font that lacks letters which its language uses."""
+    found = []
+    for name, entry in wanted().items():
+        cut_letters = manifest.get(name, {}).get("letters", {})
+        for file, subset in entry.get("subset", {}).items():  # type: ignore[attr-defined]
+            has = next((letters for path, letters in cut_letters.items() if Path(path).name == file), "")
+            if lacking := "".join(sorted(set(wanted_letters(subset)) - set(has))):
+                found.append(f"{file} lacks {lacking}, which pages use; run make translations.")
     return found
 
 
 def main() -> int:
-    """Run `update` or `check`."""
+    """Run `update`, `letters` or `check`."""
     match sys.argv[1:]:
         case ["update"]:
             update()
+            return 0
+        case ["letters"]:
+            recut()
             return 0
         case ["check"]:
             found = problems()
             sys.stdout.write("\n".join(found) + "\n" if found else "Vendored files are as fetched.\n")
             return 1 if found else 0
-    sys.stderr.write("Say: vendor.py update | check\n")
+    sys.stderr.write("Say: vendor.py update | letters | check\n")
     return 2
 
 

@@ -17,6 +17,7 @@ from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, e
 
 from tests.e2e.chromium import PROGRAM as CHROMIUM
 from tests.e2e.chromium import QUIET as FLAGS
+from tests.e2e.letters import environment
 from tests.fakes import FakeMachine, fake_app
 
 SCREENS = Path(__file__).resolve().parents[2] / "build" / "screens"
@@ -123,7 +124,7 @@ def browser() -> Iterator[Browser]:
         pytest.fail("These tests need Chromium: apt-get install -y chromium")
     expect.set_options(timeout=PATIENCE_MS)
     with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        started = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS, env=environment())
         yield started
         started.close()
 

@@ -18,6 +18,7 @@ from app.web.route_permissions import ROUTES
 from tests.browser.conftest import SIZES
 from tests.browser.every_page import EVERY_PAGE, NO_PAGES, PAGES, STATES, STUDY_ID, Leaf, Where, unvisited
 from tests.browser.layout import LOOKS, faults, unfold
+from tests.browser.letters import foreign
 from tests.browser.panels import Panels, resize
 from tests.browser.reading import tree_faults
 from tests.soak import amount
@@ -66,6 +67,10 @@ def test_a_page_fits_every_screen(shown: Shown, picture: Callable[[Page, str], N
         if found := faults(page) + displaced(page):
             wrong[size] = found
     assert wrong == {}
+
+
+def test_a_page_is_written_in_letters_of_its_own(shown: Shown) -> None:
+    assert foreign(shown.page) == []
 
 
 def displaced(page: Page) -> list[str]:

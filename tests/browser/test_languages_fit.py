@@ -14,6 +14,7 @@ from app.web.languages.known import LANGUAGES
 from tests.browser.conftest import SCREENS, SIZES
 from tests.browser.every_page import EVERY_PAGE
 from tests.browser.layout import faults, unfold
+from tests.browser.letters import foreign
 from tests.browser.panels import Panels, resize
 from tests.soak import SOAK, amount
 
@@ -59,6 +60,7 @@ def test_a_page_fits_in_a_language(name: str, language: str, panels: Panels) -> 
                 SCREENS.mkdir(parents=True, exist_ok=True)
                 page.screenshot(path=SCREENS / f"{name}-{size}-{language}.png")
             wrong[size] = faults(page)
+        wrong["letters"] = foreign(page)
         unfold(page)
         for size in TRIED_SIZES:
             resize(page, *SCREEN_SIZES[size])

@@ -14,6 +14,7 @@ from typing import Any
 
 from websockets.sync.client import ClientConnection, connect
 
+from tests.e2e.letters import environment
 from tests.e2e.product import eventually
 from tests.loopback.sitecustomize import CHROMIUM_FLAGS
 
@@ -50,6 +51,7 @@ class Chromium:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             start_new_session=True,
+            env=environment(),
         )
         told = Path(folder.name) / "DevToolsActivePort"
         eventually(lambda: told.exists() and len(told.read_text().splitlines()) == 2, "Chromium listens")

@@ -14,6 +14,7 @@ import pytest
 from playwright.sync_api import Page, expect, sync_playwright
 
 from tests.browser.conftest import CHROMIUM, FLAGS, PATIENCE_MS
+from tests.e2e.letters import environment
 from tests.e2e.newcomer import DOCS, WRITES_DOCS, Newcomer
 from tests.e2e.product import Product
 
@@ -61,7 +62,7 @@ def page(product: Product, town: Town) -> Iterator[Page]:
     complaints: list[str] = []
     expect.set_options(timeout=PATIENCE_MS)
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS, env=environment())
         context = browser.new_context(viewport=TABLET, locale="en-GB", timezone_id=town.zone)
         context.set_default_timeout(PATIENCE_MS)
         opened = context.new_page()

@@ -3,6 +3,10 @@
 import { takeLooks } from "../colours.js";
 import { GlPainter } from "./gl.js";
 
+const LETTERS = [
+  ["Heliopanel", "200 800", "atkinson/5.3.0/atkinson-hyperlegible-next-latin-wght-normal.woff2"],
+  ["Heliopanel Chinese", "600", "noto/5.3.0/noto-sans-sc-few-600.woff2"],
+];
 let painter = null;
 let fixed = [];
 loadLetters();
@@ -40,12 +44,12 @@ async function open(canvas, first) {
 }
 
 // A worker has none of the page's fonts: it loads the letters of its labels itself.
-async function loadLetters() {
-  const file = new URL("../../vendor/atkinson/5.3.0/atkinson-hyperlegible-next-latin-wght-normal.woff2", import.meta.url);
-  const letters = new FontFace("Heliopanel", `url(${file})`, { weight: "200 800" });
-  fonts.add(letters);
-  await letters.load();
-  painter?.repaint();
+function loadLetters() {
+  for (const [family, weight, file] of LETTERS) {
+    const letters = new FontFace(family, `url(${new URL(`../../vendor/${file}`, import.meta.url)})`, { weight });
+    fonts.add(letters);
+    letters.load().then(() => painter?.repaint());
+  }
 }
 
 // What never moves comes when it has changed.
