@@ -10,6 +10,7 @@ ROOT = Path(__file__).parents[1]
 DOCUMENTS = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md")])
 NAMED = re.compile(r"`((?:app|bench|tests)/[\w/]+\.py):([\w.]+)`")
 PLACES = re.compile(r"`((?:app|templates|static|tests|alembic|deploy|docs|bench)/[\w./-]*)`")
+MEASURED = re.compile(r"\*\*([\d.,]+(?: ?[a-z]+)?)\*\*", re.IGNORECASE)
 LINKS = re.compile(r"\]\((?!https?:|#|mailto:)([^)#\s]+)")
 
 
@@ -52,3 +53,15 @@ def test_every_place_and_link_in_a_document_exists(document: Path) -> None:
     missing = [place for place in PLACES.findall(text) if not (ROOT / place).exists()]
     missing += [link for link in LINKS.findall(text) if not (document.parent / link).exists()]
     assert not missing
+
+
+def test_every_measured_number_of_the_readme_is_in_the_document_that_its_line_links() -> None:
+    lines = [line for line in (ROOT / "README.md").read_text().splitlines() if MEASURED.search(line)]
+    assert lines
+    for line in lines:
+        linked = " ".join((ROOT / link).read_text() for link in LINKS.findall(line))
+        assert [number for number in MEASURED.findall(line) if number not in linked] == [], line
+
+
+def test_the_readme_can_be_read_in_a_minute() -> None:
+    assert len((ROOT / "README.md").read_text().splitlines()) <= 70
