@@ -10,9 +10,12 @@ from PIL import Image
 from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.hands import CONFIRM_MS
+from tests.e2e.first_hour import NOTES
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 WRITES_DOCS = os.environ.get("HELIOPANEL_DOCS") == "1"
+ASIDE = "> "
+"""Begins what is said to the reader and not done; the page has it without this."""
 COLOURS = 64
 """Enough for a page of the panel; a picture of it takes a third of the space then."""
 
@@ -40,6 +43,10 @@ class Newcomer:
     def tell(self, words: str) -> None:
         """Write down one more thing that was done or seen."""
         self.parts[-1].told.append(words)
+
+    def note(self, name: str) -> None:
+        """Say why the next step is there; the reader is told, and nothing is done."""
+        self.tell(f"{ASIDE}{NOTES[name]}")
 
     def tap(self, thing: Locator, words: str) -> None:
         """Tap what can be tapped."""
@@ -114,8 +121,8 @@ class Newcomer:
             lines += ["", f"## {part.title}", ""]
             number = 0
             for words in part.told:
-                if words.startswith("!["):
-                    lines += ["", words, ""]
+                if words.startswith(("![", ASIDE)):
+                    lines += ["", words.removeprefix(ASIDE), ""]
                 else:
                     number += 1
                     lines.append(f"{number}. {words}")

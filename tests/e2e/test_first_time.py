@@ -14,6 +14,7 @@ import pytest
 from playwright.sync_api import Page, expect, sync_playwright
 
 from tests.browser.conftest import CHROMIUM, FLAGS, PATIENCE_MS
+from tests.e2e.first_hour import ABOUT, NEXT
 from tests.e2e.letters import environment
 from tests.e2e.newcomer import DOCS, WRITES_DOCS, Newcomer
 from tests.e2e.product import Product
@@ -38,13 +39,6 @@ TOWNS = (
     Town(22, "America/Tijuana", ("32.6245", "N"), ("115.4523", "W")),
     Town(24, "Pacific/Honolulu", ("21.3069", "N"), ("157.8583", "W")),
 )
-ABOUT = """# The first time
-
-What somebody does who sees the panel for the first time, from an empty database to tracking, a show, a
-replay and a signed record, using only what the pages say. A test does exactly this on the real service with
-its simulated tracker and made the pictures: `HELIOPANEL_DOCS=1 pytest tests/e2e/test_first_time.py`.
-
-"""
 
 
 def where_the_sun_is_up() -> Town:
@@ -77,9 +71,11 @@ def page(product: Product, town: Town) -> Iterator[Page]:
 def commission(person: Newcomer, town: Town) -> None:
     page = person.page
     person.begin("Commissioning")
+    person.note("overview")
     person.picture("overview", "The first page, of a panel with nothing in its database")
     person.link("Go on: Location")
     person.sees("Where is the tracker?")
+    person.note("location")
     for label, (value, side) in (("Latitude", town.latitude), ("Longitude", town.longitude)):
         person.write(label, value)
         person.choose(side)
@@ -87,10 +83,12 @@ def commission(person: Newcomer, town: Town) -> None:
     person.picture("location", "The location typed in, and what it means for the sun")
     person.key("Save, next")
     person.sees("Is the controller's clock right?")
+    person.note("clock")
     person.picture("clock", "The clock page")
     person.key("Keep the system clock")
     person.link("Next")
     person.sees("Turn the panel to north")
+    person.note("homing")
     person.picture("homing", "The homing page")
     person.hold("Set as zero")
     expect(page.get_by_text("You say that the panel faces north")).to_be_visible()
@@ -98,6 +96,7 @@ def commission(person: Newcomer, town: Town) -> None:
     expect(page.get_by_text("Both axes are zeroed and read back.")).to_be_visible()
     person.link("Next")
     person.sees("How shall it work?")
+    person.note("mode")
     person.choose("Dual-axis tracking")
     person.picture("mode", "The mode page")
     person.key("Save, next")
@@ -106,16 +105,19 @@ def commission(person: Newcomer, town: Town) -> None:
 
 def track(person: Newcomer) -> None:
     person.begin("Tracking")
+    person.note("track")
     person.key("Start tracking")
     expect(person.page.get_by_label("State")).to_contain_text(
         re.compile("Tracking|Moving to the sun|sunrise")
     )
     person.picture("tracking", "Tracking")
+    person.note("tracked")
 
 
 def show(person: Newcomer) -> None:
     page = person.page
     person.begin("A show")
+    person.note("show")
     person.link("Show tracking movement")
     person.sees("Show tracking movement")
     person.write("Date", "2026-06-21")
@@ -123,6 +125,7 @@ def show(person: Newcomer) -> None:
     person.write("To", "07:45")
     person.write("In how many minutes", "0.2")
     expect(page.get_by_role("heading", name="This works: 12 s")).to_be_visible()
+    person.note("plan")
     person.picture("plan", "The plan of a show that works")
     person.key("Go to start position")
     person.sees("2026-06-21")
@@ -138,6 +141,7 @@ def show(person: Newcomer) -> None:
 def replay(person: Newcomer) -> None:
     page = person.page
     person.begin("A replay")
+    person.note("replay")
     person.link("Replay")
     person.sees("Replay:")
     person.key("Play")
@@ -149,6 +153,7 @@ def replay(person: Newcomer) -> None:
 def sign(person: Newcomer) -> None:
     page = person.page
     person.begin("A signed record")
+    person.note("record")
     person.link("Trackers")
     person.link("Open")
     person.picture("live", "The tracker's page")
@@ -160,6 +165,7 @@ def sign(person: Newcomer) -> None:
     person.picture("sign", "The signature drawn")
     person.key("Sign and keep the record")
     expect(page.get_by_role("heading", name="Not everything is done")).to_be_visible()
+    person.note("asked")
     person.picture("asked", "What is open is asked about")
     person.key("Sign all the same")
     person.sees("Commissioning record: Tracker 1")
@@ -176,8 +182,11 @@ def test_a_newcomer_gets_from_an_empty_database_to_a_signed_record(page: Page, t
     commission(person, town)
     for part in (track, show, replay, sign):
         part(person)
+    person.begin("What next")
+    person.note("end")
     assert person.taps <= MOST_TAPS
-    told = f"{ABOUT}**{person.taps} taps** in all, one for each field that is typed into.\n\n{person.story()}"
+    taps = f"**{person.taps} taps** in all, one for each field that is typed into."
+    told = f"{ABOUT}{taps}\n\n{person.story()}{NEXT}"
     if WRITES_DOCS:
         (DOCS / "start" / "first-time.md").write_text(told)
-    assert f"**{person.taps} taps**" in (DOCS / "start" / "first-time.md").read_text()
+    assert taps in (DOCS / "start" / "first-time.md").read_text()

@@ -1,0 +1,82 @@
+"""What the page of the first hour says beside what its test does: why a step is there, what to look at."""
+
+ABOUT = """# The first hour
+
+From an empty database to tracking, a show, a replay, and a signed record, on a simulated tracker. Nothing
+real moves. Nothing on this page was made up: a test does exactly what stands here on the real service,
+finds every button by its words, and takes the pictures:
+`HELIOPANEL_DOCS=1 pytest tests/e2e/test_first_time.py`.
+
+Start it with `make run` in a checkout, or with `heliopanel serve` after an
+[installation](../install/README.md#a-trial), and open <http://127.0.0.1:8000> on the same computer. With a
+real tracker, read [wiring](../connect/wiring.md) first, and connect its drive on the page of step 3 before
+you jog it.
+
+"""
+
+NOTES = {
+    "overview": (
+        "The overview shows every tracker of the site. A new site has one, with a simulated drive, "
+        "and leads to the first of the five steps. The strip below the header counts alarms by "
+        "priority and is on every page, as is **STOP** in the footer. It is not an emergency stop."
+    ),
+    "location": (
+        "Everything begins with the place: the sun's position follows from it. Type your own latitude "
+        "and longitude instead of these, and choose the side of the equator and of Greenwich. Before "
+        "you save, compare today's sunrise, noon, and sunset with what you know: a lost minus sign "
+        "shows at once."
+    ),
+    "clock": (
+        "A clock that is wrong by 4 minutes is wrong by about 1° of the sun. Where NTP keeps the "
+        "computer's clock, keep it. The page says where the sun is now: go outside and look."
+    ),
+    "homing": (
+        "The drive counts from where it was switched on; it cannot know where north is. On a real "
+        "tracker you jog with the hold-to-run buttons until the panel faces true north and stands "
+        "upright, then set the home position. The simulated one may be anywhere, so the page asks "
+        "whether you mean it. Until this step is done, only jogging and homing move the tracker."
+    ),
+    "mode": (
+        "*Dual-axis tracking* follows the sun with both axes. The other modes hold one axis or both; "
+        "[strategies](../explain/strategies.md) says when each of them moves."
+    ),
+    "track": (
+        "*Start tracking* moves the panel to the sun and keeps it there. By night it waits for "
+        "sunrise and says so. From now on, tracking resumes by itself after a restart of the "
+        "software, as long as the home position is valid; after **STOP** it does not."
+    ),
+    "tracked": (
+        "Blue numbers are measured, live. Next to them is what was commanded; their difference is the "
+        "following error. The picture can be turned with a finger."
+    ),
+    "show": (
+        "A show moves the tracker through any day, or a part of one, in fast motion: for visitors, "
+        "for an acceptance, or to see whether the cables are long enough. It is the same controller "
+        "with another sun."
+    ),
+    "plan": (
+        "Before anything moves, the page says whether the axes are fast enough for it. If they are "
+        "not, one button takes the shortest duration that works."
+    ),
+    "replay": (
+        "Every show, and every day that a tracker works, is recorded from its first instant. In the "
+        "player nothing moves."
+    ),
+    "record": (
+        "The commissioning record gathers who did what, settings, drive, home position, drive tests, "
+        "and photos. Signed, it gets a number and never changes again; its SHA-256 shows that a copy "
+        "is the original."
+    ),
+    "asked": (
+        "Drive tests and sun check were not done in this hour, so the page asks. On a real tracker, "
+        "do them first: *Prove the drive* and *Sun check*."
+    ),
+    "end": "To begin anew, end it with Ctrl+C and remove the folder `data`. From here:",
+}
+
+NEXT = """
+- [Without hardware](without-hardware.md): a drive behind a real connection, weather, and faults.
+- [Home Assistant in ten minutes](home-assistant.md).
+- [Connect a drive](../connect/README.md), and [install](../install/README.md) on the computer that stays.
+- [The operator's guide](../operate/operators-guide.md): every page.
+"""
