@@ -5,9 +5,10 @@ journal on disk, and both by tasks of their own.
 """
 
 import asyncio
+import logging
 from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine
 from contextlib import asynccontextmanager, suppress
-from datetime import timedelta
+from datetime import datetime, timedelta
 from pathlib import Path
 from typing import TypeVar
 
@@ -45,6 +46,7 @@ LOOK_FOR_RECORDINGS = timedelta(seconds=5)
 AT_ONCE = 50
 ANSWER_WITHIN_S = 5.0
 KEEPALIVE_S = 15
+SAY_AGAIN = timedelta(minutes=1)
 MOST_COMMANDS_WAITING = 100
 AT_LEAST_ONCE = 1
 HEARD = SubscribeOptions(
@@ -159,6 +161,7 @@ class MqttGateway:
             timeout=ANSWER_WITHIN_S,
             keepalive=KEEPALIVE_S,
             max_queued_incoming_messages=MOST_COMMANDS_WAITING,
+            logger=quiet_logger(self._clock),
             protocol=self._protocol,
         )
 
@@ -279,6 +282,26 @@ async def heeding(work: Coroutine[None, None, T]) -> T:
     if task is not None and task.cancelling():
         raise asyncio.CancelledError
     return result
+
+
+def quiet_logger(clock: Clock) -> logging.Logger:
+    """Return the library's logger, which says the same once a minute: it warns of every message of a flood.
+
+    Each warning is written before the next tick; a flood of them on a busy disk held up stops for 0.4 s.
+    """
+    said: dict[str, datetime] = {}
+
+    def is_news(record: logging.LogRecord) -> bool:
+        now, last = clock.now(), said.get(record.msg)
+        if last is not None and now - last < SAY_AGAIN:
+            return False
+        said[record.msg] = now
+        return True
+
+    logger = logging.Logger("mqtt")
+    logger.parent = logging.getLogger()
+    logger.addFilter(is_news)
+    return logger
 
 
 def _path(file: Path | None) -> str | None:

@@ -7,7 +7,10 @@ from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
+import pytest
+
 from app.clock import VirtualClock
+from app.gateway.mqtt import SAY_AGAIN, quiet_logger
 from app.gateway.mqtt_lanes import MOST_AT_ONCE, MOST_WAITING, CommandLanes
 from app.link.messages import Order
 from app.tracker.commands import Stop
@@ -109,3 +112,16 @@ async def test_every_command_goes_to_its_own_tracker_and_is_answered_there() -> 
     carried_out = {(order.tracker_id, order.command.kind) for order in door.orders}
     assert carried_out == {("T1", "track"), ("T2", "park"), ("T3", "stop"), ("T4", "stop")}
     assert set(told) == {("T1", "trackT1"), ("T2", "parkT2"), ("T3", "stopT3"), ("T4", "stopT4")}
+
+
+def test_the_library_warns_of_a_flood_once_a_minute(caplog: pytest.LogCaptureFixture) -> None:
+    clock = VirtualClock(SUMMER_NOON)
+    logger = quiet_logger(clock)
+    for _ in range(3):
+        logger.warning("Message queue is full. Discarding message.")
+    logger.warning("Something else.")
+    clock.advance(SAY_AGAIN)
+    logger.warning("Message queue is full. Discarding message.")
+    said = [record.getMessage() for record in caplog.records]
+    full = "Message queue is full. Discarding message."
+    assert said == [full, "Something else.", full]
