@@ -9,6 +9,27 @@ from app.own import own_folder
 from app.web.api.base import ProblemDetails
 
 DOCUMENT = own_folder("docs") / "openapi.json"
+PARAMETERS = {
+    "Last-Event-ID": "Id of the last event that arrived: what came after it is sent first.",
+    "action": "What the show is to do.",
+    "actor": "Only what was done under this name.",
+    "begin": "The first instant.",
+    "channel": "The way on which alarms are sent.",
+    "end": "The last instant.",
+    "first": "Number of the one record.",
+    "format": "The form in which it is returned.",
+    "from_year": "The first year.",
+    "kind": "Only of this kind.",
+    "limit": "At most so many.",
+    "press_id": "Id that the press began with.",
+    "second": "Number of the other record.",
+    "show_id": "Id of the show.",
+    "since": "From this instant on.",
+    "to_year": "The last year.",
+    "tracker_id": "Only what concerns this tracker.",
+    "until": "Up to this instant.",
+}
+"""What parameters mean whose calls say no more of them."""
 
 
 class DocumentedApp(FastAPI):
@@ -24,6 +45,9 @@ class DocumentedApp(FastAPI):
         schemas["ProblemDetails"] = problem
         for schema in schemas.values():
             _tell_defaults(schema)
+        for path in document["paths"].values():
+            for call in path.values():
+                _tell_parameters(call)
         return document
 
 
@@ -34,6 +58,12 @@ def _tell_defaults(schema: dict[str, Any]) -> None:
             left_out = json.dumps(field.pop("default"), sort_keys=True)
             told = field.get("description", "")
             field["description"] = f"{told} When left out: `{left_out}`.".strip()
+
+
+def _tell_parameters(call: dict[str, Any]) -> None:
+    """Describe the parameters that a call says nothing of."""
+    for parameter in call.get("parameters", ()):
+        parameter.setdefault("description", PARAMETERS.get(parameter["name"], ""))
 
 
 def written(app: FastAPI) -> str:

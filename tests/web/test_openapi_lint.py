@@ -5,7 +5,7 @@ from typing import Any
 import orjson
 from openapi_spec_validator import OpenAPIV31SpecValidator
 
-from app.web.documented import DOCUMENT
+from app.web.documented import DOCUMENT, PARAMETERS
 
 CALLS = ("get", "put", "post", "patch", "delete")
 
@@ -35,3 +35,6 @@ def test_every_call_says_what_it_does_and_has_a_name_of_its_own() -> None:
     calls = [call for path in document()["paths"].values() for kind, call in path.items() if kind in CALLS]
     assert [call["operationId"] for call in calls if not (call["summary"] and call["description"])] == []
     assert len({call["operationId"] for call in calls}) == len(calls)
+    given = [one for call in calls for one in call.get("parameters", ())]
+    assert [one["name"] for one in given if not one.get("description")] == []
+    assert set(PARAMETERS) - {one["name"] for one in given} == set()
