@@ -188,7 +188,15 @@ keep_backup() {
     fi
 }
 
+# A panel whose controller service is down serves nobody, and would be taken for another program at its port.
+stop_lone_panel() {
+    if runs_systemd && ! systemctl --quiet is-active heliopanel-machine; then
+        systemctl stop heliopanel-web 2>/dev/null || true
+    fi
+}
+
 use_environment() {
+    stop_lone_panel
     as_user "$made/bin/heliopanel" config check >"$scratch/check" 2>&1 || {
         cat "$scratch/check" >&2
         fail "The settings are not right for version $version; nothing was changed."
@@ -223,8 +231,10 @@ start() {
     systemctl daemon-reload
     for service in $services; do
         say "starting $service"
-        systemctl restart "$service" ||
-            code=1 fail "$service does not start. See why with: journalctl -u $service"
+        if ! systemctl restart "$service"; then
+            journalctl --quiet --unit="$service" --lines=5 --output=cat >&2
+            code=1 fail "$service does not start; above is what it said."
+        fi
     done
     tries=30
     until as_user "$programs/current/bin/heliopanel" status >"$scratch/status"; do
