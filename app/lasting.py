@@ -4,13 +4,12 @@ import asyncio
 from collections.abc import Awaitable, Callable
 from datetime import timedelta
 
-import structlog
-
 from app.clock import Clock
+from app.logs import get_logger
 
 AGAIN_AFTER = timedelta(seconds=1)
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 async def lasting(name: str, work: Callable[[], Awaitable[None]], clock: Clock) -> None:

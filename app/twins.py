@@ -9,12 +9,12 @@ import weakref
 import zlib
 from pathlib import Path
 
-import structlog
+from app.logs import get_logger
 
 HEAD = struct.Struct("<IIH")
 """Checksum of all that follows, sequence number, length of the content."""
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 class Twins:

@@ -3,10 +3,9 @@
 import asyncio
 from datetime import timedelta
 
-from structlog.testing import capture_logs
-
 from app.clock import VirtualClock
 from app.lasting import begun
+from tests.captured_logs import capture_logs
 from tests.fake_data import NOON
 from tests.site.plant import settle
 

@@ -6,7 +6,7 @@ import sys
 import pytest
 
 SELDOM = {"PIL", "alembic", "babel", "cryptography", "fpdf", "mako", "pandas", "pvlib", "pyarrow", "segno"}
-COMMAND_LINE = {"typer", "shellingham"}
+COMMAND_LINE = {"pygments", "rich", "shellingham", "structlog", "typer"}
 OF_THE_PANEL = {"argon2", "fastapi", "jinja2", "markdown_it", "starlette", "tzfpy", "uvicorn", "websockets"}
 OF_THE_CONTROLLER = {"aiomqtt", "paho", "pymodbus", "serial", "app.drives", "app.gateway", "app.site"}
 WORKED_OUT_ELSEWHERE = {

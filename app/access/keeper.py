@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from typing import TypeVar
 
-import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
 from app.access import sessions
@@ -27,9 +26,10 @@ from app.access.tokens import digest_of as token_digest
 from app.access.tokens import token_id_of
 from app.access.users import AccessRefused
 from app.clock import Clock
+from app.logs import get_logger
 from app.store.store import StoreFailed
 
-log = structlog.get_logger()
+log = get_logger()
 T = TypeVar("T")
 
 LOOK_EVERY = timedelta(milliseconds=500)

@@ -2,8 +2,6 @@
 
 import sys
 
-import structlog
-
 from app.access.accounts import Accounts
 from app.access.keeper import Keeper, new_key
 from app.access.passwords import Argon, Hasher, Passwords
@@ -11,9 +9,10 @@ from app.access.principal import nobody
 from app.access.setup import CODE_FILE, Setup
 from app.access.store import AccessStore
 from app.clock import Clock
+from app.logs import get_logger
 from app.settings import Settings
 
-log = structlog.get_logger()
+log = get_logger()
 
 
 def open_store(settings: Settings) -> AccessStore:

@@ -7,13 +7,12 @@ from datetime import datetime, timedelta
 from enum import IntEnum
 from heapq import heapify, heappop, heappush
 
-import structlog
-
 from app.clock import Clock
 from app.drives.drive import DriveError, DriveRefused, DriveSilent
 from app.drives.line_turn import LineTurn, Part
 from app.drives.silences import Silences
 from app.drives.wire import Ask, Broken, GivenUp, Refused, Timing, Unanswered, Wire
+from app.logs import get_logger
 
 FIRST_DELAY = timedelta(milliseconds=100)
 LONGEST_DELAY = timedelta(seconds=1)
@@ -56,7 +55,7 @@ UNREACHABLE = (10, 11)
 FITS, AGAIN = "Check that the profile fits the device.", "It is asked again in the next cycle."
 NOT_AGAIN = "It is not sent again."
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 class BusUnit:

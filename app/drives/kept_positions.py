@@ -5,15 +5,14 @@ from hashlib import blake2b
 from pathlib import Path
 from urllib.parse import quote
 
-import structlog
-
 from app.drives.position_memory import AxisMemory, PositionFile, PositionMemory
+from app.logs import get_logger
 from app.twins import Twins
 
 FORMAT = struct.Struct("<16sdd?dd?I?")
 """Whose it is; true angle, offset and zero of each axis; how often it started; whether that is trusted."""
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 class KeptPositions:

@@ -7,10 +7,9 @@ from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from dataclasses import dataclass
 
-import structlog
-
 from app.budget import Budget
 from app.clock import Clock, give_way
+from app.logs import get_logger
 
 CLOSE_WITHIN_S = 0.5
 KEEP_ALIVE = (
@@ -20,7 +19,7 @@ KEEP_ALIVE = (
 )
 """A client that vanished without a word, as behind a tunnel that broke, is noticed after one minute."""
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 @dataclass(frozen=True, slots=True)

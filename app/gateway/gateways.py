@@ -5,8 +5,6 @@ from collections.abc import AsyncIterator, Callable
 from dataclasses import replace
 from typing import Protocol
 
-import structlog
-
 from app.clock import Clock
 from app.gateway.door import Door
 from app.gateway.mqtt import MQTT, MqttGateway
@@ -19,6 +17,7 @@ from app.lasting import begun
 from app.link.messages import Order, SiteDetail, Update
 from app.link.metrics import GatewayMetrics, GatewayStatus, MachineMetrics
 from app.link.outlet import Listener
+from app.logs import get_logger
 from app.settings import Settings
 from app.store.store import Reader
 from app.tracker.notifications import Channel
@@ -32,7 +31,7 @@ CHANNELS: tuple[tuple[str, Channel, Deliver], ...] = (
     ("E-mail", Channel.MAIL, send_mail),
 )
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 class Gateway(Protocol):

@@ -12,7 +12,6 @@ from datetime import datetime, timedelta
 from pathlib import Path
 from typing import TypeVar
 
-import structlog
 from aiomqtt import Client, MqttError, ProtocolVersion, TLSParameters, Will
 from aiomqtt.exceptions import MqttConnectError
 from paho.mqtt.subscribeoptions import SubscribeOptions
@@ -35,6 +34,7 @@ from app.gateway.mqtt_messages import (
 )
 from app.gateway.outbox import Outbox
 from app.link.metrics import GatewayMetrics, GatewayStatus
+from app.logs import get_logger
 from app.settings import Settings
 from app.store.store import StoreFailed
 from app.tracker.snapshot import SiteSnapshot
@@ -59,7 +59,7 @@ UNSUPPORTED_VERSION = 132
 
 T = TypeVar("T")
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 class MqttGateway:

@@ -4,14 +4,13 @@ import asyncio
 from collections.abc import Callable
 from datetime import timedelta
 
-import structlog
-
 from app.alarms.conditions import SITE, Condition
 from app.clock import Clock
 from app.gateway.door import Door
 from app.gateway.notices import NotDelivered
 from app.gateway.outbox import Outbox
 from app.link.metrics import GatewayMetrics, GatewayStatus
+from app.logs import get_logger
 from app.masking import masked
 from app.settings import Settings
 from app.store.store import JournalEntry, StoreFailed
@@ -26,7 +25,7 @@ OFF = "enter an address on this page to open it"
 
 Deliver = Callable[[Settings, Notifications, str, JournalEntry], None]
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 class Notifier:

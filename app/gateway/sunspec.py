@@ -4,8 +4,6 @@ import asyncio
 from contextlib import suppress
 from datetime import timedelta
 
-import structlog
-
 from app.budget import Budget
 from app.clock import Clock
 from app.drives.line import SerialLine
@@ -14,6 +12,7 @@ from app.drives.modbus_server import ModbusServer
 from app.drives.rtu_server import RtuServer
 from app.gateway.sunspec_device import SERIAL, SunSpecDevice
 from app.link.metrics import GatewayMetrics, GatewayStatus
+from app.logs import get_logger
 from app.settings import Settings
 from app.tracker.config import Parity, SerialConfig
 
@@ -22,7 +21,7 @@ TRY_AGAIN = timedelta(seconds=10)
 LIMITS = Limits(most=16, requests_per_s=200.0, burst=50, idle_s=600.0)
 """Enough to read and write 100 trackers every second; a control system that asks faster is slowed down."""
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 class SunSpecTcp:

@@ -4,14 +4,13 @@ from collections.abc import Sequence
 from datetime import datetime, timedelta
 from ipaddress import ip_address, ip_network
 
-import structlog
-
 from app.clock import Clock
 from app.drives.modbus_server import ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, Refusal, answer
 from app.gateway.door import Door, refused
 from app.gateway.sunspec_controls import ACTOR, BUSY, Controls
 from app.gateway.sunspec_map import BASE, END, MARKER, Block, Placed, SunSpecMap, sunspec_map
 from app.gateway.sunspec_values import UNKNOWN_TYPE, View, block_words, tracker_type
+from app.logs import get_logger
 from app.tracker.snapshot import EventKind
 
 FAILURE = 4
@@ -25,7 +24,7 @@ MOST_HOSTS = 256
 SETTING_UP = {EventKind.TRACKER_ADDED, EventKind.TRACKER_CHANGED, EventKind.TRACKER_REMOVED}
 FOLLOW_AGAIN = timedelta(seconds=1)
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 Write = tuple[Block, dict[str, float | None]]
 

@@ -7,8 +7,6 @@ from datetime import timedelta
 from pathlib import Path
 from typing import Any
 
-import structlog
-
 from app.clock import Clock
 from app.link.codec import (
     Answer,
@@ -22,6 +20,7 @@ from app.link.codec import (
     read_body,
 )
 from app.link.messages import MachineUnreachable
+from app.logs import get_logger
 
 RECONNECT_AFTER = timedelta(milliseconds=300)
 
@@ -34,7 +33,7 @@ TOO_LATE = (
     "Look at the live values before you try again."
 )
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 class ConnectionEnded(MachineUnreachable):

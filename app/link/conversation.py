@@ -5,8 +5,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol, assert_never
 
-import structlog
-
 from app.budget import Budget
 from app.clock import give_way
 from app.link.codec import (
@@ -34,6 +32,7 @@ from app.link.details import Sent, answer
 from app.link.messages import Machine, Order, Update
 from app.link.metrics import MachineMetrics
 from app.link.outlet import Listener
+from app.logs import get_logger
 
 MOST_REQUESTS = 256
 MOST_UNSENT_BYTES = 64 * 1024 * 1024
@@ -46,7 +45,7 @@ BUSY = Problem(
     ProblemKind.FAILED, "The controller service has too many requests at once; this one was not carried out."
 )
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 class MeteredMachine(Machine, Protocol):

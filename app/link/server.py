@@ -6,8 +6,6 @@ from collections.abc import Callable, Coroutine
 from pathlib import Path
 from typing import Any
 
-import structlog
-
 from app.budget import Budget
 from app.clock import Clock, SystemClock
 from app.link.codec import FrameBroken, encode_telling, let_go, stop_path, told
@@ -19,10 +17,11 @@ from app.link.conversation import (
     StopLane,
 )
 from app.link.messages import Update
+from app.logs import get_logger
 
 TAKE_WITHIN_S = 5.0
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 Run = Callable[[asyncio.StreamReader, asyncio.StreamWriter], Coroutine[Any, Any, None]]
 

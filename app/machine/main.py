@@ -8,8 +8,6 @@ from functools import partial
 from pathlib import Path
 from uuid import uuid4
 
-import structlog
-
 from app.alarms.conditions import MEGABYTE, SITE, Condition
 from app.audit.entry import Entry, told
 from app.build import BUILT_AT, VERSION
@@ -20,7 +18,7 @@ from app.drives.probe import DriveProbe
 from app.gateway.gateways import Gateways
 from app.late import settle
 from app.link.server import LinkServer
-from app.logs import set_up_logs
+from app.logs import get_logger, set_up_logs
 from app.machine.lock import only_instance
 from app.machine.loop import run_loop
 from app.machine.marker import mark_running, mark_stopped, version_before
@@ -47,7 +45,7 @@ from app.store.store import JournalFilter, StoreDamaged, StoreFailed, Writer
 from app.tracker.snapshot import Event, EventKind
 from app.zones import zones_missing
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 def run(settings: Settings) -> None:

@@ -5,7 +5,7 @@ import os
 import signal
 import sys
 
-import structlog
+from app.logs import get_logger
 
 FIFO_PRIORITY = 10
 PANEL_PRIORITY = 3
@@ -13,7 +13,7 @@ PANEL_PRIORITY = 3
 SWITCH_EVERY_S = 0.0005
 """So long a thread keeps the interpreter while the loop waits for it; ten times as long is usual."""
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 def on_signals() -> asyncio.Event:

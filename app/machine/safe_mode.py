@@ -7,12 +7,11 @@ from datetime import timedelta
 from pathlib import Path
 from uuid import uuid4
 
-import structlog
-
 from app.alarms.conditions import SITE, Condition
 from app.clock import Clock, SystemClock
 from app.drives.factory import DriveFactory
 from app.link.server import LinkServer
+from app.logs import get_logger
 from app.machine.process import on_signals, raise_priority
 from app.machine.supervised import tell_ready
 from app.machine.systemd import notify
@@ -30,7 +29,7 @@ from app.tracker.snapshot import EventKind
 LOOK_EVERY = timedelta(seconds=1)
 HINT = "An administrator restores a backup on the page Restore, or with: heliopanel restore FILE."
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 def safe_mode(damage: StoreDamaged) -> Reason:

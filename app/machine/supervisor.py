@@ -11,11 +11,9 @@ from dataclasses import dataclass
 from datetime import timedelta
 from typing import NoReturn
 
-import structlog
-
 from app.clock import Clock, SystemClock
 from app.foreseen import WRONG
-from app.logs import set_up_logs
+from app.logs import get_logger, set_up_logs
 from app.machine.supervised import READY, SUPERVISED
 from app.own import own_process
 
@@ -24,7 +22,7 @@ LONGEST_PAUSE = timedelta(seconds=5)
 LIVED_LONG = timedelta(seconds=10)
 GIVE_UP_AFTER_S = 8.0
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 @dataclass(slots=True)

@@ -8,9 +8,8 @@ from concurrent.futures import TimeoutError as TooLate
 from datetime import timedelta
 from typing import Any
 
-import structlog
-
 from app.clock import Clock
+from app.logs import get_logger
 from app.machine.systemd import notify
 
 LOOK_EVERY_S = 0.25
@@ -19,7 +18,7 @@ DEAD_AFTER_LOOKS = 4
 LAST_STOP_S = 0.3
 EXIT_CODE = 70
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 class LoopWatchdog:

@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from typing import Any, TypeVar
 
-import structlog
 from pydantic_core import to_jsonable_python
 
 from app.audit.entry import Entry, told
 from app.link.messages import Order
+from app.logs import get_logger
 from app.site.timekeeping import Timekeeper
 from app.store.store import AuditFilter, Reader
 from app.tracker.commands import EndJog, Jog
@@ -33,7 +33,7 @@ CYCLIC, CYCLE_WITHIN = "sunspec", timedelta(minutes=1)
 MOST_REMEMBERED = 100
 HEAD_EVERY = timedelta(minutes=10)
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 @dataclass(slots=True)

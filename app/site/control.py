@@ -6,9 +6,8 @@ from dataclasses import replace
 from datetime import timedelta
 from typing import assert_never
 
-import structlog
-
 from app.link.messages import AnswerControl, ControlOrder, Order, ReleaseControl, RenewControl, RequestControl
+from app.logs import get_logger
 from app.site import authority as rules
 from app.site import tracker_orders
 from app.site.authority import Authority, Due, Verdict, Wish
@@ -35,7 +34,7 @@ LONGEST_REASON = 200
 OWN_NAMES = {"sunspec": "SunSpec", "mqtt": "MQTT"}
 """Doors that are one holder each, whichever host or client wrote."""
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 def holder_of(order: Order) -> Holder:

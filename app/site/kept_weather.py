@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
 from pathlib import Path
 
-import structlog
 from pydantic import TypeAdapter, ValidationError
 
+from app.logs import get_logger
 from app.tracker.protections.config import WindProtection
 from app.tracker.protections.guarding import wind_of
 from app.tracker.protections.typhoon import is_high
@@ -19,7 +19,7 @@ CALM_EVERY = timedelta(minutes=10)
 """How often weather is written that demands nothing which the weather on disk does not."""
 ROOM = 16_000
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 @dataclass(frozen=True, slots=True)

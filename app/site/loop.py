@@ -7,10 +7,9 @@ from dataclasses import replace
 from datetime import datetime, timedelta
 from typing import Protocol
 
-import structlog
-
 from app.clock import Clock
 from app.drives.drive import Drive, DriveError, answers_at_once, line_turn
+from app.logs import get_logger
 from app.site.lateness import TickCounter
 from app.site.line_pace import LinePace
 from app.site.link_quality import RoundTrips
@@ -32,7 +31,7 @@ CLOSE_WITHIN_S = 1.0
 STANDSTILL = Velocity(0.0)
 NEVER_FORBIDDEN = ("stop", "reset_fault")
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 class Surroundings(Protocol):

@@ -5,10 +5,9 @@ from collections.abc import Callable
 from datetime import timedelta
 from typing import Protocol
 
-import structlog
-
 from app.clock import Clock
 from app.drives.drive import DriveError
+from app.logs import get_logger
 from app.tracker.memory import MetStation
 from app.tracker.simulated_weather import SimulatedStation
 from app.tracker.weather import Weather
@@ -18,7 +17,7 @@ Station = MetStation | SimulatedStation
 
 UNFORESEEN = "The weather station cannot be read because of an unexpected error; the log says which."
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 class StationReader(Protocol):

@@ -10,11 +10,10 @@ from dataclasses import replace
 from datetime import datetime, timedelta
 from typing import Any
 
-import structlog
-
 from app.clock import set_or_at
 from app.link.messages import Order, StopAll
 from app.link.outlet import Outlet
+from app.logs import get_logger
 from app.site.alarming import AlarmDesk
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
@@ -38,7 +37,7 @@ URGENT = {
 }
 """What is told at once: a stop, and what raises an alarm."""
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 class Publisher:

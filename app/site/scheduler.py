@@ -14,9 +14,8 @@ from functools import partial
 from heapq import heappop, heappush
 from typing import Any, Protocol
 
-import structlog
-
 from app.clock import Clock, give_way
+from app.logs import get_logger
 from app.site.lateness import MILLISECOND, FineLateness
 from app.site.overload import Overload
 
@@ -28,7 +27,7 @@ MOST_ASKED_AT_ONCE, MOST_DUE_AT_ONCE = 8, 32
 GRACE = timedelta(milliseconds=10)
 """So long a tick may outlast the end of a lease before the drive is stopped beside it."""
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 class Ticking(Protocol):

@@ -7,8 +7,6 @@ from datetime import datetime, timedelta
 from functools import partial
 from pathlib import Path
 
-import structlog
-
 from app.alarms.alarm import Alarm
 from app.alarms.conditions import Condition
 from app.clock import Clock
@@ -30,6 +28,7 @@ from app.link.metrics import MachineMetrics
 from app.link.outlet import Listener, Outlet
 from app.link.weather_orders import ReportWeather
 from app.link.whole import with_tracker
+from app.logs import get_logger
 from app.site import changes, control, sightings, site_orders, tracker_orders
 from app.site.alarming import AlarmDesk
 from app.site.auditing import Auditor, as_action
@@ -63,7 +62,7 @@ CATCH_UP_EVERY = timedelta(seconds=2)
 SAMPLES_EVERY = timedelta(seconds=300)
 PRUNE_EVERY = timedelta(days=1)
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,8 +5,6 @@ from base64 import b64decode
 from dataclasses import replace
 from typing import assert_never
 
-import structlog
-
 from app.clock import give_way
 from app.drives.drive import DriveError
 from app.link.messages import (
@@ -42,6 +40,7 @@ from app.link.weather_orders import (
     SimulateWeather,
     WeatherOrder,
 )
+from app.logs import get_logger
 from app.site import proving, sightings, tracker_orders, tracker_setup, training, weather_setup
 from app.site.checks import check_name, check_time_zone
 from app.site.loop import TrackerLoop
@@ -60,7 +59,7 @@ MOST_AT_ONCE = 50
 """So many trackers are stopped before whatever else is due, a tick among it, has its turn."""
 KEEPS_NOTHING = Reason("no_store", "This machine runs without a store and keeps no recordings.")
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 SiteOrder = (

@@ -3,8 +3,7 @@
 import asyncio
 from contextlib import suppress
 
-import structlog
-
+from app.logs import get_logger
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
 from app.tracker.commands import Command, CommandRejected, EndJog, Jog, ResetFault, RunShow, Stop
@@ -18,7 +17,7 @@ NOT_RECORDED = Reason(
     "Free the disk or check it; it is tried again every two seconds.",
 )
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 async def command(

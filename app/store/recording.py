@@ -4,9 +4,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime, timedelta
 from typing import Any
 
-import structlog
 from sqlalchemy import Connection, Select, delete, func, insert, select, update
 
+from app.logs import get_logger
 from app.store import tables
 from app.store.chunks import CHUNK_FRAMES, ChunkDamaged, decode, decode_all, encode_all
 from app.store.documents import RECORDING, plain
@@ -20,7 +20,7 @@ BLOCK = ("first_elapsed_s", "last_elapsed_s", "frame_count", "frames")
 Block = dict[str, Any]
 """The columns of some frames, packed: those of `BLOCK`, the same in both tables."""
 
-log = structlog.get_logger(__name__)
+log = get_logger()
 
 
 def heads() -> Select[Any]:

@@ -7,7 +7,6 @@ from math import ceil
 from typing import Any
 
 import orjson
-import structlog
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
@@ -19,6 +18,7 @@ from app.access.users import AccessRefused
 from app.alarms.book import UnknownAlarm
 from app.extras import ExtraMissing
 from app.link.messages import MachineUnreachable, UnknownRecording, UnknownTracker
+from app.logs import get_logger
 from app.papers.library import UnknownPaper
 from app.store.store import StoreFailed
 from app.studies.folder import StudyUnknown, WeatherFileRefused
@@ -33,7 +33,7 @@ from app.web.network_check import NetworkRefused
 from app.web.routes import methods_of
 from app.web.security import add_headers
 
-log = structlog.get_logger()
+log = get_logger()
 
 UNREACHABLE_CODES = frozenset({"drive_lost", "drive_unreachable", "drive_silent", "not_stored"})
 OWN_MISTAKE = "The panel made a mistake; its log has the details. The machine goes on as it was."

@@ -9,11 +9,11 @@ from typing import Any
 from uuid import uuid4
 
 import orjson
-import structlog
 
 from app.clock import Clock, set_or_at
 from app.lasting import begun
 from app.link.messages import Machine, Update
+from app.logs import get_logger
 from app.tracker.snapshot import Event
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.given_names import GIVEN
@@ -22,7 +22,7 @@ from app.web.presses import Dead
 from app.web.states import States
 from app.web.viewers import Message, Viewer, Wanted
 
-log = structlog.get_logger()
+log = get_logger()
 
 SOONEST = timedelta(milliseconds=100)
 LATEST = timedelta(milliseconds=500)

@@ -6,7 +6,6 @@ from datetime import datetime, timedelta
 from functools import partial
 from typing import Annotated, Any, Literal, assert_never
 
-import structlog
 from fastapi import APIRouter
 from pydantic import (
     BaseModel,
@@ -23,6 +22,7 @@ from app.access.principal import NotAllowed, Principal, ProofNeeded, SignInNeede
 from app.access.roles import Permission
 from app.link.lanes import Lanes
 from app.link.messages import MachineUnreachable, RenewControl, StopAll, UnknownTracker
+from app.logs import get_logger
 from app.tracker.axes import Axis, JogSpeed
 from app.tracker.commands import CommandRejected, EndJog, Jog, Stop
 from app.tracker.reason import Reason
@@ -37,7 +37,7 @@ from app.web.languages.live_texts import in_language
 from app.web.presses import Heartbeat, LinkDelay, Presses, Verdict
 from app.web.viewers import Message, TooSlow, Viewer, Wanted, pump
 
-log = structlog.get_logger()
+log = get_logger()
 router = APIRouter()
 
 MOST_IN_FLIGHT = 4

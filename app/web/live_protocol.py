@@ -7,7 +7,6 @@ they can at once leave every other request its turn in between.
 import asyncio
 from typing import Any
 
-import structlog
 from uvicorn._types import ASGIReceiveEvent
 from uvicorn.config import Config
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
@@ -16,9 +15,10 @@ from websockets.frames import Frame
 
 from app.budget import Budget
 from app.clock import Clock
+from app.logs import get_logger
 from app.turnstile import Turnstile
 
-log = structlog.get_logger()
+log = get_logger()
 
 FLOODED = 4029
 """The code with which a socket that floods is closed; pages say it in a sentence."""

@@ -6,7 +6,6 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import AsyncExitStack, asynccontextmanager
 from functools import cache, partial
 
-import structlog
 import uvicorn
 from fastapi import APIRouter, FastAPI
 from fastapi.routing import APIRoute
@@ -23,7 +22,7 @@ from app.lasting import lasting
 from app.late import settle
 from app.link.client import LinkClient
 from app.link.messages import Machine
-from app.logs import set_up_logs
+from app.logs import get_logger, set_up_logs
 from app.own import own_folder
 from app.settings import Settings, fixed_by_environment
 from app.store.engine import open_reader
@@ -62,7 +61,7 @@ from app.web.ui.asked import AskFirst
 from app.web.ui.pages import ROUTERS, error_page
 from app.web.ui.render import environment
 
-log = structlog.get_logger()
+log = get_logger()
 
 SMALLEST_COMPRESSED = 600
 

@@ -4,12 +4,11 @@ import ipaddress
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
-import structlog
-
+from app.logs import get_logger
 from app.own_names import own_names
 from app.settings import Settings, SettingsWrong
 
-log = structlog.get_logger()
+log = get_logger()
 
 NAME = "heliopanel.local."
 

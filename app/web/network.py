@@ -12,11 +12,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 
-import structlog
-
 from app.access.keeper import Keeper
 from app.access.principal import Principal
 from app.clock import Clock, set_or_at
+from app.logs import get_logger
 from app.network import Network, write_network
 from app.settings import LOOPBACK, Settings
 from app.web.network_check import addresses_here, prepared, refuse_impossible
@@ -29,7 +28,7 @@ NOT_CONFIRMED = "Nobody confirmed them at the new address within 60 s."
 NOT_WRITTEN = "They could not be written to the disk."
 NOT_SERVED = "The panel could not be served there."
 
-log = structlog.get_logger()
+log = get_logger()
 
 
 class NetworkBusy(Exception):

@@ -9,15 +9,15 @@ from collections.abc import Callable
 from enum import Enum
 from typing import Any, Protocol, assert_never
 
-import structlog
 import uvicorn
 from uvicorn.config import Config
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 from uvicorn.server import ServerState
 
+from app.logs import get_logger
 from app.turnstile import Turnstile
 
-log = structlog.get_logger()
+log = get_logger()
 
 REQUEST_DEADLINE_S = 8.0
 LARGEST_HEAD = 64 * 1024

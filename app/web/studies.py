@@ -8,12 +8,12 @@ from dataclasses import replace
 from datetime import timedelta
 from pathlib import Path
 
-import structlog
 from starlette.concurrency import run_in_threadpool
 
 from app.clock import Clock
 from app.extras import need
 from app.fast.comparison import Comparison
+from app.logs import get_logger
 from app.own import own_process
 from app.studies.folder import StudyFolder, StudyState, StudyStatus, StudyUnknown, WeatherFile
 from app.studies.jobs import (
@@ -37,7 +37,7 @@ from app.studies.jobs import (
 from app.studies.request import StudyRequest
 from app.web.errors import Busy
 
-log = structlog.get_logger()
+log = get_logger()
 
 WORKER = "app.studies.worker"
 MOST_OPEN = 5

@@ -11,7 +11,6 @@ from pathlib import Path
 from struct import pack
 
 import pytest
-from structlog.testing import capture_logs
 
 from app.budget import Budget
 from app.clock import VirtualClock
@@ -22,6 +21,7 @@ from app.drives.pty_line import PtyLine
 from app.drives.rtu_frame import sealed
 from app.drives.rtu_server import RtuServer
 from app.tracker.config import Parity, SerialConfig
+from tests.captured_logs import capture_logs
 from tests.fault_result import REAL, FaultResult
 from tests.gateway.rigs import eventually
 

@@ -11,7 +11,6 @@ from typing import Any
 
 import pytest
 import sunspec2.modbus.client as sunspec
-from structlog.testing import capture_logs
 from sunspec2.modbus.modbus import ModbusClientException
 
 from app.clock import SystemClock
@@ -40,6 +39,7 @@ from app.tracker.mode import Mode
 from app.tracker.motion import DriveCommand, Position
 from app.tracker.snapshot import ActivityName, EventKind
 from app.tracker.weather import Weather
+from tests.captured_logs import capture_logs
 from tests.fault_result import REAL, FaultResult
 from tests.gateway.rigs import HurriedClock, eventually, tracker
 from tests.site.plant import Plant, make_plant, settle

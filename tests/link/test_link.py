@@ -9,7 +9,6 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
-from structlog.testing import capture_logs
 
 from app.clock import VirtualClock
 from app.link.client import LinkClient
@@ -49,6 +48,7 @@ from app.tracker.memory import SiteState
 from app.tracker.programs.show import ShowPlan
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ClockState, Event, EventKind, SiteSnapshot, Snapshot
+from tests.captured_logs import capture_logs
 from tests.gateway.rigs import eventually
 
 NOON = datetime(2026, 6, 21, 12, tzinfo=UTC)

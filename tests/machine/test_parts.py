@@ -16,11 +16,10 @@ from pathlib import Path
 from typing import Literal
 
 import pytest
-import structlog
 
 from app.clock import SystemClock, VirtualClock
 from app.foreseen import WRONG
-from app.logs import set_up_logs
+from app.logs import get_logger, set_up_logs
 from app.machine.lock import LOCK_NAME, AlreadyRunning, holder, only_instance
 from app.machine.main import audit_version
 from app.machine.marker import VERSION_NAME, mark_running, mark_stopped
@@ -220,16 +219,15 @@ def _logs_as_before() -> Iterator[None]:
         one.handlers[:], one.propagate = handlers, propagate
         one.setLevel(level)
     logging.getLogger("uvicorn.error").filters.clear()
-    structlog.reset_defaults()
 
 
 @pytest.mark.usefixtures("_logs_as_before")
 def test_logs_are_json_lines_with_the_process_in_them() -> None:
     stream = io.StringIO()
     set_up_logs("machine", log_format="json", log_level="info", stream=stream)
-    structlog.get_logger("x").info("tick_failed", tracker="T1")
+    get_logger().info("tick_failed", tracker="T1")
     logging.getLogger("y").warning("from a library")
-    structlog.get_logger("x").debug("not shown")
+    get_logger().debug("not shown")
 
     lines = [json.loads(line) for line in stream.getvalue().splitlines()]
 

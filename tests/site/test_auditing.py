@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from structlog.testing import capture_logs
 
 from app.audit.chain import first_break
 from app.audit.entry import Entry
@@ -25,6 +24,7 @@ from app.tracker.config import Orientation
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName
 from app.tracker.weather import Weather
+from tests.captured_logs import capture_logs
 from tests.fault_result import FaultResult
 from tests.site.direct_writer import DirectWriter
 from tests.site.plant import SAMSUN, Plant, make_plant, settle

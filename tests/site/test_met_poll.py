@@ -4,13 +4,13 @@ import asyncio
 from datetime import UTC, datetime, timedelta
 
 import pytest
-from structlog.testing import capture_logs
 
 from app.clock import VirtualClock
 from app.drives.drive import DriveError
 from app.site.met_poll import UNFORESEEN, MetPoll
 from app.tracker.memory import MetStation
 from app.tracker.weather import Weather
+from tests.captured_logs import capture_logs
 from tests.site.plant import settle
 
 MAST = MetStation("10.0.0.9", 502, 3)

@@ -6,7 +6,6 @@ from typing import Any
 
 import pytest
 import uvicorn
-from structlog.testing import capture_logs
 
 from app.web.server import (
     FULL,
@@ -20,6 +19,7 @@ from app.web.server import (
     Connections,
     PanelServer,
 )
+from tests.captured_logs import capture_logs
 from tests.web.wires import FAR, Wire, Wired, turns
 
 GET = b"GET /health HTTP/1.1\r\nHost: here\r\n\r\n"

@@ -6,7 +6,6 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
-from structlog.testing import capture_logs
 
 from app.clock import SystemClock, VirtualClock
 from app.link.messages import Update
@@ -14,6 +13,7 @@ from app.turnstile import Turnstile
 from app.web.hub import BATCH, SOONEST, Hub
 from app.web.limits import StreamLimit
 from app.web.viewers import Wanted
+from tests.captured_logs import capture_logs
 from tests.fake_data import NOON
 from tests.fakes import FakeMachine
 from tests.site.plant import settle

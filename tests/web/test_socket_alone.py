@@ -5,7 +5,6 @@ from datetime import timedelta
 from typing import Any
 
 import pytest
-from structlog.testing import capture_logs
 from websockets.frames import Frame, Opcode
 
 from app.clock import VirtualClock
@@ -17,6 +16,7 @@ from app.web.live_protocol import (
     PIECE,
     CautiousSocket,
 )
+from tests.captured_logs import capture_logs
 from tests.fake_data import NOON
 from tests.web.test_http_alone import UPGRADE
 from tests.web.wires import FAR, Wire, Wired, turns

@@ -5,7 +5,6 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Literal
 
-import structlog
 from fastapi import APIRouter
 from fastapi.responses import FileResponse, Response
 from pydantic import Field
@@ -14,6 +13,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.build import VERSION
 from app.link.messages import MachineUnreachable
+from app.logs import get_logger
 from app.store.backup import backup
 from app.store.store import JournalFilter
 from app.web.api.base import Output, Responses
@@ -21,7 +21,7 @@ from app.web.deps import PanelDep
 from app.web.diagnostics import about, live, stored, zipped
 from app.web.metrics import counted, exposition
 
-log = structlog.get_logger()
+log = get_logger()
 router = APIRouter(tags=["operations"])
 
 NO_MACHINE = "The controller service does not answer; the panel shows no live values."

@@ -4,19 +4,19 @@ import asyncio
 from contextlib import suppress
 from typing import Annotated
 
-import structlog
 from fastapi import Header, Query
 from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
 
 from app.link.messages import MachineUnreachable
+from app.logs import get_logger
 from app.tracker.snapshot import EventKind
 from app.web.api.base import Responses, api_router
 from app.web.deps import PanelDep, PrincipalDep
 from app.web.hub import Hub, TooManyViewers
 from app.web.viewers import Message, TooSlow, Viewer, Wanted, pump
 
-log = structlog.get_logger()
+log = get_logger()
 router = api_router(tags=["stream"])
 
 RESYNC = Message("resync", '{"type":"resync","detail":"Events were missed; read /api/v1/journal for them."}')
