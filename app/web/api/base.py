@@ -36,9 +36,13 @@ class Input(BaseModel):
 
 
 class Output(BaseModel):
-    """What goes out."""
+    """What goes out.
 
-    model_config = ConfigDict(frozen=True)
+    It is built when it is first used by itself, within a millisecond: its routes hold what
+    checks and writes it already, and a second copy of each took more than 1 MB.
+    """
+
+    model_config = ConfigDict(frozen=True, defer_build=True)
 
 
 class Fault(Output):
