@@ -31,7 +31,8 @@ if [ -n "$missing" ]; then
     fi
 fi
 
-# The npm package modbus-serial, an independent Modbus client.
+# The npm package modbus-serial, an independent Modbus client. Its serialport is 12: 13 wants Node.js 20, and
+# Debian 12 has 18.
 peer=tests/peers/modbus-serial
 built=build/modbus-serial
 if ! cmp -s "$peer/package-lock.json" "$built/node_modules/.locked" 2>/dev/null; then

@@ -63,5 +63,5 @@ def test_the_five_steps_are_pictured(walker: Walker, service: str, picture: Pict
 
 
 def test_every_picture_that_is_taken_is_one_of_the_guide() -> None:
-    guide = (PICTURES.parent / "operators-guide.md").read_text()
-    assert [name for name in GUIDE.values() if f"(pictures/{name}.png)" not in guide] == []
+    guide = (PICTURES.parent / "operate" / "operators-guide.md").read_text()
+    assert [name for name in GUIDE.values() if f"(../pictures/{name}.png)" not in guide] == []

@@ -127,7 +127,7 @@ def one(debian: str, who: str, asked: argparse.Namespace, project: Path) -> list
     with machine(debian, who, path) as on:
         ready = prepare(on, user, asked.python, project)
         _, version = on.do(f"{python or 'python3'} --version", user)
-        version = version.rpartition("Python ")[2].strip()
+        version = (re.findall(r"^Python (\S+)$", version, re.MULTILINE) or ["none"])[0]
         for command, try_it in (("run", run), ("test", test)):
             if command not in asked.only:
                 continue

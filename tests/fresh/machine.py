@@ -155,25 +155,26 @@ def machine(debian: str, name: str, interpreter: Path | None) -> Iterator[Machin
         root.mkdir()
         try:
             subprocess.run(["tar", "-x", "--numeric-owner", "-f", archive, "-C", root], check=True)
-            with started(root, interpreter) as (first, settings):
+            with started(root, interpreter, log) as (first, settings):
                 yield Machine(root, first, settings, log)
         finally:
             remove(root)
 
 
 @contextmanager
-def started(root: Path, interpreter: Path | None) -> Iterator[tuple[int, dict[str, str]]]:
+def started(root: Path, interpreter: Path | None, log: IO[str]) -> Iterator[tuple[int, dict[str, str]]]:
     """Give the first process of a machine and the variables for those after it; at the end all are ended."""
     pip, settings = host.pip(), host.environment()
     furnish(root, pip)
     seen = [f"{path}={path}" for path in host.folders(pip, *settings.values())]
     if interpreter:
         seen.append(f"{interpreter.parent.parent}={INTERPRETER}")
+        settings["LD_LIBRARY_PATH"] = f"{INTERPRETER}/lib"
     words = ["unshare", *OWN, "--fork", "--kill-child", "sh", "-c", FIRST, "first", str(root), *seen]
-    outer = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
+    outer = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=log, text=True)
     if not outer.stdout or outer.stdout.readline() != "ready\n":
         outer.wait()
-        sys.exit("The machine could not be made: mounts of its own are refused here.")
+        sys.exit(f"The machine could not be made, perhaps as mounts are refused here: see {log.name}")
     first = int(Path(f"/proc/{outer.pid}/task/{outer.pid}/children").read_text())
     try:
         yield first, settings
