@@ -121,12 +121,13 @@ format: $(VENV)/.dev ## Format the code
 	@$(BIN)/ruff format .
 	@$(BIN)/ruff check --fix .
 
-# For every 3.11: Debian 12 has 3.11.2, and some releases want 3.11.5.
+# For every Python from 3.11 on: Debian 12 has 3.11.2, where some releases want 3.11.5, and 3.13 needs libraries
+# that 3.11 does not.
 lock: ## Renew the locked dependencies (needs uv)
-	uv pip compile --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all pyproject.toml -o requirements.txt
-	uv pip compile --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all --extra fast -c requirements.txt pyproject.toml -o requirements-fast.txt
-	uv pip compile --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all --extra fast --extra mdns --extra dev -c requirements.txt pyproject.toml -o requirements-dev.txt
-	uv pip compile --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --group client -o requirements-client.txt
+	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all pyproject.toml -o requirements.txt
+	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all --extra fast -c requirements.txt pyproject.toml -o requirements-fast.txt
+	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all --extra fast --extra mdns --extra dev -c requirements.txt pyproject.toml -o requirements-dev.txt
+	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --group client -o requirements-client.txt
 
 clean: ## Remove what was built (not the data)
 	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache

@@ -4,6 +4,7 @@ import argparse
 import os
 import re
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -162,6 +163,8 @@ def main() -> None:
     asked.only = asked.only or ["run", "test"]
     if os.geteuid() != 0:
         sys.exit("make fresh makes mounts, so it needs root: sudo make fresh")
+    # Whoever ends it finds its machines taken away, as after Ctrl-C.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     BUILD.mkdir(parents=True, exist_ok=True)
     BUILD.chmod(0o700)
     git = ["git", "-c", "safe.directory=*"]
