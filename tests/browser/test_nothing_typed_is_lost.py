@@ -2,8 +2,10 @@
 
 from playwright.sync_api import Page, Route, expect
 
+from app.link.alarm_orders import ShelveAlarm
 from app.link.messages import ConfigureTracker
 from tests.browser.conftest import Opened, Plant
+from tests.fake_alarms import alarm
 
 DRIVE = "/trackers/T1/drive"
 SAVE = "#drive-form button.key-primary"
@@ -71,3 +73,48 @@ def test_a_test_of_the_connection_saves_nothing_and_keeps_what_was_typed(opened:
     page.goto(page.url.split("/prove")[0] + DRIVE)
     expect(page.locator(".kept-note")).to_be_visible()
     expect_typed(page)
+
+
+def test_an_alarm_is_shelved_with_the_reason_that_was_typed_before_the_password(
+    opened: Opened, plant: Plant
+) -> None:
+    """The form goes as a page: the password is asked for on another, and the list has the reason again."""
+    machine = plant.machine
+    machine.alarms = (alarm("drive_lost", machine.clock.now()),)
+    plant.do(machine.emit)
+    needed = [True]
+
+    def to(route: Route, place: str) -> None:
+        route.fulfill(status=303, headers={"location": place})
+
+    def shelve(route: Route) -> None:
+        if needed[0]:
+            to(route, "/prove?back=/alarms")
+        else:
+            route.fallback()
+
+    def prove(route: Route) -> None:
+        if route.request.method != "POST":
+            route.fallback()
+            return
+        needed[0] = False
+        to(route, "/alarms")
+
+    page = opened("/alarms", "tablet")
+    page.route("**/alarms/shelve", shelve)
+    page.route("**/prove*", prove)
+    row = page.locator('[id="alarm-drive_lost@T1"]')
+    row.locator("summary").click()
+    row.get_by_label("Why").fill("The cable is being replaced.")
+    row.get_by_label("Put aside for").select_option("480")
+    row.get_by_role("button", name="Shelve").click()
+    page.wait_for_url("**/prove?back=/alarms")
+    page.locator("input[type=password]").fill("right")
+    page.keyboard.press("Enter")
+    expect(page.locator(".kept-note")).to_contain_text("What you had typed is back")
+    expect(row.get_by_label("Why")).to_have_value("The cable is being replaced.")
+    expect(row.get_by_label("Put aside for")).to_have_value("480")
+    row.get_by_role("button", name="Shelve").click()
+    expect(row).to_have_count(0)
+    (order,) = (one.command for one in machine.orders if isinstance(one.command, ShelveAlarm))
+    assert (order.minutes, order.reason) == (480, "The cable is being replaced.")
