@@ -157,7 +157,7 @@ class Trying:
 def main(area: str, result: str) -> int:
     """Return 0 if every change of the area was tried."""
     trying: Any = Trying(area, Path(result))
-    options = ("-p", "no:cacheprovider", "-p", "no:xdist", "-k", "not postgresql")
+    options = ("-p", "no:cacheprovider", "-p", "no:xdist", "-k", "not postgresql", "--timeout", "0")
     return int(pytest.main([*options, *AREAS[area].tests], plugins=[trying]))
 
 

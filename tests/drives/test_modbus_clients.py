@@ -25,6 +25,7 @@ from tests.captured_logs import capture_logs
 from tests.fault_result import REAL, FaultResult
 from tests.gateway.rigs import eventually
 
+pytestmark = pytest.mark.real_time
 READ = pack(">HHHBBHH", 7, 0, 6, 1, 3, 0, 125)
 REPLY_BYTES = 259
 READ_RTU = sealed(pack(">BBHH", 1, 3, 0, 125))

@@ -1,13 +1,12 @@
 """Devices behind a fault proxy, on every kind of wire, and what arrives there."""
 
-import time
+import asyncio
 from collections.abc import AsyncIterator, Mapping, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from app.clock import SystemClock
 from app.drives.buses import Buses
 from app.drives.fault_proxy import FaultProxy
 from app.drives.line import Line, SerialLine, TcpLine
@@ -19,6 +18,7 @@ from app.drives.wire import Timing
 from app.drives.wire_faults import Framing
 from app.tracker.config import DriveConfig, DriveKind, SerialConfig
 from tests.drives.rigs import pending_tasks
+from tests.patient_loop import LoopClock
 
 BAUD_RATE = 19_200
 TIMING = Timing(0.2)
@@ -54,13 +54,13 @@ class Registers:
 
 
 class Noting(FaultProxy):
-    """A proxy that notes when a stop arrives."""
+    """A proxy that notes when stops arrive."""
 
-    stop_at_s = 0.0
+    stopped_at_s: tuple[float, ...] = ()
 
     def _from_master(self, data: bytes) -> None:
         if bytes((6, 0, STOP_REGISTER)) in data:
-            self.stop_at_s = time.monotonic()
+            self.stopped_at_s = (*self.stopped_at_s, asyncio.get_running_loop().time())
         super()._from_master(data)
 
 
@@ -83,10 +83,10 @@ async def tcp_bench(others: Mapping[int, Device] = NOBODY) -> AsyncIterator[Benc
     server = ModbusServer(devices[7], 7, others={8: devices[8], **others})
     port = await server.start("127.0.0.1", 0)
     near = ListeningLine("127.0.0.1", 0)
-    proxy = Noting(near, TcpLine("127.0.0.1", port), Framing.TCP, SystemClock())
+    proxy = Noting(near, TcpLine("127.0.0.1", port), Framing.TCP, LoopClock())
     await proxy.start()
     try:
-        yield Bench(proxy, Buses(SystemClock()), DriveConfig(DriveKind.MODBUS_TCP, port=near.port), devices)
+        yield Bench(proxy, Buses(LoopClock()), DriveConfig(DriveKind.MODBUS_TCP, port=near.port), devices)
     finally:
         await proxy.close()
         await server.close()
@@ -102,7 +102,7 @@ async def rtu_bench(others: Mapping[int, Device] = NOBODY) -> AsyncIterator[Benc
         async with _rtu(near, SerialLine(SerialConfig(far_name)), PtyLine(Path(far_name)), others) as found:
             proxy, devices = found
             config = DriveConfig(DriveKind.MODBUS_RTU, serial=serial)
-            yield Bench(proxy, Buses(SystemClock()), config, devices)
+            yield Bench(proxy, Buses(LoopClock()), config, devices)
 
 
 @asynccontextmanager
@@ -110,7 +110,7 @@ async def gateway_bench(others: Mapping[int, Device] = NOBODY) -> AsyncIterator[
     near, behind = ListeningLine("127.0.0.1", 0), ListeningLine("127.0.0.1", 0)
     async with _rtu(near, None, behind, others) as (proxy, devices):
         config = DriveConfig(DriveKind.MODBUS_RTU_OVER_TCP, port=near.port)
-        yield Bench(proxy, Buses(SystemClock()), config, devices)
+        yield Bench(proxy, Buses(LoopClock()), config, devices)
 
 
 @asynccontextmanager
@@ -123,7 +123,7 @@ async def _rtu(
     if isinstance(behind, ListeningLine):
         far = TcpLine("127.0.0.1", behind.port)
     assert far is not None
-    proxy = Noting(near, far, Framing.RTU, SystemClock())
+    proxy = Noting(near, far, Framing.RTU, LoopClock())
     await proxy.start()
     try:
         yield proxy, devices

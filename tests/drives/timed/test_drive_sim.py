@@ -23,6 +23,7 @@ from app.tracker.config import DriveConfig, DriveKind
 from app.tracker.motion import DriveCommand, DriveRequest, Feedback, RequestKind, Velocity
 from tests.drives.rigs import CONFIG, START
 
+pytestmark = pytest.mark.real_time
 PROGRAM = """
 import sys
 from pathlib import Path

@@ -27,6 +27,7 @@ from tests.drives.scripted_server import (
 )
 from tests.fault_result import REAL, FaultResult
 
+pytestmark = pytest.mark.real_time
 TIMEOUT_S = 0.6
 RIGHT = [30, 33, 36, 39]
 

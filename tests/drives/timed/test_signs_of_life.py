@@ -19,6 +19,7 @@ from tests.drives.test_plc import ECHO, WATCHDOG_MS, Wire
 from tests.fault_result import REAL, FaultResult
 from tests.gateway.rigs import eventually
 
+pytestmark = pytest.mark.real_time
 READINGS_A_SECOND = 10
 HEARTBEAT = 2
 

@@ -23,6 +23,7 @@ from app.tracker.config import DriveConfig, DriveKind, SerialConfig
 from tests.drives.timed.proxied import TIMING, Registers
 from tests.peers.processes import cable
 
+pytestmark = pytest.mark.real_time
 FOUND_WITHIN_S = 10.0
 OPENED = """
 import asyncio, sys
