@@ -8,6 +8,8 @@
 # make fresh: the two commands of the README on pristine Debian machines in folders, as a user and as root (needs root);
 #   DEBIAN="12 13", WHO="user root", ONLY="run test", PYTHON=python3.14 do a part
 # make dist : builds the sdist and the wheel into dist/, with the manual where zensical is installed
+# make release VERSION=x.y.z: raises the version, builds sdist, wheel, bill of materials, image and checksums into
+#   dist/x.y.z, commits and tags; with DRY=1 nothing is committed
 # make docs : builds the site of the documents into manual/, and fails at a broken link or anchor
 # make bench: measures and writes docs/develop/benchmarks.md
 
@@ -55,6 +57,10 @@ dist: $(VENV)/.runtime ## Build the sdist, and the wheel from it, into dist/ (wi
 	@$(BIN)/python -m pip wheel --quiet --disable-pip-version-check --no-index --no-build-isolation --no-deps -w dist \
 		dist/heliopanel-$$($(BIN)/heliopanel version).tar.gz
 	@ls dist
+
+release: $(VENV)/.dev ## Release VERSION=x.y.z: raise it, build all into dist/, commit, tag; DRY=1 only builds
+	@test -n "$(VERSION)" || { echo "Say which: make release VERSION=1.2.0" >&2; exit 2; }
+	@$(BIN)/python -m release $(VERSION) $(if $(DRY),--dry-run)
 
 docs: $(VENV)/.dev ## Build the site of the documents into manual/; a broken link or anchor fails
 	@$(BIN)/python -m tests.manual

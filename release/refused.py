@@ -1,0 +1,5 @@
+"""Why a release cannot be made."""
+
+
+class Refused(Exception):
+    """A release cannot be made; the text says what to do."""
