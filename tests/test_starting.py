@@ -106,10 +106,23 @@ def test_the_version_is_an_option(run: Run) -> None:
     assert run("--version") == (0, f"Heliopanel {VERSION}\n", "")
 
 
-def test_names_are_completed_by_the_shell() -> None:
-    asked = {"_HELIOPANEL_COMPLETE": "complete_bash", "COMP_WORDS": "heliopanel sta", "COMP_CWORD": "1"}
-    done = subprocess.run([COMMAND], env=os.environ | asked, capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["status"]
+ASKED_BY = {
+    "bash": {"COMP_WORDS": "heliopanel sta", "COMP_CWORD": "1"},
+    "zsh": {"_TYPER_COMPLETE_ARGS": "heliopanel sta"},
+    "fish": {"_TYPER_COMPLETE_ARGS": "heliopanel sta", "_TYPER_COMPLETE_FISH_ACTION": "get-args"},
+}
+
+
+@pytest.mark.parametrize("shell", ASKED_BY)
+def test_names_are_completed_by_every_shell(shell: str) -> None:
+    def asked(action: str, **more: str) -> str:
+        words = os.environ | {"_HELIOPANEL_COMPLETE": f"{action}_{shell}"} | more
+        return subprocess.run([COMMAND], env=words, capture_output=True, text=True, check=True).stdout
+
+    assert "_HELIOPANEL_COMPLETE=complete_" in asked("source")
+    found = asked("complete", **ASKED_BY[shell])
+    assert "status" in found
+    assert "serve" not in found
 
 
 def test_what_does_not_answer_is_told_with_exit_code_1(run: Run, data: Path) -> None:
