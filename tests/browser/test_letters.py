@@ -13,7 +13,7 @@ from playwright.sync_api import Browser, Page
 
 from app.web.languages.catalogues import read, template
 from app.web.languages.known import LANGUAGES
-from tests.browser.conftest import CHROMIUM, FLAGS
+from tests.browser.conftest import CHROMIUM, FLAGS, PATIENCE_MS
 from tests.browser.every_page import EVERY_PAGE
 from tests.browser.letters import undrawn
 from tests.browser.panels import Panels
@@ -103,6 +103,19 @@ def test_a_page_looks_the_same_without_any_font_and_with_many(
     html = httpx.get(address, cookies={"language": language}, timeout=60).text
     with still(browser, address, html) as bare, still(many, address, html) as full:
         assert bare.screenshot() == full.screenshot()
+
+
+def test_the_moving_picture_has_letters_of_its_own(panels: Panels, browser: Browser, many: Browser) -> None:
+    leaf = EVERY_PAGE["player"]
+    url, seen = panels.at(leaf.where).url, []
+    for one in (browser, many):
+        page = one.new_page(viewport={"width": 1024, "height": 1000})
+        page.context.add_cookies([{"name": "language", "value": "zh_Hans", "url": url}])
+        page.goto(url + leaf.path)
+        scene = page.locator('.scene[data-painter="webgl2"][data-frames]')
+        seen.append(scene.screenshot(timeout=PATIENCE_MS))
+        page.close()
+    assert seen[0] == seen[1]
 
 
 def test_fonts_of_the_computer_would_be_seen(browser: Browser, many: Browser) -> None:

@@ -9,7 +9,7 @@ const LETTERS = [
 ];
 let painter = null;
 let fixed = [];
-loadLetters();
+const letters = Promise.allSettled(LETTERS.map(load));
 
 const ORDERS = {
   // The first picture is for nobody: the driver builds what painting needs.
@@ -30,6 +30,7 @@ const ORDERS = {
 };
 
 async function open(canvas, first) {
+  await letters;
   try {
     painter = new GlPainter(canvas);
   } catch {
@@ -43,13 +44,11 @@ async function open(canvas, first) {
   postMessage("ready");
 }
 
-// A worker has none of the page's fonts: it loads the letters of its labels itself.
-function loadLetters() {
-  for (const [family, weight, file] of LETTERS) {
-    const letters = new FontFace(family, `url(${new URL(`../../vendor/${file}`, import.meta.url)})`, { weight });
-    fonts.add(letters);
-    letters.load().then(() => painter?.repaint());
-  }
+// A worker has none of the page's fonts: it loads the letters of its labels itself. One that does not come is done without.
+async function load([family, weight, file]) {
+  const letters = new FontFace(family, `url(${new URL(`../../vendor/${file}`, import.meta.url)})`, { weight });
+  fonts.add(letters);
+  await letters.load();
 }
 
 // What never moves comes when it has changed.
