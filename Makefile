@@ -16,10 +16,16 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-# Tests that judge how punctual things are, each with the computer to itself; the others share the cores.
-ALONE := tests/drives/timed tests/test_benches.py \
-	$(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk field_events kills process storm storm_kill)) \
-	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop two_operators)) \
+# Tests that judge how punctual things are, each with the computer to itself; the others share the cores, more of
+# them at a time than there are cores, since most of a test is waiting. ORDER=random runs all in an order by chance,
+# ORDER=7 in that which the seed 7 makes.
+WORKERS ?= 4
+ORDER ?=
+SEED := $(if $(filter random,$(ORDER)),$(shell od -An -N3 -tu4 /dev/urandom | tr -d ' '),$(ORDER))
+IN_ORDER := $(SEED:%=--random-order=%)
+ALONE := tests/drives/timed \
+	$(addprefix tests/machine/test_,$(addsuffix .py,disk field_events kills process storm storm_kill)) \
+	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop)) \
 	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost hold_to_run kill many_holds stop_and_tabs))
 
 .DEFAULT_GOAL := help
@@ -80,9 +86,9 @@ system-packages:
 
 test: system-packages $(VENV)/.dev $(VENV)/.client ## Set up what tests need and run them all, browser tests included
 	@echo "Running the tests that share the computer's cores ..."
-	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder $(ALONE:%=--ignore=%)
+	@$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-reorder $(IN_ORDER) $(ALONE:%=--ignore=%)
 	@echo "Running the tests that judge how punctual things are, one at a time ..."
-	@$(BIN)/python -m pytest $(ALONE)
+	@$(BIN)/python -m pytest $(IN_ORDER) $(ALONE)
 
 fresh: ## Run the README's two commands on pristine Debian machines; DEBIAN=13 WHO=user ONLY=run does a part
 	@python3 -m tests.fresh $(DEBIAN:%=--debian %) $(WHO:%=--who %) $(ONLY:%=--only %) \

@@ -9,6 +9,7 @@ from hypothesis import settings
 from tests.fault_result import FaultResult
 from tests.loopback import sitecustomize as guard
 
+pytest_plugins = ["tests.order"]
 guard.stay_here()
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.register_profile("new", deadline=None)
