@@ -38,7 +38,7 @@ from app.site.timekeeping import Timekeeper
 from app.store.engine import open_writer
 from app.store.files import keep_all_private
 from app.store.integrity import sqlite_notice
-from app.store.migrations import upgrade
+from app.store.migrations import make_apart, upgrade
 from app.store.offloaded import WriterThread
 from app.store.restore import apply_pending_restore
 from app.store.store import JournalFilter, StoreDamaged, StoreFailed, Writer
@@ -61,6 +61,7 @@ def run(settings: Settings) -> None:
         keep_all_private(settings.data_dir)
         _restore_if_asked(settings, clock.now())
         try:
+            make_apart(settings.url)
             upgrade(settings.url)
             writer = open_writer(settings.url)
         except StoreDamaged as damage:

@@ -3,6 +3,7 @@
 Alembic is loaded where there is something to migrate; most starts find the newest tables.
 """
 
+import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
@@ -12,7 +13,7 @@ from typing import Any
 from sqlalchemy import Connection
 
 from app.late import late
-from app.own import own_folder
+from app.own import own_folder, own_process
 from app.store.connections import revision_of, sqlite_path, transaction, writing_engine
 from app.store.files import copy_sqlite, keep_private, make_folder
 from app.store.integrity import check_file
@@ -50,6 +51,18 @@ def upgrade(url: str, *, scripts: Path = SCRIPTS) -> str | None:
     finally:
         engine.dispose()
     return found
+
+
+def make_apart(url: str) -> None:
+    """Make a SQLite database where there is none; what that loads, 11 MB, ends with the process that does it.
+
+    Where that fails `upgrade` says why, as for any other database.
+    """
+    path = sqlite_path(url)
+    if path is not None and not path.exists():
+        command = (*own_process("app.store.migrations"), "upgrade", url)
+        quiet = subprocess.DEVNULL
+        subprocess.run(command, check=False, stdout=quiet, stderr=quiet)  # noqa: S603 - our own module
 
 
 def run_migrations(connection: Connection, *, scripts: Path = SCRIPTS) -> None:

@@ -18,6 +18,7 @@ from app.store.migrations import (
     differences,
     drop_tables,
     main,
+    make_apart,
     run_migrations,
     upgrade,
 )
@@ -69,6 +70,25 @@ def test_upgrading_makes_the_tables_once(empty_url: str) -> None:
     reader = open_reader(empty_url)
     assert reader.site() == SITE
     reader.close()
+
+
+def test_a_new_database_is_made_in_a_process_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    url = f"sqlite:///{tmp_path / 'new' / 'heliopanel.db'}"
+    make_apart(url)
+    loaded: list[str] = []
+    monkeypatch.setattr("app.store.migrations.late", loaded.append)
+    assert upgrade(url) == REVISION
+    assert loaded == []
+
+
+def test_where_none_can_be_made_apart_upgrading_says_why(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    url = f"sqlite:///{tmp_path / 'file' / 'heliopanel.db'}"
+    make_apart(url)
+    with pytest.raises((StoreFailed, OSError)):
+        upgrade(url)
 
 
 def test_tables_go_as_they_came(url: str) -> None:
