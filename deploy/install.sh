@@ -178,9 +178,9 @@ make_folders() {
         say "/etc/heliopanel.env is no longer read: move what stands there to $settings/heliopanel.toml"
 }
 
-# The old version writes it, before anything is changed.
+# The old version writes it, before anything is changed. A restore keeps what it takes the place of by itself.
 keep_backup() {
-    if [ -e "$programs/current" ] && [ -e "$data/heliopanel.db" ]; then
+    if [ -z "$restore" ] && [ -e "$programs/current" ] && [ -e "$data/machine.lock" ]; then
         kept=$data/backups/before-$(basename "$made").db
         say "writing a backup"
         as_user "$programs/current/bin/heliopanel" backup "$kept" ||
@@ -211,6 +211,7 @@ use_environment() {
     made=""
     install -D -m 0755 "$here/heliopanel" "$command"
     for service in $services; do install -D -m 0644 "$here/$service.service" "$units/$service.service"; done
+    ! runs_systemd || systemctl daemon-reload
 }
 
 # An older version refuses a newer one's data, so this is done before it starts.
@@ -228,7 +229,6 @@ start() {
         say "Heliopanel $version is installed; systemd does not run here, so nothing was started"
         return
     fi
-    systemctl daemon-reload
     for service in $services; do
         say "starting $service"
         if ! systemctl restart "$service"; then
