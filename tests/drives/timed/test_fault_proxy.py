@@ -86,6 +86,7 @@ async def test_a_stop_goes_at_once_while_polls_are_in_flight(wire: str, fault: s
             asked_s, before = asyncio.get_running_loop().time(), len(bench.proxy.stopped_at_s)
             stop = asyncio.create_task(device.stop(STOP_REGISTER, [1], what="stop"))
             await asyncio.wait([stop], timeout=0.15)
+            assert len(bench.proxy.stopped_at_s) > before, "every stop is sent"
             took_s.append(bench.proxy.stopped_at_s[before] - asked_s)
             stop.cancel()
             await asyncio.gather(stop, return_exceptions=True)
