@@ -8,6 +8,7 @@ import uvicorn
 from uvicorn.server import ServerState
 
 from app.clock import Clock, SystemClock
+from app.turnstile import Turnstile
 from app.web.live_protocol import CautiousSocket, cautious_sockets
 from app.web.server import CautiousHttp, Connections, cautious
 
@@ -102,8 +103,9 @@ class Wired:
     ) -> None:
         self.state, self.timers = ServerState(), Timers()
         self.connections = connections or Connections(100)
-        http = cautious(self.connections, *(() if deadline_s is None else (deadline_s,)))
-        ws = cautious_sockets(clock or SystemClock())
+        turnstile = Turnstile()
+        http = cautious(self.connections, turnstile, *(() if deadline_s is None else (deadline_s,)))
+        ws = cautious_sockets(clock or SystemClock(), turnstile)
         self.config = uvicorn.Config(app, http=http, ws=ws, log_config=None, lifespan="off")
         self.config.load()
 
