@@ -21,6 +21,7 @@ def manual(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Plant]:
         yield plant
 
 
+@pytest.mark.timeout(600)
 def test_it_is_read_and_searched(manual: Plant, browser: Browser) -> None:
     complaints: list[str] = []
     page = browser.new_page(viewport={"width": 1280, "height": 800})

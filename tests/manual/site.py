@@ -47,7 +47,7 @@ def _generate(folder: Path) -> Path:
     shutil.copytree(ROOT / "docs", folder / "docs")
     shutil.copy2(ROOT / CONFIG, folder / CONFIG)
     command = (sys.executable, "-m", "zensical", "build", "--strict")
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=100)
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=500)
     if done.returncode != 0:
         raise BrokenSite(COLOURS.sub("", done.stdout + done.stderr).partition("Traceback")[0])
     return folder / "manual"
