@@ -47,11 +47,12 @@ class Fork:
     at_s: float
 
     def waits(self, process_id: int) -> bool:
-        """Return whether it has computed nothing for a while."""
+        """Return whether it has slept for a while; what only waits for a processor or a disk has not."""
         fields = Path(f"/proc/{process_id}/stat").read_text().rpartition(")")[2].split()
         cpu_s = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
         now_s = time.monotonic()
-        if cpu_s - self.cpu_s > IDLE_CPU_S:
+        sleeps = fields[0] == "S"
+        if not sleeps or cpu_s - self.cpu_s > IDLE_CPU_S:
             self.cpu_s, self.at_s = cpu_s, now_s
         return now_s - self.at_s > IDLE_FOR_S
 
