@@ -10,7 +10,7 @@ export function paintMark(pen, mark, x, y) {
 }
 
 function paintText(pen, { words, size, weight }, x, y) {
-  Object.assign(pen, { font: `${weight} ${size}px ${font()}`, textAlign: "center", textBaseline: "middle",
+  Object.assign(pen, { font: `${weight} ${size}px ${font()}`, textRendering: "geometricPrecision", textAlign: "center", textBaseline: "middle",
     lineJoin: "round", strokeStyle: colour("panel"), lineWidth: 4, fillStyle: colour("text") });
   pen.setLineDash([]);
   pen.strokeText(words, x, y);
