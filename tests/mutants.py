@@ -71,7 +71,7 @@ AREAS = {
             "tests/drives/test_conformance.py", "tests/drives/test_kept_positions.py",
             "tests/drives/test_lost_commands.py", "tests/drives/test_modbus_clients.py",
             "tests/drives/test_plausibility.py", "tests/drives/test_plc.py", "tests/drives/test_plc_signs.py",
-            "tests/drives/test_unit.py",
+            "tests/drives/test_requests.py", "tests/drives/test_unit.py",
             "tests/drives/test_vendor_frames.py", "tests/drives/test_write_frame.py",
         ),
     ),

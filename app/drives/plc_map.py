@@ -65,7 +65,7 @@ class PlcMap:
         register = self._registers.get(name)
         if register is None:
             return {}
-        return dict(zip(register.addresses, register.words(value), strict=True))
+        return register.placed(value)
 
     def command(self, words: Sequence[int], first_address: int) -> DriveCommand:
         """Return the command that registers hold, or raise `ValueError` for a number without meaning."""

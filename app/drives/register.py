@@ -82,6 +82,10 @@ class Register:
         """Return the value in its unit."""
         return round(self.integer(words, first_address) * self.scale * self.sign, 9) + 0.0
 
+    def placed(self, value: float) -> dict[int, int]:
+        """Return address and word of a value in its unit, or raise `ValueError` if it does not fit."""
+        return dict(enumerate(self.words(value), self.address))
+
     def words(self, value: float) -> tuple[int, ...]:
         """Return the words for a value in its unit, or raise `ValueError` if it does not fit."""
         integer = round(value / (self.scale * self.sign))

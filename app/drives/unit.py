@@ -131,11 +131,11 @@ class Unit:
         changed = {at: word for at, word in words.items() if renewed or self._taken.get(at) != word}
         for address, run in runs(changed, words):
             what = self._what(self.profile.at(address))
-            places = range(address, address + len(run))
-            for place in places:
+            told = dict(enumerate(run, address))
+            for place in told:
                 self._taken.pop(place, None)
             await self._link.write(address, run, what=what, ticket=self._ticket, priority=self.priority)
-            self._taken |= dict(zip(places, run, strict=True))
+            self._taken |= told
         if confirmed and changed:
             self.expect(values)
 
@@ -170,8 +170,7 @@ class Unit:
         words: dict[int, int] = {}
         for name, value in values.items():
             if self.has(name):
-                register = self.profile.registers[name]
-                words |= dict(zip(register.addresses, register.words(value), strict=True))
+                words |= self.profile.registers[name].placed(value)
         return words
 
     def _rounded(self, values: Mapping[str, float]) -> dict[str, float]:

@@ -17,7 +17,7 @@ def write_frame(profile: Profile, values: Mapping[str, float], unit: int) -> byt
             raise ValueError(f"Profile {profile.name} has no register {name!r}.")
         if register.access is Access.READ:
             raise ValueError(f"Register {name} of profile {profile.name} can only be read.")
-        words |= dict(zip(register.addresses, register.words(value), strict=True))
+        words |= register.placed(value)
     frames = runs(words, words)
     if len(frames) != 1:
         raise ValueError("These registers are no neighbours: each takes a frame of its own.")
