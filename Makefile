@@ -24,7 +24,7 @@ ORDER ?=
 SEED := $(if $(filter random,$(ORDER)),$(shell od -An -N3 -tu4 /dev/urandom | tr -d ' '),$(ORDER))
 IN_ORDER := $(SEED:%=--random-order=%)
 ALONE := tests/drives/timed \
-	$(addprefix tests/machine/test_,$(addsuffix .py,disk field_events kills process storm storm_kill)) \
+	$(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk field_events kills process storm storm_kill)) \
 	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop)) \
 	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost hold_to_run kill many_holds stop_and_tabs))
 

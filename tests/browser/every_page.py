@@ -163,6 +163,7 @@ NO_PAGES = {
     "/trackers/{tracker_id}/record/photos/{number}.jpg": "a picture",
     "/trackers/{tracker_id}/strategy/program.csv": "a file",
     "/guide/pictures/{name}": "a picture",
+    "/manual": "a file",
     "/manifest.webmanifest": "for the browser",
     "/health": "for programs",
     "/ready": "for programs",

@@ -268,6 +268,7 @@ def test_it_turns_by_mouse_keyboard_and_keys(panel: Panel) -> None:
     page.mouse.down()
     page.mouse.move(box["x"] + 250, box["y"] + 170, steps=5)
     page.mouse.up()
+    settled(page)
     shots.append(scene.screenshot())
     page.mouse.move(box["x"] + 300, box["y"] + 200, steps=3)
     assert scene.screenshot() == shots[-1], "let go: it turns no further"

@@ -160,7 +160,7 @@ def test_the_live_socket_and_mqtt_take_no_number_for_another(posing: str) -> Non
         '"speed": "slow", "sequence": {}, "tc": {}, "rtt_ms": {}, "epoch": {}}}'
     )
     move = '{{"type": "move", "azimuth_deg": {}, "elevation_deg": {}, "client": "scada"}}'
-    for adapter, text in ((live._incoming, beat), (mqtt_commands._messages, move)):
+    for adapter, text in ((live._incoming, beat), (mqtt_commands.MESSAGES, move)):
         count = text.count("{}")
         adapter.validate_json(text.format(*["1"] * count))
         for place in range(count):
