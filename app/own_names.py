@@ -13,8 +13,8 @@ def own_names() -> tuple[str, ...]:
     name = socket.gethostname()
     try:
         addresses = [str(found[4][0]).partition("%")[0] for found in socket.getaddrinfo(name, None)]
-    except OSError:
-        addresses = []
+    except (OSError, UnicodeError):
+        addresses = []  # the name is unknown, or no name: a part of it is longer than 63 characters
     short = name.partition(".")[0]
     return tuple(dict.fromkeys((*ALWAYS, name, f"{short}.local", *addresses, *_outward())))
 
