@@ -112,9 +112,13 @@ class Service:
         )  # fmt: skip
         service = cls(data_dir, port, process, LinkClient(data_dir / "machine.sock"))
         service.reading = asyncio.create_task(service._read())
-        await service.link.start()
-        await service.link.watch(frozenset({"T1"}))
-        await eventually(lambda: service.link.latest() is not None)
+        try:
+            await service.link.start()
+            await service.link.watch(frozenset({"T1"}))
+            await eventually(lambda: service.link.latest() is not None)
+        except BaseException:
+            await service.stop()
+            raise
         return service
 
     async def _read(self) -> None:

@@ -42,14 +42,16 @@ def tell(path: Path, shift: str) -> None:
 @pytest.fixture
 async def service(tmp_path: Path, shift: Path) -> AsyncIterator[Service]:
     started = await Service.start(tmp_path / "data")
-    await started.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
-    await started.ask(SetClock("system"))
-    await started.ask(SetZero())
-    await started.until(lambda seen: seen.home_trusted)
-    await started.ask(SelectMode(Mode.DUAL))
-    await started.ask(Track())
-    yield started
-    await started.stop()
+    try:
+        await started.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
+        await started.ask(SetClock("system"))
+        await started.ask(SetZero())
+        await started.until(lambda seen: seen.home_trusted)
+        await started.ask(SelectMode(Mode.DUAL))
+        await started.ask(Track())
+        yield started
+    finally:
+        await started.stop()
 
 
 @pytest.mark.fault(26)
@@ -108,9 +110,11 @@ async def test_a_clock_that_shows_less_than_the_journal_is_refused(
 ) -> None:
     """A computer without a battery begins in 1970, one whose battery is low where it was switched off."""
     first = await Service.start(tmp_path / "data")
-    await first.ask(SetClock("system"))
-    await eventually(lambda: trusted(first))
-    await first.stop()
+    try:
+        await first.ask(SetClock("system"))
+        await eventually(lambda: trusted(first))
+    finally:
+        await first.stop()
     await asyncio.to_thread(tell, shift, wrong)
     again = await Service.start(tmp_path / "data")
     try:

@@ -43,11 +43,13 @@ def disk(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 async def service(disk: Path) -> AsyncIterator[Service]:
     """A service whose simulated tracker tracks, for all stories of this module, one after the other."""
     started = await Service.start(disk / "data")
-    await started.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
-    await started.ask(SetClock("system"))
-    await begin_to_track(started)
-    yield started
-    await started.stop()
+    try:
+        await started.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
+        await started.ask(SetClock("system"))
+        await begin_to_track(started)
+        yield started
+    finally:
+        await started.stop()
 
 
 async def begin_to_track(service: Service) -> None:

@@ -45,9 +45,11 @@ async def drive() -> AsyncIterator[DriveSimulator]:
 async def running(tmp_path_factory: pytest.TempPathFactory, drive: DriveSimulator) -> AsyncIterator[Service]:
     """A service in front of the drive, for all stories of this module that do not end it."""
     started = await Service.start(tmp_path_factory.mktemp("service") / "data")
-    await started.commission(drive)
-    yield started
-    await started.stop()
+    try:
+        await started.commission(drive)
+        yield started
+    finally:
+        await started.stop()
 
 
 @pytest_asyncio.fixture(loop_scope="module")
