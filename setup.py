@@ -1,5 +1,6 @@
 """Carries the folders beside the program into the wheel, where `app.own` finds them."""
 
+import filecmp
 import os
 import shutil
 from pathlib import Path
@@ -11,7 +12,15 @@ FOLDERS = ("alembic", "docs", "static", "templates")
 BUILT = ("manual",)
 """Carried where `make docs` has built it."""
 
-LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.pyc", ".*")
+NEVER_CARRIED = shutil.ignore_patterns("__pycache__", "*.pyc", ".*", "show.gif")
+"""The moving picture is the README's alone."""
+
+
+def left_out(folder: str, names: list[str]) -> set[str]:
+    """Return what is not carried of a folder; pictures of the manual come with the documents already."""
+    beside = Path("docs", *Path(folder).parts[1:])
+    same, _, _ = filecmp.cmpfiles(folder, beside, names) if folder.startswith(BUILT) else ((), (), ())
+    return {*NEVER_CARRIED(folder, names), *same}
 
 
 class BuildWithFolders(build_py):
@@ -25,7 +34,7 @@ class BuildWithFolders(build_py):
         super().run()
         if not self.editable_mode:
             for folder in (*FOLDERS, *filter(os.path.isdir, BUILT)):
-                shutil.copytree(folder, built / "_carried" / folder, ignore=LEFT_OUT)
+                shutil.copytree(folder, built / "_carried" / folder, ignore=left_out)
 
 
 setup(cmdclass={"build_py": BuildWithFolders})

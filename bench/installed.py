@@ -4,6 +4,7 @@ import marshal
 import tomllib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from filecmp import cmp
 from importlib.metadata import Distribution, PackageNotFoundError, distribution
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,7 @@ OWN = "heliopanel"
 BOUND_MB = 240.0
 MEGABYTE = 1024 * 1024
 BLOCK = 4096
-CARRIED = ("app", "alembic", "docs", "static", "templates")
+CARRIED = ("app", "alembic", "docs", "manual", "static", "templates")
 SMALL = None
 EXTRAS = ("studies", "parquet", "pdf", "postgres")
 PURPOSES = {
@@ -146,7 +147,13 @@ def _compiled_size(path: Path) -> int:
 
 
 def _is_carried(path: Path) -> bool:
-    return path.is_file() and "__pycache__" not in path.parts and path.suffix != ".po"
+    """Return whether a file goes into the wheel, as `setup.py` says; a manual that was not built does not."""
+    if not path.is_file() or "__pycache__" in path.parts or path.suffix == ".po" or path.name == "show.gif":
+        return False
+    if not path.is_relative_to(ROOT / "manual"):
+        return True
+    document = ROOT / "docs" / path.relative_to(ROOT / "manual")
+    return not document.is_file() or not cmp(path, document)
 
 
 def _on_disk(paths: Iterable[Path]) -> int:

@@ -17,10 +17,14 @@ NOT_BUILT = (
 
 
 class Manual(StaticFiles):
-    """The built site, or a sentence that says how it is built."""
+    """The built site, or a sentence that says how it is built.
 
-    def __init__(self, folder: Path) -> None:
+    A wheel carries what the site has of the documents unchanged, such as pictures, only with the documents.
+    """
+
+    def __init__(self, folder: Path, documents: Path) -> None:
         super().__init__(directory=folder, check_dir=False, html=True)
+        self.all_directories.append(documents)
         self._front = folder / "index.html"
 
     @property
@@ -42,4 +46,4 @@ class Manual(StaticFiles):
 
 def own_manual() -> Manual:
     """Return the manual of this installation."""
-    return Manual(own_folder("manual"))
+    return Manual(own_folder("manual"), own_folder("docs"))

@@ -17,6 +17,7 @@ from app.build import VERSION
 from app.store.connections import reading_engine, revision_of
 from app.store.tables import REVISION
 from app.web.guide import TITLES
+from bench.installed import BOUND_MB, MEGABYTE, OWN, installation
 from tests.e2e import product
 from tests.e2e.product import Product
 
@@ -101,6 +102,13 @@ def test_nothing_of_the_checkout_is_needed(installed: Path) -> None:
     assert not (installed / "alembic").exists()
 
 
+def test_with_its_libraries_it_takes_no_more_than_240_mb(installed: Path) -> None:
+    libraries = sum(one.size for name, one in installation().items() if name != OWN)
+    own = sum(path.stat().st_blocks * 512 for path in installed.rglob("*") if path.is_file())
+    assert libraries + own < BOUND_MB * MEGABYTE
+    assert not (installed / "app" / "_carried" / "manual" / "pictures" / "homing-1024.png").exists()
+
+
 def test_the_pages_and_all_that_they_load_and_lead_to_are_served(served: Product) -> None:
     with httpx.Client(base_url=served.url, follow_redirects=True, timeout=PATIENCE_S) as browser:
         found = {place for seed in SEEDS for place in LEADS_TO.findall(browser.get(seed).text)}
@@ -115,6 +123,7 @@ def test_the_manual_is_served_offline(served: Product) -> None:
     with httpx.Client(base_url=served.url, timeout=PATIENCE_S) as browser:
         front = browser.get("/manual/")
         loaded = re.findall(r'(?:href|src)="(?:\./)?(assets/[^"]+|manual\.css)"', front.text)
+        loaded += ["pictures/homing-1024.png", "openapi.json"]
         answers = {name: browser.get(f"/manual/{name}").status_code for name in loaded}
     assert "Heliopanel" in front.text
     assert set(answers.values()) == {200}

@@ -11,9 +11,10 @@ from tests.fakes import FakeMachine, fake_app, serving
 
 
 def app_with(manual: Path) -> FastAPI:
-    """Return a panel whose manual is in this folder."""
+    """Return a panel whose manual is in this folder, with the documents beside it."""
     app = fake_app(FakeMachine())
-    next(route for route in app.routes if getattr(route, "name", "") == "manual").app = Manual(manual)
+    served = Manual(manual, manual.parent / "docs")
+    next(route for route in app.routes if getattr(route, "name", "") == "manual").app = served
     return app
 
 
@@ -50,6 +51,13 @@ async def test_its_pages_come_under_the_policy_of_all_pages(written: Callable[[s
     assert "script-src 'self'" in front.headers["content-security-policy"]
     assert front.headers["cache-control"] == "no-cache"
     assert style.text == "h1 {}"
+
+
+async def test_what_it_shares_with_the_documents_is_carried_once(written: Callable[[str, str], Path]) -> None:
+    manual = written("index.html", "<h1>Manual</h1>")
+    written("../docs/pictures/show.svg", "<svg/>")
+    async with serving(app_with(manual)) as browser:
+        assert (await browser.get("/manual/pictures/show.svg")).text == "<svg/>"
 
 
 async def test_nothing_beside_it_is_served(written: Callable[[str, str], Path]) -> None:
