@@ -73,16 +73,24 @@ class Notifier:
         if not self._begun:
             await asyncio.to_thread(self._outbox.begin)
             self._begun = True
-        newest = await asyncio.to_thread(self._outbox.newest)
-        if newest is not None and not self._door.notifications.reaches(self._channel):
-            self._turn("")
-            await asyncio.to_thread(self._outbox.acknowledge, newest)
+        if not self._door.notifications.reaches(self._channel):
+            await self._pass_over()
+            return
+        await asyncio.to_thread(self._outbox.keep)
         while entries := await asyncio.to_thread(self._outbox.events, AT_ONCE):
             for entry in entries:
                 if not await self._send(entry):
                     self._waiting = await asyncio.to_thread(self._outbox.waiting)
                     return
             await asyncio.to_thread(self._outbox.acknowledge, entries[-1])
+        self._waiting = 0
+
+    async def _pass_over(self) -> None:
+        """Go on to the end of the journal: whoever opens the channel later hears of what happens then."""
+        newest = await asyncio.to_thread(self._outbox.newest)
+        if newest is not None:
+            self._turn("")
+            await asyncio.to_thread(self._outbox.skip, newest)
         self._waiting = 0
 
     async def _send(self, entry: JournalEntry) -> bool:

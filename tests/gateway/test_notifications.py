@@ -18,12 +18,14 @@ from app.gateway.notices import DELIVERY, SIGNATURE, signature
 from app.link.alarm_orders import SetNotifications, TestNotification
 from app.link.metrics import GatewayStatus
 from app.settings import Settings
+from app.store.store import JournalFilter
 from app.tracker.alarm_words import AlarmState
 from app.tracker.commands import CommandRejected
 from app.tracker.notifications import Channel, Notifications
 from tests.gateway.rigs import eventually, gateway, kept_plant, opened
 from tests.site.plant import Plant
 
+ALL = JournalFilter()
 SECRET = "seven green panels"  # noqa: S105 - of this test alone
 FULL = Condition("disk_full", None, "Site", "12 MB are free.")
 BAD = Condition("clock_jumped", None, "Site", "The clock jumped.")
@@ -148,6 +150,25 @@ async def test_a_webhook_hears_alarms_of_its_priorities_signed(office: Office) -
     assert (told["kind"], told["data"]["priority"]) == ("alarm_raised", 2)
     assert "12 MB are free." in told["message"]
     assert "clock_jumped" not in [one["data"]["code"] for one in office.web.told()]
+
+
+async def test_a_channel_that_nobody_has_opened_writes_nothing_and_tells_no_old_alarms(
+    office: Office, tmp_path: Path
+) -> None:
+    files = [tmp_path / f"{channel}-outbox.json" for channel in Channel]
+    before = [(path.read_bytes(), path.stat().st_mtime_ns) for path in files]
+    await office.raise_(FULL)
+    outboxes = [notifier._outbox for notifier in office.gateways._notifiers]
+    journal = outboxes[0]._reader
+    await eventually(lambda: any(one.event.data.get("code") == "disk_full" for one in journal.journal(ALL)))
+    await eventually(lambda: not any(outbox.waiting() for outbox in outboxes))
+    assert [(path.read_bytes(), path.stat().st_mtime_ns) for path in files] == before
+    await office.set(webhook_url=office.hook, webhook_priorities=(1, 2, 3))
+    await office.raise_(BAD)
+    await eventually(lambda: any(one["data"].get("code") == "clock_jumped" for one in office.web.told()))
+    assert "disk_full" not in [one["data"].get("code") for one in office.web.told()]
+    assert files[0].read_bytes() != before[0][0]
+    assert files[1].read_bytes() == before[1][0]
 
 
 async def test_what_fails_is_an_alarm_and_is_sent_again_once(office: Office) -> None:
