@@ -24,11 +24,13 @@ startOutdated();
 startLive();
 stayAwake();
 
-// Pages on which nothing is typed do not load what keeps it.
+// Pages on which nothing is typed do not load what keeps it; the page says while it is still under way.
+const { dataset } = document.documentElement;
 let keeping = null;
 function keepTyped() {
   if (keeping || !(document.querySelector("main form[method=post]:not(.action)") || sessionStorage.length)) return;
-  keeping = import("./keep.js").then(({ start }) => start());
+  dataset.keeping = "loading";
+  keeping = import("./keep.js").then(({ start }) => start()).finally(() => delete dataset.keeping);
 }
 document.addEventListener("htmx:after:swap", keepTyped);
 keepTyped();

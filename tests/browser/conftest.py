@@ -15,6 +15,7 @@ import uvicorn
 from fastapi import FastAPI
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, expect, sync_playwright
 
+from tests.e2e.chromium import PAGE_READY
 from tests.e2e.chromium import PROGRAM as CHROMIUM
 from tests.e2e.chromium import QUIET as FLAGS
 from tests.e2e.letters import environment
@@ -194,7 +195,7 @@ def opened(visitors: Visitors, plant: Plant) -> Iterator[Opened]:
         pages.append(page)
         listen(page, complaints)
         page.goto(plant.url + path)
-        page.wait_for_selector('html[data-link="live"]')
+        page.wait_for_selector(PAGE_READY)
         return page
 
     yield open_page

@@ -7,6 +7,8 @@ from typing import Protocol
 
 from playwright.sync_api import CDPSession, Locator, Page, TimeoutError
 
+from tests.e2e.chromium import PAGE_READY
+
 HOLD_MS = 700
 CONFIRM_MS = 2300
 """Longer than what counts only when it is held for 2 s."""
@@ -41,7 +43,7 @@ def arrive(page: Page, to: str) -> None:
     """Return once the page's address ends like this and its values are live, or fail with what it shows."""
     try:
         page.wait_for_url(re.compile(f"{to}$"))
-        page.wait_for_selector('html[data-link="live"]')
+        page.wait_for_selector(PAGE_READY)
     except TimeoutError as error:
         raise AssertionError(f"The page did not come to {to}: {shown(page)}.") from error
 

@@ -33,6 +33,7 @@ from tests.access.fake_hasher import FakeHasher
 from tests.browser.conftest import PATIENCE_MS, Served, listen
 from tests.browser.every_page import SHOW_ID, STUDY_ID, Leaf, Where
 from tests.browser.troubles import trouble
+from tests.e2e.chromium import PAGE_READY
 from tests.fake_alarms import alarm
 from tests.fake_data import SAMSUN, TIME_ZONE
 from tests.fakes import FakeMachine
@@ -248,7 +249,7 @@ def settle(page: Page, leaf: Leaf) -> None:
         with page.expect_navigation():
             page.evaluate(SEND, leaf.sends)
     if leaf.where in LIVE:
-        page.wait_for_selector('html[data-link="live"]')
+        page.wait_for_selector(PAGE_READY)
     expect(page.locator('[hx-trigger="load"]:not(:has(dl))')).to_have_count(0, timeout=60_000)
     if leaf.unfolds:
         page.locator(leaf.unfolds).evaluate("list => { list.open = true; }")

@@ -22,6 +22,7 @@ from app.web.languages.known import LANGUAGES
 from app.web.main import create_app
 from tests.access.fake_hasher import FakeHasher
 from tests.browser.conftest import PATIENCE_MS, SIZES, Opened, Served
+from tests.e2e.chromium import PAGE_READY
 from tests.fake_alarms import alarm
 from tests.fakes import FakeMachine, FakeReader
 from tests.web.office import HERE, PASSWORD
@@ -78,7 +79,7 @@ class Door:
         """Sign in by hand and open a page."""
         page = self.stranger(f"/login?back={path}", size)
         sign_in(page, name, PASSWORD)
-        page.wait_for_selector('html[data-link="live"]')
+        page.wait_for_selector(PAGE_READY)
         return page
 
     def kinds(self) -> list[tuple[str, str]]:

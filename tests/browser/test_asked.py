@@ -9,6 +9,7 @@ from playwright.sync_api import Locator, Page, expect
 from app.link.messages import SetClock, SetLocation
 from tests.browser.conftest import Opened, Plant
 from tests.browser.hands import CONFIRM_MS, Mouse
+from tests.e2e.chromium import PAGE_READY
 
 CLOCK = "/trackers/T1/commissioning/clock"
 HOMING = "/trackers/T1/commissioning/homing"
@@ -81,7 +82,7 @@ def test_the_key_of_a_question_is_not_covered_when_it_appears(
         page = opened(path, size, allow=("422", "409"))
         page.context.add_cookies([{"name": "language", "value": language, "url": plant.url}])
         page.goto(plant.url + path)
-        page.wait_for_selector('html[data-link="live"]')
+        page.wait_for_selector(PAGE_READY)
         return page
 
     page = asking("/trackers/T1/record")

@@ -9,6 +9,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.hands import Finger, Hands, Mouse
 from tests.browser.walking import Picture, Walker, add_tracker, move_by_hand, rooms, service, walker
+from tests.e2e.chromium import PAGE_READY
 from tests.e2e.product import DriveSim
 
 __all__ = ["rooms", "service", "walker"]
@@ -24,7 +25,7 @@ def sim_port() -> Iterator[int]:
 
 def opened(page: Page, url: str) -> None:
     page.goto(url)
-    page.wait_for_selector('html[data-link="live"]')
+    page.wait_for_selector(PAGE_READY)
 
 
 def connect(page: Page, hands: Hands, url: str, port: int, picture: Picture, name: str) -> None:

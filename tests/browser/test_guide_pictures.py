@@ -10,6 +10,7 @@ from playwright.sync_api import expect
 from tests.browser.conftest import GUIDE, PICTURES
 from tests.browser.hands import LINK_MEASURED, Mouse, middle
 from tests.browser.walking import Picture, Walker, onwards, rooms, service, set_home, trust_the_clock, walker
+from tests.e2e.chromium import PAGE_READY
 
 __all__ = ["rooms", "service", "walker"]
 TOWNS = ((41.2867, 36.33), (39.7392, -104.9903), (-33.8688, 151.2093), (21.3069, -157.8583))
@@ -27,7 +28,7 @@ def test_the_five_steps_are_pictured(walker: Walker, service: str, picture: Pict
     hands = Mouse(page)
     latitude, longitude = town_by_day()
     page.goto(f"{service}/trackers/T1/commissioning/location")
-    page.wait_for_selector('html[data-link="live"]')
+    page.wait_for_selector(PAGE_READY)
     hands.choose(page.locator(f'[name="latitude_side"][value="{"N" if latitude >= 0 else "S"}"]'))
     hands.choose(page.locator(f'[name="longitude_side"][value="{"E" if longitude >= 0 else "W"}"]'))
     hands.write(page.locator("#f-latitude"), str(abs(latitude)))

@@ -8,6 +8,7 @@ from functools import partial
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Opened, Plant
+from tests.e2e.chromium import PAGE_READY
 from tests.fakes import FakeMachine
 
 SETTINGS = "/trackers/T1/settings"
@@ -16,7 +17,7 @@ NOTE = ".kept-note"
 
 def reloaded(page: Page) -> None:
     page.reload()
-    page.wait_for_selector('html[data-link="live"]')
+    page.wait_for_selector(PAGE_READY)
 
 
 def test_what_was_typed_is_back_after_a_reload_until_it_is_saved(plant: Plant, opened: Opened) -> None:

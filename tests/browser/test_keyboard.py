@@ -15,6 +15,7 @@ from tests.browser.conftest import SIZES, Opened
 from tests.browser.every_page import EVERY_PAGE, T1
 from tests.browser.layout import LOOKS
 from tests.browser.panels import Panels
+from tests.e2e.chromium import PAGE_READY
 from tests.soak import amount
 
 # pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.
@@ -135,7 +136,7 @@ def test_nothing_is_for_a_pointer_alone(name: str, panels: Panels) -> None:
     context.add_init_script(f"({POINTED})()")
     page = context.new_page()
     page.goto(panels.at(leaf.where).url + leaf.path)
-    page.wait_for_selector('html[data-link="live"]')
+    page.wait_for_selector(PAGE_READY)
     found = page.evaluate(ONLY_POINTED)
     context.close()
     assert [one for one in found if not any(word in one for word in DRAWN)] == []

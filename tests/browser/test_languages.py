@@ -50,7 +50,7 @@ def speak(page: Page, code: str) -> None:
     """Choose a language from the list in the header."""
     page.locator(".language summary").click()
     page.locator(f'.language button[value="{code}"]').click()
-    page.wait_for_selector(f'html[lang="{LANGUAGES[code].tag}"][data-link="live"]')
+    page.wait_for_selector(f'html[lang="{LANGUAGES[code].tag}"][data-link="live"]:not([data-keeping])')
 
 
 def on_the_server(code: str) -> list[str]:

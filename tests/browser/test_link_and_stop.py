@@ -5,6 +5,7 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Opened, Plant
 from tests.browser.hands import until
+from tests.e2e.chromium import PAGE_READY
 from tests.fault_result import REAL, FaultResult
 
 LIVE = "/trackers/T1"
@@ -99,7 +100,7 @@ def test_nothing_is_sent_late_after_the_connection_returns(opened: Opened, plant
     page.evaluate("document.querySelector('form[action$=\"/zero\"]').requestSubmit()")
     page.wait_for_timeout(300)
     plant.do(lambda: setattr(plant.machine, "reachable", True))
-    page.wait_for_selector('html[data-link="live"]')
+    page.wait_for_selector(PAGE_READY)
     page.wait_for_timeout(500)
     assert [order.command.kind for order in plant.machine.orders[before:]] == []
     expect(page.locator("#link-banner")).to_be_hidden()

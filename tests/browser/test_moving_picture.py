@@ -22,6 +22,7 @@ from app.tracker.mounts.kinematics import direction
 from app.tracker.mounts.usual import mounted
 from app.tracker.snapshot import Pair
 from tests.browser.conftest import PATIENCE_MS, SCREENS, SOFTWARE_NOTE, Served
+from tests.e2e.chromium import PAGE_READY
 from tests.fake_data import NOON
 from tests.fakes import FakeMachine
 
@@ -123,7 +124,7 @@ class Panel:
         page.on("console", lambda one: self._complain(one.type, one.text, allow))
         page.on("pageerror", lambda error: self.complaints.append(f"uncaught: {error}"))
         page.goto(self.url + path)
-        page.wait_for_selector('html[data-link="live"]')
+        page.wait_for_selector(PAGE_READY)
         return page
 
     def _complain(self, kind: str, text: str, allow: str) -> None:
@@ -249,7 +250,7 @@ def test_below_the_screens_edge_nothing_is_painted_or_prepared(panel: Panel) -> 
     page = panel.open(T1)
     page.set_viewport_size({"width": 390, "height": 300})
     page.reload()
-    page.wait_for_selector('html[data-link="live"]')
+    page.wait_for_selector(PAGE_READY)
     until(page, lambda: page.locator(".scene-keys").count() == 1)
     assert page.locator(".scene").get_attribute("data-painter") is None
     page.locator(".scene").scroll_into_view_if_needed()
@@ -340,7 +341,7 @@ def test_every_mount_has_its_picture(panel: Panel) -> None:
         azimuth_deg, elevation_deg = direction(tracker.config.mount, -30.0, 10.0, SCALAR)
         tracker.position = Pair(azimuth_deg % 360.0, elevation_deg)
         page.reload()
-        page.wait_for_selector('html[data-link="live"]')
+        page.wait_for_selector(PAGE_READY)
         settled(page)
         page.locator(".scene").screenshot(path=SCREENS / f"scene-{kind}.png")
         assert share(page, CELL) > 0.01, kind

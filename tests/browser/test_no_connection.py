@@ -8,6 +8,7 @@ from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import LANGUAGES
 from tests.browser.conftest import SIZES, Opened, Plant
 from tests.browser.hands import LINK_MEASURED, until
+from tests.e2e.chromium import PAGE_READY
 from tests.fake_alarms import alarm
 
 HOMING = "/trackers/T1/commissioning/homing"
@@ -90,7 +91,7 @@ def test_stop_that_nobody_confirms_in_time_is_told_until_it_is_confirmed(opened:
 
     page.route_web_socket("**/live*", silent)
     page.reload()
-    page.wait_for_selector('html[data-link="live"]')
+    page.wait_for_selector(PAGE_READY)
     page.route("**/stop?*", lambda route: waiting.append(route))
     page.locator("#stop-key").click()
     expect(page.locator("#stop-failed")).to_have_text(NOT_CONFIRMED, timeout=2500)
@@ -115,7 +116,7 @@ def test_losing_the_connection_moves_nothing_in_any_language(opened: Opened, pla
             expect(page.locator("#stop-failed")).to_have_text(catalogue_of(code).gettext(NOT_SENT))
             assert [box(key) for key in page.locator("[data-jog]").all()] == where, (size, code)
             plant.do(lambda: setattr(plant.machine, "reachable", True))
-            page.wait_for_selector('html[data-link="live"]')
+            page.wait_for_selector(PAGE_READY)
         page.context.clear_cookies(name="language")
 
 

@@ -3,9 +3,10 @@
 from collections.abc import Callable
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from tests.browser.conftest import Opened, Plant
+from tests.e2e.chromium import PAGE_READY
 
 T1 = "/trackers/T1"
 LIST = ".saved-what"
@@ -78,3 +79,16 @@ def test_a_save_without_a_change_says_so(opened: Opened) -> None:
     page = opened(f"{T1}/settings")
     page.locator("#settings-form > .key-primary").click()
     expect(page.locator(LIST)).to_have_text("Nothing was different from what was stored.")
+
+
+def test_a_page_says_that_what_tells_it_is_still_coming(opened: Opened, plant: Plant) -> None:
+    page = opened("/account")
+    held: list[Route] = []
+    page.route("**/keep.js*", lambda route: held.append(route))
+    page.goto(f"{plant.url}{T1}/settings")
+    page.wait_for_selector('html[data-link="live"][data-keeping="loading"]')
+    held[0].continue_()
+    page.wait_for_selector(PAGE_READY)
+    page.locator("#f-deadband").fill("0.7")
+    page.locator("#settings-form > .key-primary").click()
+    expect(page.locator(LIST)).to_have_text("Deadband: 0.5 ° → 0.7 °")

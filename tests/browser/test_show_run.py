@@ -10,6 +10,7 @@ from app.store.store import PlannedShow
 from app.tracker.programs.show import ShowPlan
 from app.tracker.snapshot import ActivityName, ShowPhase
 from tests.browser.conftest import Opened, Plant
+from tests.e2e.chromium import PAGE_READY
 from tests.fake_data import SAMSUN
 
 SHOW = "/trackers/T1/shows/s1"
@@ -65,7 +66,7 @@ def test_no_word_is_wider_than_its_key(
     page = opened(SHOW, "tablet")
     page.context.add_cookies([{"name": "language", "value": language, "url": plant.url}])
     page.goto(plant.url + SHOW)
-    page.wait_for_selector('html[data-link="live"]')
+    page.wait_for_selector(PAGE_READY)
     expect(page.locator("html")).to_have_attribute("lang", language.replace("_", "-"))
     expect(page.locator("#show-keys .key:visible")).to_have_count(3 if phase is None else 2)
     wide = page.locator("#show-keys .key:visible").evaluate_all(WIDE, 24 + 10)

@@ -8,6 +8,7 @@ from playwright.sync_api import Page, expect
 from tests.browser.conftest import PATIENCE_MS
 from tests.browser.hands import Mouse, arrive, until
 from tests.browser.walking import Picture, Walker, rooms, say_where, service, walker
+from tests.e2e.chromium import PAGE_READY
 from tests.e2e.integrator import Integrator
 
 __all__ = ["rooms", "service", "walker"]
@@ -62,7 +63,7 @@ def test_simulated_day_is_played(walker: Walker, service: str, picture: Picture)
     page = walker("desk", "mouse")
     hands = Mouse(page)
     page.goto(f"{service}/trackers/T1/commissioning/location")
-    page.wait_for_selector('html[data-link="live"]')
+    page.wait_for_selector(PAGE_READY)
     say_where(page, hands)
     page.goto(f"{service}/simulate")
     hands.write(page.locator("#f-date"), "2026-06-21")

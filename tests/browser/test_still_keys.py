@@ -12,6 +12,7 @@ from app.web.languages.known import LANGUAGES
 from tests.browser.conftest import SIZES, Opened, Plant
 from tests.browser.hands import LINK_MEASURED, until
 from tests.browser.walking import service
+from tests.e2e.chromium import PAGE_READY
 
 __all__ = ["service"]
 KEY = '[data-jog="azimuth"][data-direction="1"]'
@@ -167,7 +168,7 @@ def test_the_last_reading_has_its_room_and_moves_no_key(
         page = pages[language] = opened(path, size)
         page.context.add_cookies([{"name": "language", "value": language, "url": plant.url}])
         page.reload()
-        page.wait_for_selector('html[data-link="live"]')
+        page.wait_for_selector(PAGE_READY)
         if path == HOMING:
             page.wait_for_selector(LINK_MEASURED)
     page.context.clear_cookies(name="language")

@@ -24,6 +24,7 @@ from app.tracker.snapshot import ActivityName, Event, EventKind
 from app.web.main import create_app
 from tests.access.fake_hasher import FakeHasher
 from tests.browser.hands import LINK_MEASURED, LOOK_EVERY_MS, middle, until
+from tests.e2e.chromium import PAGE_READY
 from tests.e2e.proxy import network
 from tests.fake_store import FakeReader
 from tests.site.plant import FIRST
@@ -112,7 +113,7 @@ def opened(browser: Browser, url: str, port: int, session: str) -> Page:
     context.set_default_timeout(25_000)
     page = context.new_page()
     page.goto(url + HOMING)
-    page.wait_for_selector('html[data-link="live"]')
+    page.wait_for_selector(PAGE_READY)
     return page
 
 

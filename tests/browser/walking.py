@@ -8,6 +8,7 @@ from playwright.sync_api import Browser, BrowserContext, Locator, Page, expect
 
 from tests.browser.conftest import PATIENCE_MS, SIZES, TAKES_PICTURES, WRITES_DOCS
 from tests.browser.hands import CONFIRM_MS, Hands, arrive
+from tests.e2e.chromium import PAGE_READY
 from tests.e2e.product import Product
 
 PRESSES = 5
@@ -131,7 +132,7 @@ def track(page: Page, hands: Hands) -> None:
 def commission(page: Page, hands: Hands, url: str, tracker_id: str) -> None:
     add_tracker(page, hands, url, tracker_id)
     page.goto(f"{url}/trackers/{tracker_id}/commissioning/location")
-    page.wait_for_selector('html[data-link="live"]')
+    page.wait_for_selector(PAGE_READY)
     say_where(page, hands)
     trust_the_clock(page, hands)
     home(page, hands)

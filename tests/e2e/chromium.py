@@ -26,6 +26,8 @@ QUIET = [
 ]  # fmt: skip
 """The last but one: two hidden pages of the address bar, for every page of ours, took a third of a core."""
 FLAGS = ["--headless=new", "--remote-debugging-port=0", "--window-size=1280,800", *QUIET]
+PAGE_READY = 'html[data-link="live"]:not([data-keeping])'
+"""A page whose values are live, and whose scripts have all come."""
 ANSWERS_WITHIN_S = 15.0
 LARGEST_ANSWER = 64 * 1024 * 1024
 

@@ -10,6 +10,7 @@ from PIL import Image
 from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.hands import CONFIRM_MS
+from tests.e2e.chromium import PAGE_READY
 from tests.e2e.first_hour import NOTES
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
@@ -105,7 +106,7 @@ class Newcomer:
     def sees(self, heading: str) -> None:
         """Read the heading of a page that has come and is live."""
         expect(self.page.get_by_role("heading", level=1)).to_contain_text(heading)
-        self.page.wait_for_selector('html[data-link="live"]')
+        self.page.wait_for_selector(PAGE_READY)
 
     def picture(self, name: str, says: str) -> None:
         """Photograph what is seen, for the documents."""

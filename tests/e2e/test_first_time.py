@@ -14,6 +14,7 @@ import pytest
 from playwright.sync_api import Page, expect, sync_playwright
 
 from tests.browser.conftest import CHROMIUM, FLAGS, PATIENCE_MS
+from tests.e2e.chromium import PAGE_READY
 from tests.e2e.first_hour import ABOUT, NEXT
 from tests.e2e.letters import environment
 from tests.e2e.newcomer import DOCS, WRITES_DOCS, Newcomer
@@ -62,7 +63,7 @@ def page(product: Product, town: Town) -> Iterator[Page]:
         opened = context.new_page()
         opened.on("pageerror", lambda error: complaints.append(str(error)))
         opened.goto(product.url)
-        opened.wait_for_selector('html[data-link="live"]')
+        opened.wait_for_selector(PAGE_READY)
         yield opened
         browser.close()
     assert complaints == []
