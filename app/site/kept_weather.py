@@ -16,7 +16,8 @@ from app.tracker.weather import Quality, Reading, Sensed
 from app.twins import Twins
 
 CALM_EVERY = timedelta(minutes=10)
-"""How often weather is written that demands nothing which the weather on disk does not."""
+"""How often weather is written that demands nothing which the weather on disk does not; from half of it on it
+goes with samples, since a file system writes more about each change than the change itself."""
 ROOM = 16_000
 
 log = get_logger()
@@ -68,13 +69,29 @@ class WeatherFile:
             found = replace(found, unheard_since=site_time)
         return found
 
-    def keep(self, kept: KeptWeather | None, now: datetime, limits: Iterable[WindProtection]) -> None:
-        """Have this kept if it matters or if it is time; it outlives a kill at once, a power cut soon."""
+    def keep(
+        self,
+        kept: KeptWeather | None,
+        now: datetime,
+        limits: Iterable[WindProtection],
+        samples_at: datetime | None = None,
+    ) -> None:
+        """Have this kept if it matters or if it is time; it outlives a kill at once, a power cut soon.
+
+        `samples_at` is when samples went to the disk last.
+        """
         if self._twins is None or kept is None:
             return
-        if self._matters(kept, limits) or self._stored_at is None or now - self._stored_at >= CALM_EVERY:
+        if self._matters(kept, limits) or self._is_due(now, samples_at):
             self._write(self._twins, kept)
             self._stored_at = now
+
+    def _is_due(self, now: datetime, samples_at: datetime | None) -> bool:
+        if self._stored_at is None:
+            return True
+        age = now - self._stored_at
+        goes_along = samples_at is not None and samples_at > self._stored_at
+        return age >= (CALM_EVERY / 2 if goes_along else CALM_EVERY)
 
     async def written(self) -> None:
         """Return once what was kept outlives a power cut, as far as the disk can do that."""

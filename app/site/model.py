@@ -95,7 +95,8 @@ class SiteModel:
         """Have what was measured outlive this life of the controller, as far as it matters."""
         now = self.clock.now()
         limits = (loop.config.protection.wind for loop in self.loops.values())
-        self.weather_file.keep(self.measured.kept(self.now(), now), now, limits)
+        kept = self.measured.kept(self.now(), now)
+        self.weather_file.keep(kept, now, limits, self.recorder.stored_at)
 
     def rouse(self) -> None:
         """Have every tracker tick now that the wind is to stow and has not yet: none waits for its turn."""

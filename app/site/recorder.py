@@ -64,6 +64,11 @@ class Recorder:
         """Return how many samples are not yet on the disk."""
         return self._batches.frames_waiting + sum(len(one.rows) for one in self._running())
 
+    @property
+    def stored_at(self) -> datetime | None:
+        """Return when samples went to the disk last, by the clock that ticks are timed with."""
+        return self._batches.handed_over_at
+
     def is_open(self, recording_id: str) -> bool:
         """Return whether a recording still runs."""
         return any(one.info.recording_id == recording_id for one in self._running())

@@ -29,7 +29,7 @@ class SampleBatches:
     _waiting: Recorded = NOTHING
     _under_way: Recorded = NOTHING
     _returned: deque[Recorded] = field(default_factory=deque)
-    _given_at: datetime | None = None
+    handed_over_at: datetime | None = None
 
     @property
     def frames_waiting(self) -> int:
@@ -51,9 +51,9 @@ class SampleBatches:
 
     def is_due(self, now: datetime) -> bool:
         """Return whether it is time to hand over what waits."""
-        if self._given_at is None:
-            self._given_at = now
-        since = now - self._given_at
+        if self.handed_over_at is None:
+            self.handed_over_at = now
+        since = now - self.handed_over_at
         if self._under_way is not NOTHING:
             return False
         if self._returned:
@@ -62,7 +62,7 @@ class SampleBatches:
 
     def hand_over(self, now: datetime) -> None:
         """Hand what waits to the store, in one transaction."""
-        batch, self._waiting, self._given_at = self._waiting, NOTHING, now
+        batch, self._waiting, self.handed_over_at = self._waiting, NOTHING, now
         while self._returned:
             batch = joined(self._returned.pop(), batch)
         if batch.is_empty and not self.ledger.has_along:

@@ -12,6 +12,7 @@ import pytest
 from app.drives.simulated import SimulatedDrive
 from app.link.weather_orders import ReportWeather, SimulateWeather
 from app.site import kept_weather
+from app.site.kept_weather import KeptWeather, WeatherFile
 from app.site.site import SiteOptions
 from app.tracker.commands import Move
 from app.tracker.config import Orientation, TrackerConfig
@@ -181,6 +182,30 @@ async def test_calm_reports_every_second_are_written_every_ten_minutes(
         await blow(plant, 4.0 + second % 7)
         plant.clock.advance(timedelta(seconds=1))
     assert len(writes) == 3
+
+
+async def test_calm_weather_goes_to_the_disk_with_the_samples(tmp_path: Path, writes: list[bytes]) -> None:
+    file, written_at = WeatherFile(tmp_path / "weather"), []
+    for second in range(1260):
+        now = SUMMER_NOON + timedelta(seconds=second)
+        samples_at = SUMMER_NOON + timedelta(seconds=second // 300 * 300 + 7) if second >= 307 else None
+        before = len(writes)
+        file.keep(KeptWeather(now, "plc", gust_mps=4.0), now, (), samples_at)
+        if len(writes) > before:
+            written_at.append(second)
+    await file.written()
+    assert written_at == [0, 307, 607, 907, 1207]
+
+
+async def test_samples_that_go_often_take_the_weather_with_them_every_five_minutes(
+    tmp_path: Path, writes: list[bytes]
+) -> None:
+    file = WeatherFile(tmp_path / "weather")
+    for second in range(1260):
+        now = SUMMER_NOON + timedelta(seconds=second)
+        file.keep(KeptWeather(now, "plc", gust_mps=4.0), now, (), now)
+    await file.written()
+    assert len(writes) == 5
 
 
 async def test_gusts_about_a_limit_are_written_once(lives: Lives, writes: list[bytes]) -> None:
