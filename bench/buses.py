@@ -88,7 +88,7 @@ async def _loaded(tasks: Callable[[float, list[float]], list[Awaitable[None]]]) 
 
 async def _ten_hertz(polls: list[Poll], seconds: float) -> Load:
     for poll in polls:
-        await poll()
+        await _timed(poll, [])
     return await _loaded(
         lambda begun, times_ms: [
             _paced(poll, begun + place * PERIOD_S / len(polls), begun + seconds, times_ms)
@@ -109,15 +109,16 @@ async def _ours_on_tcp(port: int, seconds: float) -> Load:
 
 async def _pymodbus_on_tcp(port: int, seconds: float) -> Load:
     clients = [AsyncModbusTcpClient("127.0.0.1", port=port, timeout=0.3, retries=0) for _ in range(DRIVES)]
-    for client in clients:
-        await client.connect()
-    load = await _ten_hertz(
-        [lambda one=one: one.read_holding_registers(0, count=REGISTERS, device_id=1) for one in clients],  # type: ignore[misc]
-        seconds,
-    )
-    for client in clients:
-        client.close()
-    return load
+    try:
+        for client in clients:
+            await client.connect()
+        return await _ten_hertz(
+            [lambda one=one: one.read_holding_registers(0, count=REGISTERS, device_id=1) for one in clients],  # type: ignore[misc]
+            seconds,
+        )
+    finally:
+        for client in clients:
+            client.close()
 
 
 async def _raw_on_tcp(port: int, seconds: float) -> Load:

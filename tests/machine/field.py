@@ -177,6 +177,8 @@ class Punctuality:
             Lateness(one.at_most_ms, one.ticks - counted.get(one.at_most_ms, 0)) for one in after.lateness
         ]
         late = [one for one in late if one.ticks]
+        if not late:
+            return cls(0, 0.0, 0.0, 0.0, 0.0)
         sums = list(accumulate(one.ticks for one in late))
 
         def at(share: float) -> float:
