@@ -23,6 +23,8 @@ WORKERS ?= 4
 ORDER ?=
 SEED := $(if $(filter random,$(ORDER)),$(shell od -An -N3 -tu4 /dev/urandom | tr -d ' '),$(ORDER))
 IN_ORDER := $(SEED:%=--random-order=%)
+# Tests start hundreds of processes: what is compiled is kept, even where the environment says otherwise.
+test soak browser: export PYTHONDONTWRITEBYTECODE :=
 ALONE := tests/drives/timed \
 	$(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk field_events kills process storm storm_kill)) \
 	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop)) \

@@ -8,11 +8,10 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Sequence
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import dataclass, field
+from http.client import HTTPConnection, HTTPException
 from pathlib import Path
-
-import httpx
 
 from app.machine.process import FIFO_PRIORITY
 from tests.ports import free_port
@@ -121,9 +120,15 @@ class Product:
         eventually(self.is_ready, "panel, machine and database answer", within_s=LONGEST_START_S)
 
     def is_ready(self) -> bool:
-        """Return whether panel, machine and database answer now."""
-        with suppress(httpx.TransportError):
-            return httpx.get(f"{self.url}/ready", timeout=2.0).status_code == 200
+        """Return whether panel, machine and database answer now.
+
+        This is asked all the time while the product starts: httpx would read every authority of the computer
+        each time, and take the processor from what is waited for.
+        """
+        asking = HTTPConnection("127.0.0.1", self.port, timeout=2.0)
+        with closing(asking), suppress(OSError, HTTPException):
+            asking.request("GET", "/ready")
+            return asking.getresponse().status == 200
         return False
 
     def starts(self, child: str) -> list[int]:
