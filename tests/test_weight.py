@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -21,12 +22,13 @@ WORKED_OUT_ELSEWHERE = {
 
 def loaded(module: str) -> set[str]:
     """Return what a process has loaded once it has loaded a module."""
-    code = f"import sys, {module}; print(*sys.modules)"
-    return set(
-        subprocess.run(
-            [sys.executable, "-c", code], check=True, capture_output=True, text=True
-        ).stdout.split()
-    )
+    return set(ran(f"import sys, {module}; print(*sys.modules)"))
+
+
+def ran(code: str) -> list[str]:
+    """Return the words that a new process prints."""
+    told = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    return told.stdout.split()
 
 
 @pytest.mark.parametrize(
@@ -42,3 +44,24 @@ def loaded(module: str) -> set[str]:
 )
 def test_a_process_loads_only_what_it_needs_all_the_time(module: str, not_needed: set[str]) -> None:
     assert loaded(module) & not_needed == set()
+
+
+def test_only_the_routes_that_stop_are_worked_out_at_the_start(tmp_path: Path) -> None:
+    code = f"""if True:
+        from pathlib import Path
+        from app.settings import Settings
+        from app.web.late_routes import LateRoute
+        from app.web.main import create_app
+        routes = create_app(Settings(data_dir=Path({str(tmp_path)!r}))).routes
+        late = [route for route in routes if isinstance(route, LateRoute)]
+        print(*(route.path for route in late if "dependant" in vars(route)))
+        assert len(late) > 250
+    """
+    assert sorted(ran(code)) == [
+        "/api/v1/stop",
+        "/api/v1/trackers/{tracker_id}/jog/{press_id}",
+        "/api/v1/trackers/{tracker_id}/stop",
+        "/stop",
+        "/trackers/{tracker_id}/end-jog",
+        "/trackers/{tracker_id}/stop",
+    ]

@@ -8,13 +8,13 @@ from functools import cache, partial
 
 import uvicorn
 from fastapi import APIRouter, FastAPI
-from fastapi.routing import APIRoute
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.routing import BaseRoute
 
 from app.access.opening import open_keeper
 from app.access.passwords import Hasher
+from app.access.roles import Permission
 from app.build import VERSION
 from app.clock import Clock, SystemClock
 from app.foreseen import Foreseen
@@ -38,12 +38,13 @@ from app.web.documented import DocumentedApp
 from app.web.gate import Gate, record_foreign
 from app.web.hub import Hub
 from app.web.languages.choice import Speech
+from app.web.late_routes import LateRoute
 from app.web.limits import StreamLimit
 from app.web.live_protocol import cautious_sockets
 from app.web.mdns import announced
 from app.web.nesting import NestingLimit
 from app.web.network import NOT_SERVED, NetworkDesk, Stage
-from app.web.routes import guarded_routes
+from app.web.routes import guarded_routes, needs
 from app.web.security import LARGEST_BODY, Guard, SecurityHeaders, Uploads, host_names
 from app.web.server import (
     FAREWELL_S,
@@ -133,16 +134,15 @@ programs there is `/api/v1/stream`."""
 
 @cache
 def _doors() -> tuple[BaseRoute, ...]:
-    """Return all ways in, shared by every panel of the process; the document tells of the API alone."""
+    """Return all ways in, shared by every panel of the process; what stops is worked out beforehand."""
     root = APIRouter()
     root.include_router(operations, include_in_schema=False)
     pages = [route for router in ROUTERS for route in router.routes]
-    for page in pages:
-        if isinstance(page, APIRoute):
-            page.include_in_schema = False
     doors = (*live.router.routes, *api_routes(), *root.routes, *pages)
     for door in doors:
         door.matches(NOWHERE)
+        if isinstance(door, LateRoute) and needs(door, Permission.STOP):
+            door.work_out()
     return doors
 
 

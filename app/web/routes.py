@@ -8,6 +8,8 @@ from functools import cache
 from starlette.routing import BaseRoute, Mount, compile_path
 from starlette.types import Scope
 
+from app.access.roles import Permission
+from app.web.late_routes import LateRoute
 from app.web.route_permissions import ROUTES
 
 STATIC = "STATIC"
@@ -45,15 +47,19 @@ def walk(routes: Iterable[BaseRoute], prefix: str = "") -> Iterator[Guarded]:
     FastAPI would tell this too, but only after building each route's whole validation anew, 0.7 s an app.
     """
     for route in routes:
-        inner = getattr(route, "original_router", None)
-        if inner is not None:
-            yield from walk(inner.routes, prefix + getattr(route, "include_context").prefix)  # noqa: B009
-        elif isinstance(route, Mount):
+        if isinstance(route, Mount):
             yield Guarded(prefix + route.path, frozenset({"GET"}), route.path_regex)
+        elif not isinstance(route, LateRoute) and (inner := getattr(route, "original_router", None)):
+            yield from walk(inner.routes, prefix + getattr(route, "include_context").prefix)  # noqa: B009
         else:
             path = prefix + str(getattr(route, "path", ""))
             methods = frozenset(getattr(route, "methods", None) or {"WS"}) - {"HEAD"}
             yield Guarded(path, methods, _pattern(path))
+
+
+def needs(route: LateRoute, permission: Permission) -> bool:
+    """Return whether the table has a route below this permission."""
+    return any(ROUTES.get(f"{method} {route.path}") is permission for method in route.methods or ())
 
 
 def key_of(routes: Iterable[Guarded], scope: Scope) -> tuple[str, dict[str, str]]:

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, ModelWrapValidatorHandler, mo
 from app.instants import Instant
 from app.tracker.reason import Reason
 from app.web.api.numbers import true_to_kind
+from app.web.late_routes import LateRoute
 
 ROOT = "/api/v1"
 Responses = dict[int | str, dict[str, Any]]
@@ -91,4 +92,4 @@ def api_router(*, tags: list[str | Enum], prefix: str = "") -> APIRouter:
     Both stand in it from its making: FastAPI works a route out once more where a router includes its own,
     and for all of the API that took a third of the panel's start.
     """
-    return APIRouter(prefix=f"{ROOT}{prefix}", tags=tags, responses=COMMON)
+    return APIRouter(prefix=f"{ROOT}{prefix}", tags=tags, responses=COMMON, route_class=LateRoute)

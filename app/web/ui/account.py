@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
@@ -13,10 +13,11 @@ from app.web.access_contexts import AccountPage
 from app.web.contexts import Field
 from app.web.deps import PanelDep, PrincipalDep, panel, principal
 from app.web.errors import problem_of
+from app.web.late_routes import page_router
 from app.web.ui.frame import site_frame
 from app.web.ui.render import whole_page
 
-router = APIRouter()
+router = page_router()
 
 Secret = Annotated[str, Form(max_length=300)]
 REFUSALS = (WrongPassword, Throttled, TooManyAtOnce, AccessRefused)

@@ -3,7 +3,7 @@
 from typing import Annotated
 from urllib.parse import urlencode
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -12,13 +12,14 @@ from app.sun.accuracy_words import title
 from app.sun.algorithms import PUBLISHED
 from app.sun.position import Location
 from app.web.deps import PanelDep
+from app.web.late_routes import page_router
 from app.web.science_contexts import AccuracyPage, AccuracyResult, AccuracyRow
 from app.web.ui.forms import Typed, Unreadable
 from app.web.ui.frame import site_frame
 from app.web.ui.logchart import LogChart, log_chart
 from app.web.ui.render import page
 
-router = APIRouter(prefix="/accuracy")
+router = page_router(prefix="/accuracy")
 NAMES = ("place", "from", "to", "samples")
 SITE, GLOBE = "site", "globe"
 MOST_SAMPLES = 200_000

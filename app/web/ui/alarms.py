@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import Annotated
 from urllib.parse import urlencode
 
-from fastapi import APIRouter, Form, Query
+from fastapi import Form, Query
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -17,11 +17,12 @@ from app.web.alarm_contexts import AlarmGuidePage, AlarmsPage, PastAlarm, ShelfF
 from app.web.contexts import Link
 from app.web.deps import ReaderDep
 from app.web.errors import NotAcceptable
+from app.web.late_routes import page_router
 from app.web.ui.frame import site_frame
 from app.web.ui.orders import PressDep
 from app.web.ui.render import page
 
-router = APIRouter(prefix="/alarms")
+router = page_router(prefix="/alarms")
 A_PAGE = 60
 VIEWS = (("active", "Active"), ("shelved", "Shelved"), ("history", "History"))
 Priorities = Annotated[list[int], Query()]

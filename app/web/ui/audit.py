@@ -2,17 +2,17 @@
 
 from urllib.parse import urlencode
 
-from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import Response
 
 from app.store.store import AuditFilter
 from app.web.deps import PanelDep, ReaderDep
+from app.web.late_routes import page_router
 from app.web.security_contexts import AccessRecordPage, AuditPage
 from app.web.ui.frame import site_frame
 from app.web.ui.render import page
 
-router = APIRouter(prefix="/audit")
+router = page_router(prefix="/audit")
 A_PAGE = 60
 
 

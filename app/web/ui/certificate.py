@@ -1,16 +1,16 @@
 """The page from which a tablet gets the authority that it has to trust."""
 
-from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import Response
 
 from app.web.deps import PanelDep
+from app.web.late_routes import page_router
 from app.web.security_contexts import CertificatePage
 from app.web.trust import trusted
 from app.web.ui.frame import site_frame
 from app.web.ui.render import page
 
-router = APIRouter(prefix="/certificate")
+router = page_router(prefix="/certificate")
 
 
 @router.get("")

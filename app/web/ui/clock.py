@@ -3,7 +3,7 @@
 from datetime import datetime
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
@@ -15,6 +15,7 @@ from app.web.clock_doubt import clock_doubt
 from app.web.contexts import ClockPage, ClockQuestion
 from app.web.deps import MachineDep, PanelDep
 from app.web.errors import NotAcceptable
+from app.web.late_routes import page_router
 from app.web.ui.formats import local
 from app.web.ui.forms import Typed, in_zone
 from app.web.ui.location import zones
@@ -22,7 +23,7 @@ from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
 from app.web.ui.wizard import tracker_of, wizard_frame
 
-router = APIRouter(prefix="/trackers/{tracker_id}/commissioning/clock")
+router = page_router(prefix="/trackers/{tracker_id}/commissioning/clock")
 DeviceAt = Annotated[str, Form(max_length=40)]
 Confirmed = Annotated[str, Form(max_length=10)]
 NAMES = ("date", "time", "time_zone")

@@ -1,17 +1,17 @@
 """Every component of the design system in every state and in each theme."""
 
-from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import Response
 
 from app.tracker.reason import Reason
 from app.web.components_context import ComponentsPage
+from app.web.late_routes import page_router
 from app.web.ui.forms import Typed
 from app.web.ui.frame import site_frame
 from app.web.ui.render import page
 from app.web.ui.themes import THEMES
 
-router = APIRouter(prefix="/components")
+router = page_router(prefix="/components")
 REASON = Reason("example", "The drive does not answer.", "Check its power and its cable.")
 
 

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal, assert_never
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.responses import Response
 
 from app.link.messages import (
@@ -13,9 +13,10 @@ from app.link.messages import (
     SiteCommand,
     UnlockSettings,
 )
+from app.web.late_routes import page_router
 from app.web.ui.orders import PressDep
 
-router = APIRouter(prefix="/trackers/{tracker_id}")
+router = page_router(prefix="/trackers/{tracker_id}")
 
 Wanted = Literal["request", "take_over", "hand_over", "keep", "release"]
 Reason = Annotated[str, Form(max_length=200)]

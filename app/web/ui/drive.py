@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -17,6 +17,7 @@ from app.link.messages import (
 from app.web.deps import MachineDep
 from app.web.drive_contexts import DrivePage
 from app.web.errors import NotAcceptable
+from app.web.late_routes import page_router
 from app.web.ui.drive_form import (
     KINDS,
     DriveForm,
@@ -31,7 +32,7 @@ from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
 from app.web.ui.wizard import tracker_of
 
-router = APIRouter(prefix="/trackers/{tracker_id}/drive")
+router = page_router(prefix="/trackers/{tracker_id}/drive")
 DONE = {
     "saved": "The drive settings are saved. Test the connection, then prove the drive.",
     "restored": "The drive is set as it was before the last change.",

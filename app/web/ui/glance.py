@@ -2,18 +2,19 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from starlette.requests import Request
 from starlette.responses import Response
 
 from app.web.contexts import Link
 from app.web.deps import MachineDep, PanelDep
+from app.web.late_routes import page_router
 from app.web.study_contexts import GlancePage
 from app.web.study_orders import glance_question
 from app.web.ui.frame import site_frame
 from app.web.ui.render import page
 
-router = APIRouter(prefix="/studies/glance")
+router = page_router(prefix="/studies/glance")
 
 
 @router.get("")

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
@@ -10,11 +10,12 @@ from app.web import guide as documents
 from app.web.deps import panel
 from app.web.errors import NotFound
 from app.web.guide_contexts import GuidePage, SearchPage
+from app.web.late_routes import page_router
 from app.web.ui.frame import site_frame
 from app.web.ui.render import page
 from app.web.ui.search import Found, found
 
-router = APIRouter()
+router = page_router()
 
 
 @router.get("/guide")

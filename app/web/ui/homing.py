@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -13,14 +13,15 @@ from app.tracker.memory import StepName
 from app.web.contexts import HomingPage
 from app.web.deps import MachineDep
 from app.web.errors import NotAcceptable
+from app.web.late_routes import page_router
 from app.web.ui.frame import snapshot_of
 from app.web.ui.orders import PressDep
 from app.web.ui.render import page
 from app.web.ui.wizard import tracker_of, wizard_frame
 from app.web.zero import zero_doubts
 
-pages = APIRouter(prefix="/trackers/{tracker_id}/commissioning/homing")
-router = APIRouter(prefix="/trackers/{tracker_id}")
+pages = page_router(prefix="/trackers/{tracker_id}/commissioning/homing")
+router = page_router(prefix="/trackers/{tracker_id}")
 STEP_SIZES = ("0.1", "1", "5")
 MOVES = {
     "azimuth-minus": (Axis.AZIMUTH, -1),

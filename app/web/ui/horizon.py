@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import Response
@@ -13,6 +13,7 @@ from app.sun.horizon import FLAT, Horizon
 from app.tracker.config import TrackerConfig
 from app.web.contexts import Link
 from app.web.deps import MachineDep
+from app.web.late_routes import page_router
 from app.web.picture_contexts import HorizonPage
 from app.web.ui.cartesian import cartesian
 from app.web.ui.forms import Typed, Unreadable, number
@@ -21,7 +22,7 @@ from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
 from app.zones import zone_of
 
-router = APIRouter(prefix="/site/horizon")
+router = page_router(prefix="/site/horizon")
 WHOLE_SKY = TrackerConfig("site", "Site")
 LONGEST = 4000
 

@@ -1,13 +1,13 @@
 """What a browser needs to put the panel on a tablet's home screen."""
 
-from fastapi import APIRouter
 from fastapi.responses import Response
 from orjson import dumps
 from starlette.requests import Request
 
 from app.web.deps import panel
+from app.web.late_routes import page_router
 
-router = APIRouter()
+router = page_router()
 COLOUR = "#f4f5f6"
 ICONS = (
     ("icon-192.png", "192x192", "any"),

@@ -4,7 +4,7 @@ from datetime import datetime, timedelta
 from typing import Annotated
 from urllib.parse import urlencode
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -12,11 +12,12 @@ from app.store.store import JournalFilter
 from app.tracker.snapshot import EventKind
 from app.web.alarm_contexts import JournalPage, JournalQuery
 from app.web.deps import ReaderDep
+from app.web.late_routes import page_router
 from app.web.ui.frame import site_frame
 from app.web.ui.render import page
 from app.zones import zone_of
 
-router = APIRouter(prefix="/journal")
+router = page_router(prefix="/journal")
 A_PAGE = 60
 Typed = Annotated[str, Query(max_length=200)]
 WRONG_DAY = "{} is no day: write it as 2026-11-21. The journal is shown from its first to its last day."

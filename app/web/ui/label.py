@@ -4,12 +4,13 @@ import ipaddress
 from typing import Annotated
 from urllib.parse import quote, urlsplit
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from starlette.requests import Request
 from starlette.responses import Response
 
 from app.web.contexts import Link
 from app.web.deps import PanelDep
+from app.web.late_routes import page_router
 from app.web.qr import qr_path
 from app.web.record_contexts import LabelPage
 from app.web.record_orders import require_tracker
@@ -17,7 +18,7 @@ from app.web.ui.forms import Typed
 from app.web.ui.frame import tracker_frame
 from app.web.ui.render import page
 
-router = APIRouter(prefix="/trackers/{tracker_id}/label")
+router = page_router(prefix="/trackers/{tracker_id}/label")
 LONGEST_ADDRESS = 120
 WRONG = "Address: type how tablets reach this panel, such as https://heliopanel.local:8000."
 

@@ -2,16 +2,17 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.responses import RedirectResponse, Response
 
 from app.web.errors import NotAcceptable
 from app.web.languages.catalogue import offered
 from app.web.languages.choice import COOKIE
+from app.web.late_routes import page_router
 from app.web.ui.paths import own_path
 from app.web.ui.theme import A_YEAR_S
 
-router = APIRouter()
+router = page_router()
 UNKNOWN_LANGUAGE = "The panel does not speak this language. Choose one from the list at the top of a page."
 
 

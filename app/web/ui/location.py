@@ -6,7 +6,7 @@ from functools import cache
 from typing import Annotated
 from zoneinfo import available_timezones
 
-from fastapi import APIRouter, Form, Query
+from fastapi import Form, Query
 from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
@@ -19,6 +19,7 @@ from app.tracker.memory import SiteState, StepName
 from app.web.contexts import LocationPage, LocationPreview
 from app.web.deps import Panel, PanelDep
 from app.web.languages import pgettext
+from app.web.late_routes import page_router
 from app.web.place import place_doubts, swapped, zone_at
 from app.web.ui import forms
 from app.web.ui.formats import compass, decimals, formatted, local
@@ -28,7 +29,7 @@ from app.web.ui.render import go, page
 from app.web.ui.wizard import tracker_of, wizard_frame
 from app.zones import zone_of
 
-router = APIRouter(prefix="/trackers/{tracker_id}/commissioning/location")
+router = page_router(prefix="/trackers/{tracker_id}/commissioning/location")
 NAMES = ("latitude", "longitude", "altitude", "latitude_side", "longitude_side", "time_zone", "device_zone")
 BY_PLACE = ""
 SIDES = {"latitude": "NS", "longitude": "EW"}

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -11,6 +10,7 @@ from app.tracker.config import TrackerConfig
 from app.tracker.snapshot import SiteSnapshot
 from app.web.contexts import Arc
 from app.web.deps import MachineDep
+from app.web.late_routes import page_router
 from app.web.protection_contexts import MachinePage
 from app.web.ui import machine_forms as forms
 from app.web.ui.forms import Typed
@@ -22,7 +22,7 @@ from app.web.ui.sunpath import arc
 from app.web.ui.wizard import tracker_of
 from app.zones import zone_of
 
-router = APIRouter(prefix="/trackers/{tracker_id}/machine")
+router = page_router(prefix="/trackers/{tracker_id}/machine")
 
 
 @router.get("")

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
@@ -16,13 +16,14 @@ from app.tracker.mounts.abilities import abilities, axis_title
 from app.web.contexts import ModeChoice, ModePage, OrientationPage
 from app.web.deps import MachineDep
 from app.web.errors import NotAcceptable
+from app.web.late_routes import page_router
 from app.web.ui.forms import Typed
 from app.web.ui.orders import Press, PressDep
 from app.web.ui.render import go, page
 from app.web.ui.scene import scene_now
 from app.web.ui.wizard import tracker_of, wizard_frame
 
-router = APIRouter(prefix="/trackers/{tracker_id}/commissioning/mode")
+router = page_router(prefix="/trackers/{tracker_id}/commissioning/mode")
 CHOICES = (
     ModeChoice(Mode.DUAL, "Dual-axis tracking", "Both axes follow the sun. The most energy."),
     ModeChoice(Mode.AZIMUTH, "Azimuth tracking", "The panel turns with the sun and keeps one elevation."),

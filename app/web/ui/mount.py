@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import Response
@@ -15,6 +15,7 @@ from app.tracker.mounts.usual import mounted
 from app.web.contexts import Frame
 from app.web.deps import MachineDep
 from app.web.errors import NotAcceptable
+from app.web.late_routes import page_router
 from app.web.mount_contexts import ActuatorFields, KindChoice, MountPage, YearDiagram
 from app.web.ui import mount_form
 from app.web.ui.forms import Typed
@@ -24,7 +25,7 @@ from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
 from app.web.ui.wizard import tracker_of
 
-router = APIRouter(prefix="/trackers/{tracker_id}/mount")
+router = page_router(prefix="/trackers/{tracker_id}/mount")
 KINDS = tuple(KindChoice(kind.value, known.title, known.summary) for kind, known in ABILITIES.items())
 MECHANISM_OPTIONS = (
     (mount_form.NO_ACTUATOR, "None: the drive counts degrees"),

@@ -4,7 +4,7 @@ from datetime import timedelta
 from math import ceil
 from typing import Annotated
 
-from fastapi import APIRouter, Form, Query
+from fastapi import Form, Query
 from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
@@ -12,6 +12,7 @@ from starlette.responses import Response
 from app.network import Network
 from app.web.deps import PanelDep, PrincipalDep, panel
 from app.web.errors import problem_of
+from app.web.late_routes import page_router
 from app.web.network import CONFIRM_WITHIN, NetworkBusy, NotOnTrial, ways
 from app.web.network_check import NetworkRefused, addresses_here
 from app.web.security_contexts import NetworkPage, NetworkTrialPage
@@ -19,7 +20,7 @@ from app.web.ui.forms import Typed
 from app.web.ui.frame import site_frame
 from app.web.ui.render import page
 
-router = APIRouter(prefix="/network")
+router = page_router(prefix="/network")
 
 NAMES = ("host", "port", "allowed_hosts", "trusted_proxies", "tls")
 FORGET_HTTPS = {"Strict-Transport-Security": "max-age=0"}

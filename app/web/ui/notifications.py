@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -13,11 +13,12 @@ from app.web.alarm_contexts import NotificationsPage
 from app.web.api.notifications import shown_to
 from app.web.contexts import Link
 from app.web.deps import MachineDep, PrincipalDep
+from app.web.late_routes import page_router
 from app.web.ui.frame import site_frame
 from app.web.ui.orders import PressDep
 from app.web.ui.render import page
 
-router = APIRouter(prefix="/site/notifications")
+router = page_router(prefix="/site/notifications")
 BACK = Link("Site", "/site")
 
 

@@ -3,7 +3,7 @@
 from enum import StrEnum
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -14,12 +14,13 @@ from app.tracker.snapshot import SiteSnapshot
 from app.web.contexts import Field, OverviewPage
 from app.web.contexts import Form as Fields
 from app.web.deps import MachineDep
+from app.web.late_routes import page_router
 from app.web.ui.frame import STEP_LABELS, site_frame
 from app.web.ui.glances import Glance, doing, glance
 from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
 
-router = APIRouter()
+router = page_router()
 MANY = 5
 """From so many trackers on they are shown in rows."""
 

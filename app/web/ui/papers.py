@@ -1,17 +1,17 @@
 """The five papers: published figures beside ours, errata with their effect, and what cannot be had."""
 
-from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import Response
 
 from app.papers.library import papers, remarks, shown
 from app.papers.result import Figure, Group, Paper, Standing
 from app.web.deps import PanelDep
+from app.web.late_routes import page_router
 from app.web.science_contexts import FigureRow, GroupTable, PaperSection, PapersPage
 from app.web.ui.frame import site_frame
 from app.web.ui.render import page
 
-router = APIRouter(prefix="/papers")
+router = page_router(prefix="/papers")
 LONG = 14
 WORDS = {Standing.AGREES: "agrees", Standing.DIFFERS: "differs", Standing.MEASURED: ""}
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from datetime import datetime
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -14,11 +14,12 @@ from app.web.access_contexts import UsersPage
 from app.web.contexts import Field
 from app.web.deps import PanelDep, PrincipalDep, panel, principal
 from app.web.errors import problem_of
+from app.web.late_routes import page_router
 from app.web.sign_ins import remember_first
 from app.web.ui.frame import site_frame
 from app.web.ui.render import go, whole_page
 
-router = APIRouter(prefix="/users")
+router = page_router(prefix="/users")
 
 Text = Annotated[str, Form(max_length=300)]
 Roles = Annotated[list[Role] | None, Form()]

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -14,13 +14,14 @@ from app.tracker.proofs import AxisEnd, ProofKind, ProofMove, StopSpeed
 from app.web.deps import MachineDep
 from app.web.drive_contexts import ProofsPage
 from app.web.errors import NotAcceptable
+from app.web.late_routes import page_router
 from app.web.ui.forms import Typed
 from app.web.ui.frame import tracker_frame
 from app.web.ui.orders import PressDep
 from app.web.ui.render import page
 from app.web.ui.wizard import tracker_of
 
-router = APIRouter(prefix="/trackers/{tracker_id}/proofs")
+router = page_router(prefix="/trackers/{tracker_id}/proofs")
 SCALE_WAYS = {"10": 10.0, "30": 30.0, "90": 90.0}
 QUESTIONS = {
     (Axis.AZIMUTH, True): "Did the panel turn to the right, clockwise as seen from above?",

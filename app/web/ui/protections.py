@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -12,6 +12,7 @@ from app.tracker.commands import LockOut, ReleaseLock, Resume, Stow
 from app.tracker.protections.words import StowName
 from app.web.deps import MachineDep
 from app.web.errors import NotAcceptable
+from app.web.late_routes import page_router
 from app.web.protection_contexts import ProtectionsPage
 from app.web.ui import protection_forms as forms
 from app.web.ui.forms import Typed
@@ -20,7 +21,7 @@ from app.web.ui.orders import PressDep
 from app.web.ui.render import page
 from app.web.ui.wizard import tracker_of
 
-router = APIRouter(prefix="/trackers/{tracker_id}")
+router = page_router(prefix="/trackers/{tracker_id}")
 
 
 @router.get("/protections")

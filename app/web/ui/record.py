@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, File, Form, UploadFile
+from fastapi import File, Form, UploadFile
 from pydantic import BaseModel
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
@@ -10,6 +10,7 @@ from starlette.responses import Response
 
 from app.link.record_orders import RecordOrder
 from app.web.deps import Panel, PanelDep, principal
+from app.web.late_routes import page_router
 from app.web.photos import LARGEST_UPLOAD, PhotoRefused
 from app.web.record import is_future, read_record
 from app.web.record_contexts import RecordPage
@@ -22,7 +23,7 @@ from app.web.ui.mode import choice
 from app.web.ui.orders import Press, PressDep
 from app.web.ui.render import go, page
 
-router = APIRouter(prefix="/trackers/{tracker_id}/record")
+router = page_router(prefix="/trackers/{tracker_id}/record")
 MOST_PHOTOS = 12
 NAMES = ("remark", "technician", "technician_drawn", "customer", "customer_drawn")
 

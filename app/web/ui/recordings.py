@@ -3,7 +3,7 @@
 from typing import Annotated
 from urllib.parse import quote, urlencode
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
@@ -14,6 +14,7 @@ from app.tracker.axes import AZIMUTH_DEFAULT, ELEVATION_DEFAULT
 from app.tracker.recording import RecordingInfo, RecordingKind
 from app.web.contexts import Forward, Frame, Link, PlayerPage, RecordingsPage
 from app.web.deps import ReaderDep
+from app.web.late_routes import page_router
 from app.web.ui.formats import local
 from app.web.ui.frame import site_frame
 from app.web.ui.orders import PressDep
@@ -22,7 +23,7 @@ from app.web.ui.scene import scene_recorded
 from app.web.ui.sunpath import diagram_of, sector
 from app.zones import zone_of
 
-router = APIRouter(prefix="/recordings")
+router = page_router(prefix="/recordings")
 SHOWN = 200
 WHOLE_SKY = sector(AZIMUTH_DEFAULT, ELEVATION_DEFAULT)
 SHOW_SPEEDS = (1, 2, 5, 10)

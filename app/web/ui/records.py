@@ -2,12 +2,13 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from starlette.requests import Request
 from starlette.responses import Response
 
 from app.web.contexts import Link
 from app.web.deps import ReaderDep
+from app.web.late_routes import page_router
 from app.web.record_contexts import ComparePage, RecordsPage, SignedRecordPage
 from app.web.record_document import Difference, differences, read_document
 from app.web.record_orders import signed_record
@@ -15,7 +16,7 @@ from app.web.record_words import told_heading, told_name, told_sections, told_ti
 from app.web.ui.frame import site_frame
 from app.web.ui.render import page
 
-router = APIRouter(prefix="/records")
+router = page_router(prefix="/records")
 TWO = "Choose two records to compare."
 GIVEN = ("Signatures", "Photos")
 BACK = Link("Records", "/records")

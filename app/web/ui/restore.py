@@ -2,19 +2,20 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import Response
 
 from app.web.deps import PanelDep
+from app.web.late_routes import page_router
 from app.web.restore_contexts import RestorePage
 from app.web.restoring import choice
 from app.web.restoring import restore as hand_over
 from app.web.ui.frame import site_frame
 from app.web.ui.render import page
 
-router = APIRouter(prefix="/restore")
+router = page_router(prefix="/restore")
 
 
 @router.get("")

@@ -1,18 +1,18 @@
 """Step 5: start tracking, or show the movement of any day."""
 
-from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import Response
 
 from app.tracker.memory import StepName
 from app.web.contexts import RunPage
 from app.web.deps import MachineDep
+from app.web.late_routes import page_router
 from app.web.ui.mode import choice
 from app.web.ui.render import page
 from app.web.ui.scene import scene_now
 from app.web.ui.wizard import tracker_of, wizard_frame
 
-router = APIRouter(prefix="/trackers/{tracker_id}/commissioning/run")
+router = page_router(prefix="/trackers/{tracker_id}/commissioning/run")
 
 
 @router.get("")

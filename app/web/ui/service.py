@@ -2,13 +2,14 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.requests import Request
 from starlette.responses import Response
 
 from app.tracker.commands import BeginService, ConfirmClear, EndService
 from app.web.deps import MachineDep
 from app.web.errors import NotAcceptable
+from app.web.late_routes import page_router
 from app.web.protection_contexts import ServicePage
 from app.web.ui.frame import tracker_frame
 from app.web.ui.orders import PressDep
@@ -16,7 +17,7 @@ from app.web.ui.render import page
 from app.web.ui.wizard import tracker_of
 from app.web.ui.zero import blocked_without_zero
 
-router = APIRouter(prefix="/trackers/{tracker_id}/service")
+router = page_router(prefix="/trackers/{tracker_id}/service")
 LOOK_FIRST = "Go and look, then tick that nobody stands where the panel moves."
 
 

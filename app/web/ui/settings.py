@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
@@ -18,6 +18,7 @@ from app.tracker.mounts.abilities import axis_title
 from app.web.contexts import SettingsPage
 from app.web.deps import MachineDep, panel
 from app.web.errors import NotAcceptable
+from app.web.late_routes import page_router
 from app.web.limit_review import limit_review, must_ask, require_proof
 from app.web.ui.forms import Typed, Unreadable
 from app.web.ui.frame import tracker_frame
@@ -26,7 +27,7 @@ from app.web.ui.render import go, page
 from app.web.ui.settings_words import SETTINGS
 from app.web.ui.wizard import tracker_of
 
-router = APIRouter(prefix="/trackers/{tracker_id}/settings")
+router = page_router(prefix="/trackers/{tracker_id}/settings")
 
 
 class SettingsForm(BaseModel):

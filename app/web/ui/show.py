@@ -3,7 +3,7 @@
 from typing import Annotated
 from urllib.parse import urlencode
 
-from fastapi import APIRouter, Form, Query
+from fastapi import Form, Query
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
@@ -15,6 +15,7 @@ from app.tracker.reason import Reason
 from app.web.contexts import Link
 from app.web.deps import Panel, PanelDep
 from app.web.errors import NotFound
+from app.web.late_routes import page_router
 from app.web.show_contexts import ShowPlanPage, ShowRunPage
 from app.web.ui.formats import local
 from app.web.ui.frame import snapshot_of, tracker_frame
@@ -26,7 +27,7 @@ from app.web.ui.sunpath import diagram_of, outline
 from app.web.ui.wizard import tracker_of
 from app.zones import zone_of
 
-router = APIRouter(prefix="/trackers/{tracker_id}")
+router = page_router(prefix="/trackers/{tracker_id}")
 NO_LOCATION = Reason("no_location", "The location is not saved yet.", "Do step 1 of commissioning first.")
 NO_SHOW = Reason("no_show", "No show stands at its start.", "Plan a show and go to its start.")
 

@@ -3,7 +3,7 @@
 from collections.abc import Awaitable
 from typing import Annotated
 
-from fastapi import APIRouter, Form, Query
+from fastapi import Form, Query
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
@@ -13,6 +13,7 @@ from app.web.access_contexts import SignInPage
 from app.web.contexts import Field
 from app.web.deps import PanelDep, PrincipalDep, panel
 from app.web.errors import problem_of
+from app.web.late_routes import page_router
 from app.web.sign_ins import (
     first_made,
     forget_first,
@@ -26,7 +27,7 @@ from app.web.ui.frame import site_frame
 from app.web.ui.paths import own_path
 from app.web.ui.render import page
 
-router = APIRouter()
+router = page_router()
 
 TITLES = {
     "login": "Sign in",

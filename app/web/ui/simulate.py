@@ -3,7 +3,7 @@
 from datetime import date, datetime, time, timedelta
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from pydantic import BaseModel, Field
 from starlette.requests import Request
 from starlette.responses import Response
@@ -16,6 +16,7 @@ from app.tracker.weather_day import WeatherDay, day_of_scenario, read_steps, ste
 from app.web.contexts import SimulatePage
 from app.web.deps import MachineDep, PanelDep
 from app.web.errors import NotAcceptable
+from app.web.late_routes import page_router
 from app.web.simulations import SimulationRequest
 from app.web.ui.forms import Typed, Unreadable
 from app.web.ui.frame import site_frame
@@ -25,7 +26,7 @@ from app.web.ui.render import go, page
 from app.web.ui.wizard import tracker_of
 from app.zones import zone_of
 
-router = APIRouter(prefix="/simulate")
+router = page_router(prefix="/simulate")
 NAMES = ("tracker", "date", "mode", "azimuth", "elevation", "weather", "begins", "steps")
 STEP = timedelta(seconds=1)
 NO_WEATHER, BY_STEPS = "none", "steps"

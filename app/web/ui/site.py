@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
@@ -14,6 +14,7 @@ from app.tracker.config import DriveKind
 from app.tracker.memory import SiteState
 from app.tracker.snapshot import SiteSnapshot
 from app.web.deps import MachineDep
+from app.web.late_routes import page_router
 from app.web.metrics import counted
 from app.web.site_contexts import SitePage
 from app.web.ui import weather_forms as forms
@@ -22,7 +23,7 @@ from app.web.ui.frame import site_frame
 from app.web.ui.orders import Press, PressDep
 from app.web.ui.render import go, page
 
-router = APIRouter(prefix="/site")
+router = page_router(prefix="/site")
 
 HOLDERS = {"SunSpec over Modbus TCP": "sunspec", "SunSpec over Modbus RTU": "sunspec", "MQTT": "mqtt"}
 """How control tells who holds it, for every gateway that takes orders."""

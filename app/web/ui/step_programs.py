@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Annotated
 from urllib.parse import urlencode
 
-from fastapi import APIRouter, Form, Query
+from fastapi import Form, Query
 from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
@@ -20,6 +20,7 @@ from app.web.attachments import kept_as
 from app.web.contexts import Link
 from app.web.deps import MachineDep, PanelDep
 from app.web.errors import NotAcceptable
+from app.web.late_routes import page_router
 from app.web.study_contexts import Options, ProgramView, StepProgramPage
 from app.web.study_orders import NewProgram, chosen_program
 from app.web.ui.formats import angle
@@ -30,7 +31,7 @@ from app.web.ui.plot import Curve, Plot, line_plot
 from app.web.ui.render import page
 from app.web.ui.wizard import tracker_of
 
-router = APIRouter(prefix="/studies/program")
+router = page_router(prefix="/studies/program")
 CSV = "text/csv; charset=utf-8"
 LIGHTS: Options = (
     (ProgramLight.MELISS, "Meliss's clear sky, as in Alexandru's paper"),

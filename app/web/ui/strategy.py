@@ -4,7 +4,7 @@ from dataclasses import replace
 from datetime import datetime, timedelta
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from fastapi.responses import PlainTextResponse
 from starlette.requests import Request
 from starlette.responses import Response
@@ -19,6 +19,7 @@ from app.web.attachments import kept_as
 from app.web.contexts import Link
 from app.web.deps import MachineDep, PanelDep
 from app.web.errors import NotAcceptable
+from app.web.late_routes import page_router
 from app.web.strategies import asked_day, day_of, kept_program
 from app.web.strategy_contexts import ProgramTable, StrategyDayPart, StrategyPage
 from app.web.ui.formats import angle
@@ -47,7 +48,7 @@ from app.web.ui.strategy_forms import (
 from app.web.ui.wizard import tracker_of
 from app.zones import zone_of
 
-router = APIRouter(prefix="/trackers/{tracker_id}/strategy")
+router = page_router(prefix="/trackers/{tracker_id}/strategy")
 SAVED = "The strategy is saved."
 HOURS = tuple(range(0, 25, 3))
 

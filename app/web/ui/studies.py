@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, File, Form, UploadFile
+from fastapi import File, Form, UploadFile
 from pydantic import BaseModel
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
@@ -23,13 +23,14 @@ from app.studies.request import (
 from app.studies.result import MODE_NAMES, STRATEGY_NAMES
 from app.web.deps import MachineDep, PanelDep
 from app.web.errors import NotAcceptable
+from app.web.late_routes import page_router
 from app.web.study_contexts import Choice, Options, StudiesPage, StudyOptions
 from app.web.study_orders import NewStudy
 from app.web.ui.forms import Typed
 from app.web.ui.frame import site_frame
 from app.web.ui.render import go, page
 
-router = APIRouter(prefix="/studies")
+router = page_router(prefix="/studies")
 
 NUMBERS = (
     ("latitude", "latitude_deg", "Latitude", -90, 90),

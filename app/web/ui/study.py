@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from fastapi.responses import StreamingResponse
 from starlette.requests import Request
 from starlette.responses import Response
@@ -13,6 +13,7 @@ from app.studies.result import CaseResult, StudyResult, curves_csv, table_csv
 from app.web.contexts import Link
 from app.web.deps import PanelDep
 from app.web.languages.dates import day_and_month, spelled
+from app.web.late_routes import page_router
 from app.web.study_contexts import StudyPage, StudyView
 from app.web.ui.formats import UNKNOWN, decimals, words
 from app.web.ui.frame import site_frame
@@ -21,7 +22,7 @@ from app.web.ui.plot import Curve, Plot, bar_plot, line_plot
 from app.web.ui.render import go, page
 from app.web.ui.studies import TRANSPOSITIONS
 
-router = APIRouter(prefix="/studies")
+router = page_router(prefix="/studies")
 MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
 HOUR_MARKS = tuple(float(hour) for hour in range(0, 25, 3))
 MOST_CURVES = 9

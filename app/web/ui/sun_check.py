@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -13,12 +13,13 @@ from app.tracker.memory import Sighting
 from app.web.contexts import SunCheckPage
 from app.web.deps import MachineDep
 from app.web.errors import NotAcceptable
+from app.web.late_routes import page_router
 from app.web.ui.frame import tracker_frame
 from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
 from app.web.ui.wizard import tracker_of
 
-router = APIRouter(prefix="/trackers/{tracker_id}/sun-check")
+router = page_router(prefix="/trackers/{tracker_id}/sun-check")
 
 
 @router.get("")

@@ -1,12 +1,12 @@
 """The sun path of a tracker in both forms: seen from above, and azimuth against elevation."""
 
-from fastapi import APIRouter
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import Response
 
 from app.link.messages import SiteDetail
 from app.web.deps import MachineDep
+from app.web.late_routes import page_router
 from app.web.picture_contexts import SunPathPage
 from app.web.ui.cartesian import cartesian
 from app.web.ui.frame import tracker_frame
@@ -15,7 +15,7 @@ from app.web.ui.sunpath import diagram
 from app.web.ui.wizard import tracker_of
 from app.zones import zone_of
 
-router = APIRouter(prefix="/trackers/{tracker_id}/sun-path")
+router = page_router(prefix="/trackers/{tracker_id}/sun-path")
 
 
 @router.get("")

@@ -2,14 +2,15 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
+from app.web.late_routes import page_router
 from app.web.ui.paths import own_path
 from app.web.ui.themes import CHOICES, choice_of
 
-router = APIRouter()
+router = page_router()
 A_YEAR_S = 31_536_000
 
 

@@ -3,7 +3,7 @@
 from datetime import timedelta
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
@@ -14,11 +14,12 @@ from app.access.users import AccessRefused
 from app.web.access_contexts import TokensPage
 from app.web.deps import PanelDep, PrincipalDep, panel
 from app.web.errors import problem_of
+from app.web.late_routes import page_router
 from app.web.ui.forms import Typed
 from app.web.ui.frame import site_frame
 from app.web.ui.render import whole_page
 
-router = APIRouter(prefix="/tokens")
+router = page_router(prefix="/tokens")
 FIELDS = ("name", "trackers", "days", "pin")
 EMPTY = {"name": "", "trackers": "", "days": "90", "pin": ""}
 

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
@@ -12,6 +12,7 @@ from app.tracker.commands import Move, Park, ResetFault, Stop, Track
 from app.tracker.config import Orientation
 from app.web.contexts import TrackerPage
 from app.web.deps import MachineDep
+from app.web.late_routes import page_router
 from app.web.ui.forms import Typed
 from app.web.ui.frame import tracker_frame
 from app.web.ui.mode import choice, limits_text
@@ -22,7 +23,7 @@ from app.web.ui.sunpath import diagram
 from app.web.ui.wizard import tracker_of
 from app.web.ui.zero import blocked_without_zero
 
-router = APIRouter(prefix="/trackers/{tracker_id}")
+router = page_router(prefix="/trackers/{tracker_id}")
 
 
 class GoForm(BaseModel):

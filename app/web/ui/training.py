@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Form
+from fastapi import Form
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -13,13 +13,14 @@ from app.tracker.simulated_weather import SimulatedStation
 from app.tracker.training import LESSONS, Lesson, Subject
 from app.web.deps import MachineDep
 from app.web.drive_contexts import TrainingPage, TrainingPlace
+from app.web.late_routes import page_router
 from app.web.ui.formats import words
 from app.web.ui.frame import tracker_frame
 from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
 from app.web.ui.wizard import tracker_of
 
-router = APIRouter(prefix="/trackers/{tracker_id}/training")
+router = page_router(prefix="/trackers/{tracker_id}/training")
 TRAINED_PROFILE = "simulated-plc"
 
 

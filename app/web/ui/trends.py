@@ -3,18 +3,19 @@
 from enum import StrEnum
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from starlette.requests import Request
 from starlette.responses import Response
 
 from app.link.messages import UnknownTracker
 from app.web.contexts import Link
 from app.web.deps import SnapshotDep
+from app.web.late_routes import page_router
 from app.web.picture_contexts import TrendsPage
 from app.web.ui.frame import tracker_frame
 from app.web.ui.render import page
 
-router = APIRouter(prefix="/trackers/{tracker_id}/trends")
+router = page_router(prefix="/trackers/{tracker_id}/trends")
 
 
 class Span(StrEnum):

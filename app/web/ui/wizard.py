@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 
-from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
@@ -11,11 +10,12 @@ from app.tracker.commissioning import Step, StepStatus
 from app.tracker.memory import StepName
 from app.web.contexts import Forward, Frame, Link, ProgressPart
 from app.web.deps import MachineDep
+from app.web.late_routes import page_router
 from app.web.ui.frame import STEP_LABELS, step_marks, tracker_frame
 from app.web.ui.orders import PressDep
 from app.web.ui.render import page
 
-router = APIRouter(prefix="/trackers/{tracker_id}/commissioning")
+router = page_router(prefix="/trackers/{tracker_id}/commissioning")
 ORDER = tuple(StepName)
 PAGES_TO_SAVE = ("/commissioning/location", "/commissioning/mode")
 
