@@ -8,12 +8,12 @@ from typing import Annotated
 
 import typer
 
+from app.adapter import adapter
 from app.energy.motion import DriveCosts
 from app.energy.plane import Around, Transposition
 from app.extras import need
 from app.fast.comparison import ClearSky, Comparison
 from app.own import own_process
-from app.studies.folder import RESULT
 from app.studies.jobs import JOB, TOLD, Began, CompareSite, Job, Refused, SiteCompared, Studied, Told, WorkOut
 from app.studies.request import LightModel, Module, Span, StudyMode, StudyRequest, StudyStrategy
 from app.studies.result import StudyResult, table_csv
@@ -79,7 +79,7 @@ def study(
     )
     result = _work_out(WorkOut(request, str(weather) if weather else None))
     if as_json:
-        typer.echo(RESULT.dump_json(result).decode())
+        typer.echo(adapter(StudyResult).dump_json(result).decode())
     elif as_csv:
         typer.echo(table_csv(result), nl=False)
     else:

@@ -2,9 +2,10 @@
 
 from typing import Any, Generic, TypeVar
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 from pydantic_core import PydanticSerializationError
 
+from app.adapter import adapter
 from app.alarms.alarm import Alarm
 from app.store.store import StoreFailed
 from app.tracker.config import TrackerConfig
@@ -19,7 +20,7 @@ class Documents(Generic[T]):
     """One kind of document: the type and what to call it in a sentence."""
 
     def __init__(self, shape: type[T], name: str) -> None:
-        self._adapter: TypeAdapter[T] = TypeAdapter(shape)
+        self._adapter = adapter(shape)
         self._name = name
 
     def write(self, value: T) -> str:

@@ -4,8 +4,9 @@ import json
 from dataclasses import replace
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 
+from app.adapter import adapter
 from app.audit.difference import difference
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import RejectedSetting, TrackerMemory, TrackerState
@@ -18,9 +19,6 @@ NO_TRACKER = "What is stored is not a tracker."
 MEMORY = "memory "
 Place = tuple[str | int, ...]
 Rejected = tuple[RejectedSetting, ...]
-
-_tracker: TypeAdapter[TrackerState] = TypeAdapter(TrackerState)
-_config: TypeAdapter[TrackerConfig] = TypeAdapter(TrackerConfig)
 
 
 def mended(text: str, tracker_id: str, accepted: TrackerConfig | None = None) -> TrackerState | None:
@@ -55,8 +53,8 @@ def fallen_back(
     values that do not fit, with their reasons; `why` is told of the others.
     """
     told = [one for one in rejected if one.what.startswith(MEMORY)]
-    before = _config.dump_python(state.config, mode="json") if stored is None else stored
-    old, new = difference(before, _config.dump_python(accepted, mode="json"))
+    before = adapter(TrackerConfig).dump_python(state.config, mode="json") if stored is None else stored
+    old, new = difference(before, adapter(TrackerConfig).dump_python(accepted, mode="json"))
     for path in sorted(old | new):
         name = _name(path.split("."))
         reason = next((one.why for one in rejected if _is_within(name, one.what)), why)
@@ -76,13 +74,13 @@ def _document(text: str) -> dict[str, Any] | None:
 
 def _piecewise(document: dict[str, Any], tracker_id: str) -> tuple[TrackerState, Rejected] | None:
     """Return the tracker with usual values where stored ones do not fit, and which; None: it cannot be."""
-    usual = _tracker.dump_python(
+    usual = adapter(TrackerState).dump_python(
         TrackerState(TrackerConfig(tracker_id, tracker_id), TrackerMemory()), mode="json"
     )
     rejected: list[RejectedSetting] = []
     for _ in range(MOST_MENDED):
         try:
-            found = _tracker.validate_json(json.dumps(document))
+            found = adapter(TrackerState).validate_json(json.dumps(document))
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
             change = _give_way(document, usual, first["loc"], first["msg"].removeprefix("Value error, "))

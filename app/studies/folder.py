@@ -8,8 +8,9 @@ from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 
+from app.adapter import adapter
 from app.studies.jobs import WeatherSeen
 from app.studies.request import StudyRequest
 from app.studies.result import StudyResult
@@ -76,12 +77,6 @@ class WeatherFile:
     seen: WeatherSeen
 
 
-STATE: TypeAdapter[StudyState] = TypeAdapter(StudyState)
-REQUEST: TypeAdapter[StudyRequest] = TypeAdapter(StudyRequest)
-RESULT: TypeAdapter[StudyResult] = TypeAdapter(StudyResult)
-SEEN: TypeAdapter[WeatherSeen] = TypeAdapter(WeatherSeen)
-
-
 class StudyFolder:
     """`studies/<id>/` with state, request and result, and `weather/` with files and what each is."""
 
@@ -96,16 +91,16 @@ class StudyFolder:
             self.delete(old.study_id)
         folder = self._studies / state.study_id
         folder.mkdir(parents=True)
-        _write(folder / "request.json", REQUEST.dump_json(request))
+        _write(folder / "request.json", adapter(StudyRequest).dump_json(request))
         self.note(state)
 
     def note(self, state: StudyState) -> None:
         """Keep how far a study is."""
-        _write(self._folder(state.study_id) / "state.json", STATE.dump_json(state))
+        _write(self._folder(state.study_id) / "state.json", adapter(StudyState).dump_json(state))
 
     def keep(self, study_id: str, result: StudyResult) -> None:
         """Keep what a study found."""
-        _write(self._folder(study_id) / "result.json", RESULT.dump_json(result))
+        _write(self._folder(study_id) / "result.json", adapter(StudyResult).dump_json(result))
 
     def states(self, alive: Iterable[str]) -> list[StudyState]:
         """Return all studies, newest first; one that is open but not alive was interrupted."""
@@ -126,11 +121,11 @@ class StudyFolder:
 
     def request(self, study_id: str) -> StudyRequest:
         """Return what a study was asked."""
-        return REQUEST.validate_json(self._read(study_id, "request.json"))
+        return adapter(StudyRequest).validate_json(self._read(study_id, "request.json"))
 
     def result(self, study_id: str) -> StudyResult:
         """Return what a study found; raises `StudyUnknown` while there is nothing."""
-        return RESULT.validate_json(self._read(study_id, "result.json"))
+        return adapter(StudyResult).validate_json(self._read(study_id, "result.json"))
 
     def delete(self, study_id: str) -> None:
         """Remove a study and everything of it."""
@@ -146,7 +141,9 @@ class StudyFolder:
             path = head.with_suffix("")
             if path.is_file():
                 found.append(
-                    WeatherFile(path.name, path.stat().st_size, SEEN.validate_json(head.read_bytes()))
+                    WeatherFile(
+                        path.name, path.stat().st_size, adapter(WeatherSeen).validate_json(head.read_bytes())
+                    )
                 )
         return found
 
@@ -167,7 +164,7 @@ class StudyFolder:
     def accept_weather(self, name: str, new: Path, seen: WeatherSeen) -> WeatherFile:
         """Keep a weather file that was found good under its name."""
         path = new.replace(self._weather / name)
-        _write(path.with_name(f"{name}.json"), SEEN.dump_json(seen))
+        _write(path.with_name(f"{name}.json"), adapter(WeatherSeen).dump_json(seen))
         return WeatherFile(name, path.stat().st_size, seen)
 
     def delete_weather(self, name: str) -> None:
@@ -197,7 +194,7 @@ class StudyFolder:
     def _state(self, name: str) -> StudyState | None:
         """Return a stored state; None for a folder that is none, or is being removed."""
         try:
-            return STATE.validate_json((self._studies / name / "state.json").read_bytes())
+            return adapter(StudyState).validate_json((self._studies / name / "state.json").read_bytes())
         except (OSError, ValidationError):
             return None
 

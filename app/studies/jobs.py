@@ -5,7 +5,7 @@ from datetime import date
 from enum import StrEnum
 from typing import Annotated, Literal
 
-from pydantic import Discriminator, TypeAdapter
+from pydantic import ConfigDict, Discriminator, TypeAdapter
 
 from app.energy.optimiser import MOST_STEPS
 from app.fast.comparison import ClearSky, Comparison
@@ -189,8 +189,9 @@ class Refused:
 Told = Annotated[
     Began | Studied | WeatherSeen | ProgramsFound | SiteCompared | Refused, Discriminator("tell")
 ]
-JOB: TypeAdapter[Job] = TypeAdapter(Job)
-TOLD: TypeAdapter[Told] = TypeAdapter(Told)
+LATE = ConfigDict(defer_build=True)
+JOB: TypeAdapter[Job] = TypeAdapter(Job, config=LATE)
+TOLD: TypeAdapter[Told] = TypeAdapter(Told, config=LATE)
 
 
 def _program_errors(asked: ProgramQuestion) -> list[str]:

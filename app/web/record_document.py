@@ -5,9 +5,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 from pydantic_core import to_jsonable_python
 
+from app.adapter import adapter
 from app.audit.chain import canonical
 from app.store.documents import plain
 from app.store.store import Photo, SignedRecord, StoreFailed
@@ -63,9 +64,6 @@ class Difference:
         return self.first != self.second
 
 
-_adapter: TypeAdapter[RecordDocument] = TypeAdapter(RecordDocument)
-
-
 def document(
     record: CommissioningRecord,
     kept_by: str,
@@ -87,7 +85,7 @@ def document(
         photos=tuple(NamedPhoto(one.digest, one.caption, one.width, one.height) for one in photos),
         state=to_jsonable_python(record),
     )
-    text = plain(canonical(_adapter.dump_python(made, mode="json")))
+    text = plain(canonical(adapter(RecordDocument).dump_python(made, mode="json")))
     return text, hashlib.sha256(text.encode()).hexdigest()
 
 
@@ -98,7 +96,7 @@ def read_document(signed: SignedRecord) -> RecordDocument:
             f"Record {signed.head.number} is not what was signed: its hash does not fit. Restore a backup."
         )
     try:
-        return _adapter.validate_json(signed.document)
+        return adapter(RecordDocument).validate_json(signed.document)
     except ValidationError as error:
         raise StoreFailed(
             f"Record {signed.head.number} cannot be read. Install the version that wrote it."

@@ -9,16 +9,16 @@ import pandas as pd
 import pvlib
 import pytest
 
+from app.adapter import adapter
 from app.energy.program import step_program
 from app.energy.stepping import Steps, midpoint_h
 from app.studies.compute import finished, work_out
 from app.studies.days import REPRESENTATIVE, days_of
-from app.studies.folder import RESULT
 from app.studies.jobs import ProgramLight, ProgramQuestion
 from app.studies.light import clear_days, standard_offset_h, weather_days
 from app.studies.programs import find_programs
 from app.studies.request import Fidelity, LightModel, Span, StudyMode, StudyRequest, StudyStrategy
-from app.studies.result import CaseResult, curves_csv, table_csv
+from app.studies.result import CaseResult, StudyResult, curves_csv, table_csv
 from app.studies.weather import HOURS, WeatherFormat, WeatherRefused, read_weather
 from app.sun.position import Location
 from app.tracker.axes import AxisConfig
@@ -199,7 +199,7 @@ def test_what_was_found_can_be_kept_and_written_as_tables() -> None:
         request, days, work_out(request, days, lambda done, of, _: told.append(done * 10 + of)), 0.5
     )
     assert told == [2, 12, 22]
-    assert RESULT.validate_json(RESULT.dump_json(result)) == result
+    assert adapter(StudyResult).validate_json(adapter(StudyResult).dump_json(result)) == result
     assert table_csv(result).splitlines()[1].startswith("fixed,continuous,")
     assert len("".join(curves_csv(result)).splitlines()) == 1 + 2 * 24
 

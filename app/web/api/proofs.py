@@ -2,8 +2,9 @@
 
 from typing import Annotated
 
-from pydantic import Field, TypeAdapter
+from pydantic import Field
 
+from app.adapter import adapter
 from app.link.messages import AnswerDirection, AnswerScale, CheckConnection, RestoreDrive, SetSoftLimit
 from app.tracker.axes import Axis
 from app.tracker.config import DriveConfig, TrackerConfig
@@ -17,7 +18,6 @@ from app.web.deps import MachineDep
 from app.web.errors import NotFound
 
 router = api_router(prefix="/trackers/{tracker_id}", tags=["drive"])
-_drive: TypeAdapter[DriveConfig] = TypeAdapter(DriveConfig)
 
 
 class DriveProofs(Output):
@@ -118,4 +118,6 @@ async def restore_drive(tracker_id: TrackerId, sender: SenderDep, machine: Machi
 
 def _changed(drive: DriveConfig, change: DriveChange) -> DriveConfig:
     given = change.model_dump(mode="json", exclude_none=True)
-    return _drive.validate_python(merged(_drive.dump_python(drive, mode="json"), given))
+    return adapter(DriveConfig).validate_python(
+        merged(adapter(DriveConfig).dump_python(drive, mode="json"), given)
+    )

@@ -7,9 +7,10 @@ from typing import Annotated
 
 from fastapi import Body
 from fastapi.responses import PlainTextResponse, Response
-from pydantic import Field, TypeAdapter, WrapValidator
+from pydantic import Field, WrapValidator
 from starlette.requests import Request
 
+from app.adapter import adapter
 from app.link.messages import ConfigureTracker
 from app.show.strategy_told import StrategyDay
 from app.tracker.programs.examples import EXAMPLES
@@ -36,7 +37,6 @@ CSV_BODY = {
         "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
     }
 }
-_program: TypeAdapter[StepProgram] = TypeAdapter(StepProgram)
 
 
 class ProgramFormat(StrEnum):
@@ -63,7 +63,7 @@ async def read_program(
     program = kept_program(await detail_of(machine, tracker_id))
     if format is ProgramFormat.CSV:
         return PlainTextResponse(to_table(program), media_type=CSV)
-    return Response(_program.dump_json(program), media_type="application/json")
+    return Response(adapter(StepProgram).dump_json(program), media_type="application/json")
 
 
 @router.put("/program", summary="Have a tracker follow a step program", responses=NOT_FOUND | REFUSED)

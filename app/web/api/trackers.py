@@ -3,9 +3,10 @@
 from dataclasses import dataclass, fields
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import Field, ValidationError
 from starlette.requests import Request
 
+from app.adapter import adapter
 from app.link.messages import AddTracker, ConfigureTracker, RemoveTracker, TrackerDetail, UnknownTracker
 from app.sun.position import Algorithm
 from app.tracker.axes import Axis
@@ -28,7 +29,6 @@ from app.web.limit_review import limit_review, require_proof
 
 router = api_router(prefix="/trackers", tags=["trackers"])
 
-_config: TypeAdapter[TrackerConfig] = TypeAdapter(TrackerConfig)
 Positive = Annotated[float, Field(gt=0, le=1000)]
 NULLABLE = ("unit", "steps_per_revolution")
 AxisAngle = Annotated[float, Field(ge=-720, le=720, description="Axis degrees, not wrapped.")]
@@ -248,7 +248,9 @@ def _changed(config: TrackerConfig, change: TrackerChange, latitude_deg: float |
         config = mounted(config, kind, latitude_deg)
     given = merged(change.model_dump(mode="json", exclude_none=True), _back_to_default(change))
     try:
-        return _config.validate_python(merged(_config.dump_python(config, mode="json"), given))
+        return adapter(TrackerConfig).validate_python(
+            merged(adapter(TrackerConfig).dump_python(config, mode="json"), given)
+        )
     except ValidationError as error:
         sentences = (one["msg"].removeprefix("Value error, ") for one in error.errors())
         raise NotAcceptable(" ".join(sentences)) from error

@@ -5,6 +5,7 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from app.adapter import adapter
 from app.tracker.protections.fault_classes import CLASSES
 from app.tracker.protections.machine_config import (
     GUARDED,
@@ -18,7 +19,6 @@ from app.tracker.protections.machine_config import (
 from app.web.protection_contexts import FaultRow, Setting
 from app.web.ui.forms import Typed, Unreadable
 
-_config: TypeAdapter[MachineProtection] = TypeAdapter(MachineProtection)
 NUMBERS: dict[str, tuple[str, str, float, float, str]] = {
     "overtravel_deg": (
         "Over-travel that is borne",
@@ -114,7 +114,7 @@ def read(typed: Typed) -> MachineProtection | None:
     if typed.errors:
         return None
     try:
-        return _config.validate_python(found)
+        return adapter(MachineProtection).validate_python(found)
     except ValidationError as error:
         for one in error.errors():
             typed.errors[_field_of(one["loc"])] = one["msg"].removeprefix("Value error, ")

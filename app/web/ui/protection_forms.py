@@ -2,14 +2,14 @@
 
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 
+from app.adapter import adapter
 from app.tracker.protections.config import PROTECTED, ProtectionConfig
 from app.tracker.protections.words import Facing, Reaction, StowName
 from app.web.protection_contexts import Group, Setting
 from app.web.ui.forms import Typed, Unreadable
 
-_config: TypeAdapter[ProtectionConfig] = TypeAdapter(ProtectionConfig)
 NUMBERS: dict[str, tuple[str, str, float, float, str]] = {
     "wind.gust_mps": ("Stow at a gust of", "m/s", 1, 60, "The fastest wind of 3 s."),
     "wind.mean_mps": ("Stow at a mean of", "m/s", 1, 60, "Over 10 minutes."),
@@ -102,7 +102,7 @@ def read(typed: Typed) -> ProtectionConfig | None:
     if typed.errors:
         return None
     try:
-        return _config.validate_python(found)
+        return adapter(ProtectionConfig).validate_python(found)
     except ValidationError as error:
         for one in error.errors():
             where = str(one["loc"][0]) if one["loc"] else "wind"
