@@ -86,7 +86,10 @@ class Product:
 
     @classmethod
     def start(cls, data_dir: Path, *, command: Sequence[str] = (), **more: str) -> "Product":
-        """Return once panel, machine and database answer; `more` are further settings."""
+        """Return once panel, machine and database answer; `more` are further settings.
+
+        An installed product finds its modules compiled; this one keeps them compiled too, for the next start.
+        """
         port = free_port()
         environment = os.environ | {
             "HELIOPANEL_DATA_DIR": str(data_dir),
@@ -94,6 +97,7 @@ class Product:
             "HELIOPANEL_LOG_FORMAT": "json",
             **{f"HELIOPANEL_{name.upper()}": value for name, value in more.items()},
         }
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)
         process = subprocess.Popen(
             [*(command or (COMMAND,)), "serve"],
             env=environment,
