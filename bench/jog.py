@@ -27,7 +27,7 @@ class Size:
     busy: int = 10
 
 
-SMALL = Size(of_each=2, of_cut=4, freezes=1, trackers=2, busy=2)
+SMALL = Size(of_each=1, of_cut=2, freezes=1, trackers=2, busy=1)
 
 
 def measure(size: Size = Size()) -> list[Row]:

@@ -12,7 +12,6 @@ from cyclonedx.model.bom import Bom
 from cyclonedx.model.component import Component, ComponentType
 from cyclonedx.output.json import JsonV1Dot6
 from cyclonedx.schema import SchemaVersion
-from cyclonedx.validation.json import JsonStrictValidator
 from packageurl import PackageURL
 
 from release.refused import Refused
@@ -41,6 +40,8 @@ def bill(sources: Path, version: str, made_at: datetime) -> str:
     bom.components.update(parts)
     bom.register_dependency(root, parts)
     text = JsonV1Dot6(bom).output_as_string(indent=2) + "\n"
+    from cyclonedx.validation.json import JsonStrictValidator  # noqa: PLC0415 - takes seconds to load
+
     errors = JsonStrictValidator(SchemaVersion.V1_6).validate_str(text)
     if errors is not None:
         raise Refused(f"The bill of materials does not follow its schema: {errors}")

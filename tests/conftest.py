@@ -1,5 +1,6 @@
 """What all tests share: they stay on this computer; the same drawn examples in every run; none is timed."""
 
+import gc
 import os
 from collections.abc import Callable
 
@@ -14,6 +15,12 @@ guard.stay_here()
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.register_profile("new", deadline=None)
 settings.load_profile("new" if "HELIOPANEL_SOAK" in os.environ else "same")
+
+
+def pytest_collection_finish() -> None:
+    """Spare every later collection of garbage what was loaded with all tests: it stays."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from app.web.route_permissions import ROUTES
+from tests.soak import amount
 
 T1 = "/trackers/T1"
 T3 = "/trackers/T3"
@@ -154,6 +155,8 @@ STATES = {
     "lost-homing": Leaf(f"{T1}/commissioning/homing", Where.LOST),
 }
 EVERY_PAGE = PAGES | STATES
+LOOKED_AT = amount([*PAGES, *list(STATES)[::2]], list(EVERY_PAGE))
+"""What test_every_page.py opens."""
 NO_PAGES = {
     "/backup": "a file",
     "/certificate/ca.crt": "a file",

@@ -15,13 +15,13 @@ import pytest
 from playwright.sync_api import Browser, Page
 
 from app.web.route_permissions import ROUTES
+from tests.browser.axe_rules import looked_at
 from tests.browser.conftest import SIZES
-from tests.browser.every_page import EVERY_PAGE, NO_PAGES, PAGES, STATES, STUDY_ID, Leaf, Where, unvisited
+from tests.browser.every_page import EVERY_PAGE, LOOKED_AT, NO_PAGES, STUDY_ID, Leaf, Where, unvisited
 from tests.browser.layout import LOOKS, faults, unfold
 from tests.browser.letters import foreign
 from tests.browser.panels import Panels, resize
 from tests.browser.reading import tree_faults
-from tests.soak import amount
 
 MOST_BYTES = 150_000
 SCREEN_SIZES = SIZES | {"wall": (1920, 1080)}
@@ -52,7 +52,7 @@ def panels(browser: Browser) -> Iterator[Panels]:
         yield Panels(browser, stack)
 
 
-@pytest.fixture(scope="module", params=amount([*PAGES, *list(STATES)[::2]], list(EVERY_PAGE)))
+@pytest.fixture(scope="module", params=LOOKED_AT)
 def shown(request: pytest.FixtureRequest, panels: Panels) -> Iterator[Shown]:
     leaf = EVERY_PAGE[request.param]
     with panels.shown(leaf) as page:
@@ -112,6 +112,10 @@ def test_a_page_fits_with_everything_open(shown: Shown) -> None:
 
 def test_a_screen_reader_finds_its_way(shown: Shown) -> None:
     assert tree_faults(shown.page) == []
+
+
+def test_axe_finds_nothing(shown: Shown) -> None:
+    assert looked_at(shown.page, shown.name, "en") == []
 
 
 def test_nothing_moves_by_itself_for_who_wants_it_still(shown: Shown) -> None:

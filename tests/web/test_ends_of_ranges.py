@@ -1,9 +1,12 @@
 """Every parameter of every call at the ends of its range and just beyond: never a mistake of the panel."""
 
+import json
+
 import httpx
 import pytest
 
 from app.store.migrations import upgrade
+from app.web.openapi import DOCUMENT as KEPT
 from app.web.simulations import BUSY, Busy, Simulations
 from app.web.studies import Studies
 from tests.fakes import PORT, fake_app
@@ -11,7 +14,7 @@ from tests.fault_result import FaultResult
 from tests.fuzz import LastingMachine
 from tests.web.ends import Case, Document
 
-DOCUMENT = Document(fake_app().openapi(), {"tracker_id": "T1", "recording_id": "show-1"})
+DOCUMENT = Document(json.loads(KEPT.read_text()), {"tracker_id": "T1", "recording_id": "show-1"})
 ENDLESS = "/api/v1/stream"
 COMPUTES = "/api/v1/studies/programs"
 """Looks for programs in the panel's own thread for seconds; its values are those of `/studies`."""
