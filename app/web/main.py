@@ -191,6 +191,8 @@ def run(settings: Settings, clock: Clock | None = None, on_answer: OnAnswer | No
         serve = _serve if stage.trial is None else _try
         stage = serve(stage, clock, on_answer)
         gc.unfreeze()
+        if stage is not None:
+            gc.collect()
 
 
 def _try(stage: Stage, clock: Clock | None, on_answer: OnAnswer | None) -> Stage | None:
