@@ -26,7 +26,7 @@ IN_ORDER := $(SEED:%=--random-order=%)
 # Tests start hundreds of processes: what is compiled is kept, even where the environment says otherwise.
 test soak browser: export PYTHONDONTWRITEBYTECODE :=
 ALONE := tests/drives/timed \
-	$(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk field_events kills process storm storm_kill)) \
+	$(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk field_events process storm storm_kill)) \
 	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop)) \
 	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost hold_to_run kill many_holds stop_and_tabs))
 

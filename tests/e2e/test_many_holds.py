@@ -7,7 +7,7 @@ import random
 from tests.e2e.holds import ONE_BY_ONE, Tally, busy, rig
 from tests.e2e.socket_page import LetGo
 
-TRACKERS = 8
+TRACKERS = 16
 CUTS, OTHERS = 1000, 25
 BUSY = 10
 LONGEST_MS = 300.0
