@@ -45,20 +45,22 @@ def measure(size: Size = Size()) -> list[Row]:
     with tempfile.TemporaryDirectory() as folder:
         base = Path(folder)
         return [
-            asyncio.run(_panel_row(base / "panel", size.panel_kills)),
-            *asyncio.run(_load_rows(base / "load", size)),
+            *asyncio.run(_tracking_rows(base / "tracking", size)),
             *asyncio.run(_kill_rows(base / "kill", size.controller_kills)),
         ]
 
 
-async def _panel_row(data_dir: Path, kills: int) -> Row:
+async def _tracking_rows(data_dir: Path, size: Size) -> list[Row]:
+    """Return what panel kills and load do to a tracker that tracks; no frame may be lost under either."""
     drive, service = await DriveSimulator.start(), await Service.start(data_dir)
     try:
         await _track(service, drive)
         before = await service.link.metrics()
-        for _ in range(kills):
+        for _ in range(size.panel_kills):
             await kill_panel(service)
         after = await service.link.metrics()
+        quiet = await _lateness(service, asyncio.sleep(size.storm_s))
+        loaded = await _lateness(service, _storm(service.port, size))
     finally:
         await service.stop()
         await drive.stop()
@@ -66,8 +68,13 @@ async def _panel_row(data_dir: Path, kills: int) -> Row:
     ticks = after.trackers["T1"].ticks - before.trackers["T1"].ticks
     missed, lost = max(0, wanted - ticks), _gaps(data_dir)
     told = f"{missed} of {wanted} ticks missed, {lost} frames lost"
-    name = f"panel killed {kills} times while tracking"
-    return must_hold(name, told, "none", COMMAND, holds=missed == lost == 0)
+    name = f"panel killed {size.panel_kills} times while tracking"
+    stormed = f"tick lateness, {size.viewers} viewers and a request storm"
+    return [
+        must_hold(name, told, "none", COMMAND, holds=missed == lost == 0),
+        _late_row("tick lateness, nobody looks", quiet),
+        _late_row(stormed, loaded),
+    ]
 
 
 async def _track(service: Service, drive: DriveSimulator) -> None:
@@ -85,19 +92,6 @@ def _gaps(data_dir: Path) -> int:
         missing += sum(round(step) - 1 for step in (elapsed_s[1:] - elapsed_s[:-1]).tolist() if step > 1.5)
     reader.close()
     return missing
-
-
-async def _load_rows(data_dir: Path, size: Size) -> list[Row]:
-    drive, service = await DriveSimulator.start(), await Service.start(data_dir)
-    try:
-        await _track(service, drive)
-        quiet = await _lateness(service, asyncio.sleep(size.storm_s))
-        loaded = await _lateness(service, _storm(service.port, size))
-    finally:
-        await service.stop()
-        await drive.stop()
-    stormed = f"tick lateness, {size.viewers} viewers and a request storm"
-    return [_late_row("tick lateness, nobody looks", quiet), _late_row(stormed, loaded)]
 
 
 async def _lateness(service: Service, meanwhile: Awaitable[None]) -> list[int]:
