@@ -16,8 +16,10 @@ from app.tracker.weather import Quality, Reading, Sensed
 from app.twins import Twins
 
 CALM_EVERY = timedelta(minutes=10)
-"""How often weather is written that demands nothing which the weather on disk does not; from half of it on it
-goes with samples, since a file system writes more about each change than the change itself."""
+"""How often weather is written that demands nothing which the weather on disk does not."""
+SOON_ENOUGH, ALONG = timedelta(minutes=4), timedelta(seconds=3)
+"""From this age on it goes along with samples, within so long of them: a file system writes more about
+a change than the change itself, and about both at once."""
 ROOM = 16_000
 
 log = get_logger()
@@ -90,8 +92,8 @@ class WeatherFile:
         if self._stored_at is None:
             return True
         age = now - self._stored_at
-        goes_along = samples_at is not None and samples_at > self._stored_at
-        return age >= (CALM_EVERY / 2 if goes_along else CALM_EVERY)
+        goes_along = samples_at is not None and now - samples_at <= ALONG
+        return age >= (SOON_ENOUGH if goes_along else CALM_EVERY)
 
     async def written(self) -> None:
         """Return once what was kept outlives a power cut, as far as the disk can do that."""

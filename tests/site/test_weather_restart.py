@@ -188,7 +188,7 @@ async def test_calm_weather_goes_to_the_disk_with_the_samples(tmp_path: Path, wr
     file, written_at = WeatherFile(tmp_path / "weather"), []
     for second in range(1260):
         now = SUMMER_NOON + timedelta(seconds=second)
-        samples_at = SUMMER_NOON + timedelta(seconds=second // 300 * 300 + 7) if second >= 307 else None
+        samples_at = SUMMER_NOON + timedelta(seconds=(second - 7) // 300 * 300 + 7) if second >= 307 else None
         before = len(writes)
         file.keep(KeptWeather(now, "plc", gust_mps=4.0), now, (), samples_at)
         if len(writes) > before:
@@ -197,7 +197,7 @@ async def test_calm_weather_goes_to_the_disk_with_the_samples(tmp_path: Path, wr
     assert written_at == [0, 307, 607, 907, 1207]
 
 
-async def test_samples_that_go_often_take_the_weather_with_them_every_five_minutes(
+async def test_samples_that_go_often_take_the_weather_with_them_every_four_minutes(
     tmp_path: Path, writes: list[bytes]
 ) -> None:
     file = WeatherFile(tmp_path / "weather")
@@ -205,7 +205,7 @@ async def test_samples_that_go_often_take_the_weather_with_them_every_five_minut
         now = SUMMER_NOON + timedelta(seconds=second)
         file.keep(KeptWeather(now, "plc", gust_mps=4.0), now, (), now)
     await file.written()
-    assert len(writes) == 5
+    assert len(writes) == 6
 
 
 async def test_gusts_about_a_limit_are_written_once(lives: Lives, writes: list[bytes]) -> None:
