@@ -78,14 +78,16 @@ class WeatherFile:
         limits: Iterable[WindProtection],
         samples_at: datetime | None = None,
     ) -> None:
-        """Have this kept if it matters or if it is time; it outlives a kill at once, a power cut soon.
+        """Have this kept if it matters or if it is time; it outlives a kill at once.
 
-        `samples_at` is when samples went to the disk last.
+        What matters is synced, and outlives a power cut soon; calm weather reaches the disk with what
+        else goes there. `samples_at` is when samples went to the disk last.
         """
         if self._twins is None or kept is None:
             return
-        if self._matters(kept, limits) or self._is_due(now, samples_at):
-            self._write(self._twins, kept)
+        matters = self._matters(kept, limits)
+        if matters or self._is_due(now, samples_at):
+            self._write(self._twins, kept, synced=matters)
             self._stored_at = now
 
     def _is_due(self, now: datetime, samples_at: datetime | None) -> bool:
@@ -104,7 +106,7 @@ class WeatherFile:
     async def close(self, kept: KeptWeather | None) -> None:
         """Keep the last that is known."""
         if self._twins is not None and kept is not None and kept != self._stored:
-            self._write(self._twins, kept)
+            self._write(self._twins, kept, synced=True)
         await self.written()
 
     def _matters(self, kept: KeptWeather, limits: Iterable[WindProtection]) -> bool:
@@ -114,14 +116,15 @@ class WeatherFile:
             return True
         return any(_is_high(one, kept) and not _is_high(one, stored) for one in limits)
 
-    def _write(self, twins: Twins, kept: KeptWeather) -> None:
+    def _write(self, twins: Twins, kept: KeptWeather, *, synced: bool) -> None:
         try:
             twins.write(0, FORM.dump_json(kept))
         except (OSError, ValueError) as error:
             log.warning("weather_not_kept", reason=str(error))
             return
         self._stored = kept
-        self._syncing = asyncio.get_running_loop().run_in_executor(None, _sync, twins)
+        if synced:
+            self._syncing = asyncio.get_running_loop().run_in_executor(None, _sync, twins)
 
 
 def _is_high(limits: WindProtection, kept: KeptWeather) -> bool:
