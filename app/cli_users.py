@@ -39,7 +39,7 @@ def show() -> None:
     with _store() as store:
         found = store.load().users
     if not found:
-        typer.echo("There are no users: whoever sits at this computer may do everything.")
+        typer.echo("There are no users: a local user at the controller's computer has full access.")
     for name in sorted(found):
         typer.echo(f"{name:32}  {_words(found[name].roles)}")
 

@@ -8,7 +8,7 @@ LONGEST_SHOWN = 60
 LABEL = re.compile(r"(?!-)[A-Za-z0-9_-]{1,63}(?<!-)")
 DIGITS_AND_DOTS = re.compile(r"[0-9.]+")
 
-ADVICE = "Enter only the host, such as plc-1.local or 192.168.0.20."
+ADVICE = "Enter the host only, such as plc-1.local or 192.168.0.20."
 
 
 def host_fault(host: str) -> str | None:
@@ -16,7 +16,7 @@ def host_fault(host: str) -> str | None:
     if _is_address(host) or _is_name(host):
         return None
     shown = host[:LONGEST_SHOWN].encode("unicode_escape").decode("ascii")
-    wrong = f"'{shown}' is not a host name or an address."
+    wrong = f"'{shown}' is not a valid host name or address."
     return f"{wrong} {ADVICE}"
 
 

@@ -38,7 +38,7 @@ def after(alarms: tuple[AlarmNow, ...], order: AlarmOrder, at: datetime, actor: 
         changes = {"state": AlarmState.ACKNOWLEDGED, "acknowledged_at": at, "acknowledged_by": actor}
     elif isinstance(order, ShelveAlarm):
         if not order.reason.strip():
-            raise ValueError("Say why the alarm is shelved.")
+            raise ValueError("Enter the reason for shelving the alarm.")
         changes = {
             "state": AlarmState.SHELVED, "shelved_until": at, "shelved_by": actor, "shelved_for": order.reason
         }  # fmt: skip

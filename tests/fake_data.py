@@ -55,7 +55,7 @@ def commissioned(tracker_id: str, name: str, *, tracking: bool) -> TrackerState:
         mode=Mode.DUAL,
         orientation=HELD,
         tracking_on=tracking,
-        home=HomeTrust(COMMISSIONED_AT, "operator", "set by hand", 3),
+        home=HomeTrust(COMMISSIONED_AT, "operator", "set manually", 3),
         confirmations={step: Confirmation(COMMISSIONED_AT, "operator", 1) for step in steps},
     )
     return TrackerState(TrackerConfig(tracker_id, name), memory)

@@ -91,7 +91,7 @@ class FakeTracker:
             case SetZero():
                 self.before_zero = (self.position, self.memory.home)
                 self.position = Pair(0.0, 0.0)
-                self.memory = replace(self.memory, home=HomeTrust(now, actor, "set by hand", 3))
+                self.memory = replace(self.memory, home=HomeTrust(now, actor, "set manually", 3))
             case UndoZero():
                 if self.before_zero is None:
                     raise CommandRejected(NO_FORMER_HOME)
@@ -122,7 +122,7 @@ class FakeTracker:
 
     def _jog(self, jog: Jog) -> None:
         if jog.press_id in self.dead:
-            raise CommandRejected(Reason("press_dead", "This press has ended.", "Press the key again."))
+            raise CommandRejected(Reason("press_dead", "This jog command has ended.", "Press the key again."))
         if self.press not in (None, jog.press_id):
             raise CommandRejected(
                 Reason("busy", "Somebody else is moving this axis.", "Wait until it stands.")

@@ -96,16 +96,21 @@ GATEWAYS = (
         GatewayStatus.LISTENING,
         "127.0.0.1:5021",
         2,
-        writes="10.0.0.5 may write; everybody else only reads.",
+        writes="10.0.0.5 may write; all other hosts can only read.",
     ),
     GatewayMetrics(
         "MQTT",
         GatewayStatus.CONNECTING,
         "broker.example:8883",
-        error="The broker at broker.example:8883 is not reached: Connection refused. It is tried again.",
+        error=(
+            "The broker at broker.example:8883 cannot be reached: Connection refused. "
+            "Heliopanel retries automatically."
+        ),
         waiting=128,
     ),
-    GatewayMetrics("SunSpec over Modbus RTU", GatewayStatus.OFF, "set HELIOPANEL_SUNSPEC_SERIAL to open it"),
+    GatewayMetrics(
+        "SunSpec over Modbus RTU", GatewayStatus.OFF, "set HELIOPANEL_SUNSPEC_SERIAL to enable it"
+    ),
 )
 
 
@@ -189,7 +194,7 @@ class FakeMachine:
                 self.site = replace(self.site, name=name)
             case AddTracker(config=config):
                 if config.tracker_id in self.trackers:
-                    raise ValueError(f"There is already a tracker {config.tracker_id}.")
+                    raise ValueError(f"Tracker {config.tracker_id} already exists.")
                 fresh = TrackerState(config, TrackerMemory())
                 self.trackers[config.tracker_id] = FakeTracker(fresh, Pair(12.0, 8.0))
             case ConfigureTracker(config=config):

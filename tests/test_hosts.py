@@ -47,7 +47,7 @@ def test_a_host_is_taken_as_it_is(host: str) -> None:
 
 @pytest.mark.parametrize("host", BAD, ids=BAD.values())
 def test_what_can_be_no_host_is_refused_with_a_sentence(host: str) -> None:
-    with pytest.raises(ValueError, match=r"is not a host name or an address\. Enter only the host"):
+    with pytest.raises(ValueError, match=r"is not a valid host name or address\. Enter the host only"):
         checked_host(host)
     told = host_fault(host)
     assert told is not None
@@ -68,7 +68,7 @@ async def test_every_order_that_names_a_host_refuses_what_is_none(host: str) -> 
         CheckConnection("T1", drive),
     ]
     for order in orders:
-        with pytest.raises(ValueError, match="is not a host name or an address"):
+        with pytest.raises(ValueError, match="is not a valid host name or address"):
             await plant.ask(order)
     await plant.close()
 
@@ -86,12 +86,12 @@ async def test_every_order_that_names_a_host_refuses_what_is_none(host: str) -> 
 async def test_alarms_are_sent_to_no_host_that_is_none(where: Notifications) -> None:
     plant = make_plant()
     await plant.start()
-    with pytest.raises(ValueError, match="is not a host name or an address"):
+    with pytest.raises(ValueError, match="is not a valid host name or address"):
         await plant.ask(SetNotifications(where))
     await plant.close()
 
 
 @pytest.mark.parametrize("field", ["mqtt_host", "smtp_host"])
 def test_a_setting_that_is_no_host_ends_the_start(field: str) -> None:
-    with pytest.raises(ValidationError, match="is not a host name or an address"):
+    with pytest.raises(ValidationError, match="is not a valid host name or address"):
         Settings(**{field: "127.0.0.1;rm"})  # type: ignore[arg-type]

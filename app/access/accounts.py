@@ -46,7 +46,7 @@ class Accounts:
         with self._store.writing() as change:
             users = change.users()
             if name in users:
-                raise AccessRefused(f"There is a user {name} already; choose another name.")
+                raise AccessRefused(f"User {name} already exists; choose another name.")
             if not users and not user.is_administrator:
                 raise AccessRefused("The first user must be an administrator, to be able to add the others.")
             change.put_user(user)
@@ -136,17 +136,17 @@ def note(change: Change, by: Principal, action: str, thing: str, now: datetime, 
 
 def _known(users: dict[str, User], name: str) -> User:
     if (user := users.get(name.lower())) is None:
-        raise AccessRefused(f"There is no user {name}; heliopanel users list shows all.")
+        raise AccessRefused(f"There is no user {name}; heliopanel users list shows all users.")
     return user
 
 
 def _check(wish: TokenWish) -> None:
     if not 1 <= len(wish.name.strip()) <= LONGEST_TOKEN_NAME:
-        raise AccessRefused("Give the token a name of 1 to 64 characters that says what it is for.")
+        raise AccessRefused("Enter a token name of 1 to 64 characters that describes its purpose.")
     if not wish.scopes and not wish.pin:
-        raise AccessRefused(f"Choose what the token is for: {', '.join(Scope)}.")
+        raise AccessRefused(f"Choose the purpose of the token: {', '.join(Scope)}.")
     if not timedelta(hours=1) <= wish.lifetime <= LONGEST_LIFETIME:
-        raise AccessRefused("A token lives for 1 hour to 366 days.")
+        raise AccessRefused("A token is valid for 1 hour to 366 days.")
 
 
 def _words(words: Iterable[str]) -> str:

@@ -240,11 +240,13 @@ class Keeper:
             session = self._session(principal)
             token = self.book.tokens.get(session.token_id)
             if token is None:
-                raise AccessRefused("Only the page of a cabinet has a PIN; sign in with a name and password.")
+                raise AccessRefused(
+                    "A PIN works only on a cabinet display; sign in with a name and password."
+                )
             subject = (f"pin:{token.token_id}",)
             self._wait(subject, principal)
             if not self._passwords.matches(token.pin_hash, pin):
-                self._fail(f"pin of {token.name}", subject, principal.address)
+                self._fail(f"PIN of {token.name}", subject, principal.address)
             until = self._clock.now() + sessions.STEP_UP
             with self._store.writing() as change:
                 change.forgive(subject)
@@ -291,7 +293,7 @@ class Keeper:
     async def do(self, work: Callable[[], T]) -> T:
         """Do something slow in a thread, one after the other, and judge by its result from now on."""
         if self._waiting >= MOST_WAITING:
-            raise TooManyAtOnce("Many people sign in at this moment. Wait a few seconds, then try again.")
+            raise TooManyAtOnce("Many users are signing in now. Wait a few seconds, then try again.")
         self._waiting += 1
         try:
             async with self._one_at_a_time:

@@ -47,18 +47,19 @@ def _refuse_newer(connection: Connection, found: str | None) -> str | None:
     if found is None:
         return None
     if found > REVISION:
-        raise _newer(f"revision {found}; this one knows up to {REVISION}")
+        raise _newer(f"revision {found}; this version supports up to {REVISION}")
     asked = select(meta.c.value).where(meta.c.name == WRITTEN_BY)
     noted: str | None = connection.execute(asked).scalar_one_or_none()
     if noted is not None and is_newer(noted, VERSION):
-        raise _newer(f"{noted}; this one is {VERSION}")
+        raise _newer(f"{noted}; this version is {VERSION}")
     return noted
 
 
 def _newer(what: str) -> StoreUnfit:
     return StoreUnfit(
-        f"The users were written by a newer version of Heliopanel ({what}). Install that version, or begin "
-        "with new users: move access.db out of the data folder, or drop the tables access_* of PostgreSQL."
+        f"The users were stored by a newer version of Heliopanel ({what}). Install that version, "
+        "or start with new users: move access.db out of the data folder, or drop the access_* "
+        "tables in PostgreSQL."
     )
 
 

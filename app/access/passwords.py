@@ -72,7 +72,9 @@ class Passwords:
     def hash_pin(self, pin: str) -> str:
         """Return the hash of a cabinet panel's PIN, or raise `AccessRefused`."""
         if not PIN.fullmatch(pin) or len(set(pin)) < 3 or pin in ROWS[0]:
-            raise AccessRefused("A PIN has 6 to 12 digits, at least three of them different, not in a row.")
+            raise AccessRefused(
+                "A PIN has 6 to 12 digits, with at least three different digits and no simple sequence."
+            )
         return self._hasher.hash(pin)
 
     def matches(self, password_hash: str | None, password: str) -> bool:
@@ -85,15 +87,12 @@ class Passwords:
 def weakness(password: str, name: str = "") -> str | None:
     """Return why a password is refused, None if it is good enough. Nothing is said of kinds of characters."""
     if not SHORTEST <= len(password) <= LONGEST:
-        return (
-            f"A password has {SHORTEST} to {LONGEST} characters; four words that do not belong together "
-            "are good."
-        )
+        return f"A password has {SHORTEST} to {LONGEST} characters; four unrelated words work well."
     plain = password.lower()
     if _repeats(plain) or _is_row(plain) or _is_common(plain, name.lower()):
         return (
-            "People guess this password first: it is made of common words, a name or a row of keys. "
-            "Choose another."
+            "This password is easy to guess: it uses common words, a name, or a keyboard "
+            "sequence. Choose another."
         )
     return None
 

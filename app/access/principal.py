@@ -97,27 +97,24 @@ class Principal:
         if self.may(permission, tracker_id):
             return
         if not self.is_known:
-            raise SignInNeeded(
-                "Sign in first: this panel shows and moves nothing for people it does not know."
-            )
+            raise SignInNeeded("Sign in first: Heliopanel shows and moves nothing for unknown users.")
         if self.rests and permission in permissions_of(self.roles):
-            raise ProofNeeded("Nothing was done here for 30 minutes. Type your password to go on.")
+            raise ProofNeeded("There was no activity for 30 minutes. Enter your password to continue.")
         raise NotAllowed(self.refusal(permission, tracker_id))
 
     def require_order(self, kind: str, tracker_id: str | None = None) -> None:
         """Raise the error that says why an order is not allowed, if it is not."""
         if not self.may_order(kind, tracker_id):
             self.require(ORDERS.get(kind, Permission.ADMINISTER), tracker_id)
-            raise NotAllowed(f"{self.name} may not order {kind} here.")
+            raise NotAllowed(f"{self.name} may not send the command {kind} here.")
 
     def refusal(self, permission: Permission, tracker_id: str | None = None) -> str:
         """Return the sentence that says why this is not allowed and who may do it."""
         if permission in self.permissions and tracker_id is not None:
-            return f"{self.name} may not reach tracker {tracker_id}; its token is for other trackers."
+            return f"{self.name} may not access tracker {tracker_id}; the token is for other trackers."
         who = " and ".join(sorted(role.value for role in self.roles)) or self.via.value.replace("_", " ")
         return (
-            f"{self.name} ({who}) may not {DOES[permission]}. Ask somebody whose role is "
-            f"{who_may(permission)}."
+            f"{self.name} ({who}) may not {DOES[permission]}. Ask a user whose role is {who_may(permission)}."
         )
 
 
@@ -129,4 +126,4 @@ def nobody(address: str) -> Principal:
 def this_computer(address: str) -> Principal:
     """Return whoever sits at the computer while there are no users."""
     roles = frozenset({Role.ENGINEER, Role.ADMINISTRATOR})
-    return Principal("this computer", roles, permissions_of(roles), Via.LOOPBACK, address)
+    return Principal("local user", roles, permissions_of(roles), Via.LOOPBACK, address)

@@ -63,7 +63,7 @@ class Refusals:
             due, self._waiting = self._waiting, []
             if self._left_out and (self._told_at is None or now - self._told_at >= TELL_EVERY):
                 self._told_at = now
-                result = f"{self._left_out} refusals were not recorded one by one."
+                result = f"{self._left_out} refusals were not recorded individually."
                 due.append(AccessEvent(now, "nobody", "nobody", "", LEFT_OUT, "panel", result))
                 self._left_out = 0
             return due

@@ -45,14 +45,14 @@ RANKS = {Role.VIEWER: 0, Role.ADMINISTRATOR: 0, Role.OPERATOR: 1, Role.ENGINEER:
 
 DOES = {
     Permission.OPEN: "open this",
-    Permission.KNOWN: "ask who they are",
+    Permission.KNOWN: "read their own identity",
     Permission.STOP: "stop motion",
-    Permission.OWN: "change what is their own",
+    Permission.OWN: "change their own account",
     Permission.READ: "read this",
     Permission.REPORT: "report weather",
     Permission.SIMULATE: "simulate and study",
     Permission.OPERATE: "move trackers",
-    Permission.CONFIGURE: "change how trackers and site are set up",
+    Permission.CONFIGURE: "change the tracker and site setup",
     Permission.ADMINISTER: "manage users, tokens and backups",
 }
 

@@ -35,8 +35,8 @@ def checked_name(name: str) -> str:
     """Return the name in lower case if it can be one, else raise `AccessRefused`."""
     if not NAME.fullmatch(name) or name.lower() in RESERVED:
         raise AccessRefused(
-            "A user's name has 1 to 32 letters, digits, dots or dashes and begins with a letter or a digit, "
-            f"such as anna.k; {', '.join(sorted(RESERVED))} are taken."
+            "A user name has 1 to 32 letters, digits, dots, or dashes and begins with a letter or "
+            f"a digit, such as anna.k; {', '.join(sorted(RESERVED))} are reserved."
         )
     return name.lower()
 
@@ -54,4 +54,4 @@ def keep_an_administrator(users: Iterable[User], changed: str, roles: frozenset[
     others = [user for user in users if user.name != changed]
     if Role.ADMINISTRATOR in roles or any(user.is_administrator for user in others):
         return
-    raise AccessRefused("This panel needs at least one administrator: give that role to somebody else first.")
+    raise AccessRefused("Heliopanel needs at least one administrator: give that role to another user first.")

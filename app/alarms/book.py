@@ -119,9 +119,9 @@ def shelve(
     if alarm.entry.priority == ALWAYS_ANNOUNCED:
         raise ValueError("An alarm of priority 1 cannot be shelved. Acknowledge it and remove its cause.")
     if not reason.strip():
-        raise ValueError("Say why the alarm is shelved.")
+        raise ValueError("Enter the reason for shelving the alarm.")
     if not SHORTEST_SHELF <= duration <= LONGEST_SHELF:
-        raise ValueError("An alarm is shelved for at least 1 minute and at most 24 hours.")
+        raise ValueError("An alarm can be shelved for 1 minute to 24 hours.")
     shelved = replace(alarm, shelf=Shelf(now + duration, by, reason.strip()), told=False)
     return _with(book, shelved), (Change(Happened.SHELVED, shelved, by),)
 
@@ -159,7 +159,9 @@ def _lasting(alarm: Alarm | None) -> Alarm | None:
 def _standing(book: Book, name: str) -> Alarm:
     alarm = book.alarms.get(name)
     if alarm is None or not alarm.stands:
-        raise UnknownAlarm(f"There is no alarm {name} now; it may have ended. Look at the history of alarms.")
+        raise UnknownAlarm(
+            f"There is no alarm {name} now; it may have returned to normal. See the alarm history."
+        )
     return alarm
 
 
@@ -172,7 +174,7 @@ def _fresh(condition: Condition) -> Alarm:
 
 
 def _flood_condition(book: Book) -> Condition:
-    text = f"{len(book.raised)} alarms came within 10 minutes."
+    text = f"{len(book.raised)} alarms were raised within 10 minutes."
     return Condition(FLOOD, None, SITE, text)
 
 

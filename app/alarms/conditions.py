@@ -117,7 +117,7 @@ def _of_health(health: SiteHealth, before: frozenset[str]) -> Iterator[Condition
     if health.store_behind:
         yield Condition("store_behind", None, SITE, "The last changes and events were not stored.")
     free_mb = None if health.disk_free_bytes is None else health.disk_free_bytes / MEGABYTE
-    text = "" if free_mb is None else f"{free_mb:.0f} MB are free where the database lies."
+    text = "" if free_mb is None else f"{free_mb:.0f} MB are free on the database disk."
     used = None if free_mb is None else -free_mb
     late = "" if health.late is None else f"{100.0 * health.late:.0f} % of the ticks were over 100 ms late."
     for code, band, value, words in (

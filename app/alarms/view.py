@@ -13,7 +13,7 @@ from app.tracker.alarm_words import MOST_SHOWN, PRIORITIES, AlarmCounts, AlarmNo
 
 COLLAPSED_FROM = 3
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
-MAINTENANCE = "locked for maintenance"
+MAINTENANCE = "inhibited for maintenance"
 SILENCED = (AlarmState.SUPPRESSED, AlarmState.OUT_OF_SERVICE)
 ASIDE = (AlarmState.SHELVED, *SILENCED)
 Four = tuple[int, int, int, int]

@@ -54,8 +54,8 @@ def axis_units(drive: DriveConfig) -> dict[Axis, int]:
     azimuth, *others = drive.units
     if not others:
         raise ProfileError(
-            f"Both axes have unit {azimuth}, but with profile {drive.profile} each has a drive of its own. "
-            "Give the elevation another unit id than the azimuth."
+            f"Both axes have unit {azimuth}, but profile {drive.profile} uses a separate drive for "
+            "each axis. Give the elevation axis a different unit id."
         )
     return {Axis.AZIMUTH: azimuth, Axis.ELEVATION: others[0]}
 

@@ -41,19 +41,19 @@ class _Job:
 
 
 EXCEPTIONS = {
-    1: "does not know this function",
+    1: "does not support this function",
     2: "has no such register",
     3: "does not accept this value",
-    4: "reports a failure of its own",
-    5: "needs more time for this",
+    4: "reports an internal failure",
+    5: "needs more time",
     6: "is busy",
     10: "cannot be reached through its gateway",
     11: "does not answer its gateway",
 }
 PERMANENT = (1, 2, 3)
 UNREACHABLE = (10, 11)
-FITS, AGAIN = "Check that the profile fits the device.", "It is asked again in the next cycle."
-NOT_AGAIN = "It is not sent again."
+FITS, AGAIN = "Check that the profile fits the device.", "The request is repeated in the next cycle."
+NOT_AGAIN = "The request is not repeated."
 
 log = get_logger()
 
@@ -199,7 +199,7 @@ class Bus:
         self._forget_abandoned(unit)
         for job in self._waiting:
             if job.unit is unit and job.ask.words and job.ticket is not None:
-                _fail(job, DriveError(f"A stop overtook this: {job.what} was not written."))
+                _fail(job, DriveError(f"A stop had priority: {job.what} was not written."))
         if self._flying is not None:
             self._wire.hurry()
 
@@ -219,7 +219,7 @@ class Bus:
         if len(self._waiting) >= MOST_WAITING and priority is not Priority.STOP:
             self._forget_abandoned()
         if len(self._waiting) >= MOST_WAITING and priority is not Priority.STOP:
-            raise DriveSilent(f"The drive at {unit} is too slow: {MOST_WAITING} requests wait.")
+            raise DriveSilent(f"The drive at {unit} is too slow: {MOST_WAITING} requests are waiting.")
         is_busy = self._flying is not None or bool(self._waiting)
         if self._silences.all_silent and is_busy and priority is not Priority.STOP:
             raise _silent(unit)
@@ -274,7 +274,7 @@ class Bus:
         except Exception:
             log.exception("modbus_request_failed", device=str(job.unit), what=job.what)
             self._wire.close()
-            _fail(job, DriveError(f"An unexpected error ended a request ({job.what}); the log has it."))
+            _fail(job, DriveError(f"An unexpected error ended a request ({job.what}); see the log."))
         else:
             if not job.answer.done():
                 job.answer.set_result(found)
@@ -311,7 +311,7 @@ class Bus:
             raise _refusal(refused.code, job) from refused
         except GivenUp as given_up:
             raise DriveSilent(
-                f"The wait for the drive at {job.unit} was given up for a stop ({job.what})."
+                f"A stop ended the wait for the drive at {job.unit} ({job.what})."
             ) from given_up
         except Unanswered as unanswered:
             self._note_silence(job.unit)
@@ -339,8 +339,8 @@ class Bus:
             await self._connect(job.unit, urgent=urgent)
         if job.ticket is not None and job.ticket != job.unit.ticket:
             raise DriveError(
-                f"The connection to the drive at {job.unit} was renewed or stopped in between: "
-                f"{job.what} was not written; its state is read first."
+                f"The connection to the drive at {job.unit} was renewed or stopped meanwhile: "
+                f"{job.what} was not written. The drive's state is read first."
             )
 
     async def _connect(self, unit: BusUnit, *, urgent: bool) -> None:
@@ -358,15 +358,15 @@ class Bus:
 
 
 def _silent(unit: BusUnit) -> DriveSilent:
-    return DriveSilent(f"The drive at {unit} does not answer; it is asked again in a moment.")
+    return DriveSilent(f"The drive at {unit} does not answer; the request is repeated shortly.")
 
 
 def _unanswered(job: _Job) -> str:
     """Return two sentences, each a text of its own, so that either is found in every language."""
     missing = f"The drive at {job.unit} did not answer within {job.unit.timing.timeout_s:g} s ({job.what})."
     check = (
-        f"Check its power and cable, that its unit id is {job.unit.unit} and, on a serial line, speed and "
-        "parity."
+        f"Check its power and cable, its unit id {job.unit.unit}, and, on a serial line, the speed "
+        "and parity."
     )
     return f"{missing} {check}"
 

@@ -40,8 +40,8 @@ class Buses:
             self._buses[drive.line] = wiring, bus
         elif used != wiring:
             raise DriveError(
-                f"The line {drive.line} is in use with other settings. All drives on one line have the same "
-                "kind of connection, baud rate, parity and stop bits."
+                f"Line {drive.line} is in use with other settings. All drives on one line need the "
+                "same connection type, baud rate, parity, and stop bits."
             )
         return bus
 
@@ -62,6 +62,6 @@ def wire_of(drive: DriveConfig) -> Wire:
         case DriveKind.MODBUS_RTU:
             return RtuWire(SerialLine(drive.serial))
         case DriveKind.SIMULATED:
-            raise DriveError("A simulated drive hangs on no bus.")
+            raise DriveError("A simulated drive is not connected to a bus.")
         case _ as never:
             assert_never(never)

@@ -140,8 +140,9 @@ def check_ratio(gear_ratio: float) -> None:
     """Raise `ValueError` if a drive that counts degrees of the axis cannot be off by this much."""
     if not 1.0 / LARGEST_RATIO <= gear_ratio <= LARGEST_RATIO:
         raise ValueError(
-            f"A gear ratio of {gear_ratio:g} does not fit this drive: it counts degrees of the axis itself, "
-            "so that the ratio is near 1. Measure again, or choose the profile of a drive that counts steps."
+            f"A gear ratio of {gear_ratio:g} does not fit this drive: it counts degrees of the "
+            "axis, so the ratio is near 1. Measure again, or choose the profile of a drive that "
+            "counts steps."
         )
 
 

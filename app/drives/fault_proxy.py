@@ -202,7 +202,10 @@ async def _run(proxy: FaultProxy, where: str) -> None:
     for number in (signal.SIGTERM, signal.SIGINT):
         loop.add_signal_handler(number, ended.set)
     await proxy.start()
-    _say(f"Fault proxy {where}. Type a fault and Enter, clear to end it, help for the list; Ctrl-C ends.")
+    _say(
+        f"Fault proxy {where}. Type a fault and press Enter; type clear to end it, or help for "
+        "the list. Press Ctrl-C to exit."
+    )
 
     def listen() -> None:
         for line in sys.stdin:

@@ -97,7 +97,7 @@ class SerialLine:
         if self._port is None:
             raise OSError("the serial line is closed")
         if os.write(self._port.fileno(), data) != len(data):
-            raise OSError("the serial line takes no more")
+            raise OSError("the serial line accepts no more data")
 
     def close(self) -> None:
         """Close the device and forget what was not sent, so that closing does not wait."""
@@ -161,7 +161,7 @@ class TcpLine:
     def advice(self) -> str:
         """Return what to check when there is no connection."""
         return (
-            "Check the gateway's power, cable and address, and that it passes raw RTU frames on "
+            "Check the gateway's power, cable, and address, and that it passes raw RTU frames on "
             "(not Modbus TCP)."
         )
 

@@ -53,7 +53,9 @@ class MetReader:
                 continue
             if mark == MARK:
                 return await self._model(base + len(MARK))
-        raise DriveRefused(f"The device at {self._link} is no SunSpec device: no map begins with SunS.")
+        raise DriveRefused(
+            f"The device at {self._link} is not a SunSpec device: no register map begins with SunS."
+        )
 
     async def _model(self, address: int) -> int:
         for _ in range(MOST_MODELS):
@@ -63,7 +65,9 @@ class MetReader:
             if model == END_MODEL:
                 break
             address += HEADER + length
-        raise DriveRefused(f"The device at {self._link} has no SunSpec model 307, Base Met. Check its unit.")
+        raise DriveRefused(
+            f"The device at {self._link} has no SunSpec model 307, Base Met. Check its unit id."
+        )
 
 
 def weather_of(words: list[int]) -> tuple[Weather | None, tuple[str, ...]]:

@@ -53,7 +53,7 @@ def is_complete(frame: bytes, wanted: Wanted, transaction: int) -> bool:
     if len(frame) < 6 + due:
         return False
     if function == wanted.function and not frame.startswith(wanted.begins, HEADER):
-        raise BadReply("the reply does not repeat what was asked")
+        raise BadReply("the reply does not match the request")
     return True
 
 

@@ -121,7 +121,7 @@ class RtuWire:
             self._keep_silent(self._sent_at_s + timing.silence_s)
             if isinstance(missing, OSError):
                 self.close()
-                raise Broken("the line took no request") from missing
+                raise Broken("the line accepted no request") from missing
             if self._is_gateway and not isinstance(missing, GivenUp):
                 self.close()
             raise
@@ -157,7 +157,7 @@ class RtuWire:
         heard_at_s = self._heard_at_s
         await self._silence(ask.unit, urgent=False)
         if self._heard_at_s != heard_at_s:
-            raise Broken("a late reply came")
+            raise Broken("a late reply arrived")
         self._unsettled.pop(ask.unit, None)
 
     async def _silence(self, unit: int, *, urgent: bool) -> None:
@@ -220,7 +220,7 @@ class RtuWire:
         self._ending = loop.call_later(BROKEN_OFF_S + self._silence_s, self._break_off)
 
     def _break_off(self) -> None:
-        self._fail(BadReply("the reply broke off"))
+        self._fail(BadReply("the reply was incomplete"))
 
     def _time_out(self) -> None:
         self._fail(Unanswered())
@@ -255,7 +255,7 @@ class RtuWire:
 
     def _echoed(self, frame: bytes) -> str:
         if self._buffer and frame.startswith(bytes(self._buffer[: len(frame)])):
-            return "the adapter sends back what it is sent: switch its echo off"
+            return "the adapter echoes what it receives: switch its echo off"
         return ""
 
     def _calm(self) -> None:

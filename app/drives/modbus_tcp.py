@@ -15,7 +15,7 @@ from app.drives.wire import Ask, Broken, GivenUp, Refused, Timing, Unanswered
 STOP_PATIENCE_S = 0.03
 CONNECT_WITHIN_S = 0.3
 WHY_WITHIN_S = 0.3
-CHECK = "Check its power, cable and address, and that only Modbus TCP is spoken there."
+CHECK = "Check its power, cable, and address, and that its port uses Modbus TCP only."
 
 
 class TcpWire:
@@ -122,7 +122,7 @@ class TcpWire:
             return data
         try:
             if self._wanted is None:
-                raise BadReply("something came that nobody had asked for")
+                raise BadReply("unrequested data arrived")
             complete = is_complete(data, self._wanted, self._client.ctx.request_transaction_id)
         except BadReply as bad:
             self._end_wait(bad)
@@ -163,6 +163,6 @@ async def _why_not(host: str, port: int) -> str:
     except socket.gaierror:
         return f"The host name {host} is not known."
     except (OSError, TimeoutError):
-        return f"Nothing answers at {host}."
+        return f"No device answers at {host}."
     writer.transport.abort()
     return ""

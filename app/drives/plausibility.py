@@ -42,7 +42,7 @@ class Plausibility:
         doubt = self.doubt(second)
         agree = self._out_of_range(second) is None and self._too_far(first, second, 0.0) is None
         if doubt is not None and not agree:
-            raise DriveError(f"{doubt} The reading was not believed. Check encoder and network.")
+            raise DriveError(f"{doubt} The reading was rejected. Check the encoder and network.")
         return second
 
     def accept(self, feedback: Feedback) -> None:

@@ -105,7 +105,7 @@ class PlcDrive:
             await self._link.write(
                 address,
                 values,
-                what=f"the command from {self._profile.at(address)} on",
+                what=f"the command registers from {self._profile.at(address)}",
                 ticket=ticket,
                 priority=_priority(command),
             )
@@ -150,11 +150,9 @@ class PlcDrive:
         stops, boot_count = self._stops, self._boot_count
         await self.read()
         if self._stops != stops:
-            raise DriveError("A stop overtook this command; it was not written.")
+            raise DriveError("A stop had priority over this command; the command was not written.")
         if boot_count not in (None, self._boot_count):
-            raise DriveError(
-                f"The drive at {self._link} has restarted: a command from before was not written."
-            )
+            raise DriveError(f"The drive at {self._link} has restarted: an earlier command was not written.")
 
     async def _poll(self) -> list[int]:
         block = self._block
@@ -175,9 +173,9 @@ class PlcDrive:
             found = self._integer(register.name, words)
             if found != register.expect:
                 raise DriveRefused(
-                    f"The device at {self._link} is no {self._profile.title}: register "
-                    f"{self._profile.at(register.address)} holds {found} instead of {register.expect}. "
-                    "Check address, unit and profile."
+                    f"The device at {self._link} is not a {self._profile.title}: register "
+                    f"{self._profile.at(register.address)} holds {found} instead of "
+                    f"{register.expect}. Check the address, unit id, and profile."
                 )
 
     def _notice_restart(self, feedback: Feedback) -> None:
@@ -203,12 +201,12 @@ class PlcDrive:
         where = self._profile.at(first + wrong[0])
         if before and all(words[place] == before[place] for place in wrong):
             raise DriveError(
-                f"The drive at {self._link} acknowledged a command and did not take it (register {where}"
-                "). Check that it is in remote operation."
+                f"The drive at {self._link} acknowledged a command but did not carry it out "
+                f"(register {where}). Check that the drive is in remote operation."
             )
         raise DriveError(
-            f"Someone else commands the drive at {self._link}: register {where} holds what this program "
-            "did not write. Disconnect the other Modbus master."
+            f"Another master commands the drive at {self._link}: register {where} holds a value "
+            "that Heliopanel did not write. Disconnect the other Modbus master."
         )
 
     def _forget(self) -> None:

@@ -72,7 +72,7 @@ class PlcMap:
         request = None
         kind = self._kinds.get(self._integer("request_kind", words, first_address))
         if kind is None:
-            raise ValueError("There is no such kind of request.")
+            raise ValueError("This request type does not exist.")
         if kind != "none":
             number = self._integer("request_number", words, first_address)
             request = DriveRequest(number, RequestKind(kind))
@@ -163,7 +163,7 @@ class PlcMap:
             return Position(setpoint, self._registers[f"{axis}_speed"].value(words, first_address))
         if motion == self._motions["halt"]:
             return HALT
-        raise ValueError(f"There is no motion with the number {motion}.")
+        raise ValueError(f"Motion number {motion} does not exist.")
 
     def _numbers(self, wanted: AxisCommand) -> tuple[int, float, float]:
         match wanted:

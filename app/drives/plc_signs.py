@@ -43,15 +43,15 @@ class SignsOfLife:
         where = self._where()
         self._watch(
             "heartbeat", words, first_address,
-            f"The drive at {where} answers, but its heartbeat stands still: its readings are old. "
-            "Check that its program runs.",
+            f"The drive at {where} answers, but its heartbeat does not change: its readings are "
+            "out of date. Check that the program in the drive is running.",
         )  # fmt: skip
         if self._fed:
             self._fed = False
             self._watch(
                 "echo", words, first_address,
-                f"The drive at {where} answers, but does not echo the keep-alive value. "
-                "Check that its program runs.",
+                f"The drive at {where} answers, but does not echo the keep-alive value. Check that "
+                "the program in the drive is running.",
             )  # fmt: skip
 
     def watch_watchdog(self, words: Sequence[int], first_address: int, feedback: Feedback) -> None:
@@ -64,8 +64,8 @@ class SignsOfLife:
         self._watchdog_ms = milliseconds
         if not milliseconds and self._was_on and (feedback.azimuth.moving or feedback.elevation.moving):
             raise DriveError(
-                f"The watchdog of the drive at {self._where()} was switched off during a motion. "
-                "Switch it on again: without it nothing stops the axes when contact is lost."
+                f"The watchdog of the drive at {self._where()} was switched off during motion. "
+                "Switch it on again: without it, the axes do not stop when communication is lost."
             )
 
     def _watch(self, name: str, words: Sequence[int], first_address: int, still: str) -> None:

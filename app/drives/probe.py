@@ -23,7 +23,7 @@ from app.tracker.drive_check import (
 )
 
 SIMULATED = DriveReadings(
-    CheckOutcome.ANSWERED, "The simulated drive is in this program: there is no connection to test."
+    CheckOutcome.ANSWERED, "The simulated drive runs inside Heliopanel: there is no connection to test."
 )
 NAMES_TOLD = 4
 Words = tuple[int, Sequence[int]]
@@ -150,14 +150,14 @@ def _judged(profile: Profile, registers: list[RegisterReading]) -> DriveReadings
     action = "" if watchdog is None else watchdog.action
     if wrong:
         names = "; ".join(f"{one.name} ({one.address}) {_wrong_words(one)}" for one in wrong)
-        message = f"The device answers, but it is no {profile.title}: {names}. Check unit and profile."
+        message = f"The device answers, but is not a {profile.title}: {names}. Check the unit id and profile."
         return DriveReadings(CheckOutcome.WRONG_DEVICE, message, tuple(registers), watchdog_s, action)
     missing = [one.name for one in registers if one.trouble and not profile.registers[one.name].optional]
     if missing:
         message = (
-            f"The device answers, but has not what a drive of profile {profile.name} must have: "
-            f"{len(missing)} of {len(registers)} registers could not be read ({_listed(missing)}). "
-            "Check unit and profile."
+            f"The device answers, but lacks registers that a drive of profile {profile.name} must "
+            f"have: {len(missing)} of {len(registers)} registers could not be read ({_listed(missing)}). "
+            "Check the unit id and profile."
         )
         return DriveReadings(CheckOutcome.WRONG_DEVICE, message, tuple(registers), watchdog_s, action)
     refused = sum(1 for one in registers if one.trouble)

@@ -30,7 +30,7 @@ class ProfileLibrary:
         )
 
     def _advice(self) -> str:
-        return "" if self._own is None else f", or put your own as name{SUFFIX} into {self._own}"
+        return "" if self._own is None else f", or save your own as name{SUFFIX} in {self._own}"
 
 
 @lru_cache(maxsize=64)

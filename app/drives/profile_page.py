@@ -134,7 +134,7 @@ def _meaning(register: Register) -> str:
         mark = f"verified: {register.source}"
     else:
         mark = "*unverified*"
-    optional = "left out where the device refuses it" if register.optional else ""
+    optional = "omitted if the device refuses it" if register.optional else ""
     limits = ""
     if register.minimum is not None and register.maximum is not None:
         limits = f"plausible from {register.minimum:g} to {register.maximum:g}"

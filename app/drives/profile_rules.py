@@ -14,7 +14,7 @@ Registers = Mapping[str, Register]
 def check_name(name: str, source: Source) -> None:
     """Raise `ProfileError` for a name that could not be asked for."""
     if not NAME.fullmatch(name):
-        rule = f"must be of lower-case letters, digits, '-' and '_', at most 64, not {name!r}"
+        rule = f"must have at most 64 lowercase letters, digits, '-', and '_', not {name!r}"
         raise source.error("name", rule)
 
 

@@ -38,7 +38,7 @@ class PtyLine:
     @property
     def advice(self) -> str:
         """Return what to check when it cannot be made."""
-        return f"Check that {self._path} can be written and is no other file or device."
+        return f"Check that {self._path} is writable and is not another file or device."
 
     async def open(self, received: Received, lost: Lost) -> bool:
         """Make the pseudo-terminal and its name, and return whether that worked; `lost` is never called."""

@@ -209,7 +209,7 @@ class RegisterAxis:
     async def _step(self, velocity_dps: float) -> None:
         """Go as far as the axis would come if its lease ended now: that long at speed, then ramping down."""
         if self._last is None:
-            raise DriveError(f"The drive at {self.unit.where} was not read yet; it is not moved.")
+            raise DriveError(f"The drive at {self.unit.where} has not been read yet; it is not moved.")
         speed_dps = min(abs(velocity_dps), self._config.speed_dps)
         reach_deg = speed_dps * LEASE_S + speed_dps**2 / (2.0 * self._config.acceleration_dps2)
         target_deg = self._last.position_deg + (reach_deg if velocity_dps > 0.0 else -reach_deg)

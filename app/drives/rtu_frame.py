@@ -91,7 +91,7 @@ def is_whole(frame: bytes, wanted: Wanted) -> bool:
         raise BadReply("something came behind the reply")
     body = frame[2 : 2 + len(wanted.begins)]
     if function == wanted.function and not wanted.begins.startswith(body):
-        raise BadReply("the reply does not repeat what was asked")
+        raise BadReply("the reply does not match the request")
     if len(frame) < due:
         return False
     if not is_sealed(frame):

@@ -31,7 +31,7 @@ class SimulatedDrive(SimulatedMachine):
             watchdog_s=self._watchdog_s,
             settable_clock=True,
             limit_switches=True,
-            description="Simulated tracker in this program; nothing real moves.",
+            description="Simulated tracker inside Heliopanel; no real tracker moves.",
             verified=True,
         )
 
@@ -44,7 +44,9 @@ class SimulatedDrive(SimulatedMachine):
         """Make the axes do this from now on, or raise `DriveError` while a fault keeps it from that."""
         self._check_link()
         if self._ignores_writes and command != self._command:
-            raise DriveError("The simulated drive did not take the command. Clear the fault to go on.")
+            raise DriveError(
+                "The simulated drive did not accept the command. End the injected fault to continue."
+            )
         self.obey(command)
 
     async def stop(self) -> None:
@@ -63,6 +65,6 @@ class SimulatedDrive(SimulatedMachine):
     def _check_link(self) -> None:
         if self._link_fault is not None:
             raise DriveSilent(
-                "The simulated drive does not answer: a fault of the connection is being played. "
-                "Clear the fault to go on."
+                "The simulated drive does not answer: a communication fault is injected. End the "
+                "injected fault to continue."
             )

@@ -55,7 +55,7 @@ class Sunlight:
             case FaultKind.LIGHT_SENSOR_STUCK:
                 self._stuck_wm2 |= dict.fromkeys(hit, fault.amount)
             case _:
-                raise ValueError(f"{fault.kind} is no fault of the light.")
+                raise ValueError(f"{fault.kind} is not a fault of the simulated sunlight.")
 
     def clear(self) -> None:
         """Play again what the configuration says."""

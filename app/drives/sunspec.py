@@ -227,7 +227,7 @@ class SunSpecDrive:
         self._doing = None
         await self.read()
         if self._stops != stops:
-            raise DriveError("A stop overtook this command; it was not written.")
+            raise DriveError("A stop had priority over this command; the command was not written.")
 
     async def _begin(self, request: DriveRequest) -> None:
         """Begin calibration; what the model has no way for is answered as failed at once."""

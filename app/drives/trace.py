@@ -54,11 +54,11 @@ def parse_trace(lines: Iterable[str], name: str) -> list[Exchange]:
             found.append(_exchange(json.loads(line)))
         except (ValueError, KeyError, TypeError) as error:
             raise DriveError(
-                f"{name}, line {number}: this is no line of a bus trace. "
-                "Record one with heliopanel drive record."
+                f"{name}, line {number}: this is not a line of a bus trace. Record a trace with "
+                "heliopanel drive record."
             ) from error
     if not found:
-        raise DriveError(f"{name} holds no exchange. Record one with heliopanel drive record.")
+        raise DriveError(f"{name} contains no exchange. Record a trace with heliopanel drive record.")
     return found
 
 
@@ -174,7 +174,7 @@ class ReplayWire:
     """A wire on which a trace answers; `moved_to` is told when each answer was given."""
 
     connected = True
-    advice = "The trace was recorded elsewhere."
+    advice = "The trace was recorded on another connection."
 
     def __init__(self, replay: Replay, moved_to: Callable[[float], None]) -> None:
         self._replay = replay

@@ -149,7 +149,7 @@ class TwoAxisDrive:
         self._forget()
         await self.read()
         if self._stops != stops:
-            raise DriveError("A stop overtook this command; it was not written.")
+            raise DriveError("A stop had priority over this command; the command was not written.")
 
     def _forget(self) -> None:
         for axis in self._axes.values():

@@ -116,8 +116,8 @@ class Unit:
     def not_taken(self, what: str) -> DriveError:
         """Return the error that a command was acknowledged and not carried out."""
         return DriveError(
-            f"The drive at {self.where} acknowledged a command and did not take it ({what}). "
-            "Check that it is in remote operation."
+            f"The drive at {self.where} acknowledged a command but did not carry it out ({what}). "
+            "Check that the drive is in remote operation."
         )
 
     async def put(

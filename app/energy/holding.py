@@ -61,7 +61,7 @@ def held_axes(
         case Interval():
             return _taken(ideal, _interval(strategy, columns, step_min))
         case Stepped():
-            raise ValueError("A step program has places of its own; take `program_axes`.")
+            raise ValueError("A step program has its own positions; use `program_axes`.")
     assert_never(strategy)
 
 

@@ -26,7 +26,7 @@ class DriveCosts:
 
     def __post_init__(self) -> None:
         if min(self.degree_wh, self.start_wh, self.standby_w) < 0.0:
-            raise ValueError("What drives take for travel, starts and standby cannot be below zero.")
+            raise ValueError("The drive energy for travel, starts, and standby cannot be below zero.")
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,7 +39,7 @@ class SolarDay:
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.begin_h <= self.end_h <= 24.0:
-            raise ValueError("The counted hours of a day lie between 0 and 24 and are in order.")
+            raise ValueError("The counted hours of a day must be between 0 and 24 and in ascending order.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class Steps:
 
     def __post_init__(self) -> None:
         if len(self.angles_deg) != len(self.starts_h) + 1:
-            raise ValueError("A step program has one angle more than it has steps.")
+            raise ValueError("A step program has one more angle than steps.")
         if any(after - before < self.step_h - 1e-9 for before, after in pairwise(self.starts_h)):
             raise ValueError("A step must end before the next begins; take fewer or shorter steps.")
 

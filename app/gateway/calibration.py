@@ -45,7 +45,7 @@ class Calibrations:
         against = lasting(await self._now(tracker))
         if against:
             rejected = CommandRejected(*against)
-            refused(self._door, tracker.tracker_id, actor, f"The calibration was not begun: {rejected}")
+            refused(self._door, tracker.tracker_id, actor, f"The calibration was not started: {rejected}")
             raise rejected
         await send(self._door, RequestControl((tracker.tracker_id,)), tracker.tracker_id, actor)
         if (await self._now(tracker)).actions["home"]:
@@ -97,7 +97,7 @@ class Calibrations:
         ended = next((event for event in events if event.kind is EventKind.HOMING_ENDED), None)
         if ended is None:
             if tracker.activity is not ActivityName.HOMING:
-                self._give_up(tracker, running, "the search for the origin switches was interrupted.")
+                self._give_up(tracker, running, "homing was interrupted.")
             return
         self.forget(tracker.tracker_id)
         if ended.data.get("outcome") == "homed":
@@ -109,7 +109,7 @@ class Calibrations:
 
     def _give_up(self, tracker: Snapshot, running: Calibration, why: str) -> None:
         self.forget(tracker.tracker_id)
-        message = f"The calibration was given up, and tracking was not started: {why}"
+        message = f"The calibration was aborted, and tracking was not started: {why}"
         refused(self._door, tracker.tracker_id, running.actor, message)
 
 

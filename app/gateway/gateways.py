@@ -85,7 +85,7 @@ class Gateways:
     def _add(self, name: str, variable: str, wanted: object, make: Callable[[], Gateway]) -> None:
         """Make a door if the settings want it, else note how it is opened."""
         if wanted is None:
-            off = f"set HELIOPANEL_{variable} to open it"
+            off = f"set HELIOPANEL_{variable} to enable it"
             self._off.append(GatewayMetrics(name, GatewayStatus.OFF, off))
         else:
             self._open.append(make())
@@ -144,11 +144,13 @@ class Gateways:
 def writes(settings: Settings) -> dict[str, str]:
     """Return for every door that takes orders who may give them."""
     hosts = [host for host in settings.sunspec_write_hosts if host != SERIAL]
-    commands = f"Whoever may publish below {settings.mqtt_topic} at the broker may give commands."
+    commands = f"Any client that may publish below {settings.mqtt_topic} at the broker may send commands."
     return {
-        TCP: f"{', '.join(hosts)} may write; everybody else only reads." if hosts else "Nobody may write.",
+        TCP: f"{', '.join(hosts)} may write; all other hosts can only read."
+        if hosts
+        else "No host may write.",
         RTU: "The master on the line may write."
         if SERIAL in settings.sunspec_write_hosts
-        else "Nobody may write.",
-        MQTT: commands if settings.mqtt_commands else "No commands are taken.",
+        else "No host may write.",
+        MQTT: commands if settings.mqtt_commands else "No commands are accepted.",
     }

@@ -97,7 +97,7 @@ class MqttGateway:
         """Return why no commands are heard although they are allowed, empty if they are."""
         if self._protocol is ProtocolVersion.V5 or not self._settings.mqtt_commands:
             return ""
-        return f"The broker at {self._where} does not speak MQTT 5, so no commands are taken."
+        return f"The broker at {self._where} does not speak MQTT 5, so no commands are accepted."
 
     async def run(self) -> None:
         """Connect, tell, and connect again, until cancelled."""
@@ -123,7 +123,9 @@ class MqttGateway:
         if isinstance(first, MqttConnectError) and first.rc == UNSUPPORTED_VERSION:
             self._protocol = ProtocolVersion.V311
             log.warning("mqtt_older_broker", broker=self._where, commands="none are taken")
-        self._error = f"The broker at {self._where} is not reached: {first}. It is tried again."
+        self._error = (
+            f"The broker at {self._where} cannot be reached: {first}. Heliopanel retries automatically."
+        )
         self._door.trouble(MQTT, Condition("gateway_down", None, SITE, self._error))
         log.warning("mqtt_disconnected", reason=str(first), broker=self._where)
 

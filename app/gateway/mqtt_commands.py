@@ -55,14 +55,16 @@ UNNAMED = "unnamed"
 """Who stopped, where a message does not say it rightly."""
 RETAINED = Reason(
     "retained",
-    "A retained command is not carried out: it would be repeated with every connection.",
-    "Send it again without the retain flag, and clear the retained one with an empty message.",
+    "A retained command is not carried out: every new connection would repeat it.",
+    "Send the command again without the retain flag, and clear the retained message with an empty one.",
 )
 MESSAGES: TypeAdapter[_Plain | _Move] = TypeAdapter(Annotated[_Plain | _Move, Field(discriminator="type")])
 
 
 TOO_MANY = Reason(
-    "too_many", "Too many commands came over MQTT; this one was not carried out.", "Send them more slowly."
+    "too_many",
+    "Too many commands arrived over MQTT; this command was not carried out.",
+    "Send commands more slowly.",
 )
 
 
@@ -112,7 +114,9 @@ def _malformed(error: ValidationError) -> Reason:
     places = "; ".join(
         f"{'.'.join(map(str, one['loc'])) or 'message'}: {one['msg']}" for one in error.errors()
     )
-    return Reason("malformed", f"This is no command: {places}.", "The document MQTT shows every command.")
+    return Reason(
+        "malformed", f"This is not a valid command: {places}.", "The MQTT document lists every command."
+    )
 
 
 def _answer(key: str | None, *reasons: Reason) -> bytes:

@@ -13,7 +13,7 @@ PREFIX = "homeassistant"
 SENSORS: tuple[tuple[str, str, dict[str, Any]], ...] = (
     ("measured_azimuth_deg", "Azimuth", {"unit_of_measurement": "°", "suggested_display_precision": 1}),
     ("measured_elevation_deg", "Elevation", {"unit_of_measurement": "°", "suggested_display_precision": 1}),
-    ("off_sun_deg", "Off the sun", {"unit_of_measurement": "°", "suggested_display_precision": 1}),
+    ("off_sun_deg", "Pointing error", {"unit_of_measurement": "°", "suggested_display_precision": 1}),
     ("activity", "Activity", {"icon": "mdi:solar-panel"}),
 )
 BUTTONS = (("stop", "Stop"), ("track", "Track the sun"), ("park", "Park"))

@@ -40,7 +40,7 @@ def post_webhook(settings: Settings, wanted: Notifications, series: str, entry: 
     status = _post(wanted.webhook_url, body, headers)
     if not 200 <= status < 300:
         raise NotDelivered(
-            f"The webhook answered {status}; it must answer from 200 to 299. Check its address."
+            f"The webhook answered {status}; it must answer with 200 to 299. Check its address."
         )
 
 
@@ -59,7 +59,7 @@ def _post(url: str, body: bytes, headers: Mapping[str, str]) -> int:
         connection = kind(host, port, timeout=WITHIN_S)
     except (ValueError, http.client.HTTPException) as error:
         raise NotDelivered(
-            f"The webhook's address is wrong: {error}. Correct it on the page Site."
+            f"The webhook's address is wrong: {error}. Correct it on the Site page."
         ) from error
     path = (parts.path or "/") + (f"?{parts.query}" if parts.query else "")
     try:
@@ -68,7 +68,7 @@ def _post(url: str, body: bytes, headers: Mapping[str, str]) -> int:
         answer.read(LONGEST_ANSWER)
     except (OSError, ValueError, http.client.HTTPException) as error:
         raise NotDelivered(
-            f"The webhook at {host} is not reached: {error}. Check its address and the network."
+            f"The webhook at {host} cannot be reached: {error}. Check its address and the network."
         ) from error
     finally:
         connection.close()
@@ -79,7 +79,7 @@ def send_mail(settings: Settings, wanted: Notifications, series: str, entry: Jou
     """Send one alarm by e-mail, or raise `NotDelivered`."""
     if settings.smtp_host is None:
         raise NotDelivered(
-            "No mail server is set: set HELIOPANEL_SMTP_HOST and restart, or remove the addresses."
+            "No mail server is set. Set HELIOPANEL_SMTP_HOST and restart, or remove the addresses."
         )
     message = mail(settings, wanted, series, entry)
     try:
@@ -90,8 +90,8 @@ def send_mail(settings: Settings, wanted: Notifications, series: str, entry: Jou
             server.send_message(message)
     except (OSError, ValueError, smtplib.SMTPException) as error:
         raise NotDelivered(
-            f"The mail server {settings.smtp_host} did not take the message: {error}. Check it and the "
-            "addresses."
+            f"The mail server {settings.smtp_host} did not accept the message: {error}. Check the "
+            "server and the addresses."
         ) from error
 
 
@@ -145,6 +145,6 @@ def text(event: Event) -> str:
         f"Since: {data['since']}",
         f"Do:    {data['do']}",
         "",
-        "Acknowledge it in the panel, on the page Alarms.",
+        "Acknowledge the alarm in Heliopanel, on the Alarms page.",
     )
     return "\n".join(lines) + "\n"

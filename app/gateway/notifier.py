@@ -21,7 +21,7 @@ LOOK_EVERY = timedelta(seconds=1)
 FIRST_DELAY, LONGEST_DELAY = timedelta(seconds=2), timedelta(minutes=5)
 AT_ONCE = 50
 FAILED = "notification_failed"
-OFF = "enter an address on this page to open it"
+OFF = "enter an address on this page to enable it"
 
 Deliver = Callable[[Settings, Notifications, str, JournalEntry], None]
 
@@ -104,7 +104,7 @@ class Notifier:
         try:
             await asyncio.to_thread(self._deliver, self._settings, wanted, series, entry)
         except NotDelivered as failure:
-            self._turn(f"{failure} It is tried again.")
+            self._turn(f"{failure} Heliopanel retries automatically.")
             self._delay = min(2 * self._delay, LONGEST_DELAY)
             return False
         self._turn("")

@@ -63,8 +63,8 @@ class SunSpecTcp:
             self._port = await self._server.start(self._host, self._port)
         except OSError as error:
             self._error = (
-                f"It cannot listen on {self._host} port {self._port}: {error.strerror}. Stop the program "
-                "that uses the port, or choose another with HELIOPANEL_SUNSPEC_PORT."
+                f"SunSpec cannot listen on {self._host} port {self._port}: {error.strerror}. Stop "
+                "the program that uses the port, or choose another with HELIOPANEL_SUNSPEC_PORT."
             )
             log.error("sunspec_not_listening", reason=self._error)
             await self._clock.sleep_until(self._clock.now() + TRY_AGAIN)
@@ -107,7 +107,7 @@ class SunSpecRtu:
                 await server.until_lost()
                 self._error = "The serial line was lost."
             except OSError as error:
-                self._error = f"{error} It is tried again."
+                self._error = f"{error} Heliopanel retries automatically."
             finally:
                 self._serving = False
                 with suppress(OSError):

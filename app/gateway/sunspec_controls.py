@@ -33,7 +33,7 @@ TAKES_OVER = {
 }
 WRONG_VALUE = {"beyond_limits", "no_target"}
 NO_TARGET = Reason(
-    "no_target", "Manual was written, but no target was.", "Write ElCtl and AzCtl, then write 1 to Ctl."
+    "no_target", "Manual mode was written without a target.", "Write ElCtl and AzCtl, then write 1 to Ctl."
 )
 
 Written = Mapping[str, float | None]

@@ -120,7 +120,7 @@ COMMON = Model(
         _string("Opt", 8, "options"),
         _string("Vr", 8, "version"),
         _string("SN", 16, "serial number: the computer's hardware address"),
-        Point("DA", PointType.UINT16, text="unit id"),
+        Point("DA", PointType.UINT16, text="unit ID"),
         Point("Pad", PointType.PAD),
     ),
 )

@@ -231,5 +231,5 @@ def _patience_s(order: Order) -> float:
 
 def _out_of_place(answer: Answer) -> MachineUnreachable:
     return MachineUnreachable(
-        f"The controller service answered with {answer.tell!r} to another question; update both processes."
+        f"The controller service sent {answer.tell!r} in reply to another request; update both processes."
     )

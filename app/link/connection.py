@@ -25,12 +25,12 @@ from app.logs import get_logger
 RECONNECT_AFTER = timedelta(milliseconds=300)
 
 DOWN = (
-    "The controller service does not answer; nothing was done. "
-    "Wait until the page shows live values again, or check that the service runs."
+    "The controller service does not answer; nothing was done. Wait until the page shows live "
+    "values again, or check that the service is running."
 )
 TOO_LATE = (
-    "The controller service did not answer in time; it may or may not have carried this out. "
-    "Look at the live values before you try again."
+    "The controller service did not answer in time; it may or may not have carried out the "
+    "request. Check the live values before you try again."
 )
 
 log = get_logger()

@@ -39,10 +39,12 @@ MOST_UNSENT_BYTES = 64 * 1024 * 1024
 REQUESTS_PER_S, MOST_AT_ONCE = 1000.0, 500
 """What one conversation may ask, stops aside: twenty held keys are 400 requests a second."""
 LATE = Problem(
-    ProblemKind.FAILED, "The controller service got this too late and did not carry it out. Try again."
+    ProblemKind.FAILED,
+    ("The controller service received this request too late and did not carry it out. Try again."),
 )
 BUSY = Problem(
-    ProblemKind.FAILED, "The controller service has too many requests at once; this one was not carried out."
+    ProblemKind.FAILED,
+    ("The controller service has too many requests at once; this request was not carried out."),
 )
 
 log = get_logger()

@@ -86,7 +86,7 @@ def audit_version(data_dir: Path, writer: Writer, version: str, now: datetime) -
     before = noted or version_before(data_dir) or version
     if before != version:
         given = told({"before": before, "after": version})
-        entry = Entry(now, 0, "", "unknown", "this computer", "console", "", "change_version", "site", given)
+        entry = Entry(now, 0, "", "unknown", "local user", "console", "", "change_version", "site", given)
         with writer.audited(entry):
             writer.save_software(version)
         log.warning("version_changed", before=before, after=version)

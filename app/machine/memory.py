@@ -58,12 +58,12 @@ class MemoryGuard:
             self._site.trouble("memory", None)
             return
         held_mb, limit_mb = resident / MEGABYTE, self._limit_bytes / MEGABYTE
-        text = f"The controller service holds {held_mb:.0f} MB of memory; {limit_mb:.0f} MB are its limit."
-        hint = "At its limit it starts again by itself as soon as every tracker stands still."
+        text = f"The controller service uses {held_mb:.0f} MB of memory; the limit is {limit_mb:.0f} MB."
+        hint = "At its limit, the service restarts automatically as soon as every tracker is at standstill."
         self._site.trouble("memory", Condition("memory_high", None, SITE, text, hint))
         if resident >= self._limit_bytes and self._may_restart:
             self._ending = True
-            self._restart(f"{text} It starts again now, while every tracker stands still.")
+            self._restart(f"{text} The service restarts now, while every tracker is at standstill.")
 
     @property
     def _may_restart(self) -> bool:

@@ -27,7 +27,7 @@ from app.tracker.reason import Reason
 from app.tracker.snapshot import EventKind
 
 LOOK_EVERY = timedelta(seconds=1)
-HINT = "An administrator restores a backup on the page Restore, or with: heliopanel restore FILE."
+HINT = "An administrator can restore a backup on the Restore page, or with: heliopanel restore FILE."
 
 log = get_logger()
 

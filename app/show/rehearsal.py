@@ -60,7 +60,7 @@ class Rehearsal:
         """Search the origin switches until the zero is trusted."""
         self.tick()
         self.ask(Home())
-        self.prepare_until(lambda seen: seen.home_trusted and self._rests(seen), "its zero was found")
+        self.prepare_until(lambda seen: seen.home_trusted and self._rests(seen), "it was homed")
 
     def ask(self, command: Command) -> tuple[Event, ...]:
         """Give the controller a command."""

@@ -28,7 +28,7 @@ from app.zones import zone_of
 SECOND = timedelta(seconds=1)
 LONGEST = timedelta(days=3)
 MOST_FRAMES = 1_000_000
-DRIVE = "Simulated tracker on a virtual clock; nothing real moved."
+DRIVE = "Simulated tracker on a virtual clock; no real tracker moved."
 
 
 def simulate(
@@ -57,7 +57,7 @@ def simulate(
     rehearsal.home()
     rehearsal.ask(SelectMode(mode, orientation))
     rehearsal.ask(Move(orientation) if mode is Mode.FIXED else Track())
-    rehearsal.prepare_until(_settled, "it was in place")
+    rehearsal.prepare_until(_settled, "it was in position")
     rehearsal.weather = None if weather is None else MadeUpWeather(weather)
     frames = _run(rehearsal, begin, end, step, sparing=sparing)
     info = _info(config, location, time_zone, mode, orientation, begin, end)
@@ -77,7 +77,7 @@ def simulate_show(
     rehearsal = Rehearsal(config, pointing, plan.location, plan.begin_at)
     rehearsal.home()
     rehearsal.ask(GoToStart(plan))
-    rehearsal.prepare_until(_ready_for_show, "it stood at the start of the show")
+    rehearsal.prepare_until(_ready_for_show, "it was at the start of the show")
     rehearsal.ask(RunShow(plan))
     rows = _run_show(rehearsal, plan, step)
     info = _info(config, plan.location, time_zone, plan.mode, plan.orientation, plan.begin_at, plan.end_at)
@@ -140,13 +140,13 @@ def encoded(frames: Frames) -> tuple[str, ...]:
 
 def _check_span(begin: datetime, end: datetime, step: timedelta) -> None:
     if begin.tzinfo is None or end.tzinfo is None:
-        raise ValueError("Give the begin and the end of a simulation with their time zone.")
+        raise ValueError("Enter the start and the end of a simulation with their time zone.")
     if not timedelta(0) < end - begin <= LONGEST:
-        raise ValueError("A simulation ends after it begins, and lasts at most three days.")
+        raise ValueError("A simulation must end after it starts and last at most three days.")
     if not SHORT_STEP <= step <= timedelta(minutes=1):
-        raise ValueError("The step of a simulation lies between 0.1 and 60 seconds.")
+        raise ValueError("The step of a simulation must be 0.1 to 60 seconds.")
     if (end - begin) / step > MOST_FRAMES:
-        raise ValueError(f"A simulation has at most {MOST_FRAMES} frames; take a longer step.")
+        raise ValueError(f"A simulation has at most {MOST_FRAMES} samples; choose a longer step.")
 
 
 def _settled(seen: Snapshot) -> bool:
@@ -191,7 +191,7 @@ def _run_show(rehearsal: Rehearsal, plan: ShowPlan, step: timedelta) -> list[tup
         elapsed_s = (rehearsal.clock.now() - begun).total_seconds()
         rows.append((elapsed_s, sun_s, *rehearsal.controller.frame()[2:]))
         rehearsal.clock.advance(step)
-    raise RehearsalFailed("The simulated show did not end in its time.")
+    raise RehearsalFailed("The simulated show did not end within its planned time.")
 
 
 def _frames(rows: NDArray[np.float64], elapsed_s: NDArray[np.float64]) -> Frames:

@@ -160,6 +160,6 @@ def _became(change: Change) -> str:
         case Happened.SHELVED:
             return f"was shelved: {'' if alarm.shelf is None else alarm.shelf.reason}"
         case Happened.UNSHELVED:
-            return "was taken back from the shelf." if change.by else "is shelved no more: its time is over."
+            return "was unshelved." if change.by else "is no longer shelved: the shelving time has expired."
         case _:
             assert_never(change.what)

@@ -113,9 +113,9 @@ class Anemometers:
             return None
         return Reason(
             "wind_sensors_disagree",
-            f"Two wind sensors disagree: {high} shows {high_mps:.1f} m/s and {low} {low_mps:.1f} m/s, as "
-            "means of a minute; the higher one counts.",
-            "Compare both with the wind outside, and check the one that is wrong.",
+            f"Two wind sensors disagree: {high} shows {high_mps:.1f} m/s and {low} {low_mps:.1f} "
+            "m/s, as one-minute means; the higher value is used.",
+            "Compare both with the actual wind, and check the faulty one.",
         )
 
 

@@ -197,11 +197,11 @@ def _request(lease: Lease, wish: Wish | None, now: datetime, shift: timedelta) -
 
 def held(holder: Holder, who: Holder, name: str) -> Reason:
     """Return why somebody's order is refused, and how they come to have control."""
-    ask = "Ask for control at the top of the page, or take it over there with a reason."
+    ask = "Request control at the top of the page, or take control there with a reason."
     if not who.is_person:
-        ask = "Ask for control (POST .../control), or wait until it is released."
+        ask = "Request control (POST .../control), or wait until it is released."
     elif who.weight < holder.weight:
-        ask = "Ask for control at the top of the page and wait until it is handed over."
+        ask = "Request control at the top of the page and wait until it is handed over."
     return Reason(CONTROL_HELD, f"{holder.name} has control of {name}.", ask)
 
 
@@ -209,8 +209,8 @@ def _lost(authority: Authority, name: str) -> Reason:
     now_has = "" if authority.holder is None else f" {authority.holder.name} has control now."
     return Reason(
         CONTROL_LOST,
-        f"This order was given before control of {name} changed, and is not carried out any more.{now_has}",
-        "Look who has control and how the tracker stands, then give it again.",
+        f"This command was given before control of {name} changed, and is no longer carried out.{now_has}",
+        "Check who has control and the state of the tracker, then send the command again.",
     )
 
 
@@ -218,24 +218,24 @@ def _too_low(holder: Holder, name: str) -> Reason:
     return Reason(
         CONTROL_HELD,
         f"{holder.name} has control of {name} and has the higher role.",
-        "Ask for control instead of taking it over.",
+        "Request control instead of taking it.",
     )
 
 
 def _other_wish(other: Wish, name: str) -> Reason:
     return Reason(
         CONTROL_HELD,
-        f"{other.by.name} wants control of {name} already.",
-        "Wait until that is decided, then ask again.",
+        f"{other.by.name} has already requested control of {name}.",
+        "Wait for the decision, then request control again.",
     )
 
 
 def _not_refusable(wish: Wish) -> Reason:
     return Reason(
         "cannot_refuse",
-        f"{wish.by.name} takes control by the higher role, or because nothing was heard from here.",
-        "It cannot be refused: hand control over, or let the countdown run out.",
+        f"{wish.by.name} takes control because of a higher role, or because you sent no signal.",
+        "You cannot decline this: hand over control, or let the countdown end.",
     )
 
 
-NO_WISH = Reason("no_wish", "Nobody wants control of this tracker now.", "There is nothing to answer.")
+NO_WISH = Reason("no_wish", "There is no request for control of this tracker.", "No answer is needed.")

@@ -14,7 +14,7 @@ from app.tracker.recording import RecordingInfo, RecordingKind
 from app.tracker.snapshot import Event, EventKind
 
 FIRST_TRACKER = TrackerState(TrackerConfig("T1", "Tracker 1"), TrackerMemory())
-CUT_OFF = "cut off: the controller service ended without warning"
+CUT_OFF = "interrupted: the controller service ended unexpectedly"
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +73,7 @@ def _judged(state: TrackerState, store: Writer) -> TrackerState:
     accepted = store.accepted_settings(state.config.tracker_id)
     if accepted is not None and accepted != state.config and not _wrong(accepted):
         return fallen_back(state, accepted, why=wrong)
-    why = RejectedSetting("settings together", "as below", "the same", wrong)
+    why = RejectedSetting("combination of settings", "as below", "the same", wrong)
     if why in state.memory.rejected:
         return state
     rejected = (*state.memory.rejected, why)
@@ -91,9 +91,9 @@ def _wrong(config: TrackerConfig) -> str:
 
 def _rejected(state: TrackerState, at: datetime) -> Event:
     values = "; ".join(
-        f"{one.what} was {one.stored}, used is {one.used} ({one.why})" for one in state.memory.rejected
+        f"{one.what}: stored {one.stored}, used {one.used} ({one.why})" for one in state.memory.rejected
     )
-    text = f"Stored settings of {state.config.name} were rejected at the start: {values}"
+    text = f"Stored settings of {state.config.name} were rejected at startup: {values}"
     return Event(
         at, EventKind.CONFIG_REJECTED, state.config.tracker_id, text, data={"code": "config_rejected"}
     )
@@ -105,6 +105,7 @@ def _message(unclean_since: datetime | None, cut: list[RecordingInfo]) -> str:
     shows = [f"{info.title} on {info.tracker_id}" for info in cut if info.kind is RecordingKind.SHOW]
     lost = f" Cut off: {'; '.join(shows)}." if shows else ""
     return (
-        f"The controller service started again. Its last run, begun {unclean_since:%Y-%m-%d %H:%M:%S} UTC, "
-        f"ended without warning (a crash or a power cut); drives with a watchdog stopped.{lost}"
+        "The controller service restarted. Its last run, started "
+        f"{unclean_since:%Y-%m-%d %H:%M:%S} UTC, ended unexpectedly (a crash or a power failure); "
+        f"drives with a watchdog stopped.{lost}"
     )

@@ -11,9 +11,11 @@ from app.tracker.reason import Reason
 LOOK_WITHIN_S = 8.0
 TOO_SLOW = DriveReadings(
     CheckOutcome.SILENT,
-    f"The drive was not read within {LOOK_WITHIN_S:g} s. Check the line, its settings and the address.",
+    f"The drive was not read within {LOOK_WITHIN_S:g} s. Check the line, its settings, and the address.",
 )
-NOT_HERE = Reason("no_drive_tools", "This machine cannot look at drives.", "Use the machine's own service.")
+NOT_HERE = Reason(
+    "no_drive_tools", "This controller cannot test drive connections.", "Use the controller's own service."
+)
 
 
 class DriveTools(Protocol):

@@ -14,7 +14,7 @@ from app.zones import shown_zone, zones_missing
 
 NO_ZONES = Reason(
     "zones_missing",
-    "This computer has no time zones, so that all times are shown in UTC.",
+    "The controller's computer has no time zone data, so all times are shown in UTC.",
     "Install tzdata (the system's package or Python's), then restart Heliopanel.",
 )
 TRACKER_ID = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,15}")

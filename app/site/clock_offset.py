@@ -9,7 +9,7 @@ from app.tracker.reason import Reason
 WARNED_FROM = timedelta(seconds=30)
 DOUBTED_FROM = timedelta(minutes=5)
 """The sun moves by 1.25 degrees in this time."""
-HINT = "Compare the clock in the header with a good one, and set or confirm it in step 2."
+HINT = "Compare the clock in the header with a reliable clock, and set or confirm it in step 2."
 NOTHING = timedelta(0)
 
 
@@ -56,14 +56,14 @@ class ClockOffset:
         found = []
         if abs(self.crept) > WARNED_FROM:
             text = (
-                f"The clock of this computer has crept by {self.crept.total_seconds():+.0f} s since it was "
-                "set, and no NTP server keeps it."
+                f"The controller's clock has drifted by {self.crept.total_seconds():+.0f} s since "
+                "it was set, and no NTP server corrects it."
             )
             found.append((self.crept, Reason(code, text, HINT)))
         if self.by_sun is not None and abs(self.by_sun) > WARNED_FROM:
             minutes = abs(self.by_sun.total_seconds()) / 60.0
             text = (
-                f"The views of the sun say that the clock is {minutes:.1f} minutes "
+                f"The sun sightings show that the clock is {minutes:.1f} minutes "
                 f"{'fast' if self.by_sun > NOTHING else 'slow'}."
             )
             found.append((self.by_sun, Reason(code, text, HINT)))

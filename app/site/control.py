@@ -125,7 +125,7 @@ async def _request(model: SiteModel, command: RequestControl, order: Order) -> t
     Of one tracker it can also be asked for; doors that have no page to wait at cannot ask.
     """
     if len(command.reason) > LONGEST_REASON:
-        raise ValueError(f"A reason has at most {LONGEST_REASON} letters.")
+        raise ValueError(f"A reason has at most {LONGEST_REASON} characters.")
     loops = [model.tracker(tracker_id) for tracker_id in sorted(set(command.tracker_ids))]
     async with AsyncExitStack() as stack:
         for loop in loops:
@@ -181,7 +181,10 @@ async def _answer(model: SiteModel, command: AnswerControl, order: Order) -> tup
         if command.grants:
             return events + await _pass_on(model, loop, authority.wish.by, order.actor, "")
         refused = rules.refuse(authority, now)
-        message = f"{order.actor} keeps control of {loop.config.name}; {authority.wish.by.name} was refused."
+        message = (
+            f"{order.actor} keeps control of {loop.config.name}; the request of "
+            f"{authority.wish.by.name} was declined."
+        )
         event = _event(model, loop, EventKind.CONTROL_REFUSED, message, order.actor)
         return events + await _keep(model, loop, rules.renew(refused, holder_of(order), now), event)
 
@@ -193,7 +196,7 @@ async def _release(model: SiteModel, tracker_id: str, order: Order) -> tuple[Eve
         authority = _own(model, loop, order)
         if authority.wish is not None:
             return events + await _pass_on(model, loop, authority.wish.by, order.actor, "")
-        message = f"{order.actor} let go of control of {loop.config.name}."
+        message = f"{order.actor} released control of {loop.config.name}."
         event = _event(model, loop, EventKind.CONTROL_RELEASED, message, order.actor)
         return events + await _keep(model, loop, rules.release(authority), event)
 
@@ -216,14 +219,16 @@ async def _settle(model: SiteModel, loop: TrackerLoop) -> tuple[Event, ...]:
         case None:
             return ()
         case Due.LAPSED:
-            message = f"The wish for control of {loop.config.name} was not answered."
+            message = f"The request for control of {loop.config.name} was not answered."
             event = _event(model, loop, EventKind.CONTROL_REFUSED, message, "machine")
             return await _keep(model, loop, replace(authority, wish=None), event)
         case Due.PASSES | Due.EXPIRED if wish is not None:
             return await _pass_on(model, loop, wish.by, wish.by.name, wish.reason)
         case _:
             name = "nobody" if holder is None else holder.name
-            message = f"Nothing was heard of {name} for 15 s: nobody has control of {loop.config.name} now."
+            message = (
+                f"There was no signal from {name} for 15 s: no user has control of {loop.config.name} now."
+            )
             event = _event(model, loop, EventKind.CONTROL_RELEASED, message, "machine", expired=True)
             return await _keep(model, loop, rules.without_expired(authority, now), event)
 
@@ -270,7 +275,7 @@ def _taken_event(model: SiteModel, loop: TrackerLoop, actor: str, who: Holder, r
 def _wish_event(model: SiteModel, loop: TrackerLoop, actor: str, wanted: Authority) -> Event:
     wish = wanted.wish
     takes = wish is not None and wish.takes
-    does = "takes over" if takes else "asks for"
+    does = "takes" if takes else "requests"
     because = f" Reason: {wish.reason}" if wish is not None and wish.reason else ""
     holder = "nobody" if wanted.holder is None else wanted.holder.name
     message = f"{actor} {does} control of {loop.config.name}, which {holder} has.{because}"
@@ -284,5 +289,7 @@ def _event(
 
 
 NO_REASON = Reason(
-    "no_reason", "Taking control over needs a reason.", "Say in a few words why; everyone will read it."
+    "no_reason",
+    "Taking control from another user needs a reason.",
+    "Enter a short reason; all users can read it.",
 )

@@ -85,7 +85,7 @@ class Ledger:
             await self._writer.call(self._audited(work))
         except StoreFailed as error:
             raise CommandRejected(
-                Reason("not_stored", str(error), "Nothing was changed; free the disk and try again.")
+                Reason("not_stored", str(error), "Nothing was changed; free disk space and try again.")
             ) from error
 
     def post_tracker(self, state: TrackerState, events: Sequence[Event]) -> None:

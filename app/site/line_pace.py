@@ -31,9 +31,9 @@ def short_watchdog(watchdog_s: float | None, period_s: float) -> Reason | None:
         return None
     return Reason(
         "watchdog_short",
-        f"The drive stops by itself after {watchdog_s:g} s without a command, and this controller commands "
-        f"it every {period_s:g} s.",
-        f"Give its watchdog at least {period_s / FULL:g} s, or set HELIOPANEL_TICK_MS to "
+        f"The drive stops automatically after {watchdog_s:g} s without a command, and this "
+        f"controller sends a command every {period_s:g} s.",
+        f"Set its watchdog to at least {period_s / FULL:g} s, or set HELIOPANEL_TICK_MS to "
         f"{FULL * watchdog_s * 1000.0:.0f} or less.",
     )
 
@@ -81,17 +81,17 @@ class LinePace:
         if watchdog_s is not None and turn.turn_s > watchdog_s:
             return Reason(
                 "line_too_slow",
-                f"The line of {name} takes {turn.turn_s:.1f} s to reach its {turn.devices} drives, and "
-                f"each stops by itself after {watchdog_s:g} s without a command.",
-                "Give some of the drives another line, or their watchdogs more time.",
+                f"The line of {name} takes {turn.turn_s:.1f} s to reach its {turn.devices} drives, "
+                f"and each stops automatically after {watchdog_s:g} s without a command.",
+                "Move some of the drives to another line, or increase their watchdog times.",
             )
         if self.pace.every == 1:
             return None
         return Reason(
             "line_shared",
-            f"The drive of {name} shares its line with {turn.devices - 1} others and is asked every "
-            f"{self.pace.every * self._period_s:.1f} s.",
-            "Raise the baud rate, or give some of the drives another line.",
+            f"The drive of {name} shares its line with {turn.devices - 1} others and is polled "
+            f"every {self.pace.every * self._period_s:.1f} s.",
+            "Raise the baud rate, or move some of the drives to another line.",
         )
 
     def _every(self, turn_s: float, watchdog_s: float | None) -> int:

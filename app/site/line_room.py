@@ -35,9 +35,9 @@ def _refuse_full_line(model: SiteModel, config: TrackerConfig) -> None:
     raise CommandRejected(
         Reason(
             "line_full",
-            f"The line {serial.port} has room for {most} such drives at {serial.baud_rate} baud: one takes "
-            f"{parts_s[0] * 1000.0:.0f} ms, and each stops by itself after {min(watchdogs_s):g} s without a "
-            "command.",
-            "Raise the baud rate, give the watchdogs more time, or give the drive another line.",
+            f"Line {serial.port} supports at most {most} such drives at {serial.baud_rate} baud: "
+            f"each takes {parts_s[0] * 1000.0:.0f} ms and stops automatically after "
+            f"{min(watchdogs_s):g} s without a command.",
+            "Raise the baud rate, increase the watchdog times, or move the drive to another line.",
         )
     )

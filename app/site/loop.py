@@ -278,7 +278,7 @@ class TrackerLoop:
         self.broken = Reason(
             "internal_error",
             f"{name} was stopped: the controller met an unexpected error ({type(error).__name__}).",
-            "Keep the log for the maker, then clear the fault.",
+            "Keep the log for the manufacturer, then reset the fault.",
         )
         memory = replace(self.memory, fault_code=self.broken.code, fault_text=self.broken.message)
         self.controller = Controller(self.config, memory, self.drive.capabilities)
@@ -298,8 +298,8 @@ def _still(axis: AxisCommand) -> AxisCommand:
 
 
 def _trouble(error: DriveError | TimeoutError) -> Reason:
-    text = str(error) or "The drive did not answer in time: it is off, frozen or busy, or its cable is cut."
-    return Reason("drive_trouble", text, "Check the drive's supply, cable and address.")
+    text = str(error) or "The drive did not answer in time: it is off, frozen, or busy, or its cable is cut."
+    return Reason("drive_trouble", text, "Check the drive's supply, cable, and address.")
 
 
 def _broken_snapshot(last: Snapshot, at: datetime, broken: Reason, *, asked: bool) -> Snapshot:

@@ -15,7 +15,7 @@ from app.tracker.weather import Weather
 EVERY = timedelta(seconds=1)
 Station = MetStation | SimulatedStation
 
-UNFORESEEN = "The weather station cannot be read because of an unexpected error; the log says which."
+UNFORESEEN = "The weather station cannot be read because of an unexpected error; see the log."
 
 log = get_logger()
 

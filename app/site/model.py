@@ -184,7 +184,7 @@ class SiteModel:
         if isinstance(station, SimulatedStation):
             return SimulatedReader(station, self.now, self.sun)
         if self.make_station is None:
-            raise ValueError("This machine reads no weather stations.")
+            raise ValueError("This controller reads no weather stations.")
         return self.make_station(station)
 
     def _take_weather(self, readings: Weather | None, impossible: tuple[str, ...], source: str) -> None:

@@ -28,7 +28,7 @@ async def carry_out(model: SiteModel, command: NotificationOrder, actor: str) ->
         raise CommandRejected(
             Reason("no_address", f"There is no address for {name}.", "Enter one and save it first.")
         )
-    text = f"A test message by {name} was asked for."
+    text = f"A test message by {name} was requested."
     event = model.event(EventKind.NOTIFICATION_TESTED, text, actor, channel=command.channel.value)
     await model.ledger.append((event,))
     return (event,)
@@ -49,4 +49,4 @@ def _says(wanted: Notifications) -> str:
         for channel in Channel
         if wanted.reaches(channel) and wanted.priorities(channel)
     ]
-    return f"Alarms are sent by {' and by '.join(parts)}." if parts else "Alarms are sent nowhere."
+    return f"Alarms are sent by {' and by '.join(parts)}." if parts else "Alarms are not sent."

@@ -32,11 +32,11 @@ RATIO_DIGITS = 6
 """More than can be measured, and as many as people read and type."""
 NOTHING_TO_JUDGE = Reason(
     "nothing_to_judge",
-    "The axis has not been turned for this proof.",
-    "Turn it first, then say what you saw.",
+    "The axis has not been moved for this drive test.",
+    "Move the axis first, then enter what you saw.",
 )
 NOTHING_TO_UNDO = Reason(
-    "nothing_to_undo", "The drive settings have not been changed.", "Nothing has to be done."
+    "nothing_to_undo", "The drive settings have not been changed.", "No action is needed."
 )
 
 
@@ -46,11 +46,14 @@ async def answer_direction(model: SiteModel, answer: AnswerDirection, actor: str
     config, done = loop.config, replace(loop.memory.proofs, move=None)
     if answer.right:
         proof = DirectionProof(move.axis, move.moved_deg, model.now(), actor, config.drive)
-        text = f"The {move.axis} axis turns the right way."
+        text = f"The {move.axis} axis moves in the right direction."
         return await _keep(model, loop, done.keep(proof), _event(model, loop, move, text, "proven", actor))
     own = config.drive.axis(move.axis)
     drive = _with_axis(config.drive, move.axis, replace(own, inverted=not own.inverted))
-    text = f"The {move.axis} axis turned the wrong way; its direction is turned round now. Prove it again."
+    text = (
+        f"The {move.axis} axis moved in the wrong direction; its direction is now inverted. "
+        "Repeat the drive test."
+    )
     event = _event(model, loop, move, text, "reversed", actor)
     return await _change(model, loop, replace(config, drive=drive), done, event, actor)
 
@@ -64,7 +67,7 @@ async def answer_scale(model: SiteModel, answer: AnswerScale, actor: str) -> tup
         or not 1.0 / LARGEST_CORRECTION < measured_deg / moved_deg < LARGEST_CORRECTION
     ):
         raise ValueError(
-            f"The axis was turned by {moved_deg:.2f} degrees by the controller's count. Enter the degrees "
+            f"The axis moved {moved_deg:.2f} degrees by the controller's count. Enter the degrees "
             "that the panel turned, without a sign."
         )
     config, done = loop.config, replace(loop.memory.proofs, move=None)
@@ -76,8 +79,8 @@ async def answer_scale(model: SiteModel, answer: AnswerScale, actor: str) -> tup
     gear_ratio = float(f"{own.gear_ratio * moved_deg / measured_deg:.{RATIO_DIGITS}g}")
     drive = _with_axis(config.drive, move.axis, replace(own, gear_ratio=gear_ratio))
     text = (
-        f"The {move.axis} axis turned by {measured_deg:.2f} instead of {moved_deg:.2f} degrees; its gear "
-        f"ratio is {gear_ratio:g} now. Prove it again."
+        f"The {move.axis} axis moved {measured_deg:.2f} instead of {moved_deg:.2f} degrees; its "
+        f"gear ratio is now {gear_ratio:g}. Repeat the drive test."
     )
     event = _event(model, loop, move, text, "corrected", actor)
     return await _change(model, loop, replace(config, drive=drive), done, event, actor)
@@ -93,7 +96,10 @@ async def set_soft_limit(model: SiteModel, wanted: SetSoftLimit, actor: str) -> 
     limit_deg = round(axis_feedback(loop.feedback, axis).position_deg, LIMIT_DECIMALS)
     settings = _limited(config.axis(axis), wanted.end, limit_deg)
     proof = LimitProof(axis, wanted.end, limit_deg, model.now(), actor)
-    text = f"The {wanted.end} soft limit of the {axis} axis is {limit_deg:.2f} degrees, where it stands now."
+    text = (
+        f"The {wanted.end} soft limit of the {axis} axis is set to {limit_deg:.2f} degrees, its "
+        "present position."
+    )
     event = model.event(
         EventKind.PROOF_ENDED,
         text,

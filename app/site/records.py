@@ -14,15 +14,13 @@ from app.tracker.snapshot import Event, EventKind
 MOST_PHOTOS = 12
 LARGEST_PHOTO = 2 * 1024 * 1024
 LONGEST_CAPTION = 120
-KEEPS_NOTHING = Reason("no_store", "This machine runs without a store and keeps no records.")
+KEEPS_NOTHING = Reason("no_store", "This controller runs without a database and keeps no records.")
 TOO_MANY = Reason(
     "too_many_photos",
-    f"{MOST_PHOTOS} photos wait for the next record already.",
-    "Remove one that is not needed, or sign the record.",
+    f"The next record already has {MOST_PHOTOS} photos.",
+    "Remove a photo that is not needed, or sign the record.",
 )
-SIGNED = Reason(
-    "already_signed", "This very record is signed already.", "Look for it in the list of signed records."
-)
+SIGNED = Reason("already_signed", "This record is already signed.", "See the list of signed records.")
 
 
 async def carry_out(model: SiteModel, command: RecordOrder, actor: str) -> tuple[Event, ...]:
@@ -45,7 +43,7 @@ async def _add_photo(model: SiteModel, command: AddRecordPhoto, actor: str) -> t
     model.tracker(command.tracker_id)
     content = b64decode(command.chunks, validate=True)
     if len(content) > LARGEST_PHOTO or len(command.caption) > LONGEST_CAPTION:
-        raise ValueError("A photo has at most 2 MB, and its caption at most 120 letters.")
+        raise ValueError("A photo has at most 2 MB, and its caption at most 120 characters.")
     photo = Photo(
         tracker_id=command.tracker_id,
         added_at=model.now(),
@@ -70,7 +68,7 @@ async def _sign(model: SiteModel, command: SignRecord, actor: str) -> tuple[Even
     loop = model.tracker(command.tracker_id)
     document = b64decode(command.chunks, validate=True)
     if hashlib.sha256(document).hexdigest() != command.digest:
-        raise ValueError("The hash does not belong to this record: nothing was kept. Sign it again.")
+        raise ValueError("The hash does not match this record: nothing was stored. Sign the record again.")
     head = RecordHead(0, command.tracker_id, model.now(), actor, command.digest)
     event = model.event(
         EventKind.RECORD_SIGNED,

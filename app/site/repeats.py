@@ -64,8 +64,8 @@ class Repeats:
             raise CommandRejected(
                 Reason(
                     "key_reused",
-                    "This idempotency key was used for another command, so nothing was done.",
-                    "Send it again with a new key.",
+                    "This idempotency key was used for another command; nothing was done.",
+                    "Send the command again with a new key.",
                 )
             )
         return await asyncio.shield(known.answer)
@@ -109,8 +109,11 @@ class Overtaken:
             raise CommandRejected(
                 Reason(
                     "stopped_since",
-                    f"{tracker.name} was stopped after this command was given, so it is not carried out.",
-                    "Look at the live values and give it again.",
+                    (
+                        f"{tracker.name} was stopped after this command was given, so the command is "
+                        "not carried out."
+                    ),
+                    "Check the live values and send the command again.",
                 )
             )
 
@@ -127,16 +130,16 @@ def refuse_untimely(order: Order, now: datetime) -> None:
         raise CommandRejected(
             Reason(
                 "from_the_future",
-                f"This command was given {-age.total_seconds():.1f} s ahead of the site's clock and is not "
-                "carried out.",
-                "Set the clock of the sender or of the site, then give it again.",
+                f"This command is dated {-age.total_seconds():.1f} s ahead of the site's clock and "
+                "is not carried out.",
+                "Set the clock of the sender or of the site, then send the command again.",
             )
         )
     if age > OLDEST_ORDER:
         raise CommandRejected(
             Reason(
                 "too_old",
-                f"This command was given {age.total_seconds():.1f} s ago and is not carried out any more.",
-                "Look at the live values and give it again.",
+                f"This command was given {age.total_seconds():.1f} s ago and is no longer carried out.",
+                "Check the live values and send the command again.",
             )
         )

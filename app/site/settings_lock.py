@@ -26,7 +26,9 @@ from app.tracker.snapshot import Event, EventKind
 
 LONGEST_REASON = 200
 NO_REASON = Reason(
-    "no_reason", "Unlocking the settings needs a reason.", "Say in a few words why; it goes into the journal."
+    "no_reason",
+    "Unlocking the settings needs a reason.",
+    "Enter a short reason; it is recorded in the journal.",
 )
 
 
@@ -73,7 +75,7 @@ async def carry_out(model: SiteModel, command: LockOrder, actor: str) -> tuple[E
         return await _keep(model, loop, lock, event)
     reason = command.reason.strip()
     if len(reason) > LONGEST_REASON:
-        raise ValueError(f"A reason has at most {LONGEST_REASON} letters.")
+        raise ValueError(f"A reason has at most {LONGEST_REASON} characters.")
     if not reason:
         raise CommandRejected(NO_REASON)
     message = f"The settings of {loop.config.name} were unlocked. Reason: {reason}"

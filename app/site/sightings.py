@@ -65,9 +65,9 @@ def _sighting(model: SiteModel, loop: TrackerLoop) -> Sighting:
     if feedback is None:
         reasons.append(Reason("drive_lost", "The drive does not answer.", "Check supply and connection."))
     elif feedback.azimuth.moving or feedback.elevation.moving:
-        reasons.append(Reason("moving", "The panel is moving.", "Wait until it stands still."))
+        reasons.append(Reason("moving", "The panel is moving.", "Wait until the panel is at standstill."))
     if loop.memory.home is None:
-        reasons.append(Reason("not_homed", "The zero is not known.", "Do step 3 first."))
+        reasons.append(Reason("not_homed", "The axes are not homed.", "Complete step 3 first."))
     reasons.extend(reason for reason in model.timekeeper.reasons() if reason.code != SAID_BY_THE_SUN)
     reasons.extend(_no_sightings(loop.config))
     if reasons or sun is None or feedback is None:
@@ -90,8 +90,11 @@ def _no_sightings(config: TrackerConfig) -> tuple[Reason, ...]:
     return (
         Reason(
             "mount_without_sightings",
-            f"The pointing of a {known.title.lower()} mount cannot be corrected by views of the sun.",
-            "Align the axis, set its azimuth and tilt on the mount page, and set the zero with a level.",
+            f"The pointing of a {known.title.lower()} mount cannot be corrected with sun sightings.",
+            (
+                "Align the axis, set its azimuth and tilt on the mount page, and set the home "
+                "position with a level."
+            ),
         ),
     )
 
@@ -104,9 +107,9 @@ async def apply(model: SiteModel, given: ApplySightings, actor: str) -> tuple[Ev
         raise CommandRejected(*reasons)
     pointing = fit(given.keep) if given.keep else Pointing()
     message = (
-        f"The pointing correction was fitted to {len(given.keep)} sightings."
+        f"The mounting correction was fitted to {len(given.keep)} sightings."
         if given.keep
-        else "The pointing correction was removed."
+        else "The mounting correction was removed."
     )
     event = model.event(EventKind.TRACKER_CHANGED, message, actor, given.tracker_id)
     memory = replace(loop.memory, sightings=given.keep, pointing=pointing)

@@ -24,7 +24,7 @@ class SimulatedReader:
         """Return what it makes up, or raise `DriveSilent` while it is played that it says nothing."""
         readings, impossible = report_at(self._station, self._now(), self._sun())
         if readings is None:
-            raise DriveSilent("The simulated weather station says nothing: that is being played.")
+            raise DriveSilent("The simulated weather station does not answer: this fault is injected.")
         return readings, impossible
 
     async def close(self) -> None:

@@ -162,7 +162,7 @@ class Site:
         await self.model.weather_file.close(self.model.measured.kept(self.model.now(), self._clock.now()))
         now = self.model.now()
         for tracker_id in self.model.loops:
-            self.model.recorder.finish(tracker_id, now, "machine stopped")
+            self.model.recorder.finish(tracker_id, now, "controller stopped")
         self.model.recorder.flush(self._clock.now(), at_once=True)
         self.model.ledger.post_events(events)
         self.publisher.publish(self.model.loops, events)
@@ -361,8 +361,8 @@ class Site:
         moved_s = jump.by.total_seconds()
         event = self.model.event(
             EventKind.CLOCK_JUMPED,
-            f"The system clock jumped by {moved_s:+.1f} s; automatic motion waits until the clock is "
-            "confirmed or has been stable for 60 s.",
+            f"The system clock jumped by {moved_s:+.1f} s; automatic motion is held until the "
+            "clock is confirmed or has been stable for 60 s.",
             "machine",
             seconds=moved_s,
         )
@@ -382,5 +382,5 @@ class Site:
 
     def _pruned(self, oldest: datetime, entries: int) -> Event:
         """Return the event that says what retention removed."""
-        text = f"Retention removed {entries} entries of the journal from before {oldest:%Y-%m-%d}."
+        text = f"Retention removed {entries} journal entries from before {oldest:%Y-%m-%d}."
         return self.model.event(EventKind.JOURNAL_PRUNED, text, "machine", entries=entries)

@@ -57,7 +57,7 @@ FOLLOWS_THE_SUN = {ActivityName.TRACKING, ActivityName.SHOWING}
 CLOCK_SET_WITHIN_S = 2.0
 MOST_AT_ONCE = 50
 """So many trackers are stopped before whatever else is due, a tick among it, has its turn."""
-KEEPS_NOTHING = Reason("no_store", "This machine runs without a store and keeps no recordings.")
+KEEPS_NOTHING = Reason("no_store", "This controller runs without a database and keeps no recordings.")
 
 log = get_logger()
 
@@ -215,7 +215,7 @@ def _refuse_while_following(model: SiteModel) -> None:
     reasons = tuple(
         Reason(
             "follows_the_sun",
-            f"{loop.config.tracker_id} follows the sun of the present location.",
+            f"{loop.config.tracker_id} is tracking the sun for the present location.",
             f"Stop {loop.config.tracker_id} first.",
         )
         for loop in model.loops.values()
@@ -296,7 +296,9 @@ def _not_confirmable(model: SiteModel, command: ConfirmStep) -> Reason | None:
     if there[command.step]:
         return None
     return Reason(
-        "step_to_do", f"The step {command.step.value} is not done yet.", "Do it before you confirm it."
+        "step_to_do",
+        f"The step {command.step.value} is not done yet.",
+        "Complete the step before you confirm it.",
     )
 
 
@@ -311,7 +313,7 @@ async def _stop_all(model: SiteModel, actor: str) -> tuple[Event, ...]:
     await asyncio.gather(*stopping)
     await tracker_orders.until_stored(model)
     if not model.loops:
-        happened.append(model.event(EventKind.STOPPED, "Stop was asked; there is no tracker.", actor))
+        happened.append(model.event(EventKind.STOPPED, "Stop was requested; there is no tracker.", actor))
         model.ledger.post_events(happened)
     return tuple(happened)
 

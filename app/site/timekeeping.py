@@ -67,12 +67,12 @@ class Timekeeper:
     def choose(self, source: str, at: datetime | None, by: str) -> ClockSetting:
         """Return the setting that shows `at` now (None: the system's time), or refuse an impossible date."""
         if source == "manual" and at is None:
-            raise ValueError("Give the date and time that the controller's clock shall show.")
+            raise ValueError("Enter the date and time to set on the controller's clock.")
         shown = self._clock.now() + self._followed
         wanted = shown if source == "system" or at is None else at.astimezone(UTC)
         if wanted < BUILT_AT:
             raise ValueError(
-                f"The clock cannot be {wanted:%Y-%m-%d %H:%M} UTC: this software was made on "
+                f"The clock cannot be {wanted:%Y-%m-%d %H:%M} UTC: this software was built on "
                 f"{BUILT_AT:%Y-%m-%d}. Enter today's date."
             )
         return ClockSetting(source, (wanted - shown).total_seconds(), wanted, by)

@@ -13,8 +13,8 @@ from app.tracker.snapshot import Event, EventKind
 STORED_WITHIN_S = 0.5
 NOT_RECORDED = Reason(
     "not_stored",
-    "Nothing is moved, because that cannot be recorded: the store fails.",
-    "Free the disk or check it; it is tried again every two seconds.",
+    "Motion is refused because it cannot be recorded: storage fails.",
+    "Free disk space or check the disk; storage is retried every two seconds.",
 )
 
 log = get_logger()
@@ -55,7 +55,10 @@ def handle_stop(model: SiteModel, loop: TrackerLoop, actor: str) -> tuple[Event,
         events = loop.handle(Stop(), actor)
     except Exception:
         log.exception("stop_not_handled", tracker=loop.config.tracker_id)
-        message = "Stop was asked. The controller of this tracker is broken; its drive was told to stop."
+        message = (
+            "Stop was requested. The controller of this tracker has failed; its drive "
+            "received a stop command."
+        )
         events = (model.event(EventKind.STOPPED, message, actor, loop.config.tracker_id),)
     loop.wake()
     _post(model, loop, events)
@@ -81,7 +84,7 @@ def _repair(model: SiteModel, loop: TrackerLoop, given: Command, actor: str) -> 
     loop.repair()
     event = model.event(
         EventKind.FAULT_RESET,
-        "The controller of this tracker was started again after an unexpected error.",
+        "The controller of this tracker was restarted after an unexpected error.",
         actor,
         loop.config.tracker_id,
     )

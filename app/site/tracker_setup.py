@@ -18,7 +18,7 @@ from app.tracker.snapshot import Event, EventKind
 
 MOST_TRACKERS = 1000
 NOTHING_TO_UNDO = Reason(
-    "nothing_to_undo", "The settings have not been changed since they are kept.", "Nothing has to be done."
+    "nothing_to_undo", "There is no stored settings change to undo.", "No action is needed."
 )
 
 
@@ -28,7 +28,7 @@ async def add(model: SiteModel, config: TrackerConfig, actor: str) -> tuple[Even
     check_config(config)
     if config.tracker_id in model.loops:
         raise CommandRejected(
-            Reason("tracker_exists", f"There is already a tracker {config.tracker_id}.", "Take another id.")
+            Reason("tracker_exists", f"Tracker {config.tracker_id} already exists.", "Choose another id.")
         )
     if len(model.loops) >= MOST_TRACKERS:
         raise CommandRejected(Reason("site_full", f"A site has at most {MOST_TRACKERS} trackers."))
@@ -196,7 +196,7 @@ def refuse_while_busy(model: SiteModel, loop: TrackerLoop) -> None:
     """Raise `CommandRejected` unless the tracker stands still and means to."""
     if not model.rests(loop):
         name = loop.config.tracker_id
-        raise CommandRejected(Reason("tracker_busy", f"{name} is not at rest.", f"Stop {name} first."))
+        raise CommandRejected(Reason("tracker_busy", f"{name} is not at standstill.", f"Stop {name} first."))
 
 
 def _refuse_shared_drive(model: SiteModel, config: TrackerConfig) -> None:
@@ -212,14 +212,14 @@ def _refuse_shared_drive(model: SiteModel, config: TrackerConfig) -> None:
         if shared:
             where = f"{drive.line}, unit {min(shared)}"
             raise CommandRejected(
-                Reason("drive_taken", f"{name} already uses the drive at {where}.", "Give another address.")
+                Reason("drive_taken", f"{name} already uses the drive at {where}.", "Enter another address.")
             )
         serial = drive.kind is DriveKind.MODBUS_RTU and other.serial != drive.serial
         if other.kind is not drive.kind or serial:
             raise CommandRejected(
                 Reason(
                     "line_differs",
-                    f"{name} uses the line {drive.line} with other settings.",
-                    "All drives on one line have the same baud rate, parity and stop bits.",
+                    f"{name} uses line {drive.line} with other settings.",
+                    "All drives on one line have the same baud rate, parity, and stop bits.",
                 )
             )

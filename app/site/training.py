@@ -39,7 +39,7 @@ async def _play(model: SiteModel, loop: TrackerLoop, taught: Lesson, actor: str)
         trainer = _trainer(loop)
         faults = [Fault(FaultKind(one.kind), one.axis, one.amount) for one in taught.parts]
         await _reached(model, loop, lambda: trainer.play(faults))
-    text = f"TRAINING: a fault is played on {name}: {taught.title}."
+    text = f"TRAINING: a fault was injected on {name}: {taught.title}."
     event = model.event(EventKind.FAULT_INJECTED, text, actor, loop.config.tracker_id, fault=taught.fault)
     async with model.changing:
         if taught.weather is None:
@@ -57,7 +57,7 @@ async def _clear(model: SiteModel, loop: TrackerLoop, actor: str) -> tuple[Event
     if not weather or trainer_of(loop.drive) is not None:
         trainer = _trainer(loop)
         await _reached(model, loop, trainer.clear)
-    text = f"TRAINING: the faults of {loop.config.name} that were played are ended."
+    text = f"TRAINING: the injected faults of {loop.config.name} have ended."
     event = model.event(EventKind.FAULTS_CLEARED, text, actor, loop.config.tracker_id)
     async with model.changing:
         if weather:
@@ -75,7 +75,7 @@ def _trainer(loop: TrackerLoop) -> Trainer:
         raise CommandRejected(
             Reason(
                 "not_simulated",
-                f"{loop.config.name} is not simulated; faults are played on a simulated tracker only.",
+                f"{loop.config.name} is not simulated; faults can be injected on a simulated tracker only.",
                 "Add a simulated tracker for training, or connect one to heliopanel drive-sim.",
             )
         )
@@ -99,6 +99,9 @@ async def _reached(model: SiteModel, loop: TrackerLoop, work: Callable[[], Await
 def _not_reached(loop: TrackerLoop, error: DriveError) -> Reason:
     return Reason(
         "training_not_reached",
-        f"Faults of {loop.config.name} are played in heliopanel drive-sim, which did not take this: {error}",
-        "Check that it runs with the profile simulated-plc; a real PLC has no faults to be played.",
+        (
+            f"Faults of {loop.config.name} are injected in heliopanel drive-sim, which refused this "
+            f"request: {error}"
+        ),
+        "Check that it runs with the simulated-plc profile; faults cannot be injected in a real PLC.",
     )

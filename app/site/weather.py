@@ -175,14 +175,14 @@ class WeatherStation:
         age = site_time - measured_at
         if age < -MOST_AHEAD:
             raise ValueError(
-                f"The weather was measured at {measured_at.isoformat()}, but the site's clock shows "
-                f"{site_time.isoformat()}. Set the station's clock, or leave the time out."
+                f"The weather was measured at {measured_at.isoformat()}, but the site's clock "
+                f"shows {site_time.isoformat()}. Set the station's clock, or omit the time."
             )
         if age > self._windows.oldest:
             limit_s = self._windows.oldest.total_seconds()
             raise ValueError(
-                f"The weather is {age.total_seconds():.0f} s old; older than {limit_s:.0f} s is not taken. "
-                "Send it sooner, or leave the time out."
+                f"The weather data is {age.total_seconds():.0f} s old; data older than "
+                f"{limit_s:.0f} s is not accepted. Send it sooner, or omit the time."
             )
         return max(age, timedelta(0))
 

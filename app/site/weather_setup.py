@@ -23,17 +23,17 @@ from app.tracker.snapshot import Event, EventKind
 
 IS_SIMULATED = Reason(
     "weather_simulated",
-    "The site's weather is SIMULATED, so that nothing that was measured is taken.",
+    "The site's weather is SIMULATED; measured weather is not accepted.",
     "Switch the simulated weather off on the Site page first.",
 )
 NEEDS_MADE_UP = Reason(
     "weather_not_simulated",
-    "The site's weather is not simulated, so that no weather and no broken sensor can be played.",
-    "Simulate the weather first: on this page, or on the Site page.",
+    "The site's weather is not simulated, so weather and sensor faults cannot be injected.",
+    "Simulate the weather first, on this page or on the Site page.",
 )
 NEEDS_SIMULATED = Reason(
     "weather_simulated",
-    "The site's weather is SIMULATED, and must not move a machine that is not.",
+    "The site's weather is SIMULATED and must not move a real tracker.",
     "Switch the simulated weather off on the Site page first.",
 )
 
@@ -51,7 +51,9 @@ async def carry_out(model: SiteModel, command: WeatherOrder, actor: str) -> tupl
             state = replace(model.state, weather_windows=command.windows)
             for station in filter(None, (model.measured, model.made_up)):
                 station.judge_by(command.windows)
-            return await _keep(model, state, "The windows and ages of the weather were set.", actor)
+            return await _keep(
+                model, state, ("The averaging windows and maximum ages of the weather data were set."), actor
+            )
         case _:
             assert_never(command)
 
@@ -74,10 +76,10 @@ async def _report(model: SiteModel, command: ReportWeather, actor: str) -> tuple
 
 
 async def _set_station(model: SiteModel, station: MetStation | None, actor: str) -> tuple[Event, ...]:
-    told = "No weather station is read any more."
+    told = "No weather station is read now."
     if station is not None:
         checked_host(station.host)
-        told = f"The weather station {station.name} is read from now on."
+        told = f"The weather station {station.name} is now read."
     made_up = model.state.simulated_weather if station is None else None
     state = replace(model.state, met_station=station, simulated_weather=made_up)
     return await _follow(model, state, told, actor)
@@ -86,11 +88,11 @@ async def _set_station(model: SiteModel, station: MetStation | None, actor: str)
 async def _simulate(model: SiteModel, station: SimulatedStation | None, actor: str) -> tuple[Event, ...]:
     if station is None:
         state = replace(model.state, simulated_weather=None)
-        return await _follow(model, state, "The weather is not simulated any more.", actor)
+        return await _follow(model, state, "The weather is no longer simulated.", actor)
     _refuse_for_real_trackers(model)
     begun = replace(station, begun_at=_begin(station, model.now()))
     state = replace(model.state, simulated_weather=begun, met_station=None)
-    told = f"The weather is SIMULATED from now on: {station.scenario.value.replace('_', ' ')}."
+    told = f"The weather is now SIMULATED: {station.scenario.value.replace('_', ' ')}."
     return await _follow(model, state, told, actor)
 
 
@@ -120,8 +122,8 @@ def _refuse_for_real_trackers(model: SiteModel) -> None:
     reasons = tuple(
         Reason(
             "not_simulated",
-            f"{loop.config.tracker_id} is not simulated; made-up weather must not move it.",
-            "Simulated weather is for sites all of whose trackers are simulated.",
+            f"{loop.config.tracker_id} is not simulated; simulated weather must not move it.",
+            "Simulated weather is only for sites where every tracker is simulated.",
         )
         for loop in model.loops.values()
         if loop.config.drive.kind is not DriveKind.SIMULATED

@@ -43,7 +43,9 @@ class BackupInfo:
 def backup(url: str, target: Path) -> BackupInfo:
     """Write a checked backup of a database that may be in use; the file appears complete or not at all."""
     if target.exists():
-        raise StoreFailed(f"{target} exists already. Give the backup another name, or remove that file.")
+        raise StoreFailed(
+            f"{target} already exists. Choose another name for the backup, or remove that file."
+        )
     unfinished = target.with_name(f"{target.name}.unfinished")
     make_folder(target.parent)
     try:

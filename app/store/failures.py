@@ -10,7 +10,8 @@ SENTENCES = (
     ("SQLITE_NOTADB", "The file is not a database. Restore a backup with: heliopanel restore FILE."),
     ("SQLITE_CORRUPT", "The database file is damaged. Restore a backup with: heliopanel restore FILE."),
     ("SQLITE_IOERR", "The disk failed to read or write. Check the disk or card, then restart Heliopanel."),
-    ("SQLITE_READONLY", "The database file cannot be written. Give Heliopanel's user the right to write it."),
+    ("SQLITE_READONLY",
+     "The database file cannot be written. Give Heliopanel's user write permission for it."),
     ("SQLITE_CANTOPEN", "The database file cannot be opened. Check that the data folder exists."),
 )  # fmt: skip
 UNREACHABLE = ("", "57P01", "57P02", "57P03", "08006")
@@ -42,4 +43,6 @@ def explained(error: SQLAlchemyError) -> StoreFailed:
         return StoreFailed(
             f"The database cannot be reached: nothing was stored. Check that it runs ({first_line})."
         )
-    return StoreFailed(f"The database refused: nothing was stored ({code or 'no code'}: {first_line}).")
+    return StoreFailed(
+        f"The database rejected the data: nothing was stored ({code or 'no code'}: {first_line})."
+    )

@@ -21,7 +21,7 @@ def make_folder(folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise StoreFailed(
-            f"The folder {folder} cannot be made ({error.strerror}). Choose another one."
+            f"The folder {folder} cannot be created ({error.strerror}). Choose another folder."
         ) from error
 
 
@@ -36,7 +36,7 @@ def keep_private(path: Path) -> None:
             _close_to_others(path.with_name(name))
     except OSError as error:
         raise StoreFailed(
-            f"The file {path} cannot be kept from other users ({error.strerror}). Check whose it is."
+            f"The file {path} cannot be protected from other users ({error.strerror}). Check its owner."
         ) from error
 
 

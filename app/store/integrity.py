@@ -46,6 +46,7 @@ def sqlite_notice() -> str | None:
     if sqlite3.sqlite_version_info >= FIRST_SAFE_SQLITE:
         return None
     return (
-        f"SQLite {sqlite3.sqlite_version} is older than 3.51.3, which repaired a rare fault with two "
-        "writers. Heliopanel writes through one connection only; let no other program write to its database."
+        f"SQLite {sqlite3.sqlite_version} is older than 3.51.3, which fixed a rare error with two "
+        "writers. Heliopanel writes through one connection only; do not let another program write "
+        "to its database."
     )

@@ -14,8 +14,8 @@ from app.tracker.memory import RejectedSetting, TrackerMemory, TrackerState
 MOST_MENDED = 50
 LONGEST_TOLD = 60
 OF_THE_CONFIG = ("config",)
-BESIDE = "The settings that were accepted last belong together; this one is not among them."
-NO_TRACKER = "What is stored is not a tracker."
+BESIDE = "The last accepted settings form one set; this setting is not in it."
+NO_TRACKER = "The stored data is not a tracker."
 MEMORY = "memory "
 Place = tuple[str | int, ...]
 Rejected = tuple[RejectedSetting, ...]

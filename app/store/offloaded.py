@@ -23,8 +23,8 @@ LAST = 20
 
 FULL = "The disk is too slow: {capacity} writes are waiting. Nothing was stored; check the disk or card."
 FLOODED = (
-    "Too many events at once: {capacity} writes are waiting, although the disk is fast enough. Nothing was "
-    "stored; see in the journal where they come from."
+    "Too many events at once: {capacity} writes are waiting, although the disk is fast enough. "
+    "Nothing was stored; check the journal for their source."
 )
 CLOSED = "The store is closed: nothing was stored. Start Heliopanel again."
 

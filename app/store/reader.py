@@ -174,8 +174,8 @@ class DatabaseReader:
             return _between(decode_all(stored), begin_s, end_s)
         except ChunkDamaged as error:
             raise StoreFailed(
-                f"Frames of the recording {recording_id!r} are damaged and cannot be shown. "
-                "Restore a backup to get them back, or delete the recording."
+                f"Samples of the recording {recording_id!r} are damaged and cannot be shown. "
+                "Restore a backup to recover them, or delete the recording."
             ) from error
 
     def close(self) -> None:

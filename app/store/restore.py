@@ -115,9 +115,7 @@ def _record(staged: Path, found: BackupInfo, head: str, now: datetime) -> None:
         "audit_head": found.audit_head,
         "replaced_audit_head": head,
     }
-    entry = Entry(
-        now, 0, "", "unknown", "this computer", "console", "", "restore_backup", "site", told(given)
-    )
+    entry = Entry(now, 0, "", "unknown", "local user", "console", "", "restore_backup", "site", told(given))
     engine = writing_engine(f"sqlite:///{staged}")
     try:
         with transaction(engine) as connection:

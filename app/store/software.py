@@ -30,8 +30,8 @@ def refuse_newer(connection: Connection) -> None:
     found = version_of(connection)
     if found is not None and is_newer(found, VERSION):
         raise StoreUnfit(
-            f"The database was written by a newer version of Heliopanel ({found}; this one is {VERSION}). "
-            "Install that version, or restore a backup that this version wrote."
+            f"The database was written by a newer version of Heliopanel ({found}; this version is "
+            f"{VERSION}). Install that version, or restore a backup that this version wrote."
         )
 
 

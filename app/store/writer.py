@@ -189,7 +189,7 @@ class DatabaseWriter(DatabaseReader):
             return
         with self._write() as connection:
             if not recording.is_open(connection, recording_id):
-                raise StoreFailed(f"The recording {recording_id!r} is not open; no frames were added to it.")
+                raise StoreFailed(f"The recording {recording_id!r} is not open; no samples were added to it.")
             recording.append(connection, {recording_id: frames})
 
     def finish_recording(self, recording_id: str, ended_at: datetime, outcome: str) -> None:

@@ -20,7 +20,7 @@ MOST_WEATHER_FILES = 20
 LARGEST_WEATHER = 8 * 1024 * 1024
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,79}")
 STUDY_ID = re.compile(r"[0-9]{8}T[0-9]{6}-[0-9a-f]{6}")
-INTERRUPTED = "The panel was restarted while the study was under way; run it again."
+INTERRUPTED = "Heliopanel was restarted while the study was running; run the study again."
 
 
 class StudyUnknown(LookupError):
@@ -176,8 +176,8 @@ class StudyFolder:
     def _check_weather(self, name: str, content: bytes) -> None:
         if NAME.fullmatch(name) is None or name.endswith((".json", ".new")):
             raise WeatherFileRefused(
-                "Name the weather file with letters, digits, spaces, dots and dashes, at most 80 of them, "
-                "and not ending in .json."
+                "Name the weather file with at most 80 letters, digits, spaces, dots, and dashes, "
+                "not ending in .json."
             )
         if not content:
             raise WeatherFileRefused("The weather file is empty: choose the file again.")
@@ -188,7 +188,7 @@ class StudyFolder:
         others = [one for one in self.weather_files() if one.name != name]
         if len(others) >= MOST_WEATHER_FILES:
             raise WeatherFileRefused(
-                f"There are {MOST_WEATHER_FILES} weather files already: delete one that is not needed."
+                f"There are already {MOST_WEATHER_FILES} weather files: delete one that is not needed."
             )
 
     def _state(self, name: str) -> StudyState | None:

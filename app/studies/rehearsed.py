@@ -22,7 +22,7 @@ FRAME = timedelta(minutes=1)
 def rehearsed_axes(asked: StudyRequest, days: Days, mode: Mode, strategy: StudyStrategy) -> AxisPath:
     """Return the measured axis angles in the middle of every step of the one day of a study."""
     if asked.tracker is None:
-        raise ValueError("As the controller does it, a study needs a tracker: choose one.")
+        raise ValueError("A study with the controller's control needs a tracker: choose one.")
     config = _with(asked, asked.tracker, strategy)
     at_s = days.at_unix_s[0]
     begin = datetime.fromtimestamp(at_s[0] - 30.0 * days.step_min, UTC)

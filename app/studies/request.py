@@ -41,7 +41,7 @@ class LightModel(StrEnum):
 
 CLEAR_SKIES: Final[Mapping[LightModel, str]] = MappingProxyType(
     {
-        LightModel.INEICHEN: "Ineichen and Perez, Linke turbidity of the place",
+        LightModel.INEICHEN: "Ineichen and Perez, Linke turbidity of the location",
         LightModel.SOLIS: "simplified Solis",
         LightModel.HAURWITZ: "Haurwitz, split by Erbs",
     }
@@ -95,11 +95,14 @@ class Module:
         if not 1.0 <= self.power_w <= 1e9:
             raise ValueError("The power of the panels lies between 1 W and 1 GW.")
         if not -0.02 <= self.per_kelvin <= 0.0:
-            raise ValueError("The temperature coefficient lies between -2 and 0 percent a kelvin.")
+            raise ValueError("The temperature coefficient must be between -2 and 0 percent per kelvin.")
         if not 0.0 <= self.losses_percent < 100.0:
-            raise ValueError("The losses lie between 0 and 100 percent, 100 not included.")
+            raise ValueError("The losses must be at least 0 and below 100 percent.")
         if not -60.0 <= self.air_degc <= 60.0 or not 0.0 <= self.wind_mps <= 50.0:
-            raise ValueError("The air has between -60 and 60 degrees Celsius, the wind up to 50 m/s.")
+            raise ValueError(
+                "The air temperature must be between -60 and 60 degrees Celsius, the "
+                "wind speed at most 50 m/s."
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,9 +168,9 @@ def _general(asked: StudyRequest) -> list[str]:
     if not asked.strategies:
         found.append("Choose at least one strategy.")
     if len(set(asked.modes)) < len(asked.modes) or len(set(asked.strategies)) < len(asked.strategies):
-        found.append("Name each mode and each strategy once.")
+        found.append("Enter each mode and each strategy only once.")
     if (asked.light is LightModel.WEATHER) != (asked.weather_file is not None):
-        found.append("A weather file is named exactly when the light comes from one.")
+        found.append("Enter a weather file if, and only if, the irradiance comes from one.")
     return found
 
 
@@ -196,8 +199,8 @@ def _size(asked: StudyRequest) -> list[str]:
         return [f"A study compares at most {MOST_CASES} cases, not {cases}: take fewer modes or strategies."]
     if cases * values > MOST_VALUES:
         return [
-            f"{cases} cases of {values} instants are too many (at most {MOST_VALUES} in all): take a longer "
-            "step, fewer days, or fewer modes and strategies."
+            f"{cases} cases of {values} instants are too many (at most {MOST_VALUES} in all): "
+            "choose a longer step, fewer days, or fewer modes and strategies."
         ]
     return []
 
@@ -207,14 +210,14 @@ def _controller(asked: StudyRequest) -> list[str]:
         return []
     found = []
     if asked.span is not Span.DAY:
-        found.append("As the controller does it, a study has one day: choose a day, or ideal drives.")
+        found.append("A study with the controller's control covers one day: choose a day, or ideal drives.")
     if asked.tracker is None:
-        found.append("As the controller does it, a study needs a tracker: choose one.")
+        found.append("A study with the controller's control needs a tracker: choose one.")
     if not set(asked.modes) <= set(OF_THE_CONTROLLER):
         found.append(
-            "As the controller does it, a study has the modes fixed, azimuth, elevation and dual of the "
-            "tracker's own mount: leave the others out, or choose ideal drives."
+            "A study with the controller's control has the modes fixed, azimuth, elevation, and "
+            "dual of the tracker's own mount: omit the others, or choose ideal drives."
         )
     if asked.light is LightModel.WEATHER:
-        found.append("As the controller does it, a study has a clear sky: choose a clear-sky model.")
+        found.append("A study with the controller's control has a clear sky: choose a clear-sky model.")
     return found

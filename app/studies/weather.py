@@ -60,8 +60,8 @@ def read_weather(path: Path, year: int | None = None) -> WeatherYear:
         raise
     except (ValueError, KeyError, IndexError, TypeError, UnicodeDecodeError, pd.errors.ParserError) as error:
         raise WeatherRefused(
-            f"The file begins like {kind} but cannot be read as that: {error}. Download it again and give "
-            "it unchanged."
+            f"The file begins like {kind} but cannot be read in that format: {error}. Download it "
+            "again and upload it unchanged."
         ) from error
 
 
@@ -76,7 +76,7 @@ def _format_of(path: Path) -> WeatherFormat:
     if "Date (MM/DD/YYYY)" in start:
         return WeatherFormat.TMY3
     raise WeatherRefused(
-        "This is no weather file that Heliopanel reads: give TMY3 or PVGIS as CSV, or EPW, as downloaded."
+        "Heliopanel cannot read this weather file: use TMY3 or PVGIS as CSV, or EPW, as downloaded."
     )
 
 
@@ -111,9 +111,9 @@ def _pvgis_hourly(path: Path, year: int | None) -> WeatherYear:
     """Return one year of an hourly file of a level plane; the beam is turned from level to facing the sun."""
     data, head = read_pvgis_hourly(str(path), pvgis_format="csv")
     if not {"poa_direct", "poa_sky_diffuse"} <= set(data.columns):
-        raise WeatherRefused("Ask PVGIS for the radiation components too: this file has only their sum.")
+        raise WeatherRefused("Select the radiation components in PVGIS: this file has only their sum.")
     if not str(head["inputs"].get("Slope", "")).startswith("0"):
-        raise WeatherRefused("Ask PVGIS for a level plane (slope 0): this file is for a tilted one.")
+        raise WeatherRefused("Select a horizontal plane (slope 0) in PVGIS: this file is for a tilted plane.")
     years = sorted(set(data.index.year))
     year = years[0] if year is None else year
     if year not in years:
@@ -166,7 +166,7 @@ def _column(data: pd.DataFrame, name: str, least: float, most: float) -> Array:
     if wrong.any():
         hour = int(wrong.argmax())
         raise WeatherRefused(
-            f"In hour {hour + 1} of the file {name} is {data[name].iloc[hour]}; it lies between {least:g} "
-            f"and {most:g}. Download the file again, or take another source."
+            f"In hour {hour + 1} of the file, {name} is {data[name].iloc[hour]}; the valid range "
+            f"is {least:g} to {most:g}. Download the file again, or use another source."
         )
     return values

@@ -52,7 +52,7 @@ class Question:
                 f"Years must lie between {FIRST_YEAR} and {LAST_YEAR}, the first not after the last."
             )
         if not FEWEST <= self.samples <= MOST:
-            raise ValueError(f"Take between {FEWEST:,} and {MOST:,} samples, not {self.samples:,}.")
+            raise ValueError(f"Choose between {FEWEST:,} and {MOST:,} samples, not {self.samples:,}.")
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,7 +28,9 @@ class Horizon:
                 raise ValueError(f"An elevation of the horizon must be 0 to below 90, not {elevation_deg:g}.")
         azimuths = [azimuth_deg for azimuth_deg, _ in self.points]
         if any(after <= before for before, after in pairwise(azimuths)):
-            raise ValueError("The points of the horizon must be in rising order of azimuth, each once.")
+            raise ValueError(
+                "The points of the horizon must be in ascending order of azimuth, each azimuth only once."
+            )
 
     def height_deg(self, azimuth_deg: float) -> float:
         """Return how high the horizon stands in a direction, degrees; 0 where none was entered."""

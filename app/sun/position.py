@@ -43,7 +43,7 @@ class Location:
         if not -180.0 <= self.longitude_deg <= 180.0:
             raise ValueError(f"Longitude must lie between -180 and 180 degrees, not {self.longitude_deg}.")
         if not -500.0 <= self.altitude_m <= 9000.0:
-            raise ValueError(f"Altitude must lie between -500 and 9000 metres, not {self.altitude_m}.")
+            raise ValueError(f"Altitude must lie between -500 and 9000 meters, not {self.altitude_m}.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ def sun_position(algorithm: Algorithm, location: Location, at: datetime) -> SunP
         raise InstantRefused(f"{at} has no time zone: give the instant with its offset, for example +00:00.")
     unix_s = at.timestamp()
     if not FIRST_UNIX_S <= unix_s < END_UNIX_S:
-        raise InstantRefused(f"The sun is known for the years 1901 to 2099 (UTC), not for {at}.")
+        raise InstantRefused(f"The sun position is available for the years 1901 to 2099 (UTC), not for {at}.")
     one = PUBLISHED[algorithm].one
     azimuth_deg, elevation_deg = one(unix_s, location.latitude_deg, location.longitude_deg)
     return SunPosition(wrap360(azimuth_deg), elevation_deg, elevation_deg + refraction_deg(elevation_deg))
@@ -93,7 +93,7 @@ def sun_path(algorithm: Algorithm, location: Location, at_unix_s: Array) -> SunP
     """
     if at_unix_s.size and (at_unix_s.min() < FIRST_UNIX_S or at_unix_s.max() >= END_UNIX_S):
         raise InstantRefused(
-            "The sun is known for the years 1901 to 2099 (UTC) only; choose instants within."
+            "The sun position is available only for the years 1901 to 2099 (UTC); choose times in this range."
         )
     many = PUBLISHED[algorithm].many
     columns = np.empty((3, at_unix_s.size))

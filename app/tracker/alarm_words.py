@@ -58,7 +58,7 @@ class AlarmNow:
     @property
     def heading(self) -> str:
         """Return its title, and of one that waits to be seen though its cause is gone that it is gone."""
-        return f"Gone: {self.title}" if self.state is AlarmState.RETURNED else self.title
+        return f"Returned to normal: {self.title}" if self.state is AlarmState.RETURNED else self.title
 
 
 @dataclass(frozen=True, slots=True)

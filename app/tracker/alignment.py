@@ -150,18 +150,20 @@ def _zero_mistakes(sighting: Sighting, declination_deg: float | None) -> Iterato
         residual_deg = _off(sighting, compass_deg, sighting.sun_elevation_deg)
         message = f"North was taken from a compass, which is {declination_deg:+.1f} degrees off here."
         yield 0, Cause(Mistake.MAGNETIC_NORTH, f"{message} Repeat step 3 with true north.", residual_deg)
-    message = f"The azimuth zero is off: the axis reads {azimuth_deg:+.1f} degrees too much."
+    message = f"The azimuth home position is off: the axis reads {azimuth_deg:+.1f} degrees too much."
     if declination_deg is None:
         message = f"{message} If that is the declination here, a compass was used."
     yield 1, Cause(Mistake.AZIMUTH_ZERO, f"{message} Repeat step 3.", without_azimuth_deg)
     message = (
-        f"The elevation zero is off: the axis reads {elevation_deg:+.1f} degrees too much. Repeat step 3."
+        f"The elevation home position is off: the axis reads {elevation_deg:+.1f} degrees too "
+        "much. Repeat step 3."
     )
     yield 1, Cause(Mistake.ELEVATION_ZERO, message, without_elevation_deg)
     if min(abs(azimuth_deg), abs(elevation_deg)) < ALIGNED_DEG:
         return
     message = (
-        f"Both zeros are off, azimuth by {azimuth_deg:+.1f} and elevation by {elevation_deg:+.1f} degrees."
+        f"Both home positions are off, azimuth by {azimuth_deg:+.1f} and elevation by "
+        f"{elevation_deg:+.1f} degrees."
     )
     yield 4, Cause(Mistake.BOTH_ZEROS, f"{message} Repeat step 3.", 0.0)
 
@@ -177,7 +179,7 @@ def fit(sightings: Sequence[Sighting]) -> Pointing:
         raise _rejected(
             "too_few_sightings",
             f"Three sightings are needed, spread over the day; there are {len(sightings)}.",
-            "Take more sightings, in the morning, around noon and in the afternoon.",
+            "Take more sightings, in the morning, around noon, and in the afternoon.",
         )
     start = _start(sightings)
     if float(np.linalg.svd(_derivatives(sightings, start), compute_uv=False)[-1]) < WEAKEST_LEVERAGE:
@@ -186,8 +188,8 @@ def fit(sightings: Sequence[Sighting]) -> Pointing:
     if max(abs(solution[2]), abs(solution[3])) > LARGEST_LEAN_DEG:
         raise _rejected(
             "implausible_lean",
-            f"The sightings say that the mast leans by {max(abs(solution[2:])):.0f} degrees.",
-            "That is not plausible: check location and clock, and remove sightings that were taken wrongly.",
+            f"According to the sightings, the mast leans by {max(abs(solution[2:])):.0f} degrees.",
+            "This result is implausible. Check location and clock, and remove incorrect sightings.",
         )
     left = _misses(sightings, _pointing(solution))
     residual_deg = float(np.sqrt(np.mean(left[0] ** 2 + left[1] ** 2)))
@@ -242,9 +244,12 @@ def _too_alike(sightings: Sequence[Sighting]) -> CommandRejected:
     azimuths = [sighting.sun_azimuth_deg for sighting in sightings]
     return _rejected(
         "sightings_too_alike",
-        "The sightings lie too close together to tell a leaning mast from wrong zeros: the sun's azimuth "
-        f"was {min(azimuths):.0f} to {max(azimuths):.0f} degrees.",
-        "Take more, in the morning, around noon and in the evening, with the sun at least 60 degrees on.",
+        "The sightings are too close together to tell a leaning mast from wrong home positions: "
+        f"the sun's azimuth was {min(azimuths):.0f} to {max(azimuths):.0f} degrees.",
+        (
+            "Take more sightings, in the morning, around noon, and in the evening, with sun azimuths "
+            "at least 60 degrees apart."
+        ),
     )
 
 

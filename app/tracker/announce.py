@@ -15,7 +15,7 @@ def announce(mind: Mind, why: str) -> None:
         return
     reason = Reason("motion_ahead", why, "Keep clear of the panel, or press Stop.")
     mind.warning = Warned(mind.now + timedelta(seconds=warning_s), reason)
-    mind.say(EventKind.MOTION_ANNOUNCED, f"{why} It moves in {warning_s:g} s.", seconds=warning_s)
+    mind.say(EventKind.MOTION_ANNOUNCED, f"{why} Motion starts in {warning_s:g} s.", seconds=warning_s)
 
 
 def announce_if_remote(mind: Mind, why: str) -> None:

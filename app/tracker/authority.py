@@ -23,7 +23,10 @@ def watch_local(mind: Mind, before: Feedback | None, feedback: Feedback) -> None
         reason = at_cabinet(mind)
         mind.say(EventKind.LOCAL_TAKEN, reason.message, code=reason.code)
     elif was_local and not feedback.local:
-        text = f"The switch at the cabinet of {mind.config.name} is on remote again. Nothing moves by itself."
+        text = (
+            f"The switch at the cabinet of {mind.config.name} is on remote again. Nothing moves "
+            "automatically."
+        )
         mind.say(EventKind.LOCAL_GIVEN_BACK, text)
     if feedback.local and not isinstance(mind.activity, Holding | Stopping | Faulted):
         interrupt(mind, at_cabinet(mind))
@@ -34,7 +37,7 @@ def at_cabinet(mind: Mind) -> Reason:
     return Reason(
         "local",
         f"The switch at the cabinet of {mind.config.name} is on local.",
-        "The machine is moved from its cabinet; turn the switch to remote to move it from here.",
+        "The tracker is operated from its cabinet. Turn the switch to remote to use Heliopanel.",
     )
 
 
@@ -49,7 +52,10 @@ def begin_service(mind: Mind, command: BeginService) -> None:
         mind.activity = STOPPING
     mind.remember(service=ServiceMode(name, mind.actor, mind.site_time))
     mind.clear_until = None
-    text = f"{name} serves {mind.config.name}: it moves slowly, once the area was said to be clear."
+    text = (
+        f"{name} put {mind.config.name} in service mode. The tracker moves slowly after the "
+        "area is confirmed clear."
+    )
     mind.say(EventKind.SERVICE_BEGAN, text, name=name)
 
 
@@ -58,7 +64,7 @@ def confirm_clear(mind: Mind) -> None:
     demand(mind, Action.CONFIRM_CLEAR)
     seconds = mind.config.machine.clear_for_s
     mind.clear_until = mind.now + timedelta(seconds=seconds)
-    text = f"The area around {mind.config.name} is clear; that counts for {seconds / 60.0:g} minutes."
+    text = f"The area around {mind.config.name} is confirmed clear, valid for {seconds / 60.0:g} minutes."
     mind.say(EventKind.AREA_CLEARED, text, seconds=seconds)
 
 
@@ -78,8 +84,8 @@ def watch_service(mind: Mind) -> None:
     mind.clear_until = None
     reason = Reason(
         "area_not_clear",
-        f"The word that the area around {mind.config.name} is clear has expired.",
-        "Look whether the area is clear, then press Area is clear.",
+        f"The area-clear confirmation for {mind.config.name} has expired.",
+        "Check that the area is clear, then press Confirm area clear.",
     )
     if not isinstance(mind.activity, Holding | Stopping | Faulted):
         interrupt(mind, reason)

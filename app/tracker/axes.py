@@ -71,14 +71,14 @@ class AxisConfig:
             )
         if not low_deg <= 0.0 <= high_deg:
             raise ValueError(
-                f"The actuator's stroke turns the axis from {low_deg:.2f} to {high_deg:.2f} degrees; it "
-                "must be able to stand at 0, where the zero is set."
+                f"The actuator's stroke turns the axis from {low_deg:.2f} to {high_deg:.2f} "
+                "degrees; this range must include 0, the home position."
             )
         slowest_dps = actuator.slowest_dps(self.minimum_deg, self.maximum_deg)
         if self.speed_dps > slowest_dps + ROUNDING_DEG:
             raise ValueError(
-                f"At {actuator.speed_mm_s:g} mm/s the actuator turns the axis at {slowest_dps:.3f} degrees a "
-                "second where it turns it slowest; the rated speed must not exceed that."
+                f"At {actuator.speed_mm_s:g} mm/s, the slowest axis speed is {slowest_dps:.3f} "
+                "degrees a second; the rated speed must not exceed that."
             )
 
 

@@ -145,8 +145,8 @@ def _open(step: Step) -> Reason:
 def _home_lost(why: str) -> Reason:
     return Reason(
         "home_lost",
-        f"The zero is no longer trusted: {why}",
-        "Turn the panel to north and the horizon, set zero.",
+        f"Home reference lost: {why}",
+        "Point the panel to north and the horizon, then set the home position.",
     )
 
 
@@ -156,22 +156,24 @@ _LOCATION_UNKNOWN = Reason(
 _LOCATION_MOVED = Reason(
     "location_changed",
     "The location has changed since this step was saved.",
-    "Look whether it is still right, and confirm it.",
+    "Check that the step is still correct, and confirm it.",
 )
 _CLOCK_UNSET = Reason(
-    "clock_unset", "The clock has not been set.", "Set it, or keep the system clock, and save."
+    "clock_unset", "The clock has not been set.", "Set the clock, or keep the system clock, then save."
 )
 _CLOCK_UNTRUSTED = Reason(
-    "clock_untrusted", "The clock is not trusted.", "Compare it with yours and save it again."
+    "clock_untrusted",
+    "The clock is not trusted.",
+    "Compare the controller's clock with your own and save again.",
 )
 _HOME_UNSET = Reason(
     "home_unset",
-    "The zero has not been set.",
-    "Turn the panel to north and the horizon, then press Set as zero.",
+    "The home position has not been set.",
+    "Point the panel to north and the horizon, then press Set home here.",
 )
 _DRIVE_SILENT = Reason(
     "drive_unreachable",
-    "The zero cannot be read back, because the drive does not answer.",
+    "The home position cannot be verified because the drive does not answer.",
     "Check the drive's power and its network cable.",
 )
 _MODE_UNSET = Reason("mode_not_selected", "No mode has been selected.", "Choose one of the four modes.")
@@ -179,5 +181,7 @@ _NOT_THERE = Reason(
     "not_at_orientation", "The panel has not been at the orientation of this mode yet.", "Press Go and wait."
 )
 _NOT_RUNNING = Reason(
-    "not_running", "The tracker neither tracks nor shows.", "Press Start tracking, or show tracking movement."
+    "not_running",
+    "The tracker is not tracking, and no show is running.",
+    "Press Start tracking, or open Show tracking movement.",
 )

@@ -87,7 +87,7 @@ def reachable(mind: Mind) -> Reason | None:
     return Reason(
         "drive_unreachable",
         f"The drive of {mind.config.name} does not answer.",
-        "Check its power and its network cable; it is tried again by itself.",
+        "Check the drive's power and network cable. The controller retries automatically.",
     )
 
 
@@ -106,7 +106,7 @@ def faulted(mind: Mind) -> Reason | None:
     """Return that there is no fault to reset."""
     if isinstance(mind.activity, Faulted):
         return None
-    return Reason("no_fault", f"{mind.config.name} has no fault to reset.", "Nothing has to be done.")
+    return Reason("no_fault", f"{mind.config.name} has no fault to reset.", "No action is needed.")
 
 
 def resting(mind: Mind) -> Reason | None:
@@ -114,7 +114,9 @@ def resting(mind: Mind) -> Reason | None:
     if mind.feedback is None or at_rest(mind.feedback):
         return None
     return Reason(
-        "axes_moving", f"The axes of {mind.config.name} still move.", "Wait until both stand still."
+        "axes_moving",
+        f"The axes of {mind.config.name} are still moving.",
+        "Wait until both are at standstill.",
     )
 
 
@@ -125,8 +127,8 @@ def homed(mind: Mind) -> Reason | None:
     name, lost = mind.config.name, mind.memory.home_lost
     return Reason(
         "home_not_trusted",
-        f"{name} has no trusted zero: {lost}" if lost else f"{name} has no trusted zero.",
-        "Go to step 3, Homing, and set the zero.",
+        f"{name} is not homed: {lost}" if lost else f"{name} is not homed.",
+        "Go to step 3, Homing, and set the home position.",
     )
 
 
@@ -137,7 +139,7 @@ def undoable(mind: Mind) -> Reason | None:
         return Reason(
             "nothing_to_undo",
             "There is no former home position.",
-            "Only the home position that was set last by hand can be undone.",
+            "Only the last manually set home position can be undone.",
         )
     near_deg = max(UNDO_NEAR_DEG, mind.config.in_position_deg)
     if all(abs(axis_feedback(seen, axis).position_deg) <= near_deg for axis in former.axes):
@@ -145,7 +147,7 @@ def undoable(mind: Mind) -> Reason | None:
     return Reason(
         "moved_since",
         f"The axes of {mind.config.name} have moved since the home position was set.",
-        "Turn them to the right place and set the home position there.",
+        "Move the axes to the correct position and set the home position there.",
     )
 
 
@@ -155,8 +157,8 @@ def self_homing(mind: Mind) -> Reason | None:
         return None
     return Reason(
         "no_origin_switches",
-        f"The drive of {mind.config.name} has no origin switches to search for.",
-        f"Turn each axis to its zero by hand ({zero_words(mind.config.mount)}), then press Set as zero.",
+        f"The drive of {mind.config.name} has no home switches to search for.",
+        f"Jog each axis to its home position ({zero_words(mind.config.mount)}), then press Set home here.",
     )
 
 
@@ -166,8 +168,11 @@ def watched(mind: Mind) -> Reason | None:
         return None
     return Reason(
         "no_watchdog",
-        f"The drive of {mind.config.name} has no watchdog: it does not stop by itself when it loses contact.",
-        "Hand motion comes in short bounded steps for that reason; the hard-wired stop must be within reach.",
+        (
+            f"The drive of {mind.config.name} has no watchdog: it does not stop automatically on "
+            "communication loss."
+        ),
+        "Jogging is therefore limited to short increments. The emergency stop must be within reach.",
     )
 
 
@@ -179,8 +184,8 @@ def prompt(mind: Mind) -> Reason | None:
     return Reason(
         "link_slow",
         f"The drive of {mind.config.name} answers slowly: 1 reply in 100 takes more than "
-        f"{link.p99_s * 1000.0:.0f} ms, and {link.allowed_s * 1000.0:.0f} ms are all it is given.",
-        "Move by steps, or look for what slows the connection down.",
+        f"{link.p99_s * 1000.0:.0f} ms; the limit is {link.allowed_s * 1000.0:.0f} ms.",
+        "Use incremental jog, or find out what slows the connection down.",
     )
 
 
@@ -193,8 +198,8 @@ def recoverable(mind: Mind) -> Reason | None:
         return None
     return Reason(
         "service_needed",
-        "A fault of this class is cleared at the machine, in service mode.",
-        "Begin service mode on the tracker's page, remove the cause, then clear the fault.",
+        "A fault of this class can be reset only at the tracker, in service mode.",
+        "Begin service mode on the tracker's page, remove the cause, then reset the fault.",
     )
 
 
@@ -202,8 +207,8 @@ def stowed(mind: Mind) -> Reason | None:
     """Return that no stow was commanded that could be left."""
     if mind.memory.stow is not None:
         return None
-    text = f"{mind.config.name} was not sent to a stow position by command."
-    return Reason("not_in_stow", text, "A stow that the weather demands ends by itself.")
+    text = f"{mind.config.name} is not in a manual stow."
+    return Reason("not_in_stow", text, "A stow that the weather requires ends automatically.")
 
 
 def sheltered(mind: Mind) -> Reason | None:
@@ -214,7 +219,7 @@ def sheltered(mind: Mind) -> Reason | None:
     return Reason(
         "stow_demanded",
         f"{mind.config.name} must be stowed because of {words}.",
-        "Wait until that has ended; press Stow if it is not stowed yet.",
+        "Wait until that has ended. If the tracker is not stowed yet, press Stow.",
     )
 
 
@@ -294,37 +299,40 @@ def not_in_a_show(mind: Mind) -> Reason | None:
 
 _STOP_FIRST = "Press Stop first."
 _DOING = {
-    ActivityName.HOLDING: ("stands still", "Nothing has to be done."),
-    ActivityName.JOGGING: ("is being moved by hand", "Let the key go first."),
-    ActivityName.MOVING: ("is moving to a position", "Wait until it has arrived, or press Stop."),
-    ActivityName.ZEROING: ("is setting its zero", "Wait until it has finished."),
+    ActivityName.HOLDING: ("is at standstill", "No action is needed."),
+    ActivityName.JOGGING: ("is being jogged", "Release the button first."),
+    ActivityName.MOVING: ("is moving to a position", "Wait until the tracker has arrived, or press Stop."),
+    ActivityName.ZEROING: ("is setting its home position", "Wait until this has finished."),
     ActivityName.HOMING: (
-        "is searching for its origin switches",
-        "Wait until it has finished, or press Stop.",
+        "is searching for its home switches",
+        "Wait until this has finished, or press Stop.",
     ),
     ActivityName.TRACKING: ("is tracking", _STOP_FIRST),
     ActivityName.SHOWING: ("is busy with a show", "Stop the show first."),
-    ActivityName.STOPPING: ("is coming to rest", "Wait until both axes stand still."),
-    ActivityName.STOWING: ("is going to a stow position", "Wait until it has arrived, or press Stop."),
-    ActivityName.STOWED: ("is stowed", "Press Stop first; it is not stowed any more then."),
-    ActivityName.MEASURING: ("is measuring how it stops", "Wait until it has finished, or press Stop."),
+    ActivityName.STOPPING: ("is stopping", "Wait until both axes are at standstill."),
+    ActivityName.STOWING: (
+        "is going to a stow position",
+        "Wait until the tracker has arrived, or press Stop.",
+    ),
+    ActivityName.STOWED: ("is stowed", "Press Stop first; the tracker is then no longer stowed."),
+    ActivityName.MEASURING: ("is running a drive test", "Wait until this has finished, or press Stop."),
 }
 _SHOW_IS = {
     None: "has no show under way",
     ShowPhase.GOING_TO_START: "is still going to the start of the show",
-    ShowPhase.READY: "stands at the start of a show that has not begun",
+    ShowPhase.READY: "is at the start of a show that has not begun",
     ShowPhase.RUNNING: "is running a show",
     ShowPhase.PAUSED: "has paused a show",
 }
 _SHOW_HINT = {
-    ShowPhase.GOING_TO_START: "Nothing has to be stopped.",
+    ShowPhase.GOING_TO_START: "There is nothing to stop.",
     ShowPhase.RUNNING: "Only a running show can be paused.",
-    ShowPhase.PAUSED: "Only a paused show can go on.",
+    ShowPhase.PAUSED: "Only a paused show can be resumed.",
 }
 _BEFORE_RUN = {
     None: "Press Go to start position and wait until the panel is there.",
-    ShowPhase.GOING_TO_START: "Wait until it has arrived, or press Stop.",
-    ShowPhase.READY: "Nothing has to be done.",
+    ShowPhase.GOING_TO_START: "Wait until the tracker has arrived, or press Stop.",
+    ShowPhase.READY: "No action is needed.",
     ShowPhase.RUNNING: "Stop the show first.",
     ShowPhase.PAUSED: "Stop the show first.",
 }

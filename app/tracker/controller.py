@@ -230,7 +230,7 @@ class Controller:
         if mind.memory.showing is not None:
             show_id = mind.memory.showing
             mind.remember(showing=None)
-            message = "The show was cut off: the controller was started again."
+            message = "The show was interrupted: the controller restarted."
             mind.say(EventKind.SHOW_ENDED, message, outcome="interrupted", show_id=show_id)
 
     def _blind(self, seen: Observation) -> DriveCommand:
@@ -239,7 +239,7 @@ class Controller:
         miss(mind, seen.now, seen.silence)
         mind.sun = seen.sun
         if isinstance(mind.activity, Jogging) and seen.now >= mind.activity.until:
-            jogging.end(mind, mind.activity, "it was not renewed in time.", "expired")
+            jogging.end(mind, mind.activity, "the jog command was not renewed in time.", "expired")
         if mind.lost or isinstance(mind.activity, Holding | Stopping | Faulted | Stowed):
             return STANDING if mind.command is STANDING or _may_search(mind) else HALTED
         return mind.command
@@ -352,7 +352,7 @@ def _setpoint_deg(command: AxisCommand, before_deg: float | None) -> float | Non
 
 _BEGUN_ANEW = Reason(
     "operator_needed",
-    "The controller was begun anew after an unexpected error.",
+    "The controller restarted after an unexpected error.",
     "Press Stow, or Start tracking.",
 )
-_RESET_HINT = "Remove the cause, then clear the fault."
+_RESET_HINT = "Remove the cause, then reset the fault."

@@ -33,7 +33,7 @@ def drive_fault(name: str, feedback: Feedback) -> Reason | None:
     return Reason(
         "drive_fault",
         f"The drive of {name} reports fault code {feedback.fault_code}.",
-        "Look the code up in the drive's manual, remove the cause, then clear the fault.",
+        "Look up the code in the drive's manual, remove the cause, then reset the fault.",
     )
 
 
@@ -44,8 +44,11 @@ def wiring_fault(config: TrackerConfig, feedback: Feedback) -> Reason | None:
         if seen.at_lower_limit and seen.at_upper_limit:
             return Reason(
                 "limit_switch_wiring",
-                f"Both limit switches of the {axis_of(config, axis)} are pressed at once, which cannot be.",
-                "Check the wiring of the switches, then clear the fault.",
+                (
+                    f"Both limit switches of the {axis_of(config, axis)} are on at the same time, "
+                    "which is impossible."
+                ),
+                "Check the wiring of the switches, then reset the fault.",
             )
     return None
 
@@ -68,8 +71,11 @@ def _pressed_switch(config: TrackerConfig, axis: Axis, seen: AxisFeedback) -> Re
     return Reason(
         "at_limit_switch",
         f"The {end} limit switch of the {axis_of(config, axis)} is on"
-        f"{' although it stands within its soft limits' if inside else ''}: it moves {free} only.",
-        "Move it away from the switch by hand; if it does not stand at its end, check switch and zero.",
+        f"{' although the axis is within its soft limits' if inside else ''}: the axis moves {free} only.",
+        (
+            "Jog the axis away from the switch. If the axis is not at its end, check the switch and "
+            "the home position."
+        ),
     )
 
 
@@ -79,8 +85,8 @@ def restart(name: str, before: Feedback, feedback: Feedback) -> Reason | None:
         return None
     return Reason(
         "drive_restarted",
-        f"The drive of {name} has restarted, so its zero is no longer believed.",
-        "Go to step 3, Homing, and set the zero again.",
+        f"The drive of {name} has restarted, so its home reference is lost.",
+        "Go to step 3, Homing, and set the home position again.",
     )
 
 
@@ -89,32 +95,40 @@ def came_back(name: str, before: Feedback | None, feedback: Feedback) -> Reason:
     again = f"The drive of {name} answers again."
     lost_zero = before is not None and _homed(before) and not _homed(feedback)
     if before is not None and (before.boot_count != feedback.boot_count or lost_zero):
-        lost = "" if _homed(feedback) else " and has lost its zero"
+        lost = "" if _homed(feedback) else " and has lost its home reference"
         return Reason(
-            "drive_restarted", f"{again} It has restarted meanwhile{lost}.", "Set the zero again in step 3."
+            "drive_restarted",
+            f"{again} The drive has restarted{lost}.",
+            "Set the home position again in step 3.",
         )
     if feedback.watchdog_tripped:
         return Reason(
             "watchdog_tripped",
-            f"{again} It had stopped by itself: its watchdog tripped, because no command reached it.",
-            "Its zero is kept. Find out why the connection failed before you go on.",
+            (
+                f"{again} The drive had stopped automatically: its watchdog tripped because no command "
+                "reached it."
+            ),
+            "The home reference is kept. Find out why the connection failed before you continue.",
         )
     if before is not None and _moves(before) and not _moves(feedback):
         return Reason(
             "stopped_meanwhile",
-            f"{again} It was moving and stands still now: its watchdog stopped it, or a last command did.",
-            "Its zero is kept. Find out why the connection failed before you go on.",
+            (
+                f"{again} The drive was moving and is now at standstill: its watchdog or a last "
+                "command stopped it."
+            ),
+            "The home reference is kept. Find out why the connection failed before you continue.",
         )
     if before is not None and not _moves(before) and _apart_deg(before, feedback) > JUMP_NOISE_DEG:
         return Reason(
             "drive_elsewhere",
-            f"{again} It stands elsewhere than before: it has restarted, or was turned meanwhile.",
-            "Compare its angles with the panel, and set the zero again in step 3 if they differ.",
+            f"{again} The position has changed: the drive restarted, or an axis was turned.",
+            "Compare the angles with the panel. If they differ, set the home position again in step 3.",
         )
     return Reason(
         "drive_back",
-        f"{again} It tells of no restart.",
-        "Find out why the connection failed before you go on.",
+        f"{again} The drive reports no restart.",
+        "Find out why the connection failed before you continue.",
     )
 
 
@@ -139,16 +153,16 @@ def home_doubt(config: TrackerConfig, home: HomeTrust, feedback: Feedback) -> Re
     if home.boot_count != feedback.boot_count:
         return Reason(
             "drive_restarted",
-            f"The drive of {config.name} has restarted since the zero was set.",
-            "Go to step 3, Homing, and set the zero again.",
+            f"The drive of {config.name} has restarted since the home position was set.",
+            "Go to step 3, Homing, and set the home position again.",
         )
     if feedback.azimuth.homed and feedback.elevation.homed:
         return None
     axis = Axis.ELEVATION if feedback.azimuth.homed else Axis.AZIMUTH
     return Reason(
         "not_homed",
-        f"The drive reports that the {axis_of(config, axis)} has lost its zero.",
-        "Go to step 3, Homing, and set the zero again.",
+        f"The drive reports that the {axis_of(config, axis)} has lost its home reference.",
+        "Go to step 3, Homing, and set the home position again.",
     )
 
 
@@ -160,7 +174,7 @@ def jump(config: TrackerConfig, before: Feedback, feedback: Feedback, elapsed_s:
             return Reason(
                 "encoder_jump",
                 f"The position of the {axis_of(config, axis)} jumped by {moved_deg:.1f} degrees.",
-                "Check the encoder and its cable, then set the zero again in step 3, Homing.",
+                "Check the encoder and its cable, then set the home position again in step 3, Homing.",
             )
     return None
 
@@ -169,9 +183,9 @@ def not_following(config: TrackerConfig, axis: Axis, watch: AxisWatch) -> Reason
     """Return that an axis stays behind its command."""
     return Reason(
         "following_error",
-        f"The {axis_of(config, axis)} does not follow its command: it is "
-        f"{abs(watch.error_deg):.1f} degrees behind.",
-        "Look for something that blocks the axis, check motor and coupling, then clear the fault.",
+        f"The {axis_of(config, axis)} does not follow its setpoint: the following error is "
+        f"{abs(watch.error_deg):.1f} degrees.",
+        "Check the axis for obstructions, check motor and coupling, then reset the fault.",
     )
 
 
@@ -180,7 +194,10 @@ def wrong_way(config: TrackerConfig, axis: Axis) -> Reason:
     return Reason(
         "wrong_direction",
         f"The {axis_of(config, axis)} moves opposite to its command.",
-        "Check the motor's phases and the direction set in the drive, clear the fault, set the zero again.",
+        (
+            "Check the motor's phases and the direction set in the drive. Reset the fault, then set "
+            "the home position again."
+        ),
     )
 
 

@@ -101,7 +101,7 @@ def undo_zero(mind: Mind) -> None:
         home_lost_at=former.home_lost_at,
         confirmations=_confirmations(mind, former),
     )
-    mind.say(EventKind.ZERO_UNDONE, "The home position is again the one before it was set last.")
+    mind.say(EventKind.ZERO_UNDONE, "The previous home position is in use again.")
 
 
 def is_undone(mind: Mind) -> bool:

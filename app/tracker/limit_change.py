@@ -97,9 +97,9 @@ def _forbidden(config: TrackerConfig, axis: Axis, seen: Standing) -> Iterator[Re
     if limits.beyond_deg(at_deg) > config.in_position_deg:
         yield Reason(
             "outside_new_limits",
-            f"The {name} stands at {at_deg:.1f} degrees, outside the new soft limits "
+            f"The {name} is at {at_deg:.1f} degrees, outside the new soft limits "
             f"{limits.minimum_deg:g} to {limits.maximum_deg:g} degrees.",
-            "Move it inside them first, then save.",
+            "Move the axis inside the limits first, then save.",
         )
     ends = (
         (seen.at_lower_limit, "lower", limits.minimum_deg < at_deg - config.in_position_deg),
@@ -111,7 +111,10 @@ def _forbidden(config: TrackerConfig, axis: Axis, seen: Standing) -> Iterator[Re
                 "limit_beyond_switch",
                 f"The {end} limit switch of the {name} is on at {at_deg:.1f} degrees; the new {end} soft "
                 "limit lies beyond it.",
-                "Set the soft limit before the switch; check the zero if the axis is not at its end.",
+                (
+                    "Set the soft limit before the switch. If the axis is not at its end, check the "
+                    "home position."
+                ),
             )
 
 
@@ -123,18 +126,21 @@ def _doubts(old: TrackerConfig, new: TrackerConfig, axis: Axis) -> Iterator[Reas
         yield Reason(
             "limits_widened",
             f"The {name} may turn {room_deg:g} degrees further than before.",
-            "Be sure that nothing stands there, that no cable is too short, and that a switch comes after.",
+            (
+                "Make sure that nothing is in the way, that no cable is too short, and that a limit "
+                "switch follows."
+            ),
         )
     if after.speed_dps > before.speed_dps or after.acceleration_dps2 > before.acceleration_dps2:
         yield Reason(
             "faster_than_before",
-            f"The {name} may turn faster than before, and needs more way to stop.",
-            "Measure the stop again on the page Proofs.",
+            f"The {name} may turn faster than before and needs a longer stopping distance.",
+            "Repeat the stop test on the Drive tests page.",
         )
 
 
 _NO_ZERO = Reason(
     "limits_without_zero",
-    "There is no trusted zero: where the axes stand in the new range is not known.",
-    "Set the zero in step 3, Homing, before you rely on the limits.",
+    "The tracker is not homed: the axis positions in the new range are not known.",
+    "Set the home position in step 3, Homing, before you rely on the limits.",
 )

@@ -15,16 +15,19 @@ LONGEST_REASON = 200
 
 def lock_out(mind: Mind, command: LockOut) -> None:
     """Stop and forbid every automatic motion, or raise `CommandRejected`."""
-    demand(mind, Action.LOCK_OUT, named(command.name, "A maintenance lock"), _too_long(command))
+    demand(mind, Action.LOCK_OUT, named(command.name, "A maintenance inhibit"), _too_long(command))
     name, why = command.name.strip(), command.reason.strip()
-    switch_tracking_off(mind, "the tracker is locked for maintenance.")
-    leave(mind, "the tracker is locked for maintenance.")
+    switch_tracking_off(mind, "a maintenance inhibit was set.")
+    leave(mind, "a maintenance inhibit was set.")
     mind.setpoint = NOWHERE
     if not isinstance(mind.activity, Faulted):
         mind.activity = STOPPING
     mind.remember(lock=MaintenanceLock(name, mind.actor, mind.site_time, why))
     mind.say(
-        EventKind.LOCKED_OUT, f"{name} locked {mind.config.name} for maintenance.", name=name, reason=why
+        EventKind.LOCKED_OUT,
+        f"{name} set a maintenance inhibit for {mind.config.name}.",
+        name=name,
+        reason=why,
     )
 
 
@@ -34,7 +37,7 @@ def release_lock(mind: Mind) -> None:
     lock = mind.memory.lock
     mind.remember(lock=None)
     name = "nobody" if lock is None else lock.name
-    mind.say(EventKind.LOCK_RELEASED, f"The maintenance lock of {name} was released.", name=name)
+    mind.say(EventKind.LOCK_RELEASED, f"The maintenance inhibit of {name} was released.", name=name)
 
 
 def named(name: str, what: str) -> Reason | None:
@@ -43,8 +46,8 @@ def named(name: str, what: str) -> Reason | None:
         return None
     return Reason(
         "lock_unnamed",
-        f"{what} bears a name of 1 to {LONGEST_NAME} letters.",
-        "Give the name of the person who works on the machine.",
+        f"{what} requires a name of 1 to {LONGEST_NAME} characters.",
+        "Enter the name of the person who works on the tracker.",
     )
 
 
@@ -53,6 +56,6 @@ def _too_long(command: LockOut) -> Reason | None:
         return None
     return Reason(
         "lock_unnamed",
-        f"The reason of a maintenance lock has up to {LONGEST_REASON} letters.",
-        "Say it in fewer words.",
+        f"The reason for a maintenance inhibit has up to {LONGEST_REASON} characters.",
+        "Shorten the reason.",
     )

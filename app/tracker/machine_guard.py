@@ -98,8 +98,8 @@ def creeps(mind: Mind, axis: Axis) -> Reason:
     """Return that an axis turns though it should stand."""
     return Reason(
         "creep",
-        f"The {axis_of(mind.config, axis)} moves without a command.",
-        "Keep clear; check the brake, and whether wind pushes the panel or somebody else commands the drive.",
+        f"Uncommanded motion of the {axis_of(mind.config, axis)}.",
+        "Keep clear. Check the brake, and whether wind or another system moves the panel.",
     )
 
 
@@ -107,9 +107,10 @@ def overruns(mind: Mind, axis: Axis, guard: AxisGuard) -> Reason:
     """Return that an axis ran on for too long after a stop, and what it is allowed from now on."""
     return Reason(
         "overrun",
-        f"The {axis_of(mind.config, axis)} ran on by {guard.overruns[-1]:.1f} degrees after a stop, more "
-        f"than it should; it moves slowly until {guard.slow_stops_left} more stops were short.",
-        "Check the brake and the load, then measure the stop again on the page Proofs.",
+        f"The {axis_of(mind.config, axis)} needed {guard.overruns[-1]:.1f} degrees to stop, more "
+        f"than its limit; its speed is reduced until {guard.slow_stops_left} more stops are within "
+        "the limit.",
+        "Check the brake and the load, then repeat the stop test on the Drive tests page.",
     )
 
 
@@ -201,7 +202,7 @@ def _swapped(mind: Mind, feedback: Feedback) -> Reason | None:
                     "axes_swapped",
                     f"The {axis_of(mind.config, other)} was commanded, but the {axis_of(mind.config, axis)} "
                     "moves: the axes are swapped, or two drives have one address.",
-                    "Check the unit ids and the motor cables of both axes, then clear the fault.",
+                    "Check the unit ids and the motor cables of both axes, then reset the fault.",
                 )
     return None
 
@@ -218,7 +219,7 @@ def _stuck_switch(mind: Mind, feedback: Feedback) -> Reason | None:
             "limit_stuck",
             f"The {_end(switch)} limit switch of the {axis_of(mind.config, axis)} stays on although the axis "
             f"has left it by {switch.left_deg(axis_feedback(feedback, axis)):.0f} degrees.",
-            "Check the switch and its cable, then clear the fault; away from the switch the axis may move.",
+            "Check the switch and its cable, then reset the fault. The axis may move away from the switch.",
         )
     return None
 
@@ -228,8 +229,14 @@ def _frozen(mind: Mind, feedback: Feedback) -> Reason | None:
         if guard.turning is not None and guard.turning.is_frozen():
             return Reason(
                 "position_frozen",
-                f"The position of the {axis_of(mind.config, axis)} is frozen: the drive says that it turns.",
-                "Check the encoder and its cable, clear the fault, then set the zero again in step 3.",
+                (
+                    f"The position of the {axis_of(mind.config, axis)} is frozen although the drive "
+                    "reports motion."
+                ),
+                (
+                    "Check the encoder and its cable, reset the fault, then set the home position "
+                    "again in step 3."
+                ),
             )
     return None
 
@@ -239,12 +246,15 @@ def _over_travel(mind: Mind, feedback: Feedback) -> Reason | None:
         outside_deg = mind.config.axis(axis).beyond_deg(axis_feedback(feedback, axis).position_deg)
         if guard.beyond is None or outside_deg - guard.beyond.least_deg <= mind.config.machine.overtravel_deg:
             continue
-        unseen = ", and met no limit switch" if mind.capabilities.limit_switches else ""
+        unseen = ", and no limit switch was reached" if mind.capabilities.limit_switches else ""
         return Reason(
             "over_travel",
             f"The {axis_of(mind.config, axis)} has left its soft limits by {outside_deg:.1f} degrees"
             f"{unseen}.",
-            "Find out why it went on, clear the fault, then set the zero again in step 3, Homing.",
+            (
+                "Find out why the axis did not stop. Reset the fault, then set the home position "
+                "again in step 3, Homing."
+            ),
         )
     return None
 
@@ -257,7 +267,7 @@ def _supply(mind: Mind, feedback: Feedback) -> Reason | None:
         "supply_voltage",
         f"The supply of the drive of {mind.config.name} is at {feedback.supply_v:.1f} V; it must lie between "
         f"{limits.supply_low_v:g} and {limits.supply_high_v:g} V.",
-        "Check the supply and its cables, then clear the fault.",
+        "Check the supply and its cables, then reset the fault.",
     )
 
 

@@ -27,7 +27,7 @@ class Notifications:
 
     def __post_init__(self) -> None:
         if self.webhook_url and not self.webhook_url.startswith(("http://", "https://")):
-            raise ValueError(f"{self.webhook_url!r} is no web address: it must begin with https or http.")
+            raise ValueError(f"{self.webhook_url!r} is not a web address: it must begin with https or http.")
         if len(self.webhook_url) > 500 or any(one.isspace() for one in self.webhook_url):
             raise ValueError("A web address has at most 500 characters and no spaces.")
         if len(self.mail_to) > MOST_ADDRESSES:
@@ -35,7 +35,7 @@ class Notifications:
         for address in self.mail_to:
             name, _, host = address.partition("@")
             if not name or not host or any(one.isspace() or one in ",;<>" for one in address):
-                raise ValueError(f"{address!r} is no mail address such as name@example.org.")
+                raise ValueError(f"{address!r} is not a mail address such as name@example.org.")
         if not {*self.webhook_priorities, *self.mail_priorities} <= {1, 2, 3, 4}:
             raise ValueError("Priorities are 1, 2, 3 and 4.")
 

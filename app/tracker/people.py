@@ -14,8 +14,8 @@ def unlocked(mind: Mind) -> Reason | None:
     why = f" ({lock.reason})" if lock.reason else ""
     return Reason(
         "locked_out",
-        f"{mind.config.name} is locked for maintenance by {lock.name}{why}.",
-        f"Ask {lock.name}; the lock is released on the tracker's page.",
+        f"{mind.config.name} has a maintenance inhibit set by {lock.name}{why}.",
+        f"Ask {lock.name}; the maintenance inhibit is released on the tracker's page.",
     )
 
 
@@ -40,7 +40,7 @@ def locked(mind: Mind) -> Reason | None:
     """Return that there is no lock to release."""
     if mind.memory.lock is not None:
         return None
-    return Reason("not_locked", f"{mind.config.name} is not locked.", "Nothing has to be done.")
+    return Reason("not_locked", f"{mind.config.name} has no maintenance inhibit.", "No action is needed.")
 
 
 def remote(mind: Mind) -> Reason | None:
@@ -50,7 +50,7 @@ def remote(mind: Mind) -> Reason | None:
     return Reason(
         "local",
         f"The switch at the cabinet of {mind.config.name} is on local.",
-        "Turn the switch at the cabinet to remote; until then the machine is moved from there.",
+        "Turn the switch at the cabinet to remote. Until then, the tracker is operated from the cabinet.",
     )
 
 
@@ -70,7 +70,7 @@ def unserved(mind: Mind) -> Reason | None:
         return None
     return Reason(
         "in_service",
-        f"{mind.config.name} is in service mode by {service.name}.",
+        f"{mind.config.name} was put in service mode by {service.name}.",
         "End service mode on the tracker's page first.",
     )
 
@@ -82,6 +82,6 @@ def cleared(mind: Mind) -> Reason | None:
         return None
     return Reason(
         "area_not_clear",
-        f"{mind.config.name} is in service mode, and nobody has said that the area is clear.",
-        "Look whether anybody stands where the panel moves, then press Area is clear.",
+        f"{mind.config.name} is in service mode, and the area is not confirmed clear.",
+        "Check that no person is in the range of the panel, then press Confirm area clear.",
     )

@@ -62,7 +62,9 @@ def _direction(config: TrackerConfig, memory: TrackerMemory, axis: Axis) -> Proo
         return _open(ProofKind.DIRECTION, axis, waiting or _NO_DIRECTION)
     changed = _turning(proof.drive, axis) != _turning(config.drive, axis)
     doubts = _known(waiting, _DRIVE_CHANGED if changed else None)
-    words = f"The panel turned the way the controller says, by {proof.moved_deg:+.2f} degrees."
+    words = (
+        f"The panel turned in the direction that the controller reports, by {proof.moved_deg:+.2f} degrees."
+    )
     return _done(ProofKind.DIRECTION, axis, proof, words, doubts)
 
 
@@ -73,8 +75,8 @@ def _scale(config: TrackerConfig, memory: TrackerMemory, axis: Axis) -> ProofSta
     changed = _scaling(proof.drive, axis) != _scaling(config.drive, axis)
     doubts = _known(waiting, _DRIVE_CHANGED if changed else None)
     words = (
-        f"Of {proof.moved_deg:.2f} degrees by the controller, {proof.measured_deg:.2f} were measured "
-        f"({100.0 * proof.error_share:+.1f} %)."
+        f"The controller reported {proof.moved_deg:.2f} degrees; {proof.measured_deg:.2f} degrees "
+        f"were measured ({100.0 * proof.error_share:+.1f} %)."
     )
     return _done(ProofKind.SCALE, axis, proof, words, doubts)
 
@@ -87,7 +89,7 @@ def _limits(config: TrackerConfig, memory: TrackerMemory, axis: Axis) -> ProofSt
     moved = any(one.limit_deg != _limit_deg(settings, one.end) for one in set_ones)
     older = any(_older(one, memory.home) for one in set_ones)
     doubts = _known(_LIMITS_CHANGED if moved else None, _ZERO_CHANGED if older else None)
-    words = f"Set at the machine: {settings.minimum_deg:.2f} to {settings.maximum_deg:.2f} degrees."
+    words = f"Set at the tracker: {settings.minimum_deg:.2f} to {settings.maximum_deg:.2f} degrees."
     return _done(ProofKind.LIMITS, axis, max(set_ones, key=lambda one: one.at), words, doubts)
 
 
@@ -99,8 +101,9 @@ def _stop(config: TrackerConfig, memory: TrackerMemory, axis: Axis, speed: StopS
     ramps = _ramp(proof.settings) != _ramp(config.axis(axis))
     doubts = _known(_DRIVE_CHANGED if drive else None, _SPEED_CHANGED if ramps else None)
     words = (
-        f"From {proof.speed_dps:.2f} degrees a second it stood {proof.stopped_after_s:.2f} s and "
-        f"{proof.overrun_deg:.2f} degrees after the stop was asked."
+        f"From {proof.speed_dps:.2f} degrees a second, the axis was at standstill "
+        f"{proof.stopped_after_s:.2f} s and {proof.overrun_deg:.2f} degrees after the stop "
+        "command."
     )
     return replace(_done(ProofKind.STOP, axis, proof, words, doubts), speed=speed)
 
@@ -121,13 +124,13 @@ def _link_loss(
 
 def _link_loss_words(proof: LinkLossProof) -> str:
     if proof.outcome is LinkLossOutcome.WENT_ON or proof.stopped_after_s is None:
-        return "Without commands the drive went on; it was told to stop."
-    home = "kept its zero" if proof.home_kept else "has no zero"
-    stood = f"stood after {proof.stopped_after_s:.2f} s, {proof.overrun_deg:.2f} degrees on; it {home}."
+        return "Without commands, the drive continued; a stop command was sent."
+    home = "kept its home reference" if proof.home_kept else "has no home reference"
+    stood = f"stopped after {proof.stopped_after_s:.2f} s and {proof.overrun_deg:.2f} degrees; it {home}."
     text = f"Without commands the drive {stood}"
     if proof.reacted_after_s is not None:
         text = f"Without commands the drive slowed down after {proof.reacted_after_s:.2f} s and {stood}"
-    return f"{text} It reported fault {proof.fault_code}." if proof.fault_code else text
+    return f"{text} The drive reported fault {proof.fault_code}." if proof.fault_code else text
 
 
 def _unsafe(proof: LinkLossProof) -> Reason | None:
@@ -140,7 +143,7 @@ def _unsafe(proof: LinkLossProof) -> Reason | None:
     return Reason(
         "watchdog_late",
         f"The drive's watchdog acted after {acted_s:.2f} s instead of {expected_s:g} s.",
-        "Check the time-out that is set in the drive, then test again.",
+        "Check the timeout that is set in the drive, then test again.",
     )
 
 
@@ -152,8 +155,11 @@ def _to_judge(memory: TrackerMemory, kind: ProofKind, axis: Axis) -> Reason | No
 
 
 def _judge(move: ProofMove) -> Reason:
-    text = f"The axis was turned by {move.moved_deg:+.2f} degrees; what the panel did has not been entered."
-    return Reason("move_to_judge", text, "Say what you saw or measured, or turn it again.")
+    text = (
+        f"The axis was turned by {move.moved_deg:+.2f} degrees; the observed panel movement has "
+        "not been entered."
+    )
+    return Reason("move_to_judge", text, "Enter what you saw or measured, or turn the axis again.")
 
 
 def _older(proof: LimitProof, home: HomeTrust | None) -> bool:
@@ -219,45 +225,53 @@ def _done(
 
 
 _NO_DIRECTION = Reason(
-    "direction_not_proven", "Nobody has checked which way the panel turns.", "Turn it and say what you saw."
+    "direction_not_proven",
+    "The direction of panel movement has not been checked.",
+    "Turn the axis and enter what you saw.",
 )
 _NO_SCALE = Reason(
     "scale_not_proven",
-    "Nobody has measured how far the panel turns.",
-    "Turn it by 10 degrees and measure with an inclinometer or a protractor.",
+    "The angle of panel movement has not been measured.",
+    "Turn the axis by 10 degrees and measure with an inclinometer or a protractor.",
 )
 _NO_LIMITS = Reason(
     "limits_not_set",
-    "The soft limits were not set at the machine.",
-    "Set the zero, drive to each end by hand and take it as the limit.",
+    "The soft limits were not set at the tracker.",
+    "Set the home position, jog to each end, and set it as the limit.",
 )
 _NO_STOP = Reason("stop_not_measured", "Stopping was not measured.", "Start the stop test.")
 _NO_LINK_LOSS = Reason(
     "link_loss_not_tested",
-    "Nobody has tested what the drive does when it loses contact.",
-    "Start the link-loss test.",
+    "The drive has not been tested for communication loss.",
+    "Start the communication-loss test.",
 )
-_MOVES = Reason("move_under_way", "The axis turns now.", "Watch the panel.")
-_DRIVE_CHANGED = Reason("drive_changed", "The drive settings have changed since.", "Do this proof again.")
+_MOVES = Reason("move_under_way", "The axis is turning.", "Watch the panel.")
+_DRIVE_CHANGED = Reason(
+    "drive_changed", "The drive settings have changed since this test.", "Repeat this drive test."
+)
 _SPEED_CHANGED = Reason(
-    "speed_changed", "Speeds or acceleration of the axis have changed since.", "Do this test again."
+    "speed_changed", "Speeds or acceleration of the axis have changed since this test.", "Repeat this test."
 )
 _LIMITS_CHANGED = Reason(
-    "limits_changed", "The soft limits have been changed by hand since.", "Set them at the machine again."
+    "limits_changed",
+    "The soft limits have been changed manually since this test.",
+    "Set the soft limits at the tracker again.",
 )
 _ZERO_CHANGED = Reason(
     "zero_changed",
-    "The zero, from which the limits are counted, was lost or set anew since.",
-    "Check both ends and take them as limits again.",
+    "The home position, the reference for the limits, was lost or set again since this test.",
+    "Check both ends and set them as limits again.",
 )
 _WATCHDOG_CHANGED = Reason(
-    "watchdog_changed", "The drive's watchdog has another time-out now.", "Do the link-loss test again."
+    "watchdog_changed",
+    "The timeout of the drive's watchdog has changed since this test.",
+    "Repeat the communication-loss test.",
 )
 _WENT_ON = Reason(
     "watchdog_does_not_act",
-    "The drive did not stop by itself when no command reached it.",
-    "Switch its watchdog on, then test again; until then rely on the hard-wired stop.",
+    "The drive did not stop automatically when no command reached it.",
+    "Switch the drive's watchdog on, then test again. Until then, rely on the emergency stop.",
 )
 _NONE_TO_TEST = (
-    "This drive has no watchdog: it does not stop by itself. Hand motion comes in short bounded steps."
+    "This drive has no watchdog: it does not stop automatically. Jogging is limited to short increments."
 )

@@ -44,9 +44,9 @@ def miss(mind: Mind, now: datetime, silence: timedelta) -> None:
     reason = Reason(
         "drive_lost",
         f"The drive of {mind.config.name} did not answer.",
-        "Check its power and its network cable; then press Start tracking.",
+        "Check the drive's power and network cable, then press Start tracking.",
     )
-    mind.say(EventKind.DRIVE_LOST, f"The drive of {mind.config.name} does not answer any more.")
+    mind.say(EventKind.DRIVE_LOST, f"The drive of {mind.config.name} no longer answers.")
     interrupt(mind, reason)
 
 
@@ -114,8 +114,8 @@ def _watchdog_tripped(mind: Mind) -> None:
     """Say that the drive stopped for want of commands; only tracking goes on after that."""
     reason = Reason(
         "watchdog_tripped",
-        f"The drive of {mind.config.name} stopped by itself, because no command reached it in time.",
-        "Check the network and the load of the computer.",
+        f"The drive of {mind.config.name} stopped automatically because no command reached it in time.",
+        "Check the network and the load of the controller's computer.",
     )
     match mind.activity:
         case Holding() | Stopping() | Faulted() | Stowed():
@@ -138,7 +138,7 @@ def obey_switches(mind: Mind, command: DriveCommand, feedback: Feedback) -> Driv
             reason = Reason(
                 "limit_switch",
                 f"The {axis_of(mind.config, axis)} has reached its limit switch.",
-                "Move it away from the switch by hand and check the zero.",
+                "Jog the axis away from the switch and check the home position.",
             )
             mind.say(EventKind.LIMIT_REACHED, reason.message, axis=axis)
             interrupt(mind, reason)

@@ -91,7 +91,7 @@ class Frames:
 
     def __post_init__(self) -> None:
         if self.values.ndim != 2 or self.values.shape[1] != len(COLUMNS):
-            raise ValueError(f"Frames have {len(COLUMNS)} columns, not shape {self.values.shape}.")
+            raise ValueError(f"Samples have {len(COLUMNS)} columns, not shape {self.values.shape}.")
 
     def __len__(self) -> int:
         return len(self.values)

@@ -34,7 +34,7 @@ def recover(mind: Mind, feedback: Feedback) -> None:
         return
     mind.recovered_at = (*recent, mind.now)[-60:]
     mind.ailing_since = mind.now
-    text = f"{mind.config.name} leaves the fault {code} by itself, as its recovery policy says."
+    text = f"{mind.config.name} resets the fault {code} automatically, according to its recovery policy."
     mind.say(EventKind.FAULT_RECOVERED, text, code=code, policy=policy.kind)
     if isinstance(mind.activity, Faulted):
         reset_fault(mind)
@@ -69,4 +69,4 @@ def _go_on(mind: Mind) -> None:
         return
     mind.recovering = False
     if isinstance(mind.activity, Holding):
-        tracking.resume(mind, "the fault was left")
+        tracking.resume(mind, "the fault was reset")

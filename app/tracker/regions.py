@@ -50,8 +50,8 @@ def forbidden(config: TrackerConfig, region: Region) -> Reason:
     """Return that a motion would lead into a region."""
     return Reason(
         "forbidden_region",
-        f"The way of {config.name} would lead through the forbidden region {region.name}.",
-        "Choose a place that is reached around it; a panel that stands in it is moved out by hand.",
+        f"The path of {config.name} would lead through the forbidden region {region.name}.",
+        "Choose a position with a path around the region. If the panel is inside the region, jog it out.",
     )
 
 

@@ -12,6 +12,9 @@ def accepted(mind: Mind) -> Reason | None:
     values = "; ".join(f"{one.what} was {one.stored}, used is {one.used}" for one in rejected)
     return Reason(
         "config_rejected",
-        f"The stored settings of {mind.config.name} were rejected at the start: {values}.",
-        "Compare them on the tracker's Settings page, correct them and save; then it may move again.",
+        f"The stored settings of {mind.config.name} were rejected at startup: {values}.",
+        (
+            "Compare the settings on the tracker's Settings page, correct them, and save. Then the "
+            "tracker may move again."
+        ),
     )

@@ -330,8 +330,8 @@ def _notices(mind: Mind) -> tuple[Reason, ...]:
 def _zero_lost(mind: Mind) -> Reason:
     return Reason(
         "home_lost",
-        f"{mind.config.name} has no trusted zero any more: {mind.memory.home_lost}",
-        "Compare the panel with the angles shown, then set the zero again in step 3, Homing.",
+        f"{mind.config.name} is no longer homed: {mind.memory.home_lost}",
+        "Compare the panel with the angles shown, then set the home position again in step 3, Homing.",
     )
 
 
@@ -350,41 +350,46 @@ def _show(showing: Showing) -> ShowProgress:
     )
 
 
-_SUN_DOWN = Reason("sun_down", "The sun is below the horizon.", "Tracking goes on by itself when it rises.")
+_SUN_DOWN = Reason(
+    "sun_down", "The sun is below the horizon.", "Tracking continues automatically at sunrise."
+)
 _CLOCK_DOUBTED = Reason(
     "clock_untrusted",
     "The site's clock is not trusted.",
-    "Confirm the clock in step 2, or wait until it has been stable for 60 s; then tracking goes on.",
+    "Confirm the clock in step 2, or wait until it has been stable for 60 s; then tracking continues.",
 )
 _HOLDS = {TrackPhase.NIGHT: (_SUN_DOWN,), TrackPhase.PAUSED: (_CLOCK_DOUBTED,)}
 _SENT_TO_HOMING = frozenset({"drive_restarted", "not_homed", "encoder_jump"})
 """Reasons to wait that say by themselves that the zero is lost, and to set it again."""
-_STOWED = Reason("stowed", "The panel was stowed by command.", "Press Resume, or Start tracking.")
+_STOWED = Reason("stowed", "The panel was stowed manually.", "Press Resume, or Start tracking.")
 _HAND_ENDS = Reason(
     "hand_motion_ends",
-    "Wind or snow demand that the panel is stowed: this motion by hand ends.",
-    "Let the key go and leave the panel; or press again for a few more seconds.",
+    "Wind or snow requires a stow; this jog ends.",
+    "Release the button and move away from the panel, or press again for a few more seconds.",
 )
 _OPERATOR = Reason(
-    "operator_needed", "Tracking was interrupted and waits for the operator.", "Press Start tracking."
+    "operator_needed", "Tracking was interrupted and needs the operator.", "Press Start tracking."
 )
 _NO_SOFT_LIMITS = Reason(
     "no_soft_limits",
-    "Without a trusted zero the soft limits do not protect: only the limit switches and you do.",
-    "Watch the panel while you move it, and set the zero in step 3, Homing.",
+    (
+        "The tracker is not homed, so the soft limits do not protect it: only the limit switches and "
+        "the operator do."
+    ),
+    "Watch the panel while you move it, and set the home position in step 3, Homing.",
 )
 _LIMITED = Reason(
     "limited",
     "The sun is beyond the range of the axes; the panel faces it as nearly as they allow.",
-    "Nothing has to be done; the soft limits are in the tracker's settings.",
+    "No action is needed; the soft limits are in the tracker's settings.",
 )
 _NO_WATCHDOG = Reason(
     "no_watchdog",
-    "This drive does not stop by itself when it loses contact, so hand motion comes in short steps.",
-    "Keep the hard-wired emergency stop within reach.",
+    "This drive does not stop on communication loss, so jogging is limited to short increments.",
+    "Keep the emergency stop within reach.",
 )
 _UNVERIFIED = Reason(
     "profile_unverified",
-    "The profile of this drive has not been verified on a real one.",
-    "Test every motion and the stop with care before you rely on it.",
+    "The profile of this drive has not been verified on a real drive.",
+    "Carefully test every motion and the stop before you rely on this drive.",
 )

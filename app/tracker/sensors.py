@@ -11,17 +11,17 @@ UNITS = {Quantity.WIND: "m/s", Quantity.SNOW: "kg", Quantity.LIGHT: "W/m2"}
 OFF = {
     Quantity.WIND: "The protection against wind is switched off.",
     Quantity.SNOW: "The protection against snow is switched off.",
-    Quantity.LIGHT: "The protection against too little light is switched off.",
+    Quantity.LIGHT: "The protection against low light is switched off.",
 }
 NEVER_TOLD = {
     Quantity.WIND: "There is no protection against wind: no sensor has ever reported.",
     Quantity.SNOW: "There is no protection against snow: no sensor has ever reported.",
-    Quantity.LIGHT: "There is no protection against too little light: no sensor has ever reported.",
+    Quantity.LIGHT: "There is no protection against low light: no sensor has ever reported.",
 }
 PROTECTS = {
     Quantity.WIND: "Protects against wind.",
     Quantity.SNOW: "Protects against snow.",
-    Quantity.LIGHT: "Protects against too little light.",
+    Quantity.LIGHT: "Protects against low light.",
 }
 
 

@@ -16,19 +16,19 @@ TWILIGHT_DEG = -1.0
 LATCHED = (Protection.TYPHOON, Protection.SNOW)
 """What must be seen good before tracking goes on, also after a restart."""
 DEMANDS = (Protection.TYPHOON, Protection.SNOW, Protection.WAIT, Protection.HIBERNATE)
-TITLES = {Quantity.WIND: "wind sensor", Quantity.SNOW: "snow sensor", Quantity.LIGHT: "light sensor"}
+TITLES = {Quantity.WIND: "wind sensor", Quantity.SNOW: "snow sensor", Quantity.LIGHT: "irradiance sensor"}
 BAD = {
     Quality.MISSING: "reports nothing",
     Quality.STALE: "has not reported in time",
     Quality.FROZEN: "reports the same value all the time",
-    Quality.IMPOSSIBLE: "reports what cannot be",
+    Quality.IMPOSSIBLE: "reports an implausible value",
     Quality.BEFORE_RESTART: "has reported nothing since the restart",
 }
 PROVES_A_SENSOR = (Quality.GOOD, Quality.BEFORE_RESTART)
 REACTS = {
-    Reaction.IGNORE: "that is ignored",
-    Reaction.WARN: "nothing moves because of it",
-    Reaction.HOLD: "the panel stays where it is",
+    Reaction.IGNORE: "the fault is ignored",
+    Reaction.WARN: "only a warning is issued",
+    Reaction.HOLD: "the panel holds its position",
     Reaction.STOW: "the panel is stowed as a precaution",
 }
 
@@ -109,27 +109,34 @@ def _reason(mind: Mind) -> Reason:
             load = (
                 f"{config.snow.load_kg:g} kg of snow lay on the panel of {name} for {config.snow.hold_s:g} s."
             )
-            return Reason("snow", load, "It goes on by itself once the load is off.")
+            return Reason("snow", load, "Tracking continues automatically once the load is off.")
         case Protection.WAIT:
-            text = f"{name} waits for light: there is less than {config.light.threshold_wm2:g} W/m2."
-            return Reason("too_dark", text, "It goes on by itself once there is enough light.")
+            text = f"{name} holds: the irradiance is below {config.light.threshold_wm2:g} W/m2."
+            return Reason(
+                "too_dark", text, ("Tracking continues automatically once the irradiance is sufficient.")
+            )
         case _:
             text = (
-                f"{name} rests: for {config.light.hold_s / 60.0:g} minutes there was less light than "
-                f"{config.light.threshold_wm2:g} W/m2."
+                f"{name} is in low-light hold: for {config.light.hold_s / 60.0:g} minutes the "
+                f"irradiance was below {config.light.threshold_wm2:g} W/m2."
             )
-            return Reason("hibernation", text, "It goes on by itself once there is enough light.")
+            return Reason(
+                "hibernation", text, ("Tracking continues automatically once the irradiance is sufficient.")
+            )
 
 
 def doubt_reason(mind: Mind, quantity: Quantity) -> Reason:
     """Return what is wrong with a sensor, and what that does."""
     quality = mind.seen.weather.reading(quantity).quality if mind.seen else Quality.MISSING
-    bad = BAD.get(quality, "was bad and is watched until it has been good for long enough")
+    bad = BAD.get(quality, "was faulty and is monitored until it has been good for long enough")
     reacts = REACTS[limits_of(mind.config.protection, quantity).bad]
     return Reason(
         f"{quantity}_sensor_bad",
         f"The {TITLES[quantity]} {bad}; {reacts}.",
-        "Check the sensor, its cable and its address; what a bad one does is in the tracker's settings.",
+        (
+            "Check the sensor, its cable, and its address. The reaction to a faulty sensor is in the "
+            "tracker's settings."
+        ),
     )
 
 
@@ -182,7 +189,7 @@ def _is_night(mind: Mind, seen: Observation) -> bool:
 def _typhoon_reason(mind: Mind, state: Guarding) -> Reason:
     name, limits = mind.config.name, mind.config.protection.wind
     minutes = f"{limits.resume_after_s / 60.0:g}"
-    hint = f"Once it has been calm for {minutes} minutes, tracking goes on if it was on."
+    hint = f"Once the wind has been calm for {minutes} minutes, tracking continues if it was on."
     wind = mind.seen.weather.wind if mind.seen else None
     if state.wind_doubt.ripe and limits.bad is Reaction.STOW:
         return Reason(
@@ -215,7 +222,7 @@ def _say_doubts(mind: Mind, before: Guarding, after: Guarding, sensed: Sensed) -
             text = doubt_reason(mind, quantity).message
             mind.say(EventKind.SENSOR_DOUBTED, text, quantity=quantity, quality=quality)
         elif was and not ripe:
-            text = f"The {TITLES[quantity]} reports well again."
+            text = f"The {TITLES[quantity]} reports valid values again."
             mind.say(EventKind.SENSOR_TRUSTED, text, quantity=quantity)
 
 

@@ -16,7 +16,7 @@ SPANS = {
     "wind_mps": ("The simulated mean wind", 0.0, 50.0, "m/s"),
     "gustiness_pct": ("The simulated gustiness", 0.0, 100.0, "percent"),
     "wind_direction_deg": ("The simulated wind direction", 0.0, 360.0, "degrees from north"),
-    "light_wm2": ("The simulated light", 0.0, 1500.0, "W/m2"),
+    "light_wm2": ("The simulated irradiance", 0.0, 1500.0, "W/m2"),
     "snow_kg": ("The simulated snow load", 0.0, 1000.0, "kg"),
     "temperature_degc": ("The simulated air temperature", -60.0, 60.0, "degrees Celsius"),
 }

@@ -99,7 +99,7 @@ class SimulatedLight:
         if not max(abs(self.azimuth_deg), abs(self.elevation_deg)) <= 10.0:
             raise ValueError("The simulated misalignment must lie between -10 and 10 degrees.")
         if not 0.0 <= self.cloud <= 1.0:
-            raise ValueError("A cloud takes a share between 0 and 1 of the direct light.")
+            raise ValueError("A cloud blocks a share between 0 and 1 of the direct irradiance.")
 
 
 CLEAR = SimulatedLight()
@@ -123,13 +123,13 @@ class HybridConfig:
 
     def __post_init__(self) -> None:
         if not 1.0 <= self.threshold_wm2 <= 2000.0:
-            raise ValueError("The light threshold must lie between 1 and 2000 W/m2.")
+            raise ValueError("The irradiance threshold must lie between 1 and 2000 W/m2.")
         if not 0.001 <= self.gain_dps <= 10.0:
             raise ValueError("The gain of the correction must lie between 0.001 and 10 degrees a second.")
         if not 0.01 <= self.bound_deg <= 10.0:
-            raise ValueError("The bound of the correction must lie between 0.01 and 10 degrees.")
+            raise ValueError("The correction limit must lie between 0.01 and 10 degrees.")
         if not 0.0 <= self.decay_s <= 86_400.0:
-            raise ValueError("The decay of the correction must lie between 0 and 86,400 seconds.")
+            raise ValueError("The decay time constant must lie between 0 and 86,400 seconds.")
 
 
 NO_HYBRID = HybridConfig()

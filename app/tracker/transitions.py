@@ -44,10 +44,10 @@ def _say_what_ended(mind: Mind, activity: Unfaulted, why: str) -> None:
         case Zeroing() | Homing():
             _say_zero_ended(mind, activity, why)
         case Stowing() | Stowed():
-            text = f"The stow position {activity.stow} was given up: {why}"
+            text = f"The stow position {activity.stow} was canceled: {why}"
             mind.say(EventKind.STOW_ENDED, text, stow=activity.stow, outcome="interrupted")
         case Tracking():
-            mind.say(EventKind.TRACKING_WAITING, f"Tracking waits for the operator: {why}")
+            mind.say(EventKind.TRACKING_WAITING, f"Tracking is interrupted and needs the operator: {why}")
         case Showing():
             end_show(mind, activity, f"The show ended early: {why}", "interrupted")
         case _:
@@ -67,11 +67,11 @@ def _say_order_ended(mind: Mind, activity: Moving | Measuring, why: str) -> None
 
 def _say_zero_ended(mind: Mind, activity: Zeroing | Homing, why: str) -> None:
     if isinstance(activity, Homing):
-        text = f"The search for the origin switches ended: {why}"
+        text = f"The search for the home switches ended: {why}"
         mind.say(EventKind.HOMING_ENDED, text, outcome="failed")
         return
-    mind.say(EventKind.ZERO_FAILED, f"Zero was not set: {why}")
-    lose_home(mind, Reason("zero_failed", f"setting it was interrupted: {why}"))
+    mind.say(EventKind.ZERO_FAILED, f"Home position not set: {why}")
+    lose_home(mind, Reason("zero_failed", f"setting the home position was interrupted: {why}"))
 
 
 def end_move(mind: Mind, why: str) -> None:
@@ -109,7 +109,7 @@ def lose_home(mind: Mind, reason: Reason) -> None:
     if mind.memory.home is None:
         return
     doubt_zero(mind, reason.message)
-    mind.say(EventKind.HOME_LOST, f"The zero is no longer trusted: {reason.message}", code=reason.code)
+    mind.say(EventKind.HOME_LOST, f"Home reference lost: {reason.message}", code=reason.code)
 
 
 def doubt_zero(mind: Mind, why: str) -> None:
@@ -133,7 +133,7 @@ def switch_tracking_off(mind: Mind, why: str) -> None:
 _MOVES = {
     MoveKind.MOVE: "The move",
     MoveKind.PARK: "The move to the park position",
-    MoveKind.STEP: "The step",
-    MoveKind.DIRECTION: "The move of the direction proof",
-    MoveKind.SCALE: "The move of the scale proof",
+    MoveKind.STEP: "The incremental jog",
+    MoveKind.DIRECTION: "The move of the direction test",
+    MoveKind.SCALE: "The move of the scale test",
 }

@@ -14,8 +14,8 @@ SIMULATED = "SIMULATED"
 RANGES = {
     "wind_mps": ("The wind speed", 0.0, 120.0, "m/s"),
     "wind_direction_deg": ("The wind direction", 0.0, 360.0, "degrees from north"),
-    "light_wm2": ("The light", 0.0, 2000.0, "W/m2"),
-    "snow_kg": ("The snow load", 0.0, 100_000.0, "kg"),
+    "light_wm2": ("The irradiance", 0.0, 2000.0, "W/m2"),
+    "snow_kg": ("The snow-stow threshold", 0.0, 100_000.0, "kg"),
     "snow_mm": ("The snow depth", 0.0, 20_000.0, "mm"),
     "temperature_degc": ("The air temperature", -90.0, 70.0, "degrees Celsius"),
     "humidity_pct": ("The relative humidity", 0.0, 100.0, "percent"),

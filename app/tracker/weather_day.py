@@ -59,9 +59,9 @@ def day_of_scenario(scenario: Scenario, begins: str, seed: int, begin: datetime,
     `begin` is when the simulation begins; `begins` counts from the midnight before that, such as `12:00`.
     """
     if scenario is Scenario.BY_HAND:
-        raise ValueError("Weather by hand is given in steps; choose one of the other scenarios.")
+        raise ValueError("Manual weather values are given in steps; choose one of the other scenarios.")
     midnight = midnight_before(begin, zone)
-    since = instant_of(after_midnight(begins, "The begin of the scenario"), midnight, zone)
+    since = instant_of(after_midnight(begins, "The start of the scenario"), midnight, zone)
     quiet = SimulatedStation(seed=seed, begun_at=midnight)
     if since <= midnight:
         return WeatherDay(((midnight, SimulatedStation(scenario, seed, begun_at=midnight)),))

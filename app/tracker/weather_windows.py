@@ -8,10 +8,10 @@ USUAL_OLD_S = 300.0
 LIMITS = {
     "gust_s": ("The window of the gust", 1.0, 60.0),
     "mean_s": ("The window of the mean wind", 60.0, 3600.0),
-    "wind_old_after_s": ("The age at which wind is old", 5.0, 86_400.0),
-    "light_old_after_s": ("The age at which light is old", 5.0, 86_400.0),
-    "snow_old_after_s": ("The age at which snow is old", 5.0, 86_400.0),
-    "other_old_after_s": ("The age at which other values are old", 5.0, 86_400.0),
+    "wind_old_after_s": ("The maximum age of wind data", 5.0, 86_400.0),
+    "light_old_after_s": ("The maximum age of irradiance data", 5.0, 86_400.0),
+    "snow_old_after_s": ("The maximum age of snow data", 5.0, 86_400.0),
+    "other_old_after_s": ("The maximum age of other data", 5.0, 86_400.0),
 }
 OLD_AFTER = {
     "wind_mps": "wind_old_after_s",

@@ -33,15 +33,15 @@ from app.tracker.snapshot import ShowPhase
 from app.tracker.strategy import Continuous, Deadband, EncoderDeadband, Interval, Stepped
 
 _MOVING = {
-    MoveKind.MOVE: "Moving to the orientation that was asked for",
+    MoveKind.MOVE: "Moving to the requested orientation",
     MoveKind.PARK: "Moving to the park position",
-    MoveKind.STEP: "Moving by a small step",
-    MoveKind.DIRECTION: "Moving for the direction proof: watch which way the panel goes",
-    MoveKind.SCALE: "Moving for the scale proof: measure by how much the panel turns",
+    MoveKind.STEP: "Moving by one increment",
+    MoveKind.DIRECTION: "Moving for the direction test: watch which way the panel turns",
+    MoveKind.SCALE: "Moving for the scale test: measure how far the panel turns",
 }
 _PLAIN: dict[type[Activity], str] = {
-    Zeroing: "Setting zero",
-    Homing: "Searching for the origin switches",
+    Zeroing: "Setting the home position",
+    Homing: "Searching for the home switches",
     Stopping: "Stopping",
 }
 _SHOWING = {
@@ -55,14 +55,14 @@ _SHOWING = {
 def activity_text(mind: Mind) -> str:
     """Return what the tracker is doing, without times of day (pages know the local time)."""
     if mind.lost:
-        return "No contact with the drive; the tracker was told to stop"
+        return "No communication with the drive; a stop command was sent"
     return _doing(mind, mind.activity)
 
 
 def _doing(mind: Mind, activity: Activity) -> str:
     match activity:
         case Holding():
-            return "Holding; tracking waits for the operator" if mind.memory.tracking_on else "Holding"
+            return "Holding; tracking needs the operator" if mind.memory.tracking_on else "Holding"
         case Jogging():
             return f"Jogging {_jog(mind, activity)}, {activity.speed}"
         case Moving() | Measuring() | Stowing() | Stowed():
@@ -86,8 +86,12 @@ def _by_order(activity: Moving | Measuring | Stowing | Stowed) -> str:
     if isinstance(activity, Moving):
         return _MOVING[activity.kind]
     if activity.speed is not None:
-        return "Stop test: coming to rest" if activity.asked else "Stop test: gathering speed"
-    return "Link-loss test: the drive is told nothing" if activity.asked else "Link-loss test: moving slowly"
+        return "Stop test: stopping" if activity.asked else "Stop test: accelerating"
+    return (
+        "Communication-loss test: no commands are sent"
+        if activity.asked
+        else "Communication-loss test: moving slowly"
+    )
 
 
 def _jog(mind: Mind, jogging: Jogging) -> str:
@@ -115,13 +119,13 @@ def _tracking(mind: Mind, tracking: Tracking) -> str:
 
 def _resting(mind: Mind) -> str:
     why = hold_reason(mind)
-    return "moves in a few seconds" if why is None else f"staying where it is. {why.message}"
+    return "moves in a few seconds" if why is None else f"holding its position. {why.message}"
 
 
 def _standing(mind: Mind, tracking: Tracking) -> str:
     match tracking.phase:
         case TrackPhase.NIGHT:
-            return "waiting for the sun to rise"
+            return "holding until sunrise"
         case TrackPhase.PAUSED:
             return "holding until the site's clock is trusted again"
         case TrackPhase.RESTING:
@@ -141,13 +145,13 @@ def _next_move(mind: Mind) -> str:
     """Return when the panel will have to follow, by the tracker's strategy."""
     match mind.config.strategy:
         case Continuous():
-            return "following the sun without a stop"
+            return "following the sun continuously"
         case Deadband():
             return _next_run(mind)
         case EncoderDeadband(counts):
-            return f"standing until an axis is off by {counts} counts"
+            return f"holding until an axis is off by {counts} counts"
         case Interval(minutes):
-            return f"standing until the next move, one every {minutes} min"
+            return f"holding until the next move, one every {minutes} min"
         case Stepped():
             return _held_step(mind)
     assert_never(mind.config.strategy)
@@ -157,7 +161,7 @@ def _next_run(mind: Mind) -> str:
     """Return when the sun will have moved so far that the panel has to follow."""
     feedback, target = mind.feedback, mind.target
     if feedback is None or target is None:
-        return "on the sun"
+        return "pointing at the sun"
     pointing = mind.memory.pointing
     faced = sky(mind.config, pointing, feedback.azimuth.position_deg, feedback.elevation.position_deg)
     off_deg = separation_deg(faced.azimuth_deg, faced.elevation_deg, target.azimuth_deg, target.elevation_deg)
@@ -168,6 +172,6 @@ def _next_run(mind: Mind) -> str:
 def _held_step(mind: Mind) -> str:
     held = step_progress(mind)
     if held is None:
-        return "standing in the place of its program"
+        return "holding the position of its program"
     text = f"holding step {held.step} of {held.steps} of {held.name}"
     return text if held.next_h is None else f"{text} until {clock_text(held.next_h)} {held.time_base} time"

@@ -16,7 +16,7 @@ class PageOutdated(Exception):
     """A page of another build, or from before the machine's last start, orders something."""
 
     def __init__(self) -> None:
-        super().__init__("This page is outdated. It is loaded again now; then repeat what you did.")
+        super().__init__("This page is outdated and is being reloaded. Then repeat the action.")
 
 
 @cache

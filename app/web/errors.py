@@ -36,12 +36,12 @@ from app.web.security import add_headers
 log = get_logger()
 
 UNREACHABLE_CODES = frozenset({"drive_lost", "drive_unreachable", "drive_silent", "not_stored"})
-OWN_MISTAKE = "The panel made a mistake; its log has the details. The machine goes on as it was."
+OWN_MISTAKE = "Internal error; see the Heliopanel log for details. The tracker continues as before."
 FOR_PROGRAMS = ("/api/", "/health", "/ready", "/metrics", "/stream", "/diagnostics.zip", "/backup")
 RETRY_LATER = {"Retry-After": "1"}
 SIGN_IN = {"WWW-Authenticate": "Bearer"}
 PROOF = {"Proof-Needed": "1"}
-PROVE = "Type the password again, then repeat what you did."
+PROVE = "Confirm your password, then repeat the action."
 
 
 class NotAcceptable(Exception):
@@ -98,8 +98,8 @@ def invalid(error: RequestValidationError) -> Problem:
 
 
 REFUSALS = {
-    404: "There is nothing at this address. Check it, or begin at the overview of all trackers.",
-    405: "This address does not take this method; the Allow header names those that it takes.",
+    404: "No page exists at this address. Check the address, or start from the overview of all trackers.",
+    405: "This address does not support this method; the Allow header lists the supported methods.",
 }
 
 
@@ -175,7 +175,7 @@ PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
     HTTPException: refused_by_http,
     Exception: lambda _: Problem(
         500,
-        "The panel made a mistake; its log has the details. Motion is not affected.",
+        "Internal error; see the Heliopanel log for details. Motion is not affected.",
         headers={"Connection": "close"},
     ),
 }

@@ -45,7 +45,7 @@ REFUSED = {NotAllowed: "refused", Busy: "refused_stops"}
 """What a refusal is called in the record of access."""
 
 NOT_SET_UP = (
-    "This panel has no administrator yet and serves only its set-up page. Open /setup with the code "
+    "Heliopanel has no administrator yet and shows only its setup page. Open /setup with the code "
     "from its console, or run: heliopanel users add NAME --role administrator"
 )
 LONGEST_BACK = 300
@@ -53,7 +53,7 @@ LONGEST_BACK = 300
 
 MOST_FIELDS = 50
 TOO_MANY_FIELDS = f"The address of a request has at most {MOST_FIELDS} fields: leave out the others."
-OLD_PAGE = "This page is too old to change anything. Load it again, then repeat what you did."
+OLD_PAGE = "This page is outdated and cannot change anything. Reload the page, then repeat the action."
 
 
 class Gate:
@@ -124,7 +124,9 @@ class Gate:
         if who.via in (Via.SESSION, Via.KIOSK):
             self._check_session(scope, route, who, given)
         if who.via is Via.STOP_TICKET and not self._stops.admit(who.address, self._clock.now()):
-            raise Busy("This address stops more than ten times a second; the first of these were obeyed.")
+            raise Busy(
+                "This address sends more than ten stop commands per second; the first ones were executed."
+            )
         return who
 
     def _check_session(self, scope: Scope, route: str, who: Principal, given: Credentials) -> None:
@@ -133,7 +135,7 @@ class Gate:
             return
         check_origin(scope, self._keeper.csrf(given.session_id))
         if route in PROVEN and who.via is Via.SESSION and not is_proven(who.proven_at, self._clock.now()):
-            raise ProofNeeded("This is of weight: type your password again, then repeat what you did.")
+            raise ProofNeeded("This is a sensitive change: confirm your password, then repeat the action.")
 
     async def _while_allowed(self, scope: Scope, receive: Receive, send: Send, who: Principal) -> None:
         serving = asyncio.ensure_future(self._app(scope, receive, send))

@@ -23,14 +23,14 @@ PAGES: tuple[tuple[str, Help], ...] = (
         STEP + "location",
         Help(
             "Location",
-            "The controller works out where the sun stands from the latitude and longitude of the site. "
-            "One hundredth of a degree, about a kilometre, is near enough.",
+            "The controller calculates the sun's position from the latitude and longitude of the "
+            "site. An accuracy of one hundredth of a degree, about one kilometer, is sufficient.",
             "globe",
             (
-                "A lost minus sign or W instead of E puts the site on the other side of the Earth: look at "
-                "the cross on the map and at today's sunrise.",
+                "A missing minus sign, or W instead of E, puts the site on the other side of the "
+                "Earth: check the cross on the map and today's sunrise.",
                 "Swapped numbers: latitude is how far north or south, longitude how far east or west.",
-                "A location that changes later makes later steps to be confirmed.",
+                "Changing the location later means that later steps must be confirmed again.",
             ),
             "1-location",
         ),
@@ -39,13 +39,16 @@ PAGES: tuple[tuple[str, Help], ...] = (
         STEP + "clock",
         Help(
             "Clock",
-            "The sun moves by one degree in four minutes. A clock that is a minute wrong turns the panel a "
-            "quarter of a degree off the sun.",
+            "The sun moves by one degree in four minutes. A clock error of one minute causes a "
+            "pointing error of a quarter of a degree.",
             "shadow",
             (
-                "The time is right but the zone is wrong: then the shadow points elsewhere by 15° an hour.",
-                "A tablet's own clock may be wrong, too: compare it with a telephone.",
-                "Without NTP the clock drifts; come back to this step at every visit.",
+                (
+                    "The time is correct but the time zone is wrong: the shadow direction is then off "
+                    "by 15° per hour."
+                ),
+                "A tablet's own clock may also be wrong: compare it with a phone.",
+                "Without NTP, the clock drifts; repeat this step at every visit.",
             ),
             "2-clock",
         ),
@@ -54,13 +57,18 @@ PAGES: tuple[tuple[str, Help], ...] = (
         STEP + "homing",
         Help(
             "Homing",
-            "The drive counts from where you say that zero is: panel upright, its face to true north. All "
-            "later angles count from there.",
+            "The drive measures all angles from the home position: panel vertical, facing true north.",
             "north",
             (
-                "A compass shows magnetic north, which may be 10° and more off; the sun check finds that.",
-                "The panel turns the wrong way: prove the drive before you set the zero.",
-                "The key works only while it is held. A link that is too slow ends the motion by itself.",
+                (
+                    "A compass shows magnetic north, which can be off by 10° or more; the sun check "
+                    "detects this error."
+                ),
+                "The panel turns the wrong way: run the drive tests before you set the home position.",
+                (
+                    "A hold-to-run button works only while it is held. A connection that is too slow "
+                    "ends the motion automatically."
+                ),
             ),
             "3-homing",
         ),
@@ -69,13 +77,13 @@ PAGES: tuple[tuple[str, Help], ...] = (
         STEP + "mode(/orientation)?",
         Help(
             "Mode",
-            "What the tracker does from sunrise to sunset: follow the sun with both axes, with one, or stand "
-            "still at an angle of your choice.",
+            "What the tracker does from sunrise to sunset: follow the sun with both axes or with "
+            "one axis, or hold a fixed angle.",
             "modes",
             (
-                "An angle beyond the soft limits is refused; the limits are among the settings.",
-                "Go moves the panel: keep people clear of it.",
-                "The step is done only when the panel has arrived.",
+                "An angle beyond the soft limits is refused; the limits are on the Settings page.",
+                "Go moves the panel: keep everyone clear of it.",
+                "The step is done only when the panel is in position.",
             ),
             "4-mode",
         ),
@@ -84,12 +92,15 @@ PAGES: tuple[tuple[str, Help], ...] = (
         STEP + "run",
         Help(
             "Run",
-            "Everything before is checked once more. Then tracking begins, or you show any day accelerated.",
+            (
+                "All previous steps are checked again. Then start tracking, or show the tracking "
+                "movement of any day at higher speed."
+            ),
             "run",
             (
-                "A drive that lost its supply since homing is not homed: the page sends you back to step 3.",
-                "At night tracking waits for sunrise; that is no fault.",
-                "STOP ends it at once. It is not an emergency stop.",
+                "A drive that has lost power since homing is not homed: the page returns you to step 3.",
+                "At night, the tracker holds until sunrise; this is not a fault.",
+                "STOP ends the motion immediately. STOP is not an emergency stop.",
             ),
             "5-run",
         ),
@@ -98,13 +109,12 @@ PAGES: tuple[tuple[str, Help], ...] = (
         TRACKER + "/settings",
         Help(
             "Settings",
-            "How far and how fast the axes may turn, how near the sun is near enough, and where the panel "
-            "stands when it is parked.",
+            "Travel limits and speeds of the axes, pointing tolerance, and park position.",
             "limits",
             (
-                "Soft limits beyond the machine's ends: the axis runs into its limit switch.",
-                "A speed above what the drive can do: the axis falls behind and stops with a fault.",
-                "Wrong value saved: Undo the last change brings the former settings back.",
+                "Soft limits beyond the mechanical travel: the axis runs into its limit switch.",
+                "A speed above the capability of the drive: the axis lags and stops with a fault.",
+                "Wrong value saved: Undo the last change restores the previous settings.",
             ),
             "settings-of-a-tracker",
         ),
@@ -113,41 +123,44 @@ PAGES: tuple[tuple[str, Help], ...] = (
         TRACKER + "/drive",
         Help(
             "Drive",
-            "The drive is reached by its profile, its address and its unit id. Testing the connection reads "
-            "everything and changes nothing.",
+            "The drive is reached by its profile, address, and unit ID. Testing the connection "
+            "reads everything and changes nothing.",
             "wire",
             (
-                "Nothing answers: power, cable, address.",
-                "Something answers that is no drive of this profile: another unit id or another profile.",
-                "Saving another drive loses the zero.",
+                "No answer: check power, cable, and address.",
+                "A device that does not match this profile answers: check the unit ID and the profile.",
+                "Saving another drive loses the home reference.",
             ),
-            "connect-it",
+            "connect-the-drive",
         ),
     ),
     (
         TRACKER + "/proofs",
         Help(
-            "Prove the drive",
-            "What the controller believes of the machine is tried at the machine: the way an axis turns, how "
-            "far, how quickly it stops, and what it does when nobody tells it anything.",
+            "Drive tests",
+            "The drive tests check the controller's settings at the tracker: direction, scale, "
+            "limits, stop, and communication loss.",
             "turn",
             (
-                "These motions are real. Somebody stands there who reaches the hard-wired stop.",
-                "After another motor, gear or drive the proofs are to be made again.",
-                "Without a watchdog of its own a drive goes on when the controller dies.",
+                "These motions are real. A person must watch the tracker within reach of the emergency stop.",
+                "After a change of motor, gear, or drive, repeat the drive tests.",
+                "A drive without its own watchdog continues to move when the controller fails.",
             ),
-            "prove-it",
+            "drive-tests",
         ),
     ),
     (
         TRACKER + "/mount",
         Help(
             "Mount",
-            "How the panel hangs on its axes. The same sun needs other angles on another mount.",
+            (
+                "How the panel is mounted on its axes. The same sun position needs other axis angles "
+                "on another mount."
+            ),
             "modes",
             (
-                "A changed mount is another machine: zero and limits are to be looked at again.",
-                "Rows shade each other when the sun is low: backtracking turns them flatter then.",
+                "After a change of mount, check the home position and the limits again.",
+                "Rows shade each other when the sun is low: backtracking then turns the panels flatter.",
             ),
             "the-drive",
         ),
@@ -156,27 +169,32 @@ PAGES: tuple[tuple[str, Help], ...] = (
         TRACKER + "/strategy",
         Help(
             "Strategy",
-            "When the panel moves: all the time, in small steps when it is off by a deadband, or by a "
-            "program of times and angles.",
+            "When the panel moves: continuously, when the pointing error exceeds a deadband, or "
+            "by a program of times and angles.",
             "steps",
             (
-                "Steps that are too large lose energy; try a day before you save.",
-                "A step program is for one place and season.",
+                "Steps that are too large lose energy; simulate a day before you save.",
+                "A step program suits only one location and season.",
             ),
-            "what-tracking-is-worth",
+            "energy-studies",
         ),
     ),
     (
         TRACKER + "/protections",
         Help(
             "Protections",
-            "Strong wind lays the panel flat, snow tips it, darkness lets it rest. The limits of that stand "
-            "here.",
+            "Wind stow, snow stow, and low-light hold protect the tracker. Their thresholds are set here.",
             "wind",
             (
-                "A protection without a sensor does nothing: the page says so.",
-                "A limit that is too low stows all day long; one that is too high breaks the panel.",
-                "By hand, with a fault or without a trusted zero nothing is stowed by itself.",
+                "A protection without a sensor has no effect: the page shows this.",
+                (
+                    "A threshold that is too low stows the panel all day; one that is too high can "
+                    "damage the panel."
+                ),
+                (
+                    "In manual operation, with a fault, or when not homed, the tracker does not stow "
+                    "automatically."
+                ),
             ),
             "protections",
         ),
@@ -185,11 +203,14 @@ PAGES: tuple[tuple[str, Help], ...] = (
         TRACKER + "/sun-check",
         Help(
             "Sun check",
-            "The sun is the best instrument there is: where its shadow vanishes, the panel faces it.",
+            (
+                "The sun is the most accurate reference: where a stick square to the panel casts no "
+                "shadow, the panel faces the sun."
+            ),
             "shadow",
             (
-                "One sighting finds a coarse mistake; three or more over a day correct it.",
-                "The clock must be right first.",
+                "One sighting finds a large error; three or more over a day correct the pointing.",
+                "The clock must be correct first.",
             ),
             "sun-check",
         ),
@@ -198,36 +219,41 @@ PAGES: tuple[tuple[str, Help], ...] = (
         TRACKER + "/record",
         Help(
             "Record",
-            "Proves how the tracker was left: settings, proofs, who and when. Signed, it is kept for good.",
+            (
+                "Documents the state of the tracker: settings, drive tests, names, and dates. A "
+                "signed record is kept permanently."
+            ),
             "paper",
             (
-                "Sign only when every step is done: what is still open stands in the record as well.",
+                "Sign only when every step is done: open items are part of the record as well.",
                 "Photos are added before signing.",
             ),
-            "the-record",
+            "commissioning-record",
         ),
     ),
     (
         "/site",
         Help(
             "Site",
-            "What all trackers share: the weather and where it comes from, how it is judged, and other "
-            "systems that are connected.",
+            "Settings shared by all trackers: weather sources, weather evaluation, and connected systems.",
             "wind",
             (
-                "A station that is not reached leaves the protections without a sensor.",
-                "Simulated weather is for trying: it is refused where a tracker is real.",
+                "If the weather station is not reached, the protections have no sensor.",
+                "Simulated weather is for tests: it is refused where a tracker is real.",
             ),
-            "how-the-weather-is-judged",
+            "weather-evaluation",
         ),
     ),
     (
         "/site/notifications",
         Help(
             "Notifications",
-            "Alarms also go to people who are not at a screen, by webhook or e-mail.",
+            "Alarms are also sent to users who are not at a screen, by webhook or e-mail.",
             "wire",
-            ("Send a test message after every change.", "What is not sent is itself an alarm."),
+            (
+                "Send a test message after every change.",
+                "A notification that cannot be sent raises an alarm.",
+            ),
             "alarms",
         ),
     ),

@@ -39,4 +39,4 @@ def require_proof(request: Request, config: TrackerConfig, wanted: TrackerConfig
     if who.via is not Via.SESSION or is_proven(who.proven_at, panel(request).clock.now()):
         return
     if config.drive != wanted.drive or review(config, wanted, {}, trusted=True).differences:
-        raise ProofNeeded("Limits, speeds and the drive are of weight: they were not saved.")
+        raise ProofNeeded("Limits, speeds, and the drive are sensitive settings: they were not saved.")

@@ -16,7 +16,7 @@ MOST_ON_PLAIN_CONNECTIONS = 192
 LOOPBACK = frozenset({"127.0.0.1", "::1"})
 """Programs on this computer, and tunnels that end here, share the total alone."""
 
-TOO_MANY = "This computer has too many live pages or streams open. Close some, then try again."
+TOO_MANY = "This device has too many live pages or streams open. Close some, then try again."
 
 
 class StreamLimit:

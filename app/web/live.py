@@ -42,19 +42,19 @@ router = APIRouter()
 
 MOST_IN_FLIGHT = 4
 STAY_EVERY = timedelta(seconds=3)
-DEAD_PRESS = Reason("press_dead", "This press has ended.", "Let the key go and press it again.")
+DEAD_PRESS = Reason("press_dead", "This jog command has ended.", "Release the button and press it again.")
 OLD_PAGE = Reason(
-    "page_outdated", "This page is outdated.", "It is loaded again now; then press the key again."
+    "page_outdated", "This page is outdated.", "The page is being reloaded; then press the button again."
 )
 SLOW_LINK = Reason(
     "link_too_slow",
     "The connection is too slow for hold-to-run.",
-    "Go nearer to the access point, or use the small steps.",
+    "Move closer to the access point, or use incremental jog.",
 )
 UNMEASURED_LINK = Reason(
     "link_unmeasured",
-    "The connection was not measured before this key was pressed.",
-    "Let the key go and press it again.",
+    "The connection was not measured before this button was pressed.",
+    "Release the button and press it again.",
 )
 STATUS_OF_CODE = {"press_dead": "dead", "busy": "busy"}
 FORBIDDEN = (NotAllowed, ProofNeeded, SignInNeeded)
@@ -213,7 +213,7 @@ class Session:
             self._refuse(beat.press_id, Reason("not_allowed", str(error), ""))
         except (MachineUnreachable, UnknownTracker, ValueError) as error:
             detail = machine_problem(error).detail
-            self._refuse(beat.press_id, Reason("not_done", detail, "Wait, then press the key again."))
+            self._refuse(beat.press_id, Reason("not_done", detail, "Wait, then press the button again."))
         else:
             self._answer(beat.press_id, "ok")
         finally:

@@ -23,7 +23,7 @@ log = get_logger()
 FLOODED = 4029
 """The code with which a socket that floods is closed; pages say it in a sentence."""
 
-FLOOD = "This page sent more messages than Heliopanel takes."
+FLOOD = "This page sent more messages than Heliopanel accepts."
 MOST_AT_ONCE = 256
 MOST_A_SECOND = 64.0
 PIECE = 1024

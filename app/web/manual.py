@@ -12,7 +12,8 @@ from app.web.errors import NotFound
 
 PATH = "/manual"
 NOT_BUILT = (
-    "This installation has no manual. In a checkout, make docs builds it; the guide is here without it."
+    "This installation has no manual. In a source checkout, make docs builds the manual; the "
+    "guide is available without it."
 )
 
 

@@ -15,8 +15,8 @@ DEEPEST = 32
 """Levels; the deepest request of the API has six."""
 
 TOO_DEEP = (
-    f"The JSON of a request is nested at most {DEEPEST} levels deep, this one is deeper. Compare it with "
-    "/api/v1/openapi.json."
+    f"The JSON of a request can be nested at most {DEEPEST} levels deep; this one is deeper. "
+    "Compare it with /api/v1/openapi.json."
 )
 OPENING = b"[{"
 NO_BRACKETS = bytes(set(range(256)) - set(b"[]{}"))

@@ -24,9 +24,9 @@ CONFIRM_WITHIN = timedelta(seconds=60)
 FAREWELL = timedelta(seconds=2)
 """The page that says where to go needs a moment to load what it shows."""
 
-NOT_CONFIRMED = "Nobody confirmed them at the new address within 60 s."
-NOT_WRITTEN = "They could not be written to the disk."
-NOT_SERVED = "The panel could not be served there."
+NOT_CONFIRMED = "The new settings were not confirmed at the new address within 60 s."
+NOT_WRITTEN = "The new settings could not be written to the disk."
+NOT_SERVED = "Heliopanel could not start at the new address."
 
 log = get_logger()
 
@@ -117,7 +117,9 @@ class NetworkDesk:
         What is in force is written down first, so that no crash and no power cut can leave anything else.
         """
         if self._stage.trial is not None or self._busy:
-            raise NetworkBusy("A change of the network is being tried. Confirm it, or wait until it is over.")
+            raise NetworkBusy(
+                "A network change is being tested. Confirm the change, or wait until the test ends."
+            )
         before, self._busy = self._stage.settings, True
         try:
             trying = await asyncio.to_thread(self._prepare, wanted, before)
@@ -139,9 +141,13 @@ class NetworkDesk:
         """Keep what is served on trial, or raise `NotOnTrial`; whoever has the ticket has reached it."""
         trial = self._stage.trial
         if trial is None or self.following is not None:
-            raise NotOnTrial("There is nothing to confirm here: it was confirmed already, or it is over.")
+            raise NotOnTrial(
+                "There is nothing to confirm: the change is already confirmed, or its test has ended."
+            )
         if not hmac.compare_digest(ticket.encode(), trial.ticket.encode()):
-            raise NotOnTrial("This is not the address that the page Network gave. Open that one.")
+            raise NotOnTrial(
+                "This is not the address shown on the Network page. Open the address shown there."
+            )
         tried, settings = self._stage, self._stage.settings
         self._stage = Stage(settings, tried.fixed)
         try:
@@ -149,7 +155,7 @@ class NetworkDesk:
         except OSError as error:
             self.following = tried.back(NOT_WRITTEN)
             self.restart()
-            raise NotOnTrial(f"{NOT_WRITTEN} The panel goes back to where it was.") from error
+            raise NotOnTrial(f"{NOT_WRITTEN} Heliopanel returns to its previous address.") from error
         self._changed.set()
         log.info("network_kept", actor=trial.by.name, address=address)
         await self._note("network_kept", trial.by, told(trial.before.network, trial.wanted))

@@ -39,8 +39,8 @@ def refuse_impossible(
     if wanted.host not in LOOPBACK and not has_administrator:
         errors.setdefault(
             "host",
-            "Other computers could reach this panel, and it has no users yet. Add an administrator first, "
-            "on the page Users.",
+            "Other devices could reach Heliopanel, which has no users yet. Add an administrator "
+            "on the Users page first.",
         )
     if errors:
         raise NetworkRefused(errors)
@@ -65,7 +65,10 @@ def addresses_here() -> tuple[str, ...]:
 
 def _fixed(now_served: Network, wanted: Network, fixed: Iterable[str]) -> dict[str, str]:
     return {
-        name: f"{PREFIX}{name.upper()} sets this where the service is started; change it there."
+        name: (
+            f"This value is set by {PREFIX}{name.upper()} at the start of the service; change "
+            "the variable there."
+        )
         for name in fixed
         if getattr(now_served, name) != getattr(wanted, name)
     }
@@ -75,14 +78,15 @@ def _misspelt(wanted: Network) -> dict[str, str]:
     errors = {}
     if wanted.host != "localhost" and not _is_address(wanted.host):
         errors["host"] = (
-            f"{wanted.host[:60] or 'Nothing'} is no address. Give 127.0.0.1, 0.0.0.0 or one of this computer."
+            f"{wanted.host[:60] or 'Nothing'} is not an IP address. Enter 127.0.0.1, 0.0.0.0, or "
+            "an address of the controller's computer."
         )
     wrong = [name for name in wanted.allowed_hosts if len(name) > LONGEST_NAME or not NAME.fullmatch(name)]
     if wrong:
-        errors["allowed_hosts"] = f"{wrong[0][:60]} is no name of a host. Give names such as tracker.example."
+        errors["allowed_hosts"] = f"{wrong[0][:60]} is not a host name. Enter names such as tracker.example."
     for field in ("allowed_hosts", "trusted_proxies"):
         if len(getattr(wanted, field)) > MOST_NAMES:
-            errors[field] = f"Give at most {MOST_NAMES} of these."
+            errors[field] = f"Enter at most {MOST_NAMES} names."
     return errors
 
 
@@ -91,7 +95,10 @@ def _cannot_listen(now_served: Network, wanted: Network) -> tuple[str, str] | No
     if fault := _fault_of(wanted.host, 0):
         return (
             "host",
-            f"This computer cannot listen on {wanted.host}: {fault}. Give one of its own addresses.",
+            (
+                f"The controller's computer cannot listen on {wanted.host}: {fault}. Enter one of its "
+                "own addresses."
+            ),
         )
     if wanted.port != now_served.port and (fault := _fault_of(wanted.host, wanted.port)):
         return "port", f"Port {wanted.port} cannot be used: {fault}. Choose another one, such as 8443."
@@ -144,8 +151,8 @@ def _load(settings: Settings) -> None:
     except OSError as error:
         raise NetworkRefused(
             {
-                "tls": f"The certificate {certificate} cannot be served: {error}. Name another one, or "
-                "switch https off."
+                "tls": f"The certificate {certificate} cannot be used: {error}. Name another "
+                "certificate, or turn HTTPS off."
             }
         ) from error
 

@@ -32,7 +32,7 @@ class PlainPhoto:
 def plain_photo(upload: bytes) -> PlainPhoto:
     """Return an upload as an upright JPEG of at most 1600 pixels a side, or raise `PhotoRefused`."""
     if len(upload) > LARGEST_UPLOAD:
-        raise PhotoRefused("A photo has at most 8 MB: let the camera take a smaller one.")
+        raise PhotoRefused("A photo can have at most 8 MB: take the photo at a lower resolution.")
     pictures = late("PIL.Image")
     try:
         with pictures.open(BytesIO(upload), formats=FORMATS) as opened:
@@ -40,12 +40,16 @@ def plain_photo(upload: bytes) -> PlainPhoto:
     except (OSError, SyntaxError, ValueError, pictures.DecompressionBombError) as error:
         if isinstance(error, PhotoRefused):
             raise
-        raise PhotoRefused("This file is no JPEG or PNG picture, or it is damaged: choose another.") from None
+        raise PhotoRefused(
+            "This file is not a JPEG or PNG image, or it is damaged: choose another file."
+        ) from None
 
 
 def _plain(opened: "Image") -> PlainPhoto:
     if opened.width * opened.height > MOST_PIXELS:
-        raise PhotoRefused("A photo has at most 60 million pixels: let the camera take a smaller one.")
+        raise PhotoRefused(
+            "A photo can have at most 60 million pixels: take the photo at a lower resolution."
+        )
     opened.draft("RGB", (LONGEST_EDGE, LONGEST_EDGE))
     upright = late("PIL.ImageOps").exif_transpose(opened).convert("RGBA")
     upright.thumbnail((LONGEST_EDGE, LONGEST_EDGE))

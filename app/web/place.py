@@ -35,7 +35,7 @@ def place_doubts(
     """
     clocks = (time_zone, device_zone)
     mistaken = (*_swap_doubts(place, clocks, before), *_side_doubts(place, device_zone, now, before))
-    at_sea = ("This place lies in the sea.",) if not mistaken and _is_sea(place) else ()
+    at_sea = ("This location is in the sea.",) if not mistaken and _is_sea(place) else ()
     far = _far_doubts(place, before)
     return (*mistaken, *at_sea, *far, *_zone_doubts(place, time_zone, device_zone, now))
 
@@ -45,11 +45,11 @@ def _swap_doubts(place: Location, clocks: tuple[str, str], before: Location | No
     if other is None:
         return
     if before is not None and _is_near(other, before) and not _is_near(place, before):
-        yield "These are the numbers of the stored location with latitude and longitude exchanged."
+        yield "These are the coordinates of the stored location with latitude and longitude swapped."
     elif _zone_at(place).startswith(SEA) and not _zone_at(other).startswith(SEA):
-        yield "This place lies in the sea; with latitude and longitude exchanged it lies on land."
+        yield "This location is in the sea; with latitude and longitude swapped, it is on land."
     elif _zone_at(other) in clocks and _zone_at(place) not in clocks:
-        yield f"With latitude and longitude exchanged the place lies where clocks keep {_zone_at(other)}."
+        yield f"With latitude and longitude swapped, the location is in the time zone {_zone_at(other)}."
 
 
 def _side_doubts(place: Location, device_zone: str, now: datetime, before: Location | None) -> Iterator[str]:
@@ -57,15 +57,15 @@ def _side_doubts(place: Location, device_zone: str, now: datetime, before: Locat
     east = _likelier(place, replace(place, longitude_deg=-place.longitude_deg), device_zone, now, before)
     north = _likelier(place, replace(place, latitude_deg=-place.latitude_deg), device_zone, now, before)
     if east is _Likelier.STORED:
-        yield "These are the numbers of the stored location with east and west exchanged."
+        yield "These are the coordinates of the stored location with east and west swapped."
     elif east is _Likelier.CLOCKS:
-        yield "With east and west exchanged the place lies where the clocks keep the time of this device."
+        yield "With east and west swapped, the location is in the time zone of this device."
     elif east is _Likelier.LAND:
-        yield "This place lies in the sea; with east and west exchanged it lies on land."
+        yield "This location is in the sea; with east and west swapped, it is on land."
     if north is _Likelier.STORED:
-        yield "These are the numbers of the stored location with north and south exchanged."
+        yield "These are the coordinates of the stored location with north and south swapped."
     elif north is _Likelier.CLOCKS:
-        yield "With north and south exchanged the place lies where the clocks keep the time of this device."
+        yield "With north and south swapped, the location is in the time zone of this device."
 
 
 class _Likelier(Enum):
@@ -94,7 +94,7 @@ def _far_doubts(place: Location, before: Location | None) -> Iterator[str]:
         return
     apart_km = round(_apart_km(place, before), -1)
     if apart_km > FAR_KM:
-        yield f"This place is {apart_km:.0f} km away from the stored location."
+        yield f"This location is {apart_km:.0f} km away from the stored location."
 
 
 def _apart_km(one: Location, other: Location) -> float:
@@ -112,13 +112,13 @@ def _is_sea(place: Location) -> bool:
 def _zone_doubts(place: Location, time_zone: str, device_zone: str, now: datetime) -> Iterator[str]:
     if not time_zone.startswith(PLACELESS) and abs(_solar_difference_h(place, time_zone, now)) > MOST_APART_H:
         yield (
-            f"At this longitude the sun is highest at {_solar_noon(place, time_zone, now)} by the clocks of "
-            f"{time_zone}: look for a lost sign, or choose another time zone."
+            f"At this longitude, solar noon is at {_solar_noon(place, time_zone, now)} in the time "
+            f"zone {time_zone}: check for a missing sign, or choose another time zone."
         )
     elif device_zone and abs(_solar_difference_h(place, device_zone, now)) > MOST_APART_H:
         yield (
-            f"At this longitude the sun is highest at {_solar_noon(place, device_zone, now)} by the clock of "
-            "this device: are you at the tracker?"
+            f"At this longitude, solar noon is at {_solar_noon(place, device_zone, now)} by the "
+            "clock of this device: are you at the tracker?"
         )
 
 

@@ -38,7 +38,7 @@ VERIFYING = (
 )
 MOST_EVENTS = 200
 CLOCK_GRACE = timedelta(minutes=1)
-MISDATED = "In the future: the clock was wrong then. Confirm the step again."
+MISDATED = "The date is in the future because the clock was wrong. Confirm the step again."
 
 
 def is_future(at: datetime | None, written_at: datetime) -> bool:

@@ -93,7 +93,8 @@ def read_document(signed: SignedRecord) -> RecordDocument:
     """Return a signed record's document, or raise `StoreFailed` where it cannot be read or was changed."""
     if hashlib.sha256(signed.document.encode()).hexdigest() != signed.head.digest:
         raise StoreFailed(
-            f"Record {signed.head.number} is not what was signed: its hash does not fit. Restore a backup."
+            f"Record {signed.head.number} differs from what was signed: its hash does not match. "
+            "Restore a backup."
         )
     try:
         return adapter(RecordDocument).validate_json(signed.document)

@@ -74,9 +74,9 @@ def _sections(record: CommissioningRecord, zone: tzinfo) -> Iterator[tuple[str, 
     yield "Homing", _fields("", record.home, zone) or [("zero", "not set")]
     yield "Settings as left", [("mode", record.mode or "not selected"), *_fields("", record.tracker, zone)]
     yield "Drive", _fields("", record.drive, zone) or [("drive", "not reached yet")]
-    yield "Drive, as it was read", _checked(record.check, zone)
-    yield "Drive, as it was proven", [_proof(proof, zone) for proof in record.proofs]
-    yield "Pointing correction", _fields("", record.pointing, zone)
+    yield "Drive connection test", _checked(record.check, zone)
+    yield "Drive tests", [_proof(proof, zone) for proof in record.proofs]
+    yield "Mounting correction", _fields("", record.pointing, zone)
     off, error = _degrees(record.off_sun_deg), _degrees(record.following_error_deg)
     yield "Now", [("off the sun", off), ("following error", error)]
     yield "Events", [_event(entry, zone) for entry in record.events]

@@ -30,7 +30,7 @@ async def remove_photo(send: Send, reader: Reader, tracker_id: str, number: int)
     """Remove a photo that waits for the next record, or raise `NotFound`."""
     photo = await run_in_threadpool(photo_of, reader, number)
     if photo.tracker_id != tracker_id or photo.record_number is not None:
-        raise NotFound(f"No photo {number} waits for the next record of {tracker_id}.")
+        raise NotFound(f"There is no photo {number} waiting for the next record of {tracker_id}.")
     await send(RemoveRecordPhoto(tracker_id, number))
 
 
@@ -58,7 +58,7 @@ async def sign(
     found = await run_in_threadpool(_kept, built.reader, tracker_id, digest)
     if found is None:
         raise StoreFailed(
-            "The record was handed over but is not in the list yet. Look there before you sign again."
+            "The record was submitted but is not in the list yet. Check the list before you sign again."
         )
     return found
 

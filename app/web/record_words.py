@@ -17,8 +17,8 @@ IN_ENGLISH = "The JSON file, which was signed, is in English; this is a translat
 SENTENCES = (NUMBERED, UNSIGNED, TITLE, HASHED, PAGE, PHOTO, IN_ENGLISH)
 
 _HEADINGS = """
-    Written / Site / Clock / Steps / Homing / Settings as left / Drive / Drive, as it was read
-    / Drive, as it was proven / Pointing correction / Now / Events / Remark / Photos / Signatures"""
+    Written / Site / Clock / Steps / Homing / Settings as left / Drive / Drive connection test
+    / Drive tests / Mounting correction / Now / Events / Remark / Photos / Signatures"""
 _PARTS = """
     acceleration / actuator / after / aim / algorithm / altitude / at / automatic homing / axis azimuth /
     axis tilt / azimuth / azimuth offset / bad / bad after / base / baud rate / boot count / bound / by /

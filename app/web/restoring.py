@@ -16,8 +16,8 @@ from app.web.errors import NotFound
 DAMAGED = "store_damaged"
 IN_ORDER = Reason(
     "store_in_order",
-    "The database is in order, so nothing is restored from here.",
-    "To go back to a backup all the same, run on this computer: heliopanel restore FILE",
+    "The database is intact, so no backup is restored from here.",
+    "To restore a backup anyway, run on the controller's computer: heliopanel restore FILE",
 )
 
 

@@ -18,8 +18,11 @@ LARGEST_UPLOAD = 9 * 1024 * 1024
 UPLOADS = re.compile(r"/api/v1/weather-files|/studies/weather|(?:/api/v1)?/trackers/[^/]+/record/photos")
 """Where files come in; everywhere else a request has at most `LARGEST_BODY`."""
 
-TOO_LARGE = "A request to this panel has at most one megabyte, an upload of a weather file or a photo eight."
-TWO_HOSTS = "This request names two hosts, so it is not clear whom it asks. Send one Host header."
+TOO_LARGE = (
+    "A request to Heliopanel can have at most one megabyte; an upload of a weather file "
+    "or a photo can have eight."
+)
+TWO_HOSTS = "This request names two hosts, so its target is ambiguous. Send one Host header."
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
 OWN_SITES = frozenset({"same-origin", "none"})
@@ -103,8 +106,9 @@ class Guard:
         name = _host_name(host)
         if name not in self._hosts and not _is_own_address(name, scope):
             return (
-                "This panel does not answer to that name. Open it by 127.0.0.1 or localhost, through an SSH "
-                "tunnel if it runs on another computer, or by a name in HELIOPANEL_ALLOWED_HOSTS."
+                "Heliopanel does not answer to this host name. Open it by 127.0.0.1 or localhost, "
+                "through an SSH tunnel if it runs on another computer, or by a name in "
+                "HELIOPANEL_ALLOWED_HOSTS."
             )
         if scope["type"] == "http" and scope["method"] in SAFE_METHODS:
             return None
@@ -155,9 +159,9 @@ def _is_own_address(name: str | None, scope: Scope) -> bool:
 def _foreign(headers: Headers, host: str, *, is_secure: bool) -> str | None:
     site, origin = headers.get("sec-fetch-site"), headers.get("origin")
     if site is not None and site not in OWN_SITES:
-        return "Another web site asked for this; it must come from a page of this panel."
+        return "Another website sent this request; it must come from a Heliopanel page."
     if origin is not None and not _is_own_origin(origin, host, is_secure=is_secure):
-        return f"A page of {origin} asked for this; it must come from a page of this panel."
+        return f"A page of {origin} sent this request; it must come from a Heliopanel page."
     return None
 
 

@@ -66,9 +66,9 @@ def signature(role: SignatureRole, name: str, drawn: str) -> Signature | None:
     if not name and not strokes:
         return None
     if not name:
-        raise SignatureRefused(f"{ROLE_WORDS[role]}: type the name of whoever signed.")
+        raise SignatureRefused(f"{ROLE_WORDS[role]}: type the name of the person who signed.")
     if len(name) > LONGEST_NAME:
-        raise SignatureRefused(f"{ROLE_WORDS[role]}: a name has at most {LONGEST_NAME} letters.")
+        raise SignatureRefused(f"{ROLE_WORDS[role]}: a name can have at most {LONGEST_NAME} characters.")
     return Signature(role, name, strokes)
 
 

@@ -24,7 +24,7 @@ MOST_AT_ONCE = 4
 LONGEST = timedelta(seconds=120)
 KINDLY = 10
 BUSY = "Other calculations are under way; try again when one of them has ended."
-TOO_LONG = "The calculation took too long and was given up; take a shorter span or a longer step."
+TOO_LONG = "The calculation took too long and was canceled; choose a shorter span or a longer step."
 Simulated = tuple[RecordingInfo, tuple[str, ...]]
 Asked = TypeVar("Asked")
 Found = TypeVar("Found")

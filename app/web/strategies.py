@@ -57,5 +57,5 @@ def kept_program(tracker: TrackerDetail) -> StepProgram:
     """Return the step program that a tracker follows, or raise `NotFound`."""
     config = tracker.state.config
     if not isinstance(config.strategy, Stepped):
-        raise NotFound(f"{config.name} follows no step program.")
+        raise NotFound(f"{config.name} does not follow a step program.")
     return config.strategy.program

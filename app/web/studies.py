@@ -48,9 +48,10 @@ LONGEST_LINE = 64 * 1024 * 1024
 TOO_MANY = f"{MOST_OPEN} studies are under way or waiting; try again when one of them has ended."
 TOO_BUSY = "Other calculations are under way; try again when one of them has ended."
 TOO_LONG = (
-    "The study took longer than ten minutes and was given up: take a longer step, fewer days or fewer modes."
+    "The study took longer than ten minutes and was canceled: choose a longer step, fewer days, "
+    "or fewer modes."
 )
-DIED = "The process that worked the study out ended without a result; the panel's log says more."
+DIED = "The study process ended without a result; see the Heliopanel log for details."
 
 
 class Studies:

@@ -196,7 +196,7 @@ def chosen_program(answer: ProgramAnswer, steps: int | None) -> StepProgram:
     row = next((one for one in answer.rows if one.steps == wanted), None)
     if row is None:
         raise ValueError(
-            f"There is no program of {wanted} steps; the most that fit are {answer.rows[-1].steps}."
+            f"A program of {wanted} steps is not possible; the maximum is {answer.rows[-1].steps}."
         )
     asked = answer.question
     steps_held = Steps(row.starts_h, row.angles_deg, row.tilt_deg, asked.step_s / 3600.0)

@@ -23,7 +23,7 @@ def zero_doubts(mount: MountConfig, tracker: Snapshot, axes: tuple[Axis, ...]) -
 def _question(mount: MountConfig, axis: Axis, read_deg: float) -> str:
     if mount.kind is not MountKind.AZIMUTH_ELEVATION:
         name = axis_title(mount, axis)
-        return f"The drive reads {read_deg:.1f}° for the {name} axis. You say that it is at 0°?"
+        return f"The drive reads {read_deg:.1f}° for the {name} axis. Is the axis really at 0°?"
     if axis is Axis.AZIMUTH:
-        return f"The measured azimuth is {read_deg:.1f}°. You say that the panel faces north (0°)?"
-    return f"The measured elevation is {read_deg:.1f}°. You say that the panel stands upright (0°)?"
+        return f"The measured azimuth is {read_deg:.1f}°. Does the panel really face north (0°)?"
+    return f"The measured elevation is {read_deg:.1f}°. Is the panel really vertical (0°)?"

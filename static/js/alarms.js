@@ -17,9 +17,9 @@ const calls = (alarm) => CALLS.includes(alarm.state);
 const one = (id) => document.getElementById(id);
 
 // The title of an alarm; one that waits to be seen though its cause is gone does not read as if it stood.
-export const headingOf = (alarm) => (alarm.state === "returned" ? _("Gone: {title}", { title: alarm.title }) : alarm.title);
+export const headingOf = (alarm) => (alarm.state === "returned" ? _("Returned to normal: {title}", { title: alarm.title }) : alarm.title);
 
-const UNKNOWN = _("Alarms are not known now");
+const UNKNOWN = _("Alarm status unavailable");
 
 // Without the machine nothing is known: what was shown last is no longer the truth.
 function paintUnknown() {
@@ -27,7 +27,7 @@ function paintUnknown() {
   if (!one("alarm-strip").hasAttribute("data-unknown")) return;
   const last = live.site?.alarms.find((alarm) => calls(alarm) && !alarm.collapsed);
   setText("alarm-first-title", UNKNOWN);
-  setText("alarm-first-where", last ? _("Last known: {title}, {where}", { title: headingOf(last), where: last.where }) : _("There is no connection to the machine."));
+  setText("alarm-first-where", last ? _("Last known: {title}, {where}", { title: headingOf(last), where: last.where }) : _("There is no connection to the controller."));
   for (const shape of document.querySelectorAll("[data-first-shape]")) shape.hidden = true;
   for (const item of document.querySelectorAll("[data-count] b")) item.textContent = "?";
   one("alarm-ack").querySelector("button").disabled = true;

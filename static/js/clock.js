@@ -34,15 +34,15 @@ function shadow() {
   arrow.setAttribute("transform", `rotate(${away.toFixed(1)})`);
   document.getElementById("shadow-words").textContent = up
     ? shadowWords(away, 1 / Math.tan((sun.apparent_elevation_deg * Math.PI) / 180))
-    : _("The sun is {below}° below the horizon now: it must be night outside.", { below: decimals(-sun.apparent_elevation_deg, 1) });
+    : _("The sun is {below}° below the horizon now: it must be dark outside.", { below: decimals(-sun.apparent_elevation_deg, 1) });
 }
 
 // `times` is how many times as long as its pole a shadow is.
 function shadowWords(away, times) {
   const values = { away: away.toFixed(0), point: compass(away), times: decimals(times, 1) };
   return times > 20
-    ? _("The shadow of an upright pole must point to {away}° ({point}), more than 20 times as long as its height. Look: does it?", values)
-    : _("The shadow of an upright pole must point to {away}° ({point}), {times} times its height. Look: does it?", values);
+    ? _("The shadow of a vertical pole must point to {away}° ({point}) and be more than 20 times as long as the pole. Does the real shadow match?", values)
+    : _("The shadow of a vertical pole must point to {away}° ({point}) and be {times} times as long as the pole. Does the real shadow match?", values);
 }
 
 document.addEventListener("htmx:config:request", (event) => {

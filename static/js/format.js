@@ -66,7 +66,7 @@ export function words(value) {
 }
 
 // A user has a name; what sits at this computer has none and is told in the language of the page.
-const who = (value) => (value === "this computer" ? _("this computer") : String(value));
+const who = (value) => (value === "local user" ? _("local user") : String(value));
 
 const FORMS = {
   text: String,

@@ -22,7 +22,7 @@ function look() {
     shown += fits;
   }
   const count = document.getElementById("filter-count");
-  count.textContent = words.length ? _("{shown} of {count} sections have it.", { shown, count: sections.length }) : "";
+  count.textContent = words.length ? _("{shown} of {count} sections match.", { shown, count: sections.length }) : "";
 }
 
 field.addEventListener("input", look);

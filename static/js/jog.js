@@ -77,13 +77,13 @@ function watch(key) {
   key.addEventListener("pointerdown", (event) => {
     event.preventDefault();
     key.focus({ preventScroll: true });
-    if (press) return end(_("Two keys were touched."));
+    if (press) return end(_("Two buttons were touched."));
     if (event.button !== 0 || !event.isPrimary) return undefined;
     key.setPointerCapture(event.pointerId);
     return begin(key, event.pointerId);
   });
   key.addEventListener("pointermove", (event) => {
-    if (press?.key === key && event.pointerId === press.pointer && slidOff(event)) end(_("The finger slid off the key."));
+    if (press?.key === key && event.pointerId === press.pointer && slidOff(event)) end(_("The finger slid off the button."));
   });
   for (const name of ["pointerup", "pointercancel", "lostpointercapture"]) {
     key.addEventListener(name, (event) => { if (press?.key === key && event.pointerId === press.pointer) end(); });
@@ -104,8 +104,8 @@ function judged(message) {
     if (message.status === "refused") said.textContent = message.reasons?.map((reason) => reason.message).join(" ") ?? "";
     return undefined;
   }
-  if (message.status === "dead") return end(_("The axis stopped: the signal of the held button did not arrive in time. Let it go and press it again."));
-  if (message.status !== "ok") end(message.reasons?.map((reason) => `${reason.message} ${reason.hint ?? ""}`).join(" ") || _("The machine ended the movement."));
+  if (message.status === "dead") return end(_("The axis stopped: the signal of the held button did not arrive in time. Release the button and press it again."));
+  if (message.status !== "ok") end(message.reasons?.map((reason) => `${reason.message} ${reason.hint ?? ""}`).join(" ") || _("The controller stopped the motion."));
   return undefined;
 }
 
@@ -119,7 +119,7 @@ function told({ kind, tracker_id: trackerId, message, data }) {
 
 // How many of the last press's heartbeats could not leave in time.
 function paintBeats(lost, all) {
-  document.getElementById("lost-beats").textContent = all ? _(", {lost} of {all} beats lost", { lost, all }) : "";
+  document.getElementById("lost-beats").textContent = all ? _(", {lost} of {all} heartbeats lost", { lost, all }) : "";
 }
 
 function paintLink() {
@@ -129,8 +129,8 @@ function paintLink() {
   const level = trip === null ? 0 : LEVELS.findIndex((most) => trip <= most) + 1;
   document.getElementById("link-quality").dataset.level = level;
   document.getElementById("link-words-jog").textContent = LEVEL_WORDS[level];
-  document.getElementById("round-trip").textContent = trip === null ? "" : _("{time} ms there and back", { time: Math.max(1, Math.round(trip)) });
-  document.getElementById("link-verdict").textContent = slow ? _("Link too slow for hold-to-run: use the small steps.") : "";
+  document.getElementById("round-trip").textContent = trip === null ? "" : _("{time} ms round trip", { time: Math.max(1, Math.round(trip)) });
+  document.getElementById("link-verdict").textContent = slow ? _("Connection too slow for hold-to-run: use incremental jog.") : "";
   return undefined;
 }
 

@@ -73,8 +73,8 @@ function tell(form, { typed, secret }) {
   note.setAttribute("role", "status");
   const words = document.createElement("span");
   words.textContent = [
-    typed && _("The page was loaded again. What you had typed is back, and not saved yet."),
-    secret && _("Passwords and other secrets are not kept: type them again. Nothing is saved yet."),
+    typed && _("The page was reloaded. Your entries are restored but not saved yet."),
+    secret && _("Passwords and other secrets are not kept: enter them again. Nothing is saved yet."),
   ].filter(Boolean).join(" ");
   const key = document.createElement("button");
   key.type = "button";

@@ -68,7 +68,7 @@ function connect() {
   mine.onclose = (closing) => {
     if (mine !== socket) return;
     socket = null;
-    if (closing.code === FLOODED) tell("problem", { detail: _("This page sent more messages than Heliopanel takes and was cut off. It connects again by itself; STOP works.") });
+    if (closing.code === FLOODED) tell("problem", { detail: _("This page sent more messages than Heliopanel accepts and was disconnected. The page reconnects automatically; STOP works.") });
     judge("closed");
     setTimeout(connect, RETRY_MS);
   };
@@ -219,7 +219,7 @@ function paintLocal() {
 }
 
 function lastSeen(one) {
-  if (!one.last_measured) return _("The drive has not told its position yet.");
+  if (!one.last_measured) return _("The drive has not reported its position yet.");
   const { azimuth_deg: azimuth, elevation_deg: elevation } = one.last_measured;
   return _("Last reading {age} ago: azimuth {azimuth}, elevation {elevation}.",
     { age: shown(one.position_age_s, "age"), azimuth: shown(azimuth, "angle2"), elevation: shown(elevation, "angle2") });
@@ -246,13 +246,13 @@ function paintLink() {
 const OFF_WORDS = {
   lost: _("The controller service does not answer."),
   stale: _("No connection to the controller."),
-  "signed-out": _("Your session has ended: load the page again to sign in. STOP still works."),
+  "signed-out": _("Your session has ended: reload the page to sign in. STOP still works."),
 };
 
 // Without its service nothing tracks or stows: whether it runs is not known here, so nothing is promised.
 const OFF_ADVICE = {
-  lost: _("Movement is off here; tracking and stowing may have stopped."),
-  stale: _("Movement is off here; tracking and stowing do not need this connection."),
+  lost: _("Motion commands are disabled here; tracking and stowing may have stopped."),
+  stale: _("Motion commands are disabled here; tracking and stowing do not need this connection."),
 };
 
 export function paint() {

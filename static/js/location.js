@@ -31,14 +31,14 @@ function take(position, words) {
   put("latitude", latitude, "NS");
   put("longitude", longitude, "EW");
   if (altitude !== null) document.getElementById("f-altitude").value = Math.round(altitude);
-  words.textContent = _("Taken, accurate to {metres} m. Check it, then save.", { metres: Math.round(accuracy) });
+  words.textContent = _("Location taken, accurate to {metres} m. Check it, then save.", { metres: Math.round(accuracy) });
   document.body.dispatchEvent(new CustomEvent("location-typed"));
 }
 
 const REFUSED = {
-  1: _("The browser was not allowed to tell its position. Allow it in the browser, or type the numbers."),
-  2: _("This device does not know its position now. Type the numbers."),
-  3: _("This device found no position in 20 s. Try again under the open sky, or type the numbers."),
+  1: _("The browser was not allowed to share its location. Allow location access in the browser, or enter the coordinates."),
+  2: _("This device does not know its location now. Enter the coordinates."),
+  3: _("This device found no location within 20 s. Try again under the open sky, or enter the coordinates."),
 };
 
 function offerDevicePlace() {
@@ -46,13 +46,13 @@ function offerDevicePlace() {
   if (!holder) return;
   const [key, words] = [holder.querySelector("button"), holder.querySelector("p")];
   if (!window.isSecureContext || !navigator.geolocation) {
-    words.textContent = _("This browser gives its position only to pages over HTTPS or on the same computer. Type the numbers, or paste them as “41.2867, 36.3300”.");
+    words.textContent = _("This browser shares its location only with pages over HTTPS or on the same computer. Enter the coordinates, or paste them as “41.2867, 36.3300”.");
     return;
   }
   words.textContent = "";
   key.disabled = false;
   key.addEventListener("click", () => {
-    words.textContent = _("Looking for the position …");
+    words.textContent = _("Finding the location …");
     navigator.geolocation.getCurrentPosition((found) => take(found, words), (error) => { words.textContent = REFUSED[error.code] ?? error.message; },
       { enableHighAccuracy: true, timeout: 20000, maximumAge: 0 });
   });

@@ -47,7 +47,7 @@ function tellSilence(event) {
   }
   const told = document.createElement("p");
   told.className = "outcome-refused";
-  told.textContent = _("No answer came; it may or may not have been done. Look at the live values, then try again.");
+  told.textContent = _("No answer was received; the command may or may not have been executed. Check the live values, then try again.");
   outcome.replaceChildren(told);
 }
 

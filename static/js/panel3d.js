@@ -188,7 +188,7 @@ function alike(a, b) {
 }
 
 const KEYS = { ArrowLeft: [-TURN_DEG, 0], ArrowRight: [TURN_DEG, 0], ArrowUp: [0, TILT_DEG], ArrowDown: [0, -TILT_DEG], Home: [0, 0] };
-const KEY_WORDS = [[_("Turn the view left"), "⟲", "ArrowRight"], [_("Look from lower"), "▽", "ArrowDown"], [_("Look from higher"), "△", "ArrowUp"], [_("Turn the view right"), "⟳", "ArrowLeft"]];
+const KEY_WORDS = [[_("Turn the view left"), "⟲", "ArrowRight"], [_("Lower the viewpoint"), "▽", "ArrowDown"], [_("Raise the viewpoint"), "△", "ArrowUp"], [_("Turn the view right"), "⟳", "ArrowLeft"]];
 
 // Keys that do what dragging does, for fingers in gloves.
 export function turnKeys(scene) {

@@ -57,10 +57,10 @@ function curves(mine) {
 
 const SERIES = [
   { label: _("Azimuth planned"), colour: "second", dash: [7, 5], width: 1.5 },
-  { label: _("commanded"), colour: "line", dash: [2, 4], width: 1.5 },
+  { label: _("setpoint"), colour: "line", dash: [2, 4], width: 1.5 },
   { label: _("measured"), colour: "text", width: 2.5 },
   { label: _("Elevation planned"), colour: "blue", dash: [7, 5], width: 1.5 },
-  { label: _("commanded"), colour: "line", dash: [2, 4], width: 1.5 },
+  { label: _("setpoint"), colour: "line", dash: [2, 4], width: 1.5 },
   { label: _("measured"), colour: "blue", width: 2.5 },
 ];
 
@@ -194,12 +194,12 @@ function play(wanted) {
 async function open() {
   tape = await read(head.recording, head.begin, head.playerZone);
   if (!tape.time.length) {
-    said.textContent = _("This recording has no frames.");
+    said.textContent = _("This recording has no samples.");
     return;
   }
   if (head.other) other = await read(head.other, head.otherBegin, head.otherZone);
   scrubber.max = String(tape.columns.elapsed_s[tape.columns.elapsed_s.length - 1]);
-  said.textContent = other ? _("Laid over it, in red: {title}.", { title: head.otherTitle }) : "";
+  said.textContent = other ? _("Overlaid in red: {title}.", { title: head.otherTitle }) : "";
   key.addEventListener("click", () => play(!playing));
   scrubber.addEventListener("input", () => { at = Number(scrubber.value); play(false); });
   let drawing = draw();
@@ -220,4 +220,4 @@ function offerToPrint(drawing) {
   });
 }
 
-open().catch((error) => { said.textContent = _("The frames could not be read: {why}", { why: error.message }); });
+open().catch((error) => { said.textContent = _("The samples could not be read: {why}", { why: error.message }); });

@@ -11,12 +11,12 @@ function panel() {
   const form = document.createElement("form");
   form.className = "banner prove-here";
   form.id = "prove-here";
-  form.setAttribute("aria-label", _("Type your password again"));
+  form.setAttribute("aria-label", _("Confirm your password"));
   form.innerHTML = '<label for="prove-password"></label><input class="input" id="prove-password" type="password" autocomplete="current-password" required>'
     + '<button class="key key-primary"></button><button class="key" type="button"></button><p role="alert"></p>';
   const [go, cancel] = form.querySelectorAll("button");
-  form.querySelector("label").textContent = _("Type your password again. Nothing that you typed is lost.");
-  go.textContent = _("Go on");
+  form.querySelector("label").textContent = _("Confirm your password. Your entries are kept.");
+  go.textContent = _("Continue");
   cancel.textContent = _("Cancel");
   cancel.addEventListener("click", close);
   form.addEventListener("submit", (event) => { event.preventDefault(); prove(form); });
@@ -46,7 +46,7 @@ async function prove(form) {
       return;
     }
   } catch {
-    words.textContent = _("No answer came. Try again.");
+    words.textContent = _("No answer was received. Try again.");
     return;
   }
   const again = asked;

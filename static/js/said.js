@@ -6,7 +6,7 @@ const told = document.getElementById("texts");
 
 export const spoken = told ? JSON.parse(told.textContent) : ENGLISH;
 
-// Returns a text with its gaps filled: `_("{n} of {all} beats lost", { n, all })`.
+// Returns a text with its gaps filled: `_("{n} of {all} heartbeats lost", { n, all })`.
 export function _(text, values = {}) {
   return (spoken.texts[text] ?? text).replace(/\{(\w+)\}/g, (gap, name) => values[name] ?? gap);
 }

@@ -42,7 +42,7 @@ function list(lines) {
   const shown = document.createElement("div");
   shown.className = "saved-what";
   if (!lines.length) {
-    shown.textContent = _("Nothing was different from what was stored.");
+    shown.textContent = _("No values were changed.");
     return shown;
   }
   const all = document.createElement("ul");

@@ -43,7 +43,7 @@ function draw() {
       { label: _("Azimuth planned"), colour: "second", dash: [6, 5], width: 1.5 }, { label: _("Azimuth measured"), colour: "text", width: 3 },
       { label: _("Elevation planned"), colour: "blue", dash: [6, 5], width: 1.5 }, { label: _("Elevation measured"), colour: "blue", width: 3 }] }),
     chart(document.getElementById("errors"), { height: 180, zone: live.zone, data: errorData(), range: (_, least, most) => [0, Math.max(0.5, (most ?? 0) * 1.1)],
-      series: [{ label: _("Off the sun"), colour: "text", width: 2 }] }),
+      series: [{ label: _("Pointing error"), colour: "text", width: 2 }] }),
   ];
 }
 
@@ -80,8 +80,8 @@ function fillUpTo(index, values) {
 function progressOf(show) {
   const values = { elapsed: duration(show.elapsed_s), all: duration(show.duration_s), times: Math.round(show.acceleration) };
   return show.sun_is_up
-    ? _("{elapsed} of {all} · {times} × the sun", values)
-    : _("{elapsed} of {all} · {times} × the sun; the sun is down, the panel holds", values);
+    ? _("{elapsed} of {all} · {times} × the sun's speed", values)
+    : _("{elapsed} of {all} · {times} × the sun's speed; the sun is down, the panel holds", values);
 }
 
 // The sun of a show stays where the show left it: the one outside stands elsewhere, and has nothing to do with it.
@@ -113,7 +113,7 @@ function paint() {
   if (!show) {
     if (last) return finish();
     picture(null, null);
-    phase.textContent = _("Not on the machine");
+    phase.textContent = _("Not on the controller");
     return;
   }
   last = { show, sun: sunOf(live.tracker) };

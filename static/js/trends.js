@@ -10,15 +10,15 @@ const said = document.getElementById("trends-state");
 const SPAN_S = Number(said.dataset.seconds);
 const EVERY_S = Math.max(1, SPAN_S / POINTS);
 const cursor = { lock: false, sync: { key: "trends" } };
-const ANGLES = [{ label: _("Measured"), colour: "blue", width: 2.5 }, { label: _("Set-point"), colour: "text", width: 1.5, dash: [7, 5] }, { label: _("Target"), colour: "line", width: 1.5, dash: [2, 4] }];
+const ANGLES = [{ label: _("Measured"), colour: "blue", width: 2.5 }, { label: _("Setpoint"), colour: "text", width: 1.5, dash: [7, 5] }, { label: _("Target"), colour: "line", width: 1.5, dash: [2, 4] }];
 
 // What each chart shows: its columns, and how a snapshot tells the same.
 const CHARTS = {
   azimuth: { columns: ["measured_azimuth_deg", "setpoint_azimuth_deg", "target_azimuth_deg"], series: ANGLES, turns: true },
   elevation: { columns: ["measured_elevation_deg", "setpoint_elevation_deg", "target_elevation_deg"], series: ANGLES },
-  error: { columns: ["off_target_deg"], digits: 3, fromZero: 0.1, series: [{ label: _("Off the target"), colour: "text", width: 2 }] },
+  error: { columns: ["off_target_deg"], digits: 3, fromZero: 0.1, series: [{ label: _("Deviation from target"), colour: "text", width: 2 }] },
   wind: { columns: ["wind_mps", "wind_mean_mps"], unit: " m/s", digits: 1, fromZero: 5, series: [{ label: _("Gust"), colour: "text", width: 1.5 }, { label: _("Mean"), colour: "blue", width: 2.5, dash: [8, 4] }] },
-  light: { columns: ["light_wm2"], unit: " W/m²", digits: 0, fromZero: 100, series: [{ label: _("Light"), colour: "text", width: 2 }] },
+  light: { columns: ["light_wm2"], unit: " W/m²", digits: 0, fromZero: 100, series: [{ label: _("Irradiance"), colour: "text", width: 2 }] },
   speed: { columns: ["azimuth_dps", "elevation_dps"], unit: " °/s", series: [{ label: _("Azimuth axis"), colour: "text", width: 2 }, { label: _("Elevation axis"), colour: "blue", width: 2, dash: [8, 4] }] },
   supply: { columns: ["supply_v"], unit: " V", digits: 1, series: [{ label: _("Supply"), colour: "text", width: 2 }] },
 };

@@ -48,7 +48,7 @@ async def test_every_change_is_recorded_with_who_when_and_what(door: Door) -> No
     accounts.record(HERE, "network_changed", "port 8001", now)
     accounts.record(HERE, "network_changed", "port 8002", now, "refused")
     accounts.factory_reset(HERE, now)
-    by = ("this computer", "loopback", "127.0.0.1")
+    by = ("local user", "loopback", "127.0.0.1")
     told = await door.recorded()
     assert [said(one) for one in told] == [
         (*by, "user_added", "ada: administrator", "done"),
@@ -99,9 +99,9 @@ async def test_a_password_that_is_made_of_the_users_name_is_refused_however_it_i
     await door.add("ada", Role.ADMINISTRATOR)
     await door.add("mirabelle", Role.VIEWER)
     for typed in ("mirabelle", "MIRABELLE"):
-        with pytest.raises(AccessRefused, match="People guess"):
+        with pytest.raises(AccessRefused, match="is easy to guess"):
             door.keeper.accounts.set_password(HERE, typed, "mirabelle2026!", START)
-    with pytest.raises(AccessRefused, match="People guess"):
+    with pytest.raises(AccessRefused, match="is easy to guess"):
         door.keeper.accounts.add(HERE, "Rosalind", [Role.VIEWER], "rosalind2026!", START)
 
 
@@ -149,7 +149,7 @@ async def test_a_token_is_stored_as_it_was_wished(door: Door, name: str, lifetim
     await door.add("ada", Role.ADMINISTRATOR)
     text = await door.mint(TokenWish(name, READ, frozenset({"T1", "T2"}), lifetime))
     token = door.keeper.book.tokens[token_id_of(text) or ""]
-    assert (token.name, token.owner, token.digest) == (name.strip(), "this computer", digest_of(text))
+    assert (token.name, token.owner, token.digest) == (name.strip(), "local user", digest_of(text))
     assert (token.scopes, token.trackers, token.pin_hash) == (READ, {"T1", "T2"}, "")
     assert (token.created_at, token.expires_at) == (START, START + lifetime)
     who = door.keeper.identify(Credentials(ADDRESS, bearer=text))
@@ -165,7 +165,7 @@ async def test_a_token_is_stored_as_it_was_wished(door: Door, name: str, lifetim
     [
         (TokenWish("  ", READ), "1 to 64 characters"),
         (TokenWish("a" * 65, READ), "1 to 64 characters"),
-        (TokenWish("scada"), "what the token is for: read, stop, motion, config"),
+        (TokenWish("scada"), "the purpose of the token: read, stop, motion, config"),
         (TokenWish("scada", READ, lifetime=timedelta(minutes=59)), "1 hour to 366 days"),
         (TokenWish("scada", READ, lifetime=timedelta(days=366, seconds=1)), "1 hour to 366 days"),
         (TokenWish("gate", pin="111222"), "A PIN has"),

@@ -216,7 +216,7 @@ def test_the_command_line_adds_lists_and_removes(tmp_path: Path) -> None:
     assert added.exit_code == 0, added.output
     weak = run("reset", "ada", "--password-stdin", typed="solartracker\n")
     assert isinstance(weak.exception, ValueError)
-    assert "People guess" in str(weak.exception)
+    assert "is easy to guess" in str(weak.exception)
     listed = run("list").output
     assert "ada" in listed
     assert "administrator" in listed

@@ -215,7 +215,7 @@ async def test_wrong_pins_make_the_panel_wait_and_the_right_one_forgives_them(do
         with pytest.raises(WrongPassword):
             await door.keeper.step_up(who, "270442")
     failed = (await door.recorded())[-1]
-    assert (failed.action, failed.object, failed.address) == ("log_in", "pin of gate 3", ADDRESS)
+    assert (failed.action, failed.object, failed.address) == ("log_in", "PIN of gate 3", ADDRESS)
     await door.keeper.step_up(who, PIN)
     for _ in range(3):
         with pytest.raises(WrongPassword):
@@ -232,7 +232,7 @@ async def test_wrong_pins_make_the_panel_wait_and_the_right_one_forgives_them(do
 async def test_a_person_has_no_pin(door: Door) -> None:
     await door.add("ada", Role.ADMINISTRATOR)
     session = await door.tries("ada", PASSWORD)
-    with pytest.raises(AccessRefused, match="Only the page of a cabinet has a PIN"):
+    with pytest.raises(AccessRefused, match="A PIN works only on a cabinet display"):
         await door.keeper.step_up(door.who(session), PIN)
 
 
@@ -301,7 +301,7 @@ async def test_guesses_are_recorded_one_by_one_until_there_are_too_many(door: Do
     assert len(told) == WRONG_AT_ONCE
     assert (told[-1].actor, told[-1].object, told[-1].address) == ("nobody", "user199", "10.1.0.199")
     (left_out,) = door.keeper.refusals.take(door.clock.now())
-    assert left_out.result == "1 refusals were not recorded one by one."
+    assert left_out.result == "1 refusals were not recorded individually."
     door.clock.advance(timedelta(minutes=1))
     with pytest.raises(WrongPassword):
         await door.tries("ada", "wrong wrong wrong", "10.2.0.1")

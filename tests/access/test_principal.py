@@ -38,7 +38,7 @@ def test_an_unknown_order_is_nobodys() -> None:
     assert not engineer.may_order("no_such_order", "T1")
     with pytest.raises(NotAllowed) as refused:
         engineer.require_order("no_such_order", "T1")
-    assert str(refused.value) == "ana may not order no_such_order here."
+    assert str(refused.value) == "ana may not send the command no_such_order here."
     with pytest.raises(NotAllowed, match="role is"):
         person(Role.VIEWER).require_order("no_such_order")
 
@@ -55,15 +55,13 @@ def test_a_limited_token_orders_its_own_trackers_and_stops_them_all() -> None:
             limited.require_order(moving, tracker_id)
     with pytest.raises(NotAllowed) as refused:
         limited.require_order(moving, "T1")
-    assert str(refused.value) == "script may not reach tracker T1; its token is for other trackers."
+    assert str(refused.value) == "script may not access tracker T1; the token is for other trackers."
 
 
 def test_whoever_is_not_known_is_asked_to_sign_in_first() -> None:
     with pytest.raises(SignInNeeded) as refused:
         nobody(ADDRESS).require(Permission.READ)
-    assert str(refused.value) == (
-        "Sign in first: this panel shows and moves nothing for people it does not know."
-    )
+    assert str(refused.value) == ("Sign in first: Heliopanel shows and moves nothing for unknown users.")
     assert nobody(ADDRESS).address == ADDRESS
 
 
@@ -72,7 +70,7 @@ def test_rest_asks_for_the_password_only_of_whom_it_would_let() -> None:
     resting = Principal("ana", held, frozenset({Permission.STOP}), Via.SESSION, ADDRESS, rests=True)
     with pytest.raises(ProofNeeded) as asked:
         resting.require(Permission.OPERATE)
-    assert str(asked.value) == "Nothing was done here for 30 minutes. Type your password to go on."
+    assert str(asked.value) == "There was no activity for 30 minutes. Enter your password to continue."
     with pytest.raises(NotAllowed):
         resting.require(Permission.ADMINISTER)
     awake = Principal("ana", held, frozenset({Permission.STOP}), Via.SESSION, ADDRESS)
@@ -85,14 +83,14 @@ def test_a_refusal_says_who_asked_what_and_who_may() -> None:
     assert person(Role.VIEWER).refusal(Permission.ADMINISTER).startswith("ana (viewer) may not ")
     both = person(Role.VIEWER, Role.OPERATOR).refusal(Permission.ADMINISTER, "T1")
     assert both.startswith("ana (operator and viewer) may not ")
-    assert both.endswith("Ask somebody whose role is administrator.")
+    assert both.endswith("Ask a user whose role is administrator.")
     ticket = Principal("ana", frozenset(), frozenset(), Via.STOP_TICKET, ADDRESS)
     assert ticket.refusal(Permission.OPERATE).startswith("ana (stop ticket) may not ")
 
 
 def test_who_sits_at_the_computer_before_there_are_users() -> None:
     here = this_computer("127.0.0.1")
-    assert (here.name, here.via, here.address) == ("this computer", Via.LOOPBACK, "127.0.0.1")
+    assert (here.name, here.via, here.address) == ("local user", Via.LOOPBACK, "127.0.0.1")
     assert here.roles == frozenset({Role.ENGINEER, Role.ADMINISTRATOR})
     assert here.permissions == permissions_of(here.roles)
     assert here.is_known

@@ -28,7 +28,7 @@ def test_a_flood_of_a_day_from_many_addresses_is_a_few_hundred_entries() -> None
     assert len(written) <= BURST + 24 * 20 + 24
     left_out = [one for one in written if one.action == LEFT_OUT]
     assert len(left_out) == 24
-    assert left_out[-1].result.endswith("refusals were not recorded one by one.")
+    assert left_out[-1].result.endswith("refusals were not recorded individually.")
     assert len(refusals._seen) <= MOST_REMEMBERED
 
 
@@ -54,13 +54,13 @@ def test_what_is_left_out_is_counted_and_told_once_an_hour() -> None:
     refusals.leave_out()
     refusals.leave_out()
     told = AccessEvent(
-        NOW, "nobody", "nobody", "", LEFT_OUT, "panel", "5 refusals were not recorded one by one."
+        NOW, "nobody", "nobody", "", LEFT_OUT, "panel", "5 refusals were not recorded individually."
     )
     assert refusals.take(NOW)[BURST:] == [told]
     refusals.leave_out()
     assert left_out(refusals, NOW + TELL_EVERY - timedelta(microseconds=1)) == []
     (later,) = left_out(refusals, NOW + TELL_EVERY)
-    assert later.result == "1 refusals were not recorded one by one."
+    assert later.result == "1 refusals were not recorded individually."
     assert left_out(refusals, NOW + 3 * TELL_EVERY) == []
 
 

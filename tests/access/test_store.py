@@ -72,10 +72,10 @@ def test_the_check_of_every_change_finds_no_difference() -> None:
 @pytest.mark.parametrize(
     ("statement", "told"),
     [
-        ("UPDATE access_version SET version_num = '9999'", "revision 9999; this one knows up to 0001"),
+        ("UPDATE access_version SET version_num = '9999'", "revision 9999; this version supports up to 0001"),
         (
             "UPDATE access_meta SET value = '999.0.1' WHERE name = 'version'",
-            f"999.0.1; this one is {VERSION}",
+            f"999.0.1; this version is {VERSION}",
         ),
     ],
 )
@@ -86,7 +86,7 @@ def test_users_of_a_newer_version_are_left_alone(
         change.put_user(ADA)
     store.close()
     execute(settings, statement)
-    newer = f"The users were written by a newer version of Heliopanel ({told}). Install that version, or"
+    newer = f"The users were stored by a newer version of Heliopanel ({told}). Install that version, or"
     for use in (AccessStore.load, AccessStore.changes, lambda store: store.writing().__enter__()):
         opened = open_store(settings)
         with pytest.raises(StoreUnfit) as refused:

@@ -147,9 +147,9 @@ def test_one_taken_back_from_the_shelf_is_announced_anew() -> None:
     ("code", "reason", "duration", "words"),
     [
         ("not_stowed", "known", SHIFT, "priority 1 cannot be shelved"),
-        ("drive_fault", "  ", SHIFT, "Say why"),
-        ("drive_fault", "known", timedelta(hours=24, seconds=1), "at most 24 hours"),
-        ("drive_fault", "known", timedelta(seconds=59), "at least 1 minute"),
+        ("drive_fault", "  ", SHIFT, "Enter the reason"),
+        ("drive_fault", "known", timedelta(hours=24, seconds=1), "1 minute to 24 hours"),
+        ("drive_fault", "known", timedelta(seconds=59), "1 minute to 24 hours"),
     ],
 )
 def test_not_everything_is_shelved(code: str, reason: str, duration: timedelta, words: str) -> None:

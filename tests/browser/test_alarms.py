@@ -63,10 +63,10 @@ def test_an_alarm_that_is_gone_does_not_read_as_if_it_stood(plant: Plant, opened
     plant.do(lambda: returned(plant))
     trouble = page.locator('[data-alarms="T1"] .glance-trouble')
     for seen in (page.locator("#alarm-first-title"), trouble):
-        expect(seen).to_have_text("Gone: Not stowed")
+        expect(seen).to_have_text("Returned to normal: Not stowed")
     page.reload()
     for seen in (page.locator("#alarm-first-title"), trouble):
-        expect(seen).to_have_text("Gone: Not stowed")
+        expect(seen).to_have_text("Returned to normal: Not stowed")
 
 
 def test_the_overview_leads_to_the_tracker_that_is_in_danger(
@@ -74,7 +74,7 @@ def test_the_overview_leads_to_the_tracker_that_is_in_danger(
 ) -> None:
     page = opened("/", "tablet")
     card = page.locator('.glance[data-tracker="T1"]')
-    urgent = card.get_by_role("link", name="Look at the alarm")
+    urgent = card.get_by_role("link", name="View alarm")
     expect(card.locator("[data-calm]")).to_be_visible()
     expect(urgent).to_be_hidden()
     raised(plant, "not_stowed", "drive_lost")
@@ -97,7 +97,7 @@ def test_a_card_whose_alarm_is_not_listed_does_not_look_calm_in_a_storm(
     plant.do(lambda: setattr(tracker, "not_stowed", why))
 
     def expect_danger() -> None:
-        expect(card.get_by_role("link", name="Look at the alarm")).to_be_visible()
+        expect(card.get_by_role("link", name="View alarm")).to_be_visible()
         expect(card.locator("[data-calm]")).to_be_hidden()
         expect(card.locator(".glance-trouble")).to_have_text("Not stowed")
         expect(card.locator(".glance-alarms b")).to_have_text("1")
@@ -120,13 +120,13 @@ def test_an_alarm_is_shelved_with_a_reason(
     row = page.locator('[id="alarm-drive_lost@T1"]')
     row.locator("summary").click()
     row.get_by_role("button", name="Shelve").click()
-    expect(page.locator(".field-error")).to_contain_text("Say why")
-    row.get_by_label("Why").fill("The cable is being replaced.")
+    expect(page.locator(".field-error")).to_contain_text("Enter the reason for shelving")
+    row.get_by_label("Reason").fill("The cable is being replaced.")
     row.get_by_role("button", name="Shelve").click()
     expect(row).to_have_count(0)
     page.get_by_role("link", name="Shelved").click()
     picture(page, "alarms-shelved-desk")
-    row.get_by_role("button", name="Take back").click()
+    row.get_by_role("button", name="Unshelve").click()
     expect(row).to_have_count(0)
     assert plant.machine.alarms[0].state is AlarmState.UNACKNOWLEDGED
 

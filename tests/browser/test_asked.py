@@ -48,7 +48,7 @@ def test_a_longitude_on_the_wrong_side_is_asked_about(opened: Opened, plant: Pla
     page.locator('input[name="longitude_side"][value="W"]').check()
     page.locator("#forward .key").click()
     doubts = page.locator("#place-doubts")
-    expect(doubts).to_contain_text("with east and west exchanged")
+    expect(doubts).to_contain_text("with east and west swapped")
     expect(doubts).to_contain_text("km away from the stored location")
     assert asked(plant, SetLocation) == 0
     page.locator('[name="sun_there"]').check()

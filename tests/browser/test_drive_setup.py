@@ -37,7 +37,7 @@ def connect(page: Page, hands: Hands, url: str, port: int, picture: Picture, nam
     found = page.locator("#drive-check")
     expect(found).to_contain_text("The device answers")
     expect(found).to_contain_text("0.5 s, read back from the drive")
-    expect(found).to_contain_text("Both axes ramp down and stay")
+    expect(found).to_contain_text("Both axes ramp down and remain at standstill")
     hands.press(found.locator("summary"))
     expect(found.locator("tbody tr").first).to_contain_text("18512")
     found.scroll_into_view_if_needed()
@@ -54,11 +54,13 @@ def state(page: Page, proof: str, row: int = 0) -> Locator:
 
 def prove_direction(page: Page, hands: Hands, picture: Picture, name: str) -> None:
     hands.press(page.get_by_role("button", name="Turn elevation by 3°"))
-    expect(page.locator(".ask")).to_contain_text("tilt up, towards the sky?")
+    expect(page.locator(".ask")).to_contain_text("tilt up, toward the sky?")
     picture(page, f"proof-direction-{name}")
     hands.press(page.get_by_role("button", name="Yes"))
     expect(state(page, "direction", 1)).to_have_attribute("data-status", "done")
-    expect(state(page, "direction", 1)).to_contain_text("The panel turned the way the controller says")
+    expect(state(page, "direction", 1)).to_contain_text(
+        "The panel turned in the direction that the controller reports"
+    )
 
 
 def turn_round(page: Page, hands: Hands) -> None:
@@ -75,20 +77,20 @@ def prove_scale(page: Page, hands: Hands) -> None:
     form = page.locator("#proof-scale")
     hands.press(form.get_by_role("button", name="Turn elevation"))
     hands.write(page.locator("#f-measured"), "12,5")
-    hands.press(form.get_by_role("button", name="This was measured"))
+    hands.press(form.get_by_role("button", name="Confirm measurement"))
     expect(page.locator("#f-measured")).to_have_count(0)
     hands.press(form.get_by_role("button", name="Turn elevation"))
     hands.write(page.locator("#f-measured"), "10,1")
-    hands.press(form.get_by_role("button", name="This was measured"))
+    hands.press(form.get_by_role("button", name="Confirm measurement"))
     expect(state(page, "scale", 1)).to_have_attribute("data-status", "done")
-    expect(state(page, "scale", 1)).to_contain_text("10.10 were measured")
+    expect(state(page, "scale", 1)).to_contain_text("10.10 degrees were measured")
 
 
 def measure(page: Page, hands: Hands, picture: Picture, name: str) -> None:
-    hands.press(page.get_by_role("button", name="Elevation, hand speed"))
-    expect(state(page, "stop", 2)).to_contain_text(re.compile(r"stood 0\.\d\d s"))
+    hands.press(page.get_by_role("button", name="Elevation, jog speed"))
+    expect(state(page, "stop", 2)).to_contain_text(re.compile(r"was at standstill 0\.\d\d s"))
     hands.press(page.get_by_role("button", name="Test with elevation"))
-    expect(page.locator(".strip-activity")).to_contain_text("Link-loss test")
+    expect(page.locator(".strip-activity")).to_contain_text("Communication-loss test")
     expect(state(page, "link-loss")).to_contain_text(re.compile(r"slowed down after 0\.[4-7]\d s"))
     expect(state(page, "link-loss")).to_have_attribute("data-status", "done")
     page.locator("#proof-link-loss").scroll_into_view_if_needed()
@@ -97,7 +99,7 @@ def measure(page: Page, hands: Hands, picture: Picture, name: str) -> None:
 
 def set_limits(page: Page, hands: Hands) -> None:
     expect(page.locator("#limits [data-action]").first).to_be_disabled()
-    expect(page.locator('#limits [data-reasons="set_limit"]')).to_contain_text("no trusted zero")
+    expect(page.locator('#limits [data-reasons="set_limit"]')).to_contain_text("is not homed")
     page.evaluate("window.scrollTo(0, document.body.scrollHeight)")
     reading = page.locator('.jog-panel [data-live="measured.elevation_deg"]')
     move_by_hand(hands, page.locator('[data-jog="elevation"][data-direction="1"]'), reading)

@@ -53,7 +53,9 @@ def test_an_order_without_an_answer_says_so_and_keeps_what_was_typed(plant: Plan
     page.locator("#f-latitude").fill("12.5")
     page.route("**/commissioning/location", lambda route: route.abort())
     page.locator("#forward .key").click()
-    expect(page.locator("#step-form .outcome")).to_contain_text("it may or may not have been done")
+    expect(page.locator("#step-form .outcome")).to_contain_text(
+        "the command may or may not have been executed"
+    )
     expect(page.locator("#f-latitude")).to_have_value("12.5")
     page.unroute("**/commissioning/location")
     page.locator("#f-latitude").fill("41.2867")
@@ -78,8 +80,8 @@ def test_a_drawn_signature_outlives_a_reload(plant: Plant, opened: Opened) -> No
     expect(page.locator('[name="technician_drawn"]')).to_have_value(drawn)
     inked = "pad => pad.getContext('2d').getImageData(0, 0, 1000, 300).data.some(value => value > 0)"
     assert pad.evaluate(inked)
-    page.get_by_role("button", name="Sign and keep").click()
-    page.get_by_role("button", name="Sign all the same").click()
+    page.get_by_role("button", name="Sign record").click()
+    page.get_by_role("button", name="Sign anyway").click()
     expect(page.get_by_role("img", name="Signature of Ada")).to_be_visible()
     assert len(plant.orders("sign_record")) == 1
 
@@ -98,7 +100,7 @@ def test_a_plan_worked_out_for_other_values_cannot_be_started(plant: Plant, open
 def test_the_quality_of_the_link_stands_beside_the_keys(plant: Plant, opened: Opened) -> None:
     page = opened("/trackers/T1/commissioning/homing")
     expect(page.locator("#link-words-jog")).to_have_text("good")
-    expect(page.locator("#round-trip")).to_contain_text("ms there and back")
+    expect(page.locator("#round-trip")).to_contain_text("ms round trip")
     key = page.locator('[data-jog="azimuth"][data-direction="1"]')
     key.focus()
     page.keyboard.down(" ")

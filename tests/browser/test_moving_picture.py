@@ -276,7 +276,7 @@ def test_it_turns_by_mouse_keyboard_and_keys(panel: Panel) -> None:
     scene.focus()
     page.keyboard.press("ArrowLeft")
     shots.append(scene.screenshot())
-    page.get_by_role("button", name="Look from higher").click()
+    page.get_by_role("button", name="Raise the viewpoint").click()
     page.mouse.move(2, 2)
     scene.focus()
     shots.append(scene.screenshot())
@@ -373,7 +373,7 @@ def test_trends_go_on_while_one_looks(panel: Panel) -> None:
     page = panel.open(f"{T1}/trends?span=10min")
     page.wait_for_selector("#trend-azimuth canvas")
     assert page.locator("#trend-wind .chart").is_hidden()
-    assert page.locator("#trend-wind p").inner_text() == "Nothing was recorded of this in the span."
+    assert page.locator("#trend-wind p").inner_text() == "No data was recorded in this time span."
     assert "format=csv" in (page.locator("#trends-csv").get_attribute("href") or "")
     page.get_by_role("link", name="7 days").click()
     page.wait_for_selector('#trends-state[data-seconds="604800"]')

@@ -161,7 +161,7 @@ def test_a_jog_that_the_controller_ended_says_why(opened: Opened, plant: Plant) 
     key.focus()
     page.keyboard.down(" ")
     until(page, lambda: plant.orders("jog"))
-    say = "The jog of azimuth ended: it was not renewed in time."
+    say = "The jog of azimuth ended: the jog command was not renewed in time."
     ended = Event(plant.machine.clock.now(), EventKind.JOG_ENDED, "T1", say, data={"outcome": "expired"})
     plant.do(lambda: plant.machine.emit(ended))
     expect(page.locator("#jog-words")).to_have_text(say)

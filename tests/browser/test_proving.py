@@ -19,7 +19,7 @@ LATER, LONG_AFTER = timedelta(minutes=6), timedelta(minutes=31)
 def prove(page: Page) -> None:
     """Type the password where it is asked for, beside what was typed."""
     asked = page.locator("#prove-here")
-    expect(asked).to_contain_text("Nothing that you typed is lost")
+    expect(asked).to_contain_text("Your entries are kept.")
     page.locator("#prove-password").fill(PASSWORD)
     page.keyboard.press("Enter")
 
@@ -61,7 +61,7 @@ def test_a_token_is_made_with_the_pin_that_was_typed_before_the_proof(door: Door
     door.clock.ahead += LATER
     page.locator("#f-name").fill("Cabinet south")
     page.locator("#f-pin").fill("8642097")
-    page.get_by_role("button", name="Make it").click()
+    page.get_by_role("button", name="Create token").click()
     assert "8642097" not in page.evaluate(STORED)
     prove(page)
     expect(page.locator("#new-token")).to_have_text(re.compile("^hp_"))
@@ -75,8 +75,8 @@ def test_a_password_is_changed_after_a_rest_by_the_old_one(door: Door) -> None:
     door.clock.ahead += LONG_AFTER
     page.locator("#f-old").fill(PASSWORD)
     page.locator("#f-new").fill(NEW)
-    page.get_by_role("button", name="Change it").click()
-    expect(page.locator(".outcome-ok").first).to_contain_text("The password is changed.")
+    page.get_by_role("button", name="Change password").click()
+    expect(page.locator(".outcome-ok").first).to_contain_text("Password changed.")
 
 
 def test_an_ended_session_leads_back_to_the_form_with_what_was_typed(door: Door) -> None:
@@ -90,7 +90,7 @@ def test_an_ended_session_leads_back_to_the_form_with_what_was_typed(door: Door)
     page.wait_for_url(f"**/login?back={drive}")
     sign_in(page, "zeynep", PASSWORD)
     page.wait_for_url(f"**{drive}")
-    expect(page.locator(".kept-note")).to_contain_text("What you had typed is back, and not saved yet.")
+    expect(page.locator(".kept-note")).to_contain_text("Your entries are restored but not saved yet.")
     expect(page.locator("#f-kind")).to_have_value("modbus-tcp")
     expect(page.locator("#f-host")).to_have_value("127.0.0.1")
     page.locator("#drive-form button.key-primary").click()

@@ -14,7 +14,7 @@ SAVES: dict[str, tuple[str, str, dict[str, str], list[str]]] = {
     "settings": (
         f"{T1}/settings", "#settings-form > .key-primary",
         {"#f-deadband": "0.7", "#f-night": "park"},
-        ["Deadband: 0.5 ° → 0.7 °", "At night: Wait for sunrise → Go to park"],
+        ["Deadband: 0.5 ° → 0.7 °", "At night: Hold at sunrise position → Move to park"],
     ),
     "protections": (
         f"{T1}/protections", "#protections-form .key-primary", {"#f-stow_wind": "16"}, [],
@@ -78,7 +78,7 @@ def test_a_second_change_is_told_against_the_first_and_outlives_a_reload(opened:
 def test_a_save_without_a_change_says_so(opened: Opened) -> None:
     page = opened(f"{T1}/settings")
     page.locator("#settings-form > .key-primary").click()
-    expect(page.locator(LIST)).to_have_text("Nothing was different from what was stored.")
+    expect(page.locator(LIST)).to_have_text("No values were changed.")
 
 
 def test_a_page_says_that_what_tells_it_is_still_coming(opened: Opened, plant: Plant) -> None:

@@ -44,7 +44,7 @@ def test_it_is_held_asked_about_and_undone(hand: str, opened: Opened, plant: Pla
 
 
 LAMPS = '[data-lamp$=".homed"]'
-TOLD = "The drive was told to set zero."
+TOLD = "The command to set home was sent to the drive."
 
 
 @pytest.mark.parametrize("size", ["tablet", "phone"])
@@ -69,7 +69,7 @@ def test_message_and_lamps_follow_when_it_is_undone(
         expect(page.locator("#zero-outcome")).to_have_text("")
     else:
         undo.click()
-        expect(page.locator("#zero-outcome")).to_have_text("The former home position counts again.")
+        expect(page.locator("#zero-outcome")).to_have_text("The previous home position is restored.")
         expect(page.locator("#zero-outcome")).to_be_visible()
     expect(page.get_by_text(TOLD)).to_have_count(0)
     expect(page.locator(f'{LAMPS}[data-on="true"]')).to_have_count(0)

@@ -110,9 +110,9 @@ def test_the_sun_outside_is_not_drawn_into_a_show_that_is_over(under_way: Plant,
     sun = page.locator('.show-grid .sunpath [data-mark="sun"]')
     expect(sun).to_have_attribute("visibility", "visible")
     under_way.do(partial(over, under_way))
-    expect(page.get_by_text("Panel off the sun", exact=True).first).to_be_hidden()
+    expect(page.get_by_text("Pointing error", exact=True).first).to_be_hidden()
     page.reload()
-    expect(page.locator("#show-phase")).to_have_text("Not on the machine")
+    expect(page.locator("#show-phase")).to_have_text("Not on the controller")
     expect(sun).to_have_attribute("visibility", "hidden")
 
 

@@ -22,7 +22,7 @@ def test_a_simulation_says_that_it_goes_on_and_leads_to_its_replay(
     key.dblclick()
     expect(working).to_be_visible()
     expect(working).to_be_in_viewport(ratio=1)
-    expect(working).to_contain_text("The replay opens by itself")
+    expect(working).to_contain_text("The replay opens automatically")
     expect(working.get_by_role("link", name="Recordings")).to_have_attribute("href", "/recordings")
     expect(page.locator("#simulate-elapsed")).to_have_text(re.compile(r"^[1-9]\d* s so far$"))
     expect(key).to_be_disabled()

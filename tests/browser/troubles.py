@@ -32,28 +32,28 @@ CODES = ("not_stowed", "drive_lost", "link_poor", "gateway_down")
 REFUSED = Reason(
     "stow_demanded",
     f"{NAME} must be stowed because of high wind.",
-    "Wait until that has ended; press Stow if it is not stowed yet.",
+    "Wait until that has ended. If the tracker is not stowed yet, press Stow.",
 )
 FAULT = Reason(
     "following_error",
-    f"The elevation axis of {NAME} does not follow its command: it is 4.2 degrees behind.",
-    "Look for something that blocks the axis, check motor and coupling, then clear the fault.",
+    f"The elevation axis of {NAME} does not follow its setpoint: the following error is 4.2 degrees.",
+    "Check the axis for obstructions, check motor and coupling, then reset the fault.",
 )
 LOCAL = Reason(
     "local",
     f"The switch at the cabinet of {NAME} is on local.",
-    "The machine is moved from its cabinet; turn the switch to remote to move it from here.",
+    "The tracker is operated from its cabinet. Turn the switch to remote to use Heliopanel.",
 )
 ZERO = Reason(
-    "home_not_trusted", f"{NAME} has no trusted zero.", "Go to step 3, Homing, and set the zero."
+    "home_not_trusted", f"{NAME} is not homed.", "Go to step 3, Homing, and set the home position."
 )  # fmt: skip
 CLOCK = Reason(
     "clock_untrusted", "The site's clock is not trusted.", "Go to step 2, Clock, and set or confirm it."
 )
 AREA = Reason(
     "area_not_clear",
-    f"The word that the area around {NAME} is clear has expired.",
-    "Look whether the area is clear, then press Area is clear.",
+    f"The area-clear confirmation for {NAME} has expired.",
+    "Check that the area is clear, then press Confirm area clear.",
 )
 
 

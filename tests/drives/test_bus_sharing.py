@@ -84,7 +84,7 @@ async def test_when_two_devices_were_silent_in_a_row_all_that_wait_are_told_at_o
     assert [task.done() for task in waiting] == [True] + [False] * 7
     await wire.reply(silent=True)
     assert all(task.done() for task in waiting)
-    with pytest.raises(DriveSilent, match="does not answer; it is asked again in a moment"):
+    with pytest.raises(DriveSilent, match="does not answer; the request is repeated shortly"):
         await waiting[-1]
     assert [ask.unit for ask in wire.asked] == [1, 2]
     await asyncio.gather(*waiting, return_exceptions=True)

@@ -154,10 +154,10 @@ async def test_a_recorded_device_is_served_with_its_silences() -> None:
 
 @pytest.mark.parametrize("line", ["{", "[]", '{"unit": 1}', '{"at_s": 0, "unit": 1, "read": [1]}', "text"])
 def test_a_line_that_is_no_exchange_is_named(line: str) -> None:
-    with pytest.raises(DriveError, match=r"own\.jsonl, line 2: this is no line of a bus trace"):
+    with pytest.raises(DriveError, match=r"own\.jsonl, line 2: this is not a line of a bus trace"):
         parse_trace([EXCHANGES[0].line(), line], "own.jsonl")
 
 
 def test_an_empty_trace_is_refused() -> None:
-    with pytest.raises(DriveError, match="holds no exchange"):
+    with pytest.raises(DriveError, match="contains no exchange"):
         parse_trace(["", " "], "own.jsonl")

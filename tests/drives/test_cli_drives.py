@@ -31,7 +31,7 @@ def test_a_proxy_that_cannot_work_is_refused_with_what_to_do(words: tuple[str, s
 def test_a_simulated_drive_takes_no_file_for_a_line(tmp_path: Path) -> None:
     name = tmp_path / "notes"
     name.write_text("mine")
-    assert "no other file or device" in str(refused("drive-sim", "--rtu", str(name)))
+    assert "not another file or device" in str(refused("drive-sim", "--rtu", str(name)))
     assert name.read_text() == "mine"
 
 

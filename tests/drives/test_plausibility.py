@@ -96,7 +96,7 @@ def test_two_readings_that_agree_are_believed_and_two_that_do_not_are_damage(hel
         held.settle(far, reading(90.51))
     assert str(refused.value) == (
         "The drive reports that azimuth moved by 80.51 degrees in 1.00 s, faster than it can turn. "
-        "The reading was not believed. Check encoder and network."
+        "The reading was rejected. Check the encoder and network."
     )
     with pytest.raises(DriveError, match="outside"):
         held.settle(reading(200.0), reading(200.0))

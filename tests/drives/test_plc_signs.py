@@ -29,7 +29,9 @@ def test_a_heartbeat_may_stand_still_for_three_readings_after_the_first() -> Non
     life = signs()
     for _ in range(MOST_UNCHANGED):
         life.watch(words(heartbeat=7), FIRST)
-    with pytest.raises(DriveError, match=r"^The drive at 10.0.0.5 unit 3 answers, but its heartbeat stands"):
+    with pytest.raises(
+        DriveError, match=r"^The drive at 10.0.0.5 unit 3 answers, but its heartbeat does not change"
+    ):
         life.watch(words(heartbeat=7), FIRST)
     life.watch(words(heartbeat=8), FIRST)
 
@@ -57,7 +59,7 @@ def test_a_watchdog_that_was_never_on_ends_no_motion(turning: Feedback) -> None:
     life.watch_watchdog(words(watchdog_ms=1), FIRST, turning)
     assert life.watchdog_s == 0.001
     life.watch_watchdog(words(watchdog_ms=0), FIRST, STILL)
-    with pytest.raises(DriveError, match=r"10.0.0.5 unit 3 was switched off during a motion"):
+    with pytest.raises(DriveError, match=r"10.0.0.5 unit 3 was switched off during motion"):
         life.watch_watchdog(words(watchdog_ms=0), FIRST, turning)
 
 

@@ -86,24 +86,24 @@ async def test_a_device_without_what_its_profile_needs_is_not_called_an_answer(
 ) -> None:
     other = await bench.probe.look(replace(bench.drive, profile="delta-dvp"))
     assert other.outcome is CheckOutcome.WRONG_DEVICE
-    assert "it is no Delta DVP PLC, example layout: identity (4096) could not be read" in other.message
+    assert "is not a Delta DVP PLC, example layout: identity (4096) could not be read" in other.message
     text = (Path(load_profile.__code__.co_filename).parent / "profiles" / "simulated-plc.toml").read_text()
     (tmp_path / "other.toml").write_text(text.replace("count = 6", "count = 100"))
     older = await bench.probe.look(replace(bench.drive, profile="other"))
     assert older.outcome is CheckOutcome.WRONG_DEVICE
-    assert "registers could not be read (year, month, day, hour and 2 more). Check unit" in older.message
+    assert "could not be read (year, month, day, hour and 2 more). Check the unit id" in older.message
 
 
 async def test_two_axes_on_one_unit_are_refused_where_each_has_a_drive(bench: Bench) -> None:
     readings = await bench.probe.look(replace(bench.drive, profile="kinco-cia402"))
     assert readings.outcome is CheckOutcome.UNUSABLE
-    assert "Give the elevation another unit id" in readings.message
+    assert "Give the elevation axis a different unit id" in readings.message
 
 
 async def test_a_unit_that_nobody_has_is_named(bench: Bench) -> None:
     readings = await bench.probe.look(replace(bench.drive, unit=9))
     assert readings.outcome is CheckOutcome.SILENT
-    assert "that its unit id is 9" in readings.message
+    assert "its unit id 9" in readings.message
 
 
 async def test_each_way_of_no_answer_has_its_sentence(bench: Bench) -> None:

@@ -54,7 +54,7 @@ WRONG = {
     "watchdog without register": ('register = "keep_alive"', 'register = "nothing"', "names no register"),
     "block too large": ("count = 40", "count = 126", "between 1 and 125"),
     "not TOML": ("[timing]", "[timing", "not TOML.*line"),
-    "name with a blank": ('"simulated-plc"', '"Simulated PLC"', r"line \d+, name: .*lower-case"),
+    "name with a blank": ('"simulated-plc"', '"Simulated PLC"', r"line \d+, name: .*lowercase"),
     "bits of nothing": ("[bits.switches]", "[bits.switch]", r"line \d+, bits.switch: .*no register switch"),
     "words of nothing": ("[enums.motion]", "[enums.motions]", r"line \d+, enums.motions: .*no register"),
     "block that cuts": ("count = 40", "count = 11", r"line \d+, blocks.status: cuts register elev"),

@@ -59,5 +59,5 @@ def test_a_tracker_cannot_be_given_a_file_elsewhere(tmp_path: Path) -> None:
 
 def test_two_drives_of_one_axis_need_two_unit_ids() -> None:
     drive = DriveConfig(DriveKind.MODBUS_TCP, "kinco-cia402", unit=4)
-    with pytest.raises(ProfileError, match=r"Both axes have unit 4.*another unit id"):
+    with pytest.raises(ProfileError, match=r"Both axes have unit 4.*a different unit id"):
         DriveFactory(VirtualClock(START)).make(replace(CONFIG, drive=drive))

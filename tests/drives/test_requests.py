@@ -195,7 +195,7 @@ async def test_a_hand_and_a_halt_go_before_every_other_command(
     await drive.write(command)
     assert link.writes
     for address, _, what, ticket, urgency in link.writes:
-        assert what == f"the command from {PLC.at(address)} on"
+        assert what == f"the command registers from {PLC.at(address)}"
         assert (ticket, urgency) == (TICKET, priority)
 
 
@@ -227,7 +227,7 @@ async def test_what_was_not_taken_is_named_by_its_register() -> None:
     link.held[24] = 9
     with pytest.raises(DriveError, match="azimuth_speed") as error:
         await drive.read()
-    assert "Someone else commands the drive at the bench" in str(error.value)
+    assert "Another master commands the drive at the bench" in str(error.value)
     assert PLC.at(24) in str(error.value)
 
 

@@ -18,7 +18,7 @@ NOTES = {
     "overview": (
         "The overview shows every tracker of the site. A new site has one, with a simulated drive, "
         "and leads to the first of the five steps. The strip below the header counts alarms by "
-        "priority and is on every page, as is **STOP** in the footer. It is not an emergency stop."
+        "priority and is on every page, as is **STOP** in the footer. STOP is not an emergency stop."
     ),
     "location": (
         "Everything begins with the place: the sun's position follows from it. Type your own latitude "
@@ -69,7 +69,7 @@ NOTES = {
     ),
     "asked": (
         "Drive tests and sun check were not done in this hour, so the page asks. On a real tracker, "
-        "do them first: *Prove the drive* and *Sun check*."
+        "do them first: *Drive tests* and *Sun check*."
     ),
     "end": "To begin anew, end it with Ctrl+C and remove the folder `data`. From here:",
 }

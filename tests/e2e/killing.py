@@ -63,7 +63,7 @@ class Killing:
         shows = self.shows()
         assert len(shows) == before + 1
         assert all(show["ended_at"] is not None for show in shows)
-        assert "cut off" in shows[0]["outcome"]
+        assert "interrupted" in shows[0]["outcome"]
         assert shows[0]["frame_count"] == self._frames(shows[0]["recording_id"])["elapsed_s"].size
         assert self.integrator.snapshot()["activity"] == "holding"
         assert shows[0]["recording_id"] in self.integrator.journal("machine_started")[0]["data"]["cut_off"]
@@ -137,7 +137,7 @@ class Killing:
         started = self.integrator.journal("machine_started")
         assert len(started) == starts, self.product.deaths()
         assert started[0]["data"]["clean"] is False
-        assert "without warning" in started[0]["message"]
+        assert "unexpectedly" in started[0]["message"]
         path = self.product.data_dir / "heliopanel.db"
         with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
             assert database.execute("PRAGMA quick_check").fetchall() == [("ok",)]

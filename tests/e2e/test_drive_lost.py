@@ -41,7 +41,7 @@ def turn_away(calling: Integrator) -> None:
 def lost(calling: Integrator, words: str) -> dict[str, Any]:
     """Return the tracker once it says that there is no contact, and why."""
     seen = calling.until(
-        lambda seen: "No contact" in seen["activity_text"] and words in told(seen),
+        lambda seen: "No communication" in seen["activity_text"] and words in told(seen),
         f"the page says: {words}",
         within_s=15.0,
     )
@@ -127,13 +127,13 @@ def test_a_killed_drive_loses_its_zero_exactly_when_it_lost_its_place(
     integrator.commission(drive.port)
     time.sleep(SETTLED_S)
     drive = killed(integrator, drive, memory)
-    seen = back(integrator, "answers again. It tells of no restart")
+    seen = back(integrator, "answers again. The drive reports no restart")
     assert seen["home_trusted"] is True
     assert_still(integrator, seen)
 
     turn_away(integrator)
     drive = killed(integrator, drive, memory)
-    seen = back(integrator, "It has restarted meanwhile and has lost its zero")
+    seen = back(integrator, "The drive has restarted and has lost its home reference")
     assert seen["home_trusted"] is False
     assert_still(integrator, seen)
     steps = {step["name"]: step for step in integrator.get("/commissioning")}
@@ -141,7 +141,9 @@ def test_a_killed_drive_loses_its_zero_exactly_when_it_lost_its_place(
 
     integrator.zero()
     drive = killed(integrator, drive, None)
-    assert back(integrator, "It has restarted meanwhile and has lost its zero")["home_trusted"] is False
+    assert (
+        back(integrator, "The drive has restarted and has lost its home reference")["home_trusted"] is False
+    )
     drive.stop()
 
 

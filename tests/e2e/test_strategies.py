@@ -52,7 +52,13 @@ def stands_at(seen: dict[str, Any], place: tuple[float, float]) -> bool:
 
 def as_typed(times: tuple[str, ...]) -> dict[str, Any]:
     """Return what the table on the page holds after somebody has typed three rows."""
-    head = {"program_name": "By hand", "base": "clock", "offset": "3", "angles": "horizon", "do": "save"}
+    head = {
+        "program_name": "Manual values",
+        "base": "clock",
+        "offset": "3",
+        "angles": "horizon",
+        "do": "save",
+    }
     angles = {
         "first": [f"{first:g}" for first, _ in PLACES],
         "second": [f"{second:g}" for _, second in PLACES],
@@ -72,7 +78,7 @@ def give(service: Integrator, how: str, times: tuple[str, ...]) -> None:
         assert answer.is_success or answer.is_redirect, answer.text
     else:
         service.call("PUT", "/program.csv", content=as_csv(times), headers={"Content-Type": "text/csv"})
-    name = "By hand" if how == "by hand" else "From CSV"
+    name = "Manual values" if how == "by hand" else "From CSV"
     assert service.get("/program")["name"] == name
 
 

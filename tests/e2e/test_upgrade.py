@@ -89,11 +89,13 @@ def test_an_older_program_that_knows_the_tables_refuses_it(
         assert store.load().users
     for module in (software, of_access):
         monkeypatch.setattr(module, "VERSION", "0.1.9")
-    with pytest.raises(StoreUnfit, match=rf"The database .*newer version.*\({VERSION}; this one is 0.1.9\)"):
+    with pytest.raises(
+        StoreUnfit, match=rf"The database .*newer version.*\({VERSION}; this version is 0.1.9\)"
+    ):
         upgrade(url_of(data))
     with (
         closing(AccessStore(f"sqlite:///{data / 'access.db'}", b"")) as store,
-        pytest.raises(StoreUnfit, match=rf"The users .*newer version.*\({VERSION}; this one is 0.1.9\)"),
+        pytest.raises(StoreUnfit, match=rf"The users .*newer version.*\({VERSION}; this version is 0.1.9\)"),
     ):
         store.load()
 
@@ -104,7 +106,7 @@ def test_a_program_whose_migrations_end_earlier_refuses_it(data: Path, tmp_path:
     shutil.copytree(SCRIPTS, tmp_path / "older")
     (newest,) = (tmp_path / "older" / "versions").glob(f"{REVISION}_*.py")
     newest.unlink()
-    with pytest.raises(StoreUnfit, match=f"newer version .*revision {REVISION}; this one knows up to"):
+    with pytest.raises(StoreUnfit, match=f"newer version .*revision {REVISION}; this version supports up to"):
         upgrade(url_of(data), scripts=tmp_path / "older")
     assert (data / "heliopanel.db").read_bytes() == before
 

@@ -73,7 +73,7 @@ def test_an_interval_aimed_at_its_middle_is_half_as_wrong(days: tuple) -> None:
 
 def test_a_program_is_no_strategy_of_the_sun(days: tuple) -> None:
     program = program_of("Any", (12.0,), (-30.0, 30.0), second_deg=20.0)
-    with pytest.raises(ValueError, match="places of its own"):
+    with pytest.raises(ValueError, match="has its own positions"):
         held_axes(Stepped(program), *days, step_min=1.0, deadband_deg=1.0)
 
 

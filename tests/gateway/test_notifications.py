@@ -210,7 +210,7 @@ async def test_a_mail_server_that_refuses_is_told(office: Office) -> None:
     await office.set(mail_to=("ayse@example.org",))
     await office.raise_(FULL)
     await eventually(lambda: "E-mail" in office.plant.site._alarms.troubles)
-    assert "did not take the message" in (await gateway(office.gateways, "E-mail")).error
+    assert "did not accept the message" in (await gateway(office.gateways, "E-mail")).error
 
 
 async def test_a_test_message_goes_by_its_channel_alone(office: Office) -> None:

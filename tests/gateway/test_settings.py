@@ -85,13 +85,13 @@ async def test_a_taken_port_is_told_and_the_machine_goes_on(
 @pytest.mark.parametrize(
     ("given", "sentences"),
     [
-        ({}, ("Nobody may write.", "Nobody may write.", "No commands are taken.")),
+        ({}, ("No host may write.", "No host may write.", "No commands are accepted.")),
         (
             {"sunspec_write_hosts": ("10.0.0.5", "serial"), "mqtt_commands": True},
             (
-                "10.0.0.5 may write; everybody else only reads.",
+                "10.0.0.5 may write; all other hosts can only read.",
                 "The master on the line may write.",
-                "Whoever may publish below heliopanel at the broker may give commands.",
+                "Any client that may publish below heliopanel at the broker may send commands.",
             ),
         ),
     ],

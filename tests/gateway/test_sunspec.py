@@ -295,7 +295,7 @@ async def test_calibrate_does_not_take_the_tracker_out_of_the_hands_that_move_it
         await plant.forward(seconds=0.1)
         assert await system.write(CTL, 2) == bytes((0x90, 6))
         assert plant.tracker().activity is ActivityName.JOGGING
-        assert "is being moved by hand" in system.journal()[-1][2]
+        assert "is being jogged" in system.journal()[-1][2]
         await plant.forward(seconds=60)
         assert plant.tracker().activity is ActivityName.HOLDING
         assert plant.tracker().home_trusted, "it was not begun afterwards either"
@@ -311,7 +311,7 @@ async def test_a_stop_by_somebody_else_ends_a_calibration_for_good() -> None:
         await plant.forward(seconds=60)
         assert plant.tracker().activity is ActivityName.HOLDING
         assert not plant.tracker().tracking_on
-        assert any("The calibration was given up" in message for _, _, message in system.journal())
+        assert any("The calibration was aborted" in message for _, _, message in system.journal())
         assert await system.read(CTL, 1) == [1]
 
 
@@ -320,7 +320,7 @@ async def test_what_is_not_allowed_now_is_answered_busy_and_journalled_with_the_
         assert await system.write(CTL, 0) == bytes((0x90, 6))
         kind, actor, message = system.journal()[-1]
         assert (kind, actor) == (EventKind.REMOTE_REFUSED, "sunspec 127.0.0.1")
-        assert "has no trusted zero" in message
+        assert "is not homed" in message
         assert "no location" in message
         assert await system.write(CTL, 1) == bytes((0x90, 3)), "no target was written"
 
@@ -333,7 +333,7 @@ async def test_all_trackers_do_what_they_can_and_only_then_it_fails() -> None:
         assert system.plant.tracker("T2").activity is ActivityName.MOVING
         assert system.plant.tracker("T1").activity is ActivityName.HOLDING
         assert any(
-            kind is EventKind.REMOTE_REFUSED and "Tracker T1 has no trusted zero" in message
+            kind is EventKind.REMOTE_REFUSED and "Tracker T1 is not homed" in message
             for kind, _, message in system.journal()
         )
 

@@ -184,7 +184,7 @@ async def test_only_the_owner_can_open_the_socket(link: Link) -> None:
         CommandRejected(Reason("not_homed", "T1 has no zero.", "Set it."), Reason("night", "It is night.")),
         UnknownTracker("No tracker is called T9."),
         UnknownRecording("No recording is called r9."),
-        ValueError("Latitude must lie between -90 and 90 degrees."),
+        ValueError("Latitude must be between -90 and 90 degrees."),
         MachineUnreachable("The machine is stopping."),
     ],
     ids=lambda failure: type(failure).__name__,

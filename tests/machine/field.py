@@ -138,7 +138,7 @@ def _trackers(count: int, now: datetime, line: Line | None, revision: int) -> It
         mode=Mode.DUAL,
         orientation=Orientation(180.0, 45.0),
         tracking_on=True,
-        home=HomeTrust(now, "technician", "set by hand", BOOT_COUNT),
+        home=HomeTrust(now, "technician", "set manually", BOOT_COUNT),
         confirmations={StepName.HOMING: said, StepName.MODE: said, StepName.RUN: said},
     )
     for number in range(1, count + 1):

@@ -254,7 +254,7 @@ class Killing:
         await eventually(lambda: len(self._starts()) >= min(LOOKED_AT, len(self.machine.lives)))
         newest = self._starts()[0]
         assert newest.data["clean"] is False
-        assert "without warning" in newest.message
+        assert "unexpectedly" in newest.message
         self.told = newest.message
 
     async def _until(self, reached: Callable[[Snapshot], bool], what: str) -> None:

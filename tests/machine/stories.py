@@ -109,5 +109,5 @@ def _check_nothing_lost(service: Service, name: str) -> None:
     assert [event for event in journal if event.message == f"The site is now called {name}."]
     newest = _starts(service)[0]
     assert newest.data["clean"] is False
-    assert "without warning" in newest.message
+    assert "unexpectedly" in newest.message
     assert all(show.ended_at is not None for show in _shows(service))

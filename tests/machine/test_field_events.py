@@ -41,7 +41,7 @@ async def test_a_field_wakes_at_sunrise_all_at_once(fault: FaultResult) -> None:
     trial = await sunrise(FIELD, ahead_s=SUNRISE_IN_S)
     assert_punctual(trial)
     assert trial.took_s <= AT_ONCE_S
-    assert "begins to follow the sun. It moves in 5 s." in trial.shown
+    assert "begins to follow the sun. Motion starts in 5 s." in trial.shown
     fault.noticed(trial.took_s, REAL)
     fault.shows(trial.shown)
     fault.recovers(BY_ITSELF)
@@ -56,7 +56,7 @@ async def test_a_line_that_falls_silent_is_told_by_all_of_its_trackers_which_com
     assert_punctual(trial)
     assert trial.took_s <= LOST_WITHIN_S
     assert trial.back_s <= BACK_WITHIN_S
-    assert "does not answer any more" in trial.shown
+    assert "no longer answers" in trial.shown
     fault.noticed(trial.took_s, REAL)
     fault.shows(trial.shown)
     fault.recovers("by itself; the operator starts tracking again", trial.back_s)

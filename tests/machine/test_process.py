@@ -191,7 +191,7 @@ def named(service: Service) -> str:
     """Return the sentence that names another master, empty while there is none."""
     seen = service.tracker()
     told = () if seen is None else (*seen.notices, *seen.waiting)
-    return next((one.message for one in told if "Someone else commands" in one.message), "")
+    return next((one.message for one in told if "Another master commands" in one.message), "")
 
 
 @pytest.mark.fault(47)

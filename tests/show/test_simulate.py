@@ -205,7 +205,7 @@ def test_frames_survive_the_store_s_encoding() -> None:
     ("begin", "end", "step", "message"),
     [
         (NAIVE, NAIVE + timedelta(days=1), 1.0, "time zone"),
-        (datetime(2026, 1, 2, tzinfo=UTC), datetime(2026, 1, 1, tzinfo=UTC), 1.0, "ends after"),
+        (datetime(2026, 1, 2, tzinfo=UTC), datetime(2026, 1, 1, tzinfo=UTC), 1.0, "must end after it starts"),
         (datetime(2026, 1, 1, tzinfo=UTC), datetime(2026, 1, 2, tzinfo=UTC), 0.01, "step"),
         (datetime(2026, 1, 1, tzinfo=UTC), datetime(2026, 1, 4, tzinfo=UTC), 0.2, "longer step"),
     ],

@@ -250,7 +250,7 @@ def test_a_wrapped_cable_unwinds_at_night_and_not_at_noon() -> None:
     assert turned_deg[~up].sum() == pytest.approx(2.0 * dusk_deg, abs=8.0), "down to the next sunrise"
 
 
-@pytest.mark.parametrize("imported", [False, True], ids=["by hand", "from CSV"])
+@pytest.mark.parametrize("imported", [False, True], ids=["jog speed", "from CSV"])
 def test_a_program_runs_on_the_machine_in_a_show_and_in_a_simulation(imported: bool) -> None:
     steps = (ProgramStep(0.0, 120.0, 20.0), ProgramStep(10.0, 150.0, 40.0), ProgramStep(11.0, 170.0, 50.0))
     program = StepProgram("Three places", steps, StepFrame.HORIZON, TimeBase.CLOCK, 2.0)

@@ -171,7 +171,7 @@ async def test_motion_that_cannot_be_recorded_is_refused_and_stop_passes(
         await plant.forward(seconds=2)
         assert plant.tracker().activity is ActivityName.HOLDING
         with pytest.raises(
-            CommandRejected, match="Nothing is moved, because that cannot be recorded"
+            CommandRejected, match="Motion is refused because it cannot be recorded"
         ) as refused:
             await plant.ask(Jog("press", Axis.AZIMUTH, 1))
         fault.prevented("the motion is refused at once")

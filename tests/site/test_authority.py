@@ -93,7 +93,7 @@ def test_who_is_silent_or_lower_cannot_refuse(
     if refusable:
         assert rules.refuse(wanted, at(silent_s)).wish is None
     else:
-        with pytest.raises(CommandRejected, match="takes control by the higher role"):
+        with pytest.raises(CommandRejected, match="takes control because of a higher role"):
             rules.refuse(wanted, at(silent_s))
     assert rules.due(wanted, at(9.9)) is None
     assert rules.due(wanted, at(10)) is Due.PASSES
@@ -103,7 +103,7 @@ def test_a_lower_role_may_ask_and_can_always_be_refused() -> None:
     asked = rules.want(held_by(ENGINEER), wish(OPERATOR, takes=False, seconds=60), "T1")
     assert rules.refuse(asked, NOON).wish is None
     assert rules.due(rules.renew(asked, ENGINEER, at(55)), at(60)) is Due.LAPSED
-    with pytest.raises(ControlHeld, match="ada wants control of T1 already"):
+    with pytest.raises(ControlHeld, match="ada has already requested control of T1"):
         rules.want(asked, wish(OTHER, takes=False), "T1")
     assert rules.want(asked, wish(Holder("di", "session", 2)), "T1").wish == wish(Holder("di", "session", 2))
 
@@ -226,9 +226,9 @@ def told_to(who: Holder, *, holder: Holder = OPERATOR) -> tuple[str, str]:
 
 
 def test_who_is_refused_is_told_how_to_come_to_control() -> None:
-    take_over = "Ask for control at the top of the page, or take it over there with a reason."
-    wait = "Ask for control at the top of the page and wait until it is handed over."
-    post = "Ask for control (POST .../control), or wait until it is released."
+    take_over = "Request control at the top of the page, or take control there with a reason."
+    wait = "Request control at the top of the page and wait until it is handed over."
+    post = "Request control (POST .../control), or wait until it is released."
     assert told_to(OTHER) == ("control_held", take_over), "of the same rank"
     assert told_to(ENGINEER) == ("control_held", take_over)
     assert told_to(OPERATOR, holder=ENGINEER) == ("control_held", wait)
@@ -239,7 +239,7 @@ def test_an_order_of_an_older_epoch_is_told_who_has_control_now_if_somebody_has(
     with pytest.raises(ControlLost) as free:
         rules.judge(Authority(4), OPERATOR, 3, NOON, "T1")
     assert free.value.reasons[0].message == (
-        "This order was given before control of T1 changed, and is not carried out any more."
+        "This command was given before control of T1 changed, and is no longer carried out."
     )
 
 

@@ -83,7 +83,7 @@ async def test_an_order_takes_control_and_silence_ends_it(ready: Plant) -> None:
     assert ready.tracker().control.holder == "ada"
     await ready.forward(seconds=1)
     assert (ready.tracker().control.holder, ready.tracker().control.epoch) == (None, first.epoch + 1)
-    text = "Nothing was heard of ada for 15 s: nobody has control of Tracker 1 now."
+    text = "There was no signal from ada for 15 s: no user has control of Tracker 1 now."
     assert told(ready, since) == [
         taken("ada"),
         (EventKind.CONTROL_RELEASED, text, "machine", {"expired": True}),
@@ -115,10 +115,10 @@ async def test_who_asks_is_told_with_the_reason_and_is_let_in_by_the_holder(read
     assert (request.until, request.can_be_refused) == (ready.site.model.now() + ASK_LASTS, True)
     await ada.ask(AnswerControl("T1", grants=True))
     assert told(ready, since) == [
-        asked("bo", "asks for", "ada", takes=False, because=" Reason: to clean it"),
+        asked("bo", "requests", "ada", takes=False, because=" Reason: to clean it"),
         taken("bo", actor="ada"),
     ]
-    with pytest.raises(CommandRejected, match="Nobody wants control"):
+    with pytest.raises(CommandRejected, match="There is no request for control"):
         await bo.ask(AnswerControl("T1", grants=False))
 
 
@@ -134,7 +134,12 @@ async def test_a_wish_that_nobody_answers_lapses(ready: Plant) -> None:
     assert ready.tracker().control.request is not None
     await ready.forward(seconds=4)
     assert (ready.tracker().control.request, ready.tracker().control.holder) == (None, "ada")
-    lapsed = (EventKind.CONTROL_REFUSED, "The wish for control of Tracker 1 was not answered.", "machine", {})
+    lapsed = (
+        EventKind.CONTROL_REFUSED,
+        "The request for control of Tracker 1 was not answered.",
+        "machine",
+        {},
+    )
     assert told(ready, since)[-1] == lapsed
     assert ada.epoch == epoch, "nothing has passed"
 
@@ -151,7 +156,7 @@ async def test_a_countdown_is_told_and_passes_control_with_its_reason(ready: Pla
     await ready.forward(seconds=10.5)
     because = " Reason: rain is coming"
     assert told(ready, since) == [
-        asked("bo", "takes over", "ada", takes=True, because=because),
+        asked("bo", "takes", "ada", takes=True, because=because),
         taken("bo", because=because),
     ]
 
@@ -167,10 +172,10 @@ async def test_who_is_refused_and_who_lets_go_is_told(ready: Plant) -> None:
     await ready.forward(seconds=10)
     assert ready.tracker().control.holder == "ada", "the answer was a sign of life"
     await ada.ask(ReleaseControl("T1"))
-    refused = "ada keeps control of Tracker 1; bo was refused."
+    refused = "ada keeps control of Tracker 1; the request of bo was declined."
     assert told(ready, since)[-2:] == [
         (EventKind.CONTROL_REFUSED, refused, "ada", {}),
-        (EventKind.CONTROL_RELEASED, "ada let go of control of Tracker 1.", "ada", {}),
+        (EventKind.CONTROL_RELEASED, "ada released control of Tracker 1.", "ada", {}),
     ]
     assert told(ready)[-4] == taken("ada", because=" Reason: early")
 
@@ -202,7 +207,7 @@ async def test_only_who_has_control_gives_it_away(
 async def test_a_reason_has_200_letters_and_taking_over_needs_one(ready: Plant) -> None:
     ada, bo = Person(ready, "ada"), Person(ready, "bo")
     await ada.ask(RequestControl(("T1",)))
-    with pytest.raises(ValueError, match="at most 200 letters"):
+    with pytest.raises(ValueError, match="at most 200 characters"):
         await bo.ask(RequestControl(("T1",), takes=True, reason="x" * 201))
     with pytest.raises(CommandRejected) as rejected:
         await bo.ask(RequestControl(("T1",), takes=True, reason="  "))
@@ -385,7 +390,7 @@ async def test_what_was_ordered_at_the_moment_in_which_control_was_taken_goes(re
 async def test_a_wish_without_a_reason_is_told_without_one(ready: Plant) -> None:
     await Person(ready, "ada").ask(RequestControl(("T1",)))
     await Person(ready, "bo").ask(RequestControl(("T1",)))
-    assert told(ready)[-1] == asked("bo", "asks for", "ada", takes=False)
+    assert told(ready)[-1] == asked("bo", "requests", "ada", takes=False)
 
 
 async def test_who_takes_over_is_who_stopped_the_motion(ready: Plant) -> None:

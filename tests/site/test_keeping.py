@@ -346,7 +346,7 @@ async def test_a_restart_after_a_crash_says_what_happened(url: str) -> None:
 
     (event,) = beginning.events
     assert event.kind is EventKind.MACHINE_STARTED
-    assert "without warning" in event.message
+    assert "ended unexpectedly" in event.message
     assert event.data["clean"] is False
     assert len(event.data["cut_off"]) == 1
     closed = store.recording(event.data["cut_off"][0])

@@ -72,7 +72,7 @@ def test_a_pace_is_not_taken_up_again_before_the_line_is_clearly_faster() -> Non
 def test_a_slower_pace_is_said_with_its_period() -> None:
     said = paced(of(64, 0.2)).notice("North")
     assert said is not None
-    assert said.message == "The drive of North shares its line with 63 others and is asked every 0.3 s."
+    assert said.message == "The drive of North shares its line with 63 others and is polled every 0.3 s."
     assert paced(of(64, 0.05)).notice("North") is None
     assert paced(None).notice("North") is None
 
@@ -81,7 +81,7 @@ def test_a_line_that_is_too_slow_for_its_watchdogs_is_said() -> None:
     said = paced(of(64, 0.9)).notice("North")
     assert said is not None
     assert said.code == "line_too_slow"
-    assert "takes 0.9 s to reach its 64 drives, and each stops by itself after 0.5 s" in said.message
+    assert "takes 0.9 s to reach its 64 drives, and each stops automatically after 0.5 s" in said.message
 
 
 def on_a_line(unit: int, baud_rate: int = 19_200, **other: str) -> TrackerConfig:
@@ -108,15 +108,15 @@ async def test_a_serial_line_takes_as_many_drives_as_their_watchdogs_allow(baud_
         await plant.ask(AddTracker(on_a_line(room + 1, baud_rate)))
     (reason,) = refused.value.reasons
     assert reason.code == "line_full"
-    assert f"has room for {room} such drives at {baud_rate} baud" in reason.message
-    assert "stops by itself after 0.5 s" in reason.message
+    assert f"supports at most {room} such drives at {baud_rate} baud" in reason.message
+    assert "stops automatically after 0.5 s" in reason.message
     await plant.site.close()
 
 
 async def test_another_drive_is_refused_on_a_full_line_and_another_name_is_not() -> None:
     plant = await with_drives(6, 19_200)
     await plant.ask(ConfigureTracker(TrackerConfig("T6", "North", drive=on_a_line(6).drive)))
-    with pytest.raises(CommandRejected, match="has room for 4 such drives"):
+    with pytest.raises(CommandRejected, match="supports at most 4 such drives"):
         await plant.ask(ConfigureTracker(TrackerConfig("T6", "North", drive=on_a_line(7).drive)))
     await plant.site.close()
 
@@ -130,7 +130,7 @@ async def test_a_drive_that_stops_between_two_commands_is_refused_and_told() -> 
         await plant.ask(AddTracker(on_a_line(1)))
     (reason,) = refused.value.reasons
     assert reason.code == "watchdog_short"
-    assert reason.hint == "Give its watchdog at least 1.25 s, or set HELIOPANEL_TICK_MS to 400 or less."
+    assert reason.hint == "Set its watchdog to at least 1.25 s, or set HELIOPANEL_TICK_MS to 400 or less."
     line = LinePace(DriveKind.MODBUS_TCP, timedelta(seconds=1))
     line.follow(None, 0.5)
     assert line.notice("T1") == reason

@@ -86,7 +86,7 @@ async def test_growing_memory_is_told_and_the_restart_waits_for_standstill(
     await plant.ask(Stop())
     await plant.forward(seconds=15)
     assert "401 MB" in process.told
-    assert "starts again now" in process.told
+    assert "restarts now" in process.told
 
 
 async def test_a_machine_that_needs_so_much_from_the_start_does_not_start_again_and_again(

@@ -26,7 +26,7 @@ from tests.site.plant import FIRST, SUMMER_NOON, Plant
 PROFILE = load_profile("simulated-plc")
 NOTICED_WITHIN_S = 0.3
 BEAT_S = 0.05
-NOT_TAKEN = "acknowledged a command and did not take it"
+NOT_TAKEN = "acknowledged a command but did not carry it out"
 
 
 def no_bus() -> Bus:

@@ -32,7 +32,7 @@ from tests.site.plant import Plant, make_plant
 NOW = datetime(2027, 6, 21, 9, 0, tzinfo=UTC)
 KEPT = TrackerState(
     TrackerConfig("T1", "North", deadband_deg=0.7),
-    TrackerMemory(tracking_on=True, home=HomeTrust(NOW, "Ada", "set by hand", 3)),
+    TrackerMemory(tracking_on=True, home=HomeTrust(NOW, "Ada", "set manually", 3)),
 )
 
 
@@ -103,7 +103,7 @@ def test_the_settings_accepted_last_are_used_where_stored_ones_do_not_fit(tmp_pa
     (entry, _) = (
         one for one in writer.journal(JournalFilter(limit=50)) if one.event.kind is EventKind.CONFIG_REJECTED
     )
-    assert "in position deg was wide, used is 0.2" in entry.event.message
+    assert "in position deg: stored wide, used 0.2" in entry.event.message
     writer.close()
 
 

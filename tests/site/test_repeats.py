@@ -38,7 +38,7 @@ async def test_a_key_that_is_used_again_for_something_else_is_refused_and_nothin
         await repeats.once(other, carry_out)
     (reason,) = refused.value.reasons
     assert reason.code == "key_reused"
-    assert reason.message == "This idempotency key was used for another command, so nothing was done."
+    assert reason.message == "This idempotency key was used for another command; nothing was done."
     assert len(done) == 1
 
 

@@ -262,7 +262,7 @@ async def test_a_disk_with_hardly_any_room_is_spared_samples(store: Writer, faul
     assert day.frame_count == 0
     raised = next(one for one in plant.happened(EventKind.ALARM_RAISED) if one.data["code"] == "disk_full")
     consequence = CATALOGUE["disk_full"].consequence
-    assert "No samples are recorded any more" in consequence
+    assert "No more samples are recorded" in consequence
     fault.shows(f"{raised.message} {consequence}")
     free[0] = 90 * MEGABYTE
     await plant.forward(seconds=60)

@@ -63,8 +63,8 @@ async def test_what_made_up_weather_did_ends_with_it_and_no_sensor_is_missed(pla
     assert plant.site.model.state.simulated_weather is None
     told = [event.message for event in plant.happened(EventKind.WEATHER_STATION_SET)]
     assert told == [
-        "The weather is SIMULATED from now on: by hand.",
-        "The weather is not simulated any more.",
+        "The weather is now SIMULATED: by hand.",
+        "The weather is no longer simulated.",
     ]
 
 
@@ -83,7 +83,7 @@ async def test_a_scenario_goes_on_after_a_restart(plant: Plant) -> None:
 
 async def test_what_is_measured_is_not_taken_beside_it_and_takes_its_place_by_an_order(plant: Plant) -> None:
     await plant.ask(SimulateWeather(SimulatedStation(wind_mps=6.0)))
-    with pytest.raises(CommandRejected, match="nothing that was measured is taken"):
+    with pytest.raises(CommandRejected, match="measured weather is not accepted"):
         await plant.ask(ReportWeather(Weather(wind_mps=3.0)))
     await plant.ask(SetMetStation(None))
     assert (await weather(plant)).simulated, "reading no station does not end what is made up"
@@ -101,7 +101,7 @@ async def test_real_trackers_and_made_up_weather_exclude_each_other(plant: Plant
         AddTracker(TrackerConfig("T2", "Tracker 2", drive=REAL)),
         ConfigureTracker(TrackerConfig("T1", "Tracker 1", drive=REAL)),
     ):
-        with pytest.raises(CommandRejected, match="must not move a machine that is not"):
+        with pytest.raises(CommandRejected, match="must not move a real tracker"):
             await plant.ask(order)
     await plant.ask(SimulateWeather(None))
     await plant.ask(AddTracker(TrackerConfig("T2", "Tracker 2", drive=REAL)))

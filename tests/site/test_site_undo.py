@@ -65,7 +65,7 @@ async def test_every_change_of_the_site_is_undone_and_redone(
 async def test_a_repeated_value_is_no_change_and_leaves_what_can_be_undone() -> None:
     plant = make_plant()
     await plant.start()
-    with pytest.raises(CommandRejected, match="not been changed"):
+    with pytest.raises(CommandRejected, match="no stored settings change to undo"):
         await plant.ask(UndoSiteSettings())
     first = plant.site.model.state.name
     await plant.ask(RenameSite("Hill field"))

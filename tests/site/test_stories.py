@@ -102,5 +102,5 @@ async def test_a_new_place_is_refused_while_a_tracker_follows_the_sun(plant: Pla
     await plant.ask(SelectMode(Mode.DUAL))
     await plant.ask(Track())
 
-    with pytest.raises(CommandRejected, match="T1 follows the sun"):
+    with pytest.raises(CommandRejected, match="T1 is tracking the sun"):
         await plant.ask(SetLocation(Location(10.0, 10.0), "UTC"))

@@ -19,7 +19,7 @@ async def test_the_last_change_is_undone_and_redone() -> None:
     plant = make_plant()
     await plant.start()
     first = config(plant)
-    with pytest.raises(CommandRejected, match="not been changed"):
+    with pytest.raises(CommandRejected, match="no stored settings change to undo"):
         await plant.ask(UndoSettings("T1"))
     second = replace(first, deadband_deg=1.5, park=Orientation(90.0, 45.0))
     await plant.ask(ConfigureTracker(second))

@@ -137,7 +137,7 @@ async def test_a_fault_that_is_played_on_a_simulator_which_does_not_answer_keeps
     for _ in range(20):
         await plant.forward(seconds=0.25)
         await asyncio.sleep(0.06)
-    with pytest.raises(CommandRejected, match="did not take this"):
+    with pytest.raises(CommandRejected, match="refused this request"):
         await asyncio.wait_for(playing, WELL_BELOW_S)
     await plant.site.close()
 

@@ -43,7 +43,7 @@ def tracking(number: int) -> TrackerState:
         TrackerMemory(
             mode=Mode.DUAL,
             tracking_on=True,
-            home=HomeTrust(SUMMER_NOON, "technician", "set by hand", boot_count=1),
+            home=HomeTrust(SUMMER_NOON, "technician", "set manually", boot_count=1),
             confirmations={StepName.HOMING: said, StepName.MODE: said, StepName.RUN: said},
         ),
     )

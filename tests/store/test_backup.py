@@ -167,14 +167,14 @@ def test_an_open_reader_sees_the_restored_database(url: str, tmp_path: Path) -> 
 
 def test_a_backup_never_replaces_a_file(url: str, tmp_path: Path) -> None:
     (tmp_path / "notes.txt").write_text("mine")
-    with pytest.raises(StoreFailed, match="exists already"):
+    with pytest.raises(StoreFailed, match="already exists"):
         backup(url, tmp_path / "notes.txt")
     assert (tmp_path / "notes.txt").read_text() == "mine"
 
 
 def test_a_backup_that_cannot_be_written_leaves_nothing(url: str, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("not a folder")
-    with pytest.raises(StoreFailed, match="cannot be made"):
+    with pytest.raises(StoreFailed, match="cannot be created"):
         backup(url, tmp_path / "file" / "backup.db")
     assert list(tmp_path.rglob("*unfinished*")) == []
 

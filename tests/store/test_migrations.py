@@ -105,7 +105,7 @@ def test_tables_go_as_they_came(url: str) -> None:
 
 def test_a_migration_that_fails_leaves_nothing_behind(empty_url: str) -> None:
     execute(empty_url, "CREATE TABLE recordings (already INTEGER)")
-    with pytest.raises(StoreFailed, match="refused"):
+    with pytest.raises(StoreFailed, match="rejected"):
         upgrade(empty_url)
     engine = writing_engine(empty_url)
     with transaction(engine) as connection:
@@ -129,7 +129,7 @@ def test_a_newer_database_is_refused(url: str, fault: FaultResult) -> None:
     with pytest.raises(StoreFailed, match="at revision 9999"):
         reader.site()
     reader.close()
-    fault.recovers("the newer version is installed again, or a backup of this one is restored")
+    fault.recovers("the newer version is installed again, or a backup of this version is restored")
 
 
 def test_a_reader_waits_for_the_database(sqlite_url: str) -> None:
@@ -228,7 +228,7 @@ def test_a_database_is_copied_before_a_migration_changes_it(sqlite_url: str, tmp
 
 def test_a_migration_that_fails_midway_leaves_the_old_database(url: str, tmp_path: Path) -> None:
     with_a_site(url)
-    with pytest.raises(StoreFailed, match="refused"):
+    with pytest.raises(StoreFailed, match="rejected"):
         upgrade(url, scripts=later_software(tmp_path, "op.execute('nonsense')"))
     assert upgrade(url) == REVISION
     assert still_usable(url)

@@ -93,7 +93,7 @@ def test_a_whole_recording_is_stored_all_or_nothing(writer: DatabaseWriter, read
         writer.save_recording(finished("show-1", days=0), [chunks[0], chunks[1][:-9]])
     assert reader.recording("show-1") is None
     writer.save_recording(finished("show-1", days=0), chunks)
-    with pytest.raises(StoreFailed, match="refused"):
+    with pytest.raises(StoreFailed, match="rejected"):
         writer.save_recording(finished("show-1", days=0), chunks[:1])
     stored = reader.recording("show-1")
     assert stored is not None

@@ -52,15 +52,17 @@ def test_versions_are_ordered_by_their_numbers(version: str, than: str, newer: b
 @pytest.mark.fault(72)
 def test_what_a_newer_version_wrote_is_refused_with_the_same_tables(url: str, fault: FaultResult) -> None:
     written_by(url, NEWER)
-    with pytest.raises(StoreUnfit, match=rf"newer version of Heliopanel \({NEWER}; this one is") as refused:
+    with pytest.raises(
+        StoreUnfit, match=rf"newer version of Heliopanel \({NEWER}; this version is"
+    ) as refused:
         upgrade(url)
     assert refused.value.exit_code == 2
     reader = open_reader(url)
     assert reader.site() == SITE
     reader.close()
     fault.prevented("refused before anything is changed")
-    fault.shows(str(refused.value).replace(f"this one is {VERSION}", "this one is VERSION"))
-    fault.recovers("the newer version is installed again, or a backup of this one is restored")
+    fault.shows(str(refused.value).replace(f"this version is {VERSION}", "this version is VERSION"))
+    fault.recovers("the newer version is installed again, or a backup of this version is restored")
 
 
 @pytest.mark.parametrize("older", ["0.0.9", VERSION])

@@ -24,7 +24,7 @@ def test_a_day_is_printed_as_a_table_with_its_progress_beside() -> None:
     assert "2 of 2: dual, deadband" in told.stderr
     lines = told.stdout.splitlines()
     assert lines[0].startswith(
-        "clear sky by Ineichen and Perez, Linke turbidity of the place, 1 day, every 60 min"
+        "clear sky by Ineichen and Perez, Linke turbidity of the location, 1 day, every 60 min"
     )
     assert [line.split("  ")[0] for line in lines[3:]] == ["Fixed", "Dual-axis, deadband"]
 

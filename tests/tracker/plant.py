@@ -21,7 +21,7 @@ from app.tracker.weather import NOTHING_SENSED, Quality, Reading, Sensed
 SAMSUN = Location(41.2867, 36.33, 4.0)
 MORNING = datetime(2026, 6, 21, 6, 0, tzinfo=UTC)
 CONFIG = TrackerConfig("T1", "Tracker 1")
-TRUST = HomeTrust(MORNING, "technician", "set by hand", 1)
+TRUST = HomeTrust(MORNING, "technician", "set manually", 1)
 BLANK = TrackerMemory()
 READY = TrackerMemory(mode=Mode.DUAL, home=TRUST)
 

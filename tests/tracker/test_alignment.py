@@ -156,7 +156,7 @@ def test_three_sightings_of_a_short_winter_day_are_enough() -> None:
 def test_sightings_of_one_time_of_day_are_refused_with_what_more_to_take(hours: tuple[float, ...]) -> None:
     with pytest.raises(CommandRejected, match="too close together") as refused:
         fit(sightings(JUNE, hours, Pointing(3.0)))
-    assert "in the morning, around noon and in the evening" in refused.value.reasons[0].hint
+    assert "in the morning, around noon, and in the evening" in refused.value.reasons[0].hint
 
 
 def test_two_sightings_are_too_few() -> None:

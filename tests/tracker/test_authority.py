@@ -65,7 +65,7 @@ def test_what_is_under_way_ends_with_the_switch_and_nothing_begins_when_it_is_tu
     assert taken.message == "The switch at the cabinet of Tracker 1 is on local."
     assert taken.data == {"code": "local"}
     assert back.message == (
-        "The switch at the cabinet of Tracker 1 is on remote again. Nothing moves by itself."
+        "The switch at the cabinet of Tracker 1 is on remote again. Nothing moves automatically."
     )
     assert taken.tracker_id == back.tracker_id == "T1"
 
@@ -76,7 +76,7 @@ def test_tracking_waits_with_the_reason_until_somebody_commands_it() -> None:
     plant.forward(0.2)
     (waits,) = plant.snapshot.waiting
     assert (waits.code, waits.hint) == (
-        "local", "The machine is moved from its cabinet; turn the switch to remote to move it from here.",
+        "local", "The tracker is operated from its cabinet. Turn the switch to remote to use Heliopanel.",
     )  # fmt: skip
     turn_switch(plant, local=False)
     plant.forward(5.0)
@@ -128,7 +128,9 @@ def test_service_begins_at_rest_with_tracking_off_and_names_who_serves() -> None
     assert (service.mode.name, service.mode.by, service.clear_for_s) == ("Ada", "ada", 0.0)
     began = only(plant, EventKind.SERVICE_BEGAN)
     assert service.mode.since == began.at
-    assert began.message == "Ada serves Tracker 1: it moves slowly, once the area was said to be clear."
+    assert began.message == (
+        "Ada put Tracker 1 in service mode. The tracker moves slowly after the area is confirmed clear."
+    )
     assert (began.data, began.actor) == ({"name": "Ada"}, "ada")
     off = only(plant, EventKind.TRACKING_ENDED)
     assert off.message == "Tracking is switched off: service mode begins."
@@ -163,7 +165,7 @@ def test_a_clear_area_counts_for_its_time_and_no_longer() -> None:
     plant.ask(BeginService("Ada"))
     plant.ask(ConfirmClear())
     assert only(plant, EventKind.AREA_CLEARED).message == (
-        "The area around Tracker 1 is clear; that counts for 0.333333 minutes."
+        "The area around Tracker 1 is confirmed clear, valid for 0.333333 minutes."
     )
     assert only(plant, EventKind.AREA_CLEARED).data == {"seconds": 20.0}
     plant.forward(5.0)
@@ -177,7 +179,7 @@ def test_a_clear_area_counts_for_its_time_and_no_longer() -> None:
     plant.leap(plant.clock.now() + timedelta(seconds=0.1))
     plant.tick()
     doubted = only(plant, EventKind.AREA_DOUBTED)
-    assert doubted.message == "The word that the area around Tracker 1 is clear has expired."
+    assert doubted.message == "The area-clear confirmation for Tracker 1 has expired."
     assert doubted.data == {"code": "area_not_clear"}
     plant.forward(60.0)
     assert only(plant, EventKind.AREA_DOUBTED), "told once"
@@ -207,5 +209,5 @@ def test_the_next_service_wants_the_area_to_be_looked_at_anew() -> None:
 
 def test_service_without_a_name_is_refused_with_what_bears_one() -> None:
     plant = ready()
-    with pytest.raises(CommandRejected, match=r"^Service mode bears a name of 1 to 60 letters"):
+    with pytest.raises(CommandRejected, match=r"^Service mode requires a name of 1 to 60 characters"):
         plant.ask(BeginService("  "))

@@ -32,10 +32,10 @@ def test_a_drive_that_is_lost_while_it_searches_is_told_to_end_the_search() -> N
 @pytest.mark.parametrize(
     ("homed", "moved_deg", "boots", "code", "words"),
     [
-        (True, 0.0, 0, "drive_back", "tells of no restart"),
-        (True, 3.0, 0, "drive_elsewhere", "stands elsewhere than before"),
-        (False, 0.0, 0, "drive_restarted", "has restarted meanwhile and has lost its zero"),
-        (True, 0.0, 1, "drive_restarted", "has restarted meanwhile."),
+        (True, 0.0, 0, "drive_back", "reports no restart"),
+        (True, 3.0, 0, "drive_elsewhere", "position has changed"),
+        (False, 0.0, 0, "drive_restarted", "has restarted and has lost its home reference"),
+        (True, 0.0, 1, "drive_restarted", "has restarted."),
     ],
 )
 def test_a_drive_that_answers_again_tells_what_can_be_known_and_no_more(

@@ -24,13 +24,13 @@ def test_zero_is_set_axis_by_axis_read_back_and_trusted() -> None:
     plant.tick()
     plant.ask(SetZero())
     assert plant.activity is ActivityName.ZEROING
-    assert plant.snapshot.activity_text == "Setting zero"
+    assert plant.snapshot.activity_text == "Setting the home position"
     plant.forward(1.0)
     assert (plant.azimuth_deg, plant.elevation_deg) == (0.0, 0.0)
     assert plant.snapshot.home_trusted
     home = plant.controller.memory.home
     assert home is not None
-    assert (home.by, home.how, home.boot_count) == ("technician", "set by hand", 1)
+    assert (home.by, home.how, home.boot_count) == ("technician", "set manually", 1)
     assert plant.controller.memory.confirmations[StepName.HOMING].location_revision == 1
     assert len(plant.happened(EventKind.ZERO_SET)) == 1
 
@@ -52,19 +52,19 @@ def test_zero_needs_axes_at_rest_a_drive_and_an_axis() -> None:
     plant = Plant()
     assert plant.reasons("zero") == {"drive_unreachable"}
     plant.tick()
-    with pytest.raises(CommandRejected, match="No axis of this mount was named"):
+    with pytest.raises(CommandRejected, match="No axis of this mount was selected for homing"):
         plant.ask(SetZero(()))
     script = Scripted()
     script.reading = replace(script.reading, azimuth=replace(script.reading.azimuth, moving=True))
     script.tick()
-    with pytest.raises(CommandRejected, match="still move"):
+    with pytest.raises(CommandRejected, match="are still moving"):
         script.ask(SetZero())
 
 
 @pytest.mark.parametrize(
     ("answer", "why"),
     [
-        ({"request_failed": True}, "refused it for the azimuth axis"),
+        ({"request_failed": True}, "refused the command for the azimuth axis"),
         ({"azimuth": AxisFeedback(3.0, 0.0, moving=False, homed=True)}, "reads 3.00 degrees instead of 0"),
         ({"azimuth": AxisFeedback(0.0, 0.0, moving=False, homed=False)}, "does not report the azimuth axis"),
     ],
@@ -114,13 +114,13 @@ def test_the_drive_searches_its_origin_by_itself() -> None:
     assert plant.ask(Home()) == [EventKind.HOMING_STARTED]
     plant.forward(1.0)
     assert plant.activity is ActivityName.HOMING
-    assert plant.snapshot.activity_text == "Searching for the origin switches"
+    assert plant.snapshot.activity_text == "Searching for the home switches"
     assert "busy_homing" in plant.reasons("jog")
     plant.forward(60.0)
     assert plant.happened(EventKind.HOMING_ENDED)[0].data == {"outcome": "homed"}
     home = plant.controller.memory.home
     assert home is not None
-    assert home.how == "origin switches"
+    assert home.how == "home switches"
     assert plant.drive.true_orientation.azimuth_deg == pytest.approx(0.0, abs=0.6)
 
 
@@ -176,7 +176,7 @@ def test_a_search_waits_for_rest_and_ends_when_it_takes_too_long() -> None:
 def test_a_drive_without_origin_switches_is_homed_by_hand() -> None:
     script = Scripted(capabilities={"automatic_homing": False})
     script.tick()
-    with pytest.raises(CommandRejected, match="no origin switches"):
+    with pytest.raises(CommandRejected, match="no home switches"):
         script.ask(Home())
 
 
@@ -219,7 +219,8 @@ def test_a_drive_that_reports_a_lost_zero_is_believed(axis: Axis) -> None:
     script.reading = replace(script.reading, **{axis.value: lost})
     script.tick()
     assert (
-        f"the {axis} axis of Tracker 1 has lost its zero" in script.happened(EventKind.HOME_LOST)[0].message
+        f"the {axis} axis of Tracker 1 has lost its home reference"
+        in script.happened(EventKind.HOME_LOST)[0].message
     )
 
 

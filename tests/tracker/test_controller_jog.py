@@ -240,7 +240,7 @@ def test_small_steps_go_before_homing_and_are_bounded() -> None:
     plant.tick()
     begun_deg = plant.elevation_deg
     assert plant.ask(Step(Axis.ELEVATION, -1.0)) == [EventKind.MOVE_STARTED]
-    assert plant.snapshot.activity_text == "Moving by a small step"
+    assert plant.snapshot.activity_text == "Moving by one increment"
     plant.forward(3.0)
     assert plant.elevation_deg == pytest.approx(begun_deg - 1.0, abs=0.05)
     assert plant.activity is ActivityName.HOLDING
@@ -283,5 +283,5 @@ def test_a_mode_may_be_selected_and_a_move_refused_while_a_key_is_held() -> None
     plant.tick()
     plant.ask(press("p1"))
     plant.ask(SelectMode(Mode.DUAL))
-    with pytest.raises(CommandRejected, match="moved by hand"):
+    with pytest.raises(CommandRejected, match="being jogged"):
         plant.ask(Move(Orientation(90.0, 45.0)))

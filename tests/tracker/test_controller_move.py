@@ -25,7 +25,7 @@ def test_a_move_ends_in_position_and_says_so() -> None:
     assert plant.ask(Move(Orientation(30.0, 20.0))) == [EventKind.MOVE_STARTED]
     plant.forward(1.0)
     shown = plant.snapshot
-    assert shown.activity_text == "Moving to the orientation that was asked for"
+    assert shown.activity_text == "Moving to the requested orientation"
     assert shown.target == Pair(30.0, 20.0)
     assert shown.setpoint == Pair(30.0, 20.0)
     assert not shown.in_position

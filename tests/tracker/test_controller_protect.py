@@ -35,7 +35,7 @@ def test_a_lost_drive_ends_tracking_which_then_waits_for_the_operator(plant: Pla
     shown = plant.snapshot
     assert plant.told == DriveCommand()
     assert shown.activity is ActivityName.HOLDING
-    assert shown.activity_text.startswith("No contact")
+    assert shown.activity_text.startswith("No communication with the drive")
     assert shown.measured is None
     assert shown.last_measured is not None
     assert shown.position_age_s == pytest.approx(0.8)
@@ -165,7 +165,7 @@ def test_a_blocked_axis_is_found_while_a_key_is_held(plant: Plant) -> None:
         plant.forward(0.1)
         sequence += 1
     assert sequence < 60
-    with pytest.raises(CommandRejected, match="This press of the key has ended"):
+    with pytest.raises(CommandRejected, match="This button press has ended"):
         plant.ask(Jog("p", Axis.AZIMUTH, 1, sequence=sequence))
     assert plant.controller.memory.fault_code == "following_error"
 
@@ -209,7 +209,7 @@ def test_the_drives_own_watchdog_ends_a_move_but_tracking_goes_on(plant: Plant) 
     plant.tick()
     stopped = plant.happened(EventKind.STOPPED)
     assert [event.actor for event in stopped] == ["machine"]
-    assert "stopped by itself" in stopped[0].message
+    assert "stopped automatically" in stopped[0].message
     assert plant.activity is ActivityName.HOLDING
     plant.forward(3.0)
     plant.clock.advance(timedelta(seconds=0.55))

@@ -63,7 +63,7 @@ def test_a_watched_move_turns_one_axis_and_waits_to_be_judged(command: Command, 
     plant = standing()
     before = plant.snapshot.measured
     assert plant.ask(command) == [EventKind.PROOF_STARTED]
-    assert "proof" in plant.snapshot.activity_text
+    assert " test: " in plant.snapshot.activity_text
     until_holding(plant)
     after, move = plant.snapshot.measured, move_of(plant)
     assert before is not None
@@ -102,7 +102,7 @@ def test_a_watched_move_goes_the_other_way_where_there_is_no_room() -> None:
 def test_a_range_too_small_is_refused_with_a_sentence() -> None:
     narrow = replace(CONFIG, azimuth=AxisConfig(-1.0, 1.0, 6.0, 6.0, 0.5, 3.0))
     plant = standing(READY, config=narrow)
-    with pytest.raises(CommandRejected, match=r"no room to turn by 10\.0 degrees"):
+    with pytest.raises(CommandRejected, match=r"cannot turn by 10\.0 degrees"):
         plant.ask(ProveScale(Axis.AZIMUTH))
 
 
@@ -147,7 +147,7 @@ def test_every_proof_is_stopped_at_once_and_nothing_goes_on(command: Command) ->
 def test_the_stop_test_measures_what_the_ramp_says(axis: Axis, speed: StopSpeed) -> None:
     plant = standing(READY)
     plant.ask(MeasureStop(axis, speed))
-    assert plant.snapshot.activity_text == "Stop test: gathering speed"
+    assert plant.snapshot.activity_text == "Stop test: accelerating"
     until_holding(plant)
     proof, settings = plant.controller.memory.proofs.stop(axis, speed), CONFIG.axis(axis)
     assert proof is not None
@@ -165,7 +165,7 @@ def test_while_an_axis_comes_to_rest_it_is_looked_at_every_20_ms() -> None:
     plant.ask(MeasureStop(Axis.AZIMUTH, StopSpeed.RATED))
     assert plant.controller.deadline() is None
     plant.forward(2.1)
-    assert plant.snapshot.activity_text == "Stop test: coming to rest"
+    assert plant.snapshot.activity_text == "Stop test: stopping"
     assert plant.controller.deadline() == plant.clock.now() + timedelta(milliseconds=20)
     plant.period = timedelta(milliseconds=20)
     until_holding(plant)
@@ -177,7 +177,7 @@ def test_while_an_axis_comes_to_rest_it_is_looked_at_every_20_ms() -> None:
 
 def test_the_rated_speed_needs_a_trusted_zero_and_the_hand_speed_does_not() -> None:
     plant = standing()
-    with pytest.raises(CommandRejected, match="no trusted zero"):
+    with pytest.raises(CommandRejected, match="is not homed"):
         plant.ask(MeasureStop(Axis.AZIMUTH, StopSpeed.RATED))
     plant.ask(MeasureStop(Axis.AZIMUTH, StopSpeed.JOG))
     until_holding(plant)
@@ -198,10 +198,10 @@ def test_the_link_loss_test_feeds_nothing_and_measures_the_watchdog() -> None:
     plant = standing(READY)
     plant.period = timedelta(milliseconds=20)
     plant.ask(MeasureLinkLoss(Axis.ELEVATION))
-    assert plant.snapshot.activity_text == "Link-loss test: moving slowly"
+    assert plant.snapshot.activity_text == "Communication-loss test: moving slowly"
     plant.forward(1.3)
     assert plant.controller.is_silent
-    assert plant.snapshot.activity_text == "Link-loss test: the drive is told nothing"
+    assert plant.snapshot.activity_text == "Communication-loss test: no commands are sent"
     until_holding(plant)
     proof = plant.controller.memory.proofs.link_loss
     assert proof is not None
@@ -292,7 +292,7 @@ def test_nothing_else_moves_the_axes_during_a_test() -> None:
     plant = standing(READY)
     plant.ask(MeasureStop(Axis.AZIMUTH, StopSpeed.JOG))
     for command in (Jog("p1", Axis.AZIMUTH, 1), Move(Orientation(10.0, 10.0)), Track()):
-        with pytest.raises(CommandRejected, match="is measuring how it stops"):
+        with pytest.raises(CommandRejected, match="is running a drive test"):
             plant.ask(command)
 
 

@@ -59,7 +59,7 @@ def test_a_show_from_its_start_to_its_end(plant: Plant) -> None:
     assert show.phase is ShowPhase.GOING_TO_START
     assert plant.reasons("run_show") == {"show_phase"}
     (waiting,) = plant.snapshot.actions["run_show"]
-    assert waiting.hint == "Wait until it has arrived, or press Stop."
+    assert waiting.hint == "Wait until the tracker has arrived, or press Stop."
     plant.forward(30.0)
     assert plant.snapshot.activity_text == "Show: ready at the start position"
     assert plant.controller.memory.showing is None
@@ -122,7 +122,7 @@ def test_a_show_runs_only_from_its_start(plant: Plant) -> None:
         plant.ask(RunShow(PLAN))
     assert [reason.code for reason in refused.value.reasons] == ["show_phase"]
     at_start(plant)
-    with pytest.raises(CommandRejected, match="does not stand at the start of this show"):
+    with pytest.raises(CommandRejected, match="is not at the start of this show"):
         plant.ask(RunShow(replace(PLAN, show_id="another")))
 
 

@@ -143,7 +143,7 @@ def test_without_a_zero_or_with_a_fault_the_panel_is_not_stowed(fault: FaultResu
     fault.noticed((plant.clock.now() - begun).total_seconds(), VIRTUAL)
     reason = plant.snapshot.not_stowed
     assert reason is not None
-    assert "no trusted zero" in reason.message
+    assert "is not homed" in reason.message
     assert doing(plant) is ActivityName.HOLDING
     fault.shows(reason.message)
     plant.ask(Home())
@@ -292,7 +292,7 @@ def test_in_too_little_light_the_panel_stays_where_it_is() -> None:
     assert plant.azimuth_deg == before
     assert seen.protection is not None
     assert seen.protection.protection is Protection.HIBERNATE
-    assert "less light" in seen.activity_text
+    assert "in low-light hold" in seen.activity_text
     assert [reason.code for reason in seen.waiting] == ["hibernation"]
     plant.blow(2.0, light_wm2=700.0).forward(2)
     assert plant.snapshot.warning is not None
@@ -333,7 +333,7 @@ def test_after_a_restart_in_a_storm_the_journal_says_that_the_panel_stows_first(
     plant.blow(5.0).forward(CALM_S + 60)
     assert doing(plant) is ActivityName.TRACKING
     (event,) = plant.happened(EventKind.TRACKING_RESUMED)
-    assert event.message == "Tracking goes on after the stow."
+    assert event.message == "Tracking continues after the stow."
 
 
 def test_after_a_restart_a_storm_that_was_not_seen_over_still_holds() -> None:
@@ -444,7 +444,7 @@ def test_a_maintenance_lock_forbids_the_stow_too_and_outlives_a_restart() -> Non
 @pytest.mark.parametrize("name", ["", "   ", "x" * 61, "a\nb"])
 def test_a_lock_bears_a_name(name: str) -> None:
     plant = Plant(READY).forward(1)
-    with pytest.raises(CommandRejected, match="bears a name"):
+    with pytest.raises(CommandRejected, match="requires a name"):
         plant.ask(LockOut(name))
 
 
@@ -478,7 +478,9 @@ def test_the_first_motion_of_the_morning_is_announced() -> None:
     plant.period = timedelta(seconds=1)
     plant.forward(7200)
     announced = plant.happened(EventKind.MOTION_ANNOUNCED)
-    assert [event.message for event in announced] == ["Tracker 1 begins to follow the sun. It moves in 5 s."]
+    assert [event.message for event in announced] == [
+        "Tracker 1 begins to follow the sun. Motion starts in 5 s."
+    ]
     assert plant.snapshot.in_position
 
 

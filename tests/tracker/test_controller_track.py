@@ -82,7 +82,7 @@ def test_at_night_the_panel_turns_once_to_where_the_sun_will_rise() -> None:
     assert plant.dawn is not None
     assert plant.azimuth_deg == pytest.approx(plant.dawn.azimuth_deg, abs=0.05)
     assert plant.elevation_deg == pytest.approx(0.0, abs=0.05)
-    assert shown.activity_text == "Tracking: waiting for the sun to rise"
+    assert shown.activity_text == "Tracking: holding until sunrise"
     assert [reason.code for reason in shown.waiting] == ["sun_down"]
     assert shown.off_sun_deg is None
     assert not shown.sun_is_up
@@ -128,7 +128,7 @@ def test_other_nights(night: NightBehaviour) -> None:
 def test_in_the_polar_night_there_is_no_sunrise_to_turn_to() -> None:
     plant = tracking(at=datetime(2026, 12, 21, 12, 0, tzinfo=UTC), location=Location(85.0, 20.0))
     assert plant.dawn is None
-    assert plant.snapshot.activity_text == "Tracking: waiting for the sun to rise"
+    assert plant.snapshot.activity_text == "Tracking: holding until sunrise"
 
 
 def test_in_the_polar_night_the_panel_parks_all_the_same() -> None:
@@ -263,7 +263,7 @@ def test_rehoming_leaves_the_start_to_the_operator() -> None:
     plant.forward(1.0)
     shown = plant.snapshot
     assert shown.activity is ActivityName.HOLDING
-    assert shown.activity_text == "Holding; tracking waits for the operator"
+    assert shown.activity_text == "Holding; tracking needs the operator"
     assert shown.waiting
     assert not shown.actions["track"]
     plant.ask(Track())

@@ -294,7 +294,7 @@ def test_a_search_whose_switch_never_comes_ends_with_the_travel_and_says_whose(
     fault.noticed((plant.clock.now() - begun).total_seconds(), VIRTUAL)
     fault.shows(told.message)
     assert told.data == {"outcome": "failed"}
-    assert "did not find that of the azimuth axis" in told.message
+    assert "did not find the home switch of the azimuth axis" in told.message
     assert stands(plant)
     assert "home_lost" in shown(plant.snapshot)
     assert "home_not_trusted" in plant.reasons("track") & plant.reasons("move")
@@ -403,7 +403,7 @@ def test_the_word_that_the_area_is_clear_expires_in_mid_move() -> None:
     plant.forward(1.0)
     assert doing(plant) is ActivityName.HOLDING
     assert plant.happened(EventKind.AREA_DOUBTED)
-    with pytest.raises(CommandRejected, match="nobody has said that the area is clear"):
+    with pytest.raises(CommandRejected, match="the area is not confirmed clear"):
         plant.ask(SOUTH)
 
 

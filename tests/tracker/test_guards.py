@@ -58,9 +58,11 @@ def test_a_switch_that_is_on_alone_is_told_with_the_one_way_that_is_free(axis: A
         (reason,) = guards.pressed_switches(CONFIG, turned(axis, **{switch: True}))
         assert reason.code == "at_limit_switch"
         on = f"The {end} limit switch of the {axis} axis of Tracker 1 is on"
-        assert reason.message == f"{on} although it stands within its soft limits: it moves {free} only."
+        assert (
+            reason.message == f"{on} although the axis is within its soft limits: the axis moves {free} only."
+        )
         (outside,) = guards.pressed_switches(CONFIG, turned(axis, **{switch: True}, position_deg=-5.0))
-        assert outside.message == f"{on}: it moves {free} only."
+        assert outside.message == f"{on}: the axis moves {free} only."
     assert guards.pressed_switches(CONFIG, SOUND) == ()
     both = turned(axis, at_lower_limit=True, at_upper_limit=True)
     assert guards.pressed_switches(CONFIG, both) == (), "that is a fault of the wiring"
@@ -98,7 +100,7 @@ def test_what_each_axis_did_while_the_drive_did_not_answer(axis: Axis) -> None:
     unhomed = turned(axis, homed=False)
     lost = guards.came_back("T1", SOUND, unhomed)
     assert code(lost) == "drive_restarted"
-    assert "has lost its zero" in lost.message
+    assert "has lost its home reference" in lost.message
     assert code(guards.came_back("T1", unhomed, SOUND)) == "drive_back"
     assert code(guards.came_back("T1", unhomed, unhomed)) == "drive_back"
     moving = turned(axis, moving=True)
@@ -143,7 +145,7 @@ def test_what_an_axis_does_wrong_is_told_with_its_name(axis: Axis) -> None:
     watch = AxisWatch(0.0, 0.0, 0.0, MORNING, None, 0.0, MORNING, 0.0, error_deg=-2.34)
     behind = guards.not_following(CONFIG, axis, watch)
     assert behind.code == "following_error"
-    assert "2.3 degrees behind" in behind.message
+    assert "following error is 2.3 degrees" in behind.message
     assert str(axis) in behind.message
     wrong = guards.wrong_way(CONFIG, axis)
     assert wrong.code == "wrong_direction"

@@ -64,7 +64,7 @@ def test_other_motion_ends_after_more_than_600_ms_without_a_reading(script: Scri
     script.forward(0.1)
     assert script.controller.activity is ActivityName.HOLDING
     (lost,) = script.happened(EventKind.DRIVE_LOST)
-    assert lost.message == "The drive of Tracker 1 does not answer any more."
+    assert lost.message == "The drive of Tracker 1 no longer answers."
     script.forward(5.0)
     assert len(script.happened(EventKind.DRIVE_LOST)) == 1
 
@@ -77,7 +77,7 @@ def test_a_drive_that_answers_again_is_told_with_what_it_did(script: Scripted) -
     script.forward(1.0)
     (found,) = script.happened(EventKind.DRIVE_FOUND)
     assert found.data["code"] == "drive_back"
-    assert found.message == "The drive of Tracker 1 answers again. It tells of no restart."
+    assert found.message == "The drive of Tracker 1 answers again. The drive reports no restart."
     assert script.snapshot.measured is not None
     script.reading = None
     script.forward(0.6)

@@ -89,5 +89,5 @@ def test_the_way_round_is_free(plant: Plant) -> None:
 def test_a_region_needs_three_corners_and_a_name_of_its_own() -> None:
     with pytest.raises(ValueError, match="3 to 20 corners"):
         Region("line", (Corner(0.0, 0.0), Corner(1.0, 1.0)))
-    with pytest.raises(ValueError, match="name of its own"):
+    with pytest.raises(ValueError, match="needs a unique name"):
         MachineProtection(regions=(WALL, WALL))

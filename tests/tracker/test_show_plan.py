@@ -144,9 +144,9 @@ def test_a_notice_tells_the_time_of_the_zone_in_which_the_show_was_planned() -> 
     begin, end = (at.astimezone(ZoneInfo("Australia/Sydney")) for at in (SOUTH.begin_at, SOUTH.end_at))
     local, utc_ = check_show(replace(SOUTH, begin_at=begin, end_at=end), PLAIN), check_show(SOUTH, PLAIN)
     assert local.notices[0].message.startswith("At 12:0")
-    assert "(Australia/Sydney) the azimuth axis meets" in local.notices[0].message
+    assert "(Australia/Sydney) the azimuth axis reaches its end stop" in local.notices[0].message
     assert utc_.notices[0].message.startswith("At 02:0")
-    assert "(UTC) the azimuth axis meets" in utc_.notices[0].message
+    assert "(UTC) the azimuth axis reaches its end stop" in utc_.notices[0].message
 
 
 @pytest.mark.parametrize(

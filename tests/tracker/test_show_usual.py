@@ -48,7 +48,7 @@ def test_in_the_south_it_takes_longer_because_the_panel_turns_back_at_north() ->
     assert found.check.feasible
     assert found.plan.duration == timedelta(minutes=5)
     assert found.longer is not None
-    assert found.longer.message == "3 minutes are too fast here: the panel must turn back at north."
+    assert found.longer.message == "3 minutes are too short here: the panel must turn back at north."
 
 
 def test_in_the_south_an_axis_that_ends_at_south_needs_no_longer() -> None:
@@ -63,19 +63,19 @@ def turning(speed_dps: float, least_deg: float, most_deg: float) -> TrackerConfi
 @pytest.mark.parametrize(
     ("plan", "tracker", "why"),
     [
-        (SOLSTICE, turning(1.0, 0.0, 360.0), "the axes cannot turn as fast as that."),
+        (SOLSTICE, turning(1.0, 0.0, 360.0), "the axes cannot turn that fast."),
         (SOLSTICE, turning(6.0, -180.0, 180.0), "the panel must turn back at south."),
         (sunny(SYDNEY, utc(2026, 7, 10, 14), 180.0), turning(4.0, 10.0, 365.0), "turn back at its end stop."),
         (sunny(TROPIC, utc(2026, 7, 2), 180.0), turning(4.2, 0.0, 360.0), "where the sun is highest."),
         (
             show(SAMSUN, utc(2026, 6, 21, 16, 50), utc(2026, 6, 22, 2, 30), 60.0),
             turning(1.2, 0.0, 360.0),
-            "the way to the next sunrise takes longer than the night.",
+            "travel to the next sunrise takes longer than the night.",
         ),
         (
             replace(SOLSTICE, schedule=schedule_of(Interval(minutes=1))),
             turning(4.0, 0.0, 360.0),
-            "a move must be done before the next one begins.",
+            "a move must finish before the next one begins.",
         ),
     ],
     ids=["speed", "south", "end stop", "zenith", "night", "moves"],
@@ -87,7 +87,7 @@ def test_why_it_takes_longer_is_told_in_one_sentence(
     assert found.check.feasible
     assert found.plan.duration > THREE
     assert found.longer is not None
-    assert found.longer.message.startswith("3 minutes are too fast here: ")
+    assert found.longer.message.startswith("3 minutes are too short here: ")
     assert found.longer.message.endswith(why)
 
 

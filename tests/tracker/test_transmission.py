@@ -86,7 +86,7 @@ def test_what_cannot_be_built_is_refused(change: dict[str, float], sentence: str
     ("axis", "sentence"),
     [
         ((-61.0, 60.0, 2.0), "soft limits must lie within"),
-        ((-60.0, 60.0, 4.0), "turns it slowest"),
+        ((-60.0, 60.0, 4.0), "the slowest axis speed"),
     ],
 )
 def test_an_axis_keeps_to_what_its_actuator_can_do(axis: tuple[float, float, float], sentence: str) -> None:
@@ -96,5 +96,5 @@ def test_an_axis_keeps_to_what_its_actuator_can_do(axis: tuple[float, float, flo
 
 def test_an_actuator_has_to_reach_the_zero_of_its_axis() -> None:
     late = replace(DIURNAL, at_deg=DIURNAL.at_deg + 70.0)
-    with pytest.raises(ValueError, match="where the zero is set"):
+    with pytest.raises(ValueError, match="0, the home position"):
         AxisConfig(20.0, 60.0, 2.0, 3.0, 0.5, 1.0, late)

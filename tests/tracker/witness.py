@@ -133,7 +133,7 @@ class Witness:
 
     def _moves_by_hand(self) -> bool:
         text = self._plant.snapshot.activity_text
-        return text.startswith(("Jogging", "Moving to the orientation", "Moving by a small step"))
+        return text.startswith(("Jogging", "Moving to the orientation", "Moving by one increment"))
 
     def _see_targets(self) -> None:
         """No target beyond a soft limit; a sound tracker that knows its zero stays within them."""

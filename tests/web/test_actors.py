@@ -26,7 +26,7 @@ async def desk(tmp_path: Path) -> AsyncIterator[Desk]:
 async def happened(desk: Desk) -> None:
     """Let the machine do something by itself, and this computer sign a record."""
     site = desk.plant.site
-    site.note(site.model.event(EventKind.MACHINE_RESTARTS, "Memory runs short.", "machine"))
+    site.note(site.model.event(EventKind.MACHINE_RESTARTS, "Controller memory high.", "machine"))
     await desk.forward(1.0)
     signed = {
         "signatures": [{"role": "technician", "name": "machine operator", "strokes": []}],
@@ -40,14 +40,14 @@ async def test_pages_tell_who_has_no_name_in_the_language_of_the_reader(code: st
     await happened(desk)
     for path in PAGES:
         page = (await desk.ask("GET", path, headers={"Cookie": f"language={code}"})).text
-        assert ">this computer<" not in page
-        assert "by this computer" not in page
+        assert ">local user<" not in page
+        assert "by local user" not in page
         assert ">machine<" not in page
         assert "(machine)" not in page
     journal = (await desk.ask("GET", "/journal", headers={"Cookie": f"language={code}"})).text
     assert f">{catalogue_of(code).pgettext('record', 'machine')}<" in journal
     records = (await desk.ask("GET", "/records", headers={"Cookie": f"language={code}"})).text
-    assert catalogue_of(code).said("this computer") in records
+    assert catalogue_of(code).said("local user") in records
 
 
 async def test_files_keep_what_is_stored(desk: Desk) -> None:
@@ -61,9 +61,9 @@ def test_a_printed_record_tells_who_did_it() -> None:
     try:
         assert told_value(INSTANT, "It is over. (machine)").endswith("(Maschine)")
         assert told_value(INSTANT, "It is over. (Ada)").endswith("(Ada)")
-        assert told_value("by", "this computer") == "dieser Rechner"
-        assert told_value("clock", f"done, {INSTANT} by this computer.").endswith("dieser Rechner.")
+        assert told_value("by", "local user") == "dieser Rechner"
+        assert told_value("clock", f"done, {INSTANT} by local user.").endswith("dieser Rechner.")
         assert (who("machine"), who("machinist")) == ("Maschine", "machinist")
     finally:
         CATALOGUE.reset(before)
-    assert told_value("by", "this computer") == "this computer"
+    assert told_value("by", "local user") == "local user"

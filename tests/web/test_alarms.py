@@ -46,7 +46,7 @@ async def test_shelving_needs_a_reason_and_what_was_typed_stays(desk: Desk) -> N
     form = {"alarm_id": "store_behind", "minutes": "480", "reason": " "}
     answer = await desk.ask("POST", "/alarms/shelve", data=form)
     assert answer.status_code == 422
-    assert "Say why the alarm is shelved." in answer.text
+    assert "Enter the reason for shelving the alarm." in answer.text
     assert '<option value="480" selected>' in answer.text
     done = await desk.ask("POST", "/alarms/shelve", data=form | {"reason": "A bigger card comes."})
     assert done.status_code == 303

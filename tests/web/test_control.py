@@ -45,7 +45,7 @@ async def test_the_first_order_takes_control_and_says_so(desk: Desk) -> None:
     assert (await desk.ask("POST", f"{API}/jog", json=JOG)).status_code == 202
     mine = (await desk.ask("GET", f"{API}/control")).json()
     assert mine["yours"] is True
-    assert mine["control"]["holder"] == "this computer"
+    assert mine["control"]["holder"] == "local user"
     assert (await desk.ask("DELETE", f"{API}/control")).json()["yours"] is False
     assert (await desk.ask("DELETE", f"{API}/control")).status_code == 409
 
@@ -64,7 +64,7 @@ async def test_an_order_of_an_older_epoch_is_423_and_moves_nothing(desk: Desk) -
 async def test_control_is_asked_for_taken_over_and_kept_over_the_api(desk: Desk) -> None:
     await by_bo(desk, RequestControl(("T1",)), rank=1)
     asked = (await desk.ask("POST", f"{API}/control", json={"reason": "my turn"})).json()
-    assert asked["control"]["request"]["by"] == "this computer"
+    assert asked["control"]["request"]["by"] == "local user"
     assert asked["control"]["request"]["takes"] is False
     without = await desk.ask("POST", f"{API}/control", json={"action": "take_over"})
     assert without.status_code == 409
@@ -86,7 +86,7 @@ async def test_a_page_shows_who_has_control_and_its_keys(desk: Desk) -> None:
     assert "Take over" in page
     body = {"wanted": "take_over", "reason": "rain"}
     pressed = await desk.ask("POST", "/trackers/T1/control", data=body, headers=HTMX)
-    assert "Control passes when the countdown ends" in pressed.text
+    assert "Control transfers when the countdown ends" in pressed.text
     assert 'data-state="waiting"' in (await desk.ask("GET", "/trackers/T1")).text
     assert desk.plant.tracker().control.request is not None
     wrong = await desk.ask("POST", "/trackers/T1/control", data={"wanted": "steal"}, headers=HTMX)
@@ -99,7 +99,7 @@ async def test_a_visible_page_keeps_control_and_a_hidden_one_loses_it(desk: Desk
         for _ in range(6):
             await page.send(type="ping", tc=0, visible=True)
             await desk.forward(4)
-        assert desk.plant.tracker().control.holder == "this computer"
+        assert desk.plant.tracker().control.holder == "local user"
         for _ in range(6):
             await page.send(type="ping", tc=0, visible=False)
             await desk.forward(4)
@@ -108,7 +108,7 @@ async def test_a_visible_page_keeps_control_and_a_hidden_one_loses_it(desk: Desk
 
 async def test_settings_are_locked_and_unlocked_with_a_reason(desk: Desk) -> None:
     locked = await desk.ask("PUT", f"{API}/settings-lock", json={"locked": True})
-    assert locked.json()["locked"]["by"] == "this computer"
+    assert locked.json()["locked"]["by"] == "local user"
     refused = await desk.ask("PATCH", API, json={"name": "Other"})
     assert refused.status_code == 409
     assert refused.json()["reasons"][0]["code"] == "settings_locked"

@@ -97,8 +97,8 @@ async def test_results_stand_in_the_record_as_json_page_html_and_pdf(desk: Desk)
     assert record["measured"]["link_loss"]["outcome"] == "stopped"
     assert record["measured"]["link_loss"]["expected_s"] == 0.5
     page = (await desk.ask("GET", f"{T1}/record")).text
-    assert "The drive, proven at the machine" in page
-    assert "degrees after the stop was asked" in page
+    assert "Drive tests" in page
+    assert "degrees after the stop command" in page
     html = (await desk.ask("GET", f"{API}/record", params={"format": "html"})).text
     assert "azimuth stop jog" in html
     assert "Without commands the drive slowed down after" in html
@@ -164,8 +164,8 @@ async def test_an_angle_that_cannot_be_leaves_the_page_whole_with_a_sentence(des
     ("changed", "sentence"),
     [
         ({"kind": "simulated", "elevation_gear": "3"}, "A gear ratio of 3 does not fit this drive"),
-        ({"unit": "0"}, "Unit must lie between 1 and 247."),
-        ({"azimuth_unit": "248"}, "Azimuth unit must lie between 1 and 247."),
+        ({"unit": "0"}, "Unit must be between 1 and 247."),
+        ({"azimuth_unit": "248"}, "Azimuth unit must be between 1 and 247."),
     ],
 )
 async def test_settings_that_the_machine_refuses_come_back_in_the_form(
@@ -180,7 +180,7 @@ async def test_settings_that_the_machine_refuses_come_back_in_the_form(
 
 async def test_a_stopped_drive_is_cleared_where_it_is_proven(desk: Desk) -> None:
     page = f"{T1}/proofs"
-    assert "Clear the fault" not in (await desk.ask("GET", page)).text
+    assert "Reset fault" not in (await desk.ask("GET", page)).text
     drive = desk.plant.drives["T1"]
     assert isinstance(drive, SimulatedDrive)
     drive.inject(Fault(FaultKind.WRONG_DIRECTION, Axis.ELEVATION))
@@ -189,7 +189,7 @@ async def test_a_stopped_drive_is_cleared_where_it_is_proven(desk: Desk) -> None
         await desk.forward(0.5)
     told = (await desk.ask("GET", page)).text
     assert "moves opposite to its command" in told
-    assert "Clear the fault" in told
+    assert "Reset fault" in told
 
 
 async def test_drive_settings_are_saved_whole(machine: FakeMachine, client: httpx.AsyncClient) -> None:
@@ -234,8 +234,8 @@ async def test_what_is_shown_and_saved_again_is_not_another_drive(desk: Desk) ->
         ({"serial_other": ""}, "Serial port: choose one"),
         ({"kind": "modbus-tcp", "host": "", "port": "502"}, "Host: give the address"),
         ({"kind": "modbus-tcp", "host": "plc", "port": "abc"}, "Port: type a number"),
-        ({"baud_rate": "12"}, "Baud rate must lie between"),
-        ({"azimuth_gear": "-1"}, "Azimuth gear ratio must lie between"),
+        ({"baud_rate": "12"}, "Baud rate must be between"),
+        ({"azimuth_gear": "-1"}, "Azimuth gear ratio must be between"),
         ({"elevation_steps": "many"}, "Elevation steps per revolution: type a number"),
         ({"azimuth_unit": "x"}, "Azimuth unit: type a number"),
     ],

@@ -6,13 +6,13 @@ from app.web.languages import CATALOGUE
 from app.web.languages.catalogue import catalogue_of
 from app.web.ui.formats import shown
 
-LOST = "The drive of T7 has restarted, so its zero is no longer believed."
+LOST = "The drive of T7 has restarted, so its home reference is lost."
 
 
 @pytest.mark.parametrize("code", ["tr", "de", "es", "ro", "zh_Hans"])
 def test_why_a_zero_was_lost_is_told_in_one_language(code: str) -> None:
     catalogue = catalogue_of(code)
-    told = catalogue.said(f"T7 has no trusted zero: {LOST}")
+    told = catalogue.said(f"T7 is not homed: {LOST}")
     assert told.endswith(catalogue.said(LOST))
     assert catalogue.said(LOST) != LOST
 
@@ -27,7 +27,7 @@ def test_who_may_press_a_key_and_what_is_made_up_are_told_in_german() -> None:
 def test_only_who_has_no_name_is_told_in_the_language_of_the_page() -> None:
     before = CATALOGUE.set(catalogue_of("de"))
     try:
-        assert shown("this computer", "who", "UTC") == "dieser Rechner"
+        assert shown("local user", "who", "UTC") == "dieser Rechner"
         assert shown("Open", "who", "UTC") == "Open"
         assert shown(-33.6, "horizon", "UTC") == "unter dem Horizont"
         assert shown(0.2, "horizon", "UTC") == "über dem Horizont"

@@ -77,7 +77,7 @@ async def test_two_points_of_the_horizon_in_one_direction_are_refused(api: httpx
     point = {"azimuth_deg": 90.0, "elevation_deg": 3.0}
     answer = await api.put(f"{V1}/site/horizon", json={"points": [point, point]})
     assert answer.status_code == 422
-    assert "rising order" in answer.json()["detail"]
+    assert "ascending order" in answer.json()["detail"]
 
 
 @pytest.mark.parametrize(

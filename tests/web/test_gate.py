@@ -77,7 +77,7 @@ async def test_without_a_notice_the_log_in_has_none(office: Office) -> None:
 
 async def test_whoever_made_the_first_administrator_is_told_so_before_the_log_in(tmp_path: Path) -> None:
     office = Office(tmp_path)
-    told = "The administrator zoe was made. Sign in."
+    told = "The administrator zoe was created. Sign in."
     new = {"name": "Zoe", "password": PASSWORD, "role": "administrator"}
     async with (
         office.app.router.lifespan_context(office.app),
@@ -88,11 +88,11 @@ async def test_whoever_made_the_first_administrator_is_told_so_before_the_log_in
         assert answer.headers["location"] == "/login"
         page = (await browser.get("/login")).text
         assert told in page
-        assert "The STOP key is here once you are signed in." in page
+        assert "The STOP button appears here after you sign in." in page
         assert 'id="stop-key"' not in page
-        assert "was made" not in (await other.get("/login")).text
+        assert "was created" not in (await other.get("/login")).text
         await browser.post("/login", data={"name": "zoe", "password": PASSWORD})
-        assert "was made" not in (await browser.get("/login")).text
+        assert "was created" not in (await browser.get("/login")).text
         assert "STOP is not an emergency stop." in (await browser.get("/")).text
 
 

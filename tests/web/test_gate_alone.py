@@ -25,7 +25,7 @@ from tests.web.gatehouse import (
 MOVE = "POST /api/v1/trackers/T1/commands"
 TOKEN_ID, TOKEN = mint()
 NOT_ALLOWED = {"type": "websocket.close", "code": 1008, "reason": "not allowed"}
-TOO_OFTEN = "This address stops more than ten times a second; the first of these were obeyed."
+TOO_OFTEN = "This address sends more than ten stop commands per second; the first ones were executed."
 
 
 @pytest.fixture
@@ -306,9 +306,9 @@ async def test_what_lasts_is_ended_with_the_connection(house: Gatehouse) -> None
 
 def test_what_the_guard_turned_away_is_recorded_too(house: Gatehouse) -> None:
     record = record_foreign(house.keeper, house.clock)  # type: ignore[arg-type] # who knows people
-    record(asked_for("POST /stop"), "This panel does not answer to that name.")
+    record(asked_for("POST /stop"), "Heliopanel does not answer to this host name.")
     record(asked_for("WS /live") | {"client": None}, "Not from here.")
     assert house.keeper.refusals.taken == [
-        ("refused_foreign", nobody(FAR), "POST /stop", "This panel does not answer to that name.", NOON),
+        ("refused_foreign", nobody(FAR), "POST /stop", "Heliopanel does not answer to this host name.", NOON),
         ("refused_foreign", nobody(""), "WS /live", "Not from here.", NOON),
     ]

@@ -72,7 +72,7 @@ async def test_more_room_is_shown_and_saved_only_when_somebody_is_sure_of_it(des
 async def test_limits_that_shut_out_where_the_axis_stands_are_refused_at_every_door(desk: Desk) -> None:
     await homed(desk)
     wrong = {"azimuth": {"minimum_deg": 10}}
-    sentence = "stands at 0.0 degrees, outside the new soft limits 10 to 360 degrees"
+    sentence = "is at 0.0 degrees, outside the new soft limits 10 to 360 degrees"
     review = (await desk.ask("POST", f"{API}/review", json=wrong)).json()
     assert sentence in review["against"][0]["message"]
     refused = await desk.ask("PATCH", API, json=wrong)
@@ -89,7 +89,7 @@ async def test_without_a_zero_nobody_knows_where_the_axes_stand(desk: Desk) -> N
     status, text = await save(desk, elevation_speed="5")
     assert status == 200
     assert "may turn faster than before" in text
-    assert "There is no trusted zero" in text
+    assert "The tracker is not homed: the axis positions" in text
     anywhere = await desk.ask("PATCH", API, json={"azimuth": {"minimum_deg": 10}})
     assert anywhere.status_code == 200
 

@@ -57,7 +57,7 @@ async def test_256_messages_at_once_are_taken_and_64_a_second_after_them() -> No
             await page.send(PING)
         await pongs(page, 64)
         await page.send(PING)
-        assert await closed(page) == (4029, "This page sent more messages than Heliopanel takes.")
+        assert await closed(page) == (4029, "This page sent more messages than Heliopanel accepts.")
 
 
 @pytest.mark.fault(93)

@@ -39,8 +39,8 @@ async def test_the_page_is_reached_from_the_settings_and_tells_range_and_default
 ) -> None:
     assert PAGE in (await client.get(f"{ROOT}/settings")).text
     page = (await client.get(PAGE)).text
-    assert "Outside a soft limit; beyond it is a fault. 0.1 to 45, usual 2." in page
-    assert "An axis does not follow, is frozen or takes too long." in page
+    assert "Travel beyond a soft limit; above this, a fault is raised. 0.1 to 45, usual 2." in page
+    assert "An axis does not follow, is frozen, or takes too long." in page
 
 
 async def test_what_the_page_shows_is_what_it_saves(client: httpx.AsyncClient, machine: FakeMachine) -> None:
@@ -71,11 +71,11 @@ async def test_what_the_page_shows_is_what_it_saves(client: httpx.AsyncClient, m
 @pytest.mark.parametrize(
     ("typed", "sentence"),
     [
-        ({"creep_deg": "far"}, "Creep that is borne: type a number"),
+        ({"creep_deg": "far"}, "Standstill monitoring limit: type a number"),
         ({"supply_low_v": "30", "supply_high_v": "20"}, "must not exceed the highest"),
-        ({"drive_kind": "pray"}, "choose from the list who leaves the fault"),
-        ({"travel_times_per_hour": "61"}, "Over-travel: times an hour must lie between 1 and 60"),
-        ({"region0_name": "Gate", "region0_corners": "170 0; 190 0"}, "A region has 3 to 20 of them"),
+        ({"drive_kind": "pray"}, "choose from the list how the fault is reset"),
+        ({"travel_times_per_hour": "61"}, "Overtravel: resets per hour must be between 1 and 60"),
+        ({"region0_name": "Gate", "region0_corners": "170 0; 190 0"}, "A region has 3 to 20 corners"),
         (
             {"region0_name": "Gate", "region0_corners": "1 2; 3 4; 5 six"},
             "type each as azimuth and elevation",
@@ -88,7 +88,7 @@ async def test_what_the_page_shows_is_what_it_saves(client: httpx.AsyncClient, m
                 "region1_name": "Gate",
                 "region1_corners": "1 2; 3 4; 5 6",
             },
-            "needs a name of its own",
+            "needs a unique name",
         ),
     ],
 )
@@ -163,7 +163,7 @@ class RejectedTracker(FakeTracker):
 async def test_rejected_settings_are_shown_beside_those_that_are_used(
     client: httpx.AsyncClient, machine: FakeMachine
 ) -> None:
-    assert "Rejected at the start" not in (await client.get(f"{ROOT}/settings")).text
+    assert "Settings rejected at startup" not in (await client.get(f"{ROOT}/settings")).text
     sound = machine.trackers["T1"]
     state = TrackerState(sound.config, sound.memory)
     machine.trackers["T1"] = RejectedTracker(state, sound.position)

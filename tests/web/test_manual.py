@@ -36,7 +36,7 @@ async def test_a_manual_that_was_not_built_is_a_sentence(tmp_path: Path) -> None
         for path in ("/manual/", "/manual/install/README.html"):
             answer = await browser.get(path, headers={"Accept": "text/html"})
             assert answer.status_code == 404
-            assert "make docs builds it" in answer.text
+            assert "make docs builds the manual" in answer.text
 
 
 async def test_its_pages_come_under_the_policy_of_all_pages(written: Callable[[str, str], Path]) -> None:

@@ -42,7 +42,7 @@ async def test_the_page_shows_every_kind_and_the_reach_of_the_year(browser: http
     for title in ("Azimuth and elevation", "Equatorial", "Tilted single axis", "Vertical single axis"):
         assert title in page
     assert "<b>0.0 %</b> of the time with the sun up" in page
-    assert "sun in reach" in page
+    assert "sun within reach" in page
 
 
 async def test_rows_are_drawn_once_they_are_saved(browser: httpx.AsyncClient, machine: FakeMachine) -> None:
@@ -59,7 +59,7 @@ async def test_a_wrong_ratio_is_told_and_what_was_typed_stays(browser: httpx.Asy
     typed = {"axis_azimuth": "180", "axis_tilt": "25", "rows": "yes", "ratio": "4.5", "slope": "0"}
     answer = await browser.post(MOUNT, data=typed, headers={"HX-Request": "true"})
     assert answer.status_code == 422
-    assert "Ground coverage ratio must lie between 0.01 and 1." in answer.text
+    assert "Ground coverage ratio must be between 0.01 and 1." in answer.text
     assert 'value="4.5"' in answer.text
 
 
@@ -124,7 +124,7 @@ async def test_what_the_machine_refuses_comes_back_in_the_form(
 async def test_the_wizard_and_the_settings_follow_the_mount(browser: httpx.AsyncClient) -> None:
     await chosen(browser, "vertical-single-axis")
     homing = (await browser.get("/trackers/T1/commissioning/homing")).text
-    assert "Turn the axis to zero" in homing
+    assert "Move the axis to its home position" in homing
     assert 'data-jog="elevation"' not in homing
     modes = (await browser.get("/trackers/T1/commissioning/mode")).text
     assert "Single-axis tracking" in modes

@@ -114,13 +114,13 @@ def test_what_nobody_confirms_is_taken_back(moving: Moving) -> None:
     with moving.time_stands():
         assert not moving.is_there(moving.port)
         page = moving.ask("GET", tried, f"/network/trial?ticket={ticket}").text
-        assert "Keep this" in page
+        assert "Keep address" in page
         assert Settings(data_dir=moving.folder).port == moving.port
     moving.let_a_minute_pass()
     moving.until(moving.port)
     assert not moving.is_there(tried)
     assert moving.state()["last_rollback"] == NOT_CONFIRMED
-    assert "The last change was taken back." in moving.ask("GET", moving.port, "/network").text
+    assert "The last change was reverted." in moving.ask("GET", moving.port, "/network").text
 
 
 def test_what_cannot_be_served_is_taken_back_at_once(moving: Moving) -> None:
@@ -142,7 +142,7 @@ def test_what_is_confirmed_there_is_kept(moving: Moving) -> None:
         page = moving.ask("GET", tried, f"/network/trial?ticket={ticket}").text
         action = re.search(r'action="(/network/trial[^"]+)"', page)
         assert action is not None
-        assert "The panel stays here" in moving.ask("POST", tried, action[1]).text
+        assert "Network address confirmed" in moving.ask("POST", tried, action[1]).text
     moving.port = tried
     moving.let_a_minute_pass()
     stays_until = time.monotonic() + STAYS_S

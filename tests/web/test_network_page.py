@@ -54,19 +54,19 @@ async def test_a_change_is_written_down_tried_and_tells_where_to_go(
     assert following.trial.before.port == PORT
     assert (await here.post("/network", data=FORM)).status_code == 409
     event = AccessStore(f"sqlite:///{tmp_path}/access.db", b"").events()[-1][0]
-    assert (event.actor, event.action) == ("this computer", "network_tried")
+    assert (event.actor, event.action) == ("local user", "network_tried")
     assert event.result == f"port {PORT} -> 8443, allowed_hosts none -> tracker.example"
 
 
 @pytest.mark.parametrize(
     ("wrong", "sentence"),
     [
-        ({"host": "somewhere"}, "somewhere is no address"),
-        ({"host": "192.0.2.99"}, "This computer cannot listen on 192.0.2.99"),
-        ({"host": "0.0.0.0"}, "Add an administrator first"),
-        ({"port": "70000"}, "Port must lie between 1 and 65535"),
-        ({"allowed_hosts": "a b, under_score"}, "under_score is no name of a host"),
-        ({"allowed_hosts": ", ".join(f"a{n}" for n in range(21))}, "Give at most 20"),
+        ({"host": "somewhere"}, "somewhere is not an IP address"),
+        ({"host": "192.0.2.99"}, "The controller&#39;s computer cannot listen on 192.0.2.99"),
+        ({"host": "0.0.0.0"}, "Add an administrator on the Users page first"),
+        ({"port": "70000"}, "Port must be between 1 and 65535"),
+        ({"allowed_hosts": "a b, under_score"}, "under_score is not a host name"),
+        ({"allowed_hosts": ", ".join(f"a{n}" for n in range(21))}, "Enter at most 20 names"),
         ({"trusted_proxies": "proxy"}, "HELIOPANEL_TRUSTED_PROXIES names"),
     ],
 )
@@ -119,7 +119,7 @@ async def test_what_the_environment_sets_is_not_changed(tmp_path: Path) -> None:
     async with serving(app) as client:
         answer = await client.post("/network", data=FORM)
         assert answer.status_code == 422
-        assert "HELIOPANEL_PORT sets this where the service is started" in answer.text
+        assert "This value is set by HELIOPANEL_PORT at the start of the service" in answer.text
         assert (await client.get("/api/v1/network")).json()["fixed"] == ["port"]
 
 
@@ -140,7 +140,7 @@ async def test_only_the_ticket_keeps_what_is_tried(tmp_path: Path) -> None:
         stage=office.app.state.panel.network.following,
     )
     async with serving(tried) as client:
-        assert "Keep this" in (await client.get(f"/network/trial?ticket={trial.ticket}")).text
+        assert "Keep address" in (await client.get(f"/network/trial?ticket={trial.ticket}")).text
         assert (await client.post("/network/trial?ticket=guessed")).status_code == 409
         assert read_network(tmp_path)["port"] == PORT
         kept = await client.post("/api/v1/network/confirmation", json={"ticket": trial.ticket})

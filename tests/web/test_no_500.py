@@ -43,7 +43,9 @@ async def test_a_day_outside_the_years_of_the_sun_is_refused_with_a_sentence(
     given = None if body is None else body | {"date": day}
     answer = await client.request(method, path.format(day=day), json=given)
     assert answer.status_code == 422
-    assert answer.json()["detail"] == f"The sun is known for the years 1901 to 2099, not for {day}."
+    assert (
+        answer.json()["detail"] == f"Sun positions are available for the years 1901 to 2099, not for {day}."
+    )
     fault.prevented("refused before it is used")
     fault.shows(answer.json()["detail"])
     fault.recovers("with values within their range")

@@ -240,7 +240,7 @@ async def test_show_too_fast_offers_the_shortest(client: httpx.AsyncClient) -> N
     plan = {"date": "2026-06-21", "start": "05:07", "end": "20:10", "minutes": "0.3"}
     text = (await client.get(f"{T1}/show", params=plan)).text
     assert "This show cannot be run." in text
-    offered = re.search(r'href="(\?[^"]*minutes=[^"]*)">Take', text)
+    offered = re.search(r'href="(\?[^"]*minutes=[^"]*)">Use', text)
     assert offered
     again = (await client.get(f"{T1}/show{offered[1].replace('&amp;', '&')}")).text
     assert "This works" in again

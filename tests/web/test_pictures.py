@@ -152,8 +152,8 @@ async def test_a_recording_is_replayed_behind_the_horizon_of_its_time(
     [
         ("100", "Line 1: type azimuth and elevation with a space between, such as 135 8."),
         ("100 5\nx 5", "Line 2, azimuth: type a number, such as 0."),
-        ("100 95", "Line 1, elevation must lie between 0 and 89.9."),
-        ("100 5\n100 6", "each once"),
+        ("100 95", "Line 1, elevation must be between 0 and 89.9."),
+        ("100 5\n100 6", "each azimuth only once"),
         ("\n".join(f"{one} 1" for one in range(80)), "at most 72 points"),
     ],
 )

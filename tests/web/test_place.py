@@ -37,16 +37,20 @@ def form(latitude_deg: float, longitude_deg: float, **others: str) -> dict[str, 
     [
         (SAMSUN, "Europe/Istanbul", ""),
         (SAMSUN, "UTC", ""),
-        (Location(36.33, 41.2867), "Europe/Istanbul", "clocks keep Europe/Istanbul"),
-        (Location(41.2867, -36.33), "Europe/Istanbul", "highest at 17:25 by the clocks of Europe/Istanbul"),
+        (Location(36.33, 41.2867), "Europe/Istanbul", "in the time zone Europe/Istanbul"),
+        (
+            Location(41.2867, -36.33),
+            "Europe/Istanbul",
+            "solar noon is at 17:25 in the time zone Europe/Istanbul",
+        ),
         (Location(-33.92, 18.42), "Africa/Johannesburg", ""),
-        (Location(18.42, -33.92), "UTC", "lies in the sea"),
+        (Location(18.42, -33.92), "UTC", "is in the sea"),
         (Location(39.5, 75.9), "Asia/Shanghai", ""),
         (Location(1.87, -157.4), "Pacific/Kiritimati", ""),
         (Location(-23.65, -70.4), "America/Santiago", ""),
-        (Location(0.0, 170.0), "Etc/GMT-11", "lies in the sea"),
-        (Location(41.2867, -36.33), "Etc/GMT+2", "with east and west exchanged it lies on land"),
-        (Location(-41.2867, 36.33), "Etc/GMT-2", "lies in the sea"),
+        (Location(0.0, 170.0), "Etc/GMT-11", "is in the sea"),
+        (Location(41.2867, -36.33), "Etc/GMT+2", "with east and west swapped, it is on land"),
+        (Location(-41.2867, 36.33), "Etc/GMT-2", "is in the sea"),
         (Location(-37.0, 144.9), "Australia/Melbourne", ""),
     ],
 )
@@ -58,14 +62,16 @@ def test_what_speaks_against_a_place(place: Location, time_zone: str, said: str)
 def test_numbers_of_the_stored_place_exchanged_and_a_device_far_away() -> None:
     exchanged = Location(36.33, 41.2867)
     assert "stored location" in place_doubts(exchanged, "UTC", SUMMER, before=SAMSUN)[0]
-    assert place_doubts(SAMSUN, "UTC", SUMMER, before=exchanged)[0].startswith("These are the numbers")
+    assert place_doubts(SAMSUN, "UTC", SUMMER, before=exchanged)[0].startswith(
+        "These are the coordinates of the stored location"
+    )
     (sign, far) = place_doubts(Location(41.2867, -36.33), "Etc/GMT+2", SUMMER, before=SAMSUN)
-    assert sign == "These are the numbers of the stored location with east and west exchanged."
-    assert far == "This place is 5880 km away from the stored location."
+    assert sign == "These are the coordinates of the stored location with east and west swapped."
+    assert far == "This location is 5880 km away from the stored location."
     south = place_doubts(Location(-41.2867, 36.33), "Etc/GMT-2", SUMMER, before=SAMSUN)
-    assert south[0] == "These are the numbers of the stored location with north and south exchanged."
+    assert south[0] == "These are the coordinates of the stored location with north and south swapped."
     west = place_doubts(Location(52.0, -7.9), "Europe/Dublin", SUMMER, device_zone="Europe/Amsterdam")
-    assert west[0].startswith("With east and west exchanged the place lies where")
+    assert west[0].startswith("With east and west swapped, the location is in the time zone of this device")
     assert place_doubts(SAMSUN, "UTC", SUMMER, before=Location(41.3, 36.4)) == ()
     (far,) = place_doubts(SAMSUN, "Europe/Istanbul", SUMMER, device_zone="America/New_York")
     assert "are you at the tracker" in far
@@ -80,11 +86,11 @@ async def test_exchanged_numbers_are_asked_about_with_the_sun_there_now(
     answer = await client.post(PAGE, data=typed, headers=HTMX)
     assert answer.status_code == 422
     assert not saved(machine)
-    assert "latitude and longitude exchanged" in answer.text
-    assert "There the sun stands now:" in answer.text
+    assert "latitude and longitude swapped" in answer.text
+    assert "Current sun position there:" in answer.text
     assert f'value="{place.longitude_deg}"' in answer.text, "what was typed stays"
     fault.prevented("refused when saved")
-    fault.shows("These are the numbers of the stored location with latitude and longitude exchanged.")
+    fault.shows("These are the coordinates of the stored location with latitude and longitude swapped.")
     fault.recovers("with the right numbers, or when they are confirmed")
 
     answer = await client.post(PAGE, data=typed | {"sun_there": "yes"})
@@ -109,8 +115,8 @@ async def test_a_program_confirms_what_speaks_against_its_place(
 async def test_before_it_is_saved_the_page_shows_the_sun_of_the_place(client: httpx.AsyncClient) -> None:
     typed = {"latitude": "41.2867", "longitude": "36.33"}
     answer = await client.get(f"{PAGE}/preview", params=typed, headers=HTMX)
-    assert "The sun stands there now:" in answer.text
-    assert "With the two numbers exchanged:" in answer.text
+    assert "Current sun position there:" in answer.text
+    assert "With the two coordinates exchanged:" in answer.text
 
 
 async def test_a_place_that_is_stored_is_not_asked_about_again(

@@ -26,8 +26,8 @@ async def test_the_page_is_reached_from_the_settings_and_tells_range_and_default
 ) -> None:
     assert PAGE in (await client.get(f"{ROOT}/settings")).text
     page = (await client.get(PAGE)).text
-    assert "The fastest wind of 3 s. 1 to 60, usual 17." in page
-    assert "Without a break. 1 to 86400, usual 600." in page
+    assert "Highest wind speed over 3 s. 1 to 60, usual 17." in page
+    assert "Without interruption. 1 to 86400, usual 600." in page
 
 
 async def test_what_the_page_shows_is_what_it_saves(client: httpx.AsyncClient, machine: FakeMachine) -> None:
@@ -55,14 +55,14 @@ async def test_what_the_page_shows_is_what_it_saves(client: httpx.AsyncClient, m
 @pytest.mark.parametrize(
     ("typed", "sentence"),
     [
-        ({"wind_gust_mps": "fast"}, "Wind: stow at a gust of: type a number"),
-        ({"wind_gust_mps": "99"}, "must lie between 1 and 60"),
-        ({"wind_hysteresis_mps": "18"}, "must be smaller than both wind limits"),
-        ({"snow_hysteresis_kg": "5"}, "must be smaller than the load"),
-        ({"light_bad": "stow"}, "stows nothing: choose ignore, warn or hold"),
-        ({"wind_bad": "pray"}, "what a bad sensor does"),
-        ({"wind_facing": "nose"}, "what is turned into the wind"),
-        ({"snow_stow_azimuth": "400"}, "Snow, azimuth must lie between 0 and 360"),
+        ({"wind_gust_mps": "fast"}, "Wind: gust threshold: type a number"),
+        ({"wind_gust_mps": "99"}, "must be between 1 and 60"),
+        ({"wind_hysteresis_mps": "18"}, "must be smaller than both wind thresholds"),
+        ({"snow_hysteresis_kg": "5"}, "must be smaller than the snow-stow threshold"),
+        ({"light_bad": "stow"}, "cannot cause a stow: choose ignore, warn, or hold"),
+        ({"wind_bad": "pray"}, "Choose the sensor-fault reaction from the list"),
+        ({"wind_facing": "nose"}, "Choose the orientation to wind from the list"),
+        ({"snow_stow_azimuth": "400"}, "Snow, azimuth must be between 0 and 360"),
     ],
 )
 async def test_what_cannot_be_is_refused_and_stays_in_the_form(
@@ -104,7 +104,7 @@ async def test_the_api_does_what_the_page_does(client: httpx.AsyncClient, machin
     assert kept(machine).stows.snow == StowPlace(0.0)
     wrong = await client.patch(API, json={"protection": {"light": {"bad": "stow"}}})
     assert wrong.status_code == 422
-    assert "stows nothing" in wrong.text
+    assert "cannot cause a stow" in wrong.text
 
 
 async def test_a_weather_station_is_set_on_the_site_page_and_over_the_api(

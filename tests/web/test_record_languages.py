@@ -141,7 +141,7 @@ async def test_page_and_html_are_in_the_language_of_the_reader(code: str, desk: 
     printed = await read(desk, code, "html")
     assert f"<html lang='{LANGUAGES[code].tag}'>" in printed.text
     assert "Accept-Language" in printed.headers["vary"]
-    for words in ("Settings as left", "gear ratio", "not selected", "Pointing correction"):
+    for words in ("Settings as left", "gear ratio", "not selected", "Mounting correction"):
         assert catalogue.pgettext("record", words) != words
         assert catalogue.pgettext("record", words) in page
         assert catalogue.pgettext("record", words) in printed.text

@@ -82,7 +82,7 @@ async def test_signing_twice_at_one_instant_keeps_one_record(desk: Desk) -> None
     again = await sign(desk)
     assert kept
     assert all(one == again for one in kept)
-    assert all(one.status_code == 409 and "signed already" in one.text for one in refused)
+    assert all(one.status_code == 409 and "already signed" in one.text for one in refused)
     assert len((await desk.ask("GET", "/api/v1/records")).json()) == 1
 
 
@@ -129,9 +129,9 @@ async def test_photos_wait_and_go_with_the_next_record(desk: Desk) -> None:
 @pytest.mark.parametrize(
     ("upload", "words"),
     [
-        (b"<svg/>", "no JPEG or PNG"),
-        (picture("PNG")[:300], "no JPEG or PNG"),
-        (picture("GIF"), "no JPEG or PNG"),
+        (b"<svg/>", "not a JPEG or PNG image"),
+        (picture("PNG")[:300], "not a JPEG or PNG image"),
+        (picture("GIF"), "not a JPEG or PNG image"),
         (b"x" * (8 * 1024 * 1024 + 1), "at most 8 MB"),
     ],
 )
@@ -156,7 +156,7 @@ async def test_the_form_signs_and_keeps_what_was_typed_where_it_cannot(desk: Des
     form = {"remark": "Sign here", "technician": "", "technician_drawn": json.dumps(STROKES)}
     answer = await desk.ask("POST", "/trackers/T1/record", data=form)
     assert answer.status_code == 422
-    assert "type the name of whoever signed" in answer.text
+    assert "type the name of the person who signed" in answer.text
     assert "Sign here" in answer.text
     assert "[400, 250]" in answer.text
     good = await desk.ask(
@@ -187,7 +187,7 @@ async def test_a_record_needs_the_technician(desk: Desk) -> None:
 async def test_the_label_opens_the_trackers_page(desk: Desk) -> None:
     page = (await desk.ask("GET", "/trackers/T1/label?address=https://heliopanel.local:8443/x")).text
     assert "https://heliopanel.local:8443/trackers/T1" in page
-    assert "this computer only" in (await desk.ask("GET", "/trackers/T1/label")).text
+    assert "the controller's computer only" in (await desk.ask("GET", "/trackers/T1/label")).text
     wrong = await desk.ask("GET", "/trackers/T1/label?address=javascript:alert(1)")
     assert wrong.status_code == 422
     assert "Address: type how tablets reach" in wrong.text

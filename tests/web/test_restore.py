@@ -53,7 +53,7 @@ async def test_while_the_database_is_in_order_nothing_is_restored(
     client: httpx.AsyncClient, data_dir: Path
 ) -> None:
     page = await client.get("/restore")
-    assert "The database is in order" in page.text
+    assert "The database is intact" in page.text
     assert NAME in page.text
     assert "Restore this backup" not in page.text
     refused = await client.post("/api/v1/restore", json={"file": NAME})

@@ -156,12 +156,12 @@ async def test_a_place_of_ten_trackers_is_one_hit_with_ways_to_all(park: httpx.A
 
 async def test_where_nothing_has_all_the_words_the_nearest_comes(park: httpx.AsyncClient) -> None:
     answer = await park.get("/search", params={"q": "north pole"})
-    assert "Nothing has all these words. This comes nearest:" in answer.text
+    assert "No result contains all these words. Closest results:" in answer.text
     assert HIT.findall(answer.text)[0] == f"{T1}/sun-check"
     assert (await found(park, "exchanging axes"))[0] == f"{ALARM}axes_swapped"
     assert (await found(park, "Windwächter", "de"))[0].startswith((T1, ALARM, "/site"))
     nothing = await park.get("/search", params={"q": "xyzzy"})
-    assert "Nothing has all these words." in nothing.text
+    assert "No result contains all these words." in nothing.text
     assert HIT.findall(nothing.text) == []
 
 
@@ -224,6 +224,6 @@ async def test_fields_of_every_form_are_found_by_their_names(
 
 def test_the_fields_of_a_template_are_read_with_label_and_hint() -> None:
     fields = {one.name: one for one in fields_of("show.html")}
-    assert fields["minutes"].label == "In how many minutes"
+    assert fields["minutes"].label == "Duration of the show"
     assert "0.1 to 1440" in fields["minutes"].hint
     assert {"host", "port", "baud_rate"} <= {one.name for one in fields_of("drive.html")}

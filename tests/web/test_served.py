@@ -82,7 +82,7 @@ def test_one_command_later_the_panel_is_served_over_https(folder: Path) -> None:
         with httpx.Client(base_url=url, verify=trusting) as tablet:
             page = tablet.get("/certificate")
             assert page.headers["strict-transport-security"] == HSTS
-            assert "Install the authority on a tablet" in page.text
+            assert "Install the CA on a tablet" in page.text
             assert "tracker.example" in page.text
             _hire(app)
             secret = {"name": "root", "password": PASSWORD}

@@ -40,7 +40,7 @@ async def test_service_begins_in_a_name_is_confirmed_counts_down_and_ends(desk: 
     await desk.ask("PATCH", API, json={"machine": {"clear_for_s": 20}})
     status, text = await press(desk, "", name="")
     assert status == 409
-    assert "Service mode bears a name" in text
+    assert "Service mode requires a name" in text
     assert (await press(desk, "", name="Ada"))[0] == 200
     await desk.forward(1.0)
     served = (await seen(desk))["service"]
@@ -48,13 +48,13 @@ async def test_service_begins_in_a_name_is_confirmed_counts_down_and_ends(desk: 
     assert served["clear_for_s"] == 0.0
     status, text = await press(desk, "/clear")
     assert status == 422
-    assert "tick that nobody stands where the panel moves" in text
+    assert "confirm that no one is within reach of the panel" in text
     assert (await press(desk, "/clear", looked="yes"))[0] == 200
     await desk.forward(5.0)
     assert 14.5 <= (await seen(desk))["service"]["clear_for_s"] <= 15.5
     page = (await desk.ask("GET", PAGE)).text
     assert "at <b>0.5°/s</b> in azimuth and <b>0.5°/s</b> in elevation" in page
-    assert "In service by" in (await desk.ask("GET", "/trackers/T1")).text
+    assert "In service mode by" in (await desk.ask("GET", "/trackers/T1")).text
     await desk.forward(16.0)
     assert (await seen(desk))["service"]["clear_for_s"] == 0.0
     assert (await seen(desk))["actions"]["jog"][0]["code"] == "area_not_clear"
@@ -70,23 +70,23 @@ async def test_the_switch_at_the_cabinet_is_told_on_every_page(desk: Desk) -> No
         page = (await desk.ask("GET", path)).text
         banner = page.split('data-when="local=true"')[1]
         assert banner.startswith(">"), f"the banner is hidden on {path}"
-        assert "Local: the panel cannot move it." in banner
+        assert "Local: Heliopanel cannot move the tracker." in banner
     for path in ("/", "/site", "/alarms"):
         page = (await desk.ask("GET", path)).text
-        assert 'the panel cannot move <span id="local-names">T1</span>' in page
+        assert 'Local: Heliopanel cannot move <span id="local-names">T1</span>' in page
 
 
 async def test_the_zero_says_who_granted_it_and_why_it_was_lost(desk: Desk) -> None:
     never = (await desk.ask("GET", "/trackers/T1")).text
-    assert "No zero has been set yet." in never
+    assert "No home position has been set yet." in never
     assert (await seen(desk))["home"] is None
     await desk.ask("POST", f"{API}/commands", json={"type": "zero", "confirmed": True})
     await desk.forward(3.0)
     granted = await seen(desk)
     assert granted["home_trusted"]
-    assert granted["home"]["by"] == "this computer"
-    assert granted["home"]["how"] == "set by hand"
-    assert "this computer" in (await desk.ask("GET", "/trackers/T1")).text
+    assert granted["home"]["by"] == "local user"
+    assert granted["home"]["how"] == "set manually"
+    assert "local user" in (await desk.ask("GET", "/trackers/T1")).text
     await desk.ask("POST", f"{API}/training", json={"fault": "power_loss"})
     await desk.forward(2.0)
     lost = await seen(desk)

@@ -69,7 +69,7 @@ async def test_in_the_south_it_opens_with_what_works_and_says_why_it_takes_longe
     text = await opened(machine)
     assert typed(text) == {"date": "2026-11-22", "start": "05:40", "end": "19:42", "minutes": "5"}
     assert "This works: 5 min" in text
-    assert "3 minutes are too fast here: the panel must turn back at north." in text
+    assert "3 minutes are too short here: the panel must turn back at north." in text
     async with serving(fake_app(machine)) as client:
         await client.post(f"{SHOW}/go-to-start", data=typed(text))
     (order,) = [one.command for one in machine.orders if isinstance(one.command, GoToStart)]
@@ -80,7 +80,7 @@ async def test_what_was_typed_is_judged_as_it_was_typed() -> None:
     machine = machine_at(SYDNEY)
     text = await opened(machine, f"{SHOW}?date=2026-11-22&start=05:40&end=19:42&minutes=3")
     assert "This show cannot be run." in text
-    assert instead(text)[1] == "Take 4 min instead"
+    assert instead(text)[1] == "Use 4 min instead"
     assert "Minutes: type a number" in await opened(machine, f"{SHOW}?date=2026-11-22&minutes=")
 
 
@@ -120,7 +120,7 @@ async def test_a_mode_that_the_mount_does_not_have_leads_to_those_that_it_has() 
     tracker = machine.trackers["T1"]
     tracker.config = mounted(tracker.config, MountKind.HORIZONTAL_SINGLE_AXIS, -33.87)
     text = await opened(machine)
-    assert "cannot do the mode dual" in text
+    assert "does not support the mode dual" in text
     assert instead(text) == ("/trackers/T1/commissioning/mode", "Choose another mode")
 
 
@@ -128,7 +128,7 @@ async def test_a_fixed_panel_is_said_to_stand_still() -> None:
     machine = machine_at(SYDNEY)
     tracker = machine.trackers["T1"]
     tracker.memory = replace(tracker.memory, mode=Mode.FIXED)
-    assert "the panel stands still through the whole show" in await opened(machine)
+    assert "the panel does not move during the show" in await opened(machine)
 
 
 async def test_in_the_polar_night_it_says_so_and_proposes_a_day_with_sun() -> None:
@@ -138,7 +138,7 @@ async def test_in_the_polar_night_it_says_so_and_proposes_a_day_with_sun() -> No
     link, label = instead(text)
     day = date.fromisoformat(parse_qs(link[1:])["date"][0])
     assert date(2027, 1, 12) < day < date(2027, 1, 22)
-    assert label == f"Take {day}, the next day with an hour of sun"
+    assert label == f"Use {day}, the next day with an hour of sun"
     assert "This works: 3 min" in await opened(machine, SHOW + link)
 
 
@@ -151,7 +151,7 @@ async def test_in_the_polar_day_the_whole_day_is_shown() -> None:
 async def test_hours_of_the_night_are_answered_with_those_of_the_day() -> None:
     text = await opened(machine_at(SYDNEY), f"{SHOW}?date=2026-11-22&start=21:00&end=02:00&minutes=3")
     assert "The sun is below the horizon" in text
-    assert instead(text) == ("?date=2026-11-22", "Take sunrise to sunset instead: 05:40 to 19:42")
+    assert instead(text) == ("?date=2026-11-22", "Use sunrise to sunset instead: 05:40 to 19:42")
 
 
 async def test_where_clocks_are_far_from_the_sun_the_daylight_is_still_whole() -> None:

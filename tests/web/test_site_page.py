@@ -32,13 +32,13 @@ async def test_a_report_of_the_weather_is_shown_with_its_age(
     assert "No weather station has reported" in (await panel.get("/site")).text
     answer = await panel.put(f"{API}/weather", json={"wind_mps": 7.25, "temperature_degc": -3.4})
     assert answer.status_code == 200
-    assert answer.json()["source"] == "this computer"
+    assert answer.json()["source"] == "local user"
     assert (await panel.get(API)).json()["weather"]["readings"]["wind_mps"] == 7.25
     for page in ("/", "/site"):
         text = (await panel.get(page)).text
         assert "7.2 m/s" in text
         assert "−3.4 °C" in text
-        assert "Wind, snow and light act on each tracker" in text
+        assert "Wind, snow, and irradiance act on each tracker according to its protection settings" in text
         assert "Humidity" not in text, "what the station does not measure is not shown"
 
 
@@ -52,12 +52,12 @@ async def test_without_the_machine_nothing_is_said_to_be_well(
     assert "No alarms" in (await panel.get("/site")).text
     machine.cut()
     for path, sentence in (
-        ("/site", "so that the weather is not known here"),
-        ("/alarms", "so that it is not known which alarms stand"),
+        ("/site", "weather data is unavailable"),
+        ("/alarms", "so the active alarms are not known"),
     ):
         text = (await panel.get(path)).text
         assert sentence in text
-        assert "Alarms are not known now" in text
+        assert "Alarm status unavailable" in text
         assert "No alarms" not in text
         assert "No weather station has reported" not in text
 
@@ -86,13 +86,13 @@ async def test_every_integration_tells_its_state(panel: httpx.AsyncClient, machi
     text = (await panel.get("/site")).text
     assert "2 clients connected." in text
     assert "128 events wait to be sent." in text
-    assert "set HELIOPANEL_SUNSPEC_SERIAL to open it" in text
+    assert "set HELIOPANEL_SUNSPEC_SERIAL to enable it" in text
     metrics = (await panel.get("/api/v1/metrics")).text
     assert 'heliopanel_gateway_up{gateway="MQTT"} 0.0' in metrics
     assert 'heliopanel_gateway_up{gateway="SunSpec over Modbus TCP"} 1.0' in metrics
     machine.cut()
     assert (await panel.get(f"{API}/integrations")).status_code == 503
-    assert "does not tell how its integrations are doing" in (await panel.get("/site")).text
+    assert "does not report the status of its integrations" in (await panel.get("/site")).text
 
 
 SIMULATED = {
@@ -128,8 +128,8 @@ async def test_made_up_weather_that_cannot_be_keeps_what_was_typed(
     wrong = SIMULATED | {"wind_mps": "51", "scenario": "hurricane", "snow_kg": ""}
     answer = await panel.post("/site/simulated-weather", data=wrong)
     assert answer.status_code == 422
-    assert "3 values need another look" in answer.text
-    assert "The simulated mean wind must lie between 0 and 50." in answer.text
+    assert "3 values have errors" in answer.text
+    assert "The simulated mean wind must be between 0 and 50." in answer.text
     assert 'value="51"' in answer.text
     assert machine.orders == []
 
@@ -140,7 +140,7 @@ async def test_a_site_with_a_real_tracker_is_offered_no_made_up_weather(
     real = machine.trackers["T2"]
     real.config = replace(real.config, drive=DriveConfig(DriveKind.MODBUS_TCP, host="10.0.0.5"))
     text = (await panel.get("/site")).text
-    assert "all of whose trackers are simulated: T2 is not" in text
+    assert "Only for sites where every tracker is simulated: T2 is not" in text
     assert "Simulate this weather" not in text
 
 
@@ -170,7 +170,7 @@ async def test_windows_and_ages_are_set_on_the_page_and_over_the_api(
     assert machine.site.weather_windows == replace(usual, wind_old_after_s=20.0)
     wrong = await panel.post("/site/weather-windows", data=typed | {"gust_s": "61", "mean_s": "x"})
     assert wrong.status_code == 422
-    assert "The window of the gust must lie between 1 and 60." in wrong.text
+    assert "The window of the gust must be between 1 and 60." in wrong.text
     assert 'value="61"' in wrong.text
     assert (await panel.put(url, json={"gust_s": 5})).json() == asdict(replace(usual, gust_s=5.0))
     assert (await panel.put(url, json={"mean_s": 59})).status_code == 422
@@ -196,7 +196,7 @@ async def test_without_the_machine_no_settings_are_offered(
 ) -> None:
     machine.cut()
     text = (await panel.get("/site")).text
-    assert "its settings are not known here" in text
+    assert "its settings are unavailable" in text
     assert "station-form" not in text
 
 
@@ -214,8 +214,8 @@ async def test_the_site_says_who_may_write_and_what_a_gateway_has_control_of() -
         page = (await client.get("/site")).text
         told = (await client.get("/api/v1/site/integrations")).json()
         overview = (await client.get("/")).text
-    assert "10.0.0.5 may write; everybody else only reads. It has control of T2." in page
-    assert told[0]["writes"] == "10.0.0.5 may write; everybody else only reads."
+    assert "10.0.0.5 may write; all other hosts can only read. This integration has control of T2." in page
+    assert told[0]["writes"] == "10.0.0.5 may write; all other hosts can only read."
     assert re.search(r'data-live="control.holder"[^>]*>SunSpec<', overview)
     async with serving(fake_app(FakeMachine())) as client:
-        assert "It has control of no tracker now" in (await client.get("/site")).text
+        assert "This integration has control of no tracker" in (await client.get("/site")).text

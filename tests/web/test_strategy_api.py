@@ -57,7 +57,7 @@ async def test_what_is_no_strategy_is_refused_in_words(
 async def test_a_program_goes_in_and_comes_back_as_csv(api: httpx.AsyncClient, machine: FakeMachine) -> None:
     missing = await api.get(f"{TRACKER}/program")
     assert missing.status_code == 404
-    assert "follows no step program" in missing.json()["detail"]
+    assert "does not follow a step program" in missing.json()["detail"]
     table = to_table(ALEXANDRU_TABLE_3)
     put = await api.put(f"{TRACKER}/program.csv", content=table, headers={"content-type": "text/csv"})
     assert put.status_code == 200

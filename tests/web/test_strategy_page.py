@@ -38,7 +38,7 @@ async def test_a_strategy_is_saved_and_shown_again(client: httpx.AsyncClient, ma
     ("typed", "sentence"),
     [
         ({"kind": "interval", "minutes": "soon"}, "Minutes: type a number"),
-        ({"kind": "deadband", "deadband": "44"}, "Deadband must lie between 0.02 and 10"),
+        ({"kind": "deadband", "deadband": "44"}, "Deadband must be between 0.02 and 10"),
         (
             {"kind": "encoder-deadband", "counts": "10", "counts_per_turn": "36"},
             "between 0.02 and 10 degrees",
@@ -67,7 +67,7 @@ async def test_a_program_made_by_hand_is_saved(client: httpx.AsyncClient, machin
     answer = await client.post(f"{PAGE}/program", data=head | rows, headers={"HX-Request": "true"})
     assert (answer.status_code, answer.text) == (204, ""), "the form must not be swapped for a sentence"
     again = (await client.get(answer.headers["HX-Redirect"])).text
-    assert "Three places is saved; the tracker goes by it." in again
+    assert "Three places is saved; the tracker now uses it." in again
     assert 'value="stepped" required checked' in again
     strategy = kept(machine)
     assert isinstance(strategy, Stepped)

@@ -71,7 +71,7 @@ async def test_beyond_its_share_a_client_is_refused_with_503_and_a_reason() -> N
         "type": "about:blank",
         "title": "Service Unavailable",
         "status": 503,
-        "detail": "This computer has too many live pages or streams open. Close some, then try again.",
+        "detail": "This device has too many live pages or streams open. Close some, then try again.",
     }
     assert len(held.asked) == 2
     await held.end()

@@ -89,9 +89,9 @@ async def test_no_more_than_five_are_under_way(client: httpx.AsyncClient) -> Non
         ({"strategies": []}, "at least one strategy"),
         ({"strategies": ["program"]}, "needs a program"),
         ({"fidelity": "controller"}, "needs a tracker"),
-        ({"fidelity": "controller", "tracker_id": "T1", "span": "year"}, "has one day"),
+        ({"fidelity": "controller", "tracker_id": "T1", "span": "year"}, "covers one day"),
         ({"fidelity": "controller", "tracker_id": "T1", "modes": ["equatorial"]}, "the tracker's own mount"),
-        ({"light": "weather-file"}, "A weather file is named"),
+        ({"light": "weather-file"}, "Enter a weather file if, and only if"),
         ({"span": "year", "step_min": 1, "modes": ["azimuth", "elevation", "dual"],
           "strategies": ["continuous", "deadband", "interval", "program"]}, "too many"),
         ({"date": "1890-01-01"}, "Choose a year"),
@@ -152,7 +152,7 @@ async def test_what_is_no_weather_file_is_refused_and_not_kept(
     client: httpx.AsyncClient, tmp_path: Path
 ) -> None:
     for name, content, sentence in (
-        ("notes.csv", b"hello", "no weather file that Heliopanel reads"),
+        ("notes.csv", b"hello", "cannot read this weather file"),
         ("half.epw", epw()[:400_000], "hours; a whole year has 8760"),
         ("../up.epw", epw(), "Name the weather file"),
         ("empty.epw", b"", "empty"),
@@ -184,7 +184,7 @@ async def test_programs_are_found_and_used_on_a_tracker(
     assert len(strategy.program.steps) == 9
     refused = await client.post(f"{V1}/studies/programs", json={**asked, "steps": 30})
     assert refused.status_code == 422
-    assert "the most that fit are 12" in refused.json()["detail"]
+    assert "the maximum is 12" in refused.json()["detail"]
 
 
 async def test_what_was_under_way_when_the_panel_ended_is_told(

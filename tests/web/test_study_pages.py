@@ -80,7 +80,7 @@ async def test_what_was_typed_stays_and_every_fault_is_named(client: httpx.Async
     answer = await client.post("/studies", data=sent, headers=HTMX)
     assert answer.status_code == 422
     assert "Deadband: type a number" in answer.text
-    assert "Step must lie between 1 and 60" in answer.text
+    assert "Step must be between 1 and 60" in answer.text
     assert 'value="wide"' in answer.text
     assert "Noon&#39;s &lt;best&gt;" in answer.text
     assert re.search(r'value="dual" checked', answer.text)
@@ -111,7 +111,7 @@ async def test_a_begun_study_opens_its_page_and_can_be_cancelled(client: httpx.A
     assert "<form" not in (await client.get("/studies/list", headers=HTMX)).text
     gone = await client.post(f"{address}/remove")
     assert gone.headers["location"] == address
-    assert "was cancelled before it was done" in (await client.get(address)).text
+    assert "was canceled before completion" in (await client.get(address)).text
     assert (await client.post(f"{address}/remove")).headers["location"] == "/studies"
     assert (await client.get(address)).status_code == 404
 
@@ -119,18 +119,18 @@ async def test_a_begun_study_opens_its_page_and_can_be_cancelled(client: httpx.A
 async def test_a_result_has_table_pictures_and_files(client: httpx.AsyncClient, kept: StudyFolder) -> None:
     text = (await client.get(f"/studies/{STUDY_ID}")).text
     assert text.count("<h1") == 1
-    for name in ("Light in the plane of the panel", "Where the panel faces", "Electric energy of each month",
-                 "In the plane of the panel, Dual-axis, continuous"):  # fmt: skip
+    for name in ("Irradiance in the panel plane", "Panel orientation", "Electric energy of each month",
+                 "In the panel plane, Dual-axis, continuous"):  # fmt: skip
         assert name in text
     for unit in ("W/m²", "kWh", "degrees", "hour of the day, standard time (UTC+3)", "month"):
         assert unit in text
     assert not re.search(r"\sstyle=|<style|\son[a-z]+=", text)
     assert "41.2800° north, 36.3300° east" in text
-    assert "Ineichen and Perez, Linke turbidity of the place; sky by Hay and Davies" in text
+    assert "Ineichen and Perez, Linke turbidity of the location; sky model Hay and Davies" in text
     assert 'aria-current="true"><td><a href="/studies/20260621T120000-0a1b2c?case=2">Dual-axis' in text
     december = (await client.get(f"/studies/{STUDY_ID}?case=1&day=11")).text
     assert "10 December 2026" in december
-    assert "Where the panel faces, Azimuth, continuous" in december
+    assert "Panel orientation, Azimuth, continuous" in december
     table = await client.get(f"/studies/{STUDY_ID}/table.csv")
     assert len(table.text.splitlines()) == 4
     curves = await client.get(f"/studies/{STUDY_ID}/curves.csv")
@@ -180,12 +180,12 @@ async def test_step_programs_are_shown_and_used(client: httpx.AsyncClient, machi
     assert 'hx-trigger="load"' in first.text
     bookmarked = await client.get("/studies/program", params=asked)
     assert "longitude=25.6" in bookmarked.text[bookmarked.text.index('hx-trigger="load"') - 400 :]
-    assert "leave most" not in bookmarked.text
+    assert "Best net energy" not in bookmarked.text
     answer = await client.get("/studies/program", params={**asked, "chosen": "8"}, headers=HTMX)
     assert answer.status_code == 200
     assert "The program of 8 steps" in answer.text
     assert "1932.62" in answer.text
-    assert "10 steps leave most" in answer.text
+    assert "Best net energy: 10 steps" in answer.text
     assert "−0.00" not in answer.text
     await check_files(client, answer.text)
     used = await client.post(
@@ -196,7 +196,7 @@ async def test_step_programs_are_shown_and_used(client: httpx.AsyncClient, machi
     assert isinstance(strategy, Stepped)
     wrong = await client.get("/studies/program", params={**asked, "range": "500", "tilt": "x"}, headers=HTMX)
     assert wrong.status_code == 422
-    assert "Range must lie between 5 and 120" in wrong.text
+    assert "Range must be between 5 and 120" in wrong.text
     assert 'value="500"' in wrong.text
 
 
@@ -211,13 +211,13 @@ async def check_files(client: httpx.AsyncClient, shown: str) -> None:
     assert len(from_table(kept.text).steps) == 9
     wrong = await client.get("/studies/program/table.csv", params={"date": "2026-06-21", "range": "500"})
     assert wrong.status_code == 422
-    assert "Range must lie between 5 and 120" in wrong.text
+    assert "Range must be between 5 and 120" in wrong.text
 
 
 async def test_a_weather_file_that_is_none_is_refused_below_its_key(client: httpx.AsyncClient) -> None:
     answer = await client.post("/studies/weather", files={"file": ("notes.csv", b"hello")}, headers=HTMX)
     assert answer.status_code == 422
-    assert "no weather file that Heliopanel reads" in answer.text
+    assert "Heliopanel cannot read this weather file" in answer.text
     assert "outcome-refused" in answer.text
 
 

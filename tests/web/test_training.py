@@ -40,7 +40,7 @@ async def test_a_fault_is_played_seen_and_ended(desk: Desk) -> None:
     played = await desk.ask(
         "POST", "/trackers/T1/training/play", data={"fault": "local_switch"}, headers=HTMX
     )
-    assert "The fault is played." in played.text
+    assert "The fault is injected." in played.text
     await desk.forward(1.0)
     seen = (await desk.ask("GET", "/api/v1/trackers/T1/snapshot")).json()
     assert seen["local"] is True
@@ -69,7 +69,7 @@ async def test_weather_is_played_on_made_up_weather_only_and_ends_with_the_fault
     await desk.forward(2.0)
     assert (await desk.ask("POST", API, json={"fault": "wind_impossible"})).status_code == 204
     page = (await desk.ask("GET", "/trackers/T1/training")).text
-    assert "Played now: wind impossible." in page
+    assert "Active fault: wind implausible." in page
     assert all(one.title in unescape(page) for one in LESSONS)
     await desk.forward(2.0)
     assert await wind(desk) == "impossible"
@@ -86,7 +86,7 @@ async def test_a_storm_that_meets_a_fault_says_not_stowed_on_every_page(desk: De
     await desk.forward(3.0)
     for path in ("/trackers/T1", "/trackers/T1/training", "/trackers/T1/settings"):
         page = (await desk.ask("GET", path)).text
-        assert "is NOT STOWED, and wind demands it" in page
+        assert "is NOT STOWED, although wind requires it" in page
         assert 'data-when="not_stowed">' in page, "the band is shown"
 
 
@@ -120,9 +120,9 @@ async def test_a_pressed_switch_is_named_with_the_way_out_on_the_page(desk: Desk
     await desk.forward(1.0)
     seen = (await desk.ask("GET", "/api/v1/trackers/T1/snapshot")).json()
     told = {reason["code"]: reason["message"] for reason in seen["notices"]}
-    sentence = "The upper limit switch of the azimuth axis of Tracker 1 is on although it stands within"
+    sentence = "The upper limit switch of the azimuth axis of Tracker 1 is on although the axis is within"
     assert told["at_limit_switch"].startswith(sentence)
-    assert told["at_limit_switch"].endswith("it moves west (anticlockwise) only.")
+    assert told["at_limit_switch"].endswith("the axis moves west (counterclockwise) only.")
     assert sentence in (await desk.ask("GET", "/trackers/T1/training")).text
     fault.shows(told["at_limit_switch"])
     await desk.ask("POST", API, json={"fault": "both_limits"})
@@ -133,7 +133,7 @@ async def test_a_pressed_switch_is_named_with_the_way_out_on_the_page(desk: Desk
 
 
 async def test_step_3_of_a_simulated_tracker_says_how_its_true_zero_is_found(desk: Desk) -> None:
-    told = "A simulated tracker has no panel to look at: its origin switches know its true zero."
+    told = "A simulated tracker has no panel to observe: use its home switches to find the home position."
     page = "/trackers/T1/commissioning/homing"
     assert told in (await desk.ask("GET", page)).text
     real = {"drive": {"kind": "modbus-tcp", "profile": "simulated-plc", "host": "127.0.0.1", "port": 5020}}

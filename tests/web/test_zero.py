@@ -10,8 +10,8 @@ from tests.fakes import FakeMachine
 T1 = "/trackers/T1"
 COMMANDS = "/api/v1/trackers/T1/commands"
 HTMX = {"HX-Request": "true"}
-AZIMUTH = "The measured azimuth is 102.4°. You say that the panel faces north (0°)?"
-ELEVATION = "The measured elevation is 36.6°. You say that the panel stands upright (0°)?"
+AZIMUTH = "The measured azimuth is 102.4°. Does the panel really face north (0°)?"
+ELEVATION = "The measured elevation is 36.6°. Is the panel really vertical (0°)?"
 
 
 def sent(machine: FakeMachine, kind: type) -> list[object]:
@@ -42,7 +42,10 @@ async def test_a_program_confirms_as_for_a_place(machine: FakeMachine, client: h
     stand(machine, 102.4, 1.9)
     asked = await client.post(COMMANDS, json={"type": "zero"})
     assert asked.status_code == 422
-    assert asked.json()["detail"] == f"{AZIMUTH} If the panel is there, send it again with `confirmed`."
+    assert (
+        asked.json()["detail"]
+        == f"{AZIMUTH} If the panel is at the home position, send the request again with `confirmed`."
+    )
     assert (await client.post(COMMANDS, json={"type": "zero", "axes": ["elevation"]})).status_code == 202
     assert (await client.post(COMMANDS, json={"type": "zero", "confirmed": True})).status_code == 202
     assert len(sent(machine, SetZero)) == 2

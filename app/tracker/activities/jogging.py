@@ -23,7 +23,7 @@ def jog(mind: Mind, command: Jog) -> None:
     """Begin or renew a press, or raise `CommandRejected`; a refused press is dead."""
     jogging = mind.activity
     if isinstance(jogging, Jogging) and mind.now >= jogging.until:
-        end(mind, jogging, "it was not renewed in time.", "expired")
+        end(mind, jogging, "the jog command was not renewed in time.", "expired")
     if isinstance(mind.activity, Jogging) and mind.activity.press_id == command.press_id:
         _renew(mind, mind.activity, command)
         return
@@ -38,7 +38,7 @@ def end_jog(mind: Mind, command: EndJog) -> None:
     """End a press; one that is not known is dead from now on."""
     mind.kill_press(command.press_id)
     if isinstance(mind.activity, Jogging) and mind.activity.press_id == command.press_id:
-        end(mind, mind.activity, "the key was let go.", "released")
+        end(mind, mind.activity, "the button was released.", "released")
 
 
 def end(mind: Mind, jogging: Jogging, why: str, outcome: str) -> None:
@@ -55,7 +55,7 @@ def end(mind: Mind, jogging: Jogging, why: str, outcome: str) -> None:
 def step(mind: Mind, jogging: Jogging, feedback: Feedback) -> Turn:
     """Turn the axis while the lease lasts, but not into a switch and not beyond a trusted soft limit."""
     if mind.now >= jogging.until:
-        end(mind, jogging, "it was not renewed in time.", "expired")
+        end(mind, jogging, "the jog command was not renewed in time.", "expired")
         return Turn(mind.activity)
     seen = axis_feedback(feedback, jogging.axis)
     if at_switch(seen, jogging.direction):
@@ -74,12 +74,12 @@ def at_switch(seen: AxisFeedback, direction: int) -> bool:
 
 def _renew(mind: Mind, jogging: Jogging, command: Jog) -> None:
     if (command.axis, command.direction) != (jogging.axis, jogging.direction):
-        leave(mind, "the key changed its direction.")
+        leave(mind, "the direction changed while the button was held.")
         raise CommandRejected(
             Reason(
                 "press_changed",
-                "A press keeps its axis and its direction for as long as it lasts.",
-                "Let the key go and press again.",
+                "Axis and direction cannot change while the button is held.",
+                "Release the button and press again.",
             )
         )
     if command.sequence > jogging.sequence:
@@ -90,7 +90,7 @@ def _renew(mind: Mind, jogging: Jogging, command: Jog) -> None:
 
 
 def _begin(mind: Mind, command: Jog) -> None:
-    switch_tracking_off(mind, "the tracker is moved by hand.")
+    switch_tracking_off(mind, "the tracker is being jogged.")
     mind.activity = Jogging(
         command.press_id,
         command.axis,
@@ -112,16 +112,16 @@ def _against(mind: Mind, command: Jog) -> tuple[Reason, ...]:
         return (
             Reason(
                 "press_dead",
-                "This press of the key has ended; it does not move the axis again.",
-                "Let the key go and press again.",
+                "This button press has ended and no longer moves the axis.",
+                "Release the button and press again.",
             ),
         )
     if isinstance(mind.activity, Jogging):
         return (
             Reason(
                 "busy",
-                f"{mind.config.name} is being moved by somebody else, or by another key.",
-                "Wait until that key is let go.",
+                f"{mind.config.name} is being jogged by another user or with another button.",
+                "Wait until that button is released.",
             ),
         )
     reasons = unmet(mind, Action.JOG)
@@ -135,8 +135,8 @@ def _in_the_way(mind: Mind, feedback: Feedback, command: Jog) -> tuple[Reason, .
         reasons.append(
             Reason(
                 "at_limit_switch",
-                f"The {axis_of(mind.config, command.axis)} stands on its limit switch.",
-                "It can only be moved away from it, the other way.",
+                f"The {axis_of(mind.config, command.axis)} is on its limit switch.",
+                "The axis can only move away from the switch.",
             )
         )
     room = room_deg(mind.config.axis(command.axis), seen.position_deg, command.direction)
@@ -144,8 +144,8 @@ def _in_the_way(mind: Mind, feedback: Feedback, command: Jog) -> tuple[Reason, .
         reasons.append(
             Reason(
                 "at_soft_limit",
-                f"The {axis_of(mind.config, command.axis)} stands at its soft limit.",
-                "Move it the other way, or change the limit in the tracker's settings.",
+                f"The {axis_of(mind.config, command.axis)} is at its soft limit.",
+                "Move the axis in the opposite direction, or change the limit in the tracker's settings.",
             )
         )
     return tuple(reasons)

@@ -88,7 +88,7 @@ def _begin(
     settings, seen = mind.config.axis(axis), axis_feedback(feedback, axis)
     way_deg = speed_dps * (STEADY_S + ahead_s + SPARE_S + speed_dps / settings.acceleration_dps2)
     target_deg = seen.position_deg + free_way(mind, axis, seen, way_deg) * way_deg
-    switch_tracking_off(mind, "the drive is being proven.")
+    switch_tracking_off(mind, "the drive is being tested.")
     mind.setpoint = NOWHERE
     goal = Position(target_deg, speed_dps)
     command = DriveCommand(azimuth=goal) if axis is Axis.AZIMUTH else DriveCommand(elevation=goal)
@@ -145,7 +145,10 @@ def _stood(mind: Mind, measuring: Measuring, asked: Asked, feedback: Feedback, s
         mind,
         measuring,
         "measured",
-        f"it stood {proof.stopped_after_s:.2f} s and {proof.overrun_deg:.2f} degrees after it was stopped.",
+        (
+            f"the axis was at standstill {proof.stopped_after_s:.2f} s and {proof.overrun_deg:.2f} "
+            "degrees after the stop command."
+        ),
     )
 
 
@@ -158,8 +161,8 @@ def _went_on(mind: Mind, measuring: Measuring, asked: Asked, feedback: Feedback,
         mind,
         Reason(
             "stop_overdue",
-            f"The {measuring.axis} axis of {mind.config.name} did not come to rest after it was stopped.",
-            "Use the hard-wired emergency stop; check the drive and its deceleration before you go on.",
+            f"The {measuring.axis} axis of {mind.config.name} did not stop after the stop command.",
+            "Use the emergency stop. Check the drive and its deceleration before you continue.",
         ),
     )
 
@@ -193,9 +196,9 @@ def _keep_link_loss(
     )
     mind.remember(proofs=mind.memory.proofs.keep(proof))
     words = (
-        f"the drive stopped by itself; it stood {after_s:.2f} s after the last command."
+        f"the drive stopped automatically; it was at standstill {after_s:.2f} s after the last command."
         if stood
-        else f"the drive had not stopped {after_s:.1f} s after the last command; it was told to stop."
+        else f"the drive had not stopped {after_s:.1f} s after the last command; a stop command was sent."
     )
     _end(mind, measuring, outcome, words)
 
@@ -216,4 +219,4 @@ def _kind(measuring: Measuring) -> ProofKind:
 
 
 def _title(measuring: Measuring) -> str:
-    return "Link-loss test" if measuring.speed is None else "Stop test"
+    return "Communication-loss test" if measuring.speed is None else "Stop test"

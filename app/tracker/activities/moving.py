@@ -46,11 +46,13 @@ def park(mind: Mind) -> None:
 def step_by(mind: Mind, command: Step) -> None:
     """Move one axis by an increment, also before homing, or raise `CommandRejected`."""
     feedback = demand_drive(mind, Action.STEP, _step_size(command), _step_room(mind, command))
-    switch_tracking_off(mind, "the tracker is moved by hand.")
+    switch_tracking_off(mind, "the tracker is being jogged.")
     target_deg = axis_feedback(feedback, command.axis).position_deg + command.degrees
     on_azimuth = command.axis is Axis.AZIMUTH
     target = AxisPair(target_deg if on_azimuth else None, None if on_azimuth else target_deg)
-    text = f"Step of {axis_title(mind.config.mount, command.axis)} by {command.degrees:+g} degrees."
+    text = (
+        f"Incremental jog of {axis_title(mind.config.mount, command.axis)} by {command.degrees:+g} degrees."
+    )
     _begin(mind, feedback, target, MoveKind.STEP, text)
 
 
@@ -74,8 +76,8 @@ def not_arrived(mind: Mind) -> Reason:
     """Return that a motion took more than twice the time it should."""
     return Reason(
         "move_overdue",
-        f"{mind.config.name} has not arrived in twice the time that its way takes.",
-        "Look for something that blocks the axes, check the drive, then clear the fault.",
+        f"{mind.config.name} did not arrive within twice the expected time.",
+        "Check the axes for obstructions, check the drive, then reset the fault.",
     )
 
 
@@ -117,8 +119,11 @@ def _step_size(command: Step) -> Reason | None:
         return None
     return Reason(
         "step_size",
-        f"A step may be up to {LARGEST_STEP_DEG:g} degrees either way, not {command.degrees:g}.",
-        "Use 0.1, 1 or 5 degrees.",
+        (
+            f"An increment may be up to {LARGEST_STEP_DEG:g} degrees in either direction, not "
+            f"{command.degrees:g}."
+        ),
+        "Use 0.1, 1, or 5 degrees.",
     )
 
 
@@ -131,6 +136,6 @@ def _step_room(mind: Mind, command: Step) -> Reason | None:
         return None
     return Reason(
         "at_soft_limit",
-        f"This step would take the {axis_of(mind.config, command.axis)} beyond its soft limit.",
-        "Make a smaller step, or move the other way.",
+        f"This increment would move the {axis_of(mind.config, command.axis)} beyond its soft limit.",
+        "Use a smaller increment, or move in the opposite direction.",
     )

@@ -32,8 +32,8 @@ def prove_scale(mind: Mind, command: ProveScale) -> None:
         raise CommandRejected(
             Reason(
                 "scale_way",
-                f"The scale is proven over 10, 30 or 90 degrees, not {command.degrees:g}.",
-                "Begin with 10; a longer way tells more exactly.",
+                f"The scale test uses 10, 30, or 90 degrees, not {command.degrees:g}.",
+                "Begin with 10 degrees; a longer travel gives a more accurate result.",
             )
         )
     _begin(mind, command.axis, command.degrees, MoveKind.SCALE, Action.PROVE_SCALE)
@@ -49,8 +49,8 @@ def arrived(mind: Mind, moving: Moving, feedback: Feedback) -> None:
     mind.remember(proofs=replace(mind.memory.proofs, move=done))
     mind.say(
         EventKind.PROOF_ENDED,
-        f"The {move.axis} axis has turned by {done.moved_deg:+.2f} degrees for the {move.kind} proof; "
-        "somebody has to say what the panel did.",
+        f"The {move.axis} axis has turned by {done.moved_deg:+.2f} degrees for the {move.kind} "
+        "test. Enter what the panel did.",
         proof=move.kind,
         axis=move.axis,
         outcome="to_be_judged",
@@ -70,8 +70,8 @@ def free_way(mind: Mind, axis: Axis, seen: AxisFeedback, way_deg: float) -> int:
     raise CommandRejected(
         Reason(
             "no_room",
-            f"The {axis} axis of {mind.config.name} has no room to turn by {way_deg:.1f} degrees.",
-            "Move it away from the ends of its range by hand, then try again.",
+            f"The {axis} axis of {mind.config.name} cannot turn by {way_deg:.1f} degrees within its range.",
+            "Jog the axis away from the ends of its range, then try again.",
         )
     )
 
@@ -88,7 +88,7 @@ def _begin(mind: Mind, axis: Axis, way_deg: float, kind: MoveKind, action: Actio
     feedback = demand_drive(mind, action)
     seen = axis_feedback(feedback, axis)
     degrees = free_way(mind, axis, seen, way_deg) * way_deg
-    switch_tracking_off(mind, "the drive is being proven.")
+    switch_tracking_off(mind, "the drive is being tested.")
     target_deg = seen.position_deg + degrees
     on_azimuth = axis is Axis.AZIMUTH
     target = AxisPair(target_deg if on_azimuth else None, None if on_azimuth else target_deg)
@@ -98,7 +98,7 @@ def _begin(mind: Mind, axis: Axis, way_deg: float, kind: MoveKind, action: Actio
     mind.remember(proofs=replace(mind.memory.proofs, move=move))
     mind.say(
         EventKind.PROOF_STARTED,
-        f"The {axis} axis turns by {degrees:+g} degrees for the {move.kind} proof.",
+        f"The {axis} axis turns by {degrees:+g} degrees for the {move.kind} test.",
         proof=move.kind,
         axis=axis,
     )

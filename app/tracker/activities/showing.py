@@ -56,8 +56,8 @@ def pause_show(mind: Mind) -> None:
 def resume_show(mind: Mind) -> None:
     """Go on with a paused show, or raise `CommandRejected`."""
     demand(mind, Action.RESUME_SHOW)
-    announce_if_remote(mind, "The show goes on.")
-    _change_phase(mind, ShowPhase.RUNNING, EventKind.SHOW_RESUMED, "The show goes on.")
+    announce_if_remote(mind, "The show continues.")
+    _change_phase(mind, ShowPhase.RUNNING, EventKind.SHOW_RESUMED, "The show continues.")
 
 
 def stop_show(mind: Mind) -> None:
@@ -85,7 +85,7 @@ def _going(mind: Mind, showing: Showing, run: Run, feedback: Feedback) -> Turn:
     if arrived(run.target, feedback, mind.config.in_position_deg):
         mind.say(
             EventKind.MOVE_ENDED,
-            "The panel stands at the start of the show.",
+            "The panel is at the start of the show.",
             outcome="in_position",
             show_id=showing.course.plan.show_id,
         )
@@ -146,6 +146,6 @@ def _start(course: Course) -> AxisPair:
 def _not_at_start(mind: Mind) -> Reason:
     return Reason(
         "not_at_start",
-        f"{mind.config.name} does not stand at the start of this show.",
+        f"{mind.config.name} is not at the start of this show.",
         "Press Go to start position and wait until the panel is there.",
     )

@@ -62,7 +62,7 @@ def resume(mind: Mind) -> None:
     mind.remember(stow=None)
     if isinstance(mind.activity, Stowing | Stowed) and demanded_stow(mind) is None:
         _go_on(mind)
-        announce_if_remote(mind, f"{mind.config.name} goes on tracking.")
+        announce_if_remote(mind, f"{mind.config.name} continues tracking.")
 
 
 def guard(mind: Mind, feedback: Feedback) -> None:
@@ -127,7 +127,7 @@ def not_stowed(mind: Mind) -> Reason | None:
     if wanted is None or _is_stowed(mind, wanted):
         return None
     why, hint = _because(mind)
-    text = f"{mind.config.name} is NOT STOWED, and {wanted} demands it: {why}"
+    text = f"{mind.config.name} is NOT STOWED, although {wanted} requires it: {why}"
     return Reason("not_stowed", text, hint)
 
 
@@ -159,7 +159,7 @@ def _keep_stowed(mind: Mind, feedback: Feedback, activity: Stowing | Stowed, wan
         return
     _go_on(mind)
     if isinstance(mind.activity, Tracking):
-        announce(mind, f"{mind.config.name} goes on tracking.")
+        announce(mind, f"{mind.config.name} continues tracking.")
 
 
 def _is_automatic(mind: Mind, wanted: StowName) -> bool:
@@ -223,7 +223,7 @@ def _go_on(mind: Mind) -> None:
         mind.activity = HOLDING
         return
     mind.activity = Tracking()
-    mind.say(EventKind.TRACKING_RESUMED, "Tracking goes on after the stow.", mode=mind.memory.mode)
+    mind.say(EventKind.TRACKING_RESUMED, "Tracking continues after the stow.", mode=mind.memory.mode)
 
 
 def _facing_deg(mind: Mind, feedback: Feedback, name: StowName) -> float | None:
@@ -261,8 +261,8 @@ def _because(mind: Mind) -> tuple[str, str]:
     if against:
         return " ".join(one.message for one in against), against[0].hint
     if mind.wait is not None:
-        return mind.wait.message, "Press Stow, or Start tracking; it stows first."
+        return mind.wait.message, "Press Stow. Start tracking also stows the panel first."
     return (
-        "it does not move by itself, because it is not in automatic.",
-        "Clear the area, then press Stow; or move the panel by hand.",
+        "the tracker is in manual and does not move automatically.",
+        "Clear the area, then press Stow; or jog the panel.",
     )

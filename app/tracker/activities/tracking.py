@@ -70,12 +70,12 @@ def resume(mind: Mind, after: str = "the restart") -> None:
         if demanded_stow(mind) is not None:
             mind.say(EventKind.TRACKING_WAITING, "Tracking is on, but the panel stows first.")
             return
-        mind.say(EventKind.TRACKING_RESUMED, f"Tracking goes on after {after}.", mode=mind.memory.mode)
-        announce(mind, f"{mind.config.name} goes on tracking after {after}.")
+        mind.say(EventKind.TRACKING_RESUMED, f"Tracking continues after {after}.", mode=mind.memory.mode)
+        announce(mind, f"{mind.config.name} continues tracking after {after}.")
         return
     mind.wait = mind.held_back = reasons[0]
     why = " ".join(reason.message for reason in reasons)
-    mind.say(EventKind.TRACKING_WAITING, f"Tracking waits for the operator: {why}")
+    mind.say(EventKind.TRACKING_WAITING, f"Tracking is interrupted and needs the operator: {why}")
 
 
 def step(mind: Mind, tracking: Tracking, feedback: Feedback, seen: Observation) -> Turn:

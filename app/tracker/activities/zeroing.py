@@ -36,7 +36,7 @@ def set_zero(mind: Mind, command: SetZero) -> None:
         raise CommandRejected(
             Reason(
                 "no_axis",
-                "No axis of this mount was named to be set as zero.",
+                "No axis of this mount was selected for homing.",
                 f"Name one or more of these: {', '.join(mind.config.mount.axes)}.",
             )
         )
@@ -52,9 +52,9 @@ def home(mind: Mind) -> None:
     mind.setpoint, mind.corrected = NOWHERE, None
     mind.zeroed = frozenset()
     forget(mind)
-    doubt_zero(mind, "the search for the origin switches was not finished.")
+    doubt_zero(mind, "the search for the home switches was not finished.")
     mind.activity = Homing(mind.next_request(), mind.now + _homing_time(mind), mind.actor)
-    mind.say(EventKind.HOMING_STARTED, "The drive searches for its origin switches.")
+    mind.say(EventKind.HOMING_STARTED, "The drive searches for its home switches.")
 
 
 def step(mind: Mind, activity: Zeroing | Homing, feedback: Feedback) -> Turn:
@@ -75,7 +75,7 @@ def _zeroing(mind: Mind, zeroing: Zeroing, feedback: Feedback) -> Turn:
         request = DriveRequest(zeroing.number, _REQUESTS[zeroing.pending[0]])
         return Turn(zeroing, DriveCommand(request=request))
     if feedback.request_failed:
-        return _zero_failed(mind, f"the drive refused it for the {zeroing.pending[0]} axis.")
+        return _zero_failed(mind, f"the drive refused the command for the {zeroing.pending[0]} axis.")
     pending = zeroing.pending[1:]
     if not pending:
         return _read_back(mind, zeroing, feedback)
@@ -89,7 +89,7 @@ def _homing(mind: Mind, homing: Homing, feedback: Feedback) -> Turn:
     """Wait for the drive's search; one that fails or takes too long leaves the tracker without a zero."""
     if feedback.request_done != homing.number:
         if mind.now >= homing.until:
-            return _homing_failed(mind, "it took too long.")
+            return _homing_failed(mind, "the search took too long.")
         return Turn(homing, DriveCommand(request=DriveRequest(homing.number, RequestKind.HOME)))
     if feedback.request_failed:
         return _homing_failed(mind, f"the drive did not find {_missing(mind, feedback)}.")
@@ -99,8 +99,8 @@ def _homing(mind: Mind, homing: Homing, feedback: Feedback) -> Turn:
         return _homing_failed(mind, "the drive does not report both axes as homed.")
     mind.zeroed = frozenset(Axis)
     mind.activity = HOLDING
-    mind.say(EventKind.HOMING_ENDED, "Both axes have found their origin switches.", outcome="homed")
-    _trust(mind, feedback, homing.actor, "origin switches")
+    mind.say(EventKind.HOMING_ENDED, "Both axes have found their home switches.", outcome="homed")
+    _trust(mind, feedback, homing.actor, "home switches")
     return Turn(HOLDING)
 
 
@@ -110,7 +110,7 @@ def _missing(mind: Mind, feedback: Feedback) -> str:
     unmet = [axis for axis in axes if not axis_feedback(feedback, axis).at_origin]
     if not unmet or len(unmet) == len(axes) > 1:
         return "them"
-    return f"that of the {axis_of(mind.config, unmet[0])}, which was to come within its whole travel"
+    return f"the home switch of the {axis_of(mind.config, unmet[0])} within its whole travel"
 
 
 def _read_back(mind: Mind, zeroing: Zeroing, feedback: Feedback) -> Turn:
@@ -127,9 +127,9 @@ def _read_back(mind: Mind, zeroing: Zeroing, feedback: Feedback) -> Turn:
     mind.zeroed |= frozenset(zeroing.axes)
     mind.activity = HOLDING
     named = " and ".join(axis_title(mind.config.mount, axis) for axis in zeroing.axes)
-    mind.say(EventKind.ZERO_SET, f"Zero set for {named}, and read back.", axes=list(zeroing.axes))
+    mind.say(EventKind.ZERO_SET, f"Home position set for {named} and verified.", axes=list(zeroing.axes))
     if mind.zeroed.issuperset(mind.config.mount.axes) and feedback.azimuth.homed and feedback.elevation.homed:
-        _trust(mind, feedback, zeroing.actor, "set by hand")
+        _trust(mind, feedback, zeroing.actor, "set manually")
     return Turn(HOLDING)
 
 
@@ -141,7 +141,10 @@ def _trust(mind: Mind, feedback: Feedback, actor: str, how: str) -> None:
 
 def _zero_failed(mind: Mind, why: str) -> Turn:
     mind.activity = HOLDING
-    mind.say(EventKind.ZERO_FAILED, f"Zero was not set: {why} Stand still and press Set as zero again.")
+    mind.say(
+        EventKind.ZERO_FAILED,
+        (f"Home position not set: {why} Keep the axes at standstill and press Set home here again."),
+    )
     mind.remember(former_home=None)
     lose_home(mind, Reason("zero_failed", why))
     return Turn(HOLDING)
@@ -149,8 +152,8 @@ def _zero_failed(mind: Mind, why: str) -> Turn:
 
 def _homing_failed(mind: Mind, why: str) -> Turn:
     mind.activity = HOLDING
-    doubt_zero(mind, f"the search for the origin switches failed: {why}")
-    mind.say(EventKind.HOMING_ENDED, f"The origin switches were not found: {why}", outcome="failed")
+    doubt_zero(mind, f"the search for the home switches failed: {why}")
+    mind.say(EventKind.HOMING_ENDED, f"The home switches were not found: {why}", outcome="failed")
     return Turn(HOLDING, HALTED)
 
 

@@ -36,20 +36,23 @@ class MountAbilities:
     leans: bool
 
 
-_AZIMUTH = AxisWords("Azimuth", "east (clockwise)", "west (anticlockwise)", "the panel faces true north")
-_ELEVATION = AxisWords("Elevation", "up", "down", "the panel faces the horizon and stands upright")
+_AZIMUTH = AxisWords("Azimuth", "east (clockwise)", "west (counterclockwise)", "the panel faces true north")
+_ELEVATION = AxisWords("Elevation", "up", "down", "the panel is vertical and faces the horizon")
 _ROTATION = AxisWords(
     "Rotation",
     "to the right of the axis's direction",
     "to the left of the axis's direction",
-    "the panel lies level across the axis, turned to neither side",
+    "the panel is level across the axis",
 )
 _SINGLE_MODES = {Mode.FIXED: "Fixed", Mode.AZIMUTH: "Single-axis tracking"}
 
 ABILITIES: dict[MountKind, MountAbilities] = {
     MountKind.AZIMUTH_ELEVATION: MountAbilities(
         title="Azimuth and elevation",
-        summary="Two axes: an upright one that turns the panel round the compass, a level one that tilts it.",
+        summary=(
+            "Two axes: a vertical axis that turns the panel in azimuth, and a horizontal axis "
+            "that tilts the panel."
+        ),
         first=_AZIMUTH,
         second=_ELEVATION,
         modes={
@@ -64,8 +67,8 @@ ABILITIES: dict[MountKind, MountAbilities] = {
     ),
     MountKind.EQUATORIAL: MountAbilities(
         title="Equatorial",
-        summary="Two axes: one parallel to the earth's, which follows the hour angle through the day, and "
-        "one across it, which follows the declination through the year.",
+        summary="Two axes: one parallel to the earth's axis, which follows the hour angle through "
+        "the day, and one across it, which follows the declination through the year.",
         first=AxisWords(
             "Hour angle",
             "west (afternoon)",
@@ -87,7 +90,7 @@ ABILITIES: dict[MountKind, MountAbilities] = {
     ),
     MountKind.HORIZONTAL_SINGLE_AXIS: MountAbilities(
         title="Horizontal single axis",
-        summary="One level axis, mostly north to south: the panel rolls from east to west.",
+        summary="One horizontal axis, mostly north to south: the panel rolls from east to west.",
         first=_ROTATION,
         second=None,
         modes=_SINGLE_MODES,
@@ -97,7 +100,7 @@ ABILITIES: dict[MountKind, MountAbilities] = {
     ),
     MountKind.TILTED_SINGLE_AXIS: MountAbilities(
         title="Tilted single axis",
-        summary="One axis that dips, mostly towards the equator: the panel rolls from east to west.",
+        summary="One tilted axis, mostly toward the equator: the panel rolls from east to west.",
         first=_ROTATION,
         second=None,
         modes=_SINGLE_MODES,
@@ -107,11 +110,11 @@ ABILITIES: dict[MountKind, MountAbilities] = {
     ),
     MountKind.VERTICAL_SINGLE_AXIS: MountAbilities(
         title="Vertical single axis",
-        summary="One upright axis: the panel keeps its tilt and turns round the compass.",
+        summary="One vertical axis: the panel keeps its tilt and turns in azimuth.",
         first=AxisWords(
             "Rotation",
             "clockwise, seen from above",
-            "anticlockwise, seen from above",
+            "counterclockwise, seen from above",
             "the panel faces the azimuth that is set for the axis",
         ),
         second=None,

@@ -23,7 +23,7 @@ def absent_axis(config: TrackerConfig) -> Reason:
     known = abilities(config.mount)
     return Reason(
         "no_second_axis",
-        f"{config.name} stands on a {known.title.lower()} mount and has no second axis.",
+        f"{config.name} has a {known.title.lower()} mount and no second axis.",
         f"Use its first axis, {known.first.title.lower()}.",
     )
 
@@ -35,7 +35,7 @@ def mode_absent(config: TrackerConfig, mode: Mode) -> Reason | None:
         return None
     return Reason(
         "mode_not_possible",
-        f"{config.name} stands on a {known.title.lower()} mount and cannot do the mode {mode}.",
+        f"{config.name} has a {known.title.lower()} mount and does not support the mode {mode}.",
         f"Choose one of these: {', '.join(known.modes)}.",
     )
 

@@ -68,9 +68,10 @@ def _notices(course: ScheduleCourse) -> Iterator[Reason]:
     moves = len(course.places) - 1
     yield Reason(
         "stepped",
-        f"The panel stands still between {moves} moves, as the strategy of this tracker has it.",
+        f"The panel is at standstill between {moves} moves, as the strategy of this tracker requires.",
     )
     if any(place.aimed.target.limited for place in course.places):
         yield Reason(
-            "limited", "Some places lie beyond the soft limits; the panel stays as near as they allow."
+            "limited",
+            ("Some positions are beyond the soft limits; the panel stays as near as the limits allow."),
         )

@@ -109,7 +109,7 @@ def sun_reasons(plan: ShowPlan, *, lit: bool) -> Iterator[Reason]:
     if not lit and plan.mode is not Mode.FIXED:
         if plan.span >= WHOLE_DAY:
             message = "It is polar night: on this day the sun does not rise here."
-            yield Reason("sun_never_up", message, "Choose a day on which it does.")
+            yield Reason("sun_never_up", message, "Choose a day with a sunrise.")
             return
         yield Reason(
             "sun_never_up",
@@ -136,23 +136,24 @@ def _pace_reasons(asked: Pace, tracker: TrackerConfig, shortest: timedelta | Non
             "repositioning_too_long", _too_long(asked, axis_title(tracker.mount, Axis.AZIMUTH)), hint
         )
     if not all(night.long_enough for night in asked.nights):
-        message = "The night is too short for the axes to reach the place of the next sunrise in time."
+        message = "The night is too short for the axes to reach the position of the next sunrise in time."
         yield Reason("night_too_short", message, hint)
 
 
 def _too_fast(name: str, axis: AxisConfig, peak_dps: float, duration_s: float) -> str:
     usable = usable_dps(axis, duration_s)
     return (
-        f"The show is too fast: the {name} axis would have to turn at {peak_dps:.2f} degrees a second; it "
-        f"can follow at up to {usable:.2f} (rated {axis.speed_dps:.2f}, less a reserve for gathering speed)."
+        f"The show is too fast: the {name} axis would have to turn at {peak_dps:.2f} degrees a "
+        f"second; it can follow at up to {usable:.2f} (rated {axis.speed_dps:.2f}, less a reserve "
+        "for acceleration)."
     )
 
 
 def _too_long(asked: Pace, title: str) -> str:
     return (
-        f"The {title} axis needs {asked.repositioning_s:.0f} s to turn where it cannot follow the sun (end "
-        f"stop or zenith); it may be off the sun for at most {REPOSITIONING_SHARE:.0%} of the show, "
-        f"{REPOSITIONING_SHARE * asked.duration_s:.0f} s, and must be done before the end."
+        f"The {title} axis needs {asked.repositioning_s:.0f} s to turn where it cannot follow the "
+        f"sun (end stop or zenith). This may take at most {REPOSITIONING_SHARE:.0%} of the show, "
+        f"{REPOSITIONING_SHARE * asked.duration_s:.0f} s, and must finish before the end."
     )
 
 
@@ -176,15 +177,17 @@ def _notices(course: ShowCourse, tracker: TrackerConfig) -> Iterator[Reason]:
         yield _repositioning_notice(course, span, tracker.mount)
     yield from _limit_notices(course.stretches, tracker)
     if course.plan.mode is Mode.FIXED:
-        message = "The mode is Fixed: the panel stands still through the whole show."
-        yield Reason("stands_still", message, "Choose another mode in step 4 to see it follow the sun.")
+        message = "The mode is Fixed: the panel does not move during the show."
+        yield Reason(
+            "stands_still", message, "Choose another mode in step 4 to see the panel follow the sun."
+        )
     up = sum((end - begin for begin, end in sun_up(course.plan)), timedelta(0))
     down = course.plan.span - up
     if down >= timedelta(seconds=1):
         yield Reason(
             "sun_down",
-            f"The sun is below the horizon for {spell(down)} of the interval: there the panel holds, and "
-            "goes to the place of the next sunrise in time.",
+            f"The sun is below the horizon for {spell(down)} of the interval: there the panel "
+            "holds, then moves to the position of the next sunrise in time.",
         )
 
 
@@ -196,7 +199,7 @@ def _repositioning_notice(course: ShowCourse, span: Repositioning, mount: MountC
     title = axis_title(mount, Axis.AZIMUTH)
     turn = f"turns from {span.from_deg:.0f} to {span.to_deg:.0f} degrees"
     if span.unwinding:
-        code, why = "unwinding", f"the {title} axis meets its end stop and {turn} the other way round"
+        code, why = "unwinding", f"the {title} axis reaches its end stop and {turn} in the opposite direction"
     else:
         where = "zenith" if mount.kind in UPRIGHT_KINDS else "direction of the axis"
         code, why = "keyhole", f"the sun passes too near the {where} to follow and the {title} axis {turn}"
@@ -208,8 +211,8 @@ def _limit_notices(stretches: Sequence[Stretch], tracker: TrackerConfig) -> Iter
     if missed_deg > tracker.deadband_deg:
         yield Reason(
             "limited",
-            f"The soft limits keep the panel up to {missed_deg:.1f} degrees away from where it should face; "
-            "there it stays as near as the limits allow.",
+            f"The soft limits keep the panel up to {missed_deg:.1f} degrees away from its target; "
+            "there the panel stays as near as the limits allow.",
         )
 
 

@@ -88,7 +88,7 @@ def read_time(text: str) -> float:
         return float(text)
     hours, minutes, seconds = int(found[1]), int(found[2]), float(found[3] or 0.0)
     if minutes >= 60 or seconds >= 60.0:
-        raise ValueError(f"{text} is no time.")
+        raise ValueError(f"{text} is not a time.")
     return (hours * 3600.0 + minutes * 60.0 + seconds) / 3600.0
 
 

@@ -44,15 +44,15 @@ def _lasting(plan: ShowPlan, duration: timedelta) -> ShowPlan:
 def _why_longer(check: ShowCheck, tracker: TrackerConfig) -> Reason:
     """Return in one sentence why the first of the usual lengths does not do, for who only wants to look."""
     code, minutes = check.reasons[0].code, MINUTES[0]
-    text = f"{minutes} minutes are too fast here: the axes cannot turn as fast as that."
+    text = f"{minutes} minutes are too short here: the axes cannot turn that fast."
     if code == "repositioning_too_long":
         text = _turning(check, tracker, minutes)
     elif code == "night_too_short":
         text = (
-            f"{minutes} minutes are too fast here: the way to the next sunrise takes longer than the night."
+            f"{minutes} minutes are too short here: travel to the next sunrise takes longer than the night."
         )
     elif code == "moves_too_long":
-        text = f"{minutes} minutes are too fast here: a move must be done before the next one begins."
+        text = f"{minutes} minutes are too short here: a move must finish before the next one begins."
     return Reason(code, text)
 
 
@@ -60,10 +60,10 @@ def _turning(check: ShowCheck, tracker: TrackerConfig, minutes: int) -> str:
     """Return where the first axis loses the sun, as one says it who stands before the tracker."""
     axis = tracker.azimuth
     if not any(notice.code == "unwinding" for notice in check.notices):
-        return f"{minutes} minutes are too fast here: the panel must swing round where the sun is highest."
+        return f"{minutes} minutes are too short here: the panel must swing around where the sun is highest."
     if tracker.mount.kind is MountKind.AZIMUTH_ELEVATION and axis.maximum_deg - axis.minimum_deg == 360.0:
         if axis.minimum_deg % 360.0 == NORTH_DEG:
-            return f"{minutes} minutes are too fast here: the panel must turn back at north."
+            return f"{minutes} minutes are too short here: the panel must turn back at north."
         if axis.minimum_deg % 360.0 == SOUTH_DEG:
-            return f"{minutes} minutes are too fast here: the panel must turn back at south."
-    return f"{minutes} minutes are too fast here: the panel must turn back at its end stop."
+            return f"{minutes} minutes are too short here: the panel must turn back at south."
+    return f"{minutes} minutes are too short here: the panel must turn back at its end stop."

@@ -31,13 +31,13 @@ class WindProtection:
     facing: Facing = Facing.ANYTHING
 
     def __post_init__(self) -> None:
-        _check("The gust that stows", self.gust_mps, 1.0, 60.0, "m/s")
-        _check("The mean wind that stows", self.mean_mps, 1.0, 60.0, "m/s")
-        _check("The hysteresis of the wind", self.hysteresis_mps, 0.0, 20.0, "m/s")
-        _check("The calm time before tracking goes on", self.resume_after_s, 10.0, 86_400.0, "s")
-        _check("The time that a bad wind reading is borne", self.bad_after_s, 0.0, 3600.0, "s")
+        _check("The gust threshold", self.gust_mps, 1.0, 60.0, "m/s")
+        _check("The mean wind threshold", self.mean_mps, 1.0, 60.0, "m/s")
+        _check("The wind release hysteresis", self.hysteresis_mps, 0.0, 20.0, "m/s")
+        _check("The wind release delay", self.resume_after_s, 10.0, 86_400.0, "s")
+        _check("The wind sensor-fault delay", self.bad_after_s, 0.0, 3600.0, "s")
         if self.hysteresis_mps >= min(self.gust_mps, self.mean_mps):
-            raise ValueError("The hysteresis of the wind must be smaller than both wind limits.")
+            raise ValueError("The wind release hysteresis must be smaller than both wind thresholds.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,12 +53,12 @@ class SnowProtection:
     bad_after_s: float = 60.0
 
     def __post_init__(self) -> None:
-        _check("The snow load", self.load_kg, 0.1, 10_000.0, "kg")
-        _check("The time that the snow must lie", self.hold_s, 1.0, 86_400.0, "s")
-        _check("The hysteresis of the snow load", self.hysteresis_kg, 0.0, 1000.0, "kg")
-        _check("The time that a bad snow reading is borne", self.bad_after_s, 0.0, 3600.0, "s")
+        _check("The snow-stow threshold", self.load_kg, 0.1, 10_000.0, "kg")
+        _check("The snow trigger delay", self.hold_s, 1.0, 86_400.0, "s")
+        _check("The snow release hysteresis", self.hysteresis_kg, 0.0, 1000.0, "kg")
+        _check("The snow sensor-fault delay", self.bad_after_s, 0.0, 3600.0, "s")
         if self.hysteresis_kg >= self.load_kg:
-            raise ValueError("The hysteresis of the snow load must be smaller than the load.")
+            raise ValueError("The snow release hysteresis must be smaller than the snow-stow threshold.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,12 +74,12 @@ class LightProtection:
     bad_after_s: float = 60.0
 
     def __post_init__(self) -> None:
-        _check("The light below which tracking rests", self.threshold_wm2, 0.1, 1000.0, "W/m2")
-        _check("The time that it must be dark", self.hold_s, 1.0, 86_400.0, "s")
-        _check("The hysteresis of the light", self.hysteresis_wm2, 0.0, 500.0, "W/m2")
-        _check("The time that a bad light reading is borne", self.bad_after_s, 0.0, 3600.0, "s")
+        _check("The low-light threshold", self.threshold_wm2, 0.1, 1000.0, "W/m2")
+        _check("The low-light trigger delay", self.hold_s, 1.0, 86_400.0, "s")
+        _check("The low-light release hysteresis", self.hysteresis_wm2, 0.0, 500.0, "W/m2")
+        _check("The irradiance sensor-fault delay", self.bad_after_s, 0.0, 3600.0, "s")
         if self.bad is Reaction.STOW:
-            raise ValueError("A light sensor that fails stows nothing: choose ignore, warn or hold.")
+            raise ValueError("A faulty irradiance sensor cannot cause a stow: choose ignore, warn, or hold.")
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,8 +44,8 @@ class RecoveryPolicy:
 
     def __post_init__(self) -> None:
         if not 1 <= self.times_per_hour <= 60:
-            raise ValueError("A fault may be left by itself 1 to 60 times an hour.")
-        _check("The quiet time before a fault is left by itself", self.after_s, 1.0, 3600.0, "s")
+            raise ValueError("A fault may be reset automatically 1 to 60 times an hour.")
+        _check("The quiet time before an automatic reset", self.after_s, 1.0, 3600.0, "s")
 
 
 BY_A_PERSON = RecoveryPolicy()
@@ -125,20 +125,20 @@ class MachineProtection:
     regions: tuple[Region, ...] = ()
 
     def __post_init__(self) -> None:
-        _check("The creep that is borne", self.creep_deg, 0.1, 45.0, "degrees")
-        _check("The over-travel that is borne", self.overtravel_deg, 0.1, 45.0, "degrees")
-        _check("The way off a limit switch", self.switch_way_deg, 0.5, 90.0, "degrees")
-        _check("The factor of a stop's way", self.overrun_factor, 1.0, 20.0, "")
+        _check("The standstill monitoring limit", self.creep_deg, 0.1, 45.0, "degrees")
+        _check("The overtravel limit", self.overtravel_deg, 0.1, 45.0, "degrees")
+        _check("The limit-switch release distance", self.switch_way_deg, 0.5, 90.0, "degrees")
+        _check("The stopping-distance ratio", self.overrun_factor, 1.0, 20.0, "")
         _check("The lowest supply voltage", self.supply_low_v, 0.0, 1000.0, "V")
         _check("The highest supply voltage", self.supply_high_v, 0.0, 1000.0, "V")
-        _check("The time that a clear area counts", self.clear_for_s, 10.0, 14_400.0, "s")
+        _check("The area-clear confirmation time", self.clear_for_s, 10.0, 14_400.0, "s")
         if self.supply_low_v > self.supply_high_v:
             raise ValueError("The lowest supply voltage must not exceed the highest.")
         if len(self.regions) > MOST_REGIONS:
             raise ValueError(f"There may be up to {MOST_REGIONS} forbidden regions.")
         names = [region.name for region in self.regions]
         if len(set(names)) != len(names):
-            raise ValueError("Every forbidden region needs a name of its own.")
+            raise ValueError("Each forbidden region needs a unique name.")
 
 
 GUARDED = MachineProtection()

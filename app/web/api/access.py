@@ -104,7 +104,7 @@ async def prove(typed: Proof, built: PanelDep, who: PrincipalDep) -> None:
 async def change_password(typed: NewPassword, built: PanelDep, who: PrincipalDep) -> None:
     """Change the password of who asks; all other sessions of theirs end."""
     if who.via is not Via.SESSION:
-        raise NotAllowed("Only somebody who is signed in has a password to change.")
+        raise NotAllowed("Only a signed-in user has a password to change.")
     await built.keeper.change_own_password(who, typed.old.get_secret_value(), typed.new.get_secret_value())
 
 

@@ -367,4 +367,8 @@ async def command(
 async def _ask(machine: Machine, tracker: Snapshot, request: ZeroCommand) -> None:
     mount = (await detail_of(machine, tracker.tracker_id)).state.config.mount
     if doubts := zero_doubts(mount, tracker, request.axes):
-        raise NotAcceptable(" ".join((*doubts, "If the panel is there, send it again with `confirmed`.")))
+        raise NotAcceptable(
+            " ".join(
+                (*doubts, ("If the panel is at the home position, send the request again with `confirmed`."))
+            )
+        )

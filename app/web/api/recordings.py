@@ -165,7 +165,7 @@ def stored(reader: Reader, recording_id: str) -> RecordingInfo:
 def again(info: RecordingInfo, duration_s: float | None, *, refraction: bool) -> ShowPlan:
     """Return the plan of a show over the same stretch of sun time as a recording."""
     if duration_s is None and info.kind is not RecordingKind.SHOW:
-        raise NotAcceptable("Say in how many seconds to show this: duration_s is missing.")
+        raise NotAcceptable("duration_s is missing: give the duration in seconds.")
     return ShowPlan(
         show_id=uuid4().hex[:12],
         begin_at=info.sun_begin_at,

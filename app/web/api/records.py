@@ -149,9 +149,9 @@ async def sign_record(
     """
     roles = [one.role for one in new.signatures]
     if SignatureRole.TECHNICIAN not in roles or len(set(roles)) != len(roles):
-        raise NotAcceptable("A record needs the technician's signature, and at most one of each role.")
+        raise NotAcceptable("A record needs the technician's signature and at most one signature per role.")
     if not new.confirmed and (doubts := await asked_before_signing(built, tracker_id)):
-        raise NotAcceptable(" ".join((*doubts, "To sign all the same, send it again with `confirmed`.")))
+        raise NotAcceptable(" ".join((*doubts, "To sign anyway, send the request again with `confirmed`.")))
     signatures = [Signature(one.role, one.name, one.strokes) for one in new.signatures]
     return await sign(sender.send, built, tracker_id, who.actor, new.remark, signatures)
 

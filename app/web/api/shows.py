@@ -41,7 +41,7 @@ router = api_router(prefix="/trackers/{tracker_id}/shows", tags=["shows"])
 
 CivilDate = date
 OTHER_SHOW = Reason(
-    "other_show", "Another show, or none, is under way on this tracker.", "Go to its start first."
+    "other_show", "This show is not in progress on this tracker.", "Go to the start of the show first."
 )
 
 

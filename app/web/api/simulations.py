@@ -55,7 +55,7 @@ class DayStepIn(Input):
     def step(self) -> WeatherStep:
         """Return it in the domain's words, or raise `ValueError`."""
         given = self.model_dump(exclude_none=True, exclude={"time"})
-        return WeatherStep(after_midnight(self.time, "The step"), given)
+        return WeatherStep(after_midnight(self.time, "The incremental jog"), given)
 
 
 class DayWeatherIn(Input):
@@ -70,7 +70,7 @@ class DayWeatherIn(Input):
     @model_validator(mode="after")
     def _one_of_three(self) -> Self:
         if [self.scenario, self.steps, self.csv].count(None) != 2:
-            raise ValueError("Give one of scenario, steps and csv.")
+            raise ValueError("Give one of scenario, steps, and csv.")
         return self
 
     def day(self, begin: datetime, zone: tzinfo) -> WeatherDay:

@@ -60,7 +60,7 @@ class ClockChange(Input):
     @model_validator(mode="after")
     def _instant_with_manual(self) -> Self:
         if (self.source == "manual") != (self.at is not None):
-            raise ValueError("Give `at` with the source manual, and only then.")
+            raise ValueError("Give `at` only with the source manual, where it is required.")
         return self
 
 
@@ -118,7 +118,9 @@ async def set_location(
     before = (await machine.detail()).site.location
     doubts = place_doubts(location, place.time_zone, built.clock.now(), before=before)
     if doubts and not place.confirmed:
-        raise NotAcceptable(" ".join((*doubts, "If the place is right, send it again with `confirmed`.")))
+        raise NotAcceptable(
+            " ".join((*doubts, ("If the location is correct, send the request again with `confirmed`.")))
+        )
     return listed(await sender.send(SetLocation(location, place.time_zone)))
 
 
@@ -138,7 +140,9 @@ async def set_clock(change: ClockChange, sender: SenderDep, built: PanelDep) -> 
     now = built.clock.now()
     other = change.device_at or (now if change.at else None)
     if (doubt := clock_doubt(change.at or now, other)) and not change.confirmed:
-        raise NotAcceptable(f"{doubt} If the controller's is right, send it again with `confirmed`.")
+        raise NotAcceptable(
+            f"{doubt} If the controller's clock is correct, send the request again with `confirmed`."
+        )
     return _clock(await sender.send(SetClock(change.source, change.at, change.time_zone)))
 
 

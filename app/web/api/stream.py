@@ -92,7 +92,9 @@ async def stream(
     try:
         viewer = panel.hub.join(wanted)
     except TooManyViewers as error:
-        raise MachineUnreachable("The panel has as many readers as it serves; try again later.") from error
+        raise MachineUnreachable(
+            "Heliopanel has reached its limit of event streams; try again later."
+        ) from error
     for message in _missed(panel.hub, wanted, last_event_id):
         viewer.tell(message)
     return EventStream(panel.hub, viewer)

@@ -27,7 +27,9 @@ from app.zones import zone_of
 router = api_router(prefix="/sun", tags=["sun"])
 
 NO_LOCATION = Reason(
-    "location_not_set", "The site's location is not known.", "Set it in step 1: PUT /api/v1/site/location."
+    "location_not_set",
+    "The site's location is not known.",
+    "Set the location in step 1: PUT /api/v1/site/location.",
 )
 AlgorithmQuery = Annotated[
     Algorithm,
@@ -131,7 +133,9 @@ def location_of(site: SiteSnapshot) -> Location:
 def midnights(day: date, time_zone: str) -> tuple[datetime, datetime]:
     """Return the instants at which a civil day begins and ends, or raise `InstantRefused`."""
     if not FIRST_YEAR <= day.year <= LAST_YEAR:
-        raise InstantRefused(f"The sun is known for the years {FIRST_YEAR} to {LAST_YEAR}, not for {day}.")
+        raise InstantRefused(
+            f"Sun positions are available for the years {FIRST_YEAR} to {LAST_YEAR}, not for {day}."
+        )
     zone = zone_of(time_zone)
     begin, end = (datetime.combine(one, time(), zone) for one in (day, day + timedelta(days=1)))
     return begin.astimezone(UTC), end.astimezone(UTC)

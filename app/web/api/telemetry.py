@@ -59,7 +59,7 @@ def read_telemetry(
 ) -> Response:
     """Return what was recorded of a tracker's days in a range of time."""
     if not timedelta() < end - begin <= LONGEST:
-        raise NotAcceptable("Give an end after the begin, and a range of at most 31 days.")
+        raise NotAcceptable("Give an end after the start, and a range of at most 31 days.")
     frames = _between(reader, tracker_id, begin, end, points)
     if file == "csv":
         return _csv(tracker_id, begin, frames)

@@ -221,7 +221,7 @@ async def read_capabilities(tracker_id: TrackerId, machine: MachineDep) -> Capab
     """Return what drive and mount can do, so that nobody has to find out by trying."""
     tracker = await detail_of(machine, tracker_id)
     if tracker.capabilities is None:
-        raise NotFound(f"The drive of {tracker_id} has not been reached yet; its abilities are not known.")
+        raise NotFound(f"The drive of {tracker_id} has not been reached yet; its capabilities are not known.")
     drive = {one.name: getattr(tracker.capabilities, one.name) for one in fields(DriveCapabilities)}
     return Capabilities(**drive, mount=abilities(tracker.state.config.mount))
 

@@ -28,7 +28,7 @@ async def play(tracker_id: TrackerId, played: PlayedFault, sender: SenderDep) ->
     await sender.send(PlayFault(tracker_id, played.fault))
 
 
-@router.delete("", status_code=204, summary="End every fault", responses=NOT_FOUND | REFUSED)
+@router.delete("", status_code=204, summary="End all faults", responses=NOT_FOUND | REFUSED)
 async def clear(tracker_id: TrackerId, sender: SenderDep) -> None:
     """End every fault that is played; what the controller has latched stays for the operator."""
     await sender.send(ClearFaults(tracker_id))

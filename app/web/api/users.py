@@ -156,7 +156,7 @@ async def tokens(built: PanelDep) -> list[Listed]:
     return [_listed(token) for token in built.keeper.book.tokens.values()]
 
 
-@router.post("/tokens", status_code=201, summary="Make a token")
+@router.post("/tokens", status_code=201, summary="Create a token")
 async def mint(typed: NewToken, built: PanelDep, who: PrincipalDep) -> Minted:
     """Make a token; its text comes back this once."""
     wish = TokenWish(

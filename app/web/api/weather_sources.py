@@ -82,7 +82,7 @@ async def end_simulation(sender: SenderDep) -> None:
     await sender.send(SimulateWeather(None))
 
 
-@router.get("/windows", summary="How the weather is judged")
+@router.get("/windows", summary="Weather evaluation")
 async def read_windows(machine: MachineDep) -> WeatherWindows:
     """Return over how long gust and mean are taken, and when values are old."""
     windows = (await machine.detail()).site.weather_windows

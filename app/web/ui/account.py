@@ -35,12 +35,12 @@ async def change_password(
 ) -> Response:
     """Change one's own password, which takes the old one; all other sessions of this user end."""
     if who.via is not Via.SESSION:
-        raise NotAllowed("Only somebody who is signed in has a password to change.")
+        raise NotAllowed("Only a signed-in user has a password to change.")
     try:
         await built.keeper.change_own_password(who, old, new)
     except REFUSALS as error:
         return _answer(request, error=error)
-    return _answer(request, done="The password is changed. All other sessions of yours have ended.")
+    return _answer(request, done="Password changed. All your other sessions have ended.")
 
 
 @router.post("/account/sessions/{digest}/end")

@@ -60,7 +60,7 @@ def _read(typed: Typed, location: Location | None) -> Question | None:
     last = typed.whole("to", "Last year", FIRST_YEAR, LAST_YEAR)
     samples = typed.whole("samples", "Samples", 1_000, MOST_SAMPLES)
     if not typed.errors and last < first:
-        typed.errors["to"] = "Last year must not lie before the first."
+        typed.errors["to"] = "Last year must not be before the first year."
     return None if typed.errors else Question(place, first, last, samples)
 
 
@@ -69,7 +69,9 @@ def _place(text: str, location: Location | None) -> Location | None:
         return None
     if text == SITE and location is not None:
         return location
-    raise Unreadable("Place: save the site's location first, in step 1 of commissioning, or take the globe.")
+    raise Unreadable(
+        "Location: save the site's location first, in step 1 of commissioning, or choose the globe."
+    )
 
 
 def _places(location: Location | None) -> tuple[tuple[str, str], ...]:

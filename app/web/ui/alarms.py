@@ -45,7 +45,7 @@ def alarms(
 @router.get("/guide")
 def guide(request: Request) -> Response:
     """Show every alarm there is: what it means, what follows, what to do."""
-    return page(request, AlarmGuidePage(site_frame(request, "What alarms mean", back=_BACK), ENTRIES))
+    return page(request, AlarmGuidePage(site_frame(request, "Alarm guide", back=_BACK), ENTRIES))
 
 
 @router.post("/acknowledge")
@@ -77,7 +77,7 @@ async def shelve(
 async def unshelve(press: PressDep, alarm_id: Annotated[str, Form(max_length=120)]) -> Response:
     """Take an alarm back from the shelf."""
     await press.send(UnshelveAlarm(alarm_id))
-    return press.answer("Taken back.")
+    return press.answer("Unshelved.")
 
 
 _BACK = Link("Alarms", "/alarms")

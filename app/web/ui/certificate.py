@@ -29,5 +29,5 @@ def authority(built: PanelDep) -> Response:
     found = trusted(built.settings)
     headers = {"Content-Disposition": 'attachment; filename="heliopanel-ca.crt"'}
     if not found.authority:
-        return Response("This panel has no authority of its own.", 404, media_type="text/plain")
+        return Response("Heliopanel has no certificate authority of its own.", 404, media_type="text/plain")
     return Response(found.authority, headers=headers, media_type="application/x-x509-ca-cert")

@@ -73,10 +73,12 @@ async def copy_device(
         instant = datetime.fromisoformat(without_leap_second(at))
     except ValueError:
         raise NotAcceptable(
-            "This device's browser did not tell its time; enter date and time by hand."
+            "The browser of this device did not report its time; enter date and time manually."
         ) from None
     if instant.tzinfo is None:
-        raise NotAcceptable("This device told its time without its zone; enter date and time by hand.")
+        raise NotAcceptable(
+            "This device reported its time without a time zone; enter date and time manually."
+        )
     await press.send(SetClock("manual", instant))
     return go(press.request, _page(tracker_id))
 

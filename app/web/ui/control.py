@@ -21,11 +21,11 @@ router = page_router(prefix="/trackers/{tracker_id}")
 Wanted = Literal["request", "take_over", "hand_over", "keep", "release"]
 Reason = Annotated[str, Form(max_length=200)]
 DONE = {
-    "request": "Control was asked for.",
-    "take_over": "Control passes when the countdown ends, unless it is refused.",
+    "request": "Control was requested.",
+    "take_over": "Control transfers when the countdown ends, unless the request is declined.",
     "hand_over": "Control was handed over.",
-    "keep": "You keep control.",
-    "release": "You let go of control.",
+    "keep": "Request declined. You keep control.",
+    "release": "You released control.",
 }
 
 

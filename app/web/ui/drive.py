@@ -34,8 +34,8 @@ from app.web.ui.wizard import tracker_of
 
 router = page_router(prefix="/trackers/{tracker_id}/drive")
 DONE = {
-    "saved": "The drive settings are saved. Test the connection, then prove the drive.",
-    "restored": "The drive is set as it was before the last change.",
+    "saved": "The drive settings are saved. Test the connection, then run the drive tests.",
+    "restored": "The drive settings from before the last change are restored.",
 }
 
 

@@ -13,7 +13,7 @@ from app.web.ui.forms import Typed, Unreadable
 
 Word = TypeVar("Word", DriveKind, Parity)
 KINDS: Options = (
-    (DriveKind.SIMULATED.value, "Simulated, in this program"),
+    (DriveKind.SIMULATED.value, "Simulated, built in"),
     (DriveKind.MODBUS_TCP.value, "Modbus TCP, by network"),
     (DriveKind.MODBUS_RTU.value, "Modbus RTU, on a serial port"),
     (DriveKind.MODBUS_RTU_OVER_TCP.value, "Modbus RTU through a gateway"),

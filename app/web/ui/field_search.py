@@ -31,7 +31,7 @@ TRACKER_FORMS = (
     ("mount.html", "Mount", "/mount"),
     ("strategy.html", "Strategy", "/strategy"),
     ("protections.html", "Protections", "/protections"),
-    ("machine.html", "Machine protections", "/machine"),
+    ("machine.html", "Mechanics", "/machine"),
     ("service.html", "Service mode", "/service"),
     ("show.html", "Show", "/show"),
     ("record.html", "Record", "/record"),

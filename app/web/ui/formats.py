@@ -9,7 +9,7 @@ from app.web.languages.known import in_words
 from app.zones import zone_of
 
 UNKNOWN = "–"
-NAMELESS = "this computer"
+NAMELESS = "local user"
 MACHINE, CONTEXT = "machine", "record"
 """What the controller is called where it did something by itself, as in a record."""
 NO_NAMES = ("site", "network", "panel")

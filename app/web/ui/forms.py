@@ -68,7 +68,7 @@ def number(text: str, label: str, least: float, most: float) -> float:
         raise Unreadable(f"{label}: type a number, such as {least:.10g}.")
     value = float(plain)
     if not least <= value <= most:
-        raise Unreadable(f"{label} must lie between {least:.10g} and {most:.10g}.")
+        raise Unreadable(f"{label} must be between {least:.10g} and {most:.10g}.")
     return value
 
 
@@ -85,7 +85,7 @@ def angle(text: str, label: str, sides: str, chosen: str, limit: float) -> float
     match = ANGLE.fullmatch(_in_english(text.strip().replace("−", "-"), sides))
     if match is None:
         raise Unreadable(
-            f"{label}: type degrees such as 41.2867, or degrees, minutes and seconds such as 41° 17' 12\"."
+            f"{label}: type degrees such as 41.2867, or degrees, minutes, and seconds such as 41° 17' 12\"."
         )
     before, sign, *parts, after = match.groups()
     letters = {letter.upper() for letter in (before, after) if letter}
@@ -94,7 +94,7 @@ def angle(text: str, label: str, sides: str, chosen: str, limit: float) -> float
         raise Unreadable(f"{label}: the letter must be {one} or {other}.")
     value = _degrees(parts, label)
     if value > limit:
-        raise Unreadable(f"{label} must lie between 0 and {limit:g} degrees, {one} or {other}.")
+        raise Unreadable(f"{label} must be between 0 and {limit:g} degrees, {one} or {other}.")
     return value * _sign(sign, letters.pop() if letters else chosen, sides, label)
 
 
@@ -126,7 +126,7 @@ def _degrees(parts: list[str | None], label: str) -> float:
 def _sign(sign: str | None, side: str, sides: str, label: str) -> int:
     if sign == "-" and side == sides[1]:
         letter = pgettext("compass", side)
-        raise Unreadable(f"{label}: leave out the minus sign, {letter} says it already.")
+        raise Unreadable(f"{label}: leave out the minus sign; {letter} already gives the direction.")
     return -1 if sign == "-" or side == sides[1] else 1
 
 
@@ -152,7 +152,7 @@ def clock_time(text: str, label: str) -> time:
     hour, minute, second = (int(part or 0) for part in match.groups())
     second = 59 if second == LEAP_SECOND else second
     if hour > 23 or minute > 59 or second > 59:
-        raise Unreadable(f"{label} must lie between 00:00 and 23:59:59.")
+        raise Unreadable(f"{label} must be between 00:00 and 23:59:59.")
     return time(hour, minute, second)
 
 

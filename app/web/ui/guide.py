@@ -35,7 +35,7 @@ def picture(name: str) -> Response:
     """Return a picture of the documents."""
     path = documents.picture(name)
     if path is None:
-        raise NotFound(f"The documents have no picture {name}.")
+        raise NotFound(f"There is no picture {name} in the documents.")
     return FileResponse(path, media_type="image/png")
 
 
@@ -49,7 +49,7 @@ def search(request: Request, q: Annotated[str, Query(max_length=200)] = "") -> R
 
 def _show(request: Request, name: str) -> Response:
     if name not in documents.TITLES:
-        raise NotFound(f"The panel has no document {name}; the guide's list has those that it has.")
+        raise NotFound(f"There is no document {name}; see the list of documents in the guide.")
     title = documents.TITLES[name]
     context = GuidePage(
         frame=site_frame(request, title),

@@ -56,21 +56,21 @@ async def zero(
     if doubts and confirmed != "yes":
         return page(press.request, _page(press.request, tracker, doubts), block="question", status=422)
     await press.send(SetZero(), tracker_id)
-    return press.answer("The drive was told to set zero.")
+    return press.answer("The command to set home was sent to the drive.")
 
 
 @router.post("/zero/undo")
 async def undo_zero(tracker_id: str, press: PressDep) -> Response:
     """Bring back the home position as it was before it was set last."""
     await press.send(UndoZero(), tracker_id)
-    return press.answer("The former home position counts again.")
+    return press.answer("The previous home position is restored.")
 
 
 @router.post("/home")
 async def home(tracker_id: str, press: PressDep) -> Response:
     """Start the automatic search for the origin switches."""
     await press.send(Home(), tracker_id)
-    return press.answer("The drive is looking for its origin switches.")
+    return press.answer("The drive is searching for its home switches.")
 
 
 @router.post("/step")
@@ -79,7 +79,7 @@ async def step(
 ) -> Response:
     """Move one axis by a small step."""
     if move not in MOVES or size not in STEP_SIZES:
-        raise NotAcceptable("Choose a step of 0.1, 1 or 5 degrees and press one of the four keys.")
+        raise NotAcceptable("Choose an increment of 0.1, 1, or 5 degrees and press one of the four buttons.")
     axis, direction = MOVES[move]
     await press.send(Step(axis, direction * float(size)), tracker_id)
     return press.answer(f"{axis.value.capitalize()} {'+' if direction > 0 else '−'}{size}°.")

@@ -20,7 +20,9 @@ from app.zones import zone_of
 router = page_router(prefix="/journal")
 A_PAGE = 60
 Typed = Annotated[str, Query(max_length=200)]
-WRONG_DAY = "{} is no day: write it as 2026-11-21. The journal is shown from its first to its last day."
+WRONG_DAY = (
+    "{} is not a date: write the date as 2026-11-21. The journal is shown from its first to its last day."
+)
 
 
 @router.get("")

@@ -13,7 +13,9 @@ from app.web.ui.paths import own_path
 from app.web.ui.theme import A_YEAR_S
 
 router = page_router()
-UNKNOWN_LANGUAGE = "The panel does not speak this language. Choose one from the list at the top of a page."
+UNKNOWN_LANGUAGE = (
+    "Heliopanel does not support this language. Choose a language from the list at the top of a page."
+)
 
 
 @router.post("/language")

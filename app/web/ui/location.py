@@ -234,7 +234,7 @@ def _sun_now(place: Location, config: TrackerConfig, now: datetime) -> str:
     sun = sun_position(config.algorithm, place, now)
     height_deg = sun.apparent_elevation_deg
     if height_deg <= 0.0:
-        return f"below the horizon, {abs(height_deg):.0f}° deep"
+        return f"{abs(height_deg):.0f}° below the horizon"
     return f"{height_deg:.0f}° high in the {compass(sun.azimuth_deg)}, at azimuth {sun.azimuth_deg:.0f}°"
 
 
@@ -253,11 +253,11 @@ def _dms(value_deg: float, sides: str) -> str:
 def _half(place: Location) -> str:
     if place.latitude_deg >= 0:
         if place.longitude_deg >= 0:
-            return "northern half of the Earth, east of Greenwich"
-        return "northern half of the Earth, west of Greenwich"
+            return "northern hemisphere, east of Greenwich"
+        return "northern hemisphere, west of Greenwich"
     if place.longitude_deg >= 0:
-        return "southern half of the Earth, east of Greenwich"
-    return "southern half of the Earth, west of Greenwich"
+        return "southern hemisphere, east of Greenwich"
+    return "southern hemisphere, west of Greenwich"
 
 
 def _time(at: datetime | None, zone: str) -> str:

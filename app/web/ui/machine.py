@@ -71,7 +71,7 @@ def _answer(
     request: Request, tracker: TrackerDetail, typed: Typed, *, block: str = "form", status: int = 200
 ) -> Response:
     config = tracker.state.config
-    frame = tracker_frame(request, config.tracker_id, "Machine protections")
+    frame = tracker_frame(request, config.tracker_id, "Mechanics")
     shown = None
     if not config.mount.single_axis:
         shown = region_picture(

@@ -21,39 +21,51 @@ from app.web.ui.forms import Typed, Unreadable
 
 NUMBERS: dict[str, tuple[str, str, float, float, str]] = {
     "overtravel_deg": (
-        "Over-travel that is borne",
+        "Overtravel limit",
         "°",
         0.1,
         45,
-        "Outside a soft limit; beyond it is a fault.",
+        "Travel beyond a soft limit; above this, a fault is raised.",
     ),
-    "creep_deg": ("Creep that is borne", "°", 0.1, 45, "Of an axis that was told to stand."),
+    "creep_deg": (
+        "Standstill monitoring limit",
+        "°",
+        0.1,
+        45,
+        "Uncommanded motion of an axis at standstill.",
+    ),
     "overrun_factor": (
-        "A stop may be longer by",
+        "Maximum stopping-distance ratio",
         "×",
         1,
         20,
-        "Than measured or computed; else it is slow.",
+        "Relative to the measured or calculated distance; above this, an alarm is raised.",
     ),
-    "switch_way_deg": ("A limit switch must be off after", "°", 0.5, 90, "Of way from it; else it is stuck."),
-    "supply_low_v": ("Supply at least", "V", 0, 1000, "Where the drive tells its voltage."),
-    "supply_high_v": ("Supply at most", "V", 0, 1000, "0 and 0: not watched."),
-    "clear_for_s": ("A clear area counts for", "s", 10, 14_400, "In service mode, from the word on."),
+    "switch_way_deg": (
+        "Limit-switch release distance",
+        "°",
+        0.5,
+        90,
+        ("Travel after which the switch must be off; otherwise it is stuck."),
+    ),
+    "supply_low_v": ("Minimum supply voltage", "V", 0, 1000, "For drives that report their voltage."),
+    "supply_high_v": ("Maximum supply voltage", "V", 0, 1000, "0 and 0: not monitored."),
+    "clear_for_s": ("Area-clear validity", "s", 10, 14_400, "In service mode, from the confirmation."),
 }
 FAULTS: dict[FaultClass, tuple[str, str]] = {
-    FaultClass.LINK: ("Link", "The drive did not answer."),
+    FaultClass.LINK: ("Connection", "The drive did not answer."),
     FaultClass.DRIVE: ("Drive", "The drive reports a fault of its own."),
-    FaultClass.FOLLOWING: ("Following", "An axis does not follow, is frozen or takes too long."),
+    FaultClass.FOLLOWING: ("Following", "An axis does not follow, is frozen, or takes too long."),
     FaultClass.WIRING: ("Wiring", "An axis turns the wrong way, or the wrong axis turns."),
     FaultClass.SWITCHES: ("Limit switches", "Both are on, or one stays on."),
-    FaultClass.TRAVEL: ("Over-travel", "An axis is beyond its soft limits."),
+    FaultClass.TRAVEL: ("Overtravel", "An axis is beyond its soft limits."),
     FaultClass.SUPPLY: ("Supply", "The supply voltage is out of range."),
 }
 RECOVERIES = (
-    (Recovery.NONE.value, "A person clears it"),
-    (Recovery.LIMITED.value, "By itself, so many times an hour"),
-    (Recovery.UNLIMITED.value, "By itself, always"),
-    (Recovery.SERVICE.value, "A person in service mode"),
+    (Recovery.NONE.value, "Manual reset"),
+    (Recovery.LIMITED.value, "Automatic, limited retries"),
+    (Recovery.UNLIMITED.value, "Automatic, unlimited retries"),
+    (Recovery.SERVICE.value, "Manual, in service mode"),
 )
 PARTS = ("kind", "times_per_hour", "after_s")
 SPARE = 1
@@ -149,20 +161,22 @@ def _policy(typed: Typed, fault: FaultClass) -> dict[str, Any]:
     title, _ = FAULTS[fault]
     return {
         "kind": typed.read(f"{fault.value}_kind", _recovery, Recovery.NONE),
-        "times_per_hour": typed.whole(f"{fault.value}_times_per_hour", f"{title}: times an hour", 1, 60),
+        "times_per_hour": typed.whole(f"{fault.value}_times_per_hour", f"{title}: resets per hour", 1, 60),
         "after_s": typed.number(f"{fault.value}_after_s", f"{title}: quiet time", 1, 3600),
     }
 
 
 def _recovery(text: str) -> Recovery:
     if text not in list(Recovery):
-        raise Unreadable("Recovery: choose from the list who leaves the fault.")
+        raise Unreadable("Recovery: choose from the list how the fault is reset.")
     return Recovery(text)
 
 
 def _name(text: str) -> str:
     if not 1 <= len(text) <= 60 or not text.isprintable():
-        raise Unreadable("Region: give it a name of 1 to 60 letters; to remove it empty both fields.")
+        raise Unreadable(
+            "Region: give it a name of 1 to 60 characters; to remove the region, clear both fields."
+        )
     return text
 
 
@@ -171,12 +185,12 @@ def _corners(text: str) -> list[dict[str, float]]:
     pairs = [part for part in re.split(r"[;\n]", text) if part.strip()]
     matches = [match for pair in pairs if (match := CORNER.fullmatch(pair))]
     if not 3 <= len(pairs) <= MOST_CORNERS or len(matches) < len(pairs):
-        raise Unreadable(f"{HOW} A region has 3 to {MOST_CORNERS} of them.")
+        raise Unreadable(f"{HOW} A region has 3 to {MOST_CORNERS} corners.")
     found = []
     for match in matches:
         azimuth, elevation = (float(one.replace("−", "-").replace(",", ".")) for one in match.groups())
         if abs(azimuth) > FARTHEST_DEG or abs(elevation) > FARTHEST_DEG:
-            raise Unreadable("Corners: angles of the axes must lie between -720 and 720 degrees.")
+            raise Unreadable("Corners: axis angles must be between -720 and 720 degrees.")
         found.append({"azimuth_deg": azimuth, "elevation_deg": elevation})
     return found
 

@@ -25,12 +25,12 @@ from app.web.ui.wizard import tracker_of, wizard_frame
 
 router = page_router(prefix="/trackers/{tracker_id}/commissioning/mode")
 CHOICES = (
-    ModeChoice(Mode.DUAL, "Dual-axis tracking", "Both axes follow the sun. The most energy."),
+    ModeChoice(Mode.DUAL, "Dual-axis tracking", "Both axes follow the sun. Highest energy yield."),
     ModeChoice(Mode.AZIMUTH, "Azimuth tracking", "The panel turns with the sun and keeps one elevation."),
     ModeChoice(Mode.ELEVATION, "Elevation tracking", "The panel tilts with the sun and keeps one azimuth."),
     ModeChoice(Mode.FIXED, "Fixed", "The panel goes to one orientation and stays there."),
 )
-LEAST_INCIDENCE = "The panel keeps one azimuth and tilts to the least angle to the sun."
+LEAST_INCIDENCE = "The panel keeps one azimuth and tilts to the smallest angle to the sun."
 EQUATORIAL = {
     Mode.AZIMUTH: "The panel turns with the hour angle and keeps one declination.",
     Mode.ELEVATION: "The panel follows the declination through the year and keeps one hour angle.",

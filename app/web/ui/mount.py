@@ -28,10 +28,10 @@ from app.web.ui.wizard import tracker_of
 router = page_router(prefix="/trackers/{tracker_id}/mount")
 KINDS = tuple(KindChoice(kind.value, known.title, known.summary) for kind, known in ABILITIES.items())
 MECHANISM_OPTIONS = (
-    (mount_form.NO_ACTUATOR, "None: the drive counts degrees"),
+    (mount_form.NO_ACTUATOR, "None: the drive works in degrees"),
     ("alexandru-diurnal", "Alexandru's diurnal actuator, 300 mm"),
     ("alexandru-elevation", "Alexandru's elevation actuator, 200 mm"),
-    (mount_form.OWN_POINTS, "By its points, below"),
+    (mount_form.OWN_POINTS, "By the points below"),
 )
 SAVED = "The mount is saved."
 

@@ -59,9 +59,9 @@ def rows_drawing(rows: Rows) -> RowsDrawing:
     along_x, along_y = GROUND * cos(slope), GROUND * sin(slope)
     ground = f"M{-along_x:.1f} {DEPTH - along_y:.1f}L{along_x:.1f} {DEPTH + along_y:.1f}"
     words = (
-        f"Panels {rows.ground_coverage_ratio:g} of the rows' distance wide: for a sun {90 - sun_deg:.1f}° "
-        f"high on the right they turn back from {sun_deg:.1f}° to {back_deg:.1f}°, so that no row shades the "
-        "next."
+        f"Panel width {rows.ground_coverage_ratio:g} of the row spacing: with the sun "
+        f"{90 - sun_deg:.1f}° high on the right, the panels turn back from {sun_deg:.1f}° to "
+        f"{back_deg:.1f}°, so that no row shades the next."
     )
     return RowsDrawing(panels, facing, ray, ground, words)
 
@@ -89,8 +89,8 @@ def actuator_plot(title: str, actuator: LinearActuator) -> ActuatorPlot:
         strokes=_marks(0.0, actuator.travel_mm, BOTTOM, TOP),
         transmissions=_marks(0.0, 180.0, BOTTOM, TOP),
         words=(
-            f"The stroke of {actuator.travel_mm:g} mm turns the axis from {low_deg:.2f} to {high_deg:.2f}°; "
-            f"at {actuator.speed_mm_s:g} mm/s it turns at least at "
+            f"The stroke of {actuator.travel_mm:g} mm turns the axis from {low_deg:.2f} to "
+            f"{high_deg:.2f}°; at {actuator.speed_mm_s:g} mm/s, the axis turns at no less than "
             f"{actuator.slowest_dps(low_deg, high_deg):.3f}°/s."
         ),
     )

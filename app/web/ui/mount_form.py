@@ -117,8 +117,8 @@ def _narrowed(axis: AxisConfig, actuator: LinearActuator) -> AxisConfig:
     upper_deg = min(axis.maximum_deg, floor(high_deg * 10.0) / 10.0)
     if lower_deg >= upper_deg:
         raise Unreadable(
-            f"The stroke turns the axis from {low_deg:.2f} to {high_deg:.2f}°, which has no part in common "
-            "with the soft limits: check the angle at which the points hold."
+            f"The stroke turns the axis from {low_deg:.2f} to {high_deg:.2f}°, which does not "
+            "overlap the soft limits: check the axis angle of the points."
         )
     speed_dps = min(axis.speed_dps, floor(actuator.slowest_dps(lower_deg, upper_deg) * 1000.0) / 1000.0)
     try:

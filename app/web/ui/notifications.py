@@ -55,7 +55,7 @@ async def save(
 async def test(press: PressDep, channel: Annotated[Channel, Form()]) -> Response:
     """Send a test message."""
     await press.send(TestNotification(channel))
-    return press.answer("A test message is on its way; the page Site says whether it arrived.")
+    return press.answer("A test message is being sent; see the Site page for the result.")
 
 
 def _page(

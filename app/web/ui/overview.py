@@ -67,9 +67,9 @@ async def stop_all(press: PressDep) -> Response:
 def _faults(tracker_id: str, name: str, detail: SiteDetail) -> dict[str, str]:
     errors = {}
     if not tracker_id.replace("-", "").isalnum() or len(tracker_id) > 20:
-        errors["tracker_id"] = "Give an id of letters, digits and dashes, at most 20, such as T2."
+        errors["tracker_id"] = "Give an ID of letters, digits, and dashes, at most 20, such as T2."
     elif tracker_id in detail.trackers:
-        errors["tracker_id"] = f"There is a tracker {tracker_id} already; choose another id."
+        errors["tracker_id"] = f"Tracker {tracker_id} already exists; choose another ID."
     if not name:
         errors["name"] = "Give the tracker a name, such as North field 2."
     return errors

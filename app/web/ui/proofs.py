@@ -25,9 +25,9 @@ router = page_router(prefix="/trackers/{tracker_id}/proofs")
 SCALE_WAYS = {"10": 10.0, "30": 30.0, "90": 90.0}
 QUESTIONS = {
     (Axis.AZIMUTH, True): "Did the panel turn to the right, clockwise as seen from above?",
-    (Axis.AZIMUTH, False): "Did the panel turn to the left, anticlockwise as seen from above?",
-    (Axis.ELEVATION, True): "Did the panel's face tilt up, towards the sky?",
-    (Axis.ELEVATION, False): "Did the panel's face tilt down, towards the horizon?",
+    (Axis.AZIMUTH, False): "Did the panel turn to the left, counterclockwise as seen from above?",
+    (Axis.ELEVATION, True): "Did the front of the panel tilt up, toward the sky?",
+    (Axis.ELEVATION, False): "Did the front of the panel tilt down, toward the horizon?",
 }
 AxisField = Annotated[Axis, Form()]
 
@@ -49,9 +49,11 @@ async def direction(tracker_id: str, press: PressDep, axis: AxisField) -> Respon
 async def answer_direction(tracker_id: str, press: PressDep, answer: Annotated[str, Form()] = "") -> Response:
     """Take what was seen; the wrong way turns the direction round in the settings."""
     if answer not in ("right", "wrong"):
-        raise NotAcceptable("Say whether the panel turned as the question says, or the other way.")
+        raise NotAcceptable("Select whether the panel turned as the question says, or the other way.")
     await press.send(AnswerDirection(tracker_id, answer == "right"))
-    return press.answer("Noted." if answer == "right" else "The direction is turned round; prove it again.")
+    return press.answer(
+        "Result recorded." if answer == "right" else "The direction is inverted; repeat the direction test."
+    )
 
 
 @router.post("/scale")
@@ -60,9 +62,9 @@ async def scale(
 ) -> Response:
     """Turn one axis by 10, 30 or 90 degrees."""
     if way not in SCALE_WAYS:
-        raise NotAcceptable("Choose 10, 30 or 90 degrees.")
+        raise NotAcceptable("Choose 10, 30, or 90 degrees.")
     await press.send(ProveScale(axis, SCALE_WAYS[way]), tracker_id)
-    return press.answer("Wait until it stands, then measure.")
+    return press.answer("Wait until the axis is at standstill, then measure.")
 
 
 @router.post("/scale/answer")
@@ -79,7 +81,7 @@ async def answer_scale(
     except NotAcceptable as refusal:
         typed.errors["measured"] = str(refusal)
         return await _answer(press.request, tracker_id, machine, typed, status=422)
-    return press.answer("Noted.")
+    return press.answer("Result recorded.")
 
 
 @router.post("/limit")
@@ -97,14 +99,14 @@ async def stop_test(
 ) -> Response:
     """Start the stop test."""
     await press.send(MeasureStop(axis, speed), tracker_id)
-    return press.answer("The stop test runs.")
+    return press.answer("The stop test is running.")
 
 
 @router.post("/link-loss")
 async def link_loss_test(tracker_id: str, press: PressDep, axis: AxisField) -> Response:
     """Start the link-loss test."""
     await press.send(MeasureLinkLoss(axis), tracker_id)
-    return press.answer("The link-loss test runs.")
+    return press.answer("The communication-loss test is running.")
 
 
 async def _answer(
@@ -114,7 +116,7 @@ async def _answer(
     memory = tracker.state.memory
     states = {kind.value: tuple(one for one in tracker.proofs if one.kind is kind) for kind in ProofKind}
     context = ProofsPage(
-        frame=tracker_frame(request, tracker_id, "Proofs of the drive"),
+        frame=tracker_frame(request, tracker_id, "Drive tests"),
         config=tracker.state.config,
         memory=memory,
         capabilities=tracker.capabilities,

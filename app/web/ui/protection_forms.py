@@ -11,36 +11,54 @@ from app.web.protection_contexts import Group, Setting
 from app.web.ui.forms import Typed, Unreadable
 
 NUMBERS: dict[str, tuple[str, str, float, float, str]] = {
-    "wind.gust_mps": ("Stow at a gust of", "m/s", 1, 60, "The fastest wind of 3 s."),
-    "wind.mean_mps": ("Stow at a mean of", "m/s", 1, 60, "Over 10 minutes."),
-    "wind.hysteresis_mps": ("Calm is lower by", "m/s", 0, 20, "Below both limits by this much."),
-    "wind.resume_after_s": ("Calm for", "s", 10, 86_400, "Then tracking goes on."),
-    "wind.bad_after_s": ("A bad sensor is borne for", "s", 0, 3600, "Missing, old, frozen or impossible."),
-    "snow.load_kg": ("Tip at a load of", "kg", 0.1, 10_000, "On one panel; 4 kg on 4 m² are 1 cm."),
-    "snow.hold_s": ("Lying for", "s", 1, 86_400, "Without a break."),
-    "snow.hysteresis_kg": ("Off is lower by", "kg", 0, 1000, "Then tracking goes on."),
-    "snow.bad_after_s": ("A bad sensor is borne for", "s", 0, 3600, "Missing, old, frozen or impossible."),
-    "light.threshold_wm2": ("Rest below", "W/m²", 0.1, 1000, "The panel stays where it is."),
-    "light.hold_s": ("Dark for", "s", 1, 86_400, "Without a break."),
-    "light.hysteresis_wm2": ("Light is higher by", "W/m²", 0, 500, "Then tracking goes on at once."),
-    "light.bad_after_s": ("A bad sensor is borne for", "s", 0, 3600, "Missing, old, frozen or impossible."),
-    "warning_s": ("Warn for", "s", 0, 60, "Countdown and horn; 0 switches the warning off."),
+    "wind.gust_mps": ("Gust threshold", "m/s", 1, 60, "Highest wind speed over 3 s."),
+    "wind.mean_mps": ("Mean-wind threshold", "m/s", 1, 60, "Over 10 minutes."),
+    "wind.hysteresis_mps": ("Release hysteresis", "m/s", 0, 20, "Below both thresholds by this much."),
+    "wind.resume_after_s": ("Release delay", "s", 10, 86_400, "Then tracking resumes."),
+    "wind.bad_after_s": (
+        "Sensor-fault delay",
+        "s",
+        0,
+        3600,
+        "Reading missing, stale, frozen, or implausible.",
+    ),
+    "snow.load_kg": ("Snow-load threshold", "kg", 0.1, 10_000, "On one panel; 4 kg on 4 m² is 1 cm of snow."),
+    "snow.hold_s": ("Trigger delay", "s", 1, 86_400, "Without interruption."),
+    "snow.hysteresis_kg": ("Release hysteresis", "kg", 0, 1000, "Then tracking resumes."),
+    "snow.bad_after_s": (
+        "Sensor-fault delay",
+        "s",
+        0,
+        3600,
+        "Reading missing, stale, frozen, or implausible.",
+    ),
+    "light.threshold_wm2": ("Low-light threshold", "W/m²", 0.1, 1000, "The panel holds its position."),
+    "light.hold_s": ("Trigger delay", "s", 1, 86_400, "Without interruption."),
+    "light.hysteresis_wm2": ("Release hysteresis", "W/m²", 0, 500, "Then tracking resumes immediately."),
+    "light.bad_after_s": (
+        "Sensor-fault delay",
+        "s",
+        0,
+        3600,
+        "Reading missing, stale, frozen, or implausible.",
+    ),
+    "warning_s": ("Warning time", "s", 0, 60, "Countdown and horn; 0 switches the warning off."),
 }
 TITLES = {
-    "wind": ("Wind", "Strong wind stows the panel at once; tracking goes on after calm minutes."),
-    "snow": ("Snow", "A panel that carries snow is tipped, unless the wind is strong."),
-    "light": ("Too little light", "In too little light the panel stays where it is."),
+    "wind": ("Wind", "Strong wind stows the panel immediately; tracking resumes after the release delay."),
+    "snow": ("Snow", "A snow load moves the panel to its snow stow position, unless the wind is strong."),
+    "light": ("Low light", "In low light, the panel holds its position."),
 }
 REACTIONS = (
-    (Reaction.IGNORE.value, "Is ignored"),
-    (Reaction.WARN.value, "Warns"),
-    (Reaction.HOLD.value, "Keeps the panel where it is"),
-    (Reaction.STOW.value, "Stows the panel"),
+    (Reaction.IGNORE.value, "Ignore"),
+    (Reaction.WARN.value, "Warn"),
+    (Reaction.HOLD.value, "Hold position"),
+    (Reaction.STOW.value, "Stow panel"),
 )
 FACINGS = (
-    (Facing.ANYTHING.value, "Nothing: it keeps its azimuth"),
-    (Facing.EDGE.value, "The panel's edge"),
-    (Facing.BACK.value, "The panel's back"),
+    (Facing.ANYTHING.value, "None: azimuth unchanged"),
+    (Facing.EDGE.value, "Panel edge"),
+    (Facing.BACK.value, "Panel back"),
 )
 STOW_TITLES = (
     (StowName.WIND.value, "Wind"),
@@ -157,11 +175,11 @@ def _value(config: ProtectionConfig, path: str) -> float:
 
 def _reaction(text: str) -> Reaction:
     if text not in list(Reaction):
-        raise Unreadable("Choose from the list what a bad sensor does.")
+        raise Unreadable("Choose the sensor-fault reaction from the list.")
     return Reaction(text)
 
 
 def _facing(text: str) -> Facing:
     if text not in list(Facing):
-        raise Unreadable("Choose from the list what is turned into the wind.")
+        raise Unreadable("Choose the orientation to wind from the list.")
     return Facing(text)

@@ -57,7 +57,7 @@ async def stow(tracker_id: str, press: PressDep, position: Annotated[str, Form(m
 async def resume(tracker_id: str, press: PressDep) -> Response:
     """Leave the stow position that was commanded."""
     await press.send(Resume(), tracker_id)
-    return press.answer("The stow is over.")
+    return press.answer("The stow has ended.")
 
 
 @router.post("/lock")
@@ -69,14 +69,14 @@ async def lock(
 ) -> Response:
     """Forbid every automatic motion."""
     await press.send(LockOut(name, reason), tracker_id)
-    return press.answer("Locked: nothing moves automatically, whatever the weather.")
+    return press.answer("Maintenance inhibit is set: no automatic motion, whatever the weather.")
 
 
 @router.post("/release-lock")
 async def release_lock(tracker_id: str, press: PressDep) -> Response:
     """Forget the lock."""
     await press.send(ReleaseLock(), tracker_id)
-    return press.answer("The lock is released; nothing moves until it is commanded.")
+    return press.answer("The maintenance inhibit is released; nothing moves until commanded.")
 
 
 def _answer(request: Request, tracker: TrackerDetail, typed: Typed, *, status: int = 200) -> Response:

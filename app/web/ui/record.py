@@ -53,7 +53,7 @@ async def sign_record(
     typed = Typed(form.model_dump())
     signatures = _signatures(typed)
     if len(form.remark) > LONGEST_REMARK:
-        typed.errors["remark"] = f"A remark has at most {LONGEST_REMARK} letters."
+        typed.errors["remark"] = f"A remark can have at most {LONGEST_REMARK} characters."
     if typed.errors:
         return await _answer(press.request, tracker_id, built, typed, status=422)
     if form.confirmed != "yes" and (doubts := await asked_before_signing(built, tracker_id)):

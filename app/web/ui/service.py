@@ -18,7 +18,7 @@ from app.web.ui.wizard import tracker_of
 from app.web.ui.zero import blocked_without_zero
 
 router = page_router(prefix="/trackers/{tracker_id}/service")
-LOOK_FIRST = "Go and look, then tick that nobody stands where the panel moves."
+LOOK_FIRST = "Check the area, then confirm that no one is within reach of the panel."
 
 
 @router.get("")
@@ -37,7 +37,7 @@ async def service(request: Request, tracker_id: str, machine: MachineDep) -> Res
 async def begin(tracker_id: str, press: PressDep, name: Annotated[str, Form(max_length=60)] = "") -> Response:
     """Begin service mode in somebody's name."""
     await press.send(BeginService(name), tracker_id)
-    return press.answer("Service mode begins. It moves once you have said that the area is clear.")
+    return press.answer("Service mode is on. The tracker moves only after you press Confirm area clear.")
 
 
 @router.post("/clear")
@@ -48,11 +48,11 @@ async def clear(
     if looked != "yes":
         raise NotAcceptable(LOOK_FIRST)
     await press.send(ConfirmClear(), tracker_id)
-    return press.answer("The area is clear, you said. That counts for the time shown.")
+    return press.answer("Area confirmed clear. The confirmation is valid for the time shown.")
 
 
 @router.post("/end")
 async def end(tracker_id: str, press: PressDep) -> Response:
     """Leave service mode."""
     await press.send(EndService(), tracker_id)
-    return press.answer("Service mode has ended; nothing moves because of it.")
+    return press.answer("Service mode has ended; this starts no motion.")

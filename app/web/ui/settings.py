@@ -162,7 +162,7 @@ def _read(typed: Typed, config: TrackerConfig) -> TrackerConfig | None:
         algorithm=typed.read("algorithm", _algorithm, Algorithm.PSA),
         night=typed.read("night", _night, NightBehaviour.SUNRISE),
         deadband_deg=typed.number("deadband", "Deadband", 0.01, 10),
-        in_position_deg=typed.number("in_position", "In position within", 0.01, 5),
+        in_position_deg=typed.number("in_position", "In-position tolerance", 0.01, 5),
         following_error_deg=typed.number("following_error", "Following error", 0.1, 20),
     )
     return None if typed.errors else wanted
@@ -193,8 +193,8 @@ def _axis(typed: Typed, name: str, title: str, stored: AxisConfig) -> AxisConfig
         typed.number(f"{name}_maximum", f"{label} upper limit", -360, 720),
         typed.number(f"{name}_speed", f"{label} rated speed", 0.01, 60),
         typed.number(f"{name}_acceleration", f"{label} acceleration", 0.01, 100),
-        typed.number(f"{name}_slow", f"{label} slow speed by hand", 0.01, 60),
-        typed.number(f"{name}_fast", f"{label} fast speed by hand", 0.01, 60),
+        typed.number(f"{name}_slow", f"{label} slow jog speed", 0.01, 60),
+        typed.number(f"{name}_fast", f"{label} fast jog speed", 0.01, 60),
     )
     if any(field.startswith(f"{name}_") for field in typed.errors):
         return stored

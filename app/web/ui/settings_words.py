@@ -35,31 +35,46 @@ def _axis(name: str, title: str) -> dict[str, SettingWords]:
             f"{title}: upper soft limit", "°", -360, 720, axis.maximum_deg, "No motion goes above it."
         ),
         f"{name}_speed": SettingWords(
-            f"{title}: rated speed", "°/s", 0.01, 60, axis.speed_dps, "The fastest that the drive keeps up."
+            f"{title}: rated speed",
+            "°/s",
+            0.01,
+            60,
+            axis.speed_dps,
+            "Highest speed that the drive can sustain.",
         ),
         f"{name}_acceleration": SettingWords(
             f"{title}: acceleration", "°/s²", 0.01, 100, axis.acceleration_dps2, "How quickly speed changes."
         ),
         f"{name}_slow": SettingWords(
-            f"{title}: slow by hand", "°/s", 0.01, 60, slow, "For the last degrees, by the hold keys."
+            f"{title}: slow jog speed",
+            "°/s",
+            0.01,
+            60,
+            slow,
+            "For the last degrees, with the hold-to-run buttons.",
         ),
         f"{name}_fast": SettingWords(
-            f"{title}: fast by hand", "°/s", 0.01, 60, fast, "At most the rated speed."
+            f"{title}: fast jog speed", "°/s", 0.01, 60, fast, "At most the rated speed."
         ),
     }
 
 
 SETTINGS = {
     "deadband": SettingWords(
-        "Deadband", "°", 0.01, 10, DEFAULT.deadband_deg, "The panel moves when it is off the sun by more."
+        "Deadband",
+        "°",
+        0.01,
+        10,
+        DEFAULT.deadband_deg,
+        "The panel moves when the pointing error exceeds this.",
     ),
     "in_position": SettingWords(
-        "In position within",
+        "In-position tolerance",
         "°",
         0.01,
         5,
         DEFAULT.in_position_deg,
-        "A move has arrived when it is this near.",
+        "A move is complete within this distance of its target.",
     ),
     "following_error": SettingWords(
         "Following error",
@@ -67,7 +82,7 @@ SETTINGS = {
         0.1,
         20,
         DEFAULT.following_error_deg,
-        "An axis that is farther behind is stopped with a fault.",
+        "An axis with a larger error is stopped with a fault.",
     ),
     "park_azimuth": SettingWords(
         "Park azimuth", "°", 0, 360, DEFAULT.park.azimuth_deg, "Clockwise from true north."

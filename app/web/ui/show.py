@@ -29,7 +29,7 @@ from app.zones import zone_of
 
 router = page_router(prefix="/trackers/{tracker_id}")
 NO_LOCATION = Reason("no_location", "The location is not saved yet.", "Do step 1 of commissioning first.")
-NO_SHOW = Reason("no_show", "No show stands at its start.", "Plan a show and go to its start.")
+NO_SHOW = Reason("no_show", "No show is ready at its start.", "Plan a show and go to its start.")
 
 
 @router.get("/show")
@@ -77,7 +77,7 @@ async def run(tracker_id: str, press: PressDep, built: PanelDep) -> Response:
     if seen is None or seen.show is None:
         raise CommandRejected(NO_SHOW)
     await press.send(RunShow(_stored(built, tracker_id, seen.show.show_id)), tracker_id)
-    return press.answer("The show runs.")
+    return press.answer("The show is running.")
 
 
 @router.post("/show/pause")
@@ -91,14 +91,14 @@ async def pause(tracker_id: str, press: PressDep) -> Response:
 async def resume(tracker_id: str, press: PressDep) -> Response:
     """Go on with a paused show."""
     await press.send(ResumeShow(), tracker_id)
-    return press.answer("The show goes on.")
+    return press.answer("The show continues.")
 
 
 @router.post("/show/stop")
 async def stop(tracker_id: str, press: PressDep) -> Response:
     """End the show before its time."""
     await press.send(StopShow(), tracker_id)
-    return press.answer("The show has ended; the panel stays where it is.")
+    return press.answer("The show has ended; the panel holds its position.")
 
 
 def _stored(built: Panel, tracker_id: str, show_id: str) -> ShowPlan:

@@ -87,7 +87,7 @@ def planned(form: ShowForm, place: Place) -> Planned:
 def read(typed: Typed, place: Place) -> ShowPlan | None:
     """Return the plan that was typed; an end that is not after the start lies on the next day."""
     day = typed.day("date", "Date")
-    start, end = typed.clock_time("start", "Start"), typed.clock_time("end", "End")
+    start, end = typed.clock_time("start", "Start"), typed.clock_time("end", "End session")
     minutes = typed.number("minutes", "Minutes", 0.1, 1440)
     if "date" not in typed.errors and not FIRST_YEAR <= day.year <= LAST_YEAR:
         typed.errors["date"] = "Date: choose a day in the years 1901 to 2099."
@@ -193,7 +193,7 @@ def _instead(check: ShowCheck, plan: ShowPlan, place: Place, typed: Typed) -> Li
         return None
     if check.shortest is not None:
         texts = {name: typed.texts[name] for name in NAMES} | {"minutes": _minutes(check.shortest)}
-        return Link(f"Take {duration(check.shortest)} instead", f"?{urlencode(texts)}")
+        return Link(f"Use {duration(check.shortest)} instead", f"?{urlencode(texts)}")
     codes = {reason.code for reason in check.reasons}
     if "mode_not_possible" in codes:
         return Link("Choose another mode", f"/trackers/{place.config.tracker_id}/commissioning/mode")
@@ -205,7 +205,7 @@ def _with_sun(plan: ShowPlan, place: Place) -> Link | None:
     day = plan.begin_at.date()
     if (found := _lit(place, day)) is not None and found[1] - found[0] >= SHORTEST_LIGHT:
         begin, end = (local(at, place.zone, "%H:%M") for at in found)
-        label = f"Take sunrise to sunset instead: {begin} to {end}"
+        label = f"Use sunrise to sunset instead: {begin} to {end}"
         return Link(label, f"?{urlencode({'date': day.isoformat()})}")
     after = plan.begin_at.replace(hour=0, minute=0, second=0)
     lit_at = next_daylight(place.config.algorithm, place.location, after)
@@ -213,7 +213,7 @@ def _with_sun(plan: ShowPlan, place: Place) -> Link | None:
         return None
     on = lit_at.astimezone(zone_of(place.zone)).date()
     shown = read_local(lit_at, place.zone, ISO_DATE)
-    label = f"Take {shown}, the next day with an hour of sun"
+    label = f"Use {shown}, the next day with an hour of sun"
     return Link(label, f"?{urlencode({'date': on.isoformat()})}")
 
 

@@ -31,9 +31,9 @@ router = page_router()
 
 TITLES = {
     "login": "Sign in",
-    "prove": "Type your password again",
+    "prove": "Confirm your password",
     "setup": "First administrator",
-    "kiosk": "Bind this cabinet's panel",
+    "kiosk": "Bind this cabinet display",
 }
 BEFORE = ("login", "kiosk")
 """Forms before which nobody is known: these show the notice of use."""

@@ -35,8 +35,8 @@ WEATHERS = (
     (Scenario.CALM.value, "A calm day"),
     (Scenario.STORM.value, "A storm that comes and goes"),
     (Scenario.SNOWFALL.value, "A snowfall that slides off"),
-    (Scenario.CLOUDS.value, "Clouds, then a dark bank"),
-    (BY_STEPS, "By the steps below"),
+    (Scenario.CLOUDS.value, "Clouds, then heavy overcast"),
+    (BY_STEPS, "From the steps below"),
 )
 EXAMPLE = "time,wind_mps,snow_kg\n00:00,3,0\n10:00,,6\n10:30,,0\n14:00,22,\n14:10,3,"
 

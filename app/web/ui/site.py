@@ -78,7 +78,7 @@ async def weather_station(
         return await _refused(press, machine, "station", typed)
     await press.send(SetMetStation(station))
     return press.answer(
-        "The weather station is read from now on." if station else "No weather station is read."
+        "The weather station is now being read." if station else "No weather station is in use."
     )
 
 
@@ -112,7 +112,7 @@ async def weather_windows(
     if windows is None:
         return await _refused(press, machine, "windows", typed)
     await press.send(SetWeatherWindows(windows))
-    return press.answer("The weather is judged by these windows and ages from now on.")
+    return press.answer("The weather evaluation now uses these windows and ages.")
 
 
 @router.post("/undo")

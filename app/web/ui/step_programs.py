@@ -35,20 +35,20 @@ router = page_router(prefix="/studies/program")
 CSV = "text/csv; charset=utf-8"
 LIGHTS: Options = (
     (ProgramLight.MELISS, "Meliss's clear sky, as in Alexandru's paper"),
-    (ProgramLight.INEICHEN, "Ineichen and Perez's clear sky at the place"),
-    (ProgramLight.SOLIS, "Simplified Solis clear sky at the place"),
+    (ProgramLight.INEICHEN, "Ineichen and Perez's clear sky at the location"),
+    (ProgramLight.SOLIS, "Simplified Solis clear sky at the location"),
 )
-WINDOWS: Options = (("", "From sunrise to sunset"), ("yes", "From 6 h to 18 h solar time, as the paper"))
+WINDOWS: Options = (("", "From sunrise to sunset"), ("yes", "From 6 h to 18 h solar time, as in the paper"))
 NUMBERS = (
     ("latitude", "latitude_deg", "Latitude", -90, 90),
     ("longitude", "longitude_deg", "Longitude", -180, 180),
     ("range", "range_deg", "Range", 5, 120),
-    ("step_s", "step_s", "Time of a step", 0, 3600),
+    ("step_s", "step_s", "Step duration", 0, 3600),
     ("turbidity", "turbidity", "Turbidity", 1, 10),
     ("area", "area_m2", "Area", 0.01, 1e6),
     ("efficiency", "efficiency", "Efficiency", 0.001, 1),
-    ("degree", "degree_wh", "Energy for a degree", 0, 1e4),
-    ("move", "move_wh", "Energy for a move", 0, 1e4),
+    ("degree", "degree_wh", "Energy per degree", 0, 1e4),
+    ("move", "move_wh", "Energy per move", 0, 1e4),
 )
 
 
@@ -187,7 +187,7 @@ def _read(typed: Typed) -> NewProgram | None:
             {**values, "light": typed.texts["light"], "window": typed.texts["window"] == "yes"}
         )
     except ValueError:
-        typed.errors["light"] = "Light: choose one from the list."
+        typed.errors["light"] = "Irradiance: choose one from the list."
         return None
 
 
@@ -217,7 +217,7 @@ def _energy(answer: ProgramAnswer) -> Plot:
     counts = [float(row.steps) for row in shown]
     curves: list[Curve] = [
         ("electric energy", counts, [row.electric_wh for row in shown]),
-        ("after the drives are paid", counts, [row.net_wh for row in shown]),
+        ("net of drive energy", counts, [row.net_wh for row in shown]),
         ("continuous within the range", [counts[0], counts[-1]], [answer.continuous_wh] * 2),
     ]
     least = min(row.net_wh for row in shown)

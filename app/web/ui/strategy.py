@@ -162,9 +162,9 @@ def _filled(form: ProgramForm) -> ProgramTable | None:
         case "rows":
             return typed_program(form)
         case "import":
-            return shown_program(from_table(form.table), note="Imported. Look it over, then save it.")
+            return shown_program(from_table(form.table), note="Imported. Check the program, then save it.")
         case "example" if form.example in EXAMPLES:
-            return shown_program(EXAMPLES[form.example], note="Look the example over, then save it.")
+            return shown_program(EXAMPLES[form.example], note="Check the example, then save it.")
         case _:
             return None
 
@@ -194,7 +194,7 @@ def _answer(
         program=table or shown_program(kept),
         hybrid=light.form(HybridForm.model_fields),
         keeps_program=kept is not None,
-        done=f"{kept.name} is saved; the tracker goes by it." if done and kept else "",
+        done=f"{kept.name} is saved; the tracker now uses it." if done and kept else "",
         aims=AIMS,
         bases=BASES,
         frames=FRAMES,
@@ -216,13 +216,13 @@ def _played(hybrid: HybridConfig) -> str:
     azimuth, elevation = angle(light.azimuth_deg), angle(light.elevation_deg)
     if light.cloud:
         return (
-            "Corrected by simulated light sensors on a panel that is misaligned by "
-            f"{azimuth} and {elevation} and a cloud that takes {light.cloud * 100.0:.0f} % of the direct "
-            "light. Errors and curves tell where the panel really faces."
+            f"Corrected by simulated light sensors: panel misaligned by {azimuth} and {elevation}, "
+            f"cloud blocking {light.cloud * 100.0:.0f} % of the direct irradiance. Errors and "
+            "curves show where the panel really faces."
         )
     return (
-        f"Corrected by simulated light sensors on a panel that is misaligned by {azimuth} and {elevation}. "
-        "Errors and curves tell where the panel really faces."
+        f"Corrected by simulated light sensors: panel misaligned by {azimuth} and {elevation}. "
+        "Errors and curves show where the panel really faces."
     )
 
 

@@ -31,35 +31,41 @@ CHOICES = (
     StrategyChoice(
         "deadband",
         "Deadband",
-        "The panel stands until the sun is about to leave the deadband, then both axes run to it. "
-        "Few starts at a known error: right for most trackers.",
+        "The panel is at standstill until the sun is about to leave the deadband, then both axes "
+        "move to the sun. Few starts at a known error: suitable for most trackers.",
     ),
     StrategyChoice(
         "encoder-deadband",
         "Deadband in encoder counts",
-        "Each axis by itself counts its encoder: off by so many counts it runs until it is off by none.",
+        (
+            "Each axis uses its own encoder: at an error of the set number of counts, the axis moves "
+            "until the error is 0."
+        ),
     ),
     StrategyChoice(
         "continuous",
         "Continuous",
-        "The set-point follows the sun all the time. Least error; the motors and brakes never rest, and "
-        "after a power cut the zero has to be set again.",
+        "The setpoint follows the sun continuously. Smallest error; the motors and brakes work "
+        "without pause, and after a power failure the tracker must be homed again.",
     ),
     StrategyChoice(
         "interval",
         "Interval",
-        "A move every so many minutes, to the sun or to where it will be in the middle of the interval.",
+        (
+            "A move at a fixed interval in minutes, to the sun's current position or its position in "
+            "the middle of the interval."
+        ),
     ),
     StrategyChoice(
         "stepped",
         "Step program",
-        "The angles of the program below, each from its time of the day on. Fewest moves.",
+        "The angles of the program below, each from its time of day on. Fewest moves.",
     ),
 )
 LABELS = {choice.kind: choice.label for choice in CHOICES}
 AIMS = (
     (IntervalAim.MIDDLE.value, "half an interval ahead"),
-    (IntervalAim.NOW.value, "to where the sun is"),
+    (IntervalAim.NOW.value, "to the current sun position"),
 )
 BASES = (
     (TimeBase.SOLAR.value, "Solar time"),
@@ -168,10 +174,10 @@ def hybrid_texts(hybrid: HybridConfig) -> dict[str, str]:
 def read_hybrid(typed: Typed) -> HybridConfig | None:
     """Return the correction that was typed, None while anything in it is wrong."""
     values = (
-        typed.number("threshold", "Light threshold", 1, 2000),
+        typed.number("threshold", "Irradiance threshold", 1, 2000),
         typed.number("gain", "Gain", 0.001, 10),
-        typed.number("bound", "Bound", 0.01, 10),
-        typed.number("decay", "Decay", 0, 86400),
+        typed.number("bound", "Correction limit", 0.01, 10),
+        typed.number("decay", "Decay time constant", 0, 86400),
     )
     played = (
         typed.number("azimuth_off", "Simulated misalignment, azimuth", -10, 10),
@@ -212,7 +218,7 @@ def typed_program(form: ProgramForm, wrong: Sequence[str] = (), *, more: int = E
 def read_program(form: ProgramForm) -> StepProgram:
     """Return the program of the table; rows that are empty do not count. Raises `TableWrong`."""
     if form.angles not in list(StepFrame) or form.base not in list(TimeBase):
-        raise TableWrong("Choose from the lists what times and angles are.")
+        raise TableWrong("Choose the time base and the type of angles from the lists.")
     column = "solar_time" if form.base == TimeBase.SOLAR else f"clock_time{_offset(form.offset)}"
     head = ",".join((column, *COLUMNS[StepFrame(form.angles)]))
     rows = [
@@ -238,14 +244,14 @@ def _offset(text: str) -> str:
     try:
         hours = float(text.replace(",", ".") or 0.0)
     except ValueError as error:
-        raise TableWrong("Clock ahead of UTC: type hours, such as 3 or -3.5.") from error
+        raise TableWrong("UTC offset: type hours, such as 3 or -3.5.") from error
     minutes = round(abs(hours) * 60.0)
     return f"_utc{'-' if hours < 0 else '+'}{minutes // 60:02d}:{minutes % 60:02d}"
 
 
 def _counted(typed: Typed) -> Strategy:
     counts = typed.whole("counts", "Counts", 1, 1_000_000)
-    per_turn = typed.whole("counts_per_turn", "Counts a turn", 1, 10_000_000)
+    per_turn = typed.whole("counts_per_turn", "Counts per turn", 1, 10_000_000)
     try:
         return EncoderDeadband(counts, per_turn)
     except ValueError as error:
@@ -254,5 +260,5 @@ def _counted(typed: Typed) -> Strategy:
 
 def _aim(text: str) -> IntervalAim:
     if text not in list(IntervalAim):
-        raise Unreadable("Where to: choose one from the list.")
+        raise Unreadable("Move target: choose one from the list.")
     return IntervalAim(text)

@@ -36,8 +36,8 @@ NUMBERS = (
     ("latitude", "latitude_deg", "Latitude", -90, 90),
     ("longitude", "longitude_deg", "Longitude", -180, 180),
     ("altitude", "altitude_m", "Altitude", -500, 9000),
-    ("azimuth", "azimuth_deg", "Held azimuth", 0, 359.999),
-    ("elevation", "elevation_deg", "Held elevation", -90, 90),
+    ("azimuth", "azimuth_deg", "Fixed azimuth", 0, 359.999),
+    ("elevation", "elevation_deg", "Fixed elevation", -90, 90),
     ("deadband", "deadband_deg", "Deadband", 0.05, 30),
     ("range", "range_deg", "Range", 5, 180),
     ("rows", "rows_ratio", "Ground coverage", 0, 1),
@@ -47,8 +47,8 @@ NUMBERS = (
     ("losses", "losses_percent", "Losses", 0, 99),
     ("air", "air_degc", "Air", -60, 60),
     ("wind", "wind_mps", "Wind", 0, 50),
-    ("degree", "degree_wh", "Energy for a degree", 0, 1e4),
-    ("start", "start_wh", "Energy for a start", 0, 1e4),
+    ("degree", "degree_wh", "Energy per degree", 0, 1e4),
+    ("start", "start_wh", "Energy per start", 0, 1e4),
     ("standby", "standby_w", "Standby", 0, 1e4),
 )
 WHOLE = (("step", "step_min", "Step", 1, 60), ("interval", "interval_min", "Interval", 1, 240))
@@ -58,11 +58,11 @@ MEANINGS = {
     "latitude": "North is positive.",
     "longitude": "East is positive.",
     "range": "Single and polar axes",
-    "rows": "Of rows that backtrack; 0: none.",
+    "rows": "For rows that backtrack; 0: none.",
     "axis_tilt": "Tilted axis",
-    "albedo": "Share of light that the ground reflects.",
+    "albedo": "Share of irradiance that the ground reflects.",
     "power": "At 1000 W/m², 25 °C",
-    "losses": "Cables, inverter, dirt.",
+    "losses": "Cables, inverter, soiling.",
     "air": "Clear sky",
     "wind": "Clear sky",
     "degree": "Drives",
@@ -83,7 +83,7 @@ TRANSPOSITIONS: Options = (
 )
 FIDELITIES: Options = (
     (Fidelity.IDEAL, "Ideal drives"),
-    (Fidelity.CONTROLLER, "As the controller does it, one day, with the tracker's mount and limits"),
+    (Fidelity.CONTROLLER, "Controller simulation, one day, with the tracker's mount and limits"),
 )
 
 

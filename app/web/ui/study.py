@@ -80,22 +80,25 @@ def _settings(asked: StudyRequest, result: StudyResult | None) -> tuple[tuple[st
     light = asked.weather_file if asked.light is LightModel.WEATHER else CLEAR_SKIES[asked.light]
     sky = dict(TRANSPOSITIONS)[asked.around.transposition]
     step = result.step_min if result else asked.step_min
-    fidelity = "ideal drives" if asked.fidelity is Fidelity.IDEAL else "as the controller does it"
+    fidelity = "ideal drives" if asked.fidelity is Fidelity.IDEAL else "controller simulation"
     return (
         (
-            "Place",
+            "Location",
             f"{abs(place.latitude_deg):.4f}° {'north' if place.latitude_deg >= 0.0 else 'south'}, "
             f"{abs(place.longitude_deg):.4f}° {'east' if place.longitude_deg >= 0.0 else 'west'}, "
             f"{place.altitude_m:g} m",
         ),
         ("Days", f"{words(asked.span)}, {asked.on}, a value every {step} min, {fidelity}"),
-        ("Light", f"{light}; sky by {sky}; albedo {asked.around.albedo:g}"),
+        ("Irradiance", f"{light}; sky model {sky}; albedo {asked.around.albedo:g}"),
         ("Fixed panel", f"azimuth {asked.held.azimuth_deg:g}°, elevation {asked.held.elevation_deg:g}°"),
         (
             "Panels",
             f"{module.power_w:g} W, losses {module.losses_percent:g} %, {100 * module.per_kelvin:g} %/K",
         ),
-        ("Drives", f"{costs.degree_wh:g} Wh/°, {costs.start_wh:g} Wh a start, {costs.standby_w:g} W standby"),
+        (
+            "Drives",
+            f"{costs.degree_wh:g} Wh/°, {costs.start_wh:g} Wh per start, {costs.standby_w:g} W standby",
+        ),
         ("Strategies", f"deadband {asked.deadband_deg:g}°, interval {asked.interval_min} min"),
     )
 
@@ -119,7 +122,7 @@ def _view(study_id: str, result: StudyResult, case: int, day: int | None) -> Stu
         months=_months(result, shown) if shown.months_kwh else None,
         heads=tuple(day_and_month(on) for on in result.days) if len(result.days) == len(MONTHS) else MONTHS,
         gains=_gains(result),
-        heat=heat_map(f"In the plane of the panel, {shown.label}", result.days, shown.heat_wm2)
+        heat=heat_map(f"In the panel plane, {shown.label}", result.days, shown.heat_wm2)
         if shown.heat_wm2
         else None,
     )
@@ -153,7 +156,7 @@ def _curves(result: StudyResult, shown: CaseResult, at: int) -> Plot:
         (one.label, result.hours, [float(value) for value in one.curves[at].plane_wm2])
         for one in drawn[:MOST_CURVES]
     ]
-    title = f"Light in the plane of the panel, {spelled(shown.curves[at].on)}"
+    title = f"Irradiance in the panel plane, {spelled(shown.curves[at].on)}"
     return line_plot(title, _hour_axis(result), "W/m²", HOUR_MARKS, lines)
 
 
@@ -165,7 +168,7 @@ def _panel(result: StudyResult, shown: CaseResult, at: int) -> Plot:
         ("azimuth", result.hours, azimuth_deg),
         ("elevation", result.hours, curve.elevation_deg),
     ]
-    title = f"Where the panel faces, {shown.label}, {spelled(curve.on)}"
+    title = f"Panel orientation, {shown.label}, {spelled(curve.on)}"
     return line_plot(title, _hour_axis(result), "degrees", HOUR_MARKS, lines)
 
 

@@ -52,7 +52,7 @@ async def apply(
     """Correct the pointing with the chosen sightings; the others are forgotten."""
     stored = tracker_of(await machine.detail(), tracker_id).state.memory.sightings
     if any(not 0 <= place < len(stored) for place in keep):
-        raise NotAcceptable("The list of sightings has changed; load the page again.")
+        raise NotAcceptable("The list of sightings has changed; reload the page.")
     chosen = tuple(stored[place] for place in sorted(set(keep)))
     await press.send(ApplySightings(tracker_id, chosen))
     return go(press.request, f"/trackers/{tracker_id}/sun-check")

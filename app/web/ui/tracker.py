@@ -61,14 +61,14 @@ async def track(tracker_id: str, press: PressDep) -> Response:
 async def park(tracker_id: str, press: PressDep) -> Response:
     """Go to the park position."""
     await press.send(Park(), tracker_id)
-    return press.answer("The panel goes to its park position.")
+    return press.answer("The panel is moving to its park position.")
 
 
 @router.post("/reset-fault")
 async def reset_fault(tracker_id: str, press: PressDep) -> Response:
     """Clear the fault after its cause is removed."""
     await press.send(ResetFault(), tracker_id)
-    return press.answer("The drive was told to clear its fault.")
+    return press.answer("The fault reset was sent to the drive.")
 
 
 @router.post("/move")
@@ -83,7 +83,7 @@ async def move(
         detail = await machine.detail()
         return _answer(press.request, detail, tracker_of(detail, tracker_id), found, status=422)
     await press.send(Move(Orientation(azimuth_deg, elevation_deg)), tracker_id)
-    return press.answer("The panel goes there.")
+    return press.answer("The panel is moving to the target.")
 
 
 def _answer(

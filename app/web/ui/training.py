@@ -46,14 +46,14 @@ async def training(request: Request, tracker_id: str, machine: MachineDep) -> Re
 async def play(tracker_id: str, press: PressDep, fault: Annotated[str, Form(max_length=40)] = "") -> Response:
     """Play one fault."""
     await press.send(PlayFault(tracker_id, fault))
-    return press.answer("The fault is played.")
+    return press.answer("The fault is injected.")
 
 
 @router.post("/clear")
 async def clear(tracker_id: str, press: PressDep) -> Response:
     """End every fault that is played."""
     await press.send(ClearFaults(tracker_id))
-    return press.answer("No fault is played any more. What is latched waits for you.")
+    return press.answer("All injected faults have ended. Reset the latched faults.")
 
 
 @router.post("/weather")

@@ -11,11 +11,11 @@ STATION_NAMES = ("host", "port", "unit")
 SIMULATION_NAMES = ("scenario", "seed", *SPANS)
 WINDOW_NAMES = tuple(LIMITS)
 SCENARIOS = (
-    (Scenario.BY_HAND.value, "By hand: the values below"),
+    (Scenario.BY_HAND.value, "Manual: the values below"),
     (Scenario.CALM.value, "A calm day"),
     (Scenario.STORM.value, "A storm that comes and goes, 25 min"),
     (Scenario.SNOWFALL.value, "A snowfall that slides off, 22 min"),
-    (Scenario.CLOUDS.value, "Clouds, then a dark bank, 56 min"),
+    (Scenario.CLOUDS.value, "Clouds, then heavy overcast, 56 min"),
 )
 USUAL = WeatherWindows()
 

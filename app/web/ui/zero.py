@@ -6,10 +6,10 @@ NEEDS_ZERO: dict[Action, str] = {
     Action.TRACK: "follow the sun",
     Action.STOW: "stow, not even against wind",
     Action.PARK: "park",
-    Action.MOVE: "go to a direction",
+    Action.MOVE: "move to a direction",
     Action.GO_TO_START: "go to the start of a show",
-    Action.RUN_SHOW: "show movement",
-    Action.SET_LIMIT: "take a place as soft limit",
+    Action.RUN_SHOW: "show tracking movement",
+    Action.SET_LIMIT: "set a position as soft limit",
 }
 """What each action that needs a trusted zero does, after "it does not"."""
 

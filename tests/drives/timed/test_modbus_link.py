@@ -280,7 +280,7 @@ async def test_a_stop_drops_the_writes_that_wait() -> None:
         move = asyncio.create_task(link.write(100, [1], what="a move", ticket=ticket))
         await asyncio.sleep(0)
         await link.stop(33, [1], what="stop")
-        with pytest.raises(DriveError, match="stop overtook"):
+        with pytest.raises(DriveError, match="stop had priority"):
             await move
         await poll
         assert [request[9] for request in server.requests if request[7] == 6] == [33]

@@ -27,9 +27,9 @@ HEARTBEAT = 2
 @pytest.mark.parametrize(
     ("sign", "frozen", "told"),
     [
-        (HEARTBEAT, True, "its heartbeat stands still"),
+        (HEARTBEAT, True, "its heartbeat does not change"),
         (ECHO, True, "does not echo the keep-alive value"),
-        (WATCHDOG_MS, False, "was switched off during a motion"),
+        (WATCHDOG_MS, False, "was switched off during motion"),
     ],
 )
 @pytest.mark.fault(91)

@@ -172,6 +172,6 @@ async def test_a_name_that_a_killed_process_left_behind_is_taken_over(tmp_path: 
 async def test_a_name_that_is_taken_by_a_file_is_refused(tmp_path: Path) -> None:
     name = tmp_path / "notes"
     name.write_text("mine")
-    with pytest.raises(OSError, match=r"cannot be opened.*no other file or device"):
+    with pytest.raises(OSError, match=r"cannot be opened.*not another file or device"):
         await RtuServer({}, serial_end(SerialConfig(str(name)))).start()
     assert name.read_text() == "mine"

@@ -34,7 +34,7 @@ def _part(priority: int, entries: list[Entry]) -> str:
         )
         for one in entries
     ]
-    heads = ("code", "alarm", "what follows", "what to do", "group", "on, off", "suppressed by")
+    heads = ("code", "alarm", "consequence", "what to do", "group", "on, off", "suppressed by")
     return f"## Priority {priority}: within {URGENCY[priority]}\n\n" + table(heads, rows)
 
 

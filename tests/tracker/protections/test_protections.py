@@ -250,11 +250,11 @@ def test_what_is_switched_off_demands_nothing() -> None:
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: WindProtection(gust_mps=0.5), "gust that stows"),
+        (lambda: WindProtection(gust_mps=0.5), "gust threshold"),
         (lambda: WindProtection(mean_mps=float("nan")), "mean wind"),
         (lambda: WindProtection(hysteresis_mps=18.0), "smaller than both"),
-        (lambda: SnowProtection(hysteresis_kg=4.0), "smaller than the load"),
-        (lambda: LightProtection(bad=Reaction.STOW), "stows nothing"),
+        (lambda: SnowProtection(hysteresis_kg=4.0), "smaller than the snow-stow threshold"),
+        (lambda: LightProtection(bad=Reaction.STOW), "cannot cause a stow"),
         (lambda: StowPlace(91.0), "elevation of a stow"),
         (lambda: StowPlace(10.0, 361.0), "azimuth of a stow"),
         (lambda: ProtectionConfig(warning_s=-1.0), "warning time"),

@@ -81,9 +81,9 @@ async def test_the_guide_is_as_light_in_every_language(code: str, client: httpx.
 
 @pytest.mark.parametrize("name", [name for name in guide.TITLES if name not in guide.SPOKEN])
 async def test_a_document_that_is_not_translated_says_so(name: str, client: httpx.AsyncClient) -> None:
-    note = catalogue_of("es").gettext("This document is there in English only.")
+    note = catalogue_of("es").gettext("This document is available in English only.")
     page = (await client.get(f"/guide/{name}", headers={"Accept-Language": "es"})).text
-    assert note != "This document is there in English only."
+    assert note != "This document is available in English only."
     assert note in page
     assert '<article class="panel guide-text" lang="en" translate="no">' in page
     assert "in English only" not in (await client.get(f"/guide/{name}")).text

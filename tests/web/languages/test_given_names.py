@@ -24,8 +24,8 @@ SENTENCES = [
     "{name} was stopped.",
     "{name} is stowed.",
     "The drive of {name} does not answer.",
-    "The axes of {name} still move.",
-    "{name} has no trusted zero.",
+    "The axes of {name} are still moving.",
+    "{name} is not homed.",
     "{name} has stopped with a fault: The drive of {name} does not answer.",
     "{name} begins to track.",
 ]
@@ -64,9 +64,9 @@ def test_what_is_said_of_a_name_is_translated_all_the_same(code: str) -> None:
 @pytest.mark.parametrize("code", CODES)
 def test_a_name_like_a_word_of_ours_leaves_our_sentences_alone(code: str) -> None:
     catalogue = catalogue_of(code)
-    before = catalogue.said("Wait until it has arrived, or press Stop.")
+    before = catalogue.said("Wait until the tracker has arrived, or press Stop.")
     GIVEN.know(["Stop"])
-    assert catalogue.said("Wait until it has arrived, or press Stop.") == before
+    assert catalogue.said("Wait until the tracker has arrived, or press Stop.") == before
 
 
 @given(

@@ -101,15 +101,15 @@ def test_a_sentence_within_a_sentence_is_said_whatever_it_is_about() -> None:
     texts = {
         "{title} at {where} (priority {priority}) {change}": "{title}, {where} ({priority}) {change}",
         "was raised: {alarm}": "entstand: {alarm}",
-        "{name} has no trusted zero any more: {why}": "{name} hat keinen sicheren Nullpunkt mehr: {why}",
+        "{name} is no longer homed: {why}": "{name} hat keinen sicheren Nullpunkt mehr: {why}",
         "The {config} does not follow its command.": "{config} folgt dem Befehl nicht.",
         "{axis} axis of {name}": "Achse {axis} von {name}",
         "Zero is lost": "Nullpunkt verloren",
         "azimuth": "Azimut",
     }
     assert catalogue(texts).said(
-        "Zero is lost at T7 (priority 2) was raised: T7 has no trusted zero any more: "
-        "The azimuth axis of T7 does not follow its command."
+        "Zero is lost at T7 (priority 2) was raised: T7 is no longer homed: The azimuth axis of "
+        "T7 does not follow its command."
     ) == (
         "Nullpunkt verloren, T7 (2) entstand: T7 hat keinen sicheren Nullpunkt mehr: "
         "Achse Azimut von T7 folgt dem Befehl nicht."
@@ -148,11 +148,11 @@ def test_hostile_text_that_fits_hundreds_of_patterns_is_answered() -> None:
 @pytest.mark.parametrize(
     "sentences",
     [
-        "There is no connection to the drive at 127.0.0.1:1502 unit 1. The device at 127.0.0.1 answers, but "
-        "nothing listens on port 1502. Check its power, cable and address, and that only Modbus TCP is "
-        "spoken there.",
+        "There is no connection to the drive at 127.0.0.1:1502 unit 1. The device at 127.0.0.1 "
+        "answers, but nothing listens on port 1502. Check its power, cable, and address, and that "
+        "its port uses Modbus TCP only.",
         "The drive of T1 does not answer. The drive at plc:502 unit 1 did not answer within 0.3 s (status). "
-        "Check its power and cable, that its unit id is 1 and, on a serial line, speed and parity.",
+        "Check its power and cable, its unit id 1, and, on a serial line, the speed and parity.",
         "Heliopanel runs in safe mode: The database /data/heliopanel.db is damaged (table events). Restore "
         "a backup with: heliopanel restore FILE.",
     ],
