@@ -11,9 +11,9 @@ from typer.core import TyperGroup
 from typer.main import get_command, get_group
 
 from app.build import VERSION
-from app.foreseen import AT_RUN_TIME, WRONG, Foreseen
-from app.late import hurry
+from app.errors import AT_RUN_TIME, WRONG, Foreseen
 from app.options import Config, DataDir, take
+from app.startup import hurry
 
 COMMANDS = {
     "serve": "app.cli_serve:serve",

@@ -13,7 +13,7 @@ import typer
 
 from app.build import VERSION
 from app.clock import SystemClock
-from app.foreseen import AT_RUN_TIME, Foreseen
+from app.errors import AT_RUN_TIME, Foreseen
 from app.link.client import LinkClient
 from app.link.messages import MachineUnreachable
 from app.machine.lock import holder

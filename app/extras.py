@@ -2,7 +2,7 @@
 
 from importlib.util import find_spec
 
-from app.foreseen import WRONG, Foreseen
+from app.errors import WRONG, Foreseen
 
 LIBRARIES = {"parquet": "pyarrow", "pdf": "fpdf", "postgres": "psycopg", "studies": "pvlib"}
 """The library by which an extra of pyproject.toml is known to be installed."""

@@ -17,7 +17,7 @@ from pydantic_settings import (
     SettingsConfigDict,
 )
 
-from app.foreseen import WRONG, Foreseen
+from app.errors import WRONG, Foreseen
 from app.hosts import checked_host
 from app.network import FILE_NAME, NETWORK_FIELDS, Network, read_network
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from statistics import median
 from time import perf_counter
 
-from app.access.keeper import Keeper, WrongPassword
+from app.access.authenticator import Keeper, WrongPassword
 from app.access.opening import open_keeper
 from app.access.principal import this_computer
 from app.access.roles import Role

@@ -81,7 +81,7 @@ def _prepared(url: str) -> str:
     """Bring the plant into operation, and return the recording of a simulated day."""
     calling = Integrator(url)
     calling.place_and_time()
-    calling.until_allowed("zero")
+    calling.until_allowed("set_home")
     calling.zero()
     made = calling.post("/api/v1/simulations", {"tracker_id": "T1", "date": "2026-06-21", "step_s": 10})
     calling.close()

@@ -93,7 +93,7 @@ def measure(size: Size = Size()) -> list[Row]:
 def _commission(url: str) -> None:
     calling = Integrator(url)
     calling.place_and_time()
-    calling.until_allowed("zero")
+    calling.until_allowed("set_home")
     calling.zero()
     calling.close()
 

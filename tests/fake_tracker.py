@@ -20,12 +20,12 @@ from app.tracker.commands import (
     ResumeShow,
     RunShow,
     SelectMode,
-    SetZero,
+    SetHome,
     Step,
     Stop,
     StopShow,
     Track,
-    UndoZero,
+    UndoHome,
 )
 from app.tracker.config import Orientation
 from app.tracker.drive_check import DriveCheck
@@ -49,7 +49,7 @@ from app.tracker.snapshot import (
 from tests.fake_data import made_up_sun
 
 ACTIONS = (
-    "jog", "step", "zero", "undo_zero", "home", "set_mode", "move", "park", "track", "go_to_start",
+    "jog", "step", "set_home", "undo_home", "home", "set_mode", "move", "park", "track", "go_to_start",
     "run_show", "pause_show", "resume_show", "stop_show", "stop", "reset_fault",
 )  # fmt: skip
 STOP_FIRST = Reason("moving", "The tracker is moving.", "Stop it first.")
@@ -88,11 +88,11 @@ class FakeTracker:
                 self._end_press(press)
             case Step(axis=axis, degrees=degrees):
                 self._turn(axis, degrees)
-            case SetZero():
+            case SetHome():
                 self.before_zero = (self.position, self.memory.home)
                 self.position = Pair(0.0, 0.0)
                 self.memory = replace(self.memory, home=HomeTrust(now, actor, "set manually", 3))
-            case UndoZero():
+            case UndoHome():
                 if self.before_zero is None:
                     raise CommandRejected(NO_FORMER_HOME)
                 self.position, home = self.before_zero
@@ -206,7 +206,7 @@ class FakeTracker:
     def _actions(self) -> dict[str, tuple[Reason, ...]]:
         busy = () if self.activity in (ActivityName.HOLDING, ActivityName.JOGGING) else (STOP_FIRST,)
         forbidden: dict[str, tuple[Reason, ...]] = dict.fromkeys(ACTIONS, ())
-        forbidden |= dict.fromkeys(("jog", "step", "zero", "set_mode"), busy)
+        forbidden |= dict.fromkeys(("jog", "step", "set_home", "set_mode"), busy)
         forbidden["home"] = (NO_SWITCHES,)
         if self.show is None:
             forbidden |= dict.fromkeys(("pause_show", "resume_show", "stop_show"), (NO_SHOW,))

@@ -56,6 +56,7 @@ from app.tracker.commands import (
 )
 from app.tracker.commissioning import Step as WizardStep
 from app.tracker.commissioning import StepStatus
+from app.tracker.drive_test_states import proof_states
 from app.tracker.memory import (
     ClockSetting,
     Confirmation,
@@ -64,7 +65,6 @@ from app.tracker.memory import (
     TrackerMemory,
     TrackerState,
 )
-from app.tracker.proof_states import proof_states
 from app.tracker.reason import Reason
 from app.tracker.snapshot import (
     ClockState,

@@ -38,7 +38,10 @@ class Area:
 
 AREAS = {
     "guards": Area(
-        ("app.tracker.follow.", "app.tracker.guards.", "app.tracker.protect.", "app.tracker.protections."),
+        (
+            "app.tracker.following_error.", "app.tracker.guards.",
+            "app.tracker.protect.", "app.tracker.protections.",
+        ),
         (
             "tests/tracker/protections", "tests/tracker/test_controller_doubt.py",
             "tests/tracker/test_controller_protect.py", "tests/tracker/test_controller_restart.py",
@@ -49,7 +52,7 @@ AREAS = {
     "limits": Area(
         (
             "app.budget.", "app.gateway.", "app.link.lanes.", "app.turnstile.", "app.web.limits.",
-            "app.web.presses.",
+            "app.web.hold_to_run.",
         ),
         (
             "tests/test_budget.py", "tests/test_turnstile.py", "tests/link/test_lanes.py",

@@ -52,7 +52,7 @@ def test_panel_machine_and_every_command_load_without_extras() -> None:
 
 @pytest.mark.parametrize(
     ("path", "extra"),
-    [("trackers/T1/record?format=pdf", "pdf"), ("studies-comparison?year=2026", "studies")],
+    [("trackers/T1/record?format=pdf", "pdf"), ("studies/comparison?year=2026", "studies")],
 )
 async def test_a_call_without_its_extra_says_the_command(
     lacks: Callable[[str], str], path: str, extra: str

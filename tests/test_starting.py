@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from app.build import VERSION
-from app.foreseen import Foreseen
+from app.errors import Foreseen
 from app.machine import starting
 from app.machine.starting import as_service, check_data_dir
 from app.settings import SettingsWrong

@@ -8,8 +8,8 @@ from sqlalchemy import Connection, Engine, column, select, table
 
 from app.access.tables import REVISION, VERSION_TABLE, meta, metadata
 from app.build import VERSION
-from app.late import late
 from app.own import own_folder
+from app.startup import late
 from app.store.connections import revision_of, sharing_engine, transaction
 from app.store.files import copy_sqlite
 from app.store.putting import put

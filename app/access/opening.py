@@ -3,7 +3,7 @@
 import sys
 
 from app.access.accounts import Accounts
-from app.access.keeper import Keeper, new_key
+from app.access.authenticator import Keeper, new_key
 from app.access.passwords import Argon, Hasher, Passwords
 from app.access.principal import nobody
 from app.access.setup import CODE_FILE, Setup

@@ -18,7 +18,7 @@ class SessionState(StrEnum):
     """What a session is still good for."""
 
     LIVE = "live"
-    RESTS = "rests"
+    IDLE = "idle"
     ENDED = "ended"
 
 
@@ -51,7 +51,7 @@ def state(session: Session, now: datetime) -> SessionState:
         return SessionState.LIVE
     if now - session.began_at >= ABSOLUTE:
         return SessionState.ENDED
-    return SessionState.RESTS if now - session.used_at >= IDLE else SessionState.LIVE
+    return SessionState.IDLE if now - session.used_at >= IDLE else SessionState.LIVE
 
 
 def is_proven(proven_at: datetime | None, now: datetime) -> bool:

@@ -9,7 +9,7 @@ from typing import Any
 from sqlalchemy import Connection, Engine, Table, delete, insert, inspect, select, update
 
 from app.access import tables
-from app.access.book import Book
+from app.access.access_cache import Book
 from app.access.events import AccessEvent, Recorded, chained, covered
 from app.access.migrations import upgrade
 from app.access.roles import Role

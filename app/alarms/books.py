@@ -4,10 +4,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from datetime import datetime, timedelta
 
-from app.alarms import book as pages
+from app.alarms import lifecycle as pages
 from app.alarms.alarm import Alarm
-from app.alarms.book import Book, Change, Happened
 from app.alarms.conditions import Condition
+from app.alarms.lifecycle import Book, Change, Happened
 from app.alarms.view import Ranking, Shown
 
 Place = str | None

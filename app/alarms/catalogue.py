@@ -24,8 +24,13 @@ class Group(StrEnum):
     CLOCK = "clock"
     STORE = "store"
     LOAD = "load"
-    DOORS = "doors"
+    INTERFACES = "interfaces"
     ALARMS = "alarms"
+
+    @classmethod
+    def _missing_(cls, value: object) -> "Group | None":
+        """Return what is stored under a former name."""
+        return cls.INTERFACES if value == "doors" else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +158,7 @@ ENTRIES = (
         "Remove what blocks the axis, then start the move again.",
     ),
     Entry(
-        "zero_failed", 3, Group.MOTION, "Home position not set",
+        "home_position_not_set", 3, Group.MOTION, "Home position not set",
         "Without a home position, the tracker does not track or stow.",
         "Read the reason in the journal, then set the home position again in step 3.",
         suppressed_by=("drive_lost",),
@@ -310,13 +315,13 @@ ENTRIES = (
         SHORT, LONG,
     ),
     Entry(
-        "gateway_down", 4, Group.DOORS, "An integration is not connected",
+        "gateway_down", 4, Group.INTERFACES, "An integration is not connected",
         "Other systems receive no data from this site.",
         "See Integrations on the Site page for the interface and the cause.",
         LONG, SHORT,
     ),
     Entry(
-        "notification_failed", 4, Group.DOORS, "Alarms are not sent",
+        "notification_failed", 4, Group.INTERFACES, "Alarms are not sent",
         "Users away from this screen are not notified of alarms.",
         "Open Notifications on the Site page, correct the address, and send a test message.",
     ),

@@ -66,9 +66,9 @@ class Cia402Axis:
         """Search the reference by the method that the profile calls `home`."""
         await self._run(Homing(self._methods["home"]), confirmed=False)
 
-    async def set_zero(self) -> None:
+    async def set_home(self) -> None:
         """Home by the method that takes the present position as the reference."""
-        await self._run(Homing(self._methods["set_zero"]), confirmed=False)
+        await self._run(Homing(self._methods["set_home"]), confirmed=False)
 
     async def reset(self) -> None:
         """Give the rising edge that clears a fault; the drive is enabled again by the next motion."""

@@ -43,7 +43,7 @@ class Dialect(Protocol):
     async def home(self) -> None:
         """Begin to search the reference."""
 
-    async def set_zero(self) -> None:
+    async def set_home(self) -> None:
         """Call the present position zero."""
 
     async def reset(self) -> None:

@@ -60,11 +60,11 @@ class DirectAxis:
         """Give the input that begins the return to home."""
         await self._pulse("home")
 
-    async def set_zero(self) -> None:
+    async def set_home(self) -> None:
         """Preset the present position to zero, or raise `DriveError` if the profile has no way to."""
-        if "set_zero" not in self._unit.profile.sequences:
-            raise DriveError(f"Profile {self._unit.profile.name} has no sequence set_zero.")
-        await self._unit.play("set_zero")
+        if "set_home" not in self._unit.profile.sequences:
+            raise DriveError(f"Profile {self._unit.profile.name} has no sequence set_home.")
+        await self._unit.play("set_home")
 
     async def reset(self) -> None:
         """Give the input that resets the alarm."""

@@ -4,7 +4,7 @@ from datetime import datetime
 from typing import Protocol, runtime_checkable
 
 from app.drives.line_turn import LineTurn
-from app.foreseen import Foreseen
+from app.errors import Foreseen
 from app.tracker.motion import DriveCapabilities, DriveCommand, Feedback
 
 

@@ -9,14 +9,14 @@ from app.clock import Clock
 from app.drives.adapters import drive_on
 from app.drives.bus import BusUnit
 from app.drives.buses import Buses
-from app.drives.corrected import corrected
 from app.drives.drive import Drive
 from app.drives.kept_positions import KeptPositions
+from app.drives.linear_actuator import TransmittedDrive, has_actuators, in_millimetres
 from app.drives.profile_library import ProfileLibrary
+from app.drives.scaled import corrected
 from app.drives.simulated import SimulatedDrive
 from app.drives.simulated_machine import WATCHDOG
 from app.drives.sunlight import Sunlight
-from app.drives.transmitted import TransmittedDrive, has_actuators, in_millimetres
 from app.sun.position import SunPosition
 from app.tracker.config import DriveKind, TrackerConfig
 

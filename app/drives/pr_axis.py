@@ -91,9 +91,9 @@ class PrAxis:
         """Trigger the search for the origin."""
         await self._unit.put({"trigger": self._triggers["home"]}, renewed=True)
 
-    async def set_zero(self) -> None:
+    async def set_home(self) -> None:
         """Trigger the zero at the present position."""
-        await self._unit.put({"trigger": self._triggers["set_zero"]}, renewed=True)
+        await self._unit.put({"trigger": self._triggers["set_home"]}, renewed=True)
 
     async def reset(self) -> None:
         """Reset the alarm."""

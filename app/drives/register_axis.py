@@ -120,7 +120,7 @@ class RegisterAxis:
         if kind is RequestKind.HOME:
             await self._dialect.home()
         else:
-            await self._dialect.set_zero()
+            await self._dialect.set_home()
 
     async def stop(self) -> None:
         """Ramp down ahead of everything that waits, and give up a request that is under way."""

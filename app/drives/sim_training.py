@@ -73,7 +73,7 @@ class Training:
             raise Refusal(ILLEGAL_VALUE)
         self._last = tuple(words)
         if kind == 0:
-            self._drive.clear_faults()
+            self._drive.end_injected_faults()
             return
         self._drive.inject(Fault(KINDS[kind - 1], AXES[axis], AMOUNT.value(words, FIRST)))
 

@@ -128,7 +128,7 @@ class SimulatedAxis:
             goal_deg = self._within_ends(float("-inf"), start) if dead else 0.0
             self._path = move(start, goal_deg, speed_dps, self._config.acceleration_dps2)
 
-    def set_zero(self, time_s: float) -> None:
+    def set_home(self, time_s: float) -> None:
         """Call the present reading zero."""
         self._offset_deg = -self._path.at(time_s)[0]
         self._homed = True
@@ -149,7 +149,7 @@ class SimulatedAxis:
         self._faults[fault.kind] = fault
         self.obey(self._command, time_s)
 
-    def clear_faults(self, time_s: float) -> None:
+    def end_injected_faults(self, time_s: float) -> None:
         """Be sound again and do what was commanded."""
         self._slip(time_s)
         self._faults.clear()

@@ -183,7 +183,7 @@ class SimulatedMachine:
         self._change(now_s)
         self._axis(axis).seek_origin(now_s)
 
-    def set_zero(self, axis: Axis) -> bool:
+    def set_home(self, axis: Axis) -> bool:
         """Call the present position of one axis zero; return whether it stood still, as it must."""
         now_s = self._advance()
         self._change(now_s)
@@ -215,7 +215,7 @@ class SimulatedMachine:
         self._clock_offset = at - self._clock.now()
 
     def inject(self, fault: Fault) -> None:
-        """Suffer a fault from now on, until `clear_faults`; a drive fault also ends by a reset."""
+        """Suffer a fault from now on, until `end_injected_faults`; a drive fault also ends by a reset."""
         now_s = self._advance()
         self._change(now_s)
         match fault.kind:
@@ -243,7 +243,7 @@ class SimulatedMachine:
             if fault.hits(axis):
                 one.inject(fault, now_s)
 
-    def clear_faults(self) -> None:
+    def end_injected_faults(self) -> None:
         """Be sound again and do what was commanded. A drive fault still waits for its reset."""
         now_s = self._advance()
         self._change(now_s)
@@ -252,8 +252,8 @@ class SimulatedMachine:
         self._cabinet = Cabinet()
         if self._light is not None:
             self._light.clear()
-        self._azimuth.clear_faults(now_s)
-        self._elevation.clear_faults(now_s)
+        self._azimuth.end_injected_faults(now_s)
+        self._elevation.end_injected_faults(now_s)
 
     def _axis(self, axis: Axis) -> SimulatedAxis:
         return self._azimuth if axis is Axis.AZIMUTH else self._elevation
@@ -326,9 +326,9 @@ class SimulatedMachine:
             return
         self._request_seen = request.number
         match request.kind:
-            case RequestKind.SET_ZERO_AZIMUTH:
+            case RequestKind.SET_HOME_AZIMUTH:
                 self._answer(done=self._set_zero(self._azimuth, now_s))
-            case RequestKind.SET_ZERO_ELEVATION:
+            case RequestKind.SET_HOME_ELEVATION:
                 self._answer(done=self._set_zero(self._elevation, now_s))
             case RequestKind.RESET_FAULT:
                 self._fault_code = 0
@@ -343,7 +343,7 @@ class SimulatedMachine:
     def _set_zero(self, axis: SimulatedAxis, now_s: float) -> bool:
         if not axis.resting(now_s):
             return False
-        axis.set_zero(now_s)
+        axis.set_home(now_s)
         return True
 
     def _begin_homing(self, number: int, now_s: float) -> None:
@@ -358,7 +358,7 @@ class SimulatedMachine:
         found = all(axis.feedback(now_s).at_origin for axis in self._mounted)
         if found:
             for axis in self._mounted:
-                axis.set_zero(now_s)
+                axis.set_home(now_s)
         self._end_homing(failed=not found)
 
     def _end_homing(self, *, failed: bool) -> None:

@@ -237,7 +237,7 @@ class SunSpecDrive:
                 self._told_at = self._clock.now()
                 self._control = self._controls["calibrate"]
                 await self._unit.put({"control": self._control}, renewed=True)
-            case RequestKind.SET_ZERO_AZIMUTH | RequestKind.SET_ZERO_ELEVATION:
+            case RequestKind.SET_HOME_AZIMUTH | RequestKind.SET_HOME_ELEVATION:
                 self._give_up()
             case RequestKind.RESET_FAULT:
                 pass

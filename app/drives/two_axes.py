@@ -28,8 +28,8 @@ from app.tracker.motion import (
 BOOT_COUNT = 1
 """These drives do not count their starts: one that restarted shows it by having lost its zero."""
 REQUESTED = {
-    RequestKind.SET_ZERO_AZIMUTH: (Axis.AZIMUTH,),
-    RequestKind.SET_ZERO_ELEVATION: (Axis.ELEVATION,),
+    RequestKind.SET_HOME_AZIMUTH: (Axis.AZIMUTH,),
+    RequestKind.SET_HOME_ELEVATION: (Axis.ELEVATION,),
     RequestKind.HOME: (Axis.AZIMUTH, Axis.ELEVATION),
     RequestKind.RESET_FAULT: (Axis.AZIMUTH, Axis.ELEVATION),
 }

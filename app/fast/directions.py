@@ -14,7 +14,7 @@ from app.tracker.activities.tracking import night_near_deg
 from app.tracker.config import NightBehaviour, Orientation, TrackerConfig
 from app.tracker.mode import Mode
 from app.tracker.mount import mode_direction
-from app.tracker.shelter import TWILIGHT_DEG
+from app.tracker.weather_protection import TWILIGHT_DEG
 
 NO_DAWN_FOR = timedelta(hours=1)
 

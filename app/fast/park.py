@@ -17,7 +17,7 @@ from app.fast.trigonometry import sine_cosine
 from app.sun.trigonometry import Array
 from app.tracker.axes import AxisConfig
 from app.tracker.config import TrackerConfig
-from app.tracker.pursuit import UNWIND_DEG, trigger_deg
+from app.tracker.setpoint_scheduler import UNWIND_DEG, trigger_deg
 
 Columns = tuple[Array, Array, Array, Array, Array, Array]
 """Azimuth, elevation, nearest azimuth (degrees) and night, meant, up (0 or 1), one value a tick."""

@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from app.gateway.door import Door, Update, refused, send
+from app.gateway.ports import Door, Update, refused, send
 from app.link.messages import RequestControl, UnknownTracker
 from app.tracker.commands import CommandRejected, Home, Stop, Track
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
 
 PASSING = ("busy_", "axes_moving")
-BY_HAND = {"busy_jogging", "busy_zeroing", "busy_measuring"}
+BY_HAND = {"busy_jogging", "busy_setting_home", "busy_measuring"}
 """What somebody does who stands at the machine: that work is not taken over."""
 COMES_TO_REST = {ActivityName.STOPPING, ActivityName.HOLDING}
 

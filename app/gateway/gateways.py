@@ -6,11 +6,11 @@ from dataclasses import replace
 from typing import Protocol
 
 from app.clock import Clock
-from app.gateway.door import Door
 from app.gateway.mqtt import MQTT, MqttGateway
 from app.gateway.notices import post_webhook, send_mail
 from app.gateway.notifier import Deliver, Notifier
 from app.gateway.outbox import Outbox
+from app.gateway.ports import Door
 from app.gateway.sunspec import RTU, TCP, SunSpecRtu, SunSpecTcp
 from app.gateway.sunspec_device import SERIAL, SunSpecDevice
 from app.lasting import begun

@@ -18,7 +18,6 @@ from paho.mqtt.subscribeoptions import SubscribeOptions
 
 from app.alarms.conditions import SITE, Condition
 from app.clock import Clock
-from app.gateway.door import Door
 from app.gateway.mqtt_discovery import announcements
 from app.gateway.mqtt_lanes import CommandLanes
 from app.gateway.mqtt_messages import (
@@ -33,6 +32,7 @@ from app.gateway.mqtt_messages import (
     tracker_payload,
 )
 from app.gateway.outbox import Outbox
+from app.gateway.ports import Door
 from app.link.metrics import GatewayMetrics, GatewayStatus
 from app.logs import get_logger
 from app.settings import Settings

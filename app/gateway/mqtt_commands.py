@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 import orjson
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
-from app.gateway.door import MQTT, Door, refused
+from app.gateway.ports import MQTT, Door, refused
 from app.instants import Instant
 from app.link.messages import MachineUnreachable, Order, UnknownTracker
 from app.tracker.commands import Command, CommandRejected, Home, Move, Park, ResetFault, Stop, Track

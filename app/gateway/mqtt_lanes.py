@@ -5,8 +5,8 @@ from collections.abc import Awaitable, Callable
 
 from app.budget import Budget
 from app.clock import Clock
-from app.gateway.door import Door
 from app.gateway.mqtt_commands import RETAINED, TOO_MANY, is_stop, obey
+from app.gateway.ports import Door
 from app.tracker.reason import Reason
 
 COMMANDS_PER_S, MOST_AT_ONCE = 20.0, 50

@@ -6,9 +6,9 @@ from datetime import timedelta
 
 from app.alarms.conditions import SITE, Condition
 from app.clock import Clock
-from app.gateway.door import Door
 from app.gateway.notices import NotDelivered
 from app.gateway.outbox import Outbox
+from app.gateway.ports import Door
 from app.link.metrics import GatewayMetrics, GatewayStatus
 from app.logs import get_logger
 from app.masking import masked

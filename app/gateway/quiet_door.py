@@ -5,7 +5,7 @@ from collections.abc import AsyncIterator
 from datetime import datetime, timedelta
 
 from app.alarms.conditions import Condition
-from app.gateway.door import Door
+from app.gateway.ports import Door
 from app.link.messages import Order, SiteDetail, Update
 from app.tracker.notifications import Notifications
 from app.tracker.snapshot import Event, EventKind, SiteSnapshot, Snapshot

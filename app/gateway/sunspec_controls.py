@@ -6,7 +6,7 @@ from typing import assert_never
 
 from app.drives.modbus_server import ILLEGAL_ADDRESS, ILLEGAL_VALUE, Refusal
 from app.gateway.calibration import Calibrations
-from app.gateway.door import SUNSPEC, Door, Update, refused, send, written
+from app.gateway.ports import SUNSPEC, Door, Update, refused, send, written
 from app.gateway.quiet_door import QuietDoor
 from app.gateway.sunspec_values import Control, Targets
 from app.link.messages import Order, RenewControl, RequestControl, UnknownTracker

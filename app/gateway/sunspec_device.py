@@ -6,7 +6,7 @@ from ipaddress import ip_address, ip_network
 
 from app.clock import Clock
 from app.drives.modbus_server import ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, Refusal, answer
-from app.gateway.door import Door, refused
+from app.gateway.ports import Door, refused
 from app.gateway.sunspec_controls import ACTOR, BUSY, Controls
 from app.gateway.sunspec_map import BASE, END, MARKER, Block, Placed, SunSpecMap, sunspec_map
 from app.gateway.sunspec_values import UNKNOWN_TYPE, View, block_words, tracker_type

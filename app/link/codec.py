@@ -12,7 +12,7 @@ import orjson
 from pydantic import Discriminator, TypeAdapter
 from pydantic_core import to_jsonable_python
 
-from app.alarms.book import UnknownAlarm
+from app.alarms.lifecycle import UnknownAlarm
 from app.link.messages import (
     MachineUnreachable,
     Order,

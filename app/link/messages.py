@@ -16,11 +16,11 @@ from app.tracker.commands import Command
 from app.tracker.commissioning import Step
 from app.tracker.config import DriveConfig, TrackerConfig
 from app.tracker.drive_check import DriveCheck, DriveChoices
+from app.tracker.drive_test_states import ProofState
+from app.tracker.drive_tests import AxisEnd
 from app.tracker.memory import Sighting, SiteState, StepName, TrackerState
 from app.tracker.motion import DriveCapabilities
 from app.tracker.programs.show import ShowPlan
-from app.tracker.proof_states import ProofState
-from app.tracker.proofs import AxisEnd
 from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import Event, SiteSnapshot, Snapshot
 
@@ -257,20 +257,20 @@ class DeleteRecording:
 
 
 @dataclass(frozen=True, slots=True)
-class PlayFault:
+class InjectFault:
     """Play a fault of the lessons on a tracker that is simulated in the machine's process."""
 
     tracker_id: str
     fault: str
-    kind: Literal["play_fault"] = "play_fault"
+    kind: Literal["inject_fault"] = "inject_fault"
 
 
 @dataclass(frozen=True, slots=True)
-class ClearFaults:
+class EndInjectedFaults:
     """End every fault that is played on a simulated tracker."""
 
     tracker_id: str
-    kind: Literal["clear_faults"] = "clear_faults"
+    kind: Literal["end_injected_faults"] = "end_injected_faults"
 
 
 SiteCommand = (
@@ -278,7 +278,7 @@ SiteCommand = (
     | ConfirmStep | SavePlan | TakeSighting | ApplySightings | StopAll | SaveRecording | DeleteRecording
     | DriveOrder | ReportWeather | SetMetStation | SimulateWeather | SetWeatherWindows | AlarmOrder
     | NotificationOrder | ControlOrder | LockOrder | RecordOrder | UndoSettings | UndoSiteSettings
-    | PlayFault | ClearFaults
+    | InjectFault | EndInjectedFaults
 )  # fmt: skip
 
 

@@ -2,10 +2,10 @@
 
 import sys
 
-from app.foreseen import Foreseen
-from app.late import hurry, late
+from app.errors import Foreseen
 from app.machine.supervised import end_with_supervisor
 from app.settings import read_settings
+from app.startup import hurry, late
 
 
 def main() -> int:

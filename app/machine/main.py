@@ -16,7 +16,6 @@ from app.drives.factory import DriveFactory
 from app.drives.met_station import met_reader
 from app.drives.probe import DriveProbe
 from app.gateway.gateways import Gateways
-from app.late import settle
 from app.link.server import LinkServer
 from app.logs import get_logger, set_up_logs
 from app.machine.lock import only_instance
@@ -30,18 +29,19 @@ from app.machine.supervised import tell_ready
 from app.machine.systemd import notify
 from app.machine.watchdog import LoopWatchdog
 from app.settings import Settings
-from app.site.beginning import Beginning, begin
-from app.site.checks import NO_ZONES
 from app.site.ntp import kernel_clock
 from app.site.site import Site, SiteOptions
+from app.site.startup import Beginning, begin
 from app.site.timekeeping import Timekeeper
+from app.site.validation import NO_ZONES
+from app.startup import settle
 from app.store.engine import open_writer
 from app.store.files import keep_all_private
 from app.store.integrity import sqlite_notice
 from app.store.migrations import make_apart, upgrade
-from app.store.offloaded import WriterThread
 from app.store.restore import apply_pending_restore
 from app.store.store import JournalFilter, StoreDamaged, StoreFailed, Writer
+from app.store.writer_thread import WriterThread
 from app.tracker.snapshot import Event, EventKind
 from app.zones import zones_missing
 
@@ -148,17 +148,17 @@ async def _take_down(
     await gateways.close()
     watching.cancel()
     await asyncio.gather(watching, return_exceptions=True)
-    event = Event(site.model.now(), EventKind.MACHINE_STOPPED, None, "The controller service was stopped.")
+    event = Event(site.model.now(), EventKind.CONTROLLER_STOPPED, None, "The controller service was stopped.")
     await site.close(event)
     await server.close()
     if background.close():
         mark_stopped(settings.data_dir)
-    log.info("machine_stopped")
+    log.info("controller_stopped")
 
 
 def _memory_guard(settings: Settings, clock: SystemClock, site: Site, stopped: asyncio.Event) -> MemoryGuard:
     def restart(why: str) -> None:
-        site.note(site.model.event(EventKind.MACHINE_RESTARTS, why, "machine"))
+        site.note(site.model.event(EventKind.CONTROLLER_RESTARTS, why, "machine"))
         stopped.set()
 
     return MemoryGuard(clock, site, settings.memory_limit_mb * MEGABYTE, restart)

@@ -78,7 +78,7 @@ async def serve_safely(settings: Settings, clock: SystemClock, damage: StoreDama
     server = LinkServer(site, settings.link_path)
     stopped = on_signals()
     site.trouble("store", Condition("store_damaged", None, SITE, why.message, why.hint))
-    event = site.model.event(EventKind.MACHINE_STARTED, why.message, "machine", clean=False)
+    event = site.model.event(EventKind.CONTROLLER_STARTED, why.message, "machine", clean=False)
     await site.start(event)
     await server.start()
     watching = asyncio.create_task(
@@ -95,7 +95,7 @@ async def serve_safely(settings: Settings, clock: SystemClock, damage: StoreDama
     await asyncio.gather(watching, waiting, return_exceptions=True)
     await site.close()
     await server.close()
-    log.info("machine_stopped")
+    log.info("controller_stopped")
 
 
 def _site(settings: Settings, clock: SystemClock, why: Reason) -> Site:

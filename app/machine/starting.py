@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from app.foreseen import AT_RUN_TIME
+from app.errors import AT_RUN_TIME
 from app.settings import Settings, SettingsWrong
 
 WRITTEN = ("*.db", "machine.*")

@@ -12,7 +12,7 @@ from datetime import timedelta
 from typing import NoReturn
 
 from app.clock import Clock, SystemClock
-from app.foreseen import WRONG
+from app.errors import WRONG
 from app.logs import get_logger, set_up_logs
 from app.machine.supervised import READY, SUPERVISED
 from app.own import own_process

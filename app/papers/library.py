@@ -6,8 +6,8 @@ from textwrap import fill
 from types import MappingProxyType
 from typing import Final
 
-from app.late import late
 from app.papers.result import Basis, Figure, Group, Paper, Standing
+from app.startup import late
 
 
 def _worked_out(name: str) -> Paper:

@@ -7,7 +7,7 @@ from datetime import UTC, datetime, timedelta
 from app.clock import VirtualClock
 from app.drives.simulated import SimulatedDrive
 from app.drives.sunlight import Sunlight
-from app.show.made_up_weather import MadeUpWeather
+from app.show.simulated_weather import MadeUpWeather
 from app.site.sky import Sky
 from app.sun.position import Location, SunPosition
 from app.tracker.commands import Command, Home

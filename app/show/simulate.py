@@ -10,8 +10,8 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
-from app.show.made_up_weather import MadeUpWeather
 from app.show.rehearsal import SHORT_STEP, Rehearsal, RehearsalFailed
+from app.show.simulated_weather import MadeUpWeather
 from app.store.chunks import encode_all
 from app.sun.events import day_events
 from app.sun.position import Location, SunPosition, sun_path

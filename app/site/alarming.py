@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from typing import assert_never
 
-from app.alarms import book as pages
+from app.alarms import lifecycle as pages
 from app.alarms.alarm import Alarm
-from app.alarms.book import Book, Change, Happened
 from app.alarms.books import Books, Place
 from app.alarms.conditions import Condition, SiteHealth, of_site, of_tracker
+from app.alarms.lifecycle import Book, Change, Happened
 from app.alarms.view import Shown
 from app.link.alarm_orders import AcknowledgeAlarm, AlarmOrder, ShelveAlarm, UnshelveAlarm
 from app.site.health import HealthWatch

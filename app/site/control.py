@@ -19,7 +19,15 @@ from app.tracker.reason import Reason
 from app.tracker.snapshot import ActivityName, Event, EventKind
 
 FREE = frozenset(
-    {"stop", "end_jog", "lock_out", "release_lock", "begin_service", "confirm_clear", "end_service"}
+    {
+        "stop",
+        "end_jog",
+        "set_inhibit",
+        "release_inhibit",
+        "begin_service_mode",
+        "confirm_area_clear",
+        "end_service_mode",
+    }
 )
 """What needs no control: to stop, and what somebody says who stands at the machine."""
 
@@ -185,7 +193,7 @@ async def _answer(model: SiteModel, command: AnswerControl, order: Order) -> tup
             f"{order.actor} keeps control of {loop.config.name}; the request of "
             f"{authority.wish.by.name} was declined."
         )
-        event = _event(model, loop, EventKind.CONTROL_REFUSED, message, order.actor)
+        event = _event(model, loop, EventKind.CONTROL_DECLINED, message, order.actor)
         return events + await _keep(model, loop, rules.renew(refused, holder_of(order), now), event)
 
 
@@ -220,7 +228,7 @@ async def _settle(model: SiteModel, loop: TrackerLoop) -> tuple[Event, ...]:
             return ()
         case Due.LAPSED:
             message = f"The request for control of {loop.config.name} was not answered."
-            event = _event(model, loop, EventKind.CONTROL_REFUSED, message, "machine")
+            event = _event(model, loop, EventKind.CONTROL_DECLINED, message, "machine")
             return await _keep(model, loop, replace(authority, wish=None), event)
         case Due.PASSES | Due.EXPIRED if wish is not None:
             return await _pass_on(model, loop, wish.by, wish.by.name, wish.reason)
@@ -279,7 +287,7 @@ def _wish_event(model: SiteModel, loop: TrackerLoop, actor: str, wanted: Authori
     because = f" Reason: {wish.reason}" if wish is not None and wish.reason else ""
     holder = "nobody" if wanted.holder is None else wanted.holder.name
     message = f"{actor} {does} control of {loop.config.name}, which {holder} has.{because}"
-    return _event(model, loop, EventKind.CONTROL_ASKED, message, actor, takes=takes)
+    return _event(model, loop, EventKind.CONTROL_REQUESTED, message, actor, takes=takes)
 
 
 def _event(

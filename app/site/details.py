@@ -5,7 +5,7 @@ from app.link.messages import TrackerDetail
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
 from app.tracker.commissioning import steps
-from app.tracker.proof_states import proof_states
+from app.tracker.drive_test_states import proof_states
 from app.tracker.snapshot import ClockState
 
 MOST_AT_ONCE = 20

@@ -11,7 +11,7 @@ from pydantic import TypeAdapter, ValidationError
 from app.logs import get_logger
 from app.tracker.protections.config import WindProtection
 from app.tracker.protections.guarding import wind_of
-from app.tracker.protections.typhoon import is_high
+from app.tracker.protections.wind_stow import is_high
 from app.tracker.weather import Quality, Reading, Sensed
 from app.twins import Twins
 

@@ -10,16 +10,16 @@ from typing import Protocol
 from app.clock import Clock
 from app.drives.drive import Drive, DriveError, answers_at_once, line_turn
 from app.logs import get_logger
-from app.site.lateness import TickCounter
 from app.site.line_pace import LinePace
 from app.site.link_quality import RoundTrips
 from app.site.scheduler import Scheduler, Slot
+from app.site.tick_lateness import TickCounter
 from app.tracker.commands import Command
 from app.tracker.commissioning import Standing, standing_of
-from app.tracker.conditions import Action
 from app.tracker.config import TrackerConfig
 from app.tracker.controller import Controller
 from app.tracker.home_shift import shifted, unshifted
+from app.tracker.interlocks import Action
 from app.tracker.memory import TrackerMemory, TrackerState
 from app.tracker.motion import HALT, AxisCommand, DriveCommand, Feedback, Velocity
 from app.tracker.observation import Observation

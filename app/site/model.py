@@ -9,10 +9,9 @@ from app.clock import Clock
 from app.drives.drive import Drive, DriveError
 from app.link.messages import UnknownTracker
 from app.site.authority import control_state
-from app.site.checking import Checks
+from app.site.connection_test import Checks
 from app.site.controls import Controls
 from app.site.kept_weather import WeatherFile
-from app.site.ledger import Ledger
 from app.site.loop import TrackerLoop
 from app.site.met_poll import MetPoll, Station, StationReader
 from app.site.overload import Overload
@@ -23,6 +22,7 @@ from app.site.sky import Sky
 from app.site.timekeeping import Timekeeper
 from app.site.unusable import UnusableDrive
 from app.site.weather import WeatherStation
+from app.site.write_queue import Ledger
 from app.sun.position import Algorithm, SunPosition
 from app.tracker.config import DriveKind, TrackerConfig
 from app.tracker.memory import MetStation, SiteState, TrackerState
@@ -30,7 +30,7 @@ from app.tracker.motion import Feedback
 from app.tracker.observation import Observation
 from app.tracker.played_weather import SECOND_MAST, second_mast
 from app.tracker.protections.guarding import wind_of
-from app.tracker.protections.typhoon import is_high
+from app.tracker.protections.wind_stow import is_high
 from app.tracker.protections.words import Protection
 from app.tracker.simulated_weather import SimulatedStation
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
@@ -103,7 +103,7 @@ class SiteModel:
         sensed = self.weather.sensed(self.clock.now())
         for loop in self.loops.values():
             limits = loop.config.protection.wind
-            is_new = limits.enabled and loop.memory.protection is not Protection.TYPHOON
+            is_new = limits.enabled and loop.memory.protection is not Protection.WIND_STOW
             if is_new and is_high(limits, wind_of(sensed, limits)):
                 loop.wake()
 

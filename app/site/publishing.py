@@ -33,7 +33,7 @@ URGENT = {
     EventKind.NOT_STOWED,
     EventKind.DRIVE_LOST,
     EventKind.LIMIT_REACHED,
-    EventKind.OVERRAN,
+    EventKind.STOPPING_DISTANCE_EXCEEDED,
 }
 """What is told at once: a stop, and what raises an alarm."""
 

@@ -8,9 +8,9 @@ from struct import Struct
 
 import numpy as np
 
-from app.site.ledger import Ledger
 from app.site.loop import TrackerLoop
 from app.site.sample_batches import MOST_WAITING, SampleBatches
+from app.site.write_queue import Ledger
 from app.sun.position import Location
 from app.tracker.activities.tracking import sun_height_deg
 from app.tracker.memory import SiteState

@@ -7,7 +7,7 @@ from datetime import datetime, timedelta
 
 import numpy as np
 
-from app.site.ledger import Ledger
+from app.site.write_queue import Ledger
 from app.store.store import Recorded
 from app.tracker.recording import Frames, RecordingInfo
 

@@ -16,8 +16,8 @@ from typing import Any, Protocol
 
 from app.clock import Clock, give_way
 from app.logs import get_logger
-from app.site.lateness import MILLISECOND, FineLateness
 from app.site.overload import Overload
+from app.site.tick_lateness import MILLISECOND, FineLateness
 
 SLOT = timedelta(milliseconds=5)
 GOLDEN = 0.6180339887498949

@@ -19,8 +19,8 @@ from app.link.settings_orders import UndoSettings
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
 from app.tracker.commands import CommandRejected
+from app.tracker.local_locks import locked_settings
 from app.tracker.memory import CommissioningLock
-from app.tracker.people import locked_settings
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind
 

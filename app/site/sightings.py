@@ -11,7 +11,7 @@ from app.tracker.alignment import fit
 from app.tracker.commands import CommandRejected
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import Pointing, Sighting
-from app.tracker.mounts.abilities import abilities
+from app.tracker.mounts.capabilities import abilities
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind
 from app.tracker.sun_clock import clock_error

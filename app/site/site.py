@@ -14,10 +14,10 @@ from app.drives.drive import Drive
 from app.link.alarm_orders import AlarmOrder
 from app.link.messages import (
     CheckConnection,
-    ClearFaults,
     ControlOrder,
+    EndInjectedFaults,
+    InjectFault,
     Order,
-    PlayFault,
     SetClock,
     SiteCommand,
     SiteDetail,
@@ -32,21 +32,21 @@ from app.logs import get_logger
 from app.site import changes, control, sightings, site_orders, tracker_orders
 from app.site.alarming import AlarmDesk
 from app.site.auditing import Auditor, as_action
-from app.site.checking import Checks, DriveTools
+from app.site.connection_test import Checks, DriveTools
 from app.site.details import Details
 from app.site.gathering import BackgroundWriter
 from app.site.health import resident_bytes
+from app.site.idempotency import Overtaken, Repeats, refuse_untimely
 from app.site.kept_weather import WeatherFile
-from app.site.ledger import Ledger
 from app.site.loop import TrackerLoop
 from app.site.met_poll import StationReader
 from app.site.model import SiteModel
 from app.site.overload import CODE, Overload
 from app.site.publishing import Publisher, concerned
 from app.site.recorder import Recorder
-from app.site.repeats import Overtaken, Repeats, refuse_untimely
 from app.site.timekeeping import Timekeeper
 from app.site.weather import WeatherStation
+from app.site.write_queue import Ledger
 from app.tracker.commands import CommandRejected, EndJog, Jog, Stop
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import MetStation, SiteState, TrackerState
@@ -287,7 +287,7 @@ class Site:
     async def _carry_out_for_site(self, order: Order, command: SiteCommand) -> tuple[Event, ...]:
         if isinstance(command, AlarmOrder):
             return self._alarms.carry_out(command, order.actor)
-        if isinstance(command, StopAll | CheckConnection | PlayFault | ClearFaults | ReportWeather):
+        if isinstance(command, StopAll | CheckConnection | InjectFault | EndInjectedFaults | ReportWeather):
             return await site_orders.carry_out(self.model, command, order.actor)
         if isinstance(command, ControlOrder):
             return await control.carry_out(self.model, command, order)

@@ -13,12 +13,12 @@ from app.link.messages import (
     AnswerScale,
     ApplySightings,
     CheckConnection,
-    ClearFaults,
     ConfigureTracker,
     ConfirmStep,
     DeleteRecording,
     DriveOrder,
-    PlayFault,
+    EndInjectedFaults,
+    InjectFault,
     RemoveTracker,
     RenameSite,
     RestoreDrive,
@@ -41,10 +41,10 @@ from app.link.weather_orders import (
     WeatherOrder,
 )
 from app.logs import get_logger
-from app.site import proving, sightings, tracker_orders, tracker_setup, training, weather_setup
-from app.site.checks import check_name, check_time_zone
+from app.site import drive_testing, sightings, tracker_orders, tracker_setup, training, weather_setup
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
+from app.site.validation import check_name, check_time_zone
 from app.store.store import PlannedShow, Writer
 from app.tracker.commands import CommandRejected
 from app.tracker.memory import Confirmation, SiteState, StepName
@@ -65,7 +65,7 @@ log = get_logger()
 SiteOrder = (
     SetLocation | SetHorizon | SetClock | RenameSite | ConfirmStep | AddTracker | ConfigureTracker
     | RemoveTracker | TakeSighting | ApplySightings | SavePlan | SaveRecording | DeleteRecording | DriveOrder
-    | StopAll | UndoSettings | WeatherOrder | PlayFault | ClearFaults
+    | StopAll | UndoSettings | WeatherOrder | InjectFault | EndInjectedFaults
 )  # fmt: skip
 
 
@@ -82,7 +82,7 @@ async def carry_out(model: SiteModel, command: SiteOrder, actor: str) -> tuple[E
             return await _change_recordings(model, command, actor)
         case (
             AnswerDirection() | AnswerScale() | SetSoftLimit() | RestoreDrive() | CheckConnection()
-            | UndoSettings() | PlayFault() | ClearFaults()
+            | UndoSettings() | InjectFault() | EndInjectedFaults()
         ):  # fmt: skip
             return await _set_up_drive(model, command, actor)
         case StopAll():
@@ -144,23 +144,23 @@ async def _note(
 
 
 async def _set_up_drive(
-    model: SiteModel, command: DriveOrder | UndoSettings | PlayFault | ClearFaults, actor: str
+    model: SiteModel, command: DriveOrder | UndoSettings | InjectFault | EndInjectedFaults, actor: str
 ) -> tuple[Event, ...]:
     match command:
-        case PlayFault() | ClearFaults():
+        case InjectFault() | EndInjectedFaults():
             return await training.carry_out(model, command, actor)
         case AnswerDirection():
-            return await proving.answer_direction(model, command, actor)
+            return await drive_testing.answer_direction(model, command, actor)
         case AnswerScale():
-            return await proving.answer_scale(model, command, actor)
+            return await drive_testing.answer_scale(model, command, actor)
         case SetSoftLimit():
-            return await proving.set_soft_limit(model, command, actor)
+            return await drive_testing.set_soft_limit(model, command, actor)
         case UndoSettings():
             return await tracker_setup.undo(model, command.tracker_id, actor)
         case RestoreDrive():
-            return await proving.restore_drive(model, command, actor)
+            return await drive_testing.restore_drive(model, command, actor)
         case CheckConnection():
-            return await proving.check_connection(model, command, actor)
+            return await drive_testing.check_connection(model, command, actor)
         case _:
             assert_never(command)
 

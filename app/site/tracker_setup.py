@@ -4,10 +4,10 @@ from dataclasses import replace
 from datetime import datetime
 
 from app.site.auditing import as_action
-from app.site.checks import check_config, check_name
 from app.site.line_room import refuse_starved_drive
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
+from app.site.validation import check_config, check_name
 from app.tracker.axes import Axis
 from app.tracker.commands import CommandRejected
 from app.tracker.config import DriveKind, TrackerConfig

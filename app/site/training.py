@@ -4,16 +4,16 @@ from collections.abc import Awaitable, Callable
 from datetime import timedelta
 
 from app.drives.drive import DriveError, DriveRefused
+from app.drives.fault_injection import Trainer, trainer_of
 from app.drives.faults import Fault, FaultKind
-from app.drives.trained import Trainer, trainer_of
-from app.link.messages import ClearFaults, PlayFault
+from app.link.messages import EndInjectedFaults, InjectFault
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
 from app.site.weather_setup import made_up_station, play
 from app.tracker.commands import CommandRejected
+from app.tracker.fault_scenarios import Lesson, lesson
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind
-from app.tracker.training import Lesson, lesson
 
 TRIED_FOR = timedelta(seconds=3)
 BETWEEN = timedelta(milliseconds=250)
@@ -23,10 +23,12 @@ It takes as long as the drive lets it: what is set for the site is not kept wait
 """
 
 
-async def carry_out(model: SiteModel, command: PlayFault | ClearFaults, actor: str) -> tuple[Event, ...]:
+async def carry_out(
+    model: SiteModel, command: InjectFault | EndInjectedFaults, actor: str
+) -> tuple[Event, ...]:
     """Play a fault or end all of them, or raise `CommandRejected` on a tracker that is real."""
     loop = model.tracker(command.tracker_id)
-    if isinstance(command, ClearFaults):
+    if isinstance(command, EndInjectedFaults):
         return await _clear(model, loop, actor)
     return await _play(model, loop, lesson(command.fault), actor)
 
@@ -58,7 +60,7 @@ async def _clear(model: SiteModel, loop: TrackerLoop, actor: str) -> tuple[Event
         trainer = _trainer(loop)
         await _reached(model, loop, trainer.clear)
     text = f"TRAINING: the injected faults of {loop.config.name} have ended."
-    event = model.event(EventKind.FAULTS_CLEARED, text, actor, loop.config.tracker_id)
+    event = model.event(EventKind.INJECTED_FAULTS_ENDED, text, actor, loop.config.tracker_id)
     async with model.changing:
         if weather:
             await play(model, None, event)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.extras import need
-from app.late import late
+from app.startup import late
 from app.store.documents import RECORDING
 from app.tracker.recording import COLUMNS, Frames, RecordingInfo
 from app.tracker.snapshot import ActivityName

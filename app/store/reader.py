@@ -9,11 +9,12 @@ from sqlalchemy import Connection, Engine, Row, Select, select
 
 from app.alarms.alarm import Alarm
 from app.audit.entry import Sealed
-from app.store import alarming, auditing, recording, signed, tables
+from app.store import alarming, auditing, recording, signed_records, tables
 from app.store.chunks import ChunkDamaged, decode_all
+from app.store.config_repair import mended
 from app.store.connections import require_revision, transaction
 from app.store.documents import CONFIG, EVENT_DATA, PLAN, RECORDING, SITE, TRACKER
-from app.store.mending import mended
+from app.store.former import kind_of, stored_as
 from app.store.store import (
     AlarmFilter,
     AuditFilter,
@@ -29,7 +30,7 @@ from app.store.store import (
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.recording import Frames, RecordingInfo, RecordingKind
-from app.tracker.snapshot import Event, EventKind
+from app.tracker.snapshot import Event
 
 
 class DatabaseReader:
@@ -112,28 +113,30 @@ class DatabaseReader:
     def signed_records(self, tracker_id: str | None = None, *, limit: int = 200) -> list[RecordHead]:
         """Return the heads of signed commissioning records, newest first."""
         with self._read() as connection:
-            return signed.heads(connection, tracker_id, limit)
+            return signed_records.heads(connection, tracker_id, limit)
 
     def signed_record(self, number: int) -> SignedRecord | None:
         """Return one signed record."""
         with self._read() as connection:
-            return signed.record(connection, number)
+            return signed_records.record(connection, number)
 
     def waiting_photos(self, tracker_id: str) -> list[Photo]:
         """Return the photos that wait for the next record of a tracker, in the order they were added."""
         photos = tables.record_photos.c
         with self._read() as connection:
-            return signed.photos(connection, photos.tracker_id == tracker_id, photos.record_number.is_(None))
+            return signed_records.photos(
+                connection, photos.tracker_id == tracker_id, photos.record_number.is_(None)
+            )
 
     def photos_of(self, record_number: int) -> list[Photo]:
         """Return the photos of a signed record, in the order they were added."""
         with self._read() as connection:
-            return signed.photos(connection, tables.record_photos.c.record_number == record_number)
+            return signed_records.photos(connection, tables.record_photos.c.record_number == record_number)
 
     def photo(self, number: int) -> Photo | None:
         """Return one photo."""
         with self._read() as connection:
-            found = signed.photos(connection, tables.record_photos.c.number == number)
+            found = signed_records.photos(connection, tables.record_photos.c.number == number)
         return found[0] if found else None
 
     def show(self, show_id: str) -> PlannedShow | None:
@@ -200,7 +203,7 @@ def _journal_query(wanted: JournalFilter) -> Select[Any]:
     if wanted.tracker_id is not None:
         query = query.where(columns.tracker_id == wanted.tracker_id)
     if wanted.kinds:
-        query = query.where(columns.kind.in_(wanted.kinds))
+        query = query.where(columns.kind.in_(stored_as(wanted.kinds)))
     if wanted.actor is not None:
         query = query.where(columns.actor == wanted.actor)
     if wanted.text is not None:
@@ -218,13 +221,14 @@ def _within(query: Select[Any], wanted: JournalFilter) -> Select[Any]:
 
 
 def _entry(row: Row[*tuple[Any, ...]]) -> JournalEntry:
-    if row.kind not in list(EventKind):
+    kind = kind_of(row.kind)
+    if kind is None:
         raise StoreFailed(
             f"Entry {row.number} of the journal is of the unknown kind {row.kind!r}. "
             "Install the version that wrote it."
         )
     data = EVENT_DATA.read(row.data, str(row.number))
-    event = Event(row.at, EventKind(row.kind), row.tracker_id, row.message, row.actor, data)
+    event = Event(row.at, kind, row.tracker_id, row.message, row.actor, data)
     return JournalEntry(row.number, event)
 
 

@@ -8,7 +8,7 @@ from typing import Protocol
 
 from app.alarms.alarm import Alarm
 from app.audit.entry import Entry, Sealed
-from app.foreseen import WRONG, Foreseen
+from app.errors import WRONG, Foreseen
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import SiteState, TrackerState
 from app.tracker.programs.show import ShowPlan

@@ -8,7 +8,7 @@ from sqlalchemy import ColumnElement, Connection, Engine, Table, delete, select
 from sqlalchemy.exc import SQLAlchemyError
 
 from app.audit.entry import Entry
-from app.store import alarming, auditing, recording, signed, tables
+from app.store import alarming, auditing, recording, signed_records, tables
 from app.store.chunks import ChunkDamaged
 from app.store.connections import require_revision
 from app.store.documents import CONFIG, EVENT_DATA, PLAN, SITE, TRACKER, plain
@@ -159,19 +159,19 @@ class DatabaseWriter(DatabaseReader):
     ) -> int:
         """Keep a signed record for good, with photos that waited for it; return the number it gets."""
         with self._write() as connection:
-            number = signed.sign(connection, head, document, photos)
+            number = signed_records.sign(connection, head, document, photos)
             _append(connection, events)
         return number
 
     def add_photo(self, photo: Photo) -> None:
         """Store a photo that waits for the next record of its tracker."""
         with self._write() as connection:
-            signed.add_photo(connection, photo)
+            signed_records.add_photo(connection, photo)
 
     def remove_photo(self, number: int) -> None:
         """Remove a photo that waits; one of a signed record stays."""
         with self._write() as connection:
-            signed.remove_photo(connection, number)
+            signed_records.remove_photo(connection, number)
 
     def keep_recorded(self, recorded: Recorded) -> None:
         """Keep what recordings gained, together; samples of one that does not run are left out."""

@@ -6,9 +6,9 @@ from enum import StrEnum
 from typing import Literal
 
 from app.tracker.axes import Axis, JogSpeed
+from app.tracker.drive_tests import StopSpeed
 from app.tracker.motion import DriveCommand
 from app.tracker.programs.show import Course
-from app.tracker.proofs import StopSpeed
 from app.tracker.protections.words import StowName
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ActivityName, ShowPhase
@@ -80,7 +80,7 @@ class Moving:
 
 
 @dataclass(frozen=True, slots=True)
-class Zeroing:
+class SettingHome:
     """The drive is told, axis by axis, that here is zero; `number` is the request under way."""
 
     axes: tuple[Axis, ...]
@@ -189,7 +189,7 @@ Unfaulted = (
     Holding
     | Jogging
     | Moving
-    | Zeroing
+    | SettingHome
     | Homing
     | Tracking
     | Showing
@@ -204,7 +204,7 @@ NAMES: dict[type[Activity], ActivityName] = {
     Holding: ActivityName.HOLDING,
     Jogging: ActivityName.JOGGING,
     Moving: ActivityName.MOVING,
-    Zeroing: ActivityName.ZEROING,
+    SettingHome: ActivityName.SETTING_HOME,
     Homing: ActivityName.HOMING,
     Tracking: ActivityName.TRACKING,
     Showing: ActivityName.SHOWING,

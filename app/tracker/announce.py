@@ -3,12 +3,12 @@
 from datetime import datetime, timedelta
 
 from app.tracker.control import PROGRAMS
-from app.tracker.mind import Mind, Warned
+from app.tracker.controller_state import ControllerState, Warned
 from app.tracker.reason import Reason
 from app.tracker.snapshot import EventKind
 
 
-def announce(mind: Mind, why: str) -> None:
+def announce(mind: ControllerState, why: str) -> None:
     """Warn of a motion that begins after the warning time; `why` is a sentence that says what it is."""
     warning_s = mind.config.protection.warning_s
     if warning_s <= 0.0:
@@ -18,13 +18,13 @@ def announce(mind: Mind, why: str) -> None:
     mind.say(EventKind.MOTION_ANNOUNCED, f"{why} Motion starts in {warning_s:g} s.", seconds=warning_s)
 
 
-def announce_if_remote(mind: Mind, why: str) -> None:
+def announce_if_remote(mind: ControllerState, why: str) -> None:
     """Warn of a motion that another machine asked for."""
     if mind.via in PROGRAMS:
         announce(mind, why)
 
 
-def is_announced(mind: Mind) -> bool:
+def is_announced(mind: ControllerState) -> bool:
     """Return whether the motion is still being announced; afterwards the warning is forgotten."""
     if mind.warning is None:
         return False
@@ -34,6 +34,6 @@ def is_announced(mind: Mind) -> bool:
     return False
 
 
-def begins_at(mind: Mind) -> datetime:
+def begins_at(mind: ControllerState) -> datetime:
     """Return when a motion that is commanded now begins."""
     return mind.now if mind.warning is None else mind.warning.until

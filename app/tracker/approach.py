@@ -2,11 +2,11 @@
 
 from app.angles import separation_deg
 from app.tracker.activity import AxisPair, Tracking, TrackPhase
-from app.tracker.mind import HALTED, Mind, Turn
+from app.tracker.controller_state import HALTED, ControllerState, Turn
 from app.tracker.mode import Mode
 from app.tracker.motion import AxisCommand, DriveCommand, Feedback, Position
-from app.tracker.pursuit import UNWIND_DEG
-from app.tracker.runs import close_to
+from app.tracker.positioning import close_to
+from app.tracker.setpoint_scheduler import UNWIND_DEG
 
 FAR_DEG = 20.0
 """Farther off than this a panel is on its way again; no strategy lets it wait so long by itself."""
@@ -14,7 +14,7 @@ _BREAKS = (TrackPhase.RESTING, TrackPhase.PAUSED)
 _TO_THE_SUN = (TrackPhase.FOLLOWING, TrackPhase.LIMITED, TrackPhase.KEYHOLE)
 
 
-def is_approaching(mind: Mind) -> bool:
+def is_approaching(mind: ControllerState) -> bool:
     """Return whether the panel has not reached the sun since tracking began or had a break."""
     activity = mind.activity
     if not isinstance(activity, Tracking) or mind.memory.mode is Mode.FIXED:
@@ -22,7 +22,7 @@ def is_approaching(mind: Mind) -> bool:
     return activity.phase in _TO_THE_SUN and not mind.reached
 
 
-def has_reached(mind: Mind, turn: Turn, feedback: Feedback) -> bool:
+def has_reached(mind: ControllerState, turn: Turn, feedback: Feedback) -> bool:
     """Return whether the panel is where tracking wants it, or was and has gone on from there."""
     if not isinstance(turn.activity, Tracking) or turn.activity.phase in _BREAKS:
         return False

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from datetime import timedelta
 from typing import Literal
 
-from app.foreseen import WRONG, Foreseen
+from app.errors import WRONG, Foreseen
 from app.tracker.axes import Axis, JogSpeed
 from app.tracker.config import Orientation
+from app.tracker.drive_tests import StopSpeed
 from app.tracker.mode import Mode
 from app.tracker.programs.show import ShowPlan
-from app.tracker.proofs import StopSpeed
 from app.tracker.protections.words import StowName
 from app.tracker.reason import Reason
 
@@ -61,18 +61,18 @@ class Step:
 
 
 @dataclass(frozen=True, slots=True)
-class SetZero:
+class SetHome:
     """Here the axes point to north and the horizon: call this zero."""
 
     axes: tuple[Axis, ...] = (Axis.AZIMUTH, Axis.ELEVATION)
-    kind: Literal["zero"] = "zero"
+    kind: Literal["set_home"] = "set_home"
 
 
 @dataclass(frozen=True, slots=True)
-class UndoZero:
+class UndoHome:
     """Bring back the home position as it was before it was set last."""
 
-    kind: Literal["undo_zero"] = "undo_zero"
+    kind: Literal["undo_home"] = "undo_home"
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,19 +122,19 @@ class Resume:
 
 
 @dataclass(frozen=True, slots=True)
-class LockOut:
+class SetInhibit:
     """Somebody works on the machine: forbid every automatic motion, a stow included, until released."""
 
     name: str
     reason: str = ""
-    kind: Literal["lock_out"] = "lock_out"
+    kind: Literal["set_inhibit"] = "set_inhibit"
 
 
 @dataclass(frozen=True, slots=True)
-class ReleaseLock:
+class ReleaseInhibit:
     """Nobody works on the machine any more; nothing moves because of it."""
 
-    kind: Literal["release_lock"] = "release_lock"
+    kind: Literal["release_inhibit"] = "release_inhibit"
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,37 +182,37 @@ class StopShow:
 
 
 @dataclass(frozen=True, slots=True)
-class ProveDirection:
+class RunDirectionTest:
     """Turn one axis a little, so that somebody can see which way the panel goes."""
 
     axis: Axis
-    kind: Literal["prove_direction"] = "prove_direction"
+    kind: Literal["test_direction"] = "test_direction"
 
 
 @dataclass(frozen=True, slots=True)
-class ProveScale:
+class RunScaleTest:
     """Turn one axis by 10, 30 or 90 degrees, so that somebody can measure by how much the panel turned."""
 
     axis: Axis
     degrees: float = 10.0
-    kind: Literal["prove_scale"] = "prove_scale"
+    kind: Literal["test_scale"] = "test_scale"
 
 
 @dataclass(frozen=True, slots=True)
-class MeasureStop:
+class RunStopTest:
     """Bring one axis up to speed, stop it, and measure time and way until it stands."""
 
     axis: Axis
     speed: StopSpeed
-    kind: Literal["measure_stop"] = "measure_stop"
+    kind: Literal["test_stop"] = "test_stop"
 
 
 @dataclass(frozen=True, slots=True)
-class MeasureLinkLoss:
+class RunCommunicationLossTest:
     """Move one axis slowly, then send the drive nothing, and see what it does by itself."""
 
     axis: Axis
-    kind: Literal["measure_link_loss"] = "measure_link_loss"
+    kind: Literal["test_communication_loss"] = "test_communication_loss"
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,31 +230,31 @@ class ResetFault:
 
 
 @dataclass(frozen=True, slots=True)
-class BeginService:
+class BeginServiceMode:
     """Serve the machine: it moves at the slow hand speed, and only while the area was said to be clear."""
 
     name: str
-    kind: Literal["begin_service"] = "begin_service"
+    kind: Literal["begin_service_mode"] = "begin_service_mode"
 
 
 @dataclass(frozen=True, slots=True)
-class ConfirmClear:
+class ConfirmAreaClear:
     """Nobody stands where the panel moves; in service mode motion is allowed for a while."""
 
-    kind: Literal["confirm_clear"] = "confirm_clear"
+    kind: Literal["confirm_area_clear"] = "confirm_area_clear"
 
 
 @dataclass(frozen=True, slots=True)
-class EndService:
+class EndServiceMode:
     """Leave service mode."""
 
-    kind: Literal["end_service"] = "end_service"
+    kind: Literal["end_service_mode"] = "end_service_mode"
 
 
 Command = (
-    Jog | EndJog | Step | SetZero | UndoZero | Home | SelectMode | Move | Park | Track
+    Jog | EndJog | Step | SetHome | UndoHome | Home | SelectMode | Move | Park | Track
     | GoToStart | RunShow | PauseShow | ResumeShow | StopShow | Stop | ResetFault
-    | ProveDirection | ProveScale | MeasureStop | MeasureLinkLoss
-    | Stow | Resume | LockOut | ReleaseLock
-    | BeginService | ConfirmClear | EndService
+    | RunDirectionTest | RunScaleTest | RunStopTest | RunCommunicationLossTest
+    | Stow | Resume | SetInhibit | ReleaseInhibit
+    | BeginServiceMode | ConfirmAreaClear | EndServiceMode
 )  # fmt: skip

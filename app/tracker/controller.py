@@ -7,13 +7,13 @@ from typing import NamedTuple, assert_never
 from app.tracker import report
 from app.tracker.activities import (
     faulted,
+    homing,
     jogging,
     measuring,
     moving,
     showing,
     stowing,
     tracking,
-    zeroing,
 )
 from app.tracker.activity import (
     HOLDING,
@@ -25,12 +25,12 @@ from app.tracker.activity import (
     Jogging,
     Measuring,
     Moving,
+    SettingHome,
     Showing,
     Stopping,
     Stowed,
     Stowing,
     Tracking,
-    Zeroing,
 )
 from app.tracker.announce import is_announced
 from app.tracker.approach import has_reached
@@ -38,10 +38,11 @@ from app.tracker.authority import watch_local, watch_service
 from app.tracker.commands import Command
 from app.tracker.commissioning import Standing
 from app.tracker.config import TrackerConfig
+from app.tracker.controller_state import HALTED, NOWHERE, STANDING, ControllerState, Turn
+from app.tracker.drive_tests import Proofs
 from app.tracker.home_shift import forget
 from app.tracker.machine_guard import watch_machine
 from app.tracker.memory import CommissioningLock, Confirmation, Pointing, Sighting, StepName, TrackerMemory
-from app.tracker.mind import HALTED, NOWHERE, STANDING, Mind, Turn
 from app.tracker.motion import (
     AxisCommand,
     DriveCapabilities,
@@ -52,18 +53,17 @@ from app.tracker.motion import (
     RequestKind,
 )
 from app.tracker.mount import upright
-from app.tracker.mounts.absent import as_mounted, for_drive
+from app.tracker.mounts.missing_axes import as_mounted, for_drive
 from app.tracker.observation import Observation
 from app.tracker.orders import obey
-from app.tracker.proofs import Proofs
+from app.tracker.positioning import at_rest
 from app.tracker.protect import check_following, found, miss, obey_switches, protect
 from app.tracker.reason import Reason
 from app.tracker.recovery import recover
 from app.tracker.regions import bar
-from app.tracker.runs import at_rest
-from app.tracker.shelter import guarding, look
 from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
 from app.tracker.transitions import leave, lose_home
+from app.tracker.weather_protection import guarding, look
 
 ANNOUNCED = (Tracking, Showing, Moving, Stowing)
 """Activities whose first motion may have to wait for its warning."""
@@ -89,7 +89,7 @@ class Controller:
         *,
         resumes: bool = True,
     ) -> None:
-        self._mind = Mind(config, memory, capabilities)
+        self._mind = ControllerState(config, memory, capabilities)
         self._resumes = resumes
         if not resumes and (memory.stow is not None or memory.show_moves):
             self._mind.wait = _BEGUN_ANEW
@@ -295,8 +295,8 @@ class Controller:
                 return showing.step(mind, activity, feedback)
             case Jogging() | Moving() | Measuring() | Stowing() | Stowed():
                 return _step_by_order(mind, activity, feedback)
-            case Zeroing() | Homing():
-                return zeroing.step(mind, activity, feedback)
+            case SettingHome() | Homing():
+                return homing.step(mind, activity, feedback)
             case Faulted():
                 return faulted.step(mind, activity, feedback)
         assert_never(activity)
@@ -319,7 +319,7 @@ class Controller:
 
 
 def _step_by_order(
-    mind: Mind, activity: Jogging | Moving | Measuring | Stowing | Stowed, feedback: Feedback
+    mind: ControllerState, activity: Jogging | Moving | Measuring | Stowing | Stowed, feedback: Feedback
 ) -> Turn:
     match activity:
         case Jogging():
@@ -333,7 +333,7 @@ def _step_by_order(
     assert_never(activity)
 
 
-def _may_search(mind: Mind) -> bool:
+def _may_search(mind: ControllerState) -> bool:
     """Return whether the drive may still pursue its origin switches, as far as is known."""
     request = mind.command.request
     told = request is not None and request.kind is RequestKind.HOME

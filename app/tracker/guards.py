@@ -4,7 +4,7 @@ from typing import assert_never
 
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import TrackerConfig
-from app.tracker.follow import AxisWatch
+from app.tracker.following_error import AxisWatch
 from app.tracker.memory import HomeTrust
 from app.tracker.motion import (
     AxisCommand,
@@ -14,7 +14,7 @@ from app.tracker.motion import (
     Position,
     Velocity,
 )
-from app.tracker.mounts.abilities import axis_of, axis_words
+from app.tracker.mounts.capabilities import axis_of, axis_words
 from app.tracker.reason import Reason
 
 JUMP_FACTOR = 1.5

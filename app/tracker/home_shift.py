@@ -8,10 +8,10 @@ from dataclasses import replace
 
 from app.tracker.activity import HOLDING
 from app.tracker.axes import Axis
-from app.tracker.conditions import Action, demand_drive
+from app.tracker.controller_state import NOWHERE, ControllerState
 from app.tracker.guards import axis_feedback
+from app.tracker.interlocks import Action, demand_drive
 from app.tracker.memory import Confirmation, FormerHome, HomeShift, StepName
-from app.tracker.mind import NOWHERE, Mind
 from app.tracker.motion import AxisCommand, AxisFeedback, DriveCommand, Feedback, Position
 from app.tracker.snapshot import EventKind
 
@@ -48,7 +48,7 @@ def _told(told: AxisCommand, by_deg: float) -> AxisCommand:
     return replace(told, position_deg=told.position_deg - by_deg) if isinstance(told, Position) else told
 
 
-def keep_former(mind: Mind, axes: tuple[Axis, ...]) -> None:
+def keep_former(mind: ControllerState, axes: tuple[Axis, ...]) -> None:
     """Remember the home position that is about to be replaced, and count from the drive's own zero."""
     memory, feedback = mind.memory, mind.feedback
     if feedback is None:
@@ -76,14 +76,14 @@ def keep_former(mind: Mind, axes: tuple[Axis, ...]) -> None:
     )
 
 
-def forget(mind: Mind) -> None:
+def forget(mind: ControllerState) -> None:
     """Count from the drive's own zero, and know no former home position."""
     mind.remember(former_home=None, home_shift=UNSHIFTED)
 
 
-def undo_zero(mind: Mind) -> None:
+def undo_home(mind: ControllerState) -> None:
     """Bring back the home position as it was before it was set last, or raise `CommandRejected`."""
-    feedback = demand_drive(mind, Action.UNDO_ZERO)
+    feedback = demand_drive(mind, Action.UNDO_HOME)
     former, shift = mind.memory.former_home, mind.memory.home_shift
     if former is None:
         return
@@ -101,15 +101,15 @@ def undo_zero(mind: Mind) -> None:
         home_lost_at=former.home_lost_at,
         confirmations=_confirmations(mind, former),
     )
-    mind.say(EventKind.ZERO_UNDONE, "The previous home position is in use again.")
+    mind.say(EventKind.HOME_POSITION_UNDONE, "The previous home position is in use again.")
 
 
-def is_undone(mind: Mind) -> bool:
+def is_undone(mind: ControllerState) -> bool:
     """Return whether the drive counts from a zero that was undone, with no trusted one before it."""
     return mind.memory.home is None and mind.memory.home_shift != UNSHIFTED
 
 
-def _confirmations(mind: Mind, former: FormerHome) -> dict[StepName, Confirmation]:
+def _confirmations(mind: ControllerState, former: FormerHome) -> dict[StepName, Confirmation]:
     confirmations = dict(mind.memory.confirmations)
     confirmations.pop(StepName.HOMING, None)
     if former.confirmation is not None:

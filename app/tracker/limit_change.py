@@ -6,7 +6,7 @@ from typing import Protocol
 
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import TrackerConfig
-from app.tracker.mounts.abilities import axis_of, axis_title
+from app.tracker.mounts.capabilities import axis_of, axis_title
 from app.tracker.reason import Reason
 
 VALUES = (

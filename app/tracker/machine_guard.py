@@ -5,10 +5,12 @@ from dataclasses import replace
 from datetime import timedelta
 
 from app.tracker.activities.measuring import is_silent
-from app.tracker.activity import Faulted, Homing, Jogging, Zeroing
+from app.tracker.activity import Faulted, Homing, Jogging, SettingHome
 from app.tracker.axes import Axis
-from app.tracker.conditions import prompt
+from app.tracker.controller_state import ControllerState
+from app.tracker.drive_tests import StopProof, StopSpeed
 from app.tracker.guards import axis_feedback, pressed_switches
+from app.tracker.interlocks import prompt
 from app.tracker.machine_watch import (
     CROSSED_DEG,
     UNWATCHED,
@@ -22,10 +24,8 @@ from app.tracker.machine_watch import (
     rest,
     turning,
 )
-from app.tracker.mind import Mind
 from app.tracker.motion import AxisCommand, DriveCommand, Feedback
-from app.tracker.mounts.abilities import axis_of
-from app.tracker.proofs import StopProof, StopSpeed
+from app.tracker.mounts.capabilities import axis_of
 from app.tracker.reason import Reason
 from app.tracker.snapshot import EventKind
 from app.tracker.transitions import fail, leave, lose_home
@@ -37,7 +37,7 @@ TREND = 10
 SUPPLY_FOR = timedelta(seconds=2)
 
 
-def watch_machine(mind: Mind, before: Feedback | None, feedback: Feedback) -> None:
+def watch_machine(mind: ControllerState, before: Feedback | None, feedback: Feedback) -> None:
     """Judge the newest reading against what the axes were told, and latch what is a fault."""
     if isinstance(mind.activity, Jogging) and (slow := prompt(mind)) is not None:
         leave(mind, slow.message)
@@ -56,7 +56,7 @@ def watch_machine(mind: Mind, before: Feedback | None, feedback: Feedback) -> No
 
 
 def _watched(
-    mind: Mind, before: Feedback, feedback: Feedback, was_told: DriveCommand, told: DriveCommand
+    mind: ControllerState, before: Feedback, feedback: Feedback, was_told: DriveCommand, told: DriveCommand
 ) -> dict[Axis, AxisGuard]:
     """Return the next state of everything that is watched."""
     return {
@@ -65,7 +65,7 @@ def _watched(
     }
 
 
-def _latch(mind: Mind, feedback: Feedback) -> None:
+def _latch(mind: ControllerState, feedback: Feedback) -> None:
     """Fail for the first of the judges that objects; a fault stays the fault that it is."""
     if isinstance(mind.activity, Faulted):
         return
@@ -80,7 +80,7 @@ def _latch(mind: Mind, feedback: Feedback) -> None:
         return
 
 
-def notices(mind: Mind) -> tuple[Reason, ...]:
+def notices(mind: ControllerState) -> tuple[Reason, ...]:
     """Return what is watched and no fault: an axis that crept of late, and one that stops too late."""
     slow = prompt(mind)
     found: list[Reason] = [] if slow is None else [slow]
@@ -94,7 +94,7 @@ def notices(mind: Mind) -> tuple[Reason, ...]:
     return tuple(found)
 
 
-def creeps(mind: Mind, axis: Axis) -> Reason:
+def creeps(mind: ControllerState, axis: Axis) -> Reason:
     """Return that an axis turns though it should stand."""
     return Reason(
         "creep",
@@ -103,7 +103,7 @@ def creeps(mind: Mind, axis: Axis) -> Reason:
     )
 
 
-def overruns(mind: Mind, axis: Axis, guard: AxisGuard) -> Reason:
+def overruns(mind: ControllerState, axis: Axis, guard: AxisGuard) -> Reason:
     """Return that an axis ran on for too long after a stop, and what it is allowed from now on."""
     return Reason(
         "overrun",
@@ -114,14 +114,14 @@ def overruns(mind: Mind, axis: Axis, guard: AxisGuard) -> Reason:
     )
 
 
-def _is_exempt(mind: Mind, before: Feedback, feedback: Feedback) -> bool:
+def _is_exempt(mind: ControllerState, before: Feedback, feedback: Feedback) -> bool:
     """Return whether the axes may move as they like: search, zero, a test, hands at the cabinet, restart."""
-    apart = isinstance(mind.activity, Zeroing | Homing) or feedback.homing or is_silent(mind)
+    apart = isinstance(mind.activity, SettingHome | Homing) or feedback.homing or is_silent(mind)
     return apart or feedback.local or before.boot_count != feedback.boot_count or feedback.watchdog_tripped
 
 
 def _seen(
-    mind: Mind,
+    mind: ControllerState,
     axis: Axis,
     before: Feedback,
     feedback: Feedback,
@@ -141,7 +141,7 @@ def _seen(
     )
 
 
-def _say_creep(mind: Mind, axis: Axis, feedback: Feedback) -> None:
+def _say_creep(mind: ControllerState, axis: Axis, feedback: Feedback) -> None:
     guard, seen = mind.guards[axis], axis_feedback(feedback, axis)
     if guard.rest is None or abs(guard.rest.crept_deg(seen)) <= mind.config.machine.creep_deg:
         return
@@ -152,10 +152,10 @@ def _say_creep(mind: Mind, axis: Axis, feedback: Feedback) -> None:
     }
     if fresh:
         reason = creeps(mind, axis)
-        mind.say(EventKind.CREPT, reason.message, code=reason.code, axis=axis)
+        mind.say(EventKind.UNCOMMANDED_MOTION, reason.message, code=reason.code, axis=axis)
 
 
-def _say_overrun(mind: Mind, axis: Axis, feedback: Feedback) -> None:
+def _say_overrun(mind: ControllerState, axis: Axis, feedback: Feedback) -> None:
     """Judge a stop: too long is said at once, and the axis is slow until its stops are short again."""
     guard, seen = mind.guards[axis], axis_feedback(feedback, axis)
     if guard.braking is None:
@@ -170,17 +170,22 @@ def _say_overrun(mind: Mind, axis: Axis, feedback: Feedback) -> None:
         ended = replace(ended, slow_stops_left=max(0, guard.slow_stops_left - 1))
     else:
         ended = replace(ended, slow_stops_left=SLOW_STOPS)
-        mind.say(EventKind.OVERRAN, overruns(mind, axis, ended).message, code="overrun", axis=axis)
+        mind.say(
+            EventKind.STOPPING_DISTANCE_EXCEEDED,
+            overruns(mind, axis, ended).message,
+            code="overrun",
+            axis=axis,
+        )
     mind.guards = {**mind.guards, axis: ended}
 
 
-def _stop_proof(mind: Mind, axis: Axis) -> StopProof | None:
+def _stop_proof(mind: ControllerState, axis: Axis) -> StopProof | None:
     """Return the measured stop from the higher speed, if the drive is still the same."""
     proofs = (mind.memory.proofs.stop(axis, speed) for speed in (StopSpeed.RATED, StopSpeed.JOG))
     return next((one for one in proofs if one is not None and one.drive == mind.config.drive), None)
 
 
-def _watch_supply(mind: Mind, feedback: Feedback) -> None:
+def _watch_supply(mind: ControllerState, feedback: Feedback) -> None:
     """Keep since when the supply is outside what the drive bears."""
     limits, volts = mind.config.machine, feedback.supply_v
     watched = volts is not None and limits.supply_high_v > 0.0
@@ -188,7 +193,7 @@ def _watch_supply(mind: Mind, feedback: Feedback) -> None:
     mind.supply_since = (mind.supply_since or mind.now) if outside else None
 
 
-def _swapped(mind: Mind, feedback: Feedback) -> Reason | None:
+def _swapped(mind: ControllerState, feedback: Feedback) -> Reason | None:
     """Return that the wrong axis obeys: one that should stand turns, the one that was told does not."""
     for axis, guard in mind.guards.items():
         for other, commanded in mind.guards.items():
@@ -207,7 +212,7 @@ def _swapped(mind: Mind, feedback: Feedback) -> Reason | None:
     return None
 
 
-def _stuck_switch(mind: Mind, feedback: Feedback) -> Reason | None:
+def _stuck_switch(mind: ControllerState, feedback: Feedback) -> Reason | None:
     for axis, guard in mind.guards.items():
         switch = guard.pressed
         if (
@@ -224,7 +229,7 @@ def _stuck_switch(mind: Mind, feedback: Feedback) -> Reason | None:
     return None
 
 
-def _frozen(mind: Mind, feedback: Feedback) -> Reason | None:
+def _frozen(mind: ControllerState, feedback: Feedback) -> Reason | None:
     for axis, guard in mind.guards.items():
         if guard.turning is not None and guard.turning.is_frozen():
             return Reason(
@@ -241,7 +246,7 @@ def _frozen(mind: Mind, feedback: Feedback) -> Reason | None:
     return None
 
 
-def _over_travel(mind: Mind, feedback: Feedback) -> Reason | None:
+def _over_travel(mind: ControllerState, feedback: Feedback) -> Reason | None:
     for axis, guard in mind.guards.items():
         outside_deg = mind.config.axis(axis).beyond_deg(axis_feedback(feedback, axis).position_deg)
         if guard.beyond is None or outside_deg - guard.beyond.least_deg <= mind.config.machine.overtravel_deg:
@@ -259,7 +264,7 @@ def _over_travel(mind: Mind, feedback: Feedback) -> Reason | None:
     return None
 
 
-def _supply(mind: Mind, feedback: Feedback) -> Reason | None:
+def _supply(mind: ControllerState, feedback: Feedback) -> Reason | None:
     if mind.supply_since is None or mind.now - mind.supply_since < SUPPLY_FOR or feedback.supply_v is None:
         return None
     limits = mind.config.machine
@@ -279,7 +284,7 @@ def _told(command: DriveCommand, axis: Axis) -> AxisCommand:
     return command.azimuth if axis is Axis.AZIMUTH else command.elevation
 
 
-JUDGES: tuple[Callable[[Mind, Feedback], Reason | None], ...] = (
+JUDGES: tuple[Callable[[ControllerState, Feedback], Reason | None], ...] = (
     _swapped,
     _stuck_switch,
     _frozen,

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 
 from app.tracker.axes import AxisConfig
+from app.tracker.drive_tests import StopProof
 from app.tracker.motion import AxisCommand, AxisFeedback, Halt, Velocity
-from app.tracker.proofs import StopProof
 
 SETTLES_WITHIN = timedelta(seconds=10)
 """An axis that still reports motion so long after a halt counts as one that should stand."""

@@ -8,9 +8,9 @@ from app.sun.horizon import FLAT, Horizon
 from app.sun.position import Location
 from app.tracker.axes import Axis
 from app.tracker.config import DriveConfig, Orientation, TrackerConfig
+from app.tracker.drive_tests import Proofs
 from app.tracker.mode import Mode
 from app.tracker.notifications import Notifications
-from app.tracker.proofs import Proofs
 from app.tracker.protections.words import MaintenanceLock, Protection, ServiceMode, StowName
 from app.tracker.simulated_weather import SimulatedStation
 from app.tracker.weather import Quantity

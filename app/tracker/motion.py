@@ -35,8 +35,8 @@ HALT = Halt()
 class RequestKind(StrEnum):
     """Something a drive does once."""
 
-    SET_ZERO_AZIMUTH = "set_zero_azimuth"
-    SET_ZERO_ELEVATION = "set_zero_elevation"
+    SET_HOME_AZIMUTH = "set_home_azimuth"
+    SET_HOME_ELEVATION = "set_home_elevation"
     HOME = "home"
     RESET_FAULT = "reset_fault"
 

@@ -3,60 +3,60 @@
 from typing import assert_never
 
 from app.tracker.activities import (
+    drive_testing,
     faulted,
+    homing,
     jogging,
     measuring,
     moving,
-    proving,
     showing,
     stowing,
     tracking,
-    zeroing,
 )
 from app.tracker.activity import STOPPING, Faulted, Showing
-from app.tracker.authority import begin_service, confirm_clear, end_service
+from app.tracker.authority import begin_service_mode, confirm_area_clear, end_service_mode
 from app.tracker.commands import (
-    BeginService,
+    BeginServiceMode,
     Command,
     CommandRejected,
-    ConfirmClear,
+    ConfirmAreaClear,
     EndJog,
-    EndService,
+    EndServiceMode,
     GoToStart,
     Home,
     Jog,
-    LockOut,
-    MeasureLinkLoss,
-    MeasureStop,
     Move,
     Park,
     PauseShow,
-    ProveDirection,
-    ProveScale,
-    ReleaseLock,
+    ReleaseInhibit,
     ResetFault,
     Resume,
     ResumeShow,
+    RunCommunicationLossTest,
+    RunDirectionTest,
+    RunScaleTest,
     RunShow,
+    RunStopTest,
     SelectMode,
-    SetZero,
+    SetHome,
+    SetInhibit,
     Step,
     Stop,
     StopShow,
     Stow,
     Track,
-    UndoZero,
+    UndoHome,
 )
-from app.tracker.home_shift import undo_zero
-from app.tracker.lockout import lock_out, release_lock
-from app.tracker.mind import NOWHERE, Mind
-from app.tracker.mounts.absent import absent_axis
+from app.tracker.controller_state import NOWHERE, ControllerState
+from app.tracker.home_shift import undo_home
+from app.tracker.maintenance_inhibit import release_inhibit, set_inhibit
+from app.tracker.mounts.missing_axes import absent_axis
 from app.tracker.selection import select_mode
 from app.tracker.snapshot import EventKind
 from app.tracker.transitions import leave, switch_tracking_off
 
 
-def obey(mind: Mind, command: Command) -> None:
+def obey(mind: ControllerState, command: Command) -> None:
     """Change the tracker's mind, or raise `CommandRejected` and change nothing but a refused press."""
     _refuse_absent_axis(mind, command)
     _hand_on(mind, command)
@@ -64,27 +64,27 @@ def obey(mind: Mind, command: Command) -> None:
         mind.remember(show_moves=False)
 
 
-def _hand_on(mind: Mind, command: Command) -> None:
+def _hand_on(mind: ControllerState, command: Command) -> None:
     match command:
         case Stop():
             stop(mind)
-        case Jog() | EndJog() | Step() | SetZero() | UndoZero() | Home() | SelectMode():
+        case Jog() | EndJog() | Step() | SetHome() | UndoHome() | Home() | SelectMode():
             _obey_by_hand(mind, command)
         case Move() | Park() | Track() | ResetFault():
             _obey_automatic(mind, command)
-        case Stow() | Resume() | LockOut() | ReleaseLock():
+        case Stow() | Resume() | SetInhibit() | ReleaseInhibit():
             _obey_guard(mind, command)
-        case BeginService() | ConfirmClear() | EndService():
+        case BeginServiceMode() | ConfirmAreaClear() | EndServiceMode():
             _obey_service(mind, command)
         case GoToStart() | RunShow() | PauseShow() | ResumeShow() | StopShow():
             _obey_show(mind, command)
-        case ProveDirection() | ProveScale() | MeasureStop() | MeasureLinkLoss():
+        case RunDirectionTest() | RunScaleTest() | RunStopTest() | RunCommunicationLossTest():
             _obey_proof(mind, command)
         case _:
             assert_never(command)
 
 
-def stop(mind: Mind) -> None:
+def stop(mind: ControllerState) -> None:
     """Stop both axes, end everything, switch tracking off. Never refused; a fault stays a fault."""
     switch_tracking_off(mind, "the tracker was stopped.")
     leave(mind, "the tracker was stopped.")
@@ -94,14 +94,16 @@ def stop(mind: Mind) -> None:
     mind.say(EventKind.STOPPED, f"{mind.config.name} was stopped.")
 
 
-def _refuse_absent_axis(mind: Mind, command: Command) -> None:
+def _refuse_absent_axis(mind: ControllerState, command: Command) -> None:
     """Raise `CommandRejected` for an axis that the mount does not have."""
-    by_axis = Jog | Step | ProveDirection | ProveScale | MeasureStop | MeasureLinkLoss
+    by_axis = Jog | Step | RunDirectionTest | RunScaleTest | RunStopTest | RunCommunicationLossTest
     if isinstance(command, by_axis) and command.axis not in mind.config.mount.axes:
         raise CommandRejected(absent_axis(mind.config))
 
 
-def _obey_by_hand(mind: Mind, command: Jog | EndJog | Step | SetZero | UndoZero | Home | SelectMode) -> None:
+def _obey_by_hand(
+    mind: ControllerState, command: Jog | EndJog | Step | SetHome | UndoHome | Home | SelectMode
+) -> None:
     match command:
         case Jog():
             jogging.jog(mind, command)
@@ -109,19 +111,19 @@ def _obey_by_hand(mind: Mind, command: Jog | EndJog | Step | SetZero | UndoZero 
             jogging.end_jog(mind, command)
         case Step():
             moving.step_by(mind, command)
-        case SetZero():
-            zeroing.set_zero(mind, command)
-        case UndoZero():
-            undo_zero(mind)
+        case SetHome():
+            homing.set_home(mind, command)
+        case UndoHome():
+            undo_home(mind)
         case Home():
-            zeroing.home(mind)
+            homing.home(mind)
         case SelectMode():
             select_mode(mind, command)
         case _:
             assert_never(command)
 
 
-def _obey_automatic(mind: Mind, command: Move | Park | Track | ResetFault) -> None:
+def _obey_automatic(mind: ControllerState, command: Move | Park | Track | ResetFault) -> None:
     match command:
         case Move():
             moving.move(mind, command)
@@ -135,33 +137,37 @@ def _obey_automatic(mind: Mind, command: Move | Park | Track | ResetFault) -> No
             assert_never(command)
 
 
-def _obey_guard(mind: Mind, command: Stow | Resume | LockOut | ReleaseLock) -> None:
+def _obey_guard(mind: ControllerState, command: Stow | Resume | SetInhibit | ReleaseInhibit) -> None:
     match command:
         case Stow():
             stowing.stow(mind, command)
         case Resume():
             stowing.resume(mind)
-        case LockOut():
-            lock_out(mind, command)
-        case ReleaseLock():
-            release_lock(mind)
+        case SetInhibit():
+            set_inhibit(mind, command)
+        case ReleaseInhibit():
+            release_inhibit(mind)
         case _:
             assert_never(command)
 
 
-def _obey_service(mind: Mind, command: BeginService | ConfirmClear | EndService) -> None:
+def _obey_service(
+    mind: ControllerState, command: BeginServiceMode | ConfirmAreaClear | EndServiceMode
+) -> None:
     match command:
-        case BeginService():
-            begin_service(mind, command)
-        case ConfirmClear():
-            confirm_clear(mind)
-        case EndService():
-            end_service(mind)
+        case BeginServiceMode():
+            begin_service_mode(mind, command)
+        case ConfirmAreaClear():
+            confirm_area_clear(mind)
+        case EndServiceMode():
+            end_service_mode(mind)
         case _:
             assert_never(command)
 
 
-def _obey_show(mind: Mind, command: GoToStart | RunShow | PauseShow | ResumeShow | StopShow) -> None:
+def _obey_show(
+    mind: ControllerState, command: GoToStart | RunShow | PauseShow | ResumeShow | StopShow
+) -> None:
     match command:
         case GoToStart():
             showing.go_to_start(mind, command)
@@ -177,15 +183,17 @@ def _obey_show(mind: Mind, command: GoToStart | RunShow | PauseShow | ResumeShow
             assert_never(command)
 
 
-def _obey_proof(mind: Mind, command: ProveDirection | ProveScale | MeasureStop | MeasureLinkLoss) -> None:
+def _obey_proof(
+    mind: ControllerState, command: RunDirectionTest | RunScaleTest | RunStopTest | RunCommunicationLossTest
+) -> None:
     match command:
-        case ProveDirection():
-            proving.prove_direction(mind, command)
-        case ProveScale():
-            proving.prove_scale(mind, command)
-        case MeasureStop():
-            measuring.measure_stop(mind, command)
-        case MeasureLinkLoss():
-            measuring.measure_link_loss(mind, command)
+        case RunDirectionTest():
+            drive_testing.test_direction(mind, command)
+        case RunScaleTest():
+            drive_testing.test_scale(mind, command)
+        case RunStopTest():
+            measuring.test_stop(mind, command)
+        case RunCommunicationLossTest():
+            measuring.test_communication_loss(mind, command)
         case _:
             assert_never(command)

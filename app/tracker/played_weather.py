@@ -65,6 +65,6 @@ def second_mast(station: SimulatedStation, weather: Weather | None) -> Weather |
 
 def _storm_mps(station: SimulatedStation, at: datetime) -> float | None:
     by_hand = replace(
-        station, scenario=Scenario.BY_HAND, wind_mps=STORM_MPS, gustiness_pct=STORM_GUSTS_PCT, light_wm2=0.0
+        station, scenario=Scenario.MANUAL, wind_mps=STORM_MPS, gustiness_pct=STORM_GUSTS_PCT, light_wm2=0.0
     )
     return weather_at(by_hand, at, None).wind_mps

@@ -1,14 +1,14 @@
 """How far a tracker is in its step program."""
 
 from app.tracker.activity import Showing, Tracking
-from app.tracker.mind import Mind
+from app.tracker.controller_state import ControllerState
 from app.tracker.programs.schedule import Moment, hour_of
 from app.tracker.programs.stepped import StepProgram
 from app.tracker.snapshot import StepProgress
 from app.tracker.strategy import Stepped
 
 
-def step_progress(mind: Mind) -> StepProgress | None:
+def step_progress(mind: ControllerState) -> StepProgress | None:
     """Return which step is held and when the next one comes; None while no program is followed."""
     found = _followed(mind)
     if found is None:
@@ -31,7 +31,7 @@ def step_progress(mind: Mind) -> StepProgress | None:
     )
 
 
-def _followed(mind: Mind) -> tuple[StepProgram, Moment] | None:
+def _followed(mind: ControllerState) -> tuple[StepProgram, Moment] | None:
     sun, seen = mind.sun, mind.seen
     strategy = mind.config.strategy
     if sun is None or seen is None or seen.location is None:

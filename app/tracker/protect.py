@@ -12,18 +12,18 @@ from app.tracker.activity import (
     Jogging,
     Measuring,
     Moving,
+    SettingHome,
     Showing,
     Stopping,
     Stowed,
     Stowing,
     Tracking,
-    Zeroing,
 )
 from app.tracker.axes import Axis
-from app.tracker.follow import watch
-from app.tracker.mind import HALTED, Mind
+from app.tracker.controller_state import HALTED, ControllerState
+from app.tracker.following_error import watch
 from app.tracker.motion import AxisCommand, DriveCommand, Feedback, Halt
-from app.tracker.mounts.abilities import axis_of
+from app.tracker.mounts.capabilities import axis_of
 from app.tracker.reason import Reason
 from app.tracker.snapshot import EventKind
 from app.tracker.transitions import fail, interrupt, leave, lose_home
@@ -31,7 +31,7 @@ from app.tracker.transitions import fail, interrupt, leave, lose_home
 JOG_MISSES = 2
 
 
-def miss(mind: Mind, now: datetime, silence: timedelta) -> None:
+def miss(mind: ControllerState, now: datetime, silence: timedelta) -> None:
     """Count a reading that failed: two end a jog, and after the silence the drive is lost and all ends."""
     mind.misses += 1
     if mind.misses >= JOG_MISSES and isinstance(mind.activity, Jogging):
@@ -50,7 +50,7 @@ def miss(mind: Mind, now: datetime, silence: timedelta) -> None:
     interrupt(mind, reason)
 
 
-def found(mind: Mind, feedback: Feedback) -> None:
+def found(mind: ControllerState, feedback: Feedback) -> None:
     """Note a good reading; after a loss say that the drive is back, and what it did meanwhile.
 
     Nothing resumes by itself.
@@ -63,7 +63,7 @@ def found(mind: Mind, feedback: Feedback) -> None:
     mind.say(EventKind.DRIVE_FOUND, mind.aftermath.message, code=mind.aftermath.code)
 
 
-def protect(mind: Mind, before: Feedback | None, feedback: Feedback, elapsed: timedelta) -> None:
+def protect(mind: ControllerState, before: Feedback | None, feedback: Feedback, elapsed: timedelta) -> None:
     """End what must not go on in the light of a reading, so long after the one before."""
     suspicious = feedback.fault_code or feedback.azimuth.at_upper_limit or feedback.elevation.at_upper_limit
     if suspicious and not is_silent(mind):
@@ -71,13 +71,13 @@ def protect(mind: Mind, before: Feedback | None, feedback: Feedback, elapsed: ti
     if before is not None and before is not feedback:
         _compare(mind, before, feedback, elapsed.total_seconds())
     home = mind.memory.home
-    if home is not None and not isinstance(mind.activity, Zeroing):
+    if home is not None and not isinstance(mind.activity, SettingHome):
         doubt = guards.home_doubt(mind.config, home, feedback)
         if doubt is not None:
             _doubt_home(mind, doubt)
 
 
-def _refuse_fault(mind: Mind, feedback: Feedback) -> None:
+def _refuse_fault(mind: ControllerState, feedback: Feedback) -> None:
     """Latch the drive's own fault or contradicting limit switches."""
     name = mind.config.name
     reason = guards.drive_fault(name, feedback)
@@ -89,7 +89,7 @@ def _refuse_fault(mind: Mind, feedback: Feedback) -> None:
         fail(mind, reason)
 
 
-def _compare(mind: Mind, before: Feedback, feedback: Feedback, elapsed_s: float) -> None:
+def _compare(mind: ControllerState, before: Feedback, feedback: Feedback, elapsed_s: float) -> None:
     """Judge what changed between two readings."""
     restarted = guards.restart(mind.config.name, before, feedback)
     if restarted is not None:
@@ -97,20 +97,20 @@ def _compare(mind: Mind, before: Feedback, feedback: Feedback, elapsed_s: float)
         return
     if feedback.watchdog_tripped and not before.watchdog_tripped and not is_silent(mind):
         _watchdog_tripped(mind)
-    if isinstance(mind.activity, Zeroing | Homing):
+    if isinstance(mind.activity, SettingHome | Homing):
         return
     jumped = guards.jump(mind.config, before, feedback, elapsed_s)
     if jumped is not None:
         _doubt_home(mind, jumped)
 
 
-def _doubt_home(mind: Mind, reason: Reason) -> None:
+def _doubt_home(mind: ControllerState, reason: Reason) -> None:
     mind.guards = {}
     lose_home(mind, reason)
     interrupt(mind, reason)
 
 
-def _watchdog_tripped(mind: Mind) -> None:
+def _watchdog_tripped(mind: ControllerState) -> None:
     """Say that the drive stopped for want of commands; only tracking goes on after that."""
     reason = Reason(
         "watchdog_tripped",
@@ -122,14 +122,14 @@ def _watchdog_tripped(mind: Mind) -> None:
             return
         case Tracking() | Stowing():
             pass
-        case Jogging() | Moving() | Zeroing() | Homing() | Showing() | Measuring():
+        case Jogging() | Moving() | SettingHome() | Homing() | Showing() | Measuring():
             interrupt(mind, reason)
         case _:
             assert_never(mind.activity)
     mind.say(EventKind.STOPPED, reason.message, code=reason.code)
 
 
-def obey_switches(mind: Mind, command: DriveCommand, feedback: Feedback) -> DriveCommand:
+def obey_switches(mind: ControllerState, command: DriveCommand, feedback: Feedback) -> DriveCommand:
     """Return the command; halted, and the activity ended, if it led on into a pressed limit switch."""
     tolerance_deg = mind.config.in_position_deg
     for axis in Axis:
@@ -151,7 +151,7 @@ def axis_command(command: DriveCommand, axis: Axis) -> AxisCommand:
     return command.azimuth if axis is Axis.AZIMUTH else command.elevation
 
 
-def check_following(mind: Mind, feedback: Feedback, now: datetime) -> None:
+def check_following(mind: ControllerState, feedback: Feedback, now: datetime) -> None:
     """Compare every commanded axis with its reference, and latch a fault where it does not follow."""
     if isinstance(mind.command.azimuth, Halt) and isinstance(mind.command.elevation, Halt):
         if mind.watches:

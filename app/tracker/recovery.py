@@ -5,17 +5,17 @@ from datetime import timedelta
 from app.tracker.activities import tracking
 from app.tracker.activities.faulted import reset_fault
 from app.tracker.activity import Faulted, Holding
-from app.tracker.mind import Mind
+from app.tracker.controller_state import ControllerState
 from app.tracker.motion import Feedback
+from app.tracker.positioning import at_rest
 from app.tracker.protections.fault_classes import CLASSES
 from app.tracker.protections.machine_config import Recovery, RecoveryPolicy
-from app.tracker.runs import at_rest
 from app.tracker.snapshot import EventKind
 
 HOUR = timedelta(hours=1)
 
 
-def recover(mind: Mind, feedback: Feedback) -> None:
+def recover(mind: ControllerState, feedback: Feedback) -> None:
     """Clear a fault that its policy lets clear by itself, and go on tracking after one that was cleared."""
     if mind.recovering:
         _go_on(mind)
@@ -35,13 +35,13 @@ def recover(mind: Mind, feedback: Feedback) -> None:
     mind.recovered_at = (*recent, mind.now)[-60:]
     mind.ailing_since = mind.now
     text = f"{mind.config.name} resets the fault {code} automatically, according to its recovery policy."
-    mind.say(EventKind.FAULT_RECOVERED, text, code=code, policy=policy.kind)
+    mind.say(EventKind.FAULT_RESET_AUTOMATICALLY, text, code=code, policy=policy.kind)
     if isinstance(mind.activity, Faulted):
         reset_fault(mind)
     mind.recovering = True
 
 
-def _fault(mind: Mind) -> str | None:
+def _fault(mind: ControllerState) -> str | None:
     """Return the code of the latched fault, or that the drive was lost and tracking waits for that."""
     if isinstance(mind.activity, Faulted):
         return mind.activity.reason.code
@@ -50,7 +50,7 @@ def _fault(mind: Mind) -> str | None:
     return mind.wait.code
 
 
-def _policy(mind: Mind, code: str | None) -> RecoveryPolicy | None:
+def _policy(mind: ControllerState, code: str | None) -> RecoveryPolicy | None:
     """Return the policy by which a fault is left by itself now, None where a person has to."""
     fault = None if code is None else CLASSES.get(code)
     if fault is None or mind.memory.lock is not None or mind.memory.service is not None:
@@ -59,11 +59,11 @@ def _policy(mind: Mind, code: str | None) -> RecoveryPolicy | None:
     return policy if policy.kind in (Recovery.LIMITED, Recovery.UNLIMITED) else None
 
 
-def _asks_already(mind: Mind) -> bool:
+def _asks_already(mind: ControllerState) -> bool:
     return isinstance(mind.activity, Faulted) and mind.activity.number is not None
 
 
-def _go_on(mind: Mind) -> None:
+def _go_on(mind: ControllerState) -> None:
     """Track again once the fault that was being left is gone; the motion is announced."""
     if isinstance(mind.activity, Faulted):
         return

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from app.tracker.activity import Jogging, MoveKind, Moving
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import TrackerConfig
-from app.tracker.mind import HALTED, Mind
+from app.tracker.controller_state import HALTED, ControllerState
 from app.tracker.motion import AxisCommand, AxisFeedback, DriveCommand, Feedback, Halt, Position
 from app.tracker.protections.machine_config import Region
 from app.tracker.reason import Reason
@@ -30,7 +30,7 @@ class Span(NamedTuple):
     high: float
 
 
-def bar(mind: Mind, command: DriveCommand, feedback: Feedback) -> DriveCommand:
+def bar(mind: ControllerState, command: DriveCommand, feedback: Feedback) -> DriveCommand:
     """Return the command; halted, and the activity ended, if it led into a forbidden region."""
     if not mind.config.machine.regions or command is HALTED:
         return command

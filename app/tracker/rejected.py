@@ -1,10 +1,10 @@
 """Stored settings that were not accepted at the start: nothing moves until a person has looked at them."""
 
-from app.tracker.mind import Mind
+from app.tracker.controller_state import ControllerState
 from app.tracker.reason import Reason
 
 
-def accepted(mind: Mind) -> Reason | None:
+def accepted(mind: ControllerState) -> Reason | None:
     """Return that stored settings were rejected and others are used in their place."""
     rejected = mind.memory.rejected
     if not rejected:

@@ -21,30 +21,30 @@ from app.tracker.activity import (
 from app.tracker.approach import is_approaching
 from app.tracker.authority import service_state
 from app.tracker.commissioning import Standing
-from app.tracker.conditions import Action, reachable, undoable, unmet
 from app.tracker.config import MountKind, Orientation, TrackerConfig
+from app.tracker.controller_state import ControllerState
 from app.tracker.home_shift import is_undone
 from app.tracker.hybrid import Corrected
-from app.tracker.mind import Mind
+from app.tracker.interlocks import Action, reachable, undoable, unmet
 from app.tracker.motion import AxisFeedback, Feedback, Position
 from app.tracker.mount import sky
-from app.tracker.mounts.abilities import default_mode
+from app.tracker.mounts.capabilities import default_mode
+from app.tracker.positioning import arrived, at_rest, close_to
 from app.tracker.progress import step_progress
 from app.tracker.protections.words import WarningState
 from app.tracker.reason import Reason
 from app.tracker.rejected import accepted
-from app.tracker.runs import arrived, at_rest, close_to
 from app.tracker.sensors import sensors
-from app.tracker.shelter import doubts, hold_reason, protection_state, reason
 from app.tracker.snapshot import ActivityName, AxisState, HybridState, Pair, ShowPhase, ShowProgress, Snapshot
 from app.tracker.weather import NOTHING_SENSED
+from app.tracker.weather_protection import doubts, hold_reason, protection_state, reason
 from app.tracker.words import activity_text
 
 _INDEX = {kind: float(list(ActivityName).index(name)) for kind, name in NAMES.items()}
 _NO_ORIENTATION = (nan, nan)
 
 
-def snapshot(mind: Mind, at: datetime, now: datetime, *, asked: bool = True) -> Snapshot:
+def snapshot(mind: ControllerState, at: datetime, now: datetime, *, asked: bool = True) -> Snapshot:
     """Return what is known after the last tick, stamped `at`; ages count to `now`; actions if `asked`."""
     fresh = mind.seen.feedback if mind.seen else None
     faced = _faced(mind, fresh)
@@ -99,7 +99,7 @@ def snapshot(mind: Mind, at: datetime, now: datetime, *, asked: bool = True) -> 
     )
 
 
-def standing(mind: Mind) -> Standing:
+def standing(mind: ControllerState) -> Standing:
     """Return what the five steps go by: the same as `standing_of` a snapshot, at a tenth of the cost."""
     match mind.activity:
         case Tracking():
@@ -114,7 +114,7 @@ def standing(mind: Mind) -> Standing:
     return Standing(seen, runs, () if runs else _waiting(mind))
 
 
-def frame(mind: Mind) -> tuple[float, ...]:
+def frame(mind: ControllerState) -> tuple[float, ...]:
     """Return the last tick in the order of `recording.COLUMNS`; elapsed and sun time are NaN."""
     sun, target = mind.sun, mind.target
     feedback = mind.seen.feedback if mind.seen else None
@@ -140,7 +140,7 @@ def _drive(feedback: Feedback | None) -> tuple[float, float, float]:
     return feedback.azimuth.velocity_dps, feedback.elevation.velocity_dps, supply_v
 
 
-def _weather(mind: Mind) -> tuple[float, float, float]:
+def _weather(mind: ControllerState) -> tuple[float, float, float]:
     """Return gust, mean wind and light of this tick, to what a station resolves; NaN what is not good."""
     if mind.seen is None or mind.seen.weather is NOTHING_SENSED:
         return nan, nan, nan
@@ -150,7 +150,7 @@ def _weather(mind: Mind) -> tuple[float, float, float]:
     return gust_mps, mean_mps, light_wm2
 
 
-def _told(mind: Mind) -> tuple[float, float]:
+def _told(mind: ControllerState) -> tuple[float, float]:
     """Return the set-point: of the axes on an azimuth-elevation mount, else of the sky."""
     if mind.config.mount.kind is not MountKind.AZIMUTH_ELEVATION:
         told = _setpoint(mind)
@@ -162,7 +162,7 @@ def _told(mind: Mind) -> tuple[float, float]:
     )
 
 
-def _stands(mind: Mind, feedback: Feedback | None) -> tuple[float, float]:
+def _stands(mind: ControllerState, feedback: Feedback | None) -> tuple[float, float]:
     """Return where the panel stands: axis angles on an azimuth-elevation mount, else its direction."""
     if feedback is None:
         return _NO_ORIENTATION
@@ -172,7 +172,7 @@ def _stands(mind: Mind, feedback: Feedback | None) -> tuple[float, float]:
     return wrap360(feedback.azimuth.position_deg), feedback.elevation.position_deg
 
 
-def _corrections(mind: Mind) -> tuple[float, float]:
+def _corrections(mind: ControllerState) -> tuple[float, float]:
     """Return what the light sensors add to the computed axis angles."""
     corrected = _correction(mind)
     if corrected is None:
@@ -180,7 +180,7 @@ def _corrections(mind: Mind) -> tuple[float, float]:
     return corrected.azimuth.degrees, corrected.elevation.degrees
 
 
-def _faced(mind: Mind, feedback: Feedback | None) -> Orientation | None:
+def _faced(mind: ControllerState, feedback: Feedback | None) -> Orientation | None:
     if feedback is None:
         return None
     return sky(
@@ -188,7 +188,7 @@ def _faced(mind: Mind, feedback: Feedback | None) -> Orientation | None:
     )
 
 
-def _uncorrected(mind: Mind, feedback: Feedback | None) -> Orientation | None:
+def _uncorrected(mind: ControllerState, feedback: Feedback | None) -> Orientation | None:
     """Return where the panel faces, the pointing error that the light sensors found taken out."""
     corrected = _correction(mind)
     if feedback is None or corrected is None:
@@ -201,11 +201,11 @@ def _uncorrected(mind: Mind, feedback: Feedback | None) -> Orientation | None:
     )
 
 
-def _correction(mind: Mind) -> Corrected | None:
+def _correction(mind: ControllerState) -> Corrected | None:
     return mind.corrected if mind.config.hybrid.enabled and isinstance(mind.activity, Tracking) else None
 
 
-def _hybrid(mind: Mind, feedback: Feedback | None) -> HybridState | None:
+def _hybrid(mind: ControllerState, feedback: Feedback | None) -> HybridState | None:
     corrected = _correction(mind)
     if corrected is None:
         return None
@@ -223,7 +223,7 @@ def _pair(orientation: Orientation | None) -> Pair | None:
     return None if orientation is None else Pair(orientation.azimuth_deg, orientation.elevation_deg)
 
 
-def _setpoint(mind: Mind) -> Pair | None:
+def _setpoint(mind: ControllerState) -> Pair | None:
     """Return what the drive was told, in the sky; an axis that was told nothing counts where it is."""
     azimuth_deg, elevation_deg = mind.setpoint.azimuth_deg, mind.setpoint.elevation_deg
     feedback = mind.feedback
@@ -241,12 +241,12 @@ def _off_deg(config: TrackerConfig, faced: Orientation | None, sun: SunPosition 
     return separation_deg(faced.azimuth_deg, faced.elevation_deg, sun.azimuth_deg, height_deg)
 
 
-def _following_error_deg(mind: Mind) -> float | None:
+def _following_error_deg(mind: ControllerState) -> float | None:
     """Return by how much the axis that follows worst differs from its reference; None while none moves."""
     return max((watched.error_deg for watched in mind.watches.values()), key=abs, default=None)
 
 
-def _in_position(mind: Mind, feedback: Feedback | None) -> bool:
+def _in_position(mind: ControllerState, feedback: Feedback | None) -> bool:
     if feedback is None:
         return False
     if isinstance(mind.activity, Tracking) and isinstance(mind.command.azimuth, Position):
@@ -260,7 +260,7 @@ def _in_position(mind: Mind, feedback: Feedback | None) -> bool:
     return arrived(mind.setpoint, feedback, mind.config.in_position_deg)
 
 
-def _axis_state(mind: Mind, axis: AxisFeedback) -> AxisState:
+def _axis_state(mind: ControllerState, axis: AxisFeedback) -> AxisState:
     """Return an axis as it is shown; a drive goes on saying that it is homed where that was undone."""
     return AxisState(
         moving=axis.moving,
@@ -272,7 +272,7 @@ def _axis_state(mind: Mind, axis: AxisFeedback) -> AxisState:
     )
 
 
-def _waiting(mind: Mind) -> tuple[Reason, ...]:
+def _waiting(mind: ControllerState) -> tuple[Reason, ...]:
     """Return why a tracker that should track does not move, a cause that two conditions share once."""
     if isinstance(mind.activity, Tracking):
         rests = hold_reason(mind) if mind.activity.phase is TrackPhase.RESTING else None
@@ -289,7 +289,7 @@ def _waiting(mind: Mind) -> tuple[Reason, ...]:
     return known + others or (_OPERATOR,)
 
 
-def _stowed(mind: Mind) -> tuple[Reason, ...]:
+def _stowed(mind: ControllerState) -> tuple[Reason, ...]:
     """Return why a stowed tracker that should track does not."""
     if not mind.memory.tracking_on:
         return ()
@@ -297,7 +297,7 @@ def _stowed(mind: Mind) -> tuple[Reason, ...]:
     return (reason(mind) if by_weather else _STOWED,)
 
 
-def _warning(mind: Mind) -> WarningState | None:
+def _warning(mind: ControllerState) -> WarningState | None:
     """Return the countdown to a motion, or to the end of one by hand."""
     if mind.hand_until is not None:
         return WarningState(max(0.0, (mind.hand_until - mind.now).total_seconds()), _HAND_ENDS)
@@ -306,7 +306,7 @@ def _warning(mind: Mind) -> WarningState | None:
     return WarningState(max(0.0, (mind.warning.until - mind.now).total_seconds()), mind.warning.reason)
 
 
-def _notices(mind: Mind) -> tuple[Reason, ...]:
+def _notices(mind: ControllerState) -> tuple[Reason, ...]:
     """Return what is worth knowing but forbids nothing."""
     limited = isinstance(mind.activity, Tracking) and mind.activity.phase is TrackPhase.LIMITED
     found = (
@@ -327,7 +327,7 @@ def _notices(mind: Mind) -> tuple[Reason, ...]:
     )
 
 
-def _zero_lost(mind: Mind) -> Reason:
+def _zero_lost(mind: ControllerState) -> Reason:
     return Reason(
         "home_lost",
         f"{mind.config.name} is no longer homed: {mind.memory.home_lost}",

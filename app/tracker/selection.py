@@ -5,21 +5,21 @@ from math import isfinite
 from app.angles import separation_deg, wrap180
 from app.sun.trigonometry import SCALAR
 from app.tracker.commands import SelectMode
-from app.tracker.conditions import Action, demand
 from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.controller_state import ControllerState
+from app.tracker.interlocks import Action, demand
 from app.tracker.memory import Confirmation, StepName
-from app.tracker.mind import Mind
 from app.tracker.mode import Mode
 from app.tracker.motion import Feedback
 from app.tracker.mount import aim, sky
-from app.tracker.mounts.absent import mode_absent
 from app.tracker.mounts.kinematics import FIRST_FOLLOWS, SECOND_FOLLOWS, angles, direction
+from app.tracker.mounts.missing_axes import mode_absent
+from app.tracker.positioning import at_rest
 from app.tracker.reason import Reason
-from app.tracker.runs import at_rest
 from app.tracker.snapshot import EventKind
 
 
-def select_mode(mind: Mind, command: SelectMode) -> None:
+def select_mode(mind: ControllerState, command: SelectMode) -> None:
     """Store mode and orientation, or raise `CommandRejected`; step 4 is done once the panel is there."""
     orientation = command.orientation or mind.memory.orientation
     impossible = mode_absent(mind.config, command.mode)
@@ -34,7 +34,7 @@ def select_mode(mind: Mind, command: SelectMode) -> None:
         confirm_mode(mind, mind.actor)
 
 
-def at_orientation(mind: Mind, feedback: Feedback) -> bool:
+def at_orientation(mind: ControllerState, feedback: Feedback) -> bool:
     """Return whether the panel stands where the selected mode holds it; dual-axis holds nothing."""
     mode = mind.memory.mode
     if mode is None:
@@ -47,19 +47,19 @@ def at_orientation(mind: Mind, feedback: Feedback) -> bool:
     return off_deg <= mind.config.in_position_deg
 
 
-def confirm_mode(mind: Mind, actor: str) -> None:
+def confirm_mode(mind: ControllerState, actor: str) -> None:
     """Remember that step 4 is done, for the present location."""
     confirm_step(mind, StepName.MODE, actor)
 
 
-def confirm_step(mind: Mind, step: StepName, actor: str) -> None:
+def confirm_step(mind: ControllerState, step: StepName, actor: str) -> None:
     """Remember that a step is done, for the present location."""
     revision = mind.seen.location_revision if mind.seen else 0
     saved = Confirmation(mind.site_time, actor, revision)
     mind.remember(confirmations={**mind.memory.confirmations, step: saved})
 
 
-def out_of_reach(mind: Mind, orientation: Orientation) -> Reason | None:
+def out_of_reach(mind: ControllerState, orientation: Orientation) -> Reason | None:
     """Return that an orientation lies beyond the soft limits by more than the deadband."""
     config = mind.config
     if isfinite(orientation.azimuth_deg) and isfinite(orientation.elevation_deg):
@@ -98,7 +98,7 @@ def _nearest(config: TrackerConfig, orientation: Orientation) -> Orientation:
     return Orientation(*direction(config.mount, *held, SCALAR))
 
 
-def _held_out_of_reach(mind: Mind, mode: Mode, orientation: Orientation) -> Reason | None:
+def _held_out_of_reach(mind: ControllerState, mode: Mode, orientation: Orientation) -> Reason | None:
     """Judge only the axes that the mode holds: the others are judged in the middle of their range."""
     config = mind.config
     if mode is Mode.FIXED:
@@ -113,7 +113,7 @@ def _held_out_of_reach(mind: Mind, mode: Mode, orientation: Orientation) -> Reas
     return out_of_reach(mind, Orientation(*direction(config.mount, first_deg, second_deg, SCALAR)))
 
 
-def _off_held_deg(mind: Mind, mode: Mode, feedback: Feedback) -> float:
+def _off_held_deg(mind: ControllerState, mode: Mode, feedback: Feedback) -> float:
     """Return how far the axes that the mode holds are off, the larger of both."""
     config, held = mind.config, mind.memory.orientation
     stands = sky(config, mind.memory.pointing, feedback.azimuth.position_deg, feedback.elevation.position_deg)
@@ -124,5 +124,5 @@ def _off_held_deg(mind: Mind, mode: Mode, feedback: Feedback) -> float:
     return max(first_deg, second_deg)
 
 
-def _near_deg(mind: Mind) -> float:
+def _near_deg(mind: ControllerState) -> float:
     return mind.feedback.azimuth.position_deg if mind.feedback else mind.config.azimuth.minimum_deg

@@ -1,11 +1,11 @@
 """What each protection goes by, as the pages and the API show it."""
 
-from app.tracker.mind import Mind
+from app.tracker.controller_state import ControllerState
 from app.tracker.protections.config import ProtectionConfig
 from app.tracker.protections.guarding import limits_of
-from app.tracker.shelter import BAD, doubt_reason, guarding
 from app.tracker.snapshot import SensorState
 from app.tracker.weather import NOTHING_SENSED, Quality, Quantity, Reading
+from app.tracker.weather_protection import BAD, doubt_reason, guarding
 
 UNITS = {Quantity.WIND: "m/s", Quantity.SNOW: "kg", Quantity.LIGHT: "W/m2"}
 OFF = {
@@ -25,7 +25,7 @@ PROTECTS = {
 }
 
 
-def sensors(mind: Mind) -> tuple[SensorState, ...]:
+def sensors(mind: ControllerState) -> tuple[SensorState, ...]:
     """Return one state a protection, in the order of their priority."""
     return tuple(_sensor(mind, quantity) for quantity in Quantity)
 
@@ -41,7 +41,7 @@ def limit_of(config: ProtectionConfig, quantity: Quantity) -> float:
             return config.light.threshold_wm2
 
 
-def _sensor(mind: Mind, quantity: Quantity) -> SensorState:
+def _sensor(mind: ControllerState, quantity: Quantity) -> SensorState:
     config = mind.config.protection
     limits = limits_of(config, quantity)
     sensed = mind.seen.weather if mind.seen else NOTHING_SENSED
@@ -62,7 +62,7 @@ def _sensor(mind: Mind, quantity: Quantity) -> SensorState:
     )
 
 
-def _text(mind: Mind, quantity: Quantity, reading: Reading, *, enabled: bool, known: bool) -> str:
+def _text(mind: ControllerState, quantity: Quantity, reading: Reading, *, enabled: bool, known: bool) -> str:
     """Return how far this protection protects, in one sentence."""
     if not enabled:
         return OFF[quantity]

@@ -32,11 +32,16 @@ LEAST_RIPPLE = 0.01
 class Scenario(StrEnum):
     """What the made-up weather does by itself."""
 
-    BY_HAND = "by_hand"
+    MANUAL = "manual"
     CALM = "calm"
     STORM = "storm"
     SNOWFALL = "snowfall"
     CLOUDS = "clouds"
+
+    @classmethod
+    def _missing_(cls, value: object) -> "Scenario | None":
+        """Return what is stored under a former name."""
+        return cls.MANUAL if value == "by_hand" else None
 
 
 class WeatherFault(StrEnum):
@@ -70,7 +75,7 @@ class SimulatedStation:
     a sentence for what is out of range.
     """
 
-    scenario: Scenario = Scenario.BY_HAND
+    scenario: Scenario = Scenario.MANUAL
     seed: int = 1
     wind_mps: float = 3.0
     gustiness_pct: float = 30.0
@@ -146,7 +151,7 @@ def weather_at(station: SimulatedStation, at: datetime, sun: SunPosition | None)
     The same for the same station, instant and sun. Wind direction is degrees clockwise from north.
     """
     elapsed_s = elapsed(station, at).total_seconds()
-    if station.scenario is Scenario.BY_HAND:
+    if station.scenario is Scenario.MANUAL:
         moment = _Moment(
             0, station.wind_mps, station.gustiness_pct, 1.0, 0.0, station.snow_kg, station.temperature_degc
         )
@@ -182,7 +187,7 @@ def clear_light_wm2(elevation_deg: float) -> float:
 def _light_wm2(
     station: SimulatedStation, moment: _Moment, elapsed_s: float, sun: SunPosition | None
 ) -> float | None:
-    by_hand = station.scenario is Scenario.BY_HAND and station.light_wm2 is not None
+    by_hand = station.scenario is Scenario.MANUAL and station.light_wm2 is not None
     if sun is None and not by_hand:
         return None
     clear_wm2 = station.light_wm2 if by_hand else clear_light_wm2(sun.apparent_elevation_deg) if sun else None

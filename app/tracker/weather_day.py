@@ -58,7 +58,7 @@ def day_of_scenario(scenario: Scenario, begins: str, seed: int, begin: datetime,
 
     `begin` is when the simulation begins; `begins` counts from the midnight before that, such as `12:00`.
     """
-    if scenario is Scenario.BY_HAND:
+    if scenario is Scenario.MANUAL:
         raise ValueError("Manual weather values are given in steps; choose one of the other scenarios.")
     midnight = midnight_before(begin, zone)
     since = instant_of(after_midnight(begins, "The start of the scenario"), midnight, zone)

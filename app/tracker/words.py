@@ -13,24 +13,24 @@ from app.tracker.activity import (
     Measuring,
     MoveKind,
     Moving,
+    SettingHome,
     Showing,
     Stopping,
     Stowed,
     Stowing,
     Tracking,
     TrackPhase,
-    Zeroing,
 )
 from app.tracker.approach import is_approaching
-from app.tracker.mind import Mind
+from app.tracker.controller_state import ControllerState
 from app.tracker.mount import sky
-from app.tracker.mounts.abilities import axis_words
+from app.tracker.mounts.capabilities import axis_words
 from app.tracker.programs.stepped import clock_text
 from app.tracker.progress import step_progress
-from app.tracker.pursuit import trigger_deg
-from app.tracker.shelter import hold_reason
+from app.tracker.setpoint_scheduler import trigger_deg
 from app.tracker.snapshot import ShowPhase
 from app.tracker.strategy import Continuous, Deadband, EncoderDeadband, Interval, Stepped
+from app.tracker.weather_protection import hold_reason
 
 _MOVING = {
     MoveKind.MOVE: "Moving to the requested orientation",
@@ -40,7 +40,7 @@ _MOVING = {
     MoveKind.SCALE: "Moving for the scale test: measure how far the panel turns",
 }
 _PLAIN: dict[type[Activity], str] = {
-    Zeroing: "Setting the home position",
+    SettingHome: "Setting the home position",
     Homing: "Searching for the home switches",
     Stopping: "Stopping",
 }
@@ -52,14 +52,14 @@ _SHOWING = {
 }
 
 
-def activity_text(mind: Mind) -> str:
+def activity_text(mind: ControllerState) -> str:
     """Return what the tracker is doing, without times of day (pages know the local time)."""
     if mind.lost:
         return "No communication with the drive; a stop command was sent"
     return _doing(mind, mind.activity)
 
 
-def _doing(mind: Mind, activity: Activity) -> str:
+def _doing(mind: ControllerState, activity: Activity) -> str:
     match activity:
         case Holding():
             return "Holding; tracking needs the operator" if mind.memory.tracking_on else "Holding"
@@ -67,7 +67,7 @@ def _doing(mind: Mind, activity: Activity) -> str:
             return f"Jogging {_jog(mind, activity)}, {activity.speed}"
         case Moving() | Measuring() | Stowing() | Stowed():
             return _by_order(activity)
-        case Zeroing() | Homing() | Stopping():
+        case SettingHome() | Homing() | Stopping():
             return _PLAIN[type(activity)]
         case Tracking():
             return _approaching(mind) if is_approaching(mind) else f"Tracking: {_tracking(mind, activity)}"
@@ -94,18 +94,18 @@ def _by_order(activity: Moving | Measuring | Stowing | Stowed) -> str:
     )
 
 
-def _jog(mind: Mind, jogging: Jogging) -> str:
+def _jog(mind: ControllerState, jogging: Jogging) -> str:
     words = axis_words(mind.config.mount, jogging.axis)
     if words is None:
         return jogging.axis
     return f"{words.title.lower()} {words.grows if jogging.direction > 0 else words.falls}"
 
 
-def _approaching(mind: Mind) -> str:
+def _approaching(mind: ControllerState) -> str:
     return "Moving to the sun" if mind.warning is None else "Moving to the sun in a few seconds"
 
 
-def _tracking(mind: Mind, tracking: Tracking) -> str:
+def _tracking(mind: ControllerState, tracking: Tracking) -> str:
     night = tracking.phase is TrackPhase.NIGHT
     if tracking.run is not None:
         if night:
@@ -117,12 +117,12 @@ def _tracking(mind: Mind, tracking: Tracking) -> str:
     return _standing(mind, tracking)
 
 
-def _resting(mind: Mind) -> str:
+def _resting(mind: ControllerState) -> str:
     why = hold_reason(mind)
     return "moves in a few seconds" if why is None else f"holding its position. {why.message}"
 
 
-def _standing(mind: Mind, tracking: Tracking) -> str:
+def _standing(mind: ControllerState, tracking: Tracking) -> str:
     match tracking.phase:
         case TrackPhase.NIGHT:
             return "holding until sunrise"
@@ -141,7 +141,7 @@ def _standing(mind: Mind, tracking: Tracking) -> str:
     assert_never(tracking.phase)
 
 
-def _next_move(mind: Mind) -> str:
+def _next_move(mind: ControllerState) -> str:
     """Return when the panel will have to follow, by the tracker's strategy."""
     match mind.config.strategy:
         case Continuous():
@@ -157,7 +157,7 @@ def _next_move(mind: Mind) -> str:
     assert_never(mind.config.strategy)
 
 
-def _next_run(mind: Mind) -> str:
+def _next_run(mind: ControllerState) -> str:
     """Return when the sun will have moved so far that the panel has to follow."""
     feedback, target = mind.feedback, mind.target
     if feedback is None or target is None:
@@ -169,7 +169,7 @@ def _next_run(mind: Mind) -> str:
     return f"next move in about {round(minutes)} min" if minutes >= 1.0 else "next move within a minute"
 
 
-def _held_step(mind: Mind) -> str:
+def _held_step(mind: ControllerState) -> str:
     held = step_progress(mind)
     if held is None:
         return "holding the position of its program"

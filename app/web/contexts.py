@@ -13,7 +13,7 @@ from app.tracker.motion import DriveCapabilities
 from app.tracker.reason import Reason
 from app.tracker.recording import RecordingInfo
 from app.tracker.snapshot import ActivityName, SiteSnapshot, Snapshot
-from app.web.standing import Standing, standing
+from app.web.control_role import Standing, standing
 from app.web.ui.drawings import Scene, SunDiagram
 from app.web.ui.glances import Glance
 from app.web.who import Who

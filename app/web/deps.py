@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import Depends
 from starlette.requests import HTTPConnection
 
-from app.access.keeper import Keeper
+from app.access.authenticator import Keeper
 from app.access.principal import Principal, nobody
 from app.clock import Clock
 from app.link.messages import Machine, MachineUnreachable, Order, SiteCommand

@@ -6,11 +6,11 @@ from typing import ClassVar
 
 from app.tracker.config import DriveConfig, TrackerConfig
 from app.tracker.drive_check import DriveCheck, DriveChoices
+from app.tracker.drive_test_states import ProofState
+from app.tracker.drive_tests import ProofMove
+from app.tracker.fault_scenarios import Lesson
 from app.tracker.memory import TrackerMemory
 from app.tracker.motion import DriveCapabilities
-from app.tracker.proof_states import ProofState
-from app.tracker.proofs import ProofMove
-from app.tracker.training import Lesson
 from app.web.contexts import Form, Frame
 
 Options = tuple[tuple[str, str], ...]

@@ -12,10 +12,10 @@ from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
-from app.access.keeper import Throttled, TooManyAtOnce, WrongPassword
+from app.access.authenticator import Throttled, TooManyAtOnce, WrongPassword
 from app.access.principal import NotAllowed, ProofNeeded, SignInNeeded
 from app.access.users import AccessRefused
-from app.alarms.book import UnknownAlarm
+from app.alarms.lifecycle import UnknownAlarm
 from app.extras import ExtraMissing
 from app.link.messages import MachineUnreachable, UnknownRecording, UnknownTracker
 from app.logs import get_logger
@@ -27,7 +27,7 @@ from app.sun.spa import AlgorithmMissing
 from app.tracker.commands import CommandRejected
 from app.tracker.control import ControlHeld, ControlLost
 from app.tracker.reason import Reason
-from app.web.edition import PageOutdated
+from app.web.build_id import PageOutdated
 from app.web.network import NetworkBusy, NotOnTrial
 from app.web.network_check import NetworkRefused
 from app.web.routes import methods_of
@@ -37,7 +37,7 @@ log = get_logger()
 
 UNREACHABLE_CODES = frozenset({"drive_lost", "drive_unreachable", "drive_silent", "not_stored"})
 OWN_MISTAKE = "Internal error; see the Heliopanel log for details. The tracker continues as before."
-FOR_PROGRAMS = ("/api/", "/health", "/ready", "/metrics", "/stream", "/diagnostics.zip", "/backup")
+FOR_PROGRAMS = ("/api/", "/health", "/ready", "/metrics", "/stream", "/diagnostics.zip")
 RETRY_LATER = {"Retry-After": "1"}
 SIGN_IN = {"WWW-Authenticate": "Bearer"}
 PROOF = {"Proof-Needed": "1"}

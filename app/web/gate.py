@@ -12,7 +12,7 @@ from starlette.requests import Request, cookie_parser
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.access.keeper import Credentials, Keeper
+from app.access.authenticator import Credentials, Keeper
 from app.access.principal import NotAllowed, Principal, ProofNeeded, SignInNeeded, Via, nobody
 from app.access.roles import Permission
 from app.access.sessions import is_proven

@@ -135,7 +135,7 @@ PAGES: tuple[tuple[str, Help], ...] = (
         ),
     ),
     (
-        TRACKER + "/proofs",
+        TRACKER + "/drive-tests",
         Help(
             "Drive tests",
             "The drive tests check the controller's settings at the tracker: direction, scale, "

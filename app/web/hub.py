@@ -15,10 +15,10 @@ from app.lasting import begun
 from app.link.messages import Machine, Update
 from app.logs import get_logger
 from app.tracker.snapshot import Event
+from app.web.hold_to_run import Dead
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.given_names import GIVEN
 from app.web.languages.live_texts import in_language
-from app.web.presses import Dead
 from app.web.states import States
 from app.web.viewers import Message, Viewer, Wanted
 

@@ -27,14 +27,14 @@ from app.tracker.axes import Axis, JogSpeed
 from app.tracker.commands import CommandRejected, EndJog, Jog, Stop
 from app.tracker.reason import Reason
 from app.web.api.numbers import no_boolean
+from app.web.build_id import PageOutdated, refuse_outdated
 from app.web.deps import Panel, order_of, principal
-from app.web.edition import PageOutdated, refuse_outdated
 from app.web.errors import machine_problem
+from app.web.hold_to_run import Heartbeat, LinkDelay, Presses, Verdict
 from app.web.hub import TooManyViewers
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import ENGLISH, code_of
 from app.web.languages.live_texts import in_language
-from app.web.presses import Heartbeat, LinkDelay, Presses, Verdict
 from app.web.viewers import Message, TooSlow, Viewer, Wanted, pump
 
 log = get_logger()

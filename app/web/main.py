@@ -17,14 +17,14 @@ from app.access.passwords import Hasher
 from app.access.roles import Permission
 from app.build import VERSION
 from app.clock import Clock, SystemClock
-from app.foreseen import Foreseen
+from app.errors import Foreseen
 from app.lasting import lasting
-from app.late import settle
 from app.link.client import LinkClient
 from app.link.messages import Machine
 from app.logs import get_logger, set_up_logs
 from app.own import own_folder
 from app.settings import Settings, fixed_by_environment
+from app.startup import settle
 from app.store.engine import open_reader
 from app.store.reader import DatabaseReader
 from app.store.store import Reader

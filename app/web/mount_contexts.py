@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from app.tracker.config import MountConfig
-from app.tracker.mounts.abilities import MountAbilities
+from app.tracker.mounts.capabilities import MountAbilities
 from app.tracker.mounts.reach import Reach
 from app.web.contexts import Form, Frame
 from app.web.ui.drawings import Curve, Tick

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 
-from app.access.keeper import Keeper
+from app.access.authenticator import Keeper
 from app.access.principal import Principal
 from app.clock import Clock, set_or_at
 from app.logs import get_logger

@@ -10,10 +10,10 @@ from datetime import datetime
 
 from pydantic import ValidationError
 
-from app.late import late
 from app.network import Network
 from app.own_names import own_names
 from app.settings import LOOPBACK, PREFIX, Settings
+from app.startup import late
 
 NAME = re.compile(r"(?!-)[A-Za-z0-9-]{1,63}(?<!-)(\.(?!-)[A-Za-z0-9-]{1,63}(?<!-))*\.?")
 MOST_NAMES = 20

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from io import BytesIO
 from typing import TYPE_CHECKING
 
-from app.late import late
+from app.startup import late
 
 if TYPE_CHECKING:
     from PIL.Image import Image

@@ -6,7 +6,7 @@ from datetime import datetime, timedelta
 from enum import Enum, auto
 from math import asin, cos, radians, sin, sqrt
 
-from app.late import late
+from app.startup import late
 from app.sun.position import Location
 from app.zones import zone_of
 

@@ -1,6 +1,6 @@
 """QR codes as SVG path data."""
 
-from app.late import late
+from app.startup import late
 
 QUIET = 4
 """Empty modules around a code, as ISO/IEC 18004 wants them."""

@@ -12,18 +12,18 @@ from app.sun.position import Location
 from app.tracker.commissioning import Step
 from app.tracker.config import TrackerConfig
 from app.tracker.drive_check import DriveCheck
+from app.tracker.drive_test_states import ProofState
+from app.tracker.drive_tests import Proofs
 from app.tracker.memory import HomeTrust, Pointing, Sighting, SiteState
 from app.tracker.mode import Mode
 from app.tracker.motion import DriveCapabilities
-from app.tracker.proof_states import ProofState
-from app.tracker.proofs import Proofs
 from app.tracker.snapshot import ClockState, EventKind, SiteSnapshot, Snapshot
 
 VERIFYING = (
     EventKind.LOCATION_SET,
     EventKind.CLOCK_SET,
-    EventKind.ZERO_SET,
-    EventKind.ZERO_FAILED,
+    EventKind.HOME_POSITION_SET,
+    EventKind.HOME_POSITION_NOT_SET,
     EventKind.HOMING_ENDED,
     EventKind.HOME_LOST,
     EventKind.MODE_SELECTED,
@@ -33,7 +33,7 @@ VERIFYING = (
     EventKind.SHOW_ENDED,
     EventKind.TRACKING_STARTED,
     EventKind.FAULT_RAISED,
-    EventKind.PROOF_ENDED,
+    EventKind.DRIVE_TEST_ENDED,
     EventKind.DRIVE_CHECKED,
 )
 MOST_EVENTS = 200

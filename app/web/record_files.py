@@ -9,7 +9,7 @@ from typing import Any
 from app.store.store import JournalEntry
 from app.tracker.commissioning import Step
 from app.tracker.drive_check import DriveCheck
-from app.tracker.proof_states import ProofState
+from app.tracker.drive_test_states import ProofState
 from app.web.record import MISDATED, CommissioningRecord, is_future
 from app.web.signatures import Signature, SignatureRole
 from app.zones import zone_of

@@ -4,7 +4,7 @@ from base64 import b64encode
 from html import escape
 
 from app.extras import need
-from app.late import late
+from app.startup import late
 from app.web.languages import said, spoken
 from app.web.record_files import Paper, PaperPhoto
 from app.web.record_words import heads, told

@@ -18,16 +18,15 @@ PROVEN = frozenset(
     POST /trackers/{tracker_id}/drive/restore
     POST /trackers/{tracker_id}/mount/kind
     POST /trackers/{tracker_id}/settings/undo
-    POST /backup
     POST /restore
-    POST /api/v1/restore
+    POST /api/v1/backups/{name}/restore
     POST /api/v1/users
     PATCH /api/v1/users/{name}
     DELETE /api/v1/users/{name}
     POST /api/v1/tokens
     POST /api/v1/trackers/{tracker_id}/drive/restore
     POST /api/v1/trackers/{tracker_id}/undo
-    POST /api/v1/backup
+    POST /api/v1/backups
     """.strip()
     .replace("    ", "")
     .split("\n")

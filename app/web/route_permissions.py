@@ -102,8 +102,8 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/machine/picture
         GET /trackers/{tracker_id}/mount
         POST /trackers/{tracker_id}/mount/kind
-        GET /trackers/{tracker_id}/proofs
-        GET /trackers/{tracker_id}/training
+        GET /trackers/{tracker_id}/drive-tests
+        GET /trackers/{tracker_id}/fault-injection
         GET /trackers/{tracker_id}/record
         GET /trackers/{tracker_id}/record/photos/{number}.jpg
         GET /trackers/{tracker_id}/label
@@ -125,14 +125,14 @@ _TABLE: dict[Permission, str] = {
         GET /api/v1/alarms/history
         GET /api/v1/journal
         GET /api/v1/journal/export
-        GET /api/v1/mechanisms
+        GET /api/v1/actuator-presets
         GET /api/v1/metrics
         GET /api/v1/mounts
         GET /api/v1/papers
         GET /api/v1/records
         GET /api/v1/records/{number}
         GET /api/v1/records/{number}/photos
-        GET /api/v1/records-comparison
+        GET /api/v1/records/comparison
         GET /api/v1/record-photos/{number}
         GET /api/v1/trackers/{tracker_id}/record/photos
         GET /api/v1/recordings
@@ -148,7 +148,7 @@ _TABLE: dict[Permission, str] = {
         GET /api/v1/site/weather/windows
         GET /api/v1/stream
         GET /api/v1/studies
-        GET /api/v1/studies-comparison
+        GET /api/v1/studies/comparison
         GET /api/v1/studies/{study_id}
         GET /api/v1/sun
         GET /api/v1/sun/accuracy
@@ -167,8 +167,8 @@ _TABLE: dict[Permission, str] = {
         GET /api/v1/trackers/{tracker_id}/mount
         GET /api/v1/trackers/{tracker_id}/program
         GET /api/v1/trackers/{tracker_id}/program/examples
-        GET /api/v1/trackers/{tracker_id}/proofs
-        GET /api/v1/trackers/{tracker_id}/training
+        GET /api/v1/trackers/{tracker_id}/drive-tests
+        GET /api/v1/trackers/{tracker_id}/fault-injection
         GET /api/v1/trackers/{tracker_id}/record
         GET /api/v1/trackers/{tracker_id}/shows/{show_id}
         GET /api/v1/trackers/{tracker_id}/sightings
@@ -261,19 +261,19 @@ _TABLE: dict[Permission, str] = {
         POST /trackers/{tracker_id}/home
         POST /trackers/{tracker_id}/machine
         POST /trackers/{tracker_id}/mount
-        POST /trackers/{tracker_id}/proofs/direction
-        POST /trackers/{tracker_id}/proofs/direction/answer
-        POST /trackers/{tracker_id}/proofs/limit
-        POST /trackers/{tracker_id}/proofs/link-loss
-        POST /trackers/{tracker_id}/proofs/scale
-        POST /trackers/{tracker_id}/proofs/scale/answer
-        POST /trackers/{tracker_id}/proofs/stop
+        POST /trackers/{tracker_id}/drive-tests/direction
+        POST /trackers/{tracker_id}/drive-tests/direction/answer
+        POST /trackers/{tracker_id}/drive-tests/limit
+        POST /trackers/{tracker_id}/drive-tests/link-loss
+        POST /trackers/{tracker_id}/drive-tests/scale
+        POST /trackers/{tracker_id}/drive-tests/scale/answer
+        POST /trackers/{tracker_id}/drive-tests/stop
         POST /trackers/{tracker_id}/record
         POST /trackers/{tracker_id}/record/photos
         POST /trackers/{tracker_id}/record/photos/{number}/remove
-        POST /trackers/{tracker_id}/training/clear
-        POST /trackers/{tracker_id}/training/play
-        POST /trackers/{tracker_id}/training/weather
+        POST /trackers/{tracker_id}/fault-injection/clear
+        POST /trackers/{tracker_id}/fault-injection/play
+        POST /trackers/{tracker_id}/fault-injection/weather
         POST /trackers/{tracker_id}/protections
         POST /trackers/{tracker_id}/settings
         POST /trackers/{tracker_id}/settings-lock
@@ -303,14 +303,14 @@ _TABLE: dict[Permission, str] = {
         PUT /api/v1/trackers/{tracker_id}/settings-lock
         POST /api/v1/trackers/{tracker_id}/undo
         PUT /api/v1/trackers/{tracker_id}/program.csv
-        POST /api/v1/trackers/{tracker_id}/proofs/direction
+        POST /api/v1/trackers/{tracker_id}/drive-tests/direction
         POST /api/v1/trackers/{tracker_id}/records
         POST /api/v1/trackers/{tracker_id}/record/photos
         DELETE /api/v1/trackers/{tracker_id}/record/photos/{number}
-        DELETE /api/v1/trackers/{tracker_id}/training
-        POST /api/v1/trackers/{tracker_id}/training
-        POST /api/v1/trackers/{tracker_id}/proofs/limits
-        POST /api/v1/trackers/{tracker_id}/proofs/scale
+        DELETE /api/v1/trackers/{tracker_id}/fault-injection
+        POST /api/v1/trackers/{tracker_id}/fault-injection
+        POST /api/v1/trackers/{tracker_id}/drive-tests/limits
+        POST /api/v1/trackers/{tracker_id}/drive-tests/scale
         POST /api/v1/trackers/{tracker_id}/sightings
         PUT /api/v1/trackers/{tracker_id}/sightings
     """,
@@ -323,8 +323,6 @@ _TABLE: dict[Permission, str] = {
         POST /network
         GET /api/v1/network
         PUT /api/v1/network
-        GET /backup
-        POST /backup
         GET /restore
         POST /restore
         GET /diagnostics.zip
@@ -337,10 +335,10 @@ _TABLE: dict[Permission, str] = {
         GET /tokens
         POST /tokens
         POST /tokens/{token_id}/revoke
-        GET /api/v1/backup
-        POST /api/v1/backup
         GET /api/v1/backups
-        POST /api/v1/restore
+        POST /api/v1/backups
+        GET /api/v1/backups/{name}
+        POST /api/v1/backups/{name}/restore
         GET /api/v1/diagnostics.zip
         GET /api/v1/users
         POST /api/v1/users

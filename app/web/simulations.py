@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from typing import TypeVar
 
-from app.late import late
+from app.startup import late
 from app.sun.horizon import FLAT, Horizon
 from app.sun.position import Location
 from app.tracker.config import Orientation, TrackerConfig

@@ -10,7 +10,7 @@ import orjson
 from app.clock import Clock
 from app.link.messages import Update
 from app.tracker.snapshot import SiteSnapshot, Snapshot
-from app.web.edition import edition
+from app.web.build_id import edition
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.live_texts import in_language
 from app.web.narrowed import narrowed_site

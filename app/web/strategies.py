@@ -3,14 +3,14 @@
 from dataclasses import dataclass, replace
 from datetime import datetime
 
-from app.late import late
 from app.link.messages import TrackerDetail
 from app.show.strategy_told import StrategyDay
+from app.startup import late
 from app.sun.position import Location
 from app.tracker.config import Orientation, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
-from app.tracker.mounts.abilities import default_mode
+from app.tracker.mounts.capabilities import default_mode
 from app.tracker.programs.stepped import StepProgram
 from app.tracker.strategy import Stepped, Strategy
 from app.web.errors import NotFound

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from datetime import datetime
 
-from app.late import late
 from app.settings import Settings
+from app.startup import late
 
 
 @dataclass(frozen=True, slots=True)

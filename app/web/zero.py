@@ -2,7 +2,7 @@
 
 from app.tracker.axes import Axis
 from app.tracker.config import MountConfig, MountKind
-from app.tracker.mounts.abilities import axis_title
+from app.tracker.mounts.capabilities import axis_title
 from app.tracker.snapshot import Snapshot
 
 JUMP_DEG = 2.0

@@ -3,7 +3,7 @@
 import { live } from "./live.js";
 import { clockTime } from "./format.js";
 import { mute, mutedUntil, soundIsOn, switchSound } from "./alarms.js";
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const soundKey = document.getElementById("sound-key");
 const muteKey = document.getElementById("mute-key");

@@ -2,7 +2,7 @@
 
 import { live } from "./live.js";
 import { clockTime } from "./format.js";
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const CALLS = ["unacknowledged", "returned"];
 const SOUND = "heliopanel-sound";

@@ -3,7 +3,7 @@
 /* global uPlot */
 import { colour } from "./colours.js";
 import { clockTime, dayIn, numberOf } from "./format.js";
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const tzDate = (zone) => (seconds) => uPlot.tzDate(new Date(seconds * 1000), zone);
 

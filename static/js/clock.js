@@ -2,7 +2,7 @@
 
 import { clockTime, compass, decimals, signedSeconds } from "./format.js";
 import { live } from "./live.js";
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const zone = Intl.DateTimeFormat().resolvedOptions().timeZone;
 const CLOSE_S = 5;

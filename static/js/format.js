@@ -1,6 +1,6 @@
 // How values read on a page; app/web/ui/formats.py says the same on the server.
 
-import { _, spoken } from "./said.js";
+import { _, spoken } from "./i18n.js";
 
 const UNKNOWN = "–";
 

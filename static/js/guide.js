@@ -1,6 +1,6 @@
 // Find on the page: sections without the words are put aside.
 
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const field = document.querySelector("[data-guide-filter]");
 const sections = [...document.querySelectorAll("[data-guide-section]")];

@@ -2,8 +2,8 @@
 
 import { live } from "./live.js";
 import { randomId } from "./orders.js";
-import { _ } from "./said.js";
-import { keepStill, letGo } from "./steady.js";
+import { _ } from "./i18n.js";
+import { keepStill, letGo } from "./scroll_anchor.js";
 
 const BEAT_MS = 50;
 const SLIDE_PX = 24;

@@ -1,8 +1,8 @@
 // One WebSocket a page: state in, jog and stop out. Nothing is kept for later: what cannot be sent now is dropped.
 
-import { loadAgain } from "./again.js";
+import { loadAgain } from "./reload.js";
 import { shown } from "./format.js";
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const OLD_MS = 1500;
 const DEAD_MS = 3000;

@@ -1,6 +1,6 @@
 // Step 1: the cross on the map, and the device's own position where the browser gives it.
 
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const cross = document.getElementById("map-cross");
 const preview = document.getElementById("preview");

@@ -1,7 +1,7 @@
 // Forms that send orders: a one-time id for each press, the instant of the press, and no sending while the link is down.
 
 import { live } from "./live.js";
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 export function randomId() {
   const bytes = crypto.getRandomValues(new Uint8Array(12));

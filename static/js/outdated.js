@@ -1,6 +1,6 @@
 // A page of another build, or from before the controller's last start: it says so and is loaded again in place.
 
-import { loadAgain } from "./again.js";
+import { loadAgain } from "./reload.js";
 import { live } from "./live.js";
 
 const SHOW_MS = 1500;

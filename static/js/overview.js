@@ -2,7 +2,7 @@
 
 import { headingOf } from "./alarms.js";
 import { live } from "./live.js";
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const WIDTH = 200;
 const QUIET = ["shelved", "suppressed", "out_of_service"];

@@ -30,7 +30,7 @@ let keeping = null;
 function keepTyped() {
   if (keeping || !(document.querySelector("main form[method=post]:not(.action)") || sessionStorage.length)) return;
   dataset.keeping = "loading";
-  keeping = import("./keep.js").then(({ start }) => start()).finally(() => delete dataset.keeping);
+  keeping = import("./drafts.js").then(({ start }) => start()).finally(() => delete dataset.keeping);
 }
 document.addEventListener("htmx:after:swap", keepTyped);
 keepTyped();

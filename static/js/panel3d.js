@@ -5,7 +5,7 @@ import { PITCH, cameraAt } from "./view3d/camera.js";
 import { DrawnPainter } from "./view3d/drawn.js";
 import { anglesOf, stageOf, viewOf } from "./view3d/stage.js";
 import { ThreadPainter } from "./view3d/thread.js";
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const TURN_DEG = 15;
 const TILT_DEG = 11;

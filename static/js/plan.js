@@ -1,6 +1,6 @@
 // The plan of a show: what was worked out for other values than those typed now cannot be started.
 
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const form = document.getElementById("plan-form");
 

@@ -5,7 +5,7 @@ import { angle, clockTime, dateIn, words } from "./format.js";
 import { PanelScene, turnKeys } from "./panel3d.js";
 import { separation, unbroken } from "./sphere.js";
 import { place } from "./sunpath.js";
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 // As many frames as curves of this screen's width can show, whose extremes are kept.
 const POINTS = Math.max(1500, Math.min(6000, Math.round(innerWidth * devicePixelRatio * 2)));

@@ -1,6 +1,6 @@
 // The password again, on the page that asks for it: nothing that was typed is left, and what was asked is asked again.
 
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const PAGE = "/prove";
 let asked = null;

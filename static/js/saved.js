@@ -1,6 +1,6 @@
 // Says what was saved: each field that was changed, as it was and as it is, below the word that it is saved.
 
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const MOST = 8;
 const AFTER_RELOAD = "saved-before-reload";

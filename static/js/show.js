@@ -7,7 +7,7 @@ import { PanelScene, turnKeys } from "./panel3d.js";
 import { targetOf } from "./scene.js";
 import { unbroken } from "./sphere.js";
 import { panelOf, place, sunOf } from "./sunpath.js";
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const { show: showId, end: showEnd } = document.querySelector("[data-show]").dataset;
 const scene = new PanelScene(document.getElementById("show-scene"));

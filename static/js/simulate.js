@@ -1,6 +1,6 @@
 // While a day is simulated the page says so, how long it has taken, and what comes then.
 
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const ONE_SECOND_MS = 1000;
 

@@ -2,7 +2,7 @@
 // the button, in red, until it is closed or a later STOP is confirmed.
 
 import { live } from "./live.js";
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const CONFIRM_MS = 1500;
 const NOT_SENT = _("STOP was not sent: no connection. Use the emergency stop at the cabinet.");

@@ -2,7 +2,7 @@
 
 import { chart } from "./chart.js";
 import { live } from "./live.js";
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const SPAN_S = 600;
 const EVERY_MS = 500;

@@ -3,7 +3,7 @@
 import { chart } from "./chart.js";
 import { live } from "./live.js";
 import { separation, unbroken } from "./sphere.js";
-import { _ } from "./said.js";
+import { _ } from "./i18n.js";
 
 const POINTS = 1500;
 const said = document.getElementById("trends-state");

@@ -4,8 +4,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from app.access.accounts import TokenWish
+from app.access.authenticator import Credentials, Keeper
 from app.access.events import AccessEvent
-from app.access.keeper import Credentials, Keeper
 from app.access.opening import open_keeper
 from app.access.principal import Principal, Via, this_computer
 from app.access.roles import Role

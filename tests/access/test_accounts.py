@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from app.access.accounts import TokenWish
+from app.access.authenticator import Credentials
 from app.access.events import AccessEvent
-from app.access.keeper import Credentials
 from app.access.principal import Principal, Via, nobody
 from app.access.roles import Permission, Role
 from app.access.tokens import Scope, digest_of, permissions_of, token_id_of

@@ -11,8 +11,8 @@ from click.testing import Result
 from typer.testing import CliRunner
 
 from app.access.accounts import TokenWish
+from app.access.authenticator import Credentials, Throttled, WrongPassword
 from app.access.events import chained
-from app.access.keeper import Credentials, Throttled, WrongPassword
 from app.access.opening import open_store
 from app.access.principal import Via
 from app.access.roles import Permission, Role

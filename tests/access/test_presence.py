@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from app.access.access_cache import RESTING
 from app.access.accounts import TokenWish
-from app.access.book import RESTING
-from app.access.keeper import (
+from app.access.authenticator import (
     LOOK_EVERY,
     MOST_WAITING,
     WRONG_AT_ONCE,

@@ -5,7 +5,7 @@ from typing import get_args
 
 import pytest
 
-from app.access.keeper import Throttled, new_key
+from app.access.authenticator import Throttled, new_key
 from app.access.passwords import Argon, Passwords, weakness
 from app.access.principal import (
     NotAllowed,
@@ -64,7 +64,7 @@ def test_mistakes_of_yesterday_are_forgotten() -> None:
 def test_a_session_rests_after_thirty_minutes_and_ends_after_twelve_hours() -> None:
     session = Session("d", "anna", "", "127.0.0.1", "", NOW, NOW, NOW)
     assert state(session, NOW + timedelta(minutes=29)) is SessionState.LIVE
-    assert state(session, NOW + timedelta(minutes=30)) is SessionState.RESTS
+    assert state(session, NOW + timedelta(minutes=30)) is SessionState.IDLE
     assert state(session, NOW + timedelta(hours=12)) is SessionState.ENDED
 
 

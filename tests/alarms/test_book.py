@@ -9,10 +9,10 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
-from app.alarms import book as pages
-from app.alarms.book import Book, Change, Happened, UnknownAlarm
+from app.alarms import lifecycle as pages
 from app.alarms.catalogue import CATALOGUE, ENTRIES, Entry, Group
 from app.alarms.conditions import Condition
+from app.alarms.lifecycle import Book, Change, Happened, UnknownAlarm
 from app.alarms.view import Ranking, Shown
 from app.tracker.alarm_words import MOST_SHOWN, AlarmState
 

@@ -5,10 +5,10 @@ from datetime import UTC, datetime, timedelta
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.alarms import book as pages
-from app.alarms.book import Book
+from app.alarms import lifecycle as pages
 from app.alarms.books import Books
 from app.alarms.conditions import Condition
+from app.alarms.lifecycle import Book
 from app.alarms.view import Ranking
 
 NOON = datetime(2027, 6, 21, 9, 0, tzinfo=UTC)

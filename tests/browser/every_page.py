@@ -66,13 +66,13 @@ PAGES = _calm(
         "label": f"{T1}/label",
         "settings": f"{T1}/settings",
         "drive": f"{T1}/drive",
-        "proofs": f"{T1}/proofs",
+        "proofs": f"{T1}/drive-tests",
         "protections": f"{T1}/protections",
         "machine": f"{T1}/machine",
         "mount": f"{T1}/mount",
         "strategy": f"{T1}/strategy",
         "service": f"{T1}/service",
-        "training": f"{T1}/training",
+        "training": f"{T1}/fault-injection",
         "sun-path": f"{T1}/sun-path",
         "trends": f"{T1}/trends",
         "show": SHOW,
@@ -145,7 +145,7 @@ STATES = {
     "trouble-settings": Leaf(f"{T3}/settings", Where.TROUBLED),
     "trouble-protections": Leaf(f"{T3}/protections", Where.TROUBLED),
     "trouble-service": Leaf(f"{T3}/service", Where.TROUBLED),
-    "trouble-training": Leaf(f"{T3}/training", Where.TROUBLED),
+    "trouble-training": Leaf(f"{T3}/fault-injection", Where.TROUBLED),
     "trouble-site": Leaf("/site", Where.TROUBLED),
     "trouble-alarms": Leaf("/alarms", Where.TROUBLED),
     "trouble-shelved": Leaf("/alarms?view=shelved", Where.TROUBLED),
@@ -158,7 +158,6 @@ EVERY_PAGE = PAGES | STATES
 LOOKED_AT = amount([*PAGES, *list(STATES)[::2]], list(EVERY_PAGE))
 """What test_every_page.py opens."""
 NO_PAGES = {
-    "/backup": "a file",
     "/certificate/ca.crt": "a file",
     "/diagnostics.zip": "a file",
     "/studies/{study_id}/curves.csv": "a file",

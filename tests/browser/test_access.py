@@ -13,7 +13,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from app.access.accounts import TokenWish
-from app.access.keeper import Keeper
+from app.access.authenticator import Keeper
 from app.access.roles import Role
 from app.clock import SystemClock
 from app.settings import Settings

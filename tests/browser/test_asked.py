@@ -91,7 +91,7 @@ def test_the_key_of_a_question_is_not_covered_when_it_appears(
     reached(page, page.locator('[data-sign][name="confirmed"]'))
     picture(page, f"asked-sign-{size}-{language}")
     page = asking(HOMING)
-    Mouse(page).hold(page.locator('[data-action="zero"][data-after-jog]'), CONFIRM_MS)
+    Mouse(page).hold(page.locator('[data-action="set_home"][data-after-jog]'), CONFIRM_MS)
     reached(page, page.locator('.ask-zero [name="confirmed"]'))
     picture(page, f"asked-home-{size}-{language}")
     page = asking(CLOCK)

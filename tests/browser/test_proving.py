@@ -110,7 +110,7 @@ def test_a_secret_that_an_ended_session_took_is_said_to_be_gone(door: Door) -> N
     sign_in(page, "root", PASSWORD)
     page.wait_for_url("**/users")
     expect(page.locator(".kept-note")).to_have_text(
-        re.compile("^Passwords and other secrets are not kept: type")
+        re.compile("^Passwords and other secrets are not kept: enter")
     )
     expect(page.locator("#f-password-ada")).to_be_visible()
     expect(page.locator("#f-password-ada")).to_have_value("")

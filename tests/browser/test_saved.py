@@ -84,7 +84,7 @@ def test_a_save_without_a_change_says_so(opened: Opened) -> None:
 def test_a_page_says_that_what_tells_it_is_still_coming(opened: Opened, plant: Plant) -> None:
     page = opened("/account")
     held: list[Route] = []
-    page.route("**/keep.js*", lambda route: held.append(route))
+    page.route("**/drafts.js*", lambda route: held.append(route))
     page.goto(f"{plant.url}{T1}/settings")
     page.wait_for_selector('html[data-link="live"][data-keeping="loading"]')
     held[0].continue_()

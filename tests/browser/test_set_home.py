@@ -5,18 +5,18 @@ from dataclasses import replace
 import pytest
 from playwright.sync_api import Page, expect
 
-from app.tracker.commands import SetZero, UndoZero
+from app.tracker.commands import SetHome, UndoHome
 from tests.browser.conftest import Opened, Plant
 from tests.browser.hands import CONFIRM_MS, LINK_MEASURED, Finger, Hands, Keyboard, Mouse
 
 HOMING = "/trackers/T1/commissioning/homing"
-SET = '[data-action="zero"][data-after-jog]'
+SET = '[data-action="set_home"][data-after-jog]'
 SURE = '[name="confirmed"]'
 HANDS: dict[str, type[Hands]] = {"mouse": Mouse, "finger": Finger, "keyboard": Keyboard}
 
 
 def zeros(plant: Plant) -> int:
-    return len([order for order in plant.machine.orders if isinstance(order.command, SetZero)])
+    return len([order for order in plant.machine.orders if isinstance(order.command, SetHome)])
 
 
 @pytest.mark.parametrize("hand", list(HANDS))
@@ -38,7 +38,7 @@ def test_it_is_held_asked_about_and_undone(hand: str, opened: Opened, plant: Pla
     undo = page.locator('form[action$="/zero/undo"] button')
     expect(undo).to_be_visible()
     page.wait_for_timeout(300)
-    assert plant.orders("undo_zero") == [], "letting go pressed the key that came under the finger"
+    assert plant.orders("undo_home") == [], "letting go pressed the key that came under the finger"
     Keyboard(page).press(undo)
     expect(page.locator('[data-live="measured.azimuth_deg"]').first).to_have_text("180.00°")
 
@@ -65,7 +65,7 @@ def test_message_and_lamps_follow_when_it_is_undone(
     expect(undo).to_be_visible()
     if elsewhere:
         now = plant.machine.clock.now()
-        plant.do(lambda: tracker.handle(UndoZero(), now, "somebody else"))
+        plant.do(lambda: tracker.handle(UndoHome(), now, "somebody else"))
         expect(page.locator("#zero-outcome")).to_have_text("")
     else:
         undo.click()

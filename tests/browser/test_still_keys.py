@@ -18,7 +18,7 @@ __all__ = ["service"]
 KEY = '[data-jog="azimuth"][data-direction="1"]'
 HELD = f"{KEY}[data-held]"
 HOMING = "/trackers/T1/commissioning/homing"
-PROOFS = "/trackers/T1/proofs"
+PROOFS = "/trackers/T1/drive-tests"
 NOTICE = "#step-reasons"
 WATCH = """(key) => {
   const [button, content] = [document.querySelector(key), document.getElementById("content")];
@@ -79,7 +79,7 @@ def test_reasons_that_come_above_the_keys_do_not_move_them(size: str, browser: B
     width, height = SIZES[size]
     page = browser.new_page(viewport={"width": width, "height": height})
     page.goto(service + PROOFS)
-    reasons = page.locator('[data-reasons="measure_stop"] li')
+    reasons = page.locator('[data-reasons="test_stop"] li')
 
     def moving(page: Page) -> None:
         until(page, lambda: page.locator(".strip-activity", has_text="Jogging").count())
@@ -98,7 +98,7 @@ SEEN_AT_ONCE = {
     NOTICE: 1,
     "[data-jog]": 4,
     ".speed .key": 2,
-    '[data-action="zero"]': 1,
+    '[data-action="set_home"]': 1,
     '[data-action="home"]': 1,
     ".jog-state": 1,
     "#link-quality": 1,

@@ -80,7 +80,7 @@ def troubles(at: datetime) -> dict[str, Any]:
         "notices": (AREA, LOCAL),
         "local": True,
         "not_stowed": REFUSED,
-        "protection": ProtectionState(Protection.TYPHOON, since, at + timedelta(minutes=9), REFUSED),
+        "protection": ProtectionState(Protection.WIND_STOW, since, at + timedelta(minutes=9), REFUSED),
         "stow": StowName.WIND,
         "warning": WarningState(4.0, AREA),
         "service": ServiceState(ServiceMode(PERSON, PERSON, since), 0.0),

@@ -101,7 +101,7 @@ def move_by_hand(hands: Hands, key: Locator, reading: Locator) -> None:
 
 def set_home(page: Page, hands: Hands) -> None:
     """Set the home position, and say that it is right where the drive reads another angle."""
-    key, sure = page.locator('[data-action="zero"]').first, page.locator('[name="confirmed"]')
+    key, sure = page.locator('[data-action="set_home"]').first, page.locator('[name="confirmed"]')
     expect(key).to_be_enabled()
     hands.hold(key, CONFIRM_MS)
     expect(sure.or_(page.locator(".outcome-ok")).first).to_be_visible()

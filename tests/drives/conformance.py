@@ -153,12 +153,12 @@ async def a_target_beyond_the_end_of_travel_ends_at_the_switch(rig: Rig) -> None
 @story
 @needing(Trait.ZERO)
 async def each_axis_can_be_zeroed_and_reads_zero_then(rig: Rig) -> None:
-    feedback = await rig.forward(0.1, asking(1, RequestKind.SET_ZERO_AZIMUTH))
+    feedback = await rig.forward(0.1, asking(1, RequestKind.SET_HOME_AZIMUTH))
     assert (feedback.request_done, feedback.request_failed) == (1, False)
     assert feedback.azimuth.position_deg == 0.0
     assert feedback.azimuth.homed
     assert not feedback.elevation.homed
-    feedback = await rig.forward(0.1, asking(2, RequestKind.SET_ZERO_ELEVATION))
+    feedback = await rig.forward(0.1, asking(2, RequestKind.SET_HOME_ELEVATION))
     assert feedback.request_done == 2
     assert positions(feedback) == (0.0, 0.0)
     assert feedback.elevation.homed
@@ -167,16 +167,16 @@ async def each_axis_can_be_zeroed_and_reads_zero_then(rig: Rig) -> None:
 @story
 @needing(Trait.ZERO)
 async def a_request_is_carried_out_once(rig: Rig) -> None:
-    await rig.forward(0.1, asking(1, RequestKind.SET_ZERO_AZIMUTH))
+    await rig.forward(0.1, asking(1, RequestKind.SET_HOME_AZIMUTH))
     moved = await rig.until_rest(at(10.0, 36.6))
-    again = await rig.forward(0.3, asking(1, RequestKind.SET_ZERO_AZIMUTH))
+    again = await rig.forward(0.3, asking(1, RequestKind.SET_HOME_AZIMUTH))
     assert again.azimuth.position_deg == pytest.approx(moved.azimuth.position_deg)
 
 
 @story
 @needing(Trait.ZERO)
 async def a_moving_axis_cannot_be_zeroed(rig: Rig) -> None:
-    request = DriveRequest(4, RequestKind.SET_ZERO_AZIMUTH)
+    request = DriveRequest(4, RequestKind.SET_HOME_AZIMUTH)
     await rig.forward(1.0, DriveCommand(azimuth=Velocity(3.0)))
     feedback = await rig.forward(0.1, DriveCommand(azimuth=Velocity(3.0), request=request))
     assert (feedback.request_done, feedback.request_failed) == (4, True)
@@ -252,8 +252,8 @@ async def a_faulty_drive_does_not_search_its_origin(rig: Rig) -> None:
 @story
 @needing(Trait.ZERO)
 async def a_drive_that_lost_power_has_a_new_life_and_no_zero(rig: Rig) -> None:
-    await rig.forward(0.1, asking(1, RequestKind.SET_ZERO_AZIMUTH))
-    await rig.forward(0.1, asking(2, RequestKind.SET_ZERO_ELEVATION))
+    await rig.forward(0.1, asking(1, RequestKind.SET_HOME_AZIMUTH))
+    await rig.forward(0.1, asking(2, RequestKind.SET_HOME_ELEVATION))
     await rig.forward(1.0, at(20.0, 10.0))
     rig.machine.inject(Fault(FaultKind.POWER_LOSS))
     feedback = await rig.drive.read()
@@ -335,7 +335,7 @@ async def a_silent_drive_is_said_to_be_silent_and_found_again(rig: Rig) -> None:
         await rig.drive.read()
     with pytest.raises(DriveSilent):
         await rig.drive.write(DriveCommand(azimuth=Velocity(1.0)))
-    rig.machine.clear_faults()
+    rig.machine.end_injected_faults()
     rig.idle(2.0)
     feedback = await rig.drive.read()
     assert positions(feedback) == pytest.approx(positions(before))
@@ -345,9 +345,9 @@ async def a_silent_drive_is_said_to_be_silent_and_found_again(rig: Rig) -> None:
 async def a_command_that_is_not_taken_is_an_error(rig: Rig) -> None:
     await rig.forward(0.2)
     rig.machine.inject(Fault(FaultKind.IGNORED_WRITES))
-    with pytest.raises(DriveError, match="did not (accept|carry)"):
+    with pytest.raises(DriveError, match=r"did not (accept|carry)"):
         await rig.forward(0.2, at(140.0, 60.0))
-    rig.machine.clear_faults()
+    rig.machine.end_injected_faults()
     assert (await rig.forward(1.0, at(140.0, 60.0))).azimuth.moving
 
 

@@ -6,8 +6,8 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from app.clock import VirtualClock
-from app.drives.corrected import CorrectedDrive, Stretch, corrected
 from app.drives.faults import Fault, FaultKind
+from app.drives.scaled import CorrectedDrive, Stretch, corrected
 from app.drives.simulated import SimulatedDrive
 from app.tracker.axes import AZIMUTH_DEFAULT, Axis
 from app.tracker.config import AxisDrive, DriveConfig, TrackerConfig

@@ -82,7 +82,7 @@ def test_a_reading_in_words() -> None:
 COMMANDS = {
     "halt": DriveCommand(),
     "both kinds": DriveCommand(Velocity(3.0), Position(-1.25, 4.0)),
-    "a request": DriveCommand(HALT, HALT, DriveRequest(77, RequestKind.SET_ZERO_ELEVATION)),
+    "a request": DriveCommand(HALT, HALT, DriveRequest(77, RequestKind.SET_HOME_ELEVATION)),
 }
 
 
@@ -360,7 +360,7 @@ async def test_a_device_without_the_registers_is_refused_with_their_name() -> No
 
 async def test_the_request_number_is_told_in_full_although_the_register_is_short() -> None:
     async with modbus_rig() as rig:
-        request = DriveRequest(70001, RequestKind.SET_ZERO_AZIMUTH)
+        request = DriveRequest(70001, RequestKind.SET_HOME_AZIMUTH)
         feedback = await rig.forward(0.1, DriveCommand(request=request))
         assert feedback.request_done == 70001
 
@@ -372,7 +372,7 @@ async def test_a_reconnection_reads_the_state_before_anything_is_written() -> No
         bench.machine.inject(Fault(FaultKind.CORRUPT_REPLIES))
         with pytest.raises(DriveError):
             await bench.drive.read()
-        bench.machine.clear_faults()
+        bench.machine.end_injected_faults()
         reads = bench.wire.reads
         await bench.drive.write(DriveCommand())
         assert bench.wire.reads == reads + 1
@@ -385,7 +385,7 @@ async def test_a_late_reply_counts_as_none() -> None:
         bench.machine.inject(Fault(FaultKind.LATE_REPLIES))
         with pytest.raises(DriveError, match=r"did not answer within 0.3 s"):
             await bench.drive.read()
-        bench.machine.clear_faults()
+        bench.machine.end_injected_faults()
         bench.later(500)
         assert (await bench.drive.read()).azimuth.position_deg == pytest.approx(102.4)
 
@@ -419,7 +419,7 @@ async def test_a_drive_that_restarted_is_not_given_the_command_from_before() -> 
         bench.machine.inject(Fault(FaultKind.CORRUPT_REPLIES))
         with pytest.raises(DriveError):
             await bench.drive.read()
-        bench.machine.clear_faults()
+        bench.machine.end_injected_faults()
         bench.machine.inject(Fault(FaultKind.POWER_LOSS))
         with pytest.raises(DriveError, match="restarted"):
             await bench.drive.write(DriveCommand(Position(110.0, 6.0)))

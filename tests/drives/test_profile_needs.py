@@ -27,7 +27,7 @@ LACKING = {
         "needs a register named target_position",
     ),
     "a bit": ("kinco-cia402", "homed = 15", "found = 15", r"needs homed in bits\.statusword"),
-    "a word": ("kinco-cia402", "set_zero = 35", "zero = 35", r"needs set_zero in enums\.homing_method"),
+    "a word": ("kinco-cia402", "set_home = 35", "zero = 35", r"needs set_home in enums\.homing_method"),
     "a known unit": (
         "kinco-cia402",
         'unit = "steps/s",',
@@ -35,7 +35,7 @@ LACKING = {
         "needs steps/s or rpm as the unit",
     ),
     "a known ramp": ("leadshine-rs", '"ms/1000rpm"', '"s"', "needs steps/s2 or ms/1000rpm as the unit"),
-    "a sequence": ("oriental-az", "set_zero = [", "zero = [", "needs a sequence named set_zero"),
+    "a sequence": ("oriental-az", "set_home = [", "zero = [", "needs a sequence named set_home"),
     "a model's point": ("sunspec-601", "scale = {", "power = {", "needs a register named scale"),
 }
 

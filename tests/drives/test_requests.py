@@ -152,7 +152,7 @@ async def test_what_is_to_be_confirmed_is_read_once_and_named_if_it_was_not_take
 async def test_a_sequence_is_written_step_by_step_though_nothing_changed() -> None:
     unit, link = unit_of(DIRECT)
     for _ in range(2):
-        await unit.play("set_zero")
+        await unit.play("set_home")
     address = DIRECT.registers["preset"].address
     assert [(at, words[-1]) for at, words, *_ in link.writes] == [(address, 1), (address, 0)] * 2
     unit, link = unit_of(PR)

@@ -184,7 +184,7 @@ async def test_a_stall_that_ends_lets_the_axis_go_on() -> None:
     await rig.forward(1.0, MOVE)
     drive.inject(Fault(FaultKind.STALL))
     stood = await rig.forward(1.0, MOVE)
-    drive.clear_faults()
+    drive.end_injected_faults()
     assert (await rig.until_rest(MOVE)).azimuth.position_deg == pytest.approx(120.0, abs=0.011)
     assert stood.azimuth.position_deg < 119.0
 

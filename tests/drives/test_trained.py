@@ -10,6 +10,7 @@ from app.clock import SystemClock, VirtualClock
 from app.drives.bus import Priority
 from app.drives.drive import DriveError, DriveRefused, DriveSilent
 from app.drives.factory import DriveFactory
+from app.drives.fault_injection import TRAINED_PROFILE, trainer_of
 from app.drives.faults import Fault, FaultKind
 from app.drives.modbus_server import Refusal
 from app.drives.plc import PlcDrive
@@ -17,7 +18,6 @@ from app.drives.profile import load_profile
 from app.drives.sim_plc import SimulatedPlc
 from app.drives.sim_server import serve
 from app.drives.simulated import SimulatedDrive
-from app.drives.trained import TRAINED_PROFILE, trainer_of
 from app.tracker.axes import Axis
 from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
 from tests.site.plant import SUMMER_NOON

@@ -11,10 +11,10 @@ import pytest
 from app.clock import VirtualClock
 from app.drives.factory import DriveFactory
 from app.drives.faults import Fault
+from app.drives.linear_actuator import TransmittedDrive, counted_mm, in_millimetres
 from app.drives.position_memory import AxisMemory, PositionFile, PositionMemory
 from app.drives.simulated import SimulatedDrive
 from app.drives.simulated_axis import Mechanics
-from app.drives.transmitted import TransmittedDrive, counted_mm, in_millimetres
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import MountConfig, MountKind, Orientation
 from app.tracker.mechanisms import alexandru_diurnal, alexandru_elevation
@@ -56,8 +56,8 @@ class LiftedMachine:
             fault = replace(fault, amount=fault.amount * LIFT.mm_per_deg(BEGIN_ELEVATION_DEG))
         self._inner.inject(fault)
 
-    def clear_faults(self) -> None:
-        self._inner.clear_faults()
+    def end_injected_faults(self) -> None:
+        self._inner.end_injected_faults()
 
     def observe(self) -> Feedback:
         return self._inner.observe()

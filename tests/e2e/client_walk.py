@@ -58,7 +58,7 @@ def is_allowed(action: str) -> Callable[[Any], bool]:
 
 
 def command(body: Any, **more: Any) -> Any:
-    return call(m.Snapshot, "command", T1, body=body, **more)
+    return call(m.Snapshot, "send_command", T1, body=body, **more)
 
 
 def import_everything() -> None:
@@ -89,8 +89,8 @@ def place_and_time() -> None:
 
 
 def home_and_track() -> None:
-    until(is_allowed("zero"))
-    command(m.ZeroCommand(type_="zero", confirmed=True))
+    until(is_allowed("set_home"))
+    command(m.SetHomeCommand(type_="set_home", confirmed=True))
     until(lambda seen: seen.home_trusted)
     command(m.ModeCommand(type_="set_mode", mode=m.Mode("dual")))
     steps = call(list, "read_steps", T1)
@@ -102,8 +102,8 @@ def home_and_track() -> None:
     }
     command(m.TrackCommand(type_="track"))
     until(lambda seen: seen.tracking_on and seen.measured is not None)
-    call(m.Snapshot, "stop", T1)
-    until(lambda seen: not seen.tracking_on and is_allowed("zero")(seen))
+    call(m.Snapshot, "stop_tracker", T1)
+    until(lambda seen: not seen.tracking_on and is_allowed("set_home")(seen))
 
 
 def reuse_a_key() -> None:
@@ -111,19 +111,19 @@ def reuse_a_key() -> None:
     home, dual = m.ParkCommand(type_="park"), m.ModeCommand(type_="set_mode", mode=m.Mode("dual"))
     command(dual, idempotency_key=key)
     command(dual, idempotency_key=key)
-    status, problem = ask("command", T1, body=home, idempotency_key=key)
+    status, problem = ask("send_command", T1, body=home, idempotency_key=key)
     assert status == 409, problem
     assert isinstance(problem, m.ProblemDetails)
     assert [one.code for one in problem.reasons] == ["key_reused"]
 
 
 def settings_and_studies() -> None:
-    call(m.StepProgram, "write_table", T1, body=File(payload=io.BytesIO(TABLE)))
+    call(m.StepProgram, "write_program_table", T1, body=File(payload=io.BytesIO(TABLE)))
     call(m.CommissioningRecord, "read_commissioning_record", T1)
     assert isinstance(call(m.TrackerConfig, "undo_settings", T1), m.TrackerConfig)
     study = m.NewStudy(date=datetime.date(2026, 6, 21), span=m.Span("day"))
-    begun = call(m.StudyState, "start", body=study)
-    assert call(m.Study, "study", begun.study_id).request is not UNSET
+    begun = call(m.StudyState, "start_study", body=study)
+    assert call(m.Study, "read_study", begun.study_id).request is not UNSET
     restored = importlib.import_module(GENERATED["restore_drive"])
     assert "TrackerConfig" in str(restored.sync.__annotations__["return"])
     added = call(m.TrackerConfig, "add_tracker", body=m.NewTracker(tracker_id="T9", name="Ninth"))

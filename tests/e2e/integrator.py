@@ -116,8 +116,8 @@ class Integrator:
 
     def zero(self) -> None:
         """Walk step 3 where the panel stands: here is zero."""
-        self.until_allowed("zero")
-        self.command("zero", confirmed=True)
+        self.until_allowed("set_home")
+        self.command("set_home", confirmed=True)
         self.until(lambda seen: seen["home_trusted"], "the zero is trusted")
 
     def commission(self, port: int, **change: Any) -> None:

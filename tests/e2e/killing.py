@@ -66,7 +66,7 @@ class Killing:
         assert "interrupted" in shows[0]["outcome"]
         assert shows[0]["frame_count"] == self._frames(shows[0]["recording_id"])["elapsed_s"].size
         assert self.integrator.snapshot()["activity"] == "holding"
-        assert shows[0]["recording_id"] in self.integrator.journal("machine_started")[0]["data"]["cut_off"]
+        assert shows[0]["recording_id"] in self.integrator.journal("controller_started")[0]["data"]["cut_off"]
         return rested_s
 
     def begin_show(self, seconds: float) -> None:
@@ -133,8 +133,8 @@ class Killing:
         told = [event["message"] for event in reversed(self.integrator.journal("tracker_changed"))]
         assert told[-len(self.names) :] == [f"The site is now called {name}." for name in self.names]
         starts = len(self.names) + 1
-        eventually(lambda: len(self.integrator.journal("machine_started")) >= starts, "the start is told")
-        started = self.integrator.journal("machine_started")
+        eventually(lambda: len(self.integrator.journal("controller_started")) >= starts, "the start is told")
+        started = self.integrator.journal("controller_started")
         assert len(started) == starts, self.product.deaths()
         assert started[0]["data"]["clean"] is False
         assert "unexpectedly" in started[0]["message"]

@@ -30,7 +30,7 @@ def commission(api: httpx.Client) -> None:
     """Walk the five steps over the API, for a tracker whose zero is where it stands."""
     api.put("/site/location", json=SITE).raise_for_status()
     api.put("/site/clock", json={"source": "system"}).raise_for_status()
-    api.post("/trackers/T1/commands", json={"type": "zero", "confirmed": True}).raise_for_status()
+    api.post("/trackers/T1/commands", json={"type": "set_home", "confirmed": True}).raise_for_status()
     eventually(lambda: api.get("/trackers/T1/snapshot").json()["home_trusted"], "the zero is trusted")
     api.post("/trackers/T1/commands", json={"type": "set_mode", "mode": "dual"}).raise_for_status()
 

@@ -42,7 +42,7 @@ def commission_by_hand(integrator: Integrator, port: int) -> None:
     assert set(codes_of(integrator, "track")) == {"home_not_trusted", "mode_not_selected"}
     before = integrator.snapshot()["measured"]["azimuth_deg"]
     integrator.jog(JOGGED_S)
-    integrator.until_allowed("zero")
+    integrator.until_allowed("set_home")
     assert integrator.snapshot()["measured"]["azimuth_deg"] > before + 0.5
     integrator.zero()
     integrator.command("set_mode", mode="dual")

@@ -84,7 +84,7 @@ def test_a_frozen_drive_stops_by_its_watchdog_and_keeps_its_zero(
     assert seen["home_trusted"] is True
     assert seen["measured"]["azimuth_deg"] - before < 6.0 * (WATCHDOG_S + LATEST_FEED_S + RAMP_S + 0.2)
     assert_still(integrator, seen)
-    page = integrator.http.get("/trackers/T1/proofs").text
+    page = integrator.http.get("/trackers/T1/drive-tests").text
     assert "answers again" in page
     integrator.command("move", azimuth_deg=20.0, elevation_deg=10.0)
     assert "watchdog" not in told(integrator.snapshot())

@@ -77,7 +77,7 @@ PROMISES = {
 def planner(product: Product) -> Iterator[Integrator]:
     calling = Integrator(product.url)
     calling.call("PATCH", "", json={"refraction": False})
-    calling.until_allowed("zero")
+    calling.until_allowed("set_home")
     calling.zero()
     yield calling
     calling.close()

@@ -29,7 +29,7 @@ def tracker(product: Product) -> Iterator[Integrator]:
     calling.http.timeout = httpx.Timeout(90.0)
     calling.call("PATCH", "", json={"protection": {"warning_s": 0.0}})
     calling.place_and_time()
-    calling.until_allowed("zero")
+    calling.until_allowed("set_home")
     calling.zero()
     calling.command("set_mode", mode="dual")
     yield calling

@@ -11,8 +11,8 @@ from app.link.metrics import GatewayMetrics
 from app.settings import Settings
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
-from app.store.offloaded import WriterThread
 from app.store.store import Writer
+from app.store.writer_thread import WriterThread
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import TrackerMemory, TrackerState
 from tests.site.plant import Plant, make_plant

@@ -26,8 +26,8 @@ from app.tracker.memory import (
     TrackerState,
 )
 from app.tracker.mode import Mode
-from app.tracker.shelter import TWILIGHT_DEG
 from app.tracker.snapshot import ActivityName, EventKind, SiteSnapshot
+from app.tracker.weather_protection import TWILIGHT_DEG
 from tests.machine.service import Service
 
 SHELTERED = frozenset({ActivityName.STOWING, ActivityName.STOWED})

@@ -26,7 +26,7 @@ from app.tracker.commands import (
     Move,
     RunShow,
     SelectMode,
-    SetZero,
+    SetHome,
     Stop,
     Track,
 )
@@ -81,8 +81,8 @@ class Killing:
         await self.machine.ask(ConfigureTracker(config_for(port)))
         await self.machine.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
         await self.machine.ask(SetClock("manual", MORNING))
-        await self._until(lambda seen: not seen.actions["zero"], "the zero can be set")
-        await self.machine.ask(SetZero())
+        await self._until(lambda seen: not seen.actions["set_home"], "the zero can be set")
+        await self.machine.ask(SetHome())
         await self._until(lambda seen: seen.home_trusted, "the zero is trusted")
         await self.machine.ask(SelectMode(Mode.DUAL))
 
@@ -245,7 +245,7 @@ class Killing:
 
     def _starts(self) -> list[Event]:
         """Return the newest starts that the journal tells of, newest first."""
-        wanted = JournalFilter(limit=LOOKED_AT, kinds=(EventKind.MACHINE_STARTED,))
+        wanted = JournalFilter(limit=LOOKED_AT, kinds=(EventKind.CONTROLLER_STARTED,))
         with closing(open_reader(self._url)) as reader:
             return [entry.event for entry in reader.journal(wanted)]
 

@@ -16,7 +16,7 @@ from app.drives.factory import DriveFactory
 from app.link.client import LinkClient
 from app.link.messages import ConfigureTracker, MachineUnreachable, Order, SetClock, SetLocation, SiteCommand
 from app.sun.position import Location
-from app.tracker.commands import Command, SetZero
+from app.tracker.commands import Command, SetHome
 from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
 from app.tracker.motion import Feedback
 from app.tracker.snapshot import ActivityName, SiteSnapshot, Snapshot
@@ -171,8 +171,8 @@ class Service:
         await self.ask(ConfigureTracker(config_for(drive.port)))
         await self.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
         await self.ask(SetClock("system"))
-        await self.until(lambda seen: not seen.actions["zero"])
-        await self.ask(SetZero())
+        await self.until(lambda seen: not seen.actions["set_home"])
+        await self.ask(SetHome())
         await self.until(lambda seen: seen.home_trusted and seen.activity is ActivityName.HOLDING)
 
     async def stop(self) -> int:

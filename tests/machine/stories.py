@@ -86,7 +86,7 @@ async def _until_restarted(service: Service, boot_id: str) -> None:
 def _starts(service: Service) -> list[Event]:
     """Return the starts that the journal tells of, newest first; one is told shortly after it happened."""
     reader = open_reader(f"sqlite:///{service.data_dir / 'heliopanel.db'}")
-    found = reader.journal(JournalFilter(limit=1000, kinds=(EventKind.MACHINE_STARTED,)))
+    found = reader.journal(JournalFilter(limit=1000, kinds=(EventKind.CONTROLLER_STARTED,)))
     reader.close()
     return [entry.event for entry in found]
 

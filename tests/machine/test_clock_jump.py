@@ -11,7 +11,7 @@ from app.build import BUILT_AT
 from app.link.messages import SetClock, SetLocation
 from app.store.engine import open_reader
 from app.store.store import JournalFilter
-from app.tracker.commands import SelectMode, SetZero, Track
+from app.tracker.commands import SelectMode, SetHome, Track
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName, EventKind
 from tests.fault_result import FaultResult
@@ -45,7 +45,7 @@ async def service(tmp_path: Path, shift: Path) -> AsyncIterator[Service]:
     try:
         await started.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
         await started.ask(SetClock("system"))
-        await started.ask(SetZero())
+        await started.ask(SetHome())
         await started.until(lambda seen: seen.home_trusted)
         await started.ask(SelectMode(Mode.DUAL))
         await started.ask(Track())

@@ -15,7 +15,7 @@ from app.link.messages import RenameSite, SetClock, SetLocation
 from app.store.engine import open_reader
 from app.store.store import JournalFilter
 from app.tracker.alarm_words import AlarmState
-from app.tracker.commands import CommandRejected, SelectMode, SetZero, Stop, Track
+from app.tracker.commands import CommandRejected, SelectMode, SetHome, Stop, Track
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName
 from tests.fault_result import REAL, FaultResult
@@ -55,8 +55,8 @@ async def service(disk: Path) -> AsyncIterator[Service]:
 async def begin_to_track(service: Service) -> None:
     """Call the place where the axes stand zero, as often as the drive has lost it, and track."""
     await service.ask_until_taken(Stop())
-    await service.until(lambda seen: not seen.actions["zero"])
-    await service.ask(SetZero())
+    await service.until(lambda seen: not seen.actions["set_home"])
+    await service.ask(SetHome())
     await service.until(lambda seen: seen.home_trusted and seen.activity is ActivityName.HOLDING)
     await service.ask(SelectMode(Mode.DUAL))
     await service.ask(Track())

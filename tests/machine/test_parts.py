@@ -18,7 +18,7 @@ from typing import Literal
 import pytest
 
 from app.clock import SystemClock, VirtualClock
-from app.foreseen import WRONG
+from app.errors import WRONG
 from app.logs import get_logger, set_up_logs
 from app.machine.lock import LOCK_NAME, AlreadyRunning, holder, only_instance
 from app.machine.main import audit_version

@@ -63,7 +63,7 @@ async def service(running: Service) -> AsyncIterator[Service]:
 
 @pytest.mark.fault(44)
 async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service, fault: FaultResult) -> None:
-    await service.until(lambda seen: not seen.actions["zero"])
+    await service.until(lambda seen: not seen.actions["set_home"])
     await service.ask(SelectMode(Mode.DUAL))
     await service.ask(Track())
     before = await service.link.metrics()
@@ -224,7 +224,7 @@ async def test_serve_ends_both_processes_and_leaves_no_mark(tmp_path: Path) -> N
     assert not (service.data_dir / MARKER_NAME).exists()
     assert not still_there(processes)
     journal = open_reader(f"sqlite:///{service.data_dir / 'heliopanel.db'}")
-    assert journal.journal(JournalFilter(limit=1))[0].event.kind is EventKind.MACHINE_STOPPED
+    assert journal.journal(JournalFilter(limit=1))[0].event.kind is EventKind.CONTROLLER_STOPPED
     journal.close()
 
 

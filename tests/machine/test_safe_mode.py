@@ -9,7 +9,7 @@ import pytest
 
 from app.link.messages import RenameSite, SetClock, SetLocation
 from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, Jog, Park, SelectMode, SetZero, Stop, Track
+from app.tracker.commands import CommandRejected, Jog, Park, SelectMode, SetHome, Stop, Track
 from app.tracker.mode import Mode
 from app.tracker.snapshot import ActivityName
 from tests.fault_result import FaultResult
@@ -37,15 +37,15 @@ async def kept(data_dir: Path) -> str:
         await service.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
         await service.ask(SetClock("system"))
         await service.ask(RenameSite("Kept"))
-        await service.ask(SetZero())
+        await service.ask(SetHome())
         await service.until(lambda seen: seen.home_trusted)
         await service.ask(SelectMode(Mode.DUAL))
         await service.ask(Track())
         await until_served(service.port)
         async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{service.port}/api/v1") as client:
-            written = await client.post("/backup")
+            written = await client.post("/backups")
             assert written.status_code == 201, written.text
-            unneeded = await client.post("/restore", json={"file": written.json()["file"]})
+            unneeded = await client.post(f"/backups/{written.json()['file']}/restore")
             assert unneeded.status_code == 409
         return str(written.json()["file"])
     finally:
@@ -63,7 +63,7 @@ async def test_a_damaged_database_moves_nothing_and_offers_the_backup(
     try:
         await eventually(lambda: "store_damaged" in alarms(service))
         await service.until(lambda seen: seen.activity is ActivityName.HOLDING)
-        for command in (Jog("hand", Axis.AZIMUTH, 1), Park(), Track(), SetZero()):
+        for command in (Jog("hand", Axis.AZIMUTH, 1), Park(), Track(), SetHome()):
             with pytest.raises(CommandRejected) as refused:
                 await service.ask(command)
             assert [reason.code for reason in refused.value.reasons] == ["safe_mode"]
@@ -77,8 +77,8 @@ async def test_a_damaged_database_moves_nothing_and_offers_the_backup(
             assert page.status_code == 200
             assert "The database is damaged" in page.text
             assert backup in page.text
-            assert (await client.post("/api/v1/restore", json={"file": "../x"})).status_code == 404
-            begun = await client.post("/api/v1/restore", json={"file": backup})
+            assert (await client.post("/api/v1/backups/x/restore")).status_code == 404
+            begun = await client.post(f"/api/v1/backups/{backup}/restore")
             assert begun.status_code == 202, begun.text
             assert begun.json()["site_name"] == "Kept"
         await eventually(lambda: restored(service))

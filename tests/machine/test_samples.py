@@ -13,7 +13,7 @@ import pytest
 import pytest_asyncio
 
 from app.link.messages import SetClock, SetLocation
-from app.site.beginning import CUT_OFF
+from app.site.startup import CUT_OFF
 from app.store.engine import open_reader
 from app.store.migrations import upgrade
 from app.tracker.recording import RecordingInfo, RecordingKind

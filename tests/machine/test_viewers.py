@@ -11,7 +11,7 @@ from websockets.asyncio.client import connect
 
 from app.link.messages import SetClock, SetLocation
 from app.link.metrics import LATENESS_BOUNDS_MS
-from app.tracker.commands import SelectMode, SetZero, Track
+from app.tracker.commands import SelectMode, SetHome, Track
 from app.tracker.mode import Mode
 from tests.machine.service import SAMSUN, Service
 from tests.machine.stories import until_served
@@ -49,7 +49,7 @@ async def test_ticks_come_on_time_while_100_pages_are_open(tmp_path: Path) -> No
     try:
         await service.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
         await service.ask(SetClock("system"))
-        await service.ask(SetZero())
+        await service.ask(SetHome())
         await service.until(lambda seen: seen.home_trusted)
         await service.ask(SelectMode(Mode.DUAL))
         await service.ask(Track())

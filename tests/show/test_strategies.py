@@ -17,7 +17,7 @@ from app.tracker.commands import Track
 from app.tracker.config import MountConfig, MountKind, Orientation, Rows, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
-from app.tracker.mounts.abilities import default_mode
+from app.tracker.mounts.capabilities import default_mode
 from app.tracker.mounts.kinematics import followed
 from app.tracker.programs.examples import ALEXANDRU_TABLE_3
 from app.tracker.programs.schedule import Moment, solar_hour

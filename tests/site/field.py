@@ -148,7 +148,7 @@ class Field:
             self._broken[name] = left - 1
         else:
             del self._broken[name]
-            self.drives[name].clear_faults()
+            self.drives[name].end_injected_faults()
             await self._get_going(name)
 
     async def _tick(self) -> None:

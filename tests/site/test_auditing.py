@@ -15,9 +15,9 @@ from app.link.messages import ConfigureTracker, RenameSite, SetLocation, StopAll
 from app.link.weather_orders import ReportWeather
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
-from app.store.offloaded import WriterThread
 from app.store.store import AuditFilter
 from app.store.writer import DatabaseWriter
+from app.store.writer_thread import WriterThread
 from app.tracker.axes import Axis
 from app.tracker.commands import CommandRejected, EndJog, Jog, Move, SelectMode, Stop, Track
 from app.tracker.config import Orientation

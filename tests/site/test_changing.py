@@ -13,7 +13,7 @@ from app.drives.faults import Fault, FaultKind
 from app.drives.simulated import SimulatedDrive
 from app.link.messages import ConfigureTracker, ConfirmStep, Order, RemoveTracker, RenameSite, SetClock
 from app.link.weather_orders import ReportWeather
-from app.site.beginning import begin
+from app.site.startup import begin
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.store import StoreFailed, Writer

@@ -23,10 +23,10 @@ from app.tracker.commands import (
     Command,
     CommandRejected,
     Jog,
-    LockOut,
     Move,
     SelectMode,
-    SetZero,
+    SetHome,
+    SetInhibit,
     Stop,
     Track,
 )
@@ -86,7 +86,7 @@ async def test_the_first_who_moves_has_control_and_the_other_may_only_stop(
     await bo.ask(Stop())
     await ready.forward(seconds=2)
     assert ready.tracker().activity is ActivityName.HOLDING
-    await bo.ask(LockOut("bo", "works at the gear"))
+    await bo.ask(SetInhibit("bo", "works at the gear"))
     assert ready.tracker().control.holder == "ada"
     fault.recovers("control is handed over, or ends when nobody renews it")
 
@@ -220,7 +220,7 @@ async def test_locked_settings_stay_until_an_engineer_says_why(ready: Plant) -> 
     for change in (
         ConfigureTracker(config),
         SetLocation(Location(0.0, 0.0, 0.0), "UTC"),
-        SetZero(),
+        SetHome(),
     ):
         with pytest.raises(CommandRejected, match="settings of Tracker 1 were locked by ada"):
             await ada.ask(change)

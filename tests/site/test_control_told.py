@@ -16,15 +16,15 @@ from app.site.authority import ASK_LASTS, COUNTDOWN, LEASE
 from app.tracker.axes import Axis
 from app.tracker.commands import (
     JOG_LEASE,
-    BeginService,
+    BeginServiceMode,
     CommandRejected,
-    ConfirmClear,
-    EndService,
+    ConfirmAreaClear,
+    EndServiceMode,
     Jog,
-    LockOut,
     Move,
-    ReleaseLock,
+    ReleaseInhibit,
     SelectMode,
+    SetInhibit,
     Stop,
     Stow,
     Track,
@@ -40,8 +40,8 @@ from tests.site.test_control import AWAY, SECOND, TAKE, Person
 
 ABOUT_CONTROL = {
     EventKind.CONTROL_TAKEN,
-    EventKind.CONTROL_ASKED,
-    EventKind.CONTROL_REFUSED,
+    EventKind.CONTROL_REQUESTED,
+    EventKind.CONTROL_DECLINED,
     EventKind.CONTROL_RELEASED,
 }
 Told = tuple[EventKind, str, str, dict[str, object]]
@@ -68,7 +68,7 @@ def taken(by: str, via: str = "session", *, actor: str = "", because: str = "") 
 
 def asked(by: str, does: str, holder: str, *, takes: bool, because: str = "") -> Told:
     message = f"{by} {does} control of Tracker 1, which {holder} has.{because}"
-    return EventKind.CONTROL_ASKED, message, by, {"takes": takes}
+    return EventKind.CONTROL_REQUESTED, message, by, {"takes": takes}
 
 
 async def test_an_order_takes_control_and_silence_ends_it(ready: Plant) -> None:
@@ -135,7 +135,7 @@ async def test_a_wish_that_nobody_answers_lapses(ready: Plant) -> None:
     await ready.forward(seconds=4)
     assert (ready.tracker().control.request, ready.tracker().control.holder) == (None, "ada")
     lapsed = (
-        EventKind.CONTROL_REFUSED,
+        EventKind.CONTROL_DECLINED,
         "The request for control of Tracker 1 was not answered.",
         "machine",
         {},
@@ -174,7 +174,7 @@ async def test_who_is_refused_and_who_lets_go_is_told(ready: Plant) -> None:
     await ada.ask(ReleaseControl("T1"))
     refused = "ada keeps control of Tracker 1; the request of bo was declined."
     assert told(ready, since)[-2:] == [
-        (EventKind.CONTROL_REFUSED, refused, "ada", {}),
+        (EventKind.CONTROL_DECLINED, refused, "ada", {}),
         (EventKind.CONTROL_RELEASED, "ada released control of Tracker 1.", "ada", {}),
     ]
     assert told(ready)[-4] == taken("ada", because=" Reason: early")
@@ -236,17 +236,24 @@ async def test_a_door_of_programs_is_one_holder_and_waits_for_nobody(
 
 @pytest.mark.parametrize(
     "command",
-    [Stop(), LockOut("bo", "works"), ReleaseLock(), BeginService("bo"), ConfirmClear(), EndService()],
+    [
+        Stop(),
+        SetInhibit("bo", "works"),
+        ReleaseInhibit(),
+        BeginServiceMode("bo"),
+        ConfirmAreaClear(),
+        EndServiceMode(),
+    ],
 )
 async def test_what_somebody_at_the_machine_says_needs_no_control(
-    ready: Plant, command: Stop | LockOut
+    ready: Plant, command: Stop | SetInhibit
 ) -> None:
     ada, bo = Person(ready, "ada"), Person(ready, "bo")
     await ada.ask(RequestControl(("T1",)))
-    if isinstance(command, ReleaseLock):
-        await ada.ask(LockOut("ada", "works"))
-    if isinstance(command, ConfirmClear | EndService):
-        await ada.ask(BeginService("ada"))
+    if isinstance(command, ReleaseInhibit):
+        await ada.ask(SetInhibit("ada", "works"))
+    if isinstance(command, ConfirmAreaClear | EndServiceMode):
+        await ada.ask(BeginServiceMode("ada"))
     await bo.ask(command, epoch=0)
     assert ready.tracker().control.holder == "ada"
 

@@ -10,7 +10,7 @@ from app.clock import VirtualClock
 from app.link.messages import StopAll
 from app.link.weather_orders import ReportWeather
 from app.site.gathering import EVERY
-from app.site.ledger import Ledger
+from app.site.write_queue import Ledger
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.store import JournalFilter, StoreFailed, Writer
@@ -119,7 +119,7 @@ async def test_a_storm_over_a_large_field_is_a_handful_of_transactions(writer: C
     assert writer.transactions - before <= MOST_TRANSACTIONS
     started = writer.writer.journal(JournalFilter(limit=10 * FIELD, kinds=(EventKind.STOW_STARTED,)))
     assert len({one.event.tracker_id for one in started}) == FIELD
-    assert all(one.memory.protection is Protection.TYPHOON for one in writer.writer.trackers())
+    assert all(one.memory.protection is Protection.WIND_STOW for one in writer.writer.trackers())
     await field.close()
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from app.tracker.axes import Axis
 from app.tracker.commands import JOG_LEASE, EndJog, Jog
-from app.tracker.mind import HALTED
+from app.tracker.controller_state import HALTED
 from app.tracker.snapshot import ActivityName, EventKind
 from tests.site.plant import Plant, make_plant, settle
 from tests.site.wrapped_drive import WrappedDrive, wrapped

@@ -22,11 +22,11 @@ from app.link.messages import (
     UnknownRecording,
 )
 from app.show.simulate import encoded, simulate
-from app.site.beginning import CUT_OFF, begin
+from app.site.startup import CUT_OFF, begin
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
-from app.store.offloaded import WriterThread
 from app.store.store import JournalFilter, StoreFailed, Writer
+from app.store.writer_thread import WriterThread
 from app.tracker.axes import Axis
 from app.tracker.commands import CommandRejected, GoToStart, Jog, RunShow, SelectMode, Stop, Track
 from app.tracker.config import Orientation, TrackerConfig
@@ -345,7 +345,7 @@ async def test_a_restart_after_a_crash_says_what_happened(url: str) -> None:
     beginning = begin(store, plant.clock.now(), unclean_since=began)
 
     (event,) = beginning.events
-    assert event.kind is EventKind.MACHINE_STARTED
+    assert event.kind is EventKind.CONTROLLER_STARTED
     assert "ended unexpectedly" in event.message
     assert event.data["clean"] is False
     assert len(event.data["cut_off"]) == 1

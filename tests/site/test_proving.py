@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 
 from app.clock import VirtualClock
-from app.drives.corrected import corrected
 from app.drives.drive import Drive
+from app.drives.scaled import corrected
 from app.drives.simulated import SimulatedDrive
 from app.link.messages import (
     AnswerDirection,
@@ -20,20 +20,20 @@ from app.site.site import Site
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.commands import (
     CommandRejected,
-    MeasureLinkLoss,
-    MeasureStop,
     Move,
-    ProveDirection,
-    ProveScale,
-    SetZero,
+    RunCommunicationLossTest,
+    RunDirectionTest,
+    RunScaleTest,
+    RunStopTest,
+    SetHome,
     Step,
     Stop,
 )
 from app.tracker.commissioning import StepStatus
 from app.tracker.config import AxisDrive, Orientation, TrackerConfig
+from app.tracker.drive_test_states import ProofState
+from app.tracker.drive_tests import AxisEnd, ProofKind, StopSpeed
 from app.tracker.memory import SiteState, TrackerMemory, TrackerState
-from app.tracker.proof_states import ProofState
-from app.tracker.proofs import AxisEnd, ProofKind, StopSpeed
 from app.tracker.snapshot import ActivityName, EventKind
 from tests.site.plant import SUMMER_NOON, Plant
 
@@ -73,7 +73,7 @@ class Site1(Plant):
         await self.until(lambda seen: seen.activity is ActivityName.HOLDING)
         await self.forward(seconds=0.5)
 
-    async def turn(self, command: ProveDirection | ProveScale, axis: Axis) -> float:
+    async def turn(self, command: RunDirectionTest | RunScaleTest, axis: Axis) -> float:
         """Give the command and return by how much the panel turned."""
         before = self.panel_deg(axis)
         await self.ask(command)
@@ -83,10 +83,10 @@ class Site1(Plant):
     async def prove(self, axis: Axis) -> None:
         """Prove direction and scale, correcting what is found."""
         for _ in range(2):
-            turned = await self.turn(ProveDirection(axis), axis)
+            turned = await self.turn(RunDirectionTest(axis), axis)
             await self.ask(AnswerDirection("T1", right=turned > 0.0))
         for _ in range(2):
-            turned = await self.turn(ProveScale(axis), axis)
+            turned = await self.turn(RunScaleTest(axis), axis)
             await self.ask(AnswerScale("T1", abs(round(turned, 1))))
 
 
@@ -129,7 +129,7 @@ async def test_direction_and_scale_are_corrected_until_the_axis_reads_what_the_p
 
 
 async def test_a_move_that_waits_to_be_judged_says_so_and_is_judged_once(plant: Site1) -> None:
-    await plant.turn(ProveDirection(Axis.ELEVATION), Axis.ELEVATION)
+    await plant.turn(RunDirectionTest(Axis.ELEVATION), Axis.ELEVATION)
     waiting = await plant.proof(ProofKind.DIRECTION, Axis.ELEVATION)
     assert waiting.status is StepStatus.TO_DO
     assert waiting.reasons[0].code == "move_to_judge"
@@ -139,12 +139,12 @@ async def test_a_move_that_waits_to_be_judged_says_so_and_is_judged_once(plant: 
     with pytest.raises(CommandRejected, match="has not been moved for this drive test"):
         await plant.ask(AnswerDirection("T1", right=True))
     assert plant.memory.proofs.move is None
-    (told,) = [one for one in plant.happened(EventKind.PROOF_ENDED) if one.data["outcome"] == "proven"]
+    (told,) = [one for one in plant.happened(EventKind.DRIVE_TEST_ENDED) if one.data["outcome"] == "proven"]
     assert told.message == "The elevation axis moves in the right direction."
 
 
 async def test_a_move_is_not_judged_under_other_settings_than_it_was_made_with(plant: Site1) -> None:
-    turned = await plant.turn(ProveScale(Axis.AZIMUTH), Axis.AZIMUTH)
+    turned = await plant.turn(RunScaleTest(Axis.AZIMUTH), Axis.AZIMUTH)
     geared = replace(BUILT.drive, azimuth=AxisDrive(gear_ratio=1.05))
     await plant.ask(ConfigureTracker(replace(BUILT, drive=geared)))
     await plant.rest()
@@ -155,7 +155,7 @@ async def test_a_move_is_not_judged_under_other_settings_than_it_was_made_with(p
 
 
 async def test_nothing_is_judged_while_the_axis_moves(plant: Site1) -> None:
-    await plant.ask(ProveDirection(Axis.ELEVATION))
+    await plant.ask(RunDirectionTest(Axis.ELEVATION))
     await plant.forward(seconds=0.3)
     assert (await plant.proof(ProofKind.DIRECTION, Axis.ELEVATION)).reasons[0].code == "move_under_way"
     with pytest.raises(CommandRejected, match="not at standstill"):
@@ -168,7 +168,7 @@ async def test_nothing_is_judged_while_the_axis_moves(plant: Site1) -> None:
 async def test_a_measured_angle_that_cannot_be_is_refused_with_a_sentence(
     plant: Site1, measured_deg: float
 ) -> None:
-    await plant.turn(ProveScale(Axis.ELEVATION), Axis.ELEVATION)
+    await plant.turn(RunScaleTest(Axis.ELEVATION), Axis.ELEVATION)
     with pytest.raises(ValueError, match="Enter the degrees that the panel turned"):
         await plant.ask(AnswerScale("T1", measured_deg))
     assert plant.config == BUILT
@@ -176,17 +176,17 @@ async def test_a_measured_angle_that_cannot_be_is_refused_with_a_sentence(
 
 async def test_a_longer_way_is_measured_more_exactly(plant: Site1) -> None:
     with pytest.raises(CommandRejected, match="uses 10, 30, or 90 degrees"):
-        await plant.ask(ProveScale(Axis.ELEVATION, 20.0))
-    turned = await plant.turn(ProveScale(Axis.ELEVATION, 90.0), Axis.ELEVATION)
+        await plant.ask(RunScaleTest(Axis.ELEVATION, 20.0))
+    turned = await plant.turn(RunScaleTest(Axis.ELEVATION, 90.0), Axis.ELEVATION)
     await plant.ask(AnswerScale("T1", turned + 0.1))
     assert (await plant.proof(ProofKind.SCALE, Axis.ELEVATION)).status is StepStatus.DONE
 
 
 async def test_another_direction_loses_the_zero_and_can_be_undone(plant: Site1) -> None:
-    await plant.ask(SetZero())
+    await plant.ask(SetHome())
     await plant.rest()
     assert plant.tracker().home_trusted
-    await plant.turn(ProveDirection(Axis.AZIMUTH), Axis.AZIMUTH)
+    await plant.turn(RunDirectionTest(Axis.AZIMUTH), Axis.AZIMUTH)
     await plant.ask(AnswerDirection("T1", right=False))
     await plant.forward(seconds=0.5)
     assert not plant.tracker().home_trusted
@@ -206,7 +206,7 @@ async def test_nothing_is_undone_where_nothing_was_changed(plant: Site1) -> None
 async def test_limits_are_taken_where_the_axis_stands(plant: Site1) -> None:
     with pytest.raises(CommandRejected, match="is not homed"):
         await plant.ask(SetSoftLimit("T1", Axis.AZIMUTH, AxisEnd.LOWER))
-    await plant.ask(SetZero())
+    await plant.ask(SetHome())
     await plant.rest()
     for to_deg, end in ((-20.0, AxisEnd.LOWER), (200.0, AxisEnd.UPPER)):
         await plant.ask(Move(Orientation(to_deg % 360.0, 0.0)))
@@ -225,9 +225,9 @@ async def test_what_a_later_change_made_untrue_is_to_be_confirmed_and_true_again
     plant: Site1,
 ) -> None:
     await plant.prove(Axis.ELEVATION)
-    await plant.ask(MeasureStop(Axis.ELEVATION, StopSpeed.JOG))
+    await plant.ask(RunStopTest(Axis.ELEVATION, StopSpeed.JOG))
     await plant.rest()
-    await plant.ask(MeasureLinkLoss(Axis.ELEVATION))
+    await plant.ask(RunCommunicationLossTest(Axis.ELEVATION))
     await plant.rest()
     proven = [
         (ProofKind.DIRECTION, Axis.ELEVATION, None),
@@ -258,7 +258,7 @@ async def test_another_gear_leaves_the_direction_proven_and_the_other_axis_alone
 
 
 async def test_other_speeds_and_another_zero_make_tests_and_limits_to_be_confirmed(plant: Site1) -> None:
-    await plant.ask(SetZero())
+    await plant.ask(SetHome())
     await plant.rest()
     for degrees, end in ((-5.0, AxisEnd.LOWER), (5.0, AxisEnd.UPPER)):
         await plant.ask(Step(Axis.ELEVATION, degrees))
@@ -268,9 +268,9 @@ async def test_other_speeds_and_another_zero_make_tests_and_limits_to_be_confirm
             await plant.rest()
         await plant.ask(SetSoftLimit("T1", Axis.ELEVATION, end))
         await plant.forward(seconds=0.5)
-    await plant.ask(MeasureStop(Axis.AZIMUTH, StopSpeed.RATED))
+    await plant.ask(RunStopTest(Axis.AZIMUTH, StopSpeed.RATED))
     await plant.rest()
-    await plant.ask(SetZero())
+    await plant.ask(SetHome())
     await plant.rest()
     slower = replace(plant.config.azimuth, speed_dps=4.0)
     await plant.ask(ConfigureTracker(replace(plant.config, azimuth=slower)))

@@ -11,8 +11,8 @@ from app.link.codec import LENGTH_BYTES, Told, decode_telling, read_body
 from app.link.messages import AddTracker, RemoveTracker, StopAll
 from app.link.server import LinkServer
 from app.site.publishing import MOST_AT_ONCE
-from app.tracker.conditions import Action
 from app.tracker.config import TrackerConfig
+from app.tracker.interlocks import Action
 from app.tracker.memory import TrackerMemory, TrackerState
 from app.tracker.snapshot import EventKind
 from tests.site.plant import Plant, make_plant, settle

@@ -90,7 +90,7 @@ async def test_a_command_that_is_acknowledged_and_not_taken_ends_the_jog(fault: 
     await held_until(plant, lambda: bool(plant.happened(EventKind.JOG_ENDED)), within_s=NOTICED_WITHIN_S)
     assert plant.tracker().activity is not ActivityName.JOGGING
 
-    machine.clear_faults()
+    machine.end_injected_faults()
     await plant.forward(seconds=1)
     fault.recovers(BY_ITSELF)
     assert not not_taken(plant)

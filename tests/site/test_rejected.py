@@ -12,12 +12,12 @@ from sqlalchemy import update
 
 from app.link.messages import ConfigureTracker
 from app.settings import Settings
-from app.site.beginning import begin
+from app.site.startup import begin
 from app.store import tables
+from app.store.config_repair import BESIDE
 from app.store.connections import transaction, writing_engine
 from app.store.documents import TRACKER
 from app.store.engine import open_writer
-from app.store.mending import BESIDE
 from app.store.migrations import upgrade
 from app.store.store import JournalFilter, StoreFailed
 from app.store.writer import DatabaseWriter

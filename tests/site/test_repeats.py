@@ -5,9 +5,9 @@ import asyncio
 import pytest
 
 from app.link.messages import Order, StopAll
-from app.site.repeats import Repeats
+from app.site.idempotency import Repeats
 from app.tracker.axes import Axis
-from app.tracker.commands import Command, CommandRejected, EndJog, Jog, LockOut, Park, Step, Stop, Track
+from app.tracker.commands import Command, CommandRejected, EndJog, Jog, Park, SetInhibit, Step, Stop, Track
 from app.tracker.snapshot import ActivityName, SiteSnapshot
 from tests.fakes import FakeMachine
 from tests.fault_result import FaultResult
@@ -68,7 +68,7 @@ async def test_what_was_given_after_a_stop_or_moves_nothing_is_carried_out(plant
     await plant.ask(EndJog("p"), given_s=99.0)
     await plant.ask(Park(), given_s=100.001)
     await plant.ask(Stop(), given_s=101.0)
-    await plant.ask(LockOut("ada", "works at the gear"), given_s=99.0)
+    await plant.ask(SetInhibit("ada", "works at the gear"), given_s=99.0)
     assert plant.tracker().lock is not None
 
 

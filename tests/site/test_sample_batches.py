@@ -14,10 +14,10 @@ from app.alarms.catalogue import CATALOGUE
 from app.alarms.conditions import MEGABYTE
 from app.clock import VirtualClock
 from app.link.weather_orders import ReportWeather
-from app.site.beginning import begin
-from app.site.ledger import Ledger
 from app.site.sample_batches import MOST_WAITING, SampleBatches
 from app.site.site import SiteOptions
+from app.site.startup import begin
+from app.site.write_queue import Ledger
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.store import StoreFailed, Writer

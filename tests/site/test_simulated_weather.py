@@ -43,7 +43,7 @@ async def test_weather_by_hand_is_shown_as_simulated_and_stows(plant: Plant) -> 
     await plant.ask(SimulateWeather(SimulatedStation(wind_mps=25.0, snow_kg=1.0)))
     seen = await weather(plant)
     assert seen.simulated
-    assert seen.source == "SIMULATED station (by hand)"
+    assert seen.source == "SIMULATED station (manual)"
     assert seen.readings.snow_kg == 1.0
     await plant.forward(seconds=2)
     assert plant.tracker().activity is ActivityName.STOWING
@@ -63,7 +63,7 @@ async def test_what_made_up_weather_did_ends_with_it_and_no_sensor_is_missed(pla
     assert plant.site.model.state.simulated_weather is None
     told = [event.message for event in plant.happened(EventKind.WEATHER_STATION_SET)]
     assert told == [
-        "The weather is now SIMULATED: by hand.",
+        "The weather is now SIMULATED: manual.",
         "The weather is no longer simulated.",
     ]
 

@@ -5,7 +5,7 @@ from collections.abc import AsyncIterator
 import pytest
 
 from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, Move, SetZero, Step, UndoZero
+from app.tracker.commands import CommandRejected, Move, SetHome, Step, UndoHome
 from app.tracker.config import Orientation
 from app.tracker.snapshot import ActivityName, AxisState, EventKind, Snapshot
 from tests.site.plant import Plant, make_plant
@@ -28,7 +28,7 @@ def angles(seen: Snapshot) -> tuple[float, float]:
 
 
 async def set_here(plant: Plant) -> None:
-    await plant.ask(SetZero())
+    await plant.ask(SetHome())
     await plant.until(lambda seen: seen.activity is ActivityName.HOLDING and seen.home_trusted)
     assert angles(plant.tracker()) == (0.0, 0.0)
 
@@ -38,20 +38,20 @@ async def test_undone_the_angles_and_who_set_it_are_those_before(plant: Plant) -
     assert angles(before) == (102.4, 36.6)
     await set_here(plant)
     assert plant.tracker().can_undo_home
-    await plant.ask(UndoZero())
+    await plant.ask(UndoHome())
     await plant.forward(seconds=2.0)
     now = plant.tracker()
     assert angles(now) == (102.4, 36.6)
     assert (now.home, now.home_trusted, now.fault) == (before.home, True, None)
-    assert [event.actor for event in plant.happened(EventKind.ZERO_UNDONE)] == ["technician"]
+    assert [event.actor for event in plant.happened(EventKind.HOME_POSITION_UNDONE)] == ["technician"]
     with pytest.raises(CommandRejected, match="no former home position"):
-        await plant.ask(UndoZero())
+        await plant.ask(UndoHome())
 
 
 async def test_the_panel_really_moves_from_the_former_home_position(plant: Plant) -> None:
     drive = plant.drives["T1"]
     await set_here(plant)
-    await plant.ask(UndoZero())
+    await plant.ask(UndoHome())
     await plant.forward(seconds=1.0)
     await plant.ask(Move(Orientation(110.0, 40.0)))
     await plant.until(lambda seen: seen.in_position and seen.activity is ActivityName.HOLDING)
@@ -63,7 +63,7 @@ async def test_the_panel_really_moves_from_the_former_home_position(plant: Plant
 
 async def test_the_next_home_position_counts_from_the_drive_again(plant: Plant) -> None:
     await set_here(plant)
-    await plant.ask(UndoZero())
+    await plant.ask(UndoHome())
     await plant.forward(seconds=1.0)
     await set_here(plant)
     assert plant.site.model.tracker("T1").memory.home_shift.azimuth_deg == 0.0
@@ -75,7 +75,7 @@ async def test_what_has_moved_since_is_not_undone(plant: Plant) -> None:
     await plant.until(lambda seen: seen.activity is ActivityName.HOLDING and angles(seen) == (0.0, 1.0))
     assert not plant.tracker().can_undo_home
     with pytest.raises(CommandRejected, match="have moved since"):
-        await plant.ask(UndoZero())
+        await plant.ask(UndoHome())
     assert angles(plant.tracker()) == (0.0, 1.0)
 
 
@@ -86,7 +86,7 @@ async def test_an_axis_that_was_not_homed_before_is_not_shown_as_homed_again() -
     await plant.until(lambda seen: seen.activity is ActivityName.HOLDING)
     await set_here(plant)
     assert [axis.homed for axis in axes(plant)] == [True, True]
-    await plant.ask(UndoZero())
+    await plant.ask(UndoHome())
     await plant.forward(seconds=1.0)
     assert not plant.tracker().home_trusted
     assert [axis.homed for axis in axes(plant)] == [False, False]

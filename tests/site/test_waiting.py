@@ -12,10 +12,10 @@ from app.drives.plc import PlcDrive
 from app.drives.profile import load_profile
 from app.drives.wire import Ask, Timing, Unanswered
 from app.link.messages import (
-    ClearFaults,
     ConfigureTracker,
+    EndInjectedFaults,
+    InjectFault,
     Order,
-    PlayFault,
     RemoveTracker,
     RenameSite,
     SetClock,
@@ -121,7 +121,7 @@ async def test_an_order_that_needs_a_mute_drive_keeps_no_other_waiting(name: str
     await plant.site.close()
 
 
-@pytest.mark.parametrize("command", [PlayFault("T1", "silence"), ClearFaults("T1")])
+@pytest.mark.parametrize("command", [InjectFault("T1", "silence"), EndInjectedFaults("T1")])
 async def test_a_fault_that_is_played_on_a_simulator_which_does_not_answer_keeps_no_order_waiting(
     command: SiteCommand,
 ) -> None:

@@ -130,11 +130,11 @@ async def test_a_reported_storm_stows_the_tracker_and_is_journalled(plant: Plant
     await plant.until(lambda seen: seen.activity is ActivityName.STOWED)
     seen = plant.tracker()
     assert seen.protection is not None
-    assert seen.protection.protection is Protection.TYPHOON
+    assert seen.protection.protection is Protection.WIND_STOW
     assert seen.measured is not None
     assert seen.measured.elevation_deg == pytest.approx(90.0, abs=0.1)
     assert plant.happened(EventKind.PROTECTION_BEGAN)
-    assert plant.site.model.tracker("T1").memory.protection is Protection.TYPHOON
+    assert plant.site.model.tracker("T1").memory.protection is Protection.WIND_STOW
 
 
 async def test_a_stow_by_command_is_on_disk_with_the_memory(plant: Plant) -> None:

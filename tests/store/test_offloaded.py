@@ -10,9 +10,9 @@ import pytest
 from app.clock import VirtualClock
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
-from app.store.offloaded import FLOODED, FULL, WriterThread
 from app.store.store import JournalFilter, StoreFailed, Writer
 from app.store.writer import DatabaseWriter
+from app.store.writer_thread import FLOODED, FULL, WriterThread
 from tests.fault_result import BY_ITSELF, VIRTUAL, FaultResult
 from tests.store.samples import NOON, SITE, event
 

@@ -7,11 +7,11 @@ import pytest
 from app.drives.faults import Fault, FaultKind
 from app.tracker.axes import Axis
 from app.tracker.commands import (
-    BeginService,
+    BeginServiceMode,
     Command,
     CommandRejected,
-    ConfirmClear,
-    EndService,
+    ConfirmAreaClear,
+    EndServiceMode,
     Jog,
     ResetFault,
     Stow,
@@ -35,7 +35,7 @@ def turn_switch(plant: Plant, *, local: bool) -> None:
     if local:
         plant.drive.inject(Fault(FaultKind.LOCAL_SWITCH, None, 0.0))
     else:
-        plant.drive.clear_faults()
+        plant.drive.end_injected_faults()
 
 
 def only(plant: Plant, kind: EventKind) -> Event:
@@ -61,7 +61,7 @@ def test_what_is_under_way_ends_with_the_switch_and_nothing_begins_when_it_is_tu
     turn_switch(plant, local=False)
     plant.forward(5.0)
     assert doing(plant) is ActivityName.HOLDING
-    taken, back = only(plant, EventKind.LOCAL_TAKEN), only(plant, EventKind.LOCAL_GIVEN_BACK)
+    taken, back = only(plant, EventKind.SWITCHED_TO_LOCAL), only(plant, EventKind.SWITCHED_TO_REMOTE)
     assert taken.message == "The switch at the cabinet of Tracker 1 is on local."
     assert taken.data == {"code": "local"}
     assert back.message == (
@@ -88,14 +88,14 @@ def test_a_switch_that_is_on_local_when_the_drive_is_first_heard_is_told() -> No
     plant = Plant(READY)
     turn_switch(plant, local=True)
     plant.forward(0.3)
-    assert only(plant, EventKind.LOCAL_TAKEN)
-    assert not plant.happened(EventKind.LOCAL_GIVEN_BACK)
+    assert only(plant, EventKind.SWITCHED_TO_LOCAL)
+    assert not plant.happened(EventKind.SWITCHED_TO_REMOTE)
 
 
 def test_a_switch_that_is_on_remote_is_not_told() -> None:
     plant = Plant(READY)
     plant.forward(1.0)
-    assert not plant.happened(EventKind.LOCAL_TAKEN) + plant.happened(EventKind.LOCAL_GIVEN_BACK)
+    assert not plant.happened(EventKind.SWITCHED_TO_LOCAL) + plant.happened(EventKind.SWITCHED_TO_REMOTE)
 
 
 def test_the_switch_leaves_a_fault_a_fault() -> None:
@@ -119,14 +119,14 @@ def test_what_was_held_back_does_not_go_on_after_the_switch() -> None:
 def test_service_begins_at_rest_with_tracking_off_and_names_who_serves() -> None:
     plant = moving(tracks=True)
     plant.clock.advance(timedelta(seconds=0.1))
-    plant.ask(BeginService("  Ada  "), actor="ada")
+    plant.ask(BeginServiceMode("  Ada  "), actor="ada")
     assert doing(plant) in (ActivityName.STOPPING, ActivityName.HOLDING)
     plant.forward(3.0)
     assert doing(plant) is ActivityName.HOLDING
     service = plant.snapshot.service
     assert service is not None
     assert (service.mode.name, service.mode.by, service.clear_for_s) == ("Ada", "ada", 0.0)
-    began = only(plant, EventKind.SERVICE_BEGAN)
+    began = only(plant, EventKind.SERVICE_MODE_STARTED)
     assert service.mode.since == began.at
     assert began.message == (
         "Ada put Tracker 1 in service mode. The tracker moves slowly after the area is confirmed clear."
@@ -137,13 +137,13 @@ def test_service_begins_at_rest_with_tracking_off_and_names_who_serves() -> None
     assert plant.snapshot.setpoint is None
     assert not plant.snapshot.tracking_on
     with pytest.raises(CommandRejected, match="service mode"):
-        plant.ask(BeginService("Bo"))
+        plant.ask(BeginServiceMode("Bo"))
 
 
 def test_a_key_that_is_held_ends_with_the_beginning_of_service() -> None:
     plant = ready()
     plant.ask(KEY)
-    plant.ask(BeginService("Ada"))
+    plant.ask(BeginServiceMode("Ada"))
     ended = only(plant, EventKind.JOG_ENDED)
     assert ended.message == "The jog of azimuth ended: service mode begins."
     assert doing(plant) is ActivityName.STOPPING
@@ -152,7 +152,7 @@ def test_a_key_that_is_held_ends_with_the_beginning_of_service() -> None:
 def test_service_mode_leaves_a_fault_a_fault() -> None:
     plant = moving()
     block_and_free(plant)
-    plant.ask(BeginService("Ada"))
+    plant.ask(BeginServiceMode("Ada"))
     assert doing(plant) is ActivityName.FAULTED
     plant.ask(ResetFault())
     assert doing(plant) is not ActivityName.FAULTED
@@ -161,13 +161,13 @@ def test_service_mode_leaves_a_fault_a_fault() -> None:
 def test_a_clear_area_counts_for_its_time_and_no_longer() -> None:
     plant = ready(clear_for_s=20.0)
     with pytest.raises(CommandRejected, match="not in service mode"):
-        plant.ask(ConfirmClear())
-    plant.ask(BeginService("Ada"))
-    plant.ask(ConfirmClear())
-    assert only(plant, EventKind.AREA_CLEARED).message == (
+        plant.ask(ConfirmAreaClear())
+    plant.ask(BeginServiceMode("Ada"))
+    plant.ask(ConfirmAreaClear())
+    assert only(plant, EventKind.AREA_CONFIRMED_CLEAR).message == (
         "The area around Tracker 1 is confirmed clear, valid for 0.333333 minutes."
     )
-    assert only(plant, EventKind.AREA_CLEARED).data == {"seconds": 20.0}
+    assert only(plant, EventKind.AREA_CONFIRMED_CLEAR).data == {"seconds": 20.0}
     plant.forward(5.0)
     service = plant.snapshot.service
     assert service is not None
@@ -175,14 +175,14 @@ def test_a_clear_area_counts_for_its_time_and_no_longer() -> None:
     plant.ask(KEY)
     plant.leap(plant.clock.now() + timedelta(seconds=14.9))
     plant.tick()
-    assert not plant.happened(EventKind.AREA_DOUBTED)
+    assert not plant.happened(EventKind.AREA_CONFIRMATION_EXPIRED)
     plant.leap(plant.clock.now() + timedelta(seconds=0.1))
     plant.tick()
-    doubted = only(plant, EventKind.AREA_DOUBTED)
+    doubted = only(plant, EventKind.AREA_CONFIRMATION_EXPIRED)
     assert doubted.message == "The area-clear confirmation for Tracker 1 has expired."
     assert doubted.data == {"code": "area_not_clear"}
     plant.forward(60.0)
-    assert only(plant, EventKind.AREA_DOUBTED), "told once"
+    assert only(plant, EventKind.AREA_CONFIRMATION_EXPIRED), "told once"
     over = plant.snapshot.service
     assert over is not None
     assert over.clear_for_s == 0.0
@@ -190,24 +190,24 @@ def test_a_clear_area_counts_for_its_time_and_no_longer() -> None:
 
 def test_the_next_service_wants_the_area_to_be_looked_at_anew() -> None:
     plant = ready()
-    plant.ask(BeginService("Ada"))
-    plant.ask(ConfirmClear())
+    plant.ask(BeginServiceMode("Ada"))
+    plant.ask(ConfirmAreaClear())
     plant.ask(SOUTH)
-    plant.ask(EndService())
+    plant.ask(EndServiceMode())
     assert doing(plant) is ActivityName.HOLDING, "the motion ends"
     assert only(plant, EventKind.MOVE_ENDED).message.endswith("service mode ends.")
-    assert only(plant, EventKind.SERVICE_ENDED).message == "Service mode of Tracker 1 has ended."
+    assert only(plant, EventKind.SERVICE_MODE_ENDED).message == "Service mode of Tracker 1 has ended."
     assert plant.snapshot.service is None
-    plant.ask(BeginService("Bo"))
+    plant.ask(BeginServiceMode("Bo"))
     service = plant.snapshot.service
     assert service is not None
     assert service.clear_for_s == 0.0
     assert plant.reasons("move") >= {"area_not_clear"}
     plant.forward(1000.0)
-    assert not plant.happened(EventKind.AREA_DOUBTED), "the former word is forgotten"
+    assert not plant.happened(EventKind.AREA_CONFIRMATION_EXPIRED), "the former word is forgotten"
 
 
 def test_service_without_a_name_is_refused_with_what_bears_one() -> None:
     plant = ready()
     with pytest.raises(CommandRejected, match=r"^Service mode requires a name of 1 to 60 characters"):
-        plant.ask(BeginService("  "))
+        plant.ask(BeginServiceMode("  "))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.tracker.commands import Move, RunShow, SelectMode, SetZero, Track
+from app.tracker.commands import Move, RunShow, SelectMode, SetHome, Track
 from app.tracker.commissioning import Standing, Step, StepStatus, standing_of, steps
 from app.tracker.config import Orientation
 from app.tracker.memory import ClockSetting, Confirmation, SiteState, StepName, TrackerMemory
@@ -58,7 +58,7 @@ def test_the_walk_from_a_blank_tracker_to_tracking() -> None:
     plant = Plant()
     plant.tick()
     assert of(plant) == [DONE, DONE, TO_DO, TO_DO, TO_DO]
-    plant.ask(SetZero())
+    plant.ask(SetHome())
     plant.forward(1.0)
     assert of(plant) == [DONE, DONE, DONE, TO_DO, TO_DO]
     plant.ask(SelectMode(Mode.AZIMUTH, Orientation(0.0, 5.0)))

@@ -7,7 +7,7 @@ import pytest
 
 from app.drives.faults import Fault, FaultKind
 from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, Home, SetZero, Stop, Track
+from app.tracker.commands import CommandRejected, Home, SetHome, Stop, Track
 from app.tracker.config import DriveConfig, DriveKind
 from app.tracker.memory import Confirmation, Pointing, Sighting, StepName
 from app.tracker.motion import AxisFeedback, Feedback, RequestKind
@@ -22,8 +22,8 @@ NEEDS_HOME = ("move", "track", "park", "go_to_start", "run_show")
 def test_zero_is_set_axis_by_axis_read_back_and_trusted() -> None:
     plant = Plant()
     plant.tick()
-    plant.ask(SetZero())
-    assert plant.activity is ActivityName.ZEROING
+    plant.ask(SetHome())
+    assert plant.activity is ActivityName.SETTING_HOME
     assert plant.snapshot.activity_text == "Setting the home position"
     plant.forward(1.0)
     assert (plant.azimuth_deg, plant.elevation_deg) == (0.0, 0.0)
@@ -32,33 +32,33 @@ def test_zero_is_set_axis_by_axis_read_back_and_trusted() -> None:
     assert home is not None
     assert (home.by, home.how, home.boot_count) == ("technician", "set manually", 1)
     assert plant.controller.memory.confirmations[StepName.HOMING].location_revision == 1
-    assert len(plant.happened(EventKind.ZERO_SET)) == 1
+    assert len(plant.happened(EventKind.HOME_POSITION_SET)) == 1
 
 
 def test_one_axis_alone_is_not_enough_for_trust() -> None:
     plant = Plant()
     plant.tick()
-    plant.ask(SetZero((Axis.ELEVATION,)))
+    plant.ask(SetHome((Axis.ELEVATION,)))
     plant.forward(1.0)
-    assert plant.happened(EventKind.ZERO_SET)[0].data == {"axes": ["elevation"]}
+    assert plant.happened(EventKind.HOME_POSITION_SET)[0].data == {"axes": ["elevation"]}
     assert not plant.snapshot.home_trusted
     assert all("home_not_trusted" in plant.reasons(action) for action in NEEDS_HOME)
-    plant.ask(SetZero((Axis.AZIMUTH,)))
+    plant.ask(SetHome((Axis.AZIMUTH,)))
     plant.forward(1.0)
     assert plant.snapshot.home_trusted
 
 
 def test_zero_needs_axes_at_rest_a_drive_and_an_axis() -> None:
     plant = Plant()
-    assert plant.reasons("zero") == {"drive_unreachable"}
+    assert plant.reasons("set_home") == {"drive_unreachable"}
     plant.tick()
     with pytest.raises(CommandRejected, match="No axis of this mount was selected for homing"):
-        plant.ask(SetZero(()))
+        plant.ask(SetHome(()))
     script = Scripted()
     script.reading = replace(script.reading, azimuth=replace(script.reading.azimuth, moving=True))
     script.tick()
     with pytest.raises(CommandRejected, match="are still moving"):
-        script.ask(SetZero())
+        script.ask(SetHome())
 
 
 @pytest.mark.parametrize(
@@ -72,10 +72,10 @@ def test_zero_needs_axes_at_rest_a_drive_and_an_axis() -> None:
 def test_a_zero_that_does_not_read_back_fails_with_a_sentence(answer: dict[str, object], why: str) -> None:
     script = Scripted(READY)
     script.tick()
-    script.ask(SetZero((Axis.AZIMUTH,)))
+    script.ask(SetHome((Axis.AZIMUTH,)))
     request = script.told.request
     assert request is not None
-    assert request.kind is RequestKind.SET_ZERO_AZIMUTH
+    assert request.kind is RequestKind.SET_HOME_AZIMUTH
     script.reading = replace(script.reading, request_done=request.number, **answer)
     happened = [event.message for event in script.tick()]
     assert why in happened[0]
@@ -86,16 +86,16 @@ def test_a_zero_that_does_not_read_back_fails_with_a_sentence(answer: dict[str, 
 def test_a_drive_that_does_not_answer_a_request_is_not_waited_for_for_ever() -> None:
     script = Scripted()
     script.tick()
-    script.ask(SetZero())
+    script.ask(SetHome())
     script.forward(5.5)
-    assert "did not answer in time" in script.happened(EventKind.ZERO_FAILED)[0].message
+    assert "did not answer in time" in script.happened(EventKind.HOME_POSITION_NOT_SET)[0].message
 
 
 def test_request_numbers_go_on_from_what_the_drive_has_answered_and_stay_within_16_bits() -> None:
     script = Scripted()
     script.reading = replace(script.reading, request_done=30_000)
     script.tick()
-    script.ask(SetZero())
+    script.ask(SetHome())
     assert script.told.request is not None
     assert script.told.request.number == 1
 
@@ -103,9 +103,9 @@ def test_request_numbers_go_on_from_what_the_drive_has_answered_and_stay_within_
 def test_stopping_while_zero_is_being_set_gives_up_the_old_zero() -> None:
     script = Scripted(READY)
     script.tick()
-    script.ask(SetZero())
+    script.ask(SetHome())
     happened = script.ask(Stop())
-    assert happened == [EventKind.ZERO_FAILED, EventKind.HOME_LOST, EventKind.STOPPED]
+    assert happened == [EventKind.HOME_POSITION_NOT_SET, EventKind.HOME_LOST, EventKind.STOPPED]
 
 
 def test_the_drive_searches_its_origin_by_itself() -> None:
@@ -197,7 +197,7 @@ def test_a_restarted_drive_has_lost_its_zero_and_tracking_waits() -> None:
     assert plant.activity is ActivityName.HOLDING
     assert plant.controller.memory.tracking_on
     assert "restarted" in plant.happened(EventKind.HOME_LOST)[0].message
-    assert plant.happened(EventKind.TRACKING_WAITING)
+    assert plant.happened(EventKind.TRACKING_INTERRUPTED)
     assert [reason.code for reason in plant.snapshot.waiting] == ["drive_restarted"], "one cause, told once"
     assert "step 3" in plant.snapshot.waiting[0].hint
     assert "home_not_trusted" in plant.reasons("track")
@@ -233,10 +233,10 @@ def test_an_encoder_jump_ends_the_trust_and_an_ordinary_stop_does_not() -> None:
     plant.drive.inject(Fault(FaultKind.ENCODER_JUMP, Axis.AZIMUTH, 12.0))
     plant.forward(0.2)
     assert "jumped by" in plant.happened(EventKind.HOME_LOST)[0].message
-    plant.ask(SetZero((Axis.ELEVATION,)))
+    plant.ask(SetHome((Axis.ELEVATION,)))
     plant.forward(1.0)
     assert not plant.snapshot.home_trusted
-    plant.ask(SetZero((Axis.AZIMUTH,)))
+    plant.ask(SetHome((Axis.AZIMUTH,)))
     plant.forward(1.0)
     assert plant.snapshot.home_trusted
 

@@ -13,13 +13,13 @@ from app.sun.position import Algorithm, Location, sun_position
 from app.sun.trigonometry import SCALAR
 from app.tracker.activities.tracking import TWILIGHT_DEG
 from app.tracker.axes import Axis, AxisConfig
-from app.tracker.commands import CommandRejected, Jog, Move, Park, SelectMode, SetZero, Step, Track
+from app.tracker.commands import CommandRejected, Jog, Move, Park, SelectMode, SetHome, Step, Track
 from app.tracker.config import MountConfig, MountKind, Orientation, Rows, TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
 from app.tracker.motion import HALT
 from app.tracker.mount import aim, mode_direction, sky
-from app.tracker.mounts.abilities import default_mode
+from app.tracker.mounts.capabilities import default_mode
 from app.tracker.mounts.kinematics import angles
 from app.tracker.programs.show import ShowCourse, check_show
 from app.tracker.snapshot import EventKind
@@ -112,7 +112,7 @@ def test_rows_turn_back_in_the_morning_and_face_the_sun_at_noon() -> None:
 def test_a_single_axis_is_homed_by_its_first_axis_alone() -> None:
     plant = Plant(BLANK, config=LEVEL)
     plant.tick()
-    plant.ask(SetZero())
+    plant.ask(SetHome())
     plant.forward(2.0)
     assert plant.snapshot.home_trusted
     assert plant.snapshot.azimuth is not None
@@ -126,7 +126,7 @@ def test_an_absent_axis_cannot_be_moved(command: Jog | Step) -> None:
     with pytest.raises(CommandRejected, match="and no second axis"):
         plant.ask(command)
     with pytest.raises(CommandRejected, match="No axis of this mount"):
-        plant.ask(SetZero((Axis.ELEVATION,)))
+        plant.ask(SetHome((Axis.ELEVATION,)))
     assert EventKind.JOG_STARTED in plant.ask(jogged(Axis.AZIMUTH))
     assert plant.snapshot.activity_text == "Jogging rotation to the right of the axis's direction, slow"
 

@@ -7,9 +7,9 @@ import pytest
 
 from app.drives.faults import Fault, FaultKind
 from app.tracker.axes import Axis, AxisConfig
-from app.tracker.commands import CommandRejected, Jog, Move, ResetFault, SetZero, Stop, Track
+from app.tracker.commands import CommandRejected, Jog, Move, ResetFault, SetHome, Stop, Track
 from app.tracker.config import Orientation
-from app.tracker.follow import AxisWatch, watch
+from app.tracker.following_error import AxisWatch, watch
 from app.tracker.motion import HALT, AxisCommand, AxisFeedback, DriveCommand, Position, Velocity
 from app.tracker.snapshot import ActivityName, EventKind
 from tests.tracker.plant import MORNING, READY, Plant
@@ -230,7 +230,7 @@ def test_zeroing_is_allowed_again_after_a_jump_and_tells_nothing_twice(plant: Pl
     plant.drive.inject(Fault(FaultKind.ENCODER_JUMP, Axis.ELEVATION, -8.0))
     plant.forward(1.0)
     assert len(plant.happened(EventKind.HOME_LOST)) == 1
-    plant.ask(SetZero())
+    plant.ask(SetHome())
     plant.forward(1.0)
     assert plant.snapshot.home_trusted
 

@@ -11,28 +11,28 @@ from app.tracker.commands import (
     Command,
     CommandRejected,
     Jog,
-    MeasureLinkLoss,
-    MeasureStop,
     Move,
-    ProveDirection,
-    ProveScale,
+    RunCommunicationLossTest,
+    RunDirectionTest,
+    RunScaleTest,
+    RunStopTest,
     Stop,
     Track,
 )
 from app.tracker.config import Orientation
+from app.tracker.drive_tests import LinkLossOutcome, ProofKind, ProofMove, Proofs, StopSpeed
 from app.tracker.memory import TrackerMemory
 from app.tracker.motion import AxisFeedback, DriveCommand, Feedback
-from app.tracker.proofs import LinkLossOutcome, ProofKind, ProofMove, Proofs, StopSpeed
 from app.tracker.snapshot import ActivityName, EventKind
 from tests.tracker.plant import BLANK, CONFIG, READY, Plant
 from tests.tracker.scripted import Scripted
 
 STOPS = [(axis, speed) for axis in Axis for speed in StopSpeed]
 EVERY_PROOF: list[Command] = [
-    ProveDirection(Axis.AZIMUTH),
-    ProveScale(Axis.ELEVATION),
-    MeasureStop(Axis.AZIMUTH, StopSpeed.JOG),
-    MeasureLinkLoss(Axis.AZIMUTH),
+    RunDirectionTest(Axis.AZIMUTH),
+    RunScaleTest(Axis.ELEVATION),
+    RunStopTest(Axis.AZIMUTH, StopSpeed.JOG),
+    RunCommunicationLossTest(Axis.AZIMUTH),
 ]
 
 
@@ -57,12 +57,12 @@ def move_of(plant: Plant) -> ProofMove:
 
 
 @pytest.mark.parametrize(
-    ("command", "degrees"), [(ProveDirection(Axis.ELEVATION), 3.0), (ProveScale(Axis.AZIMUTH), 10.0)]
+    ("command", "degrees"), [(RunDirectionTest(Axis.ELEVATION), 3.0), (RunScaleTest(Axis.AZIMUTH), 10.0)]
 )
 def test_a_watched_move_turns_one_axis_and_waits_to_be_judged(command: Command, degrees: float) -> None:
     plant = standing()
     before = plant.snapshot.measured
-    assert plant.ask(command) == [EventKind.PROOF_STARTED]
+    assert plant.ask(command) == [EventKind.DRIVE_TEST_STARTED]
     assert " test: " in plant.snapshot.activity_text
     until_holding(plant)
     after, move = plant.snapshot.measured, move_of(plant)
@@ -76,12 +76,12 @@ def test_a_watched_move_turns_one_axis_and_waits_to_be_judged(command: Command, 
     assert list(turned.values()) == [pytest.approx(0.0, abs=0.01)]
     assert move.moved_deg == pytest.approx(degrees, abs=0.1)
     assert move.by == "technician"
-    assert plant.happened(EventKind.PROOF_ENDED)[-1].data["outcome"] == "to_be_judged"
+    assert plant.happened(EventKind.DRIVE_TEST_ENDED)[-1].data["outcome"] == "to_be_judged"
 
 
 def test_a_watched_move_that_is_stopped_leaves_nothing_to_judge() -> None:
     plant = standing()
-    plant.ask(ProveScale(Axis.AZIMUTH))
+    plant.ask(RunScaleTest(Axis.AZIMUTH))
     plant.forward(1.0)
     assert move_of(plant).moved_deg == 0.0
     plant.ask(Stop())
@@ -94,7 +94,7 @@ def test_a_watched_move_goes_the_other_way_where_there_is_no_room() -> None:
     plant = standing(READY)
     plant.ask(Move(Orientation(30.0, 88.0)))
     until_holding(plant)
-    plant.ask(ProveDirection(Axis.ELEVATION))
+    plant.ask(RunDirectionTest(Axis.ELEVATION))
     until_holding(plant)
     assert move_of(plant).moved_deg == pytest.approx(-3.0, abs=0.1)
 
@@ -103,14 +103,14 @@ def test_a_range_too_small_is_refused_with_a_sentence() -> None:
     narrow = replace(CONFIG, azimuth=AxisConfig(-1.0, 1.0, 6.0, 6.0, 0.5, 3.0))
     plant = standing(READY, config=narrow)
     with pytest.raises(CommandRejected, match=r"cannot turn by 10\.0 degrees"):
-        plant.ask(ProveScale(Axis.AZIMUTH))
+        plant.ask(RunScaleTest(Axis.AZIMUTH))
 
 
 def test_on_a_limit_switch_the_way_leads_away_from_it() -> None:
     plant = standing()
     plant.drive.inject(Fault(FaultKind.UPPER_LIMIT_STUCK, Axis.AZIMUTH))
     plant.forward(0.2)
-    plant.ask(ProveDirection(Axis.AZIMUTH))
+    plant.ask(RunDirectionTest(Axis.AZIMUTH))
     until_holding(plant)
     assert move_of(plant).moved_deg == pytest.approx(-3.0, abs=0.1)
 
@@ -146,7 +146,7 @@ def test_every_proof_is_stopped_at_once_and_nothing_goes_on(command: Command) ->
 @pytest.mark.parametrize(("axis", "speed"), STOPS)
 def test_the_stop_test_measures_what_the_ramp_says(axis: Axis, speed: StopSpeed) -> None:
     plant = standing(READY)
-    plant.ask(MeasureStop(axis, speed))
+    plant.ask(RunStopTest(axis, speed))
     assert plant.snapshot.activity_text == "Stop test: accelerating"
     until_holding(plant)
     proof, settings = plant.controller.memory.proofs.stop(axis, speed), CONFIG.axis(axis)
@@ -162,7 +162,7 @@ def test_the_stop_test_measures_what_the_ramp_says(axis: Axis, speed: StopSpeed)
 
 def test_while_an_axis_comes_to_rest_it_is_looked_at_every_20_ms() -> None:
     plant = standing(READY)
-    plant.ask(MeasureStop(Axis.AZIMUTH, StopSpeed.RATED))
+    plant.ask(RunStopTest(Axis.AZIMUTH, StopSpeed.RATED))
     assert plant.controller.deadline() is None
     plant.forward(2.1)
     assert plant.snapshot.activity_text == "Stop test: stopping"
@@ -178,8 +178,8 @@ def test_while_an_axis_comes_to_rest_it_is_looked_at_every_20_ms() -> None:
 def test_the_rated_speed_needs_a_trusted_zero_and_the_hand_speed_does_not() -> None:
     plant = standing()
     with pytest.raises(CommandRejected, match="is not homed"):
-        plant.ask(MeasureStop(Axis.AZIMUTH, StopSpeed.RATED))
-    plant.ask(MeasureStop(Axis.AZIMUTH, StopSpeed.JOG))
+        plant.ask(RunStopTest(Axis.AZIMUTH, StopSpeed.RATED))
+    plant.ask(RunStopTest(Axis.AZIMUTH, StopSpeed.JOG))
     until_holding(plant)
     assert plant.controller.memory.proofs.stop(Axis.AZIMUTH, StopSpeed.JOG) is not None
 
@@ -187,17 +187,17 @@ def test_the_rated_speed_needs_a_trusted_zero_and_the_hand_speed_does_not() -> N
 def test_an_axis_that_does_not_move_proves_nothing() -> None:
     plant = standing(READY, config=replace(CONFIG, following_error_deg=20.0))
     plant.drive.inject(Fault(FaultKind.STALL, Axis.AZIMUTH))
-    plant.ask(MeasureStop(Axis.AZIMUTH, StopSpeed.JOG))
+    plant.ask(RunStopTest(Axis.AZIMUTH, StopSpeed.JOG))
     plant.forward(3.0)
     assert plant.controller.memory.proofs.stops == ()
-    assert plant.happened(EventKind.PROOF_ENDED)[-1].data["outcome"] == "failed"
+    assert plant.happened(EventKind.DRIVE_TEST_ENDED)[-1].data["outcome"] == "failed"
     assert plant.activity is ActivityName.HOLDING
 
 
 def test_the_link_loss_test_feeds_nothing_and_measures_the_watchdog() -> None:
     plant = standing(READY)
     plant.period = timedelta(milliseconds=20)
-    plant.ask(MeasureLinkLoss(Axis.ELEVATION))
+    plant.ask(RunCommunicationLossTest(Axis.ELEVATION))
     assert plant.snapshot.activity_text == "Communication-loss test: moving slowly"
     plant.forward(1.3)
     assert plant.controller.is_silent
@@ -214,12 +214,12 @@ def test_the_link_loss_test_feeds_nothing_and_measures_the_watchdog() -> None:
     assert proof.home_kept
     assert plant.controller.memory.home is not None
     assert not plant.controller.is_silent
-    assert [event.data["outcome"] for event in plant.happened(EventKind.PROOF_ENDED)] == ["stopped"]
+    assert [event.data["outcome"] for event in plant.happened(EventKind.DRIVE_TEST_ENDED)] == ["stopped"]
 
 
 def test_after_the_link_loss_test_the_drive_obeys_again() -> None:
     plant = standing(READY)
-    plant.ask(MeasureLinkLoss(Axis.AZIMUTH))
+    plant.ask(RunCommunicationLossTest(Axis.AZIMUTH))
     until_holding(plant)
     plant.forward(0.5)
     plant.ask(Move(Orientation(20.0, 10.0)))
@@ -231,7 +231,7 @@ def test_a_drive_whose_watchdog_does_not_act_is_stopped_and_found_out() -> None:
     plant = standing(READY, watchdog=None)
     capabilities = replace(plant.drive.capabilities, watchdog_s=0.5)
     plant.controller.configure(CONFIG, capabilities)
-    plant.ask(MeasureLinkLoss(Axis.AZIMUTH))
+    plant.ask(RunCommunicationLossTest(Axis.AZIMUTH))
     until_holding(plant)
     proof = plant.controller.memory.proofs.link_loss
     assert proof is not None
@@ -245,26 +245,26 @@ def test_a_drive_whose_watchdog_does_not_act_is_stopped_and_found_out() -> None:
 
 def test_a_drive_without_a_watchdog_is_told_so() -> None:
     plant = standing(READY, watchdog=None)
-    assert plant.reasons("measure_link_loss") == {"no_watchdog"}
+    assert plant.reasons("test_communication_loss") == {"no_watchdog"}
     with pytest.raises(CommandRejected, match="has no watchdog"):
-        plant.ask(MeasureLinkLoss(Axis.AZIMUTH))
+        plant.ask(RunCommunicationLossTest(Axis.AZIMUTH))
 
 
 def test_a_drive_that_loses_power_in_the_link_loss_test_ends_it_and_its_zero() -> None:
     plant = standing(READY)
-    plant.ask(MeasureLinkLoss(Axis.AZIMUTH))
+    plant.ask(RunCommunicationLossTest(Axis.AZIMUTH))
     plant.forward(1.3)
     plant.drive.inject(Fault(FaultKind.POWER_LOSS))
     plant.forward(0.2)
     assert plant.controller.memory.home is None
     assert "has restarted" in plant.controller.memory.home_lost
     assert plant.controller.memory.proofs.link_loss is None
-    assert plant.happened(EventKind.PROOF_ENDED)[-1].data["outcome"] == "interrupted"
+    assert plant.happened(EventKind.DRIVE_TEST_ENDED)[-1].data["outcome"] == "interrupted"
 
 
 def test_a_drive_whose_answer_to_silence_is_a_fault_is_recorded_with_its_code() -> None:
     plant = standing(READY)
-    plant.ask(MeasureLinkLoss(Axis.AZIMUTH))
+    plant.ask(RunCommunicationLossTest(Axis.AZIMUTH))
     plant.forward(1.3)
     plant.drive.inject(Fault(FaultKind.DRIVE_FAULT, amount=17))
     until_holding(plant)
@@ -277,7 +277,7 @@ def test_a_drive_whose_answer_to_silence_is_a_fault_is_recorded_with_its_code() 
 
 def test_a_cut_link_ends_a_test_and_the_drive_stops_by_itself() -> None:
     plant = standing(READY)
-    plant.ask(MeasureStop(Axis.AZIMUTH, StopSpeed.JOG))
+    plant.ask(RunStopTest(Axis.AZIMUTH, StopSpeed.JOG))
     plant.forward(1.0)
     plant.cut = True
     plant.forward(3.0)
@@ -290,7 +290,7 @@ def test_a_cut_link_ends_a_test_and_the_drive_stops_by_itself() -> None:
 
 def test_nothing_else_moves_the_axes_during_a_test() -> None:
     plant = standing(READY)
-    plant.ask(MeasureStop(Axis.AZIMUTH, StopSpeed.JOG))
+    plant.ask(RunStopTest(Axis.AZIMUTH, StopSpeed.JOG))
     for command in (Jog("p1", Axis.AZIMUTH, 1), Move(Orientation(10.0, 10.0)), Track()):
         with pytest.raises(CommandRejected, match="is running a drive test"):
             plant.ask(command)
@@ -299,7 +299,7 @@ def test_nothing_else_moves_the_axes_during_a_test() -> None:
 def test_a_drive_that_will_not_stop_is_a_fault() -> None:
     story = Scripted(BLANK)
     story.tick()
-    story.ask(MeasureStop(Axis.AZIMUTH, StopSpeed.JOG))
+    story.ask(RunStopTest(Axis.AZIMUTH, StopSpeed.JOG))
     for tenth in range(1, 100):
         turning = AxisFeedback(0.3 * tenth, 3.0, moving=True, homed=False)
         story.reading = Feedback(turning, AxisFeedback(0.0, 0.0, moving=False, homed=False), boot_count=1)
@@ -315,5 +315,5 @@ def test_kinds_of_proofs_are_named_in_the_journal() -> None:
         plant.ask(command)
         until_holding(plant)
         plant.forward(1.0)
-    named = [event.data["proof"] for event in plant.happened(EventKind.PROOF_STARTED)]
+    named = [event.data["proof"] for event in plant.happened(EventKind.DRIVE_TEST_STARTED)]
     assert named == [ProofKind.DIRECTION, ProofKind.SCALE, ProofKind.STOP, ProofKind.LINK_LOSS]

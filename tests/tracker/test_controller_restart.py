@@ -10,10 +10,10 @@ from app.tracker.axes import Axis
 from app.tracker.commands import (
     GoToStart,
     Jog,
-    LockOut,
     Park,
     PauseShow,
     RunShow,
+    SetInhibit,
     Stop,
     Track,
 )
@@ -59,7 +59,7 @@ def wind(**settings: object) -> TrackerConfig:
 def test_a_storm_before_the_restart_stows_at_the_first_tick(fault: FaultResult) -> None:
     plant = reborn(TRACKED, known(STORM))
     assert doing(plant) is ActivityName.STOWING
-    assert plant.controller.memory.protection is Protection.TYPHOON
+    assert plant.controller.memory.protection is Protection.WIND_STOW
     seen = plant.snapshot
     assert seen.protection is not None
     text = "The wind at Tracker 1 was 28.0 m/s before the restart and is not known to be calm."
@@ -112,7 +112,7 @@ def test_a_sensor_that_is_not_heard_again_is_a_bad_one(fault: FaultResult) -> No
     plant.forward(2)
     assert doing(plant) is ActivityName.STOWING
     text = "The wind sensor has reported nothing since the restart; the panel is stowed as a precaution."
-    assert [one.message for one in plant.happened(EventKind.SENSOR_DOUBTED)] == [text]
+    assert [one.message for one in plant.happened(EventKind.SENSOR_INVALID)] == [text]
     fault.shows(text)
 
 
@@ -153,7 +153,7 @@ def test_once_heard_it_is_a_sensor_like_any_other() -> None:
     plant = reborn(TRACKED, known(4.0)).forward(30)
     plant.blow(4.0).forward(120)
     assert doing(plant) is ActivityName.TRACKING
-    assert not plant.happened(EventKind.SENSOR_DOUBTED)
+    assert not plant.happened(EventKind.SENSOR_INVALID)
 
 
 @pytest.mark.fault(83)
@@ -185,7 +185,7 @@ def test_nothing_moves_by_itself_once_the_switch_at_the_cabinet_is_back_on_remot
     plant.weather = known(STORM)
     plant.forward(2)
     assert doing(plant) is ActivityName.HOLDING
-    plant.drive.clear_faults()
+    plant.drive.end_injected_faults()
     plant.forward(30)
     assert doing(plant) is ActivityName.HOLDING
     assert plant.snapshot.not_stowed is not None
@@ -242,7 +242,7 @@ def _parked(plant: Plant) -> None:
 
 def _locked(plant: Plant) -> None:
     plant.ask(Track())
-    plant.ask(LockOut("Ayse", "bearing"))
+    plant.ask(SetInhibit("Ayse", "bearing"))
     plant.forward(5)
 
 
@@ -292,6 +292,6 @@ def test_what_a_person_had_stopped_stays_and_says_so(do: Callable[[Plant], None]
 
 
 def test_calm_from_before_the_restart_ends_no_storm() -> None:
-    stormy = replace(TRACKED, protection=Protection.TYPHOON)
+    stormy = replace(TRACKED, protection=Protection.WIND_STOW)
     plant = reborn(stormy, known(4.0), wind(bad=Reaction.WARN)).forward(1300)
     assert doing(plant) is ActivityName.STOWED

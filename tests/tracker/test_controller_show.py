@@ -15,7 +15,7 @@ from app.tracker.commands import (
     PauseShow,
     ResumeShow,
     RunShow,
-    SetZero,
+    SetHome,
     Stop,
     StopShow,
     Track,
@@ -154,7 +154,7 @@ def test_a_show_takes_over_from_tracking_and_says_so(plant: Plant) -> None:
     assert not plant.controller.memory.tracking_on
     plant.forward(60.0)
     plant.ask(RunShow(PLAN))
-    for command in (Track(), Move(Orientation(10.0, 10.0)), GoToStart(PLAN), SetZero()):
+    for command in (Track(), Move(Orientation(10.0, 10.0)), GoToStart(PLAN), SetHome()):
         with pytest.raises(CommandRejected, match="show"):
             plant.ask(command)
 

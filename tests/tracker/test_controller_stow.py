@@ -13,13 +13,13 @@ from app.tracker.commands import (
     GoToStart,
     Home,
     Jog,
-    LockOut,
     Move,
     Park,
     PauseShow,
-    ReleaseLock,
+    ReleaseInhibit,
     Resume,
     RunShow,
+    SetInhibit,
     Stop,
     Stow,
     Track,
@@ -71,7 +71,7 @@ def test_a_storm_stows_a_tracking_panel_and_calm_minutes_bring_it_back() -> None
     assert doing(plant) is ActivityName.STOWING
     assert seen.warning is not None
     assert seen.protection is not None
-    assert (seen.protection.protection, seen.stow) == (Protection.TYPHOON, StowName.WIND)
+    assert (seen.protection.protection, seen.stow) == (Protection.WIND_STOW, StowName.WIND)
     assert plant.told.horn
     plant.forward(40)
     assert doing(plant) is ActivityName.STOWED
@@ -291,7 +291,7 @@ def test_in_too_little_light_the_panel_stays_where_it_is() -> None:
     seen = plant.snapshot
     assert plant.azimuth_deg == before
     assert seen.protection is not None
-    assert seen.protection.protection is Protection.HIBERNATE
+    assert seen.protection.protection is Protection.LOW_LIGHT_HOLD
     assert "in low-light hold" in seen.activity_text
     assert [reason.code for reason in seen.waiting] == ["hibernation"]
     plant.blow(2.0, light_wm2=700.0).forward(2)
@@ -342,7 +342,7 @@ def test_after_a_restart_a_storm_that_was_not_seen_over_still_holds() -> None:
     fresh = restarted(plant)
     fresh.blow(None, snow_kg=None, light_wm2=None).forward(3600)
     assert doing(fresh) is ActivityName.STOWED
-    assert fresh.controller.memory.protection is Protection.TYPHOON
+    assert fresh.controller.memory.protection is Protection.WIND_STOW
 
 
 @pytest.mark.fault(38)
@@ -361,7 +361,7 @@ def test_a_wind_sensor_that_fails_stows_after_a_minute(fault: FaultResult) -> No
     assert seen.protection is not None
     assert seen.protection.reason.code == "wind_sensor_bad"
     assert "wind_sensor_bad" in {reason.code for reason in seen.notices}
-    assert [event.data["quantity"] for event in plant.happened(EventKind.SENSOR_DOUBTED)] == [Quantity.WIND]
+    assert [event.data["quantity"] for event in plant.happened(EventKind.SENSOR_INVALID)] == [Quantity.WIND]
     fault.shows(seen.protection.reason.message)
     plant.blow(2.0).forward(CALM_S + 30)
     assert doing(plant) is ActivityName.TRACKING
@@ -416,7 +416,7 @@ def test_a_single_axis_panel_stows_as_level_as_it_can() -> None:
 
 def test_a_maintenance_lock_forbids_the_stow_too_and_outlives_a_restart() -> None:
     plant = tracking()
-    plant.ask(LockOut("Ada", "new bearing"))
+    plant.ask(SetInhibit("Ada", "new bearing"))
     plant.forward(5)
     before = plant.elevation_deg
     plant.blow(STORM).forward(60)
@@ -424,28 +424,28 @@ def test_a_maintenance_lock_forbids_the_stow_too_and_outlives_a_restart() -> Non
     reason = plant.snapshot.not_stowed
     assert reason is not None
     assert "Ada (new bearing)" in reason.message
-    for command in (Track(), Stow(StowName.WIND), Park(), Move(Orientation(90.0, 30.0)), LockOut("Bob")):
+    for command in (Track(), Stow(StowName.WIND), Park(), Move(Orientation(90.0, 30.0)), SetInhibit("Bob")):
         with pytest.raises(CommandRejected) as refused:
             plant.ask(command)
-        assert "locked_out" in {one.code for one in refused.value.reasons}
+        assert "maintenance_inhibit" in {one.code for one in refused.value.reasons}
     fresh = restarted(plant)
     fresh.forward(30)
     assert fresh.snapshot.lock is not None
     fresh.ask(Jog("a", Axis.AZIMUTH, 1))
     assert doing(fresh) is ActivityName.JOGGING
     fresh.ask(EndJog("a"))
-    fresh.ask(ReleaseLock())
+    fresh.ask(ReleaseInhibit())
     fresh.forward(60)
     assert doing(fresh) is ActivityName.HOLDING
     with pytest.raises(CommandRejected):
-        fresh.ask(ReleaseLock())
+        fresh.ask(ReleaseInhibit())
 
 
 @pytest.mark.parametrize("name", ["", "   ", "x" * 61, "a\nb"])
 def test_a_lock_bears_a_name(name: str) -> None:
     plant = Plant(READY).forward(1)
     with pytest.raises(CommandRejected, match="requires a name"):
-        plant.ask(LockOut(name))
+        plant.ask(SetInhibit(name))
 
 
 @pytest.mark.parametrize("via", ["mqtt", "sunspec", "token"])

@@ -7,7 +7,7 @@ import pytest
 
 from app.sun.position import Location, SunPosition
 from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, Move, SelectMode, SetZero, Stop, Track
+from app.tracker.commands import CommandRejected, Move, SelectMode, SetHome, Stop, Track
 from app.tracker.config import NightBehaviour, Orientation, TrackerConfig
 from app.tracker.memory import Confirmation, StepName, TrackerMemory
 from app.tracker.mode import Mode
@@ -242,7 +242,7 @@ def test_after_a_restart_without_trust_it_waits_visibly(memory: TrackerMemory, c
     plant = Plant(memory)
     plant.forward(1.0)
     assert plant.activity is not ActivityName.TRACKING
-    assert len(plant.happened(EventKind.TRACKING_WAITING)) == 1
+    assert len(plant.happened(EventKind.TRACKING_INTERRUPTED)) == 1
     assert code in {reason.code for reason in plant.snapshot.waiting}
 
 
@@ -259,7 +259,7 @@ def test_a_drive_that_answers_late_after_a_restart_does_not_start_to_move() -> N
 def test_rehoming_leaves_the_start_to_the_operator() -> None:
     plant = Plant(replace(READY, tracking_on=True, home=None))
     plant.tick()
-    plant.ask(SetZero(tuple(Axis)))
+    plant.ask(SetHome(tuple(Axis)))
     plant.forward(1.0)
     shown = plant.snapshot
     assert shown.activity is ActivityName.HOLDING
@@ -282,7 +282,7 @@ def test_a_doubted_clock_holds_the_panel_until_it_is_trusted_again() -> None:
     assert not shown.in_position
     assert shown.waiting[0].code == "clock_untrusted"
     assert "clock" in shown.activity_text
-    assert len(plant.happened(EventKind.TRACKING_WAITING)) == 1
+    assert len(plant.happened(EventKind.TRACKING_INTERRUPTED)) == 1
     plant.clock_trusted = True
     plant.forward(60.0)
     assert plant.snapshot.off_sun_deg is not None

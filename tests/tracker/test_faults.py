@@ -14,25 +14,25 @@ import pytest
 from app.drives.faults import Fault, FaultKind
 from app.tracker.axes import Axis, JogSpeed
 from app.tracker.commands import (
-    BeginService,
+    BeginServiceMode,
     CommandRejected,
-    ConfirmClear,
-    EndService,
+    ConfirmAreaClear,
+    EndServiceMode,
     Home,
     Jog,
     Move,
     Park,
-    ProveDirection,
     ResetFault,
+    RunDirectionTest,
     Step,
     Stop,
     Track,
 )
-from app.tracker.conditions import Action
 from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.drive_tests import StopProof, StopSpeed
+from app.tracker.interlocks import Action
 from app.tracker.machine_watch import Braking, allowed_overrun_deg
 from app.tracker.motion import HALT, Feedback
-from app.tracker.proofs import StopProof, StopSpeed
 from app.tracker.protections.machine_config import MachineProtection, Recoveries, Recovery, RecoveryPolicy
 from app.tracker.protections.words import LinkQuality
 from app.tracker.reason import Reason
@@ -137,7 +137,7 @@ def test_the_wrong_axis_moves_and_the_proof_of_the_direction_fails(witnessed: Wi
     plant = Plant(READY)
     plant.forward(1.0)
     hurt(plant, FaultKind.SWAPPED_AXES)
-    plant.ask(ProveDirection(Axis.AZIMUTH))
+    plant.ask(RunDirectionTest(Axis.AZIMUTH))
     assert witnessed(plant, "axes_swapped", within_s=2.0) <= 2.0
     assert stands(plant)
     assert plant.controller.memory.proofs.directions == ()
@@ -191,8 +191,8 @@ def test_an_axis_that_creeps_is_told_until_it_rests(witnessed: Witness) -> None:
     )
     assert took_s <= 4.0, "a degree at half a degree a second"
     plant.forward(30.0)
-    assert len(plant.happened(EventKind.CREPT)) == 1, "said once, not with every degree"
-    plant.drive.clear_faults()
+    assert len(plant.happened(EventKind.UNCOMMANDED_MOTION)) == 1, "said once, not with every degree"
+    plant.drive.end_injected_faults()
     plant.forward(70.0)
     assert "creep" not in shown(plant.snapshot)
 
@@ -206,7 +206,7 @@ def test_an_axis_that_stops_too_late_is_slow_until_its_stops_are_short(witnessed
     hurt(plant, FaultKind.LONG_STOP)
     plant.ask(Stop())
     witnessed(plant, "overrun", within_s=5.0, policy="by itself: three short stops in a row")
-    plant.drive.clear_faults()
+    plant.drive.end_injected_faults()
     plant.forward(10.0)
     for _ in range(3):
         plant.ask(Move(Orientation(20.0, 20.0)))
@@ -298,7 +298,7 @@ def test_a_search_whose_switch_never_comes_ends_with_the_travel_and_says_whose(
     assert stands(plant)
     assert "home_lost" in shown(plant.snapshot)
     assert "home_not_trusted" in plant.reasons("track") & plant.reasons("move")
-    plant.drive.clear_faults()
+    plant.drive.end_injected_faults()
     plant.ask(Home())
     plant.forward(120.0)
     assert plant.snapshot.home_trusted
@@ -346,7 +346,8 @@ def test_an_ordinary_stop_keeps_the_zero_and_a_search_gives_it_up() -> None:
 
 ALLOWED_ON_LOCAL = {
     Action.STOP, Action.STOP_SHOW, Action.PAUSE_SHOW, Action.RESET_FAULT, Action.SET_MODE,
-    Action.LOCK_OUT, Action.RELEASE_LOCK, Action.BEGIN_SERVICE, Action.CONFIRM_CLEAR, Action.END_SERVICE,
+    Action.SET_INHIBIT, Action.RELEASE_INHIBIT,
+    Action.BEGIN_SERVICE_MODE, Action.CONFIRM_AREA_CLEAR, Action.END_SERVICE_MODE,
 }  # fmt: skip
 """What moves nothing and says nothing about where the panel is; everything else is refused on local."""
 
@@ -361,10 +362,12 @@ def test_the_switch_at_the_cabinet_beats_everything() -> None:
     for action in Action:
         assert ("local" in plant.reasons(action)) is (action not in ALLOWED_ON_LOCAL), action
     assert plant.reasons("stop") == set()
-    plant.drive.clear_faults()
+    plant.drive.end_injected_faults()
     plant.forward(5.0)
     assert plant.activity is ActivityName.HOLDING, "nothing resumes by itself"
-    assert [len(plant.happened(kind)) for kind in (EventKind.LOCAL_TAKEN, EventKind.LOCAL_GIVEN_BACK)] == [
+    assert [
+        len(plant.happened(kind)) for kind in (EventKind.SWITCHED_TO_LOCAL, EventKind.SWITCHED_TO_REMOTE)
+    ] == [
         1,
         1,
     ]
@@ -373,12 +376,12 @@ def test_the_switch_at_the_cabinet_beats_everything() -> None:
 
 def test_service_moves_slowly_and_only_while_the_area_is_clear() -> None:
     plant = moving(tracks=True)
-    plant.ask(BeginService("Ada"))
+    plant.ask(BeginServiceMode("Ada"))
     plant.forward(3.0)
     assert plant.snapshot.service is not None
     assert plant.reasons("move") == plant.reasons("jog") == {"area_not_clear"}
     assert "in_service" in plant.reasons("track") & plant.reasons("park") & plant.reasons("stow")
-    plant.ask(ConfirmClear())
+    plant.ask(ConfirmAreaClear())
     plant.ask(Move(Orientation(20.0, 20.0)))
     plant.forward(5.0)
     seen = plant.drive.observe()
@@ -386,7 +389,7 @@ def test_service_moves_slowly_and_only_while_the_area_is_clear() -> None:
     assert abs(seen.elevation.velocity_dps) <= CONFIG.elevation.jog_slow_dps + 1e-9
     plant.ask(Stop())
     plant.forward(2.0)
-    plant.ask(EndService())
+    plant.ask(EndServiceMode())
     assert plant.snapshot.service is None
     plant.ask(Park())
 
@@ -394,15 +397,15 @@ def test_service_moves_slowly_and_only_while_the_area_is_clear() -> None:
 def test_the_word_that_the_area_is_clear_expires_in_mid_move() -> None:
     plant = Plant(READY, config=guarded(clear_for_s=20.0))
     plant.tick()
-    plant.ask(BeginService("Ada"))
+    plant.ask(BeginServiceMode("Ada"))
     plant.forward(1.0)
-    plant.ask(ConfirmClear())
+    plant.ask(ConfirmAreaClear())
     plant.ask(SOUTH)
     plant.forward(19.5)
     assert doing(plant) is ActivityName.MOVING
     plant.forward(1.0)
     assert doing(plant) is ActivityName.HOLDING
-    assert plant.happened(EventKind.AREA_DOUBTED)
+    assert plant.happened(EventKind.AREA_CONFIRMATION_EXPIRED)
     with pytest.raises(CommandRejected, match="the area is not confirmed clear"):
         plant.ask(SOUTH)
 
@@ -411,9 +414,9 @@ def test_service_bears_a_name_and_is_left_once() -> None:
     plant = Plant(READY)
     plant.tick()
     with pytest.raises(CommandRejected, match="name of 1 to 60"):
-        plant.ask(BeginService("  "))
+        plant.ask(BeginServiceMode("  "))
     with pytest.raises(CommandRejected, match="not in service mode"):
-        plant.ask(EndService())
+        plant.ask(EndServiceMode())
 
 
 def recovering(kind: Recovery, *, times: int = 2) -> Plant:
@@ -425,7 +428,7 @@ def block_and_free(plant: Plant) -> None:
     """Block the axis until the fault is latched, then remove what blocked it."""
     hurt(plant, FaultKind.STALL)
     plant.forward(300.0)
-    plant.drive.clear_faults()
+    plant.drive.end_injected_faults()
 
 
 def test_without_a_policy_a_person_leaves_the_fault() -> None:
@@ -439,7 +442,9 @@ def test_a_fault_is_left_by_itself_as_often_as_its_policy_says() -> None:
     plant = recovering(Recovery.LIMITED)
     hurt(plant, FaultKind.STALL)
     plant.forward(1500.0)
-    assert len(plant.happened(EventKind.FAULT_RECOVERED)) == 2, "twice an hour, then a person has to come"
+    assert len(plant.happened(EventKind.FAULT_RESET_AUTOMATICALLY)) == 2, (
+        "twice an hour, then a person has to come"
+    )
     assert plant.activity is ActivityName.FAULTED
     announced = plant.happened(EventKind.MOTION_ANNOUNCED)
     assert [event.message for event in announced if "fault" in event.message], "its motion is announced"
@@ -461,7 +466,7 @@ def test_a_fault_that_needs_service_is_cleared_in_service_only() -> None:
     plant = recovering(Recovery.SERVICE)
     block_and_free(plant)
     assert plant.reasons("reset_fault") == {"service_needed"}
-    plant.ask(BeginService("Ada"))
+    plant.ask(BeginServiceMode("Ada"))
     plant.ask(ResetFault())
     assert plant.activity is not ActivityName.FAULTED
 
@@ -471,9 +476,9 @@ def test_no_fault_is_left_by_itself_under_a_maintenance_lock_or_in_service() -> 
     hurt(plant, FaultKind.STALL)
     while plant.activity is not ActivityName.FAULTED:
         plant.forward(10.0)
-    plant.ask(BeginService("Ada"))
+    plant.ask(BeginServiceMode("Ada"))
     plant.forward(60.0)
-    assert not plant.happened(EventKind.FAULT_RECOVERED)
+    assert not plant.happened(EventKind.FAULT_RESET_AUTOMATICALLY)
 
 
 def test_a_reading_of_the_supply_that_is_not_there_is_no_fault() -> None:
@@ -487,9 +492,9 @@ def test_a_reading_of_the_supply_that_is_not_there_is_no_fault() -> None:
 def test_a_slow_key_stays_slow() -> None:
     plant = Plant(READY)
     plant.tick()
-    plant.ask(BeginService("Ada"))
+    plant.ask(BeginServiceMode("Ada"))
     plant.forward(1.0)
-    plant.ask(ConfirmClear())
+    plant.ask(ConfirmAreaClear())
     for beat in range(1, 20):
         plant.ask(Jog("press", Axis.AZIMUTH, 1, JogSpeed.FAST, beat))
         plant.forward(0.1)

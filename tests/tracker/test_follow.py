@@ -7,7 +7,7 @@ from math import sqrt
 import pytest
 
 from app.tracker.axes import AxisConfig
-from app.tracker.follow import AxisWatch, watch
+from app.tracker.following_error import AxisWatch, watch
 from app.tracker.motion import AxisCommand, AxisFeedback, Halt, Position, Velocity
 from tests.tracker.plant import MORNING
 

@@ -7,9 +7,9 @@ import pytest
 from app.tracker import guards
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import MountKind
-from app.tracker.follow import AxisWatch
+from app.tracker.following_error import AxisWatch
 from app.tracker.motion import AxisCommand, AxisFeedback, Feedback, Halt, Position, Velocity
-from app.tracker.mounts.abilities import axis_words
+from app.tracker.mounts.capabilities import axis_words
 from app.tracker.mounts.usual import mounted
 from app.tracker.reason import Reason
 from tests.tracker.plant import CONFIG, MORNING, TRUST

@@ -6,7 +6,7 @@ import pytest
 
 from app.alarms.conditions import SiteHealth, of_tracker
 from app.tracker.axes import Axis
-from app.tracker.commands import Command, Home, SetZero, Stop, UndoZero
+from app.tracker.commands import Command, Home, SetHome, Stop, UndoHome
 from app.tracker.snapshot import ActivityName, Snapshot
 from tests.tracker.plant import BLANK, READY, Plant
 from tests.tracker.scripted import Scripted
@@ -29,7 +29,7 @@ def alarmed_during(plant: Plant, command: Command, seconds: float) -> int:
     return found
 
 
-@pytest.mark.parametrize("command", [Home(), SetZero(), SetZero((Axis.AZIMUTH,))])
+@pytest.mark.parametrize("command", [Home(), SetHome(), SetHome((Axis.AZIMUTH,))])
 @pytest.mark.parametrize("memory", [BLANK, READY])
 def test_homing_and_setting_home_raise_no_alarm(memory: object, command: Command) -> None:
     plant = Plant(READY if memory is READY else BLANK)
@@ -42,10 +42,10 @@ def test_homing_and_setting_home_raise_no_alarm(memory: object, command: Command
 def test_undoing_it_raises_no_alarm(memory: object) -> None:
     plant = Plant(READY if memory is READY else BLANK)
     plant.tick()
-    plant.ask(SetZero())
+    plant.ask(SetHome())
     plant.forward(1.0)
     assert plant.snapshot.can_undo_home
-    assert alarmed_during(plant, UndoZero(), 2.0) == 0
+    assert alarmed_during(plant, UndoHome(), 2.0) == 0
     assert plant.snapshot.home_trusted == (memory is READY)
 
 

@@ -83,7 +83,7 @@ def test_in_cloud_the_correction_decays_and_in_sunlight_it_is_found_again() -> N
     sunny.play(FaultKind.CLOUD, 1.0)
     sunny.forward(timedelta(minutes=15))
     assert sunny.correction[0] == pytest.approx(before_deg / 2.718, rel=0.05)
-    sunny.rehearsal.drive.clear_faults()
+    sunny.rehearsal.drive.end_injected_faults()
     sunny.forward(timedelta(minutes=10))
     assert sunny.correction[0] == pytest.approx(before_deg, abs=0.05)
 

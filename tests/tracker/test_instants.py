@@ -144,7 +144,7 @@ def test_a_clock_that_jumps_moves_nothing_until_it_is_trusted(by: timedelta, fau
     plant.forward(58.0)
     assert (plant.azimuth_deg, plant.elevation_deg) == stood
     assert plant.activity is ActivityName.TRACKING
-    (waiting,) = plant.happened(EventKind.TRACKING_WAITING)
+    (waiting,) = plant.happened(EventKind.TRACKING_INTERRUPTED)
     fault.noticed((waiting.at - plant.clock_error - jumped_at).total_seconds(), VIRTUAL)
     fault.shows(waiting.message)
     plant.jump(-by)

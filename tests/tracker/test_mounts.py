@@ -17,7 +17,7 @@ from app.tracker.config import MountConfig, MountKind, Orientation, Rows, Tracke
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
 from app.tracker.mount import aim, mode_direction, sky, to_axes
-from app.tracker.mounts.abilities import ABILITIES
+from app.tracker.mounts.capabilities import ABILITIES
 from app.tracker.mounts.kinematics import angles, direction, followed
 
 FREE = AxisConfig(-180.0, 180.0, 6.0, 6.0, 0.5, 3.0)

@@ -6,7 +6,7 @@ from app.tracker.activity import AxisPair
 from app.tracker.config import TrackerConfig
 from app.tracker.motion import AxisFeedback, Feedback
 from app.tracker.mount import AxisTarget
-from app.tracker.pursuit import due
+from app.tracker.setpoint_scheduler import due
 from app.tracker.strategy import DEADBAND, EncoderDeadband
 from tests.tracker.plant import CONFIG
 

@@ -12,7 +12,7 @@ from app.sun.position import Algorithm, Location
 from app.tracker.axes import AxisConfig
 from app.tracker.config import MountKind, TrackerConfig
 from app.tracker.mode import Mode
-from app.tracker.mounts.abilities import abilities, default_mode
+from app.tracker.mounts.capabilities import abilities, default_mode
 from app.tracker.mounts.usual import mounted
 from app.tracker.programs.plan import ShowPlan
 from app.tracker.programs.show import check_show, schedule_of

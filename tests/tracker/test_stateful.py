@@ -32,25 +32,25 @@ from app.tracker.commands import (
     GoToStart,
     Home,
     Jog,
-    LockOut,
     Move,
     Park,
     PauseShow,
-    ReleaseLock,
+    ReleaseInhibit,
     ResetFault,
     Resume,
     ResumeShow,
     RunShow,
     SelectMode,
-    SetZero,
+    SetHome,
+    SetInhibit,
     Step,
     Stop,
     StopShow,
     Stow,
     Track,
 )
-from app.tracker.conditions import Action
 from app.tracker.config import Orientation
+from app.tracker.interlocks import Action
 from app.tracker.mode import Mode
 from app.tracker.protections.config import LightProtection, ProtectionConfig, SnowProtection, WindProtection
 from app.tracker.protections.words import StowName
@@ -88,10 +88,10 @@ FAULTS = st.builds(
     AXES,
     st.floats(1.0, 50.0),
 )
-GUARDING = [Resume(), LockOut("Ayşe", "greasing"), ReleaseLock(), *(Stow(name) for name in StowName)]
+GUARDING = [Resume(), SetInhibit("Ayşe", "greasing"), ReleaseInhibit(), *(Stow(name) for name in StowName)]
 COMMANDS: st.SearchStrategy[Command] = st.one_of(
     st.builds(Step, AXES, st.sampled_from([-5.0, -0.1, 1.0, 5.0, 9.0])),
-    st.just(SetZero()),
+    st.just(SetHome()),
     st.just(Home()),
     st.builds(SelectMode, st.sampled_from(Mode), ORIENTATIONS),
     st.builds(Move, ORIENTATIONS),
@@ -165,11 +165,11 @@ class Operation(RuleBasedStateMachine):
     def get_moving(self, *, tracks: bool) -> None:
         """Do what a technician would on a fine day to get a tracker going."""
         self.plant.cut, self.plant.clock_trusted = False, True
-        self.plant.drive.clear_faults()
+        self.plant.drive.end_injected_faults()
         self.plant.blow()
         before = self.plant.controller.memory.home
         last = Track() if tracks else Park()
-        for command in (Stop(), ReleaseLock(), ResetFault(), SetZero(), SelectMode(Mode.DUAL), last):
+        for command in (Stop(), ReleaseInhibit(), ResetFault(), SetHome(), SelectMode(Mode.DUAL), last):
             self._forward(3.0)
             self._ask(command)
         self._forward(1.0)

@@ -67,7 +67,7 @@ def test_a_scenario_waits_for_its_time_in_calm() -> None:
         ("", "The weather is empty"),
         ("wind_mps\n3", "must name the columns: time and any of wind_mps"),
         ("time,moon\n10:00,1", "must name the columns"),
-        ("time,time\n10:00,1", "each azimuth only once"),
+        ("time,time\n10:00,1", "each once"),
         ("time,wind_mps\n10:00", "Line 2 of the weather has 1 fields; there must be 2"),
         ("time,wind_mps\nnoon,3", "Line 2 of the weather: give a time such as 11:30"),
         ("time,wind_mps\n96:00,3", "give a time such as 11:30"),
@@ -89,4 +89,4 @@ def test_a_day_has_a_bounded_number_of_steps_and_no_scenario_by_hand() -> None:
     with pytest.raises(ValueError, match="1 to 500 steps"):
         stepped_day(many, MIDNIGHT, ISTANBUL)
     with pytest.raises(ValueError, match="given in steps"):
-        day_of_scenario(Scenario.BY_HAND, "12:00", 1, MIDNIGHT, ISTANBUL)
+        day_of_scenario(Scenario.MANUAL, "12:00", 1, MIDNIGHT, ISTANBUL)

@@ -9,14 +9,14 @@ from datetime import datetime, timedelta
 from app.tracker.axes import Axis
 from app.tracker.commands import (
     Command,
-    ConfirmClear,
+    ConfirmAreaClear,
     EndJog,
-    EndService,
-    LockOut,
-    ReleaseLock,
+    EndServiceMode,
+    ReleaseInhibit,
     ResetFault,
     SelectMode,
-    SetZero,
+    SetHome,
+    SetInhibit,
     Stop,
 )
 from app.tracker.motion import AxisCommand, Halt, Position, Velocity
@@ -30,7 +30,15 @@ AUTOMATIC = {ActivityName.TRACKING, ActivityName.SHOWING}
 NEEDS_TRUST = AUTOMATIC | {ActivityName.STOWING}
 LIVE = BY_HAND | NEEDS_TRUST | {ActivityName.HOMING}
 MOVES_NOTHING = (
-    Stop | SelectMode | ResetFault | SetZero | LockOut | ReleaseLock | EndJog | ConfirmClear | EndService
+    Stop
+    | SelectMode
+    | ResetFault
+    | SetHome
+    | SetInhibit
+    | ReleaseInhibit
+    | EndJog
+    | ConfirmAreaClear
+    | EndServiceMode
 )
 HAND_GRACE = timedelta(seconds=5.2)
 

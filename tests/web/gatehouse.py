@@ -8,7 +8,7 @@ from starlette.routing import compile_path
 from starlette.types import Message, Receive, Send
 from starlette.types import Scope as Asked
 
-from app.access.keeper import Credentials
+from app.access.authenticator import Credentials
 from app.access.principal import Principal, SignInNeeded, Via, nobody
 from app.access.roles import GRANTS, KNOWN, NOBODY, Permission, Role
 from app.clock import VirtualClock

@@ -9,7 +9,7 @@ from typing import Any
 import httpx
 from fastapi import FastAPI
 
-from app.access.keeper import Keeper
+from app.access.authenticator import Keeper
 from app.access.principal import this_computer
 from app.access.roles import Role
 from app.clock import Clock, SystemClock

@@ -26,7 +26,7 @@ async def desk(tmp_path: Path) -> AsyncIterator[Desk]:
 async def happened(desk: Desk) -> None:
     """Let the machine do something by itself, and this computer sign a record."""
     site = desk.plant.site
-    site.note(site.model.event(EventKind.MACHINE_RESTARTS, "Controller memory high.", "machine"))
+    site.note(site.model.event(EventKind.CONTROLLER_RESTARTS, "Controller memory high.", "machine"))
     await desk.forward(1.0)
     signed = {
         "signatures": [{"role": "technician", "name": "machine operator", "strokes": []}],

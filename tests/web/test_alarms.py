@@ -100,7 +100,7 @@ async def test_the_journal_is_narrowed_and_handed_out_as_a_file(desk: Desk) -> N
     assert head == "number,at,kind,tracker_id,actor,message,data"
     assert "was acknowledged." in line
     whole = (await desk.ask("GET", "/api/v1/journal/export?format=json")).json()
-    assert {"alarm_raised", "alarm_acknowledged", "machine_started"} & {one["kind"] for one in whole}
+    assert {"alarm_raised", "alarm_acknowledged", "controller_started"} & {one["kind"] for one in whole}
     assert (await desk.ask("GET", "/api/v1/journal/export?format=json&actor=nobody")).json() == []
 
 

@@ -254,12 +254,15 @@ async def test_simulation_and_backups_against_the_real_store(tmp_path: Path) -> 
         made = await desk.ask("POST", "/api/v1/simulations", json=new)
         assert made.status_code == 201, made.text
         frames = (await desk.ask("GET", f"{made.headers['location']}/frames")).json()
-        backup = await desk.ask("POST", "/api/v1/backup")
-        download = await desk.ask("GET", "/api/v1/backup")
+        backup = await desk.ask("POST", "/api/v1/backups")
+        download = await desk.ask("GET", backup.headers["location"])
+        missing = await desk.ask("GET", "/api/v1/backups/other.backup")
     assert frames["frame_count"] == made.json()["frame_count"] == 61
     assert (tmp_path / "backups" / backup.json()["file"]).stat().st_size == backup.json()["size_bytes"]
     assert backup.json()["recordings"] == 1
-    assert backup.json()["audit_head"] == download.headers["audit-head"]
+    assert backup.json()["audit_head"]
+    assert len(download.content) == backup.json()["size_bytes"]
+    assert missing.status_code == 404
     assert download.content.startswith(b"SQLite format 3")
 
 

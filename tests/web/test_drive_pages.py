@@ -52,7 +52,7 @@ async def rest(desk: Desk) -> None:
 
 
 async def proofs(desk: Desk) -> dict[tuple[str, str | None, str | None], dict[str, Any]]:
-    states = (await desk.ask("GET", f"{API}/proofs")).json()["states"]
+    states = (await desk.ask("GET", f"{API}/drive-tests")).json()["states"]
     return {(one["kind"], one["axis"], one["speed"]): one for one in states}
 
 
@@ -62,18 +62,18 @@ async def command(desk: Desk, kind: str, **more: object) -> httpx.Response:
 
 async def test_the_api_proves_a_drive_as_the_page_does(desk: Desk) -> None:
     assert {one["status"] for one in (await proofs(desk)).values()} == {"to_do"}
-    started = await command(desk, "prove_direction", axis="elevation")
+    started = await command(desk, "test_direction", axis="elevation")
     assert (started.status_code, started.json()["activity"]) == (202, "moving")
     await rest(desk)
-    judged = await desk.ask("POST", f"{API}/proofs/direction", json={"right": True})
+    judged = await desk.ask("POST", f"{API}/drive-tests/direction", json={"right": True})
     assert judged.json()["measured"]["directions"][0]["moved_deg"] == pytest.approx(3.0, abs=0.1)
-    await command(desk, "prove_scale", axis="elevation", degrees=10)
+    await command(desk, "test_scale", axis="elevation", degrees=10)
     await rest(desk)
-    await desk.ask("POST", f"{API}/proofs/scale", json={"measured_deg": 10.1})
-    started = await command(desk, "measure_stop", axis="elevation", speed="jog")
+    await desk.ask("POST", f"{API}/drive-tests/scale", json={"measured_deg": 10.1})
+    started = await command(desk, "test_stop", axis="elevation", speed="jog")
     assert started.json()["activity"] == "measuring"
     await rest(desk)
-    await command(desk, "measure_link_loss", axis="azimuth")
+    await command(desk, "test_communication_loss", axis="azimuth")
     await rest(desk)
     after = await proofs(desk)
     done = {key for key, one in after.items() if one["status"] == "done"}
@@ -86,9 +86,9 @@ async def test_the_api_proves_a_drive_as_the_page_does(desk: Desk) -> None:
 
 
 async def test_results_stand_in_the_record_as_json_page_html_and_pdf(desk: Desk) -> None:
-    await command(desk, "measure_stop", axis="azimuth", speed="jog")
+    await command(desk, "test_stop", axis="azimuth", speed="jog")
     await rest(desk)
-    await command(desk, "measure_link_loss", axis="azimuth")
+    await command(desk, "test_communication_loss", axis="azimuth")
     await rest(desk)
     record = (await desk.ask("GET", f"{API}/record")).json()
     (stop,) = record["measured"]["stops"]
@@ -107,30 +107,30 @@ async def test_results_stand_in_the_record_as_json_page_html_and_pdf(desk: Desk)
 
 
 async def test_what_cannot_be_is_refused_with_every_reason(desk: Desk) -> None:
-    nothing = await desk.ask("POST", f"{API}/proofs/direction", json={"right": True})
+    nothing = await desk.ask("POST", f"{API}/drive-tests/direction", json={"right": True})
     assert nothing.status_code == 409
     assert nothing.json()["reasons"][0]["code"] == "nothing_to_judge"
-    rated = await command(desk, "measure_stop", axis="azimuth", speed="rated")
+    rated = await command(desk, "test_stop", axis="azimuth", speed="rated")
     assert rated.json()["reasons"][0]["code"] == "home_not_trusted"
-    limit = await desk.ask("POST", f"{API}/proofs/limits", json={"axis": "azimuth", "end": "lower"})
+    limit = await desk.ask("POST", f"{API}/drive-tests/limits", json={"axis": "azimuth", "end": "lower"})
     assert limit.status_code == 409
     assert (await desk.ask("POST", f"{API}/drive/restore")).status_code == 409
-    assert (await command(desk, "prove_scale", axis="azimuth", degrees=20)).status_code == 422
+    assert (await command(desk, "test_scale", axis="azimuth", degrees=20)).status_code == 422
     no_tools = await desk.ask("POST", f"{API}/drive/check", json={"kind": "modbus-tcp", "port": 1})
     assert no_tools.json()["reasons"][0]["code"] == "no_drive_tools"
 
 
 async def test_the_page_asks_in_words_and_turns_the_axis_round(desk: Desk) -> None:
-    await desk.ask("POST", f"{T1}/proofs/direction", data={"axis": "azimuth"})
+    await desk.ask("POST", f"{T1}/drive-tests/direction", data={"axis": "azimuth"})
     await rest(desk)
-    page = (await desk.ask("GET", f"{T1}/proofs")).text
+    page = (await desk.ask("GET", f"{T1}/drive-tests")).text
     assert "Did the panel turn to the right, clockwise as seen from above?" in page
-    block = (await desk.ask("GET", f"{T1}/proofs", headers=HTMX)).text
+    block = (await desk.ask("GET", f"{T1}/drive-tests", headers=HTMX)).text
     assert "<html" not in block
     assert 'id="proofs"' in block
-    refused = await desk.ask("POST", f"{T1}/proofs/direction/answer", data={"answer": "perhaps"})
+    refused = await desk.ask("POST", f"{T1}/drive-tests/direction/answer", data={"answer": "perhaps"})
     assert refused.status_code == 422
-    await desk.ask("POST", f"{T1}/proofs/direction/answer", data={"answer": "wrong"})
+    await desk.ask("POST", f"{T1}/drive-tests/direction/answer", data={"answer": "wrong"})
     assert (await desk.ask("GET", API)).json()["drive"]["azimuth"]["inverted"] is True
     undone = await desk.ask("POST", f"{T1}/drive/restore")
     assert undone.headers["location"] == f"{T1}/drive?done=restored"
@@ -138,23 +138,23 @@ async def test_the_page_asks_in_words_and_turns_the_axis_round(desk: Desk) -> No
 
 
 async def test_a_measured_angle_that_is_no_number_stays_as_it_was_typed(desk: Desk) -> None:
-    await desk.ask("POST", f"{T1}/proofs/scale", data={"axis": "elevation", "way": "10"})
+    await desk.ask("POST", f"{T1}/drive-tests/scale", data={"axis": "elevation", "way": "10"})
     await rest(desk)
-    answer = await desk.ask("POST", f"{T1}/proofs/scale/answer", data={"measured": "ten"}, headers=HTMX)
+    answer = await desk.ask("POST", f"{T1}/drive-tests/scale/answer", data={"measured": "ten"}, headers=HTMX)
     assert answer.status_code == 422
     assert 'value="ten"' in answer.text
     assert "Measured angle: type a number" in answer.text
-    bad_way = await desk.ask("POST", f"{T1}/proofs/scale", data={"axis": "elevation", "way": "11"})
+    bad_way = await desk.ask("POST", f"{T1}/drive-tests/scale", data={"axis": "elevation", "way": "11"})
     assert bad_way.status_code == 422
-    good = await desk.ask("POST", f"{T1}/proofs/scale/answer", data={"measured": "10,1"}, headers=HTMX)
+    good = await desk.ask("POST", f"{T1}/drive-tests/scale/answer", data={"measured": "10,1"}, headers=HTMX)
     assert good.status_code == 200
     assert (await proofs(desk))["scale", "elevation", None]["status"] == "done"
 
 
 async def test_an_angle_that_cannot_be_leaves_the_page_whole_with_a_sentence(desk: Desk) -> None:
-    await desk.ask("POST", f"{T1}/proofs/scale", data={"axis": "elevation", "way": "10"})
+    await desk.ask("POST", f"{T1}/drive-tests/scale", data={"axis": "elevation", "way": "10"})
     await rest(desk)
-    answer = await desk.ask("POST", f"{T1}/proofs/scale/answer", data={"measured": "300"}, headers=HTMX)
+    answer = await desk.ask("POST", f"{T1}/drive-tests/scale/answer", data={"measured": "300"}, headers=HTMX)
     assert answer.status_code == 422
     for words in ('id="proofs"', 'value="300"', "Enter the degrees that the panel turned"):
         assert words in re.sub(r"\s+", " ", answer.text), words
@@ -179,7 +179,7 @@ async def test_settings_that_the_machine_refuses_come_back_in_the_form(
 
 
 async def test_a_stopped_drive_is_cleared_where_it_is_proven(desk: Desk) -> None:
-    page = f"{T1}/proofs"
+    page = f"{T1}/drive-tests"
     assert "Reset fault" not in (await desk.ask("GET", page)).text
     drive = desk.plant.drives["T1"]
     assert isinstance(drive, SimulatedDrive)

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from starlette.requests import Request
 
-from app.access.keeper import Credentials
+from app.access.authenticator import Credentials
 from app.access.principal import NotAllowed, ProofNeeded, SignInNeeded
 from app.web.errors import Busy, NotAcceptable, NotSetUp
 from app.web.gate import (

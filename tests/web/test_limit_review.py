@@ -97,7 +97,7 @@ async def test_without_a_zero_nobody_knows_where_the_axes_stand(desk: Desk) -> N
 @pytest.mark.fault(24)
 async def test_a_limit_beyond_a_switch_that_is_on_is_refused(desk: Desk, fault: FaultResult) -> None:
     await homed(desk)
-    await desk.ask("POST", f"{API}/training", json={"fault": "upper_limit_stuck"})
+    await desk.ask("POST", f"{API}/fault-injection", json={"fault": "upper_limit_stuck"})
     await desk.forward(1.0)
     refused = await desk.ask("PATCH", API, json={"azimuth": {"maximum_deg": 400}})
     assert refused.status_code == 409

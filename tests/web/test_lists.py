@@ -64,9 +64,9 @@ def names_in(value: Any) -> set[str]:
         ("/alarms/guide", "/api/v1/alarms/catalogue"),
         ("/restore", "/api/v1/backups"),
         ("/site/horizon", "/api/v1/site/horizon"),
-        ("/records/compare?pick=1&pick=2", "/api/v1/records-comparison?first=1&second=2"),
+        ("/records/compare?pick=1&pick=2", "/api/v1/records/comparison?first=1&second=2"),
         ("/trackers/T1/settings", "/api/v1/trackers/T1"),
-        ("/trackers/T1/proofs", "/api/v1/trackers/T1/proofs"),
+        ("/trackers/T1/drive-tests", "/api/v1/trackers/T1/drive-tests"),
         ("/trackers/T1/drive", "/api/v1/trackers/T1/drive/choices"),
     ],
 )
@@ -84,7 +84,7 @@ async def fill(desk: Desk) -> None:
     for path, told in (
         ("trackers/T1/records", SIGNED),
         ("trackers/T1/records", SIGNED),
-        ("backup", None),
+        ("backups", None),
     ):
         assert (await desk.ask("POST", f"/api/v1/{path}", json=told)).is_success, path
         await desk.forward(1)

@@ -16,7 +16,7 @@ from app.link.messages import Order, StopAll
 from app.tracker.commands import EndJog, Jog, Stop
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind, SiteSnapshot
-from app.web.presses import Dead, Heartbeat, LinkDelay, Presses, Verdict
+from app.web.hold_to_run import Dead, Heartbeat, LinkDelay, Presses, Verdict
 from tests.fake_data import NOON
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.fault_result import REAL, FaultResult

@@ -5,7 +5,7 @@ from collections.abc import AsyncIterator
 import httpx
 import pytest
 
-from app.site.checks import check_config
+from app.site.validation import check_config
 from app.tracker.config import Orientation
 from tests.fakes import FakeMachine, fake_app, serving
 

@@ -38,7 +38,7 @@ async def test_rows_come_with_a_number_and_go_with_null(api: httpx.AsyncClient) 
 
 
 async def test_an_actuator_is_taken_by_its_points_and_given_up_with_null(api: httpx.AsyncClient) -> None:
-    actuator = (await api.get("/mechanisms")).json()["alexandru-diurnal"]
+    actuator = (await api.get("/actuator-presets")).json()["alexandru-diurnal"]
     await api.patch(TRACKER, json={"mount": {"kind": "equatorial"}})
     axis = {"minimum_deg": -60, "maximum_deg": 60, "speed_dps": 3, "actuator": actuator}
     too_wide = await api.patch(TRACKER, json={"azimuth": axis | {"maximum_deg": 80}})

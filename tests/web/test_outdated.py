@@ -6,7 +6,7 @@ from typing import Any
 import httpx
 import pytest
 
-from app.web.edition import PageOutdated, edition, mark_of
+from app.web.build_id import PageOutdated, edition, mark_of
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
 from tests.fault_result import FaultResult
 from tests.web.sockets import connected

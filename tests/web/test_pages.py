@@ -11,7 +11,7 @@ import pytest
 
 from app import web
 from app.link.messages import ConfigureTracker, SetClock, SetLocation
-from app.tracker.commands import GoToStart, Move, SelectMode, SetZero, Step
+from app.tracker.commands import GoToStart, Move, SelectMode, SetHome, Step
 from app.tracker.mode import Mode
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ActivityName
@@ -28,7 +28,7 @@ HTMX = {"HX-Request": "true", "HX-Request-Type": "partial"}
 PAGES = (
     "/", T1, f"{T1}/commissioning/location", f"{T1}/commissioning/clock", f"{T1}/commissioning/homing",
     f"{T1}/commissioning/mode", f"{T1}/commissioning/mode/orientation", f"{T1}/commissioning/run",
-    f"{T1}/sun-check", f"{T1}/record", f"{T1}/settings", f"{T1}/drive", f"{T1}/proofs", f"{T1}/show",
+    f"{T1}/sun-check", f"{T1}/record", f"{T1}/settings", f"{T1}/drive", f"{T1}/drive-tests", f"{T1}/show",
     "/recordings", "/recordings/show-1", "/recordings/show-1?with=day-1", "/simulate", "/studies",
     "/studies/program", "/accuracy", "/papers", "/journal", "/journal?tracker=T1",
 )  # fmt: skip
@@ -195,7 +195,7 @@ async def test_clock_that_means_nothing_is_refused(machine: FakeMachine, client:
 async def test_zero_and_steps_go_to_the_machine(machine: FakeMachine, client: httpx.AsyncClient) -> None:
     await client.post(f"{T1}/zero", data={"key": "press-1", "confirmed": "yes"})
     await client.post(f"{T1}/step", data={"move": "elevation-minus", "size": "0.1"})
-    assert sent(machine, SetZero)
+    assert sent(machine, SetHome)
     assert sent(machine, Step)[0].degrees == pytest.approx(-0.1)
     assert machine.orders[0].key == "press-1"
 
@@ -209,7 +209,10 @@ async def test_step_of_another_size_is_refused(machine: FakeMachine, client: htt
 async def test_refusal_names_every_reason_below_the_key(
     machine: FakeMachine, client: httpx.AsyncClient
 ) -> None:
-    machine.rejects["zero"] = (Reason("a", "The axes move.", "Wait."), Reason("b", "The drive is silent."))
+    machine.rejects["set_home"] = (
+        Reason("a", "The axes move.", "Wait."),
+        Reason("b", "The drive is silent."),
+    )
     answer = await client.post(f"{T1}/zero", data={"confirmed": "yes"}, headers=HTMX)
     assert answer.status_code == 409
     assert "Not done." in answer.text

@@ -5,7 +5,7 @@ from datetime import datetime, timedelta
 import pytest
 
 from app.tracker.commands import JOG_LEASE
-from app.web.presses import (
+from app.web.hold_to_run import (
     LATEST_HEARTBEAT,
     MOST_DEAD,
     MOST_LIVE,

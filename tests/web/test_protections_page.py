@@ -3,7 +3,7 @@
 import httpx
 import pytest
 
-from app.tracker.commands import LockOut, ReleaseLock, Resume, Stow
+from app.tracker.commands import ReleaseInhibit, Resume, SetInhibit, Stow
 from app.tracker.memory import MetStation
 from app.tracker.protections.config import PROTECTED, ProtectionConfig, StowPlace
 from app.tracker.protections.words import Facing, Reaction, StowName
@@ -81,7 +81,7 @@ async def test_the_keys_give_the_commands(client: httpx.AsyncClient, machine: Fa
     await client.post(f"{ROOT}/lock", data={"name": "Ada", "reason": "new bearing"})
     await client.post(f"{ROOT}/release-lock")
     given = [order.command for order in machine.orders]
-    assert given == [Stow(StowName.HAIL), Resume(), LockOut("Ada", "new bearing"), ReleaseLock()]
+    assert given == [Stow(StowName.HAIL), Resume(), SetInhibit("Ada", "new bearing"), ReleaseInhibit()]
     assert (await client.post(f"{ROOT}/stow", data={"position": "moon"})).status_code == 422
 
 
@@ -89,12 +89,12 @@ async def test_the_api_does_what_the_page_does(client: httpx.AsyncClient, machin
     for body in (
         {"type": "stow", "position": "cleaning"},
         {"type": "resume"},
-        {"type": "lock_out", "name": "Ada"},
-        {"type": "release_lock"},
+        {"type": "set_inhibit", "name": "Ada"},
+        {"type": "release_inhibit"},
     ):
         assert (await client.post(f"{API}/commands", json=body)).status_code == 202
     given = [order.command for order in machine.orders]
-    assert given == [Stow(StowName.CLEANING), Resume(), LockOut("Ada"), ReleaseLock()]
+    assert given == [Stow(StowName.CLEANING), Resume(), SetInhibit("Ada"), ReleaseInhibit()]
     change = {"protection": {"wind": {"gust_mps": 12.0}, "stows": {"snow": {"azimuth_deg": 90.0}}}}
     answer = await client.patch(API, json=change)
     assert answer.status_code == 200

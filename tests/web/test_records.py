@@ -92,7 +92,7 @@ async def test_a_later_change_leaves_what_was_signed_and_is_shown_beside_it(desk
     second = await sign(desk)
     before = (await desk.ask("GET", "/api/v1/records/1")).content
     assert hashlib.sha256(before).hexdigest() == first["digest"] != second["digest"]
-    lines = (await desk.ask("GET", "/api/v1/records-comparison?first=1&second=2")).json()
+    lines = (await desk.ask("GET", "/api/v1/records/comparison?first=1&second=2")).json()
     changed = [line for line in lines if line["differs"]]
     assert [line["name"] for line in changed] == ["deadband (°)"]
     assert changed[0]["second"] == "0.75"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.access.keeper import Throttled, WrongPassword
+from app.access.authenticator import Throttled, WrongPassword
 from app.access.roles import Role
 from app.access.tokens import Scope
 from app.clock import Clock

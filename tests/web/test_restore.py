@@ -2,6 +2,7 @@
 
 from collections.abc import AsyncIterator
 from pathlib import Path
+from urllib.parse import quote
 
 import httpx
 import pytest
@@ -56,7 +57,7 @@ async def test_while_the_database_is_in_order_nothing_is_restored(
     assert "The database is intact" in page.text
     assert NAME in page.text
     assert "Restore this backup" not in page.text
-    refused = await client.post("/api/v1/restore", json={"file": NAME})
+    refused = await client.post(f"/api/v1/backups/{NAME}/restore")
     assert refused.status_code == 409
     assert refused.json()["reasons"][0]["code"] == "store_in_order"
     assert not (data_dir / PENDING_NAME).exists()
@@ -80,10 +81,10 @@ async def test_the_api_lists_the_backups_and_refuses_what_is_none(
     listed = (await client.get("/api/v1/backups")).json()
     assert {one["file"] for one in listed} == {NAME, "rubbish.backup"}
     for name in ("nowhere.backup", f"../backups/{NAME}", f"{data_dir}/backups/{NAME}"):
-        assert (await client.post("/api/v1/restore", json={"file": name})).status_code == 404
-    bad = await client.post("/api/v1/restore", json={"file": "rubbish.backup"})
+        assert (await client.post(f"/api/v1/backups/{quote(name, safe='')}/restore")).status_code == 404
+    bad = await client.post("/api/v1/backups/rubbish.backup/restore")
     assert bad.status_code == 503
     assert "cannot be used" in bad.json()["detail"]
-    begun = await client.post("/api/v1/restore", json={"file": NAME})
+    begun = await client.post(f"/api/v1/backups/{NAME}/restore")
     assert begun.status_code == 202
     assert begun.json() == {"site_name": SITE.name, "trackers": 1, "events": 0, "recordings": 0}

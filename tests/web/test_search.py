@@ -25,11 +25,11 @@ OTHER_WORDS = ("live", "trackers", "password")
 T1, ALARM = "/trackers/T1", "/alarms/guide#alarm-"
 WANTED: dict[str, dict[str, tuple[str, ...]]] = {
     "en": {
-        "wrong sign": (f"{T1}/proofs", f"{ALARM}wrong_direction"),
-        "swapped azimuth": (f"{T1}/proofs", f"{ALARM}axes_swapped"),
+        "wrong sign": (f"{T1}/drive-tests", f"{ALARM}wrong_direction"),
+        "swapped azimuth": (f"{T1}/drive-tests", f"{ALARM}axes_swapped"),
         "wind limit": (f"{T1}/protections#f-wind_gust_mps", f"{T1}/protections#f-wind_mean_mps"),
         "Modbus unit": (f"{T1}/drive#f-unit",),
-        "backlash": (f"{T1}/drive", f"{T1}/proofs", f"{T1}/settings#f-deadband"),
+        "backlash": (f"{T1}/drive", f"{T1}/drive-tests", f"{T1}/settings#f-deadband"),
         "soft limits": (f"{T1}/settings#f-azimuth_minimum", f"{T1}/settings#f-azimuth_maximum"),
         "limit switch": (f"{ALARM}limit_switch",),
         "following_error": (f"{T1}/settings#f-following_error",),
@@ -48,14 +48,14 @@ WANTED: dict[str, dict[str, tuple[str, ...]]] = {
     },
     "de": {
         "Windgrenze": (f"{T1}/protections#f-wind_gust_mps",),
-        "falsche Drehrichtung": (f"{T1}/proofs", f"{ALARM}wrong_direction"),
+        "falsche Drehrichtung": (f"{T1}/drive-tests", f"{ALARM}wrong_direction"),
         "Achsen vertauscht": (f"{ALARM}axes_swapped",),
         "Endschalter": (f"{ALARM}limit_switch", f"{ALARM}limit_stuck", f"{ALARM}limit_switch_wiring"),
         "Nullpunkt setzen": (f"{T1}/commissioning/homing",),
         "Handbetrieb": (f"{T1}/commissioning/homing",),
         "Passwort ändern": ("/account",),
         "Uhrzeit": (f"{T1}/commissioning/clock",),
-        "Getriebespiel": (f"{T1}/drive", f"{T1}/proofs", f"{T1}/settings#f-deadband"),
+        "Getriebespiel": (f"{T1}/drive", f"{T1}/drive-tests", f"{T1}/settings#f-deadband"),
         "Schleppfehler": (f"{T1}/settings#f-following_error",),
         "Sturm": (f"{T1}/protections#f-wind_gust_mps",),
         "Modbus-Adresse": (f"{T1}/drive#f-unit",),

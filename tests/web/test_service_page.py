@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from app.tracker.conditions import REQUIRED, homed
+from app.tracker.interlocks import REQUIRED, homed
 from app.web.ui.zero import NEEDS_ZERO
 from tests.web.desk import Desk
 
@@ -63,7 +63,7 @@ async def test_service_begins_in_a_name_is_confirmed_counts_down_and_ends(desk: 
 
 
 async def test_the_switch_at_the_cabinet_is_told_on_every_page(desk: Desk) -> None:
-    played = await desk.ask("POST", f"{API}/training", json={"fault": "local_switch"})
+    played = await desk.ask("POST", f"{API}/fault-injection", json={"fault": "local_switch"})
     assert played.status_code == 204
     await desk.forward(1.0)
     for path in ("/trackers/T1", "/trackers/T1/settings", PAGE):
@@ -80,14 +80,14 @@ async def test_the_zero_says_who_granted_it_and_why_it_was_lost(desk: Desk) -> N
     never = (await desk.ask("GET", "/trackers/T1")).text
     assert "No home position has been set yet." in never
     assert (await seen(desk))["home"] is None
-    await desk.ask("POST", f"{API}/commands", json={"type": "zero", "confirmed": True})
+    await desk.ask("POST", f"{API}/commands", json={"type": "set_home", "confirmed": True})
     await desk.forward(3.0)
     granted = await seen(desk)
     assert granted["home_trusted"]
     assert granted["home"]["by"] == "local user"
     assert granted["home"]["how"] == "set manually"
     assert "local user" in (await desk.ask("GET", "/trackers/T1")).text
-    await desk.ask("POST", f"{API}/training", json={"fault": "power_loss"})
+    await desk.ask("POST", f"{API}/fault-injection", json={"fault": "power_loss"})
     await desk.forward(2.0)
     lost = await seen(desk)
     assert lost["home"] is None

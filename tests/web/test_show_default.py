@@ -16,7 +16,7 @@ from app.sun.position import Location
 from app.tracker.commands import GoToStart
 from app.tracker.config import MountKind
 from app.tracker.mode import Mode
-from app.tracker.mounts.abilities import abilities
+from app.tracker.mounts.capabilities import abilities
 from app.tracker.mounts.usual import mounted
 from app.web.ui.forms import Typed
 from app.web.ui.show_plan import Place, ShowForm, planned, presets

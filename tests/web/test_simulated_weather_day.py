@@ -37,7 +37,7 @@ async def test_a_storm_in_a_simulated_hour_stows_and_is_in_the_frames(tmp_path: 
     [
         ({}, "Give one of scenario, steps, and csv"),
         ({"scenario": "storm", "csv": "time\n10:00"}, "Give one of scenario, steps, and csv"),
-        ({"scenario": "by_hand"}, "given in steps"),
+        ({"scenario": "manual"}, "given in steps"),
         ({"scenario": "storm", "begins": "noon"}, "The start of the scenario: give a time such as 11:30"),
         ({"csv": "time,moon\n10:00,1"}, "must name the columns"),
         ({"steps": [{"time": "10:00", "wind_mps": 99}]}, "must lie between 0 and 50"),

@@ -96,7 +96,7 @@ async def test_every_integration_tells_its_state(panel: httpx.AsyncClient, machi
 
 
 SIMULATED = {
-    "scenario": "by_hand",
+    "scenario": "manual",
     "seed": "5",
     "wind_mps": "12,5",
     "gustiness_pct": "40",
@@ -113,7 +113,7 @@ async def test_made_up_weather_is_chosen_and_ended_on_the_page(
     assert "Simulate this weather" in (await panel.get("/site")).text
     assert (await panel.post("/site/simulated-weather", data=SIMULATED)).status_code == 303
     assert machine.site.simulated_weather == SimulatedStation(
-        Scenario.BY_HAND, 5, 12.5, 40.0, 300.0, None, 2.0, -4.0
+        Scenario.MANUAL, 5, 12.5, 40.0, 300.0, None, 2.0, -4.0
     )
     text = (await panel.get("/site")).text
     assert "SIMULATED now" in text

@@ -256,7 +256,7 @@ async def test_a_site_at_a_glance(client: httpx.AsyncClient, machine: FakeMachin
     assert shown.status_code == 200
     for words in ("Modes in", "Deadbands, dual-axis", "Dual", "Greatest error"):
         assert words in shown.text
-    told = (await client.get("/api/v1/studies-comparison?year=2026")).json()
+    told = (await client.get("/api/v1/studies/comparison?year=2026")).json()
     assert [row["mode"] for row in told["modes"]] == ["fixed", "azimuth", "elevation", "dual"]
     assert told["year"] == 2026
     assert told["deadbands"][0]["moves_a_day"] > told["deadbands"][-1]["moves_a_day"]

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 
 from app.drives.faults import FaultKind
+from app.tracker.fault_scenarios import LESSONS, Subject, lesson
 from app.tracker.simulated_weather import WeatherFault
-from app.tracker.training import LESSONS, Subject, lesson
 from tests.fault_result import FaultResult
 from tests.web.desk import Desk
 
 HTMX = {"HX-Request": "true", "HX-Request-Type": "partial"}
-API = "/api/v1/trackers/T1/training"
+API = "/api/v1/trackers/T1/fault-injection"
 
 
 @pytest.fixture
@@ -33,18 +33,18 @@ def test_every_fault_of_the_simulator_is_a_lesson_and_every_lesson_can_be_played
 
 
 async def test_a_fault_is_played_seen_and_ended(desk: Desk) -> None:
-    page = await desk.ask("GET", "/trackers/T1/training")
+    page = await desk.ask("GET", "/trackers/T1/fault-injection")
     assert "TRAINING" in page.text
     assert all(one.title in unescape(page.text) for one in LESSONS if one.subject is not Subject.WEATHER)
     assert "The site's weather is not simulated now" in unescape(page.text)
     played = await desk.ask(
-        "POST", "/trackers/T1/training/play", data={"fault": "local_switch"}, headers=HTMX
+        "POST", "/trackers/T1/fault-injection/play", data={"fault": "local_switch"}, headers=HTMX
     )
     assert "The fault is injected." in played.text
     await desk.forward(1.0)
     seen = (await desk.ask("GET", "/api/v1/trackers/T1/snapshot")).json()
     assert seen["local"] is True
-    ended = await desk.ask("POST", "/trackers/T1/training/clear", headers=HTMX)
+    ended = await desk.ask("POST", "/trackers/T1/fault-injection/clear", headers=HTMX)
     assert ended.status_code == 200
     await desk.forward(1.0)
     assert (await desk.ask("GET", "/api/v1/trackers/T1/snapshot")).json()["local"] is False
@@ -65,10 +65,10 @@ async def test_weather_is_played_on_made_up_weather_only_and_ends_with_the_fault
     refused = await desk.ask("POST", API, json={"fault": "wind_impossible"})
     assert refused.status_code == 409
     assert "weather is not simulated" in refused.text
-    assert (await desk.ask("POST", "/trackers/T1/training/weather", headers=HTMX)).status_code == 204
+    assert (await desk.ask("POST", "/trackers/T1/fault-injection/weather", headers=HTMX)).status_code == 204
     await desk.forward(2.0)
     assert (await desk.ask("POST", API, json={"fault": "wind_impossible"})).status_code == 204
-    page = (await desk.ask("GET", "/trackers/T1/training")).text
+    page = (await desk.ask("GET", "/trackers/T1/fault-injection")).text
     assert "Active fault: wind implausible." in page
     assert all(one.title in unescape(page) for one in LESSONS)
     await desk.forward(2.0)
@@ -80,11 +80,11 @@ async def test_weather_is_played_on_made_up_weather_only_and_ends_with_the_fault
 
 @pytest.mark.fault(42)
 async def test_a_storm_that_meets_a_fault_says_not_stowed_on_every_page(desk: Desk) -> None:
-    await desk.ask("POST", "/trackers/T1/training/weather", headers=HTMX)
+    await desk.ask("POST", "/trackers/T1/fault-injection/weather", headers=HTMX)
     await desk.forward(2.0)
     assert (await desk.ask("POST", API, json={"fault": "not_stowed"})).status_code == 204
     await desk.forward(3.0)
-    for path in ("/trackers/T1", "/trackers/T1/training", "/trackers/T1/settings"):
+    for path in ("/trackers/T1", "/trackers/T1/fault-injection", "/trackers/T1/settings"):
         page = (await desk.ask("GET", path)).text
         assert "is NOT STOWED, although wind requires it" in page
         assert 'data-when="not_stowed">' in page, "the band is shown"
@@ -95,7 +95,7 @@ async def test_the_key_that_stows_comes_first_while_the_panel_is_not_stowed(desk
     stow_now = '<section class="panel" id="stow-now" data-when="not_stowed"'
     calm = (await desk.ask("GET", "/trackers/T1")).text
     assert f"{stow_now} hidden" in calm
-    await desk.ask("POST", "/trackers/T1/training/weather", headers=HTMX)
+    await desk.ask("POST", "/trackers/T1/fault-injection/weather", headers=HTMX)
     await desk.forward(2.0)
     assert (await desk.ask("POST", API, json={"fault": "not_stowed"})).status_code == 204
     await desk.forward(3.0)
@@ -123,7 +123,7 @@ async def test_a_pressed_switch_is_named_with_the_way_out_on_the_page(desk: Desk
     sentence = "The upper limit switch of the azimuth axis of Tracker 1 is on although the axis is within"
     assert told["at_limit_switch"].startswith(sentence)
     assert told["at_limit_switch"].endswith("the axis moves west (counterclockwise) only.")
-    assert sentence in (await desk.ask("GET", "/trackers/T1/training")).text
+    assert sentence in (await desk.ask("GET", "/trackers/T1/fault-injection")).text
     fault.shows(told["at_limit_switch"])
     await desk.ask("POST", API, json={"fault": "both_limits"})
     await desk.forward(1.0)

@@ -24,10 +24,9 @@ ACCOUNTS = [
 ]
 NETWORK = ["GET /network", "POST /network", "PUT /api/v1/network"]
 EVERYTHING = [
-    "POST /backup",
     "POST /restore",
-    "POST /api/v1/backup",
-    "POST /api/v1/restore",
+    "POST /api/v1/backups",
+    "POST /api/v1/backups/{name}/restore",
 ]
 DRIVES_AND_LIMITS = [
     "POST /trackers/{tracker_id}/drive",

@@ -3,7 +3,7 @@
 import httpx
 import pytest
 
-from app.tracker.commands import SetZero, UndoZero
+from app.tracker.commands import SetHome, UndoHome
 from app.tracker.snapshot import Pair
 from tests.fakes import FakeMachine
 
@@ -32,23 +32,23 @@ async def test_a_page_asks_before_it_is_believed(machine: FakeMachine, client: h
     assert 'name="confirmed" value="yes"' in asked.text
     whole = await client.post(f"{T1}/zero")
     assert (whole.status_code, AZIMUTH in whole.text) == (422, True)
-    assert not sent(machine, SetZero)
+    assert not sent(machine, SetHome)
     done = await client.post(f"{T1}/zero", data={"confirmed": "yes"}, headers=HTMX)
     assert done.status_code == 200
-    assert len(sent(machine, SetZero)) == 1
+    assert len(sent(machine, SetHome)) == 1
 
 
 async def test_a_program_confirms_as_for_a_place(machine: FakeMachine, client: httpx.AsyncClient) -> None:
     stand(machine, 102.4, 1.9)
-    asked = await client.post(COMMANDS, json={"type": "zero"})
+    asked = await client.post(COMMANDS, json={"type": "set_home"})
     assert asked.status_code == 422
     assert (
         asked.json()["detail"]
         == f"{AZIMUTH} If the panel is at the home position, send the request again with `confirmed`."
     )
-    assert (await client.post(COMMANDS, json={"type": "zero", "axes": ["elevation"]})).status_code == 202
-    assert (await client.post(COMMANDS, json={"type": "zero", "confirmed": True})).status_code == 202
-    assert len(sent(machine, SetZero)) == 2
+    assert (await client.post(COMMANDS, json={"type": "set_home", "axes": ["elevation"]})).status_code == 202
+    assert (await client.post(COMMANDS, json={"type": "set_home", "confirmed": True})).status_code == 202
+    assert len(sent(machine, SetHome)) == 2
 
 
 @pytest.mark.parametrize(("read_deg", "asks"), [(-2.0, False), (2.0, False), (2.1, True), (-2.1, True)])
@@ -62,12 +62,12 @@ async def test_within_what_the_eye_can_tell_nothing_is_asked(
 async def test_it_is_undone_from_the_page_and_by_a_program(
     machine: FakeMachine, client: httpx.AsyncClient
 ) -> None:
-    for undo in ((f"{T1}/zero/undo", None), (COMMANDS, {"type": "undo_zero"})):
+    for undo in ((f"{T1}/zero/undo", None), (COMMANDS, {"type": "undo_home"})):
         stand(machine, 102.4, 36.6)
-        await client.post(COMMANDS, json={"type": "zero", "confirmed": True})
+        await client.post(COMMANDS, json={"type": "set_home", "confirmed": True})
         assert "Undo the home position" in (await client.get(f"{T1}/commissioning/homing")).text
         path, body = undo
         answer = await client.post(path, json=body) if body else await client.post(path, headers=HTMX)
         assert answer.status_code in (200, 202)
         assert machine.trackers["T1"].position == Pair(102.4, 36.6)
-    assert len(sent(machine, UndoZero)) == 2
+    assert len(sent(machine, UndoHome)) == 2

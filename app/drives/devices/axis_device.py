@@ -97,7 +97,7 @@ class AxisDevice(ABC):
         feedback = self.feedback
         if self.homing and (observed.fault_code or not feedback.moving):
             self.homing = False
-            found = not observed.fault_code and feedback.at_origin and self.machine.set_zero(self.axis)
+            found = not observed.fault_code and feedback.at_origin and self.machine.set_home(self.axis)
             self.homing_failed = not found
             feedback = self.feedback
         self.refresh(feedback, observed.fault_code)

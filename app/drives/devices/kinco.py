@@ -115,7 +115,7 @@ class KincoDrive(AxisDevice):
 
     def _home(self) -> None:
         if self.signed(HOMING_METHOD) in PRESENT_POSITION:
-            self.homing_failed = not self.machine.set_zero(self.axis)
+            self.homing_failed = not self.machine.set_home(self.axis)
         else:
             self.seek_origin()
 

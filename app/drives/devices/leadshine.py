@@ -15,7 +15,7 @@ PATH, PATH_WORDS = 0x6200, 8
 PATH_MODE, PATH_POSITION, PATH_SPEED, PATH_TRIGGER = PATH, PATH + 1, PATH + 3, PATH + 7
 ORIGIN, POSITIVE_LIMIT, NEGATIVE_LIMIT = 0x27, 0x25, 0x26
 INPUT_COUNT = 7
-RUN_PATH_0, HOME, SET_ZERO, STOP = 0x10, 0x20, 0x21, 0x40
+RUN_PATH_0, HOME, SET_HOME, STOP = 0x10, 0x20, 0x21, 0x40
 RESET_ALARM = 0x1111
 ABSOLUTE, RELATIVE, TURN = 0x01, 0x41, 0x02
 
@@ -70,14 +70,14 @@ class LeadshineDrive(AxisDevice):
     def _trigger(self, command: int) -> None:
         if command == STOP:
             self.halt()
-        elif self.word(ENABLE) != 1 and command != SET_ZERO:
+        elif self.word(ENABLE) != 1 and command != SET_HOME:
             return
         elif command == RUN_PATH_0:
             self._run()
         elif command == HOME:
             self.seek_origin()
-        elif command == SET_ZERO:
-            self.machine.set_zero(self.axis)
+        elif command == SET_HOME:
+            self.machine.set_home(self.axis)
 
     def _run(self) -> None:
         speed_dps = self.signed(PATH_SPEED) * self._dps_per_rpm

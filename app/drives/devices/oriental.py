@@ -57,7 +57,7 @@ class OrientalDrive(AxisDevice):
         if CLEAR_ALARM + 1 in written and self.wide(CLEAR_ALARM) == 1:
             self.machine.reset_fault()
         if PRESET + 1 in written and self.wide(PRESET) == 1:
-            self.machine.set_zero(self.axis)
+            self.machine.set_home(self.axis)
         if TRIGGER + 1 in written and self.wide(TRIGGER) == 1 and not self._input & STOP_BIT:
             self._operate()
 

@@ -89,7 +89,7 @@ class SunSpecTracker(AxisDevice):
         observed = self.machine.observe()
         for axis, feedback in ((Axis.AZIMUTH, observed.azimuth), (Axis.ELEVATION, observed.elevation)):
             if feedback.at_origin:
-                self.machine.set_zero(axis)
+                self.machine.set_home(axis)
         self.put(CONTROL, AUTOMATIC)
 
     def _text(self, address: int, text: str) -> None:

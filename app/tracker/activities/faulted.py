@@ -3,16 +3,16 @@
 from datetime import timedelta
 
 from app.tracker.activity import HOLDING, Faulted
-from app.tracker.conditions import Action, demand_drive
+from app.tracker.controller_state import ControllerState, Turn
 from app.tracker.guards import wiring_fault
-from app.tracker.mind import Mind, Turn
+from app.tracker.interlocks import Action, demand_drive
 from app.tracker.motion import DriveCommand, DriveRequest, Feedback, RequestKind
 from app.tracker.snapshot import EventKind
 
 RESET_PATIENCE = timedelta(seconds=5)
 
 
-def reset_fault(mind: Mind) -> None:
+def reset_fault(mind: ControllerState) -> None:
     """Clear the fault, in the drive too if it has one, or raise `CommandRejected`."""
     feedback = demand_drive(mind, Action.RESET_FAULT)
     if feedback.fault_code == 0:
@@ -21,7 +21,7 @@ def reset_fault(mind: Mind) -> None:
         mind.activity = Faulted(mind.activity.reason, mind.next_request(), mind.now + RESET_PATIENCE)
 
 
-def step(mind: Mind, faulted: Faulted, feedback: Feedback) -> Turn:
+def step(mind: ControllerState, faulted: Faulted, feedback: Feedback) -> Turn:
     """Stay halted; while a reset is under way, wait for the drive's answer."""
     if faulted.number is None or faulted.until is None:
         return Turn(faulted)
@@ -39,7 +39,7 @@ def step(mind: Mind, faulted: Faulted, feedback: Feedback) -> Turn:
     return Turn(faulted, DriveCommand(request=request))
 
 
-def _clear(mind: Mind, feedback: Feedback) -> None:
+def _clear(mind: ControllerState, feedback: Feedback) -> None:
     """Hold again, unless the limit switches still contradict each other."""
     wiring = wiring_fault(mind.config, feedback)
     if wiring is not None:

@@ -2,13 +2,13 @@
 
 from app.tracker.activity import HOLDING, Jogging
 from app.tracker.axes import Axis, JogSpeed
+from app.tracker.axis_demand import paced
 from app.tracker.commands import JOG_LEASE, CommandRejected, EndJog, Jog
-from app.tracker.conditions import Action, unmet
+from app.tracker.controller_state import ControllerState, Turn
 from app.tracker.guards import axis_feedback, room_deg
-from app.tracker.mind import Mind, Turn
+from app.tracker.interlocks import Action, unmet
 from app.tracker.motion import HALT, AxisCommand, AxisFeedback, DriveCommand, Feedback, Position, Velocity
-from app.tracker.mounts.abilities import axis_of, axis_title
-from app.tracker.pace import paced
+from app.tracker.mounts.capabilities import axis_of, axis_title
 from app.tracker.reason import Reason
 from app.tracker.snapshot import EventKind
 from app.tracker.transitions import leave, switch_tracking_off
@@ -19,7 +19,7 @@ LAST_FIRST_SEQUENCE = 1
 """A press begins with sequence 0 or 1; an unknown press with a higher one ended before we can remember."""
 
 
-def jog(mind: Mind, command: Jog) -> None:
+def jog(mind: ControllerState, command: Jog) -> None:
     """Begin or renew a press, or raise `CommandRejected`; a refused press is dead."""
     jogging = mind.activity
     if isinstance(jogging, Jogging) and mind.now >= jogging.until:
@@ -34,14 +34,14 @@ def jog(mind: Mind, command: Jog) -> None:
     _begin(mind, command)
 
 
-def end_jog(mind: Mind, command: EndJog) -> None:
+def end_jog(mind: ControllerState, command: EndJog) -> None:
     """End a press; one that is not known is dead from now on."""
     mind.kill_press(command.press_id)
     if isinstance(mind.activity, Jogging) and mind.activity.press_id == command.press_id:
         end(mind, mind.activity, "the button was released.", "released")
 
 
-def end(mind: Mind, jogging: Jogging, why: str, outcome: str) -> None:
+def end(mind: ControllerState, jogging: Jogging, why: str, outcome: str) -> None:
     """End the jog for good."""
     mind.kill_press(jogging.press_id)
     mind.activity = HOLDING
@@ -52,7 +52,7 @@ def end(mind: Mind, jogging: Jogging, why: str, outcome: str) -> None:
     )
 
 
-def step(mind: Mind, jogging: Jogging, feedback: Feedback) -> Turn:
+def step(mind: ControllerState, jogging: Jogging, feedback: Feedback) -> Turn:
     """Turn the axis while the lease lasts, but not into a switch and not beyond a trusted soft limit."""
     if mind.now >= jogging.until:
         end(mind, jogging, "the jog command was not renewed in time.", "expired")
@@ -72,7 +72,7 @@ def at_switch(seen: AxisFeedback, direction: int) -> bool:
     return seen.at_upper_limit if direction > 0 else seen.at_lower_limit
 
 
-def _renew(mind: Mind, jogging: Jogging, command: Jog) -> None:
+def _renew(mind: ControllerState, jogging: Jogging, command: Jog) -> None:
     if (command.axis, command.direction) != (jogging.axis, jogging.direction):
         leave(mind, "the direction changed while the button was held.")
         raise CommandRejected(
@@ -89,7 +89,7 @@ def _renew(mind: Mind, jogging: Jogging, command: Jog) -> None:
         )
 
 
-def _begin(mind: Mind, command: Jog) -> None:
+def _begin(mind: ControllerState, command: Jog) -> None:
     switch_tracking_off(mind, "the tracker is being jogged.")
     mind.activity = Jogging(
         command.press_id,
@@ -106,7 +106,7 @@ def _begin(mind: Mind, command: Jog) -> None:
     )
 
 
-def _against(mind: Mind, command: Jog) -> tuple[Reason, ...]:
+def _against(mind: ControllerState, command: Jog) -> tuple[Reason, ...]:
     """Return everything that forbids a new press."""
     if command.press_id in mind.dead_presses or command.sequence > LAST_FIRST_SEQUENCE:
         return (
@@ -128,7 +128,7 @@ def _against(mind: Mind, command: Jog) -> tuple[Reason, ...]:
     return reasons if reasons or mind.feedback is None else _in_the_way(mind, mind.feedback, command)
 
 
-def _in_the_way(mind: Mind, feedback: Feedback, command: Jog) -> tuple[Reason, ...]:
+def _in_the_way(mind: ControllerState, feedback: Feedback, command: Jog) -> tuple[Reason, ...]:
     seen = axis_feedback(feedback, command.axis)
     reasons: list[Reason] = []
     if at_switch(seen, command.direction):
@@ -151,7 +151,7 @@ def _in_the_way(mind: Mind, feedback: Feedback, command: Jog) -> tuple[Reason, .
     return tuple(reasons)
 
 
-def _turn(mind: Mind, jogging: Jogging, seen: AxisFeedback) -> AxisCommand:
+def _turn(mind: ControllerState, jogging: Jogging, seen: AxisFeedback) -> AxisCommand:
     """Return the motion of this tick; where a trusted soft limit is near, one that comes to rest there."""
     config = paced(mind).axis(jogging.axis)
     speed_dps = config.jog_fast_dps if jogging.speed is JogSpeed.FAST else config.jog_slow_dps

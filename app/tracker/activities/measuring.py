@@ -3,15 +3,15 @@
 from dataclasses import replace
 from datetime import timedelta
 
-from app.tracker.activities.proving import free_way
+from app.tracker.activities.drive_testing import free_way
 from app.tracker.activity import HOLDING, Asked, Measuring
 from app.tracker.axes import Axis, AxisConfig
-from app.tracker.commands import MeasureLinkLoss, MeasureStop
-from app.tracker.conditions import Action, demand_drive, homed
+from app.tracker.commands import RunCommunicationLossTest, RunStopTest
+from app.tracker.controller_state import HALTED, NOWHERE, ControllerState, Turn
+from app.tracker.drive_tests import LinkLossOutcome, LinkLossProof, ProofKind, StopProof, StopSpeed
 from app.tracker.guards import axis_feedback
-from app.tracker.mind import HALTED, NOWHERE, Mind, Turn
+from app.tracker.interlocks import Action, demand_drive, homed
 from app.tracker.motion import AxisFeedback, DriveCommand, Feedback, Position
-from app.tracker.proofs import LinkLossOutcome, LinkLossProof, ProofKind, StopProof, StopSpeed
 from app.tracker.reason import Reason
 from app.tracker.snapshot import EventKind
 from app.tracker.transitions import fail, switch_tracking_off
@@ -26,20 +26,20 @@ WATCHDOG_SHARE = 1.5
 WATCHDOG_GRACE_S = 1.5
 
 
-def measure_stop(mind: Mind, command: MeasureStop) -> None:
+def test_stop(mind: ControllerState, command: RunStopTest) -> None:
     """Begin the stop test, or raise `CommandRejected`; at the rated speed the zero must be trusted."""
     settings = mind.config.axis(command.axis)
     rated = command.speed is StopSpeed.RATED
     needs_zero = homed(mind) if rated else None
-    feedback = demand_drive(mind, Action.MEASURE_STOP, needs_zero)
+    feedback = demand_drive(mind, Action.TEST_STOP, needs_zero)
     speed_dps = settings.speed_dps if rated else settings.jog_fast_dps
     most_s = _run_up_s(settings, speed_dps) + speed_dps / settings.acceleration_dps2 + STOP_GRACE_S
     _begin(mind, feedback, command.axis, command.speed, speed_dps, STEADY_S, most_s)
 
 
-def measure_link_loss(mind: Mind, command: MeasureLinkLoss) -> None:
+def test_communication_loss(mind: ControllerState, command: RunCommunicationLossTest) -> None:
     """Begin the link-loss test, or raise `CommandRejected`; a drive without a watchdog is never tested."""
-    feedback = demand_drive(mind, Action.MEASURE_LINK_LOSS)
+    feedback = demand_drive(mind, Action.TEST_COMMUNICATION_LOSS)
     settings = mind.config.axis(command.axis)
     silence_s = (mind.capabilities.watchdog_s or 0.0) * WATCHDOG_SHARE + WATCHDOG_GRACE_S
     speed_dps = settings.jog_slow_dps
@@ -47,7 +47,7 @@ def measure_link_loss(mind: Mind, command: MeasureLinkLoss) -> None:
     _begin(mind, feedback, command.axis, None, speed_dps, silence_s, most_s)
 
 
-def step(mind: Mind, measuring: Measuring, feedback: Feedback) -> Turn:
+def step(mind: ControllerState, measuring: Measuring, feedback: Feedback) -> Turn:
     """Run up, then stop (or fall silent) and watch until the axis stands."""
     seen = axis_feedback(feedback, measuring.axis)
     if measuring.asked is None:
@@ -62,7 +62,7 @@ def step(mind: Mind, measuring: Measuring, feedback: Feedback) -> Turn:
     return Turn(replace(measuring, asked=asked))
 
 
-def is_silent(mind: Mind) -> bool:
+def is_silent(mind: ControllerState) -> bool:
     """Return whether the drive is told nothing: after the last command of a link-loss test."""
     activity = mind.activity
     if not isinstance(activity, Measuring) or activity.speed is not None or activity.asked is None:
@@ -76,7 +76,7 @@ def _run_up_s(settings: AxisConfig, speed_dps: float) -> float:
 
 
 def _begin(
-    mind: Mind,
+    mind: ControllerState,
     feedback: Feedback,
     axis: Axis,
     speed: StopSpeed | None,
@@ -98,14 +98,14 @@ def _begin(
         axis, speed, speed_dps, seen.position_deg, command, steady_at, until, mind.actor
     )
     mind.say(
-        EventKind.PROOF_STARTED,
+        EventKind.DRIVE_TEST_STARTED,
         f"{_title(mind.activity)} of the {axis} axis at {speed_dps:g} degrees a second.",
         proof=_kind(mind.activity),
         axis=axis,
     )
 
 
-def _run_up(mind: Mind, measuring: Measuring, seen: AxisFeedback) -> Turn:
+def _run_up(mind: ControllerState, measuring: Measuring, seen: AxisFeedback) -> Turn:
     """Go on until the speed is steady; the last command before the measurement is still one to move."""
     if mind.now < measuring.steady_at:
         return Turn(measuring, measuring.command)
@@ -118,13 +118,15 @@ def _run_up(mind: Mind, measuring: Measuring, seen: AxisFeedback) -> Turn:
     return Turn(begun, measuring.command if measuring.speed is None else HALTED)
 
 
-def _looked(mind: Mind, asked: Asked, seen: AxisFeedback) -> Asked:
+def _looked(mind: ControllerState, asked: Asked, seen: AxisFeedback) -> Asked:
     slowed = abs(seen.velocity_dps) < SLOWED * abs(asked.velocity_dps)
     reacted_at = mind.now if asked.reacted_at is None and slowed else asked.reacted_at
     return replace(asked, reacted_at=reacted_at, looked_at=mind.now if seen.moving else asked.looked_at)
 
 
-def _stood(mind: Mind, measuring: Measuring, asked: Asked, feedback: Feedback, seen: AxisFeedback) -> None:
+def _stood(
+    mind: ControllerState, measuring: Measuring, asked: Asked, feedback: Feedback, seen: AxisFeedback
+) -> None:
     if measuring.speed is None:
         _keep_link_loss(mind, measuring, asked, feedback, seen, LinkLossOutcome.STOPPED)
         return
@@ -152,7 +154,9 @@ def _stood(mind: Mind, measuring: Measuring, asked: Asked, feedback: Feedback, s
     )
 
 
-def _went_on(mind: Mind, measuring: Measuring, asked: Asked, feedback: Feedback, seen: AxisFeedback) -> None:
+def _went_on(
+    mind: ControllerState, measuring: Measuring, asked: Asked, feedback: Feedback, seen: AxisFeedback
+) -> None:
     """The axis did not come to rest in time: a fault after a stop, a result of the link-loss test."""
     if measuring.speed is None:
         _keep_link_loss(mind, measuring, asked, feedback, seen, LinkLossOutcome.WENT_ON)
@@ -168,7 +172,7 @@ def _went_on(mind: Mind, measuring: Measuring, asked: Asked, feedback: Feedback,
 
 
 def _keep_link_loss(
-    mind: Mind,
+    mind: ControllerState,
     measuring: Measuring,
     asked: Asked,
     feedback: Feedback,
@@ -203,10 +207,10 @@ def _keep_link_loss(
     _end(mind, measuring, outcome, words)
 
 
-def _end(mind: Mind, measuring: Measuring, outcome: str, words: str) -> None:
+def _end(mind: ControllerState, measuring: Measuring, outcome: str, words: str) -> None:
     mind.activity = HOLDING
     mind.say(
-        EventKind.PROOF_ENDED,
+        EventKind.DRIVE_TEST_ENDED,
         f"{_title(measuring)} of the {measuring.axis} axis: {words}",
         proof=_kind(measuring),
         axis=measuring.axis,

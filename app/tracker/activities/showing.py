@@ -6,14 +6,14 @@ from datetime import timedelta
 from app.tracker.activities.moving import not_arrived
 from app.tracker.activity import HOLDING, AxisPair, Run, Showing
 from app.tracker.announce import announce_if_remote, begins_at
+from app.tracker.axis_demand import paced
 from app.tracker.commands import CommandRejected, GoToStart, RunShow
-from app.tracker.conditions import Action, demand, demand_drive, unmet
-from app.tracker.mind import HALTED, Mind, Turn
+from app.tracker.controller_state import HALTED, ControllerState, Turn
+from app.tracker.interlocks import Action, demand, demand_drive, unmet
 from app.tracker.motion import DriveCommand, Feedback, Position
-from app.tracker.pace import paced
+from app.tracker.positioning import arrived, new_run
 from app.tracker.programs.show import Course, ShowPlan, check_show, course_of
 from app.tracker.reason import Reason
-from app.tracker.runs import arrived, new_run
 from app.tracker.snapshot import EventKind, ShowPhase
 from app.tracker.transitions import end_show, fail, switch_tracking_off
 
@@ -21,7 +21,7 @@ LONGEST_TICK = timedelta(seconds=2)
 """A show's own clock does not run on through a longer gap between two ticks."""
 
 
-def go_to_start(mind: Mind, command: GoToStart) -> None:
+def go_to_start(mind: ControllerState, command: GoToStart) -> None:
     """Move to where the panel stands at the start of a show, or raise `CommandRejected`."""
     feedback = demand_drive(mind, Action.GO_TO_START)
     course = _course(mind, command.plan)
@@ -33,7 +33,7 @@ def go_to_start(mind: Mind, command: GoToStart) -> None:
     mind.say(EventKind.MOVE_STARTED, "Going to the start of the show.", show_id=command.plan.show_id)
 
 
-def run_show(mind: Mind, command: RunShow) -> None:
+def run_show(mind: ControllerState, command: RunShow) -> None:
     """Run a show from its start position, or raise `CommandRejected`."""
     course = _standing_course(mind, command.plan)
     if course is None:
@@ -46,21 +46,21 @@ def run_show(mind: Mind, command: RunShow) -> None:
     mind.say(EventKind.SHOW_STARTED, "The show has begun.", show_id=command.plan.show_id)
 
 
-def pause_show(mind: Mind) -> None:
+def pause_show(mind: ControllerState) -> None:
     """Hold the show where it is, or raise `CommandRejected`."""
     demand(mind, Action.PAUSE_SHOW)
     mind.warning = None
     _change_phase(mind, ShowPhase.PAUSED, EventKind.SHOW_PAUSED, "The show is paused.")
 
 
-def resume_show(mind: Mind) -> None:
+def resume_show(mind: ControllerState) -> None:
     """Go on with a paused show, or raise `CommandRejected`."""
     demand(mind, Action.RESUME_SHOW)
     announce_if_remote(mind, "The show continues.")
     _change_phase(mind, ShowPhase.RUNNING, EventKind.SHOW_RESUMED, "The show continues.")
 
 
-def stop_show(mind: Mind) -> None:
+def stop_show(mind: ControllerState) -> None:
     """End a show before its time, or raise `CommandRejected`."""
     demand(mind, Action.STOP_SHOW)
     if isinstance(mind.activity, Showing):
@@ -68,7 +68,7 @@ def stop_show(mind: Mind) -> None:
         mind.activity = HOLDING
 
 
-def step(mind: Mind, showing: Showing, feedback: Feedback) -> Turn:
+def step(mind: ControllerState, showing: Showing, feedback: Feedback) -> Turn:
     """Move the panel as the plan says for the time that has run; while it waits, hold."""
     match showing.phase:
         case ShowPhase.GOING_TO_START if showing.run is not None:
@@ -80,7 +80,7 @@ def step(mind: Mind, showing: Showing, feedback: Feedback) -> Turn:
             return Turn(showing, HALTED, seen.target, seen.sun)
 
 
-def _going(mind: Mind, showing: Showing, run: Run, feedback: Feedback) -> Turn:
+def _going(mind: ControllerState, showing: Showing, run: Run, feedback: Feedback) -> Turn:
     seen = showing.course.at(timedelta(0))
     if arrived(run.target, feedback, mind.config.in_position_deg):
         mind.say(
@@ -97,7 +97,7 @@ def _going(mind: Mind, showing: Showing, run: Run, feedback: Feedback) -> Turn:
     return Turn(showing, run.command, seen.target, seen.sun)
 
 
-def _running(mind: Mind, showing: Showing) -> Turn:
+def _running(mind: ControllerState, showing: Showing) -> Turn:
     elapsed = showing.elapsed + min(mind.now - showing.at, LONGEST_TICK)
     seen = showing.course.at(elapsed)
     if elapsed >= showing.course.plan.duration:
@@ -112,7 +112,7 @@ def _running(mind: Mind, showing: Showing) -> Turn:
     return Turn(replace(showing, elapsed=elapsed, at=mind.now), command, seen.target, seen.sun)
 
 
-def _course(mind: Mind, plan: ShowPlan) -> Course:
+def _course(mind: ControllerState, plan: ShowPlan) -> Course:
     """Return the plan made ready for this tracker, or raise `CommandRejected` if it cannot be shown."""
     check = check_show(plan, mind.config, mind.memory.pointing)
     if check.reasons:
@@ -120,7 +120,7 @@ def _course(mind: Mind, plan: ShowPlan) -> Course:
     return course_of(plan, mind.config, mind.memory.pointing)
 
 
-def _standing_course(mind: Mind, plan: ShowPlan) -> Course | None:
+def _standing_course(mind: ControllerState, plan: ShowPlan) -> Course | None:
     """Return the course of a plan at whose start the panel stands ready; None: it does not."""
     activity = mind.activity
     if isinstance(activity, Showing):
@@ -132,7 +132,7 @@ def _standing_course(mind: Mind, plan: ShowPlan) -> Course | None:
     return course if arrived(_start(course), mind.feedback, mind.config.in_position_deg) else None
 
 
-def _change_phase(mind: Mind, phase: ShowPhase, kind: EventKind, message: str) -> None:
+def _change_phase(mind: ControllerState, phase: ShowPhase, kind: EventKind, message: str) -> None:
     if isinstance(mind.activity, Showing):
         mind.remember(show_moves=phase is ShowPhase.RUNNING)
         mind.activity = replace(mind.activity, phase=phase, at=begins_at(mind))
@@ -143,7 +143,7 @@ def _start(course: Course) -> AxisPair:
     return AxisPair(course.start.azimuth_deg, course.start.elevation_deg)
 
 
-def _not_at_start(mind: Mind) -> Reason:
+def _not_at_start(mind: ControllerState) -> Reason:
     return Reason(
         "not_at_start",
         f"{mind.config.name} is not at the start of this show.",

@@ -23,19 +23,19 @@ from app.tracker.activity import (
     Tracking,
 )
 from app.tracker.announce import announce, announce_if_remote
+from app.tracker.axis_demand import paced
 from app.tracker.commands import Stow
-from app.tracker.conditions import Action, demand, demand_drive, unmet
 from app.tracker.config import MountKind, Orientation
-from app.tracker.mind import NOWHERE, Mind, Turn
+from app.tracker.controller_state import NOWHERE, ControllerState, Turn
+from app.tracker.interlocks import Action, demand, demand_drive, unmet
 from app.tracker.motion import Feedback
 from app.tracker.mount import aim, sky
-from app.tracker.pace import paced
+from app.tracker.positioning import arrived, at_rest, new_run
 from app.tracker.protections.words import Facing, StowName
 from app.tracker.reason import Reason
-from app.tracker.runs import arrived, at_rest, new_run
-from app.tracker.shelter import demanded_stow, guarding, reason
 from app.tracker.snapshot import EventKind, ShowPhase
 from app.tracker.transitions import end_show, fail, interrupt, leave
+from app.tracker.weather_protection import demanded_stow, guarding, reason
 
 HAND_GRACE = timedelta(seconds=5)
 """For so long a motion by hand goes on when the weather demands a stow."""
@@ -44,7 +44,7 @@ STOW_ACTIVITIES = (Stowing, Stowed)
 MOVES_BY_ITSELF = (ShowPhase.GOING_TO_START, ShowPhase.RUNNING)
 
 
-def stow(mind: Mind, command: Stow) -> None:
+def stow(mind: ControllerState, command: Stow) -> None:
     """Go to a stow position and stay there until `Resume`, or raise `CommandRejected`."""
     feedback = demand_drive(mind, Action.STOW)
     mind.wait = mind.warning = None
@@ -56,7 +56,7 @@ def stow(mind: Mind, command: Stow) -> None:
         announce_if_remote(mind, f"{mind.config.name} goes to its stow position.")
 
 
-def resume(mind: Mind) -> None:
+def resume(mind: ControllerState) -> None:
     """Leave a stow position that was commanded, or raise `CommandRejected`; tracking goes on if it was on."""
     demand(mind, Action.RESUME)
     mind.remember(stow=None)
@@ -65,7 +65,7 @@ def resume(mind: Mind) -> None:
         announce_if_remote(mind, f"{mind.config.name} continues tracking.")
 
 
-def guard(mind: Mind, feedback: Feedback) -> None:
+def guard(mind: ControllerState, feedback: Feedback) -> None:
     """Let the weather and the commanded stow have their way before the activity's own step."""
     activity, wanted = mind.activity, demanded_stow(mind)
     if wanted is None and not isinstance(activity, STOW_ACTIVITIES):
@@ -86,7 +86,7 @@ def guard(mind: Mind, feedback: Feedback) -> None:
         _begin_by_itself(mind, feedback, wanted)
 
 
-def step(mind: Mind, activity: Stowing | Stowed, feedback: Feedback) -> Turn:
+def step(mind: ControllerState, activity: Stowing | Stowed, feedback: Feedback) -> Turn:
     """Go on until the panel is stowed; one that does not arrive in time is a fault."""
     if isinstance(activity, Stowed):
         return Turn(activity)
@@ -103,7 +103,7 @@ def step(mind: Mind, activity: Stowing | Stowed, feedback: Feedback) -> Turn:
     return Turn(activity, run.command, target_of(mind, run.target, feedback))
 
 
-def place(mind: Mind, feedback: Feedback, name: StowName) -> AxisPair:
+def place(mind: ControllerState, feedback: Feedback, name: StowName) -> AxisPair:
     """Return a stow position in axis angles; an azimuth that is not meant stays where it is."""
     config, pointing = mind.config, mind.memory.pointing
     near_deg = feedback.azimuth.position_deg
@@ -121,7 +121,7 @@ def place(mind: Mind, feedback: Feedback, name: StowName) -> AxisPair:
     return AxisPair(None if keeps else target.azimuth_deg, target.elevation_deg)
 
 
-def not_stowed(mind: Mind) -> Reason | None:
+def not_stowed(mind: ControllerState) -> Reason | None:
     """Return why the panel is not stowed although wind or snow demand it; None: it is, or is on its way."""
     wanted = guarding(mind).stow
     if wanted is None or _is_stowed(mind, wanted):
@@ -131,7 +131,7 @@ def not_stowed(mind: Mind) -> Reason | None:
     return Reason("not_stowed", text, hint)
 
 
-def _end_by_hand(mind: Mind, by_weather: StowName | None) -> None:
+def _end_by_hand(mind: ControllerState, by_weather: StowName | None) -> None:
     """Let a motion by hand go on for a few seconds, counted down before everybody's eyes, then end it."""
     if by_weather is None:
         mind.hand_until = None
@@ -142,7 +142,7 @@ def _end_by_hand(mind: Mind, by_weather: StowName | None) -> None:
         interrupt(mind, reason(mind))
 
 
-def _end_show(mind: Mind, activity: Showing, by_weather: StowName) -> None:
+def _end_show(mind: ControllerState, activity: Showing, by_weather: StowName) -> None:
     """End a show for the weather; one that moved by itself is stowed and stays so."""
     why = reason(mind)
     end_show(mind, activity, f"The show ended early: {why.message}", "interrupted")
@@ -151,7 +151,9 @@ def _end_show(mind: Mind, activity: Showing, by_weather: StowName) -> None:
         mind.remember(stow=by_weather)
 
 
-def _keep_stowed(mind: Mind, feedback: Feedback, activity: Stowing | Stowed, wanted: StowName | None) -> None:
+def _keep_stowed(
+    mind: ControllerState, feedback: Feedback, activity: Stowing | Stowed, wanted: StowName | None
+) -> None:
     if wanted is activity.stow:
         return
     if wanted is not None:
@@ -162,7 +164,7 @@ def _keep_stowed(mind: Mind, feedback: Feedback, activity: Stowing | Stowed, wan
         announce(mind, f"{mind.config.name} continues tracking.")
 
 
-def _is_automatic(mind: Mind, wanted: StowName) -> bool:
+def _is_automatic(mind: ControllerState, wanted: StowName) -> bool:
     """Return whether a person left the tracker in a state in which it may move by itself."""
     match mind.activity:
         case Tracking():
@@ -175,7 +177,7 @@ def _is_automatic(mind: Mind, wanted: StowName) -> bool:
             return False
 
 
-def _was_automatic(mind: Mind) -> bool:
+def _was_automatic(mind: ControllerState) -> bool:
     """Return whether a tracker that holds was left automatic.
 
     It was by a command, by a show that the restart cut off, or by tracking that has waited since the restart.
@@ -185,11 +187,11 @@ def _was_automatic(mind: Mind) -> bool:
     return mind.memory.stow is not None or mind.memory.show_moves
 
 
-def _blocked(mind: Mind) -> bool:
+def _blocked(mind: ControllerState) -> bool:
     return bool(unmet(mind, Action.STOW))
 
 
-def _begin_by_itself(mind: Mind, feedback: Feedback, wanted: StowName) -> None:
+def _begin_by_itself(mind: ControllerState, feedback: Feedback, wanted: StowName) -> None:
     """Go to a stow position; after a show that the restart cut off the tracker stays there."""
     if mind.memory.show_moves:
         mind.remember(stow=wanted, show_moves=False)
@@ -200,7 +202,7 @@ def _begin_by_itself(mind: Mind, feedback: Feedback, wanted: StowName) -> None:
         announce(mind, f"{mind.config.name} goes to its {wanted} stow position.")
 
 
-def _begin(mind: Mind, feedback: Feedback, name: StowName) -> None:
+def _begin(mind: ControllerState, feedback: Feedback, name: StowName) -> None:
     """Be on the way to a stow position, or there at once."""
     mind.warning, mind.setpoint = None, NOWHERE
     if at_rest(feedback) and arrived(place(mind, feedback, name), feedback, mind.config.in_position_deg):
@@ -210,13 +212,13 @@ def _begin(mind: Mind, feedback: Feedback, name: StowName) -> None:
     mind.say(EventKind.STOW_STARTED, f"{mind.config.name} goes to the stow position {name}.", stow=name)
 
 
-def _arrived(mind: Mind, name: StowName) -> Stowed | Holding:
+def _arrived(mind: ControllerState, name: StowName) -> Stowed | Holding:
     text = f"{mind.config.name} is in the stow position {name}."
     mind.say(EventKind.STOW_ENDED, text, stow=name, outcome="in_position")
     return HOLDING if name is StowName.PARK else Stowed(name)
 
 
-def _go_on(mind: Mind) -> None:
+def _go_on(mind: ControllerState) -> None:
     """Track again where tracking is on and lacks nothing, else hold."""
     mind.warning = None
     if not mind.memory.tracking_on or mind.wait is not None:
@@ -226,7 +228,7 @@ def _go_on(mind: Mind) -> None:
     mind.say(EventKind.TRACKING_RESUMED, "Tracking continues after the stow.", mode=mind.memory.mode)
 
 
-def _facing_deg(mind: Mind, feedback: Feedback, name: StowName) -> float | None:
+def _facing_deg(mind: ControllerState, feedback: Feedback, name: StowName) -> float | None:
     """Return the azimuth that turns the panel's back or its nearer edge into the wind."""
     facing = mind.config.protection.wind.facing
     wind_from_deg = mind.seen.weather.wind_from_deg if mind.seen else None
@@ -242,7 +244,7 @@ def _facing_deg(mind: Mind, feedback: Feedback, name: StowName) -> float | None:
     return to_right_deg if off_deg <= 90.0 else (to_right_deg + 180.0) % 360.0
 
 
-def _is_stowed(mind: Mind, wanted: StowName) -> bool:
+def _is_stowed(mind: ControllerState, wanted: StowName) -> bool:
     """Return whether the panel is in the position, or on its way, or stands there though nobody sent it."""
     if mind.lost or mind.feedback is None or isinstance(mind.activity, Faulted):
         return False
@@ -255,7 +257,7 @@ def _is_stowed(mind: Mind, wanted: StowName) -> bool:
     return arrived(place(mind, mind.feedback, wanted), mind.feedback, mind.config.in_position_deg)
 
 
-def _because(mind: Mind) -> tuple[str, str]:
+def _because(mind: ControllerState) -> tuple[str, str]:
     """Return what keeps the tracker from its stow position, and what to do."""
     against = unmet(mind, Action.STOW)
     if against:

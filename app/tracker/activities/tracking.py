@@ -11,20 +11,19 @@ from app.sun.position import Location, SunPosition
 from app.tracker.activities.moving import not_arrived
 from app.tracker.activity import Stowed, Stowing, Tracking, TrackPhase
 from app.tracker.announce import announce, announce_if_remote
-from app.tracker.conditions import Action, demand, unmet
+from app.tracker.axis_demand import paced
 from app.tracker.config import MountConfig, MountKind, NightBehaviour, TrackerConfig
+from app.tracker.controller_state import HALTED, ControllerState, Turn
 from app.tracker.hybrid import correct
-from app.tracker.mind import HALTED, Mind, Turn
+from app.tracker.interlocks import Action, demand, unmet
 from app.tracker.mode import Mode
 from app.tracker.motion import Feedback
 from app.tracker.mounts.kinematics import FIRST_FOLLOWS
 from app.tracker.observation import Observation
-from app.tracker.pace import paced
+from app.tracker.positioning import arrived, new_run
 from app.tracker.programs.schedule import Aimed, Followed, Moment, aimed, scheduled, scheduled_dawn
-from app.tracker.pursuit import due, pursue, widened
 from app.tracker.reason import Reason
-from app.tracker.runs import arrived, new_run
-from app.tracker.shelter import TWILIGHT_DEG, demanded_stow, guarding, hold_reason
+from app.tracker.setpoint_scheduler import due, pursue, widened
 from app.tracker.snapshot import EventKind
 from app.tracker.strategy import (
     DEADBAND,
@@ -37,6 +36,7 @@ from app.tracker.strategy import (
     Strategy,
 )
 from app.tracker.transitions import end_move, fail, interrupt
+from app.tracker.weather_protection import TWILIGHT_DEG, demanded_stow, guarding, hold_reason
 
 SUN_DPS = 15.0 / 3600.0
 
@@ -44,7 +44,7 @@ TRACKING = {phase: Tracking(phase) for phase in TrackPhase}
 RESTED = {phase: Tracking(phase, rested=True) for phase in TrackPhase}
 
 
-def track(mind: Mind) -> None:
+def track(mind: ControllerState) -> None:
     """Follow the selected mode from now on, or raise `CommandRejected`."""
     demand(mind, Action.TRACK)
     mind.wait = None
@@ -59,7 +59,7 @@ def track(mind: Mind) -> None:
     mind.say(EventKind.TRACKING_STARTED, f"Tracking started, mode {mind.memory.mode}.", mode=mind.memory.mode)
 
 
-def resume(mind: Mind, after: str = "the restart") -> None:
+def resume(mind: ControllerState, after: str = "the restart") -> None:
     """Go on tracking after a restart if it was on and all is trusted, else wait and say for what."""
     if not mind.memory.tracking_on:
         return
@@ -68,17 +68,17 @@ def resume(mind: Mind, after: str = "the restart") -> None:
         mind.activity = TRACKING[TrackPhase.FOLLOWING]
         mind.wait = None
         if demanded_stow(mind) is not None:
-            mind.say(EventKind.TRACKING_WAITING, "Tracking is on, but the panel stows first.")
+            mind.say(EventKind.TRACKING_INTERRUPTED, "Tracking is on, but the panel stows first.")
             return
         mind.say(EventKind.TRACKING_RESUMED, f"Tracking continues after {after}.", mode=mind.memory.mode)
         announce(mind, f"{mind.config.name} continues tracking after {after}.")
         return
     mind.wait = mind.held_back = reasons[0]
     why = " ".join(reason.message for reason in reasons)
-    mind.say(EventKind.TRACKING_WAITING, f"Tracking is interrupted and needs the operator: {why}")
+    mind.say(EventKind.TRACKING_INTERRUPTED, f"Tracking is interrupted and needs the operator: {why}")
 
 
-def step(mind: Mind, tracking: Tracking, feedback: Feedback, seen: Observation) -> Turn:
+def step(mind: ControllerState, tracking: Tracking, feedback: Feedback, seen: Observation) -> Turn:
     """Return a run to the target where the panel is about to leave the deadband, else hold."""
     sun, mode = seen.sun, mind.memory.mode
     if not seen.clock_trusted:
@@ -108,7 +108,7 @@ def step(mind: Mind, tracking: Tracking, feedback: Feedback, seen: Observation) 
 
 
 def _begin(
-    mind: Mind,
+    mind: ControllerState,
     tracking: Tracking,
     strategy: Strategy,
     phase: TrackPhase,
@@ -136,7 +136,7 @@ def _has_rested(tracking: Tracking) -> bool:
     return tracking.rested or tracking.phase in (TrackPhase.NIGHT, TrackPhase.RESTING)
 
 
-def _must_wait(mind: Mind, tracking: Tracking, phase: TrackPhase) -> bool:
+def _must_wait(mind: ControllerState, tracking: Tracking, phase: TrackPhase) -> bool:
     """Announce the first motion after the night or a rest; return whether it must wait for that."""
     if phase is TrackPhase.NIGHT or not _has_rested(tracking):
         return False
@@ -144,10 +144,10 @@ def _must_wait(mind: Mind, tracking: Tracking, phase: TrackPhase) -> bool:
     return mind.warning is not None
 
 
-def _paused(mind: Mind, tracking: Tracking) -> Tracking:
+def _paused(mind: ControllerState, tracking: Tracking) -> Tracking:
     """Return tracking that holds while the clock is doubted; it goes on once the clock is trusted again."""
     if tracking.phase is not TrackPhase.PAUSED:
-        mind.say(EventKind.TRACKING_WAITING, "Tracking holds until the site's clock is trusted again.")
+        mind.say(EventKind.TRACKING_INTERRUPTED, "Tracking holds until the site's clock is trusted again.")
     return TRACKING[TrackPhase.PAUSED]
 
 
@@ -161,7 +161,9 @@ def _day_place(strategy: Strategy, followed: Followed, moment: Moment, near_deg:
     assert_never(strategy)
 
 
-def _corrected(mind: Mind, followed: Followed, moment: Moment, wanted: Aimed, feedback: Feedback) -> Aimed:
+def _corrected(
+    mind: ControllerState, followed: Followed, moment: Moment, wanted: Aimed, feedback: Feedback
+) -> Aimed:
     """Return the place with the correction that the light sensors ask for added to its axis angles."""
     sun_target = aimed(followed, followed.direction(moment.sun), feedback.azimuth.position_deg).target
     mind.corrected = correct(
@@ -193,7 +195,7 @@ def sun_height_deg(config: TrackerConfig, sun: SunPosition) -> float:
 
 
 def _go_on(
-    mind: Mind,
+    mind: ControllerState,
     tracking: Tracking,
     strategy: Strategy,
     feedback: Feedback,

@@ -11,7 +11,7 @@ from app.sun.trigonometry import ARRAY, PER_DEGREE, Array
 from app.tracker.axes import AxisConfig
 from app.tracker.config import TrackerConfig
 from app.tracker.mount import second_axis
-from app.tracker.mounts.abilities import default_mode
+from app.tracker.mounts.capabilities import default_mode
 from app.tracker.mounts.kinematics import direction, followed
 
 STEP_S = 1200

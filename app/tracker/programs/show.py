@@ -3,11 +3,11 @@
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
-from app.tracker.programs.course import ShowAim, ShowCourse
 from app.tracker.programs.plan import ShowCheck, ShowPath, ShowPlan
 from app.tracker.programs.schedule_check import check_schedule
 from app.tracker.programs.schedule_course import ScheduleCourse
 from app.tracker.programs.show_check import check_show as check_smooth
+from app.tracker.programs.trajectory import ShowAim, ShowCourse
 from app.tracker.strategy import Interval, Schedule, Stepped, Strategy
 
 __all__ = [

@@ -13,9 +13,8 @@ from app.tracker.config import MountConfig, MountKind, Orientation, TrackerConfi
 from app.tracker.memory import Pointing
 from app.tracker.mode import Mode
 from app.tracker.mount import AxisTarget, second_axis, sky
-from app.tracker.mounts.abilities import axis_title
-from app.tracker.mounts.absent import mode_absent
-from app.tracker.programs.course import ShowCourse
+from app.tracker.mounts.capabilities import axis_title
+from app.tracker.mounts.missing_axes import mode_absent
 from app.tracker.programs.pace import (
     REPOSITIONING_SHARE,
     Pace,
@@ -25,6 +24,7 @@ from app.tracker.programs.pace import (
 )
 from app.tracker.programs.path import Stretch, sun_up
 from app.tracker.programs.plan import ShowCheck, ShowPath, ShowPlan
+from app.tracker.programs.trajectory import ShowCourse
 from app.tracker.reason import Reason
 
 UPRIGHT_KINDS = (MountKind.AZIMUTH_ELEVATION, MountKind.VERTICAL_SINGLE_AXIS)

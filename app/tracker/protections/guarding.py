@@ -4,25 +4,25 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import assert_never
 
-from app.tracker.protections import doubt, hibernation, snow, typhoon
+from app.tracker.protections import low_light, sensor_validity, snow, wind_stow
 from app.tracker.protections.config import (
     LightProtection,
     ProtectionConfig,
     SnowProtection,
     WindProtection,
 )
-from app.tracker.protections.doubt import WELL, Doubt, demands
-from app.tracker.protections.hibernation import AWAKE, Hibernation
+from app.tracker.protections.low_light import AWAKE, LowLight
 from app.tracker.protections.priority import classify
+from app.tracker.protections.sensor_validity import WELL, Doubt, demands
 from app.tracker.protections.snow import CLEAR, Snow
-from app.tracker.protections.typhoon import CALM, Typhoon, Wind
+from app.tracker.protections.wind_stow import CALM, Wind, WindStow
 from app.tracker.protections.words import Protection, Reaction, StowName
 from app.tracker.weather import Quality, Quantity, Sensed
 
 Limits = WindProtection | SnowProtection | LightProtection
-STOWS = {Protection.TYPHOON: StowName.WIND, Protection.SNOW: StowName.SNOW}
+STOWS = {Protection.WIND_STOW: StowName.WIND, Protection.SNOW: StowName.SNOW}
 """The protections that demand a motion, and where to."""
-HOLDS = (Protection.WAIT, Protection.HIBERNATE)
+HOLDS = (Protection.WAIT, Protection.LOW_LIGHT_HOLD)
 """The protections that demand that the panel stays where it is."""
 
 
@@ -33,9 +33,9 @@ class Guarding:
     `held` says that a bad sensor demands that nothing moves.
     """
 
-    typhoon: Typhoon = CALM
+    wind_stow: WindStow = CALM
     snow: Snow = CLEAR
-    hibernation: Hibernation = AWAKE
+    low_light: LowLight = AWAKE
     wind_doubt: Doubt = WELL
     snow_doubt: Doubt = WELL
     light_doubt: Doubt = WELL
@@ -66,8 +66,8 @@ OFF_GUARD = Guarding()
 def latched(kind: Protection | None, now: datetime) -> Guarding:
     """Return the state after a restart: what held still holds, and its time begins anew."""
     match kind:
-        case Protection.TYPHOON:
-            return Guarding(typhoon=Typhoon(now, now), kind=kind, since=now)
+        case Protection.WIND_STOW:
+            return Guarding(wind_stow=WindStow(now, now), kind=kind, since=now)
         case Protection.SNOW:
             return Guarding(snow=Snow(now), kind=kind, since=now)
         case _:
@@ -98,7 +98,7 @@ def step(
 ) -> Guarding:
     """Return the state after one look at the weather. `known` are the sensors that were ever seen."""
     doubts = {one: _doubted(state, config, seen, known, now, one) for one in Quantity}
-    blown = _typhoon(state, config.wind, seen, doubts[Quantity.WIND], now)
+    blown = _wind_stow(state, config.wind, seen, doubts[Quantity.WIND], now)
     loaded = _snow(state, config.snow, seen, doubts[Quantity.SNOW], now)
     dark = _hibernation(state, config.light, seen, doubts[Quantity.LIGHT], now)
     kind = classify(state.kind, blown, loaded, dark, night=night)
@@ -112,7 +112,7 @@ def wind_of(seen: Sensed, limits: WindProtection, *, doubted: bool = False) -> W
     """Return what is known of the wind; one that was high before the restart is until it is heard again."""
     if seen.wind.quality is Quality.BEFORE_RESTART:
         before = Wind(seen.wind.value, seen.wind_mean_mps, doubted)
-        return before if typhoon.is_high(limits, before) else Wind(None, None, doubted)
+        return before if wind_stow.is_high(limits, before) else Wind(None, None, doubted)
     gust_mps = seen.wind.good
     return Wind(gust_mps, None if gust_mps is None else seen.wind_mean_mps, doubted)
 
@@ -131,14 +131,16 @@ def _doubted(
     before = state.doubt(quantity)
     if before.since is None and reading.quality is Quality.BEFORE_RESTART:
         before = Doubt(now - timedelta(seconds=seen.unheard_s))
-    return doubt.step(before, good=good, known=is_known, after_s=limits.bad_after_s, now=now)
+    return sensor_validity.step(before, good=good, known=is_known, after_s=limits.bad_after_s, now=now)
 
 
-def _typhoon(state: Guarding, limits: WindProtection, seen: Sensed, doubted: Doubt, now: datetime) -> Typhoon:
+def _wind_stow(
+    state: Guarding, limits: WindProtection, seen: Sensed, doubted: Doubt, now: datetime
+) -> WindStow:
     if not limits.enabled:
         return CALM
     wind = wind_of(seen, limits, doubted=demands(doubted, limits.bad, Reaction.STOW))
-    return typhoon.step(state.typhoon, limits, wind, now)
+    return wind_stow.step(state.wind_stow, limits, wind, now)
 
 
 def _snow(state: Guarding, limits: SnowProtection, seen: Sensed, doubted: Doubt, now: datetime) -> Snow:
@@ -151,11 +153,11 @@ def _snow(state: Guarding, limits: SnowProtection, seen: Sensed, doubted: Doubt,
 
 def _hibernation(
     state: Guarding, limits: LightProtection, seen: Sensed, doubted: Doubt, now: datetime
-) -> Hibernation:
+) -> LowLight:
     """Return the light's state; a sensor that has failed for good counts as one that is not there."""
     if not limits.enabled or demands(doubted, limits.bad, Reaction.IGNORE, Reaction.WARN):
         return AWAKE
-    return hibernation.step(state.hibernation, limits, seen.light.good, now)
+    return low_light.step(state.low_light, limits, seen.light.good, now)
 
 
 def _held(config: ProtectionConfig, doubts: dict[Quantity, Doubt]) -> Quantity | None:

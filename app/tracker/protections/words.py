@@ -8,14 +8,19 @@ from app.tracker.reason import Reason
 
 
 class Protection(StrEnum):
-    """What may hold, the strongest first; the names are those of Xia et al., in small letters."""
+    """What may hold, the strongest first: TYPHOON to TRACK of Xia et al. (2015)."""
 
-    TYPHOON = "typhoon"
+    WIND_STOW = "wind_stow"
     SNOW = "snow"
     NIGHT = "night"
     WAIT = "wait"
-    HIBERNATE = "hibernate"
+    LOW_LIGHT_HOLD = "low_light_hold"
     TRACK = "track"
+
+    @classmethod
+    def _missing_(cls, value: object) -> "Protection | None":
+        """Return what is stored under a former name, those of Xia et al."""
+        return {"typhoon": cls.WIND_STOW, "hibernate": cls.LOW_LIGHT_HOLD}.get(str(value))
 
 
 class StowName(StrEnum):

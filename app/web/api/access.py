@@ -55,7 +55,7 @@ class Ticket(Output):
 
 
 @router.get("/me", summary="Who asks")
-async def me(request: Request, built: PanelDep, who: PrincipalDep) -> Myself:
+async def read_me(request: Request, built: PanelDep, who: PrincipalDep) -> Myself:
     """Return who asks, how that was proven, and what they may do."""
     session_id = request.scope["state"]["session_id"]
     return Myself(
@@ -70,7 +70,7 @@ async def me(request: Request, built: PanelDep, who: PrincipalDep) -> Myself:
 
 
 @router.get("/me/sessions", summary="Own sessions")
-async def own_sessions(built: PanelDep, who: PrincipalDep) -> list[SignedIn]:
+async def list_own_sessions(built: PanelDep, who: PrincipalDep) -> list[SignedIn]:
     """Return where who asks is signed in, the newest first; a program is signed in nowhere."""
     return [SignedIn.of(session) for session in built.keeper.own_sessions(who)]
 
@@ -95,7 +95,7 @@ async def sign_out(request: Request, built: PanelDep, who: PrincipalDep) -> Resp
 
 
 @router.post("/session/proof", status_code=204, summary="Password again", responses=TOO_MANY)
-async def prove(typed: Proof, built: PanelDep, who: PrincipalDep) -> None:
+async def confirm_password(typed: Proof, built: PanelDep, who: PrincipalDep) -> None:
     """Open what needs a fresh password for 5 minutes: users, tokens, drives, backups."""
     await built.keeper.prove(who, typed.password.get_secret_value())
 
@@ -109,6 +109,6 @@ async def change_password(typed: NewPassword, built: PanelDep, who: PrincipalDep
 
 
 @router.post("/tickets", status_code=201, summary="Make a ticket")
-async def ticket(built: PanelDep, who: PrincipalDep) -> Ticket:
+async def create_ticket(built: PanelDep, who: PrincipalDep) -> Ticket:
     """Return a ticket that opens one stream or download as who asks, once, within 5 s."""
     return Ticket(ticket=built.keeper.ticket(who))

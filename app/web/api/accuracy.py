@@ -89,7 +89,7 @@ class AccuracyReport(Output):
 
 
 @router.get("/algorithms", summary="The algorithms and their errors")
-async def read_algorithms() -> list[AlgorithmCard]:
+async def read_sun_algorithms() -> list[AlgorithmCard]:
     """Return every algorithm that can be selected, with its source and the error to expect."""
     return [
         AlgorithmCard(
@@ -105,7 +105,7 @@ async def read_algorithms() -> list[AlgorithmCard]:
 
 
 @router.get("/accuracy", summary="Measure every algorithm against NREL SPA", responses=REFUSED | TOO_MANY)
-async def read_accuracy(
+async def read_sun_accuracy(
     site: SnapshotDep,
     panel: PanelDep,
     globe: Annotated[bool, Query(description="The whole globe instead of the site.")] = False,

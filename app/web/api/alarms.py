@@ -69,7 +69,7 @@ async def read_alarms(snapshot: SnapshotDep) -> AlarmsNow:
 
 
 @router.get("/history", summary="The history of alarms, newest first")
-def read_history(
+def read_alarm_history(
     reader: ReaderDep,
     before: Annotated[
         int | None, Query(ge=1, le=2**63 - 1, description="Cursor: alarms before this.")
@@ -85,7 +85,7 @@ def read_history(
 
 
 @router.get("/catalogue", summary="Every alarm there is")
-async def read_catalogue() -> list[AlarmKind]:
+async def read_alarm_catalogue() -> list[AlarmKind]:
     """Return each kind of alarm with its priority, what follows and what to do."""
     return [
         AlarmKind(
@@ -103,13 +103,13 @@ async def read_catalogue() -> list[AlarmKind]:
 
 
 @router.post("/{alarm_id}/acknowledge", summary="Acknowledge an alarm", responses=NOT_FOUND | REFUSED)
-async def acknowledge(alarm_id: AlarmId, sender: SenderDep) -> AlarmsNow:
+async def acknowledge_alarm(alarm_id: AlarmId, sender: SenderDep) -> AlarmsNow:
     """Say that somebody has seen it; one that is acknowledged already stays so."""
     return await _ordered(sender, AcknowledgeAlarm(alarm_id))
 
 
 @router.post("/{alarm_id}/shelve", summary="Shelve an alarm", responses=NOT_FOUND | REFUSED)
-async def shelve(alarm_id: AlarmId, shelving: Shelving, sender: SenderDep) -> AlarmsNow:
+async def shelve_alarm(alarm_id: AlarmId, shelving: Shelving, sender: SenderDep) -> AlarmsNow:
     """Put it aside for some minutes; one of priority 1 cannot be shelved."""
     return await _ordered(sender, ShelveAlarm(alarm_id, shelving.minutes, shelving.reason))
 
@@ -117,7 +117,7 @@ async def shelve(alarm_id: AlarmId, shelving: Shelving, sender: SenderDep) -> Al
 @router.post(
     "/{alarm_id}/unshelve", summary="Take an alarm back from the shelf", responses=NOT_FOUND | REFUSED
 )
-async def unshelve(alarm_id: AlarmId, sender: SenderDep) -> AlarmsNow:
+async def unshelve_alarm(alarm_id: AlarmId, sender: SenderDep) -> AlarmsNow:
     """Announce it again if it is still active."""
     return await _ordered(sender, UnshelveAlarm(alarm_id))
 

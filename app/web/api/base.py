@@ -4,6 +4,7 @@ from enum import Enum
 from typing import Annotated, Any, Self
 
 from fastapi import APIRouter, Path, Query
+from fastapi.routing import APIRoute
 from pydantic import BaseModel, ConfigDict, Field, ModelWrapValidatorHandler, model_validator
 
 from app.instants import Instant
@@ -92,4 +93,15 @@ def api_router(*, tags: list[str | Enum], prefix: str = "") -> APIRouter:
     Both stand in it from its making: FastAPI works a route out once more where a router includes its own,
     and for all of the API that took a third of the panel's start.
     """
-    return APIRouter(prefix=f"{ROOT}{prefix}", tags=tags, responses=COMMON, route_class=LateRoute)
+    return APIRouter(
+        prefix=f"{ROOT}{prefix}",
+        tags=tags,
+        responses=COMMON,
+        route_class=LateRoute,
+        generate_unique_id_function=operation_id,
+    )
+
+
+def operation_id(route: APIRoute) -> str:
+    """Return what a call is named in the document, and so in clients that are made from it."""
+    return route.name

@@ -72,22 +72,20 @@ def _output(site: SiteSnapshot, tracker_id: str, who: PrincipalDep) -> ControlOu
 
 @router.get(
     "/trackers/{tracker_id}/control",
-    operation_id="read_control",
     summary="Who has control of a tracker",
     responses=NOT_FOUND,
 )
-async def read(tracker_id: TrackerId, site: SnapshotDep, who: PrincipalDep) -> ControlOutput:
+async def read_control(tracker_id: TrackerId, site: SnapshotDep, who: PrincipalDep) -> ControlOutput:
     """Return who has control; reading never needs it."""
     return _output(site, tracker_id, who)
 
 
 @router.post(
     "/trackers/{tracker_id}/control",
-    operation_id="change_control",
     summary="Ask for control, take it over, hand it over or keep it",
     responses=NOT_FOUND | REFUSED,
 )
-async def change(
+async def change_control(
     tracker_id: TrackerId, said: ControlInput, sender: SenderDep, who: PrincipalDep
 ) -> ControlOutput:
     """Carry out what is said about control. Motion that somebody else ordered stops before control passes."""
@@ -96,22 +94,22 @@ async def change(
 
 @router.delete(
     "/trackers/{tracker_id}/control",
-    operation_id="release_control",
     summary="Let go of control",
     responses=NOT_FOUND | REFUSED,
 )
-async def release(tracker_id: TrackerId, sender: SenderDep, who: PrincipalDep) -> ControlOutput:
+async def release_control(tracker_id: TrackerId, sender: SenderDep, who: PrincipalDep) -> ControlOutput:
     """Let go of control: whoever wants it has it, else nobody. Tracking and shows go on."""
     return _output(await sender.send(ReleaseControl(tracker_id)), tracker_id, who)
 
 
 @router.post(
     "/control",
-    operation_id="request_control_of_group",
     summary="Take control of several trackers, of all or of none",
     responses=NOT_FOUND | REFUSED,
 )
-async def request_group(said: GroupInput, sender: SenderDep, who: PrincipalDep) -> list[ControlOutput]:
+async def request_control_of_group(
+    said: GroupInput, sender: SenderDep, who: PrincipalDep
+) -> list[ControlOutput]:
     """Take control of all of these trackers, in the order of their ids, or say who has one of them."""
     ids = tuple(sorted(set(said.tracker_ids)))
     site = await sender.send(RequestControl(ids, reason=said.reason))

@@ -8,34 +8,34 @@ from app.instants import Instant
 from app.link.messages import Machine, StopAll
 from app.tracker.axes import Axis, JogSpeed
 from app.tracker.commands import (
-    BeginService,
+    BeginServiceMode,
     Command,
-    ConfirmClear,
+    ConfirmAreaClear,
     EndJog,
-    EndService,
+    EndServiceMode,
     Home,
     Jog,
-    LockOut,
-    MeasureLinkLoss,
-    MeasureStop,
     Move,
     Park,
-    ProveDirection,
-    ProveScale,
-    ReleaseLock,
+    ReleaseInhibit,
     ResetFault,
     Resume,
+    RunCommunicationLossTest,
+    RunDirectionTest,
+    RunScaleTest,
+    RunStopTest,
     SelectMode,
-    SetZero,
+    SetHome,
+    SetInhibit,
     Step,
     Stop,
     Stow,
     Track,
-    UndoZero,
+    UndoHome,
 )
 from app.tracker.config import Orientation
+from app.tracker.drive_tests import StopSpeed
 from app.tracker.mode import Mode
-from app.tracker.proofs import StopSpeed
 from app.tracker.protections.words import StowName
 from app.tracker.snapshot import SiteSnapshot, Snapshot
 from app.web.api.base import NOT_FOUND, REFUSED, Azimuth, Elevation, Input, TrackerId, api_router
@@ -83,10 +83,10 @@ class StepCommand(_Command):
         return Step(self.axis, self.degrees)
 
 
-class ZeroCommand(_Command):
+class SetHomeCommand(_Command):
     """Here the axes point to north and the horizon: call this zero."""
 
-    type: Literal["zero"]
+    type: Literal["set_home"]
     axes: tuple[Axis, ...] = Field((Axis.AZIMUTH, Axis.ELEVATION), min_length=1, max_length=2)
     confirmed: bool = Field(
         False,
@@ -95,17 +95,17 @@ class ZeroCommand(_Command):
 
     def command(self, held: Orientation) -> Command:
         """Return what the machine is asked; `held` is the orientation that is set now."""
-        return SetZero(tuple(dict.fromkeys(self.axes)))
+        return SetHome(tuple(dict.fromkeys(self.axes)))
 
 
-class UndoZeroCommand(_Command):
+class UndoHomeCommand(_Command):
     """Bring back the home position as it was before it was set last; refused once the axes have moved."""
 
-    type: Literal["undo_zero"]
+    type: Literal["undo_home"]
 
     def command(self, held: Orientation) -> Command:
         """Return what the machine is asked; `held` is the orientation that is set now."""
-        return UndoZero()
+        return UndoHome()
 
 
 class HomeCommand(_Command):
@@ -177,54 +177,54 @@ class ResumeCommand(_Command):
 class LockOutCommand(_Command):
     """Somebody works on the machine: forbid every automatic motion, stows included."""
 
-    type: Literal["lock_out"]
+    type: Literal["set_inhibit"]
     name: str = Field(min_length=1, max_length=60, description="Who works there.", examples=["Ada"])
     reason: str = Field("", max_length=200)
 
     def command(self, held: Orientation) -> Command:
         """Return what the machine is asked; `held` is the orientation that is set now."""
-        return LockOut(self.name, self.reason)
+        return SetInhibit(self.name, self.reason)
 
 
 class ReleaseLockCommand(_Command):
     """Nobody works on the machine any more; nothing moves because of it."""
 
-    type: Literal["release_lock"]
+    type: Literal["release_inhibit"]
 
     def command(self, held: Orientation) -> Command:
         """Return what the machine is asked; `held` is the orientation that is set now."""
-        return ReleaseLock()
+        return ReleaseInhibit()
 
 
 class BeginServiceCommand(_Command):
     """Serve the machine: stop, then move at the slow hand speed and only while the area is clear."""
 
-    type: Literal["begin_service"]
+    type: Literal["begin_service_mode"]
     name: str = Field(min_length=1, max_length=60, description="Who works there.", examples=["Ada"])
 
     def command(self, held: Orientation) -> Command:
         """Return what the machine is asked; `held` is the orientation that is set now."""
-        return BeginService(self.name)
+        return BeginServiceMode(self.name)
 
 
 class ConfirmClearCommand(_Command):
     """Nobody stands where the panel moves; in service mode that allows motion for a while."""
 
-    type: Literal["confirm_clear"]
+    type: Literal["confirm_area_clear"]
 
     def command(self, held: Orientation) -> Command:
         """Return what the machine is asked; `held` is the orientation that is set now."""
-        return ConfirmClear()
+        return ConfirmAreaClear()
 
 
 class EndServiceCommand(_Command):
     """Leave service mode; nothing moves because of it."""
 
-    type: Literal["end_service"]
+    type: Literal["end_service_mode"]
 
     def command(self, held: Orientation) -> Command:
         """Return what the machine is asked; `held` is the orientation that is set now."""
-        return EndService()
+        return EndServiceMode()
 
 
 class ResetFaultCommand(_Command):
@@ -240,54 +240,54 @@ class ResetFaultCommand(_Command):
 class ProveDirectionCommand(_Command):
     """Turn one axis by 3 degrees, so that somebody can see which way the panel goes."""
 
-    type: Literal["prove_direction"]
+    type: Literal["test_direction"]
     axis: Axis
 
     def command(self, held: Orientation) -> Command:
         """Return what the machine is asked; `held` is the orientation that is set now."""
-        return ProveDirection(self.axis)
+        return RunDirectionTest(self.axis)
 
 
 class ProveScaleCommand(_Command):
     """Turn one axis by 10, 30 or 90 degrees, so that somebody can measure by how much the panel turned."""
 
-    type: Literal["prove_scale"]
+    type: Literal["test_scale"]
     axis: Axis
     degrees: Literal[10, 30, 90] = 10
 
     def command(self, held: Orientation) -> Command:
         """Return what the machine is asked; `held` is the orientation that is set now."""
-        return ProveScale(self.axis, float(self.degrees))
+        return RunScaleTest(self.axis, float(self.degrees))
 
 
 class MeasureStopCommand(_Command):
     """Bring one axis up to speed, stop it, and measure time and way until it stands."""
 
-    type: Literal["measure_stop"]
+    type: Literal["test_stop"]
     axis: Axis
     speed: StopSpeed
 
     def command(self, held: Orientation) -> Command:
         """Return what the machine is asked; `held` is the orientation that is set now."""
-        return MeasureStop(self.axis, self.speed)
+        return RunStopTest(self.axis, self.speed)
 
 
 class MeasureLinkLossCommand(_Command):
     """Move one axis slowly, then send the drive nothing, and measure what it does by itself."""
 
-    type: Literal["measure_link_loss"]
+    type: Literal["test_communication_loss"]
     axis: Axis
 
     def command(self, held: Orientation) -> Command:
         """Return what the machine is asked; `held` is the orientation that is set now."""
-        return MeasureLinkLoss(self.axis)
+        return RunCommunicationLossTest(self.axis)
 
 
 AnyCommand = Annotated[
     MoveCommand
     | StepCommand
-    | ZeroCommand
-    | UndoZeroCommand
+    | SetHomeCommand
+    | UndoHomeCommand
     | HomeCommand
     | ModeCommand
     | TrackCommand
@@ -319,7 +319,7 @@ class JogRequest(_Command):
 
 
 @router.post("/trackers/{tracker_id}/stop", status_code=202, summary="Stop now", responses=NOT_FOUND)
-async def stop(tracker_id: TrackerId, sender: SenderDep) -> Snapshot:
+async def stop_tracker(tracker_id: TrackerId, sender: SenderDep) -> Snapshot:
     """Stop both axes at once and switch tracking off; never refused, needs no body, resumes nothing."""
     return await sender.command(tracker_id, Stop())
 
@@ -333,7 +333,7 @@ async def stop_all(sender: SenderDep) -> SiteSnapshot:
 @router.post(
     "/trackers/{tracker_id}/jog", status_code=202, summary="Hold to run", responses=NOT_FOUND | REFUSED
 )
-async def jog(tracker_id: TrackerId, request: JogRequest, sender: SenderDep) -> Snapshot:
+async def jog_axis(tracker_id: TrackerId, request: JogRequest, sender: SenderDep) -> Snapshot:
     """Move for at most 240 ms unless renewed; a press that has ended is dead for ever."""
     command = Jog(request.press_id, request.axis, request.direction, request.speed, request.sequence)
     return await sender.command(tracker_id, command, request.issued_at)
@@ -350,7 +350,7 @@ async def end_jog(tracker_id: TrackerId, press_id: str, sender: SenderDep) -> Sn
 @router.post(
     "/trackers/{tracker_id}/commands", status_code=202, summary="Command", responses=NOT_FOUND | REFUSED
 )
-async def command(
+async def send_command(
     tracker_id: TrackerId, request: AnyCommand, sender: SenderDep, site: SnapshotDep, machine: MachineDep
 ) -> Snapshot:
     """Start what is asked; `activity` and `in_position` of the snapshot tell when it is done.
@@ -358,13 +358,13 @@ async def command(
     `zero` where the drive reads another angle is refused with the question until it is `confirmed`.
     """
     tracker = tracker_of(site, tracker_id)
-    if isinstance(request, ZeroCommand) and not request.confirmed:
+    if isinstance(request, SetHomeCommand) and not request.confirmed:
         await _ask(machine, tracker, request)
     held = tracker.orientation
     return await sender.command(tracker_id, request.command(held), request.issued_at)
 
 
-async def _ask(machine: Machine, tracker: Snapshot, request: ZeroCommand) -> None:
+async def _ask(machine: Machine, tracker: Snapshot, request: SetHomeCommand) -> None:
     mount = (await detail_of(machine, tracker.tracker_id)).state.config.mount
     if doubts := zero_doubts(mount, tracker, request.axes):
         raise NotAcceptable(

@@ -4,7 +4,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.tracker.config import MountKind
 from app.tracker.mechanisms import MECHANISMS
-from app.tracker.mounts.abilities import ABILITIES, MountAbilities, abilities
+from app.tracker.mounts.capabilities import ABILITIES, MountAbilities, abilities
 from app.tracker.mounts.reach import Reach, reach
 from app.tracker.transmission import LinearActuator
 from app.web.api.base import NOT_FOUND, Output, TrackerId, api_router
@@ -27,8 +27,8 @@ async def list_mounts() -> dict[MountKind, MountAbilities]:
     return ABILITIES
 
 
-@router.get("/mechanisms", summary="Linear actuators by name")
-async def list_mechanisms() -> dict[str, LinearActuator]:
+@router.get("/actuator-presets", summary="Linear actuators by name")
+async def list_actuator_presets() -> dict[str, LinearActuator]:
     """Return examples of linear actuators, ready for `azimuth.actuator` or `elevation.actuator`."""
     return {name: make() for name, make in MECHANISMS.items()}
 

@@ -98,7 +98,7 @@ def read_recording(recording_id: RecordingId, reader: ReaderDep) -> RecordingInf
     response_model=FrameColumns,
     responses=NOT_FOUND | FILES,
 )
-def read_frames(
+def read_samples(
     recording_id: RecordingId,
     reader: ReaderDep,
     begin_s: Seconds = 0.0,
@@ -127,7 +127,7 @@ def read_frames(
     summary="Run a recording again",
     responses=NOT_FOUND | REFUSED,
 )
-async def rerun(
+async def rerun_recording(
     recording_id: RecordingId,
     sender: SenderDep,
     machine: MachineDep,

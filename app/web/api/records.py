@@ -90,6 +90,17 @@ def list_records(
     return reader.signed_records(tracker_id, limit=limit)
 
 
+@router.get("/records/comparison", summary="Two records side by side", responses=NOT_FOUND)
+def compare_records(
+    reader: ReaderDep,
+    first: Annotated[int, Query(ge=1, le=2**53)],
+    second: Annotated[int, Query(ge=1, le=2**53)],
+) -> list[Line]:
+    """Return every line of two signed records, without what only says when they were written."""
+    one, other = (read_document(signed_record(reader, number)) for number in (first, second))
+    return [Line.model_validate(line, from_attributes=True) for line in differences(one, other)]
+
+
 @router.get(
     "/records/{number}",
     summary="A signed record",
@@ -121,17 +132,6 @@ def list_record_photos(number: RecordNumber, reader: ReaderDep) -> list[WaitingP
 def read_photo(number: PhotoNumber, reader: ReaderDep) -> Response:
     """Return a photo as JPEG."""
     return Response(photo_of(reader, number).content, media_type="image/jpeg")
-
-
-@router.get("/records-comparison", summary="Two records side by side", responses=NOT_FOUND)
-def compare_records(
-    reader: ReaderDep,
-    first: Annotated[int, Query(ge=1, le=2**53)],
-    second: Annotated[int, Query(ge=1, le=2**53)],
-) -> list[Line]:
-    """Return every line of two signed records, without what only says when they were written."""
-    one, other = (read_document(signed_record(reader, number)) for number in (first, second))
-    return [Line.model_validate(line, from_attributes=True) for line in differences(one, other)]
 
 
 @router.post(

@@ -8,9 +8,12 @@ from app.web.api import (
     accuracy,
     alarms,
     audit,
+    backups,
     certificate,
     commissioning,
     control,
+    drive_tests,
+    fault_injection,
     horizon,
     integrations,
     journal,
@@ -20,10 +23,8 @@ from app.web.api import (
     notifications,
     operations,
     papers,
-    proofs,
     recordings,
     records,
-    restores,
     settings_lock,
     shows,
     simulations,
@@ -34,12 +35,11 @@ from app.web.api import (
     sun,
     telemetry,
     trackers,
-    training,
     users,
     weather,
     weather_sources,
 )
-from app.web.api.base import COMMON, ROOT
+from app.web.api.base import COMMON, ROOT, operation_id
 
 ROUTERS = (
     access.router,
@@ -60,8 +60,8 @@ ROUTERS = (
     control.router,
     settings_lock.router,
     motion.router,
-    proofs.router,
-    training.router,
+    drive_tests.router,
+    fault_injection.router,
     shows.router,
     recordings.router,
     simulations.router,
@@ -70,16 +70,16 @@ ROUTERS = (
     notifications.router,
     journal.router,
     audit.router,
+    backups.router,
     certificate.router,
     network.router,
     telemetry.router,
     stream.router,
-    restores.router,
 )
 
 
 def api_routes() -> list[BaseRoute]:
     """Return the routes below /api/v1; those of operations stand at the root too, and are included here."""
-    shared = APIRouter(prefix=ROOT, responses=COMMON)
+    shared = APIRouter(prefix=ROOT, responses=COMMON, generate_unique_id_function=operation_id)
     shared.include_router(operations.router)
     return [*(route for part in ROUTERS for route in part.routes), *shared.routes]

@@ -30,22 +30,20 @@ class LockOutput(Output):
 
 @router.get(
     "/trackers/{tracker_id}/settings-lock",
-    operation_id="read_settings_lock",
     summary="Whether a tracker's settings are locked",
     responses=NOT_FOUND,
 )
-async def read(tracker_id: TrackerId, site: SnapshotDep) -> LockOutput:
+async def read_settings_lock(tracker_id: TrackerId, site: SnapshotDep) -> LockOutput:
     """Return who locked the settings, if anybody did."""
     return LockOutput(tracker_id=tracker_id, locked=tracker_of(site, tracker_id).settings_lock)
 
 
 @router.put(
     "/trackers/{tracker_id}/settings-lock",
-    operation_id="set_settings_lock",
     summary="Lock a tracker's settings, or unlock them",
     responses=NOT_FOUND | REFUSED,
 )
-async def change(tracker_id: TrackerId, said: LockInput, sender: SenderDep) -> LockOutput:
+async def set_settings_lock(tracker_id: TrackerId, said: LockInput, sender: SenderDep) -> LockOutput:
     """Lock settings, drive, mount, strategy, zero and location as commissioned, or unlock them."""
     order = LockSettings(tracker_id) if said.locked else UnlockSettings(tracker_id, said.reason)
     site = await sender.send(order)
@@ -54,11 +52,10 @@ async def change(tracker_id: TrackerId, said: LockInput, sender: SenderDep) -> L
 
 @router.post(
     "/trackers/{tracker_id}/undo",
-    operation_id="undo_settings",
     summary="Undo the last change of the settings",
     responses=NOT_FOUND | REFUSED,
 )
-async def undo(tracker_id: TrackerId, sender: SenderDep, machine: MachineDep) -> TrackerConfig:
+async def undo_settings(tracker_id: TrackerId, sender: SenderDep, machine: MachineDep) -> TrackerConfig:
     """Set the tracker as it was before its settings were changed last, its drive aside; once more redoes."""
     await sender.send(UndoSettings(tracker_id))
     return (await detail_of(machine, tracker_id)).state.config

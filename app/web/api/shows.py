@@ -26,7 +26,7 @@ from app.tracker.commands import (
 )
 from app.tracker.config import Orientation
 from app.tracker.mode import Mode
-from app.tracker.mounts.abilities import default_mode
+from app.tracker.mounts.capabilities import default_mode
 from app.tracker.programs.show import ShowCheck, ShowPlan, check_show, schedule_of
 from app.tracker.reason import Reason
 from app.tracker.snapshot import ShowProgress, SiteSnapshot, Snapshot
@@ -157,7 +157,7 @@ async def read_show(
 
 
 @router.post("/{show_id}/{action}", status_code=202, summary="Act on a show", responses=NOT_FOUND | REFUSED)
-async def act(
+async def control_show(
     tracker_id: TrackerId,
     show_id: str,
     action: ShowAction,

@@ -97,7 +97,6 @@ async def rename_site(change: SiteName, sender: SenderDep) -> SiteSnapshot:
 
 @router.post(
     "/undo",
-    operation_id="undo_site_settings",
     summary="Undo the last change of the site's settings",
     responses=REFUSED,
 )

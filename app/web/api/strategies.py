@@ -83,7 +83,7 @@ async def write_program(
     responses=NOT_FOUND | REFUSED,
     openapi_extra=CSV_BODY,
 )
-async def write_table(
+async def write_program_table(
     tracker_id: TrackerId, request: Request, sender: SenderDep, machine: MachineDep
 ) -> StepProgram:
     """Read the table, keep the program and make it the tracker's strategy."""
@@ -104,7 +104,7 @@ async def read_examples(tracker_id: TrackerId, machine: MachineDep) -> dict[str,
 
 
 @router.post("/strategy/day", summary="A day by a strategy", responses=NOT_FOUND | TOO_MANY, status_code=200)
-async def tell_day(
+async def plan_strategy_day(
     tracker_id: TrackerId,
     question: StrategyQuestion,
     panel: PanelDep,

@@ -80,7 +80,7 @@ def framed(message: Message) -> bytes:
 
 
 @router.get("/stream", summary="Live snapshots and events", response_class=Response, responses=STREAM)
-async def stream(
+async def stream_events(
     panel: PanelDep,
     who: PrincipalDep,
     tracker_id: Annotated[str | None, Query(max_length=64, description="Only this tracker.")] = None,

@@ -64,7 +64,7 @@ FILES: Responses = {
 
 
 @router.post("/studies", status_code=202, summary="Begin a study", responses=TOO_MANY | NOT_FOUND)
-async def start(new: NewStudy, panel: PanelDep, machine: MachineDep, response: Response) -> StudyState:
+async def start_study(new: NewStudy, panel: PanelDep, machine: MachineDep, response: Response) -> StudyState:
     """Work out what modes and strategies collect; the answer comes at once, the result when it is done."""
     detail = await machine.detail()
     try:
@@ -77,16 +77,33 @@ async def start(new: NewStudy, panel: PanelDep, machine: MachineDep, response: R
 
 
 @router.get("/studies", summary="All studies, newest first")
-def studies(panel: PanelDep, who: PrincipalDep) -> list[StudyState]:
+def list_studies(panel: PanelDep, who: PrincipalDep) -> list[StudyState]:
     """Return how far each study is."""
     states = panel.studies.states()
     return [one for one in states if sees_study(panel.studies, one.study_id, who.trackers)]
 
 
+@router.get("/studies/comparison", summary="Modes and deadbands at a glance", responses=TOO_MANY | REFUSED)
+async def compare_studies(
+    panel: PanelDep,
+    machine: MachineDep,
+    year: Annotated[
+        int | None,
+        Query(ge=FIRST_YEAR, le=LAST_YEAR, description="Left out: this year."),
+    ] = None,
+) -> Comparison:
+    """Return what each mode collects in a clear year at the site, and what each deadband means."""
+    detail = await machine.detail()
+    if detail.site.location is None:
+        raise NotAcceptable("The site has no location yet: set it first.")
+    asked_year = panel.clock.now().year if year is None else year
+    return await panel.studies.compare(glance_question(detail, detail.site.location, asked_year))
+
+
 @router.get(
     "/studies/{study_id}", summary="Progress and result", responses=NOT_FOUND | FILES, response_model=Study
 )
-def study(
+def read_study(
     study_id: StudyId,
     panel: PanelDep,
     file_format: Annotated[StudyFormat, Query(alias="format")] = StudyFormat.JSON,
@@ -107,7 +124,7 @@ def study(
     responses=NOT_FOUND | {204: {"description": "It had ended and is deleted."}},
     response_model=StudyState,
 )
-async def remove(study_id: StudyId, panel: PanelDep) -> StudyState | Response:
+async def remove_study(study_id: StudyId, panel: PanelDep) -> StudyState | Response:
     """Cancel a study that is under way and answer with it, or delete one that has ended."""
     state = await panel.studies.remove(study_id)
     return Response(status_code=204) if state is None else state
@@ -116,7 +133,9 @@ async def remove(study_id: StudyId, panel: PanelDep) -> StudyState | Response:
 @router.post(
     "/studies/programs", summary="Find the best step programs", responses=TOO_MANY | NOT_FOUND | REFUSED
 )
-async def programs(new: NewProgram, panel: PanelDep, machine: MachineDep, sender: SenderDep) -> FoundPrograms:
+async def find_best_programs(
+    new: NewProgram, panel: PanelDep, machine: MachineDep, sender: SenderDep
+) -> FoundPrograms:
     """Return the best program of every number of steps, and have a tracker run one where that is asked."""
     detail = await machine.detail()
     try:
@@ -130,31 +149,14 @@ async def programs(new: NewProgram, panel: PanelDep, machine: MachineDep, sender
     return FoundPrograms(answer=answer, program=program, used_on=new.use_on)
 
 
-@router.get("/studies-comparison", summary="Modes and deadbands at a glance", responses=TOO_MANY | REFUSED)
-async def comparison(
-    panel: PanelDep,
-    machine: MachineDep,
-    year: Annotated[
-        int | None,
-        Query(ge=FIRST_YEAR, le=LAST_YEAR, description="Left out: this year."),
-    ] = None,
-) -> Comparison:
-    """Return what each mode collects in a clear year at the site, and what each deadband means."""
-    detail = await machine.detail()
-    if detail.site.location is None:
-        raise NotAcceptable("The site has no location yet: set it first.")
-    asked_year = panel.clock.now().year if year is None else year
-    return await panel.studies.compare(glance_question(detail, detail.site.location, asked_year))
-
-
 @router.get("/weather-files", summary="Weather files that studies can use")
-def weather_files(panel: PanelDep) -> list[WeatherFile]:
+def list_weather_files(panel: PanelDep) -> list[WeatherFile]:
     """Return the uploaded weather files by name."""
     return panel.studies.folder.weather_files()
 
 
 @router.post("/weather-files", status_code=201, summary="Upload a weather file", responses=TOO_MANY)
-async def upload(
+async def upload_weather_file(
     file: Annotated[UploadFile, File(description="TMY3, EPW or PVGIS CSV, at most 8 MB.")],
     panel: PanelDep,
 ) -> WeatherFile:
@@ -166,6 +168,6 @@ async def upload(
 
 
 @router.delete("/weather-files/{name}", status_code=204, summary="Delete a weather file", responses=NOT_FOUND)
-async def delete_weather(name: FileName, panel: PanelDep) -> None:
+async def delete_weather_file(name: FileName, panel: PanelDep) -> None:
     """Remove a weather file; studies that were made with it stay."""
     await run_in_threadpool(panel.studies.folder.delete_weather, name)

@@ -110,7 +110,7 @@ async def read_sun(
 
 
 @router.get("/day", summary="The sun's path over a day", response_model=SunDay, responses=REFUSED | CSV)
-def read_day(
+def read_sun_day(
     site: SnapshotDep,
     date: Annotated[date | None, Query(description="Civil date of the site; left out: today.")] = None,
     step_s: Annotated[int, Query(ge=10, le=21600, description="Seconds between points.")] = 300,

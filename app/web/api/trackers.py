@@ -13,7 +13,7 @@ from app.tracker.axes import Axis
 from app.tracker.config import DriveKind, NightBehaviour, Parity, TrackerConfig
 from app.tracker.limit_change import LimitReview
 from app.tracker.motion import DriveCapabilities
-from app.tracker.mounts.abilities import MountAbilities, abilities
+from app.tracker.mounts.capabilities import MountAbilities, abilities
 from app.tracker.mounts.usual import mounted
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Snapshot

@@ -102,13 +102,13 @@ class Minted(Output):
 
 
 @router.get("/users", summary="All users")
-async def users(built: PanelDep) -> list[Person]:
+async def list_users(built: PanelDep) -> list[Person]:
     """Return every user with roles."""
     return [_person(user) for user in built.keeper.book.users.values()]
 
 
 @router.post("/users", status_code=201, summary="Add a user")
-async def add(typed: NewUser, built: PanelDep, who: PrincipalDep) -> Person:
+async def add_user(typed: NewUser, built: PanelDep, who: PrincipalDep) -> Person:
     """Add a user; the first one must be an administrator, and from then on everybody signs in."""
     now, password = built.clock.now(), typed.password.get_secret_value()
     user = await built.keeper.do(
@@ -118,7 +118,7 @@ async def add(typed: NewUser, built: PanelDep, who: PrincipalDep) -> Person:
 
 
 @router.patch("/users/{name}", summary="Change a user", responses=NOT_FOUND)
-async def change(name: UserName, typed: UserChange, built: PanelDep, who: PrincipalDep) -> Person:
+async def change_user(name: UserName, typed: UserChange, built: PanelDep, who: PrincipalDep) -> Person:
     """Give a user other roles or another password, which ends their sessions."""
     _known(built, name)
     now, accounts, roles, secret = built.clock.now(), built.keeper.accounts, typed.roles, typed.password
@@ -130,14 +130,14 @@ async def change(name: UserName, typed: UserChange, built: PanelDep, who: Princi
 
 
 @router.delete("/users/{name}", status_code=204, summary="Remove a user", responses=NOT_FOUND)
-async def remove(name: UserName, built: PanelDep, who: PrincipalDep) -> None:
+async def remove_user(name: UserName, built: PanelDep, who: PrincipalDep) -> None:
     """Remove a user with all sessions and tokens; one administrator always stays."""
     _known(built, name)
     await built.keeper.do(lambda: built.keeper.accounts.remove(who, name, built.clock.now()))
 
 
 @router.get("/sessions", summary="All sessions")
-async def sessions(built: PanelDep) -> list[SignedIn]:
+async def list_sessions(built: PanelDep) -> list[SignedIn]:
     """Return who is signed in, from where, and since when."""
     return [SignedIn.of(session) for session in built.keeper.book.sessions.values()]
 
@@ -151,13 +151,13 @@ async def end_session(digest: Digest, built: PanelDep, who: PrincipalDep) -> Non
 
 
 @router.get("/tokens", summary="All tokens")
-async def tokens(built: PanelDep) -> list[Listed]:
+async def list_tokens(built: PanelDep) -> list[Listed]:
     """Return every token without its secret."""
     return [_listed(token) for token in built.keeper.book.tokens.values()]
 
 
 @router.post("/tokens", status_code=201, summary="Create a token")
-async def mint(typed: NewToken, built: PanelDep, who: PrincipalDep) -> Minted:
+async def create_token(typed: NewToken, built: PanelDep, who: PrincipalDep) -> Minted:
     """Make a token; its text comes back this once."""
     wish = TokenWish(
         typed.name,
@@ -172,7 +172,7 @@ async def mint(typed: NewToken, built: PanelDep, who: PrincipalDep) -> Minted:
 
 
 @router.delete("/tokens/{token_id}", status_code=204, summary="Revoke a token", responses=NOT_FOUND)
-async def revoke(token_id: TokenId, built: PanelDep, who: PrincipalDep) -> None:
+async def revoke_token(token_id: TokenId, built: PanelDep, who: PrincipalDep) -> None:
     """Revoke a token; what it opened ends within a second."""
     if token_id not in built.keeper.book.tokens:
         raise NotFound("There is no such token; it may have been revoked.")

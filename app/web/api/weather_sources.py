@@ -24,7 +24,7 @@ def _made_up(name: str, text: str = "") -> object:
 class SimulatedStationIn(Input):
     """Made-up weather; wind, light, snow and temperature count by hand only, the direction always."""
 
-    scenario: Scenario = Field(Scenario.BY_HAND, examples=["storm"])
+    scenario: Scenario = Field(Scenario.MANUAL, examples=["storm"])
     seed: int = Field(1, ge=0, le=MOST_SEED, description="The same seed makes the same gusts and clouds.")
     wind_mps: Annotated[float, _made_up("wind_mps")] = STATION.wind_mps
     gustiness_pct: Annotated[

@@ -49,16 +49,16 @@ MORE = {
     "app/site/auditing.py": ("refused: {reason}", "failed: {why}"),
     "app/site/timekeeping.py": ("manual", "system", "unset"),
     "app/site/site_orders.py": ("flat",),
-    "app/gateway/door.py": ("{kind} was refused: {rejected}",),
+    "app/gateway/ports.py": ("{kind} was refused: {rejected}",),
     "app/machine/main.py": ("The controller service was stopped.",),
-    "app/tracker/mounts/abilities.py": ("up", "down", "north", "south"),
+    "app/tracker/mounts/capabilities.py": ("up", "down", "north", "south"),
 }
 """What no rule finds: phrases of HTTP, parts of sentences, and words that travel."""
 
 _SILENT = """
     app/web/languages app/web/metrics.py app/web/route_conditions.py app/web/route_permissions.py
     app/web/routes.py app/web/openapi.py app/web/documented.py app/web/main.py app/web/server.py
-    app/web/presses.py app/web/record_files.py app/web/record_pdf.py app/web/record_print.py
+    app/web/hold_to_run.py app/web/record_files.py app/web/record_pdf.py app/web/record_print.py
     app/web/record_words.py app/web/journal_files.py app/web/mdns.py app/web/qr.py app/web/attachments.py
     app/web/api/base.py
     app/web/api/operations.py app/web/api/router.py app/web/ui/components.py

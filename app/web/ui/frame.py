@@ -10,9 +10,9 @@ from app.link.messages import TrackerDetail, UnknownTracker
 from app.tracker.commissioning import Step, StepStatus
 from app.tracker.memory import StepName
 from app.tracker.snapshot import SiteSnapshot, Snapshot
+from app.web.build_id import mark_of
 from app.web.contexts import Forward, Frame, Link, StepMark
 from app.web.deps import panel, principal
-from app.web.edition import mark_of
 from app.web.languages import said
 from app.web.ui.asked import asked
 from app.web.ui.themes import choice_of, theme_of

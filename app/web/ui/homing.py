@@ -8,7 +8,7 @@ from starlette.responses import Response
 
 from app.link.messages import TrackerDetail
 from app.tracker.axes import Axis
-from app.tracker.commands import EndJog, Home, SetZero, Step, UndoZero
+from app.tracker.commands import EndJog, Home, SetHome, Step, UndoHome
 from app.tracker.memory import StepName
 from app.web.contexts import HomingPage
 from app.web.deps import MachineDep
@@ -55,14 +55,14 @@ async def zero(
     doubts = () if now is None else zero_doubts(tracker.state.config.mount, now, tuple(Axis))
     if doubts and confirmed != "yes":
         return page(press.request, _page(press.request, tracker, doubts), block="question", status=422)
-    await press.send(SetZero(), tracker_id)
+    await press.send(SetHome(), tracker_id)
     return press.answer("The command to set home was sent to the drive.")
 
 
 @router.post("/zero/undo")
-async def undo_zero(tracker_id: str, press: PressDep) -> Response:
+async def undo_home(tracker_id: str, press: PressDep) -> Response:
     """Bring back the home position as it was before it was set last."""
-    await press.send(UndoZero(), tracker_id)
+    await press.send(UndoHome(), tracker_id)
     return press.answer("The previous home position is restored.")
 
 

@@ -12,7 +12,7 @@ from app.tracker.commands import Move, SelectMode
 from app.tracker.config import MountKind, Orientation, TrackerConfig
 from app.tracker.memory import StepName
 from app.tracker.mode import Mode
-from app.tracker.mounts.abilities import abilities, axis_title
+from app.tracker.mounts.capabilities import abilities, axis_title
 from app.web.contexts import ModeChoice, ModePage, OrientationPage
 from app.web.deps import MachineDep
 from app.web.errors import NotAcceptable

@@ -9,7 +9,7 @@ from starlette.responses import Response
 
 from app.link.messages import ConfigureTracker, SiteDetail, TrackerDetail
 from app.tracker.config import MountKind, TrackerConfig
-from app.tracker.mounts.abilities import ABILITIES, abilities, axis_words
+from app.tracker.mounts.capabilities import ABILITIES, abilities, axis_words
 from app.tracker.mounts.reach import Reach, reach
 from app.tracker.mounts.usual import mounted
 from app.web.contexts import Frame

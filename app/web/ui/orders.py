@@ -11,9 +11,9 @@ from app.access.roles import ORDERS, Permission
 from app.instants import without_leap_second
 from app.link.messages import SiteCommand
 from app.tracker.commands import Command
+from app.web.build_id import refuse_outdated
 from app.web.contexts import Outcome
 from app.web.deps import order_of, panel, principal
-from app.web.edition import refuse_outdated
 from app.web.errors import NotAcceptable
 from app.web.ui.paths import own_path
 from app.web.ui.render import page, wants_block

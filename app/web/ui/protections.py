@@ -8,7 +8,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.link.messages import ConfigureTracker, TrackerDetail
-from app.tracker.commands import LockOut, ReleaseLock, Resume, Stow
+from app.tracker.commands import ReleaseInhibit, Resume, SetInhibit, Stow
 from app.tracker.protections.words import StowName
 from app.web.deps import MachineDep
 from app.web.errors import NotAcceptable
@@ -68,14 +68,14 @@ async def lock(
     reason: Annotated[str, Form(max_length=200)] = "",
 ) -> Response:
     """Forbid every automatic motion."""
-    await press.send(LockOut(name, reason), tracker_id)
+    await press.send(SetInhibit(name, reason), tracker_id)
     return press.answer("Maintenance inhibit is set: no automatic motion, whatever the weather.")
 
 
 @router.post("/release-lock")
-async def release_lock(tracker_id: str, press: PressDep) -> Response:
+async def release_inhibit(tracker_id: str, press: PressDep) -> Response:
     """Forget the lock."""
-    await press.send(ReleaseLock(), tracker_id)
+    await press.send(ReleaseInhibit(), tracker_id)
     return press.answer("The maintenance inhibit is released; nothing moves until commanded.")
 
 

@@ -15,7 +15,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from app.build import VERSION
 from app.own import own_folder
-from app.tracker.mounts.abilities import abilities
+from app.tracker.mounts.capabilities import abilities
 from app.web import languages
 from app.web.contexts import Context
 from app.web.deps import panel, principal

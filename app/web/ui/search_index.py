@@ -40,7 +40,7 @@ FURTHER = (
 )
 PARTS = (
     ("Drive", "/drive", "Connect the drive: profile, address, unit, gear ratio"),
-    ("Drive tests", "/proofs", "Direction, scale, soft limits, stop test, communication-loss test"),
+    ("Drive tests", "/drive-tests", "Direction, scale, soft limits, stop test, communication-loss test"),
     ("Mount", "/mount", "Axes of the panel, actuators, backtracking"),
     ("Strategy", "/strategy", "Continuous, deadband, interval, step program, light sensors"),
     ("Protections", "/protections", "Wind, snow, low light, stow positions, warning, maintenance inhibit"),
@@ -50,7 +50,7 @@ PARTS = (
         ("Overtravel, uncommanded motion, stopping distance, fault reset, forbidden regions"),
     ),
     ("Service mode", "/service", "Who may move the tracker now, home reference"),
-    ("Training", "/training", "Inject faults on a simulated tracker"),
+    ("Training", "/fault-injection", "Inject faults on a simulated tracker"),
     ("Label", "/label", "Print a label with a QR code"),
     ("Location", "/commissioning/location", "Step 1: latitude, longitude, time zone"),
     ("Clock", "/commissioning/clock", "Step 2: date, time, NTP"),

@@ -19,7 +19,9 @@ ALSO = {
     "/studies": "yield, energy, gain, production",
     "/guide": "manual, documentation",
     "/drive": "Modbus, inverter, servo, motor, gearbox, backlash, invert the direction",
-    "/proofs": "wrong sign, turns the wrong way, inverted axis, swapped azimuth, stopping distance, backlash",
+    "/drive-tests": (
+        "wrong sign, turns the wrong way, inverted axis, swapped azimuth, stopping distance, backlash"
+    ),
     "/mount": "geometry, actuator, rows, backtracking",
     "/protections": "stow angle, stow position, hail, cleaning",
     "/machine": "overload, collision, forbidden region, automatic reset",

@@ -6,7 +6,7 @@ from fastapi import Form
 from starlette.requests import Request
 from starlette.responses import Response
 
-from app.tracker.commands import BeginService, ConfirmClear, EndService
+from app.tracker.commands import BeginServiceMode, ConfirmAreaClear, EndServiceMode
 from app.web.deps import MachineDep
 from app.web.errors import NotAcceptable
 from app.web.late_routes import page_router
@@ -36,7 +36,7 @@ async def service(request: Request, tracker_id: str, machine: MachineDep) -> Res
 @router.post("")
 async def begin(tracker_id: str, press: PressDep, name: Annotated[str, Form(max_length=60)] = "") -> Response:
     """Begin service mode in somebody's name."""
-    await press.send(BeginService(name), tracker_id)
+    await press.send(BeginServiceMode(name), tracker_id)
     return press.answer("Service mode is on. The tracker moves only after you press Confirm area clear.")
 
 
@@ -47,12 +47,12 @@ async def clear(
     """Take the word that nobody stands where the panel moves; it must be given, not just sent."""
     if looked != "yes":
         raise NotAcceptable(LOOK_FIRST)
-    await press.send(ConfirmClear(), tracker_id)
+    await press.send(ConfirmAreaClear(), tracker_id)
     return press.answer("Area confirmed clear. The confirmation is valid for the time shown.")
 
 
 @router.post("/end")
 async def end(tracker_id: str, press: PressDep) -> Response:
     """Leave service mode."""
-    await press.send(EndService(), tracker_id)
+    await press.send(EndServiceMode(), tracker_id)
     return press.answer("Service mode has ended; this starts no motion.")

@@ -14,7 +14,7 @@ from app.sun.position import Algorithm
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import DriveConfig, DriveKind, NightBehaviour, Orientation, TrackerConfig
 from app.tracker.limit_change import LimitReview
-from app.tracker.mounts.abilities import axis_title
+from app.tracker.mounts.capabilities import axis_title
 from app.web.contexts import SettingsPage
 from app.web.deps import MachineDep, panel
 from app.web.errors import NotAcceptable

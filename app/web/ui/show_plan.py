@@ -14,7 +14,7 @@ from app.sun.daylight import daylight, next_daylight
 from app.sun.position import InstantRefused, Location
 from app.tracker.axes import Axis
 from app.tracker.config import TrackerConfig
-from app.tracker.mounts.abilities import axis_title, default_mode
+from app.tracker.mounts.capabilities import axis_title, default_mode
 from app.tracker.programs.show import ShowCheck, ShowPlan, check_show, schedule_of
 from app.tracker.programs.usual import in_usual_time
 from app.tracker.reason import Reason

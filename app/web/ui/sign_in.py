@@ -7,7 +7,7 @@ from fastapi import Form, Query
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
-from app.access.keeper import Throttled, TooManyAtOnce, WrongPassword
+from app.access.authenticator import Throttled, TooManyAtOnce, WrongPassword
 from app.access.users import AccessRefused
 from app.web.access_contexts import SignInPage
 from app.web.contexts import Field

@@ -11,7 +11,7 @@ STATION_NAMES = ("host", "port", "unit")
 SIMULATION_NAMES = ("scenario", "seed", *SPANS)
 WINDOW_NAMES = tuple(LIMITS)
 SCENARIOS = (
-    (Scenario.BY_HAND.value, "Manual: the values below"),
+    (Scenario.MANUAL.value, "Manual: the values below"),
     (Scenario.CALM.value, "A calm day"),
     (Scenario.STORM.value, "A storm that comes and goes, 25 min"),
     (Scenario.SNOWFALL.value, "A snowfall that slides off, 22 min"),
@@ -59,7 +59,7 @@ def read_station(typed: Typed) -> MetStation | None:
 
 def read_simulation(typed: Typed) -> SimulatedStation | None:
     """Return the typed made-up weather, None while anything in it is wrong."""
-    scenario = typed.read("scenario", _scenario, Scenario.BY_HAND)
+    scenario = typed.read("scenario", _scenario, Scenario.MANUAL)
     seed = typed.whole("seed", "Seed", 0, MOST_SEED)
     values: dict[str, Any] = {
         name: typed.number(name, title, low, high)

@@ -1,6 +1,6 @@
 """The trust in the zero in the words of the pages: what cannot be done without it."""
 
-from app.tracker.conditions import REQUIRED, Action, homed
+from app.tracker.interlocks import REQUIRED, Action, homed
 
 NEEDS_ZERO: dict[Action, str] = {
     Action.TRACK: "follow the sun",

@@ -2,7 +2,7 @@
 
 import { hubOf, bare, machine, outlineOf } from "./machines.js";
 import { anglesOf, frameOf, outward } from "./mounts.js";
-import { spoken } from "../said.js";
+import { spoken } from "../i18n.js";
 import { RAD, add, times, towards } from "./space.js";
 
 export const SKY = 1;

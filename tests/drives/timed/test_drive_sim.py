@@ -86,7 +86,7 @@ async def test_the_watchdog_stops_a_drive_whose_master_is_frozen(tmp_path: Path)
 async def test_an_orderly_end_keeps_the_zero_and_a_kill_in_motion_loses_it(tmp_path: Path) -> None:
     memory = tmp_path / "sim.json"
     async with running(memory) as sim:
-        for number, kind in ((1, RequestKind.SET_ZERO_AZIMUTH), (2, RequestKind.SET_ZERO_ELEVATION)):
+        for number, kind in ((1, RequestKind.SET_HOME_AZIMUTH), (2, RequestKind.SET_HOME_ELEVATION)):
             await sim.forward(0.15, DriveCommand(request=DriveRequest(number, kind)))
         await sim.forward(0.4, DriveCommand(azimuth=Velocity(3.0)))
         assert await sim.end(signal.SIGTERM) == 0

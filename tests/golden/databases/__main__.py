@@ -104,18 +104,18 @@ def begin_site(one: Integrator) -> None:
 def commission(one: Integrator) -> None:
     """Walk steps 3 and 4."""
     one.call("PATCH", "", json=FIRST)
-    one.until_allowed("zero")
-    agreed(one, "POST", "/commands", {"type": "zero"})
+    one.until_allowed("set_home")
+    agreed(one, "POST", "/commands", {"type": "set_home"})
     one.until(lambda seen: seen["home_trusted"], "the zero is trusted")
     one.command("set_mode", mode="dual")
 
 
 def raise_alarm(one: Integrator) -> None:
     """Play a fault, acknowledge the alarm, and end the fault again."""
-    one.call("POST", "/training", json={"fault": "silence"})
+    one.call("POST", "/fault-injection", json={"fault": "silence"})
     eventually(lambda: standing(one), "there is an alarm")
     one.post(f"/api/v1/alarms/{standing(one)[0]['alarm_id']}/acknowledge")
-    one.call("DELETE", "/training")
+    one.call("DELETE", "/fault-injection")
 
 
 def standing(one: Integrator) -> list[dict[str, Any]]:

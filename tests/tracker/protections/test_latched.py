@@ -7,7 +7,7 @@ import pytest
 from app.tracker.protections.config import PROTECTED
 from app.tracker.protections.guarding import OFF_GUARD, Guarding, latched, step
 from app.tracker.protections.snow import Snow
-from app.tracker.protections.typhoon import CALM, Typhoon
+from app.tracker.protections.wind_stow import CALM, WindStow
 from app.tracker.protections.words import Protection, StowName
 from app.tracker.weather import Quality, Quantity, Reading, Sensed
 
@@ -18,10 +18,10 @@ CALM_AIR = Sensed(
 
 
 def test_a_storm_that_held_holds_for_the_whole_delay_again() -> None:
-    state = latched(Protection.TYPHOON, NOW)
-    assert state == Guarding(typhoon=Typhoon(NOW, NOW), kind=Protection.TYPHOON, since=NOW)
+    state = latched(Protection.WIND_STOW, NOW)
+    assert state == Guarding(wind_stow=WindStow(NOW, NOW), kind=Protection.WIND_STOW, since=NOW)
     assert state.stow is StowName.WIND
-    for seconds, holds in ((600.0, Protection.TYPHOON), (600.1, Protection.TRACK)):
+    for seconds, holds in ((600.0, Protection.WIND_STOW), (600.1, Protection.TRACK)):
         now = NOW + timedelta(seconds=seconds)
         assert step(state, PROTECTED, CALM_AIR, (Quantity.WIND,), now, night=False).kind is holds
 
@@ -35,7 +35,7 @@ def test_snow_that_held_holds_until_it_is_seen_gone() -> None:
 
 
 @pytest.mark.parametrize(
-    "kind", [None, Protection.NIGHT, Protection.WAIT, Protection.HIBERNATE, Protection.TRACK]
+    "kind", [None, Protection.NIGHT, Protection.WAIT, Protection.LOW_LIGHT_HOLD, Protection.TRACK]
 )
 def test_nothing_else_is_kept(kind: Protection | None) -> None:
     assert latched(kind, NOW) is OFF_GUARD
@@ -43,7 +43,7 @@ def test_nothing_else_is_kept(kind: Protection | None) -> None:
 
 def test_the_earliest_end_is_known_only_while_it_holds() -> None:
     ends = NOW + timedelta(seconds=600)
-    assert Typhoon(NOW, NOW).earliest_end(PROTECTED.wind) == ends
+    assert WindStow(NOW, NOW).earliest_end(PROTECTED.wind) == ends
     assert CALM.earliest_end(PROTECTED.wind) is None
-    assert Typhoon(None, NOW).earliest_end(PROTECTED.wind) is None
-    assert Typhoon(NOW, None).earliest_end(PROTECTED.wind) is None
+    assert WindStow(None, NOW).earliest_end(PROTECTED.wind) is None
+    assert WindStow(NOW, None).earliest_end(PROTECTED.wind) is None

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.tracker.protections import hibernation, snow, typhoon
+from app.tracker.protections import low_light, snow, wind_stow
 from app.tracker.protections.config import (
     LightProtection,
     ProtectionConfig,
@@ -15,9 +15,9 @@ from app.tracker.protections.config import (
     WindProtection,
 )
 from app.tracker.protections.guarding import OFF_GUARD, Guarding, latched, step
-from app.tracker.protections.hibernation import AWAKE
+from app.tracker.protections.low_light import AWAKE
 from app.tracker.protections.snow import CLEAR
-from app.tracker.protections.typhoon import CALM, Typhoon, Wind
+from app.tracker.protections.wind_stow import CALM, Wind, WindStow
 from app.tracker.protections.words import Protection, Reaction, StowName
 from app.tracker.weather import NOTHING_SENSED, Quality, Quantity, Reading, Sensed
 from tests.fault_result import FaultResult
@@ -60,7 +60,7 @@ def test_wind_always_wins_and_one_protection_holds(samples: list[Sensed], night:
     for seen, state in zip(samples, run(samples, night=night), strict=True):
         wind_mps = seen.wind.good
         if wind_mps is not None and wind_mps >= QUICK.wind.gust_mps:
-            assert state.kind is Protection.TYPHOON
+            assert state.kind is Protection.WIND_STOW
             assert state.stow is StowName.WIND
 
 
@@ -68,7 +68,7 @@ def test_wind_always_wins_and_one_protection_holds(samples: list[Sensed], night:
 def test_typhoon_ends_only_after_the_whole_delay_of_good_and_calm_readings(samples: list[Sensed]) -> None:
     states = run(samples)
     for index in range(1, len(states)):
-        if states[index - 1].kind is Protection.TYPHOON and states[index].kind is not Protection.TYPHOON:
+        if states[index - 1].kind is Protection.WIND_STOW and states[index].kind is not Protection.WIND_STOW:
             assert index > QUICK.wind.resume_after_s
             last = samples[index - int(QUICK.wind.resume_after_s) : index + 1]
             assert all(one.wind.good is not None and one.wind.good < QUICK.wind.gust_mps for one in last)
@@ -78,8 +78,8 @@ def test_typhoon_ends_only_after_the_whole_delay_of_good_and_calm_readings(sampl
 def test_a_bad_reading_never_reads_as_calm_light_or_bare(samples: list[Sensed]) -> None:
     states = run(samples)
     for seen, before, after in zip(samples, [OFF_GUARD, *states], states, strict=False):
-        if seen.wind.good is None and before.typhoon.since is not None:
-            assert after.typhoon.since is not None
+        if seen.wind.good is None and before.wind_stow.since is not None:
+            assert after.wind_stow.since is not None
         if seen.snow.good is None and before.snow.since is not None:
             assert after.snow.since is not None
 
@@ -96,37 +96,37 @@ def test_snow_must_lie_for_the_whole_time(loads: list[float]) -> None:
 
 @given(st.integers(0, 9), st.sampled_from([17.0, 30.0, None]))
 def test_any_violating_sample_begins_the_calm_time_anew(second: int, wind_mps: float | None) -> None:
-    limits, state = WindProtection(resume_after_s=10.0), Typhoon(at(0), at(0))
-    state = typhoon.step(state, limits, Wind(wind_mps), at(second))
+    limits, state = WindProtection(resume_after_s=10.0), WindStow(at(0), at(0))
+    state = wind_stow.step(state, limits, Wind(wind_mps), at(second))
     for later in range(second + 1, second + 11):
-        state = typhoon.step(state, limits, Wind(5.0), at(later))
+        state = wind_stow.step(state, limits, Wind(5.0), at(later))
         assert state.since == at(0)
         assert state.earliest_end(limits) == at(second + 10)
-    assert typhoon.step(state, limits, Wind(5.0), at(second + 11)) == CALM
+    assert wind_stow.step(state, limits, Wind(5.0), at(second + 11)) == CALM
 
 
 def test_the_wind_that_equals_a_limit_is_unsafe_by_gust_and_by_mean() -> None:
     limits = WindProtection(gust_mps=17.0, mean_mps=12.0)
-    assert typhoon.step(CALM, limits, Wind(16.99, 11.99), at(0)) == CALM
-    assert typhoon.step(CALM, limits, Wind(17.0, 5.0), at(0)).since == at(0)
-    assert typhoon.step(CALM, limits, Wind(13.0, 12.0), at(0)).since == at(0)
+    assert wind_stow.step(CALM, limits, Wind(16.99, 11.99), at(0)) == CALM
+    assert wind_stow.step(CALM, limits, Wind(17.0, 5.0), at(0)).since == at(0)
+    assert wind_stow.step(CALM, limits, Wind(13.0, 12.0), at(0)).since == at(0)
 
 
 @pytest.mark.parametrize("wind", [Wind(15.5, 5.0), Wind(10.0, 15.5)])
 def test_within_the_hysteresis_the_wind_does_not_begin_but_goes_on(wind: Wind) -> None:
     limits = WindProtection(hysteresis_mps=2.0, resume_after_s=10.0)
-    assert typhoon.step(CALM, limits, wind, at(0)) == CALM
-    assert typhoon.step(Typhoon(at(0), at(0)), limits, wind, at(100)).unsafe_at == at(100)
+    assert wind_stow.step(CALM, limits, wind, at(0)) == CALM
+    assert wind_stow.step(WindStow(at(0), at(0)), limits, wind, at(100)).unsafe_at == at(100)
 
 
 @pytest.mark.fault(40)
 def test_light_flickering_around_its_threshold_switches_once(fault: FaultResult) -> None:
     limits, state = LightProtection(threshold_wm2=50.0, hysteresis_wm2=10.0, hold_s=10.0), AWAKE
     for second in range(12):
-        state = hibernation.step(state, limits, 49.0, at(second))
+        state = low_light.step(state, limits, 49.0, at(second))
     assert state.since == at(11)
-    assert hibernation.step(state, limits, 59.9, at(12)).since == at(11)
-    assert hibernation.step(state, limits, 60.0, at(12)).since is None
+    assert low_light.step(state, limits, 59.9, at(12)).since == at(11)
+    assert low_light.step(state, limits, 60.0, at(12)).since is None
     fault.prevented("hysteresis and delay: it switches once")
     fault.shows_nothing("the tracker stays as it is")
     fault.recovers("by itself: when the light has left the band of the hysteresis")
@@ -135,9 +135,9 @@ def test_light_flickering_around_its_threshold_switches_once(fault: FaultResult)
 def test_darkness_is_counted_from_the_last_reading_that_was_not_dark() -> None:
     limits, state = LightProtection(hold_s=10.0), AWAKE
     for second, light_wm2 in enumerate([500.0, *[0.0] * 5, None, *[0.0] * 10]):
-        state = hibernation.step(state, limits, light_wm2, at(second))
+        state = low_light.step(state, limits, light_wm2, at(second))
         assert state.since is None
-    assert hibernation.step(state, limits, 0.0, at(17)).since == at(17)
+    assert low_light.step(state, limits, 0.0, at(17)).since == at(17)
 
 
 def test_snow_stays_until_it_is_known_to_be_off() -> None:
@@ -152,7 +152,7 @@ def test_the_snow_time_runs_while_the_wind_holds() -> None:
     windy = Sensed(wind=told(20.0), snow=told(5.0))
     calm = Sensed(wind=told(2.0), snow=told(5.0))
     states = run([windy, windy, windy, windy, *[calm] * 12])
-    assert {state.kind for state in states[:14]} == {Protection.TYPHOON}
+    assert {state.kind for state in states[:14]} == {Protection.WIND_STOW}
     assert states[-1].kind is Protection.SNOW
 
 
@@ -169,7 +169,7 @@ def test_the_day_that_begins_without_light_is_waited_for() -> None:
 @given(st.lists(weather, min_size=1, max_size=30))
 def test_in_the_polar_night_only_wind_and_snow_move(samples: list[Sensed]) -> None:
     kinds = {state.kind for state in run(samples, night=True)}
-    assert kinds <= {Protection.NIGHT, Protection.TYPHOON, Protection.SNOW}
+    assert kinds <= {Protection.NIGHT, Protection.WIND_STOW, Protection.SNOW}
 
 
 def test_without_any_sensor_nothing_holds_for_ever() -> None:
@@ -183,7 +183,7 @@ def test_without_any_sensor_nothing_holds_for_ever() -> None:
 def test_a_known_wind_sensor_that_fails_stows_after_its_time(quality: Quality) -> None:
     calm, failed = Sensed(wind=told(3.0)), Sensed(wind=Reading(3.0, quality))
     states = run([calm, failed, failed, failed, failed])
-    assert [state.kind for state in states] == [Protection.TRACK] * 4 + [Protection.TYPHOON]
+    assert [state.kind for state in states] == [Protection.TRACK] * 4 + [Protection.WIND_STOW]
 
 
 def test_a_required_wind_sensor_is_missed_though_never_seen() -> None:
@@ -191,7 +191,7 @@ def test_a_required_wind_sensor_is_missed_though_never_seen() -> None:
     state = OFF_GUARD
     for second in range(3):
         state = step(state, config, NOTHING_SENSED, (), at(second), night=False)
-    assert state.kind is Protection.TYPHOON
+    assert state.kind is Protection.WIND_STOW
 
 
 @pytest.mark.parametrize(
@@ -214,12 +214,12 @@ def test_a_light_sensor_that_failed_for_good_ends_the_rest(bad: Reaction) -> Non
     dark, failed = Sensed(wind=told(1.0), light=told(0.0)), Sensed(wind=told(1.0))
     config = ProtectionConfig(light=LightProtection(hold_s=5.0, bad=bad, bad_after_s=4.0))
     states = run([Sensed(wind=told(1.0), light=told(100.0)), *[dark] * 8, *[failed] * 6], config)
-    assert states[8].kind is Protection.HIBERNATE
-    assert states[11].kind is Protection.HIBERNATE
+    assert states[8].kind is Protection.LOW_LIGHT_HOLD
+    assert states[11].kind is Protection.LOW_LIGHT_HOLD
     assert states[-1].kind is Protection.TRACK
 
 
-@pytest.mark.parametrize("kind", [Protection.TYPHOON, Protection.SNOW])
+@pytest.mark.parametrize("kind", [Protection.WIND_STOW, Protection.SNOW])
 def test_what_was_latched_holds_until_it_is_seen_good(kind: Protection) -> None:
     state = latched(kind, at(0))
     for second in range(0, 5000, 100):
@@ -230,10 +230,10 @@ def test_what_was_latched_holds_until_it_is_seen_good(kind: Protection) -> None:
 
 
 def test_the_calm_time_begins_anew_after_a_restart() -> None:
-    state = latched(Protection.TYPHOON, at(0))
+    state = latched(Protection.WIND_STOW, at(0))
     for second in range(601):
         state = step(state, CONFIG, Sensed(wind=told(1.0)), ALL, at(second), night=False)
-        assert state.kind is Protection.TYPHOON
+        assert state.kind is Protection.WIND_STOW
     assert step(state, CONFIG, Sensed(wind=told(1.0)), ALL, at(601), night=False).kind is Protection.TRACK
 
 

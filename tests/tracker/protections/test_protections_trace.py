@@ -24,6 +24,8 @@ PAPER = ProtectionConfig(
 )
 DEADBAND_COUNTS = 10
 COUNTS_A_SECOND = 20
+XIA = {Protection.WIND_STOW: "TYPHOON", Protection.LOW_LIGHT_HOLD: "HIBERNATE"}
+"""What the paper calls them."""
 
 
 def _between(t: int, first: int, last: int) -> bool:
@@ -75,9 +77,9 @@ class _Machine:
 
     def tick(self, t: int, kind: Protection) -> tuple[int, int, int, int]:
         azimuth, altitude = round(-450 + t / 24), round(300 + t / 45)
-        altitude = {Protection.TYPHOON: 900, Protection.SNOW: 0}.get(kind, altitude)
+        altitude = {Protection.WIND_STOW: 900, Protection.SNOW: 0}.get(kind, altitude)
         self.azimuth.turn(azimuth, told=kind is Protection.TRACK)
-        moves = (Protection.TRACK, Protection.TYPHOON, Protection.SNOW)
+        moves = (Protection.TRACK, Protection.WIND_STOW, Protection.SNOW)
         self.altitude.turn(altitude, told=kind in moves)
         return self.azimuth.counts, self.altitude.counts, azimuth, altitude
 
@@ -91,7 +93,7 @@ def _transitions() -> list[tuple[str, ...]]:
         state = step(state, PAPER, _sensed(t), tuple(Quantity), now, night=t >= 8500)
         assert state.kind is not None
         seen = machine.tick(t, state.kind)
-        kind = state.kind.value.upper()
+        kind = XIA.get(state.kind, state.kind.value.upper())
         if kind != before:
             rows.append((str(t), before, kind, *map(str, seen)))
             before = kind

@@ -9,7 +9,7 @@ from app.sun.position import SunPosition
 from app.tracker.activity import HOLDING, Activity, AxisPair
 from app.tracker.axes import Axis
 from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.follow import AxisWatch
+from app.tracker.following_error import AxisWatch
 from app.tracker.hybrid import Corrected
 from app.tracker.machine_watch import AxisGuard
 from app.tracker.memory import TrackerMemory
@@ -45,7 +45,7 @@ class Warned(NamedTuple):
     reason: Reason
 
 
-class Mind:
+class ControllerState:
     """State of one tracker. Activities read it and change it by `say`, `remember` and `kill_press`."""
 
     __slots__ = (

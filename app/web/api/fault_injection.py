@@ -2,12 +2,12 @@
 
 from pydantic import Field
 
-from app.link.messages import ClearFaults, PlayFault
-from app.tracker.training import LESSONS, Lesson
+from app.link.messages import EndInjectedFaults, InjectFault
+from app.tracker.fault_scenarios import LESSONS, Lesson
 from app.web.api.base import NOT_FOUND, REFUSED, Input, TrackerId, api_router
 from app.web.api.orders import SenderDep
 
-router = api_router(prefix="/trackers/{tracker_id}/training", tags=["training"])
+router = api_router(prefix="/trackers/{tracker_id}/fault-injection", tags=["training"])
 
 
 class PlayedFault(Input):
@@ -17,18 +17,18 @@ class PlayedFault(Input):
 
 
 @router.get("", summary="The faults that can be played", responses=NOT_FOUND)
-async def read_lessons(tracker_id: TrackerId) -> tuple[Lesson, ...]:
+async def read_faults(tracker_id: TrackerId) -> tuple[Lesson, ...]:
     """Return each fault with what will be seen and what to do."""
     return LESSONS
 
 
 @router.post("", status_code=204, summary="Play a fault", responses=NOT_FOUND | REFUSED)
-async def play(tracker_id: TrackerId, played: PlayedFault, sender: SenderDep) -> None:
+async def inject_fault(tracker_id: TrackerId, played: PlayedFault, sender: SenderDep) -> None:
     """Play a fault on a tracker that this program simulates; refused on a real one."""
-    await sender.send(PlayFault(tracker_id, played.fault))
+    await sender.send(InjectFault(tracker_id, played.fault))
 
 
 @router.delete("", status_code=204, summary="End all faults", responses=NOT_FOUND | REFUSED)
-async def clear(tracker_id: TrackerId, sender: SenderDep) -> None:
+async def end_injected_faults(tracker_id: TrackerId, sender: SenderDep) -> None:
     """End every fault that is played; what the controller has latched stays for the operator."""
-    await sender.send(ClearFaults(tracker_id))
+    await sender.send(EndInjectedFaults(tracker_id))

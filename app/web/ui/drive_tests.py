@@ -8,9 +8,9 @@ from starlette.responses import Response
 
 from app.link.messages import AnswerDirection, AnswerScale, SetSoftLimit
 from app.tracker.axes import Axis
-from app.tracker.commands import MeasureLinkLoss, MeasureStop, ProveDirection, ProveScale
+from app.tracker.commands import RunCommunicationLossTest, RunDirectionTest, RunScaleTest, RunStopTest
 from app.tracker.commissioning import StepStatus
-from app.tracker.proofs import AxisEnd, ProofKind, ProofMove, StopSpeed
+from app.tracker.drive_tests import AxisEnd, ProofKind, ProofMove, StopSpeed
 from app.web.deps import MachineDep
 from app.web.drive_contexts import ProofsPage
 from app.web.errors import NotAcceptable
@@ -21,7 +21,7 @@ from app.web.ui.orders import PressDep
 from app.web.ui.render import page
 from app.web.ui.wizard import tracker_of
 
-router = page_router(prefix="/trackers/{tracker_id}/proofs")
+router = page_router(prefix="/trackers/{tracker_id}/drive-tests")
 SCALE_WAYS = {"10": 10.0, "30": 30.0, "90": 90.0}
 QUESTIONS = {
     (Axis.AZIMUTH, True): "Did the panel turn to the right, clockwise as seen from above?",
@@ -41,7 +41,7 @@ async def proofs(request: Request, tracker_id: str, machine: MachineDep) -> Resp
 @router.post("/direction")
 async def direction(tracker_id: str, press: PressDep, axis: AxisField) -> Response:
     """Turn one axis a little."""
-    await press.send(ProveDirection(axis), tracker_id)
+    await press.send(RunDirectionTest(axis), tracker_id)
     return press.answer("Watch the panel.")
 
 
@@ -63,7 +63,7 @@ async def scale(
     """Turn one axis by 10, 30 or 90 degrees."""
     if way not in SCALE_WAYS:
         raise NotAcceptable("Choose 10, 30, or 90 degrees.")
-    await press.send(ProveScale(axis, SCALE_WAYS[way]), tracker_id)
+    await press.send(RunScaleTest(axis, SCALE_WAYS[way]), tracker_id)
     return press.answer("Wait until the axis is at standstill, then measure.")
 
 
@@ -98,14 +98,14 @@ async def stop_test(
     tracker_id: str, press: PressDep, axis: AxisField, speed: Annotated[StopSpeed, Form()]
 ) -> Response:
     """Start the stop test."""
-    await press.send(MeasureStop(axis, speed), tracker_id)
+    await press.send(RunStopTest(axis, speed), tracker_id)
     return press.answer("The stop test is running.")
 
 
 @router.post("/link-loss")
 async def link_loss_test(tracker_id: str, press: PressDep, axis: AxisField) -> Response:
     """Start the link-loss test."""
-    await press.send(MeasureLinkLoss(axis), tracker_id)
+    await press.send(RunCommunicationLossTest(axis), tracker_id)
     return press.answer("The communication-loss test is running.")
 
 

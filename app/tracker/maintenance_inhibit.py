@@ -1,9 +1,9 @@
 """The maintenance lock: while somebody works on the machine, nothing but their own hand moves it."""
 
 from app.tracker.activity import STOPPING, Faulted
-from app.tracker.commands import LockOut
-from app.tracker.conditions import Action, demand
-from app.tracker.mind import NOWHERE, Mind
+from app.tracker.commands import SetInhibit
+from app.tracker.controller_state import NOWHERE, ControllerState
+from app.tracker.interlocks import Action, demand
 from app.tracker.protections.words import MaintenanceLock
 from app.tracker.reason import Reason
 from app.tracker.snapshot import EventKind
@@ -13,9 +13,9 @@ LONGEST_NAME = 60
 LONGEST_REASON = 200
 
 
-def lock_out(mind: Mind, command: LockOut) -> None:
+def set_inhibit(mind: ControllerState, command: SetInhibit) -> None:
     """Stop and forbid every automatic motion, or raise `CommandRejected`."""
-    demand(mind, Action.LOCK_OUT, named(command.name, "A maintenance inhibit"), _too_long(command))
+    demand(mind, Action.SET_INHIBIT, named(command.name, "A maintenance inhibit"), _too_long(command))
     name, why = command.name.strip(), command.reason.strip()
     switch_tracking_off(mind, "a maintenance inhibit was set.")
     leave(mind, "a maintenance inhibit was set.")
@@ -24,20 +24,20 @@ def lock_out(mind: Mind, command: LockOut) -> None:
         mind.activity = STOPPING
     mind.remember(lock=MaintenanceLock(name, mind.actor, mind.site_time, why))
     mind.say(
-        EventKind.LOCKED_OUT,
+        EventKind.INHIBIT_SET,
         f"{name} set a maintenance inhibit for {mind.config.name}.",
         name=name,
         reason=why,
     )
 
 
-def release_lock(mind: Mind) -> None:
+def release_inhibit(mind: ControllerState) -> None:
     """Forget the lock, or raise `CommandRejected`; whoever wants a motion commands it."""
-    demand(mind, Action.RELEASE_LOCK)
+    demand(mind, Action.RELEASE_INHIBIT)
     lock = mind.memory.lock
     mind.remember(lock=None)
     name = "nobody" if lock is None else lock.name
-    mind.say(EventKind.LOCK_RELEASED, f"The maintenance inhibit of {name} was released.", name=name)
+    mind.say(EventKind.INHIBIT_RELEASED, f"The maintenance inhibit of {name} was released.", name=name)
 
 
 def named(name: str, what: str) -> Reason | None:
@@ -51,7 +51,7 @@ def named(name: str, what: str) -> Reason | None:
     )
 
 
-def _too_long(command: LockOut) -> Reason | None:
+def _too_long(command: SetInhibit) -> Reason | None:
     if len(command.reason.strip()) <= LONGEST_REASON:
         return None
     return Reason(

@@ -10,7 +10,7 @@ from app.tracker.axes import AxisConfig
 from app.tracker.config import TrackerConfig
 from app.tracker.motion import AxisCommand, AxisFeedback, DriveCommand, Feedback, Position
 from app.tracker.mount import AxisTarget
-from app.tracker.runs import new_run
+from app.tracker.positioning import new_run
 from app.tracker.strategy import Continuous, Deadband, EncoderDeadband, Interval, Stepped, Strategy
 
 MARGIN_SHARE = 0.2

@@ -19,7 +19,7 @@ class Wind:
 
 
 @dataclass(frozen=True, slots=True)
-class Typhoon:
+class WindStow:
     """Since when it holds, and when the wind was last not seen calm; steady time."""
 
     since: datetime | None = None
@@ -32,21 +32,21 @@ class Typhoon:
         return self.unsafe_at + timedelta(seconds=limits.resume_after_s)
 
 
-CALM = Typhoon()
+CALM = WindStow()
 
 
-def step(state: Typhoon, limits: WindProtection, wind: Wind, now: datetime) -> Typhoon:
+def step(state: WindStow, limits: WindProtection, wind: Wind, now: datetime) -> WindStow:
     """Return the state after one look at the wind.
 
     "Hits 17" and "declines to 17" meet at 17: a wind that equals a limit is unsafe. It ends once the wind was
     calm for *more* than the delay; every other look, an unknown wind included, begins that time anew.
     """
     if is_high(limits, wind):
-        return Typhoon(state.since or now, now)
+        return WindStow(state.since or now, now)
     if state.since is None:
         return state
     if state.unsafe_at is None or not _is_calm(limits, wind):
-        return Typhoon(state.since, now)
+        return WindStow(state.since, now)
     over = now - state.unsafe_at > timedelta(seconds=limits.resume_after_s)
     return CALM if over else state
 

@@ -3,18 +3,18 @@
 from datetime import timedelta
 from typing import assert_never
 
-from app.tracker.activity import HOLDING, Homing, Zeroing
+from app.tracker.activity import HOLDING, Homing, SettingHome
 from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, SetZero
-from app.tracker.conditions import Action, demand
+from app.tracker.commands import CommandRejected, SetHome
+from app.tracker.controller_state import HALTED, NOWHERE, ControllerState, Turn
 from app.tracker.guards import axis_feedback
 from app.tracker.home_shift import forget, keep_former
+from app.tracker.interlocks import Action, demand
 from app.tracker.memory import HomeTrust, StepName
-from app.tracker.mind import HALTED, NOWHERE, Mind, Turn
 from app.tracker.motion import DriveCommand, DriveRequest, Feedback, RequestKind
-from app.tracker.mounts.abilities import axis_of, axis_title
+from app.tracker.mounts.capabilities import axis_of, axis_title
+from app.tracker.positioning import at_rest
 from app.tracker.reason import Reason
-from app.tracker.runs import at_rest
 from app.tracker.selection import confirm_step
 from app.tracker.snapshot import EventKind
 from app.tracker.transitions import doubt_zero, lose_home
@@ -23,14 +23,14 @@ ZERO_PATIENCE = timedelta(seconds=5)
 HOMING_GRACE_S = 60.0
 ZERO_TOLERANCE_DEG = 0.05
 _REQUESTS = {
-    Axis.AZIMUTH: RequestKind.SET_ZERO_AZIMUTH,
-    Axis.ELEVATION: RequestKind.SET_ZERO_ELEVATION,
+    Axis.AZIMUTH: RequestKind.SET_HOME_AZIMUTH,
+    Axis.ELEVATION: RequestKind.SET_HOME_ELEVATION,
 }
 
 
-def set_zero(mind: Mind, command: SetZero) -> None:
+def set_home(mind: ControllerState, command: SetHome) -> None:
     """Begin to call the present position zero, or raise `CommandRejected`."""
-    demand(mind, Action.ZERO)
+    demand(mind, Action.SET_HOME)
     axes = tuple(axis for axis in mind.config.mount.axes if axis in command.axes)
     if not axes:
         raise CommandRejected(
@@ -43,10 +43,10 @@ def set_zero(mind: Mind, command: SetZero) -> None:
     keep_former(mind, axes)
     mind.setpoint, mind.corrected = NOWHERE, None
     until = mind.now + ZERO_PATIENCE
-    mind.activity = Zeroing(axes, axes, mind.next_request(), until, mind.actor)
+    mind.activity = SettingHome(axes, axes, mind.next_request(), until, mind.actor)
 
 
-def home(mind: Mind) -> None:
+def home(mind: ControllerState) -> None:
     """Begin the search for the origin switches, or raise `CommandRejected`. The old zero is given up."""
     demand(mind, Action.HOME)
     mind.setpoint, mind.corrected = NOWHERE, None
@@ -57,17 +57,17 @@ def home(mind: Mind) -> None:
     mind.say(EventKind.HOMING_STARTED, "The drive searches for its home switches.")
 
 
-def step(mind: Mind, activity: Zeroing | Homing, feedback: Feedback) -> Turn:
+def step(mind: ControllerState, activity: SettingHome | Homing, feedback: Feedback) -> Turn:
     """Go on with setting zero or with the drive's search."""
     match activity:
-        case Zeroing():
+        case SettingHome():
             return _zeroing(mind, activity, feedback)
         case Homing():
             return _homing(mind, activity, feedback)
     assert_never(activity)
 
 
-def _zeroing(mind: Mind, zeroing: Zeroing, feedback: Feedback) -> Turn:
+def _zeroing(mind: ControllerState, zeroing: SettingHome, feedback: Feedback) -> Turn:
     """Have the drive set one axis after the other to zero, then read both back."""
     if feedback.request_done != zeroing.number:
         if mind.now >= zeroing.until:
@@ -80,12 +80,12 @@ def _zeroing(mind: Mind, zeroing: Zeroing, feedback: Feedback) -> Turn:
     if not pending:
         return _read_back(mind, zeroing, feedback)
     until = mind.now + ZERO_PATIENCE
-    zeroing = Zeroing(zeroing.axes, pending, mind.next_request(), until, zeroing.actor)
+    zeroing = SettingHome(zeroing.axes, pending, mind.next_request(), until, zeroing.actor)
     request = DriveRequest(zeroing.number, _REQUESTS[pending[0]])
     return Turn(zeroing, DriveCommand(request=request))
 
 
-def _homing(mind: Mind, homing: Homing, feedback: Feedback) -> Turn:
+def _homing(mind: ControllerState, homing: Homing, feedback: Feedback) -> Turn:
     """Wait for the drive's search; one that fails or takes too long leaves the tracker without a zero."""
     if feedback.request_done != homing.number:
         if mind.now >= homing.until:
@@ -104,7 +104,7 @@ def _homing(mind: Mind, homing: Homing, feedback: Feedback) -> Turn:
     return Turn(HOLDING)
 
 
-def _missing(mind: Mind, feedback: Feedback) -> str:
+def _missing(mind: ControllerState, feedback: Feedback) -> str:
     """Return whose switch was not met: where one axis stands on its own, the other's."""
     axes = mind.config.mount.axes
     unmet = [axis for axis in axes if not axis_feedback(feedback, axis).at_origin]
@@ -113,7 +113,7 @@ def _missing(mind: Mind, feedback: Feedback) -> str:
     return f"the home switch of the {axis_of(mind.config, unmet[0])} within its whole travel"
 
 
-def _read_back(mind: Mind, zeroing: Zeroing, feedback: Feedback) -> Turn:
+def _read_back(mind: ControllerState, zeroing: SettingHome, feedback: Feedback) -> Turn:
     for axis in zeroing.axes:
         seen = axis_feedback(feedback, axis)
         if abs(seen.position_deg) > max(ZERO_TOLERANCE_DEG, mind.config.in_position_deg):
@@ -127,37 +127,39 @@ def _read_back(mind: Mind, zeroing: Zeroing, feedback: Feedback) -> Turn:
     mind.zeroed |= frozenset(zeroing.axes)
     mind.activity = HOLDING
     named = " and ".join(axis_title(mind.config.mount, axis) for axis in zeroing.axes)
-    mind.say(EventKind.ZERO_SET, f"Home position set for {named} and verified.", axes=list(zeroing.axes))
+    mind.say(
+        EventKind.HOME_POSITION_SET, f"Home position set for {named} and verified.", axes=list(zeroing.axes)
+    )
     if mind.zeroed.issuperset(mind.config.mount.axes) and feedback.azimuth.homed and feedback.elevation.homed:
         _trust(mind, feedback, zeroing.actor, "set manually")
     return Turn(HOLDING)
 
 
-def _trust(mind: Mind, feedback: Feedback, actor: str, how: str) -> None:
+def _trust(mind: ControllerState, feedback: Feedback, actor: str, how: str) -> None:
     trust = HomeTrust(mind.site_time, actor, how, feedback.boot_count)
     mind.remember(home=trust, home_lost="", home_lost_at=None)
     confirm_step(mind, StepName.HOMING, actor)
 
 
-def _zero_failed(mind: Mind, why: str) -> Turn:
+def _zero_failed(mind: ControllerState, why: str) -> Turn:
     mind.activity = HOLDING
     mind.say(
-        EventKind.ZERO_FAILED,
+        EventKind.HOME_POSITION_NOT_SET,
         (f"Home position not set: {why} Keep the axes at standstill and press Set home here again."),
     )
     mind.remember(former_home=None)
-    lose_home(mind, Reason("zero_failed", why))
+    lose_home(mind, Reason("home_position_not_set", why))
     return Turn(HOLDING)
 
 
-def _homing_failed(mind: Mind, why: str) -> Turn:
+def _homing_failed(mind: ControllerState, why: str) -> Turn:
     mind.activity = HOLDING
     doubt_zero(mind, f"the search for the home switches failed: {why}")
     mind.say(EventKind.HOMING_ENDED, f"The home switches were not found: {why}", outcome="failed")
     return Turn(HOLDING, HALTED)
 
 
-def _homing_time(mind: Mind) -> timedelta:
+def _homing_time(mind: ControllerState) -> timedelta:
     """Return twice the time for both full ranges at the slow hand speed, and a minute."""
     seconds = HOMING_GRACE_S
     for axis in mind.config.mount.axes:

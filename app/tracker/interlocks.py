@@ -5,22 +5,22 @@ from enum import StrEnum
 
 from app.tracker.activity import NAMES, Faulted, Showing
 from app.tracker.commands import CommandRejected
+from app.tracker.controller_state import ControllerState
 from app.tracker.guards import axis_feedback
+from app.tracker.local_locks import cleared, locked, remote, served, settings_open, unlocked, unserved
 from app.tracker.memory import StepName
-from app.tracker.mind import Mind
 from app.tracker.motion import Feedback
-from app.tracker.mounts.abilities import zero_words
-from app.tracker.people import cleared, locked, remote, served, settings_open, unlocked, unserved
+from app.tracker.mounts.capabilities import zero_words
+from app.tracker.positioning import at_rest
 from app.tracker.protections.fault_classes import CLASSES
 from app.tracker.protections.machine_config import Recovery
 from app.tracker.protections.words import StowName
 from app.tracker.reason import Reason
 from app.tracker.rejected import accepted
-from app.tracker.runs import at_rest
 from app.tracker.snapshot import ActivityName, ShowPhase
 
 UNDO_NEAR_DEG = 0.2
-Condition = Callable[[Mind], Reason | None]
+Condition = Callable[[ControllerState], Reason | None]
 
 
 class Action(StrEnum):
@@ -28,8 +28,8 @@ class Action(StrEnum):
 
     JOG = "jog"
     STEP = "step"
-    ZERO = "zero"
-    UNDO_ZERO = "undo_zero"
+    SET_HOME = "set_home"
+    UNDO_HOME = "undo_home"
     HOME = "home"
     SET_MODE = "set_mode"
     MOVE = "move"
@@ -42,33 +42,33 @@ class Action(StrEnum):
     STOP_SHOW = "stop_show"
     STOP = "stop"
     RESET_FAULT = "reset_fault"
-    PROVE_DIRECTION = "prove_direction"
-    PROVE_SCALE = "prove_scale"
-    MEASURE_STOP = "measure_stop"
-    MEASURE_LINK_LOSS = "measure_link_loss"
+    TEST_DIRECTION = "test_direction"
+    TEST_SCALE = "test_scale"
+    TEST_STOP = "test_stop"
+    TEST_COMMUNICATION_LOSS = "test_communication_loss"
     SET_LIMIT = "set_limit"
     STOW = "stow"
     RESUME = "resume"
-    LOCK_OUT = "lock_out"
-    RELEASE_LOCK = "release_lock"
-    BEGIN_SERVICE = "begin_service"
-    CONFIRM_CLEAR = "confirm_clear"
-    END_SERVICE = "end_service"
+    SET_INHIBIT = "set_inhibit"
+    RELEASE_INHIBIT = "release_inhibit"
+    BEGIN_SERVICE_MODE = "begin_service_mode"
+    CONFIRM_AREA_CLEAR = "confirm_area_clear"
+    END_SERVICE_MODE = "end_service_mode"
 
 
-def unmet(mind: Mind, action: Action) -> tuple[Reason, ...]:
+def unmet(mind: ControllerState, action: Action) -> tuple[Reason, ...]:
     """Return every condition that forbids an action now; empty: it is allowed."""
     return tuple(reason for condition in REQUIRED[action] if (reason := condition(mind)) is not None)
 
 
-def demand(mind: Mind, action: Action, *more: Reason | None) -> None:
+def demand(mind: ControllerState, action: Action, *more: Reason | None) -> None:
     """Raise `CommandRejected` with every unmet condition of an action and what else speaks against it."""
     reasons = _against(mind, action, more)
     if reasons:
         raise CommandRejected(*reasons)
 
 
-def demand_drive(mind: Mind, action: Action, *more: Reason | None) -> Feedback:
+def demand_drive(mind: ControllerState, action: Action, *more: Reason | None) -> Feedback:
     """Return the last reading for an action that needs one, or raise `CommandRejected` as `demand` does."""
     reasons = _against(mind, action, more)
     if reasons or mind.feedback is None:
@@ -76,11 +76,11 @@ def demand_drive(mind: Mind, action: Action, *more: Reason | None) -> Feedback:
     return mind.feedback
 
 
-def _against(mind: Mind, action: Action, more: tuple[Reason | None, ...]) -> tuple[Reason, ...]:
+def _against(mind: ControllerState, action: Action, more: tuple[Reason | None, ...]) -> tuple[Reason, ...]:
     return unmet(mind, action) + tuple(reason for reason in more if reason is not None)
 
 
-def reachable(mind: Mind) -> Reason | None:
+def reachable(mind: ControllerState) -> Reason | None:
     """Return that the drive does not answer."""
     if mind.feedback is not None and not mind.lost:
         return None
@@ -91,7 +91,7 @@ def reachable(mind: Mind) -> Reason | None:
     )
 
 
-def sound(mind: Mind) -> Reason | None:
+def sound(mind: ControllerState) -> Reason | None:
     """Return the latched fault."""
     if not isinstance(mind.activity, Faulted):
         return None
@@ -102,14 +102,14 @@ def sound(mind: Mind) -> Reason | None:
     )
 
 
-def faulted(mind: Mind) -> Reason | None:
+def faulted(mind: ControllerState) -> Reason | None:
     """Return that there is no fault to reset."""
     if isinstance(mind.activity, Faulted):
         return None
     return Reason("no_fault", f"{mind.config.name} has no fault to reset.", "No action is needed.")
 
 
-def resting(mind: Mind) -> Reason | None:
+def resting(mind: ControllerState) -> Reason | None:
     """Return that an axis still moves."""
     if mind.feedback is None or at_rest(mind.feedback):
         return None
@@ -120,7 +120,7 @@ def resting(mind: Mind) -> Reason | None:
     )
 
 
-def homed(mind: Mind) -> Reason | None:
+def homed(mind: ControllerState) -> Reason | None:
     """Return that no zero is trusted, and why if one was lost."""
     if mind.memory.home is not None:
         return None
@@ -132,7 +132,7 @@ def homed(mind: Mind) -> Reason | None:
     )
 
 
-def undoable(mind: Mind) -> Reason | None:
+def undoable(mind: ControllerState) -> Reason | None:
     """Return that there is no home position to go back to, or that the axes have moved since it was set."""
     former, seen = mind.memory.former_home, mind.feedback
     if former is None or seen is None or seen.boot_count != former.boot_count:
@@ -151,7 +151,7 @@ def undoable(mind: Mind) -> Reason | None:
     )
 
 
-def self_homing(mind: Mind) -> Reason | None:
+def self_homing(mind: ControllerState) -> Reason | None:
     """Return that the drive cannot search for its origin."""
     if mind.capabilities.automatic_homing:
         return None
@@ -162,7 +162,7 @@ def self_homing(mind: Mind) -> Reason | None:
     )
 
 
-def watched(mind: Mind) -> Reason | None:
+def watched(mind: ControllerState) -> Reason | None:
     """Return that the drive has no watchdog that could be tested."""
     if mind.capabilities.watchdog_s is not None:
         return None
@@ -176,7 +176,7 @@ def watched(mind: Mind) -> Reason | None:
     )
 
 
-def prompt(mind: Mind) -> Reason | None:
+def prompt(mind: ControllerState) -> Reason | None:
     """Return that the drive's replies are too slow for motion by a held key."""
     link = None if mind.seen is None else mind.seen.link
     if link is None or not link.slow:
@@ -189,7 +189,7 @@ def prompt(mind: Mind) -> Reason | None:
     )
 
 
-def recoverable(mind: Mind) -> Reason | None:
+def recoverable(mind: ControllerState) -> Reason | None:
     """Return that a fault of this class is cleared in service mode only."""
     if not isinstance(mind.activity, Faulted) or mind.memory.service is not None:
         return None
@@ -203,7 +203,7 @@ def recoverable(mind: Mind) -> Reason | None:
     )
 
 
-def stowed(mind: Mind) -> Reason | None:
+def stowed(mind: ControllerState) -> Reason | None:
     """Return that no stow was commanded that could be left."""
     if mind.memory.stow is not None:
         return None
@@ -211,7 +211,7 @@ def stowed(mind: Mind) -> Reason | None:
     return Reason("not_in_stow", text, "A stow that the weather requires ends automatically.")
 
 
-def sheltered(mind: Mind) -> Reason | None:
+def sheltered(mind: ControllerState) -> Reason | None:
     """Return that wind or snow demand a stow, so that the panel must go nowhere else."""
     if mind.guarding is None or mind.guarding.stow is None:
         return None
@@ -223,14 +223,14 @@ def sheltered(mind: Mind) -> Reason | None:
     )
 
 
-def located(mind: Mind) -> Reason | None:
+def located(mind: ControllerState) -> Reason | None:
     """Return that the site's location is not known."""
     if mind.seen is not None and mind.seen.location is not None:
         return None
     return Reason("location_unknown", "The site has no location yet.", "Go to step 1, Location.")
 
 
-def on_time(mind: Mind) -> Reason | None:
+def on_time(mind: ControllerState) -> Reason | None:
     """Return that the site's clock is not to be relied on."""
     if mind.seen is not None and mind.seen.clock_trusted:
         return None
@@ -239,7 +239,7 @@ def on_time(mind: Mind) -> Reason | None:
     )
 
 
-def mode_selected(mind: Mind) -> Reason | None:
+def mode_selected(mind: ControllerState) -> Reason | None:
     """Return that no mode has been selected."""
     if mind.memory.mode is not None:
         return None
@@ -249,7 +249,7 @@ def mode_selected(mind: Mind) -> Reason | None:
 def confirmed(step: StepName, number: int) -> Condition:
     """Return the condition that a step was not saved for a former location."""
 
-    def condition(mind: Mind) -> Reason | None:
+    def condition(mind: ControllerState) -> Reason | None:
         saved = mind.memory.confirmations.get(step)
         if saved is None or mind.seen is None or saved.location_revision >= mind.seen.location_revision:
             return None
@@ -265,7 +265,7 @@ def confirmed(step: StepName, number: int) -> Condition:
 def while_(*allowed: ActivityName) -> Condition:
     """Return the condition that the tracker is doing one of these (a fault is `sound`'s business)."""
 
-    def condition(mind: Mind) -> Reason | None:
+    def condition(mind: ControllerState) -> Reason | None:
         doing = NAMES[type(mind.activity)]
         if doing in allowed or doing is ActivityName.FAULTED:
             return None
@@ -278,7 +278,7 @@ def while_(*allowed: ActivityName) -> Condition:
 def showing(*phases: ShowPhase) -> Condition:
     """Return the condition that a show is in one of these phases."""
 
-    def condition(mind: Mind) -> Reason | None:
+    def condition(mind: ControllerState) -> Reason | None:
         if isinstance(mind.activity, Showing) and mind.activity.phase in phases:
             return None
         phase = mind.activity.phase if isinstance(mind.activity, Showing) else None
@@ -288,7 +288,7 @@ def showing(*phases: ShowPhase) -> Condition:
     return condition
 
 
-def not_in_a_show(mind: Mind) -> Reason | None:
+def not_in_a_show(mind: ControllerState) -> Reason | None:
     """Return that a show is under way, which would have to be stopped first."""
     if isinstance(mind.activity, Showing) and mind.activity.phase in (ShowPhase.RUNNING, ShowPhase.PAUSED):
         return Reason(
@@ -302,7 +302,7 @@ _DOING = {
     ActivityName.HOLDING: ("is at standstill", "No action is needed."),
     ActivityName.JOGGING: ("is being jogged", "Release the button first."),
     ActivityName.MOVING: ("is moving to a position", "Wait until the tracker has arrived, or press Stop."),
-    ActivityName.ZEROING: ("is setting its home position", "Wait until this has finished."),
+    ActivityName.SETTING_HOME: ("is setting its home position", "Wait until this has finished."),
     ActivityName.HOMING: (
         "is searching for its home switches",
         "Wait until this has finished, or press Stop.",
@@ -347,19 +347,19 @@ _CAN_PROVE = (accepted, reachable, sound, remote, cleared, while_(_HOLD), restin
 REQUIRED: dict[Action, tuple[Condition, ...]] = {
     Action.JOG: (accepted, reachable, sound, remote, cleared, prompt, while_(_HOLD, _JOG)),
     Action.STEP: (accepted, reachable, sound, remote, cleared, while_(_HOLD)),
-    Action.ZERO: (reachable, sound, remote, settings_open, while_(_HOLD), resting),
-    Action.UNDO_ZERO: (reachable, sound, remote, settings_open, while_(_HOLD), resting, undoable),
+    Action.SET_HOME: (reachable, sound, remote, settings_open, while_(_HOLD), resting),
+    Action.UNDO_HOME: (reachable, sound, remote, settings_open, while_(_HOLD), resting, undoable),
     Action.HOME: (accepted, reachable, sound, remote, cleared, unlocked, self_homing, while_(_HOLD), resting),
     Action.SET_MODE: (while_(_HOLD, _JOG, _MOVE, _STOPPING),),
     Action.MOVE: (*_CAN_MOVE, cleared, sheltered, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
     Action.PARK: (*_BY_ITSELF, sheltered, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
     Action.STOW: (*_BY_ITSELF, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
     Action.RESUME: (remote, unlocked, unserved, stowed),
-    Action.LOCK_OUT: (unlocked,),
-    Action.RELEASE_LOCK: (locked,),
-    Action.BEGIN_SERVICE: (unserved,),
-    Action.CONFIRM_CLEAR: (served,),
-    Action.END_SERVICE: (served,),
+    Action.SET_INHIBIT: (unlocked,),
+    Action.RELEASE_INHIBIT: (locked,),
+    Action.BEGIN_SERVICE_MODE: (unserved,),
+    Action.CONFIRM_AREA_CLEAR: (served,),
+    Action.END_SERVICE_MODE: (served,),
     Action.TRACK: (
         *_BY_ITSELF,
         located,
@@ -389,9 +389,9 @@ REQUIRED: dict[Action, tuple[Condition, ...]] = {
     ),
     Action.STOP: (),
     Action.RESET_FAULT: (reachable, faulted, recoverable),
-    Action.PROVE_DIRECTION: _CAN_PROVE,
-    Action.PROVE_SCALE: _CAN_PROVE,
-    Action.MEASURE_STOP: (*_CAN_PROVE, unserved),
-    Action.MEASURE_LINK_LOSS: (*_CAN_PROVE, unserved, watched),
+    Action.TEST_DIRECTION: _CAN_PROVE,
+    Action.TEST_SCALE: _CAN_PROVE,
+    Action.TEST_STOP: (*_CAN_PROVE, unserved),
+    Action.TEST_COMMUNICATION_LOSS: (*_CAN_PROVE, unserved, watched),
     Action.SET_LIMIT: (*_CAN_PROVE, homed),
 }

@@ -1,8 +1,8 @@
 // What was typed outlives a reload, in this tab: it comes back with a word about it, until it is saved or discarded.
 // Secrets are never stored: of these only that they were typed, so that the page can say that they are gone.
 
-import { loadAgain } from "./again.js";
-import { _ } from "./said.js";
+import { loadAgain } from "./reload.js";
+import { _ } from "./i18n.js";
 import { linesOf, start as startSaying, tell as tellSaved, tellAfterReload } from "./saved.js";
 
 const WORTH_IT = "main form:is(.form, [data-keep])[method=post]:not(.action)";

@@ -81,7 +81,7 @@ class Book:
 
 
 def _person(user: User, session: Session, now: datetime, address: str) -> Principal:
-    rests = state(session, now) is SessionState.RESTS
+    rests = state(session, now) is SessionState.IDLE
     allowed = permissions_of(user.roles)
     return Principal(
         user.name,

@@ -5,8 +5,8 @@ from datetime import datetime, timedelta
 
 from app.alarms.alarm import Alarm
 from app.build import VERSION
-from app.site.checks import check_config
-from app.store.mending import fallen_back
+from app.site.validation import check_config
+from app.store.config_repair import fallen_back
 from app.store.store import StoreFailed, Writer
 from app.tracker.config import TrackerConfig
 from app.tracker.memory import RejectedSetting, SiteState, TrackerMemory, TrackerState
@@ -37,7 +37,7 @@ def begin(store: Writer, now: datetime, *, unclean_since: datetime | None) -> Be
     cut = store.close_open_recordings(now, CUT_OFF)
     event = Event(
         now + timedelta(seconds=site.clock.offset_s),
-        EventKind.MACHINE_STARTED,
+        EventKind.CONTROLLER_STARTED,
         None,
         _message(unclean_since, cut),
         data={

@@ -5,16 +5,14 @@ from math import isfinite
 
 from app.link.messages import AnswerDirection, AnswerScale, CheckConnection, RestoreDrive, SetSoftLimit
 from app.site import tracker_setup
-from app.site.checks import check_drive
 from app.site.loop import TrackerLoop
 from app.site.model import SiteModel
+from app.site.validation import check_drive
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.commands import CommandRejected
-from app.tracker.conditions import Action
 from app.tracker.config import AxisDrive, DriveConfig, TrackerConfig
 from app.tracker.drive_check import DriveCheck
-from app.tracker.guards import axis_feedback
-from app.tracker.proofs import (
+from app.tracker.drive_tests import (
     AxisEnd,
     DirectionProof,
     LimitProof,
@@ -23,6 +21,8 @@ from app.tracker.proofs import (
     Proofs,
     ScaleProof,
 )
+from app.tracker.guards import axis_feedback
+from app.tracker.interlocks import Action
 from app.tracker.reason import Reason
 from app.tracker.snapshot import Event, EventKind
 
@@ -101,7 +101,7 @@ async def set_soft_limit(model: SiteModel, wanted: SetSoftLimit, actor: str) -> 
         "present position."
     )
     event = model.event(
-        EventKind.PROOF_ENDED,
+        EventKind.DRIVE_TEST_ENDED,
         text,
         actor,
         config.tracker_id,
@@ -166,7 +166,7 @@ def _event(
     model: SiteModel, loop: TrackerLoop, move: ProofMove, text: str, outcome: str, actor: str
 ) -> Event:
     return model.event(
-        EventKind.PROOF_ENDED,
+        EventKind.DRIVE_TEST_ENDED,
         text,
         actor,
         loop.config.tracker_id,

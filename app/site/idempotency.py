@@ -14,15 +14,15 @@ from app.tracker.commands import (
     GoToStart,
     Home,
     Jog,
-    MeasureLinkLoss,
-    MeasureStop,
     Move,
     Park,
-    ProveDirection,
-    ProveScale,
     Resume,
     ResumeShow,
+    RunCommunicationLossTest,
+    RunDirectionTest,
+    RunScaleTest,
     RunShow,
+    RunStopTest,
     Step,
     Stop,
     Stow,
@@ -37,7 +37,7 @@ OLDEST_ORDER = MOST_AHEAD = timedelta(seconds=2)
 ENDS_MOTION = Stop | StopAll | EndJog
 BEGINS_MOTION = (
     Jog | Step | Home | Move | Park | Track | GoToStart | RunShow | ResumeShow | Stow | Resume
-    | ProveDirection | ProveScale | MeasureStop | MeasureLinkLoss
+    | RunDirectionTest | RunScaleTest | RunStopTest | RunCommunicationLossTest
 )  # fmt: skip
 
 

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.config import TrackerConfig
-from app.tracker.mind import Mind
+from app.tracker.controller_state import ControllerState
 
 
-def paced(mind: Mind) -> TrackerConfig:
+def paced(mind: ControllerState) -> TrackerConfig:
     """Return the configuration with the speeds that are allowed now; unchanged where nothing limits them."""
     config = mind.config
     if mind.memory.service is None and not mind.guards:
@@ -19,7 +19,7 @@ def paced(mind: Mind) -> TrackerConfig:
     return config
 
 
-def is_slow(mind: Mind, axis: Axis) -> bool:
+def is_slow(mind: ControllerState, axis: Axis) -> bool:
     """Return whether an axis may turn at the slow hand speed only."""
     guard = mind.guards.get(axis)
     return mind.memory.service is not None or (guard is not None and guard.slow_stops_left > 0)

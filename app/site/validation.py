@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from math import isfinite
 from typing import assert_never
 
-from app.drives.corrected import check_ratio
+from app.drives.scaled import check_ratio
 from app.hosts import host_fault
 from app.tracker.axes import AxisConfig
 from app.tracker.config import DriveConfig, DriveKind, MountKind, TrackerConfig

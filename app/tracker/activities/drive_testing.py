@@ -4,15 +4,15 @@ from dataclasses import replace
 
 from app.tracker.activity import AxisPair, MoveKind, Moving
 from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, ProveDirection, ProveScale
-from app.tracker.conditions import Action, demand_drive
+from app.tracker.axis_demand import paced
+from app.tracker.commands import CommandRejected, RunDirectionTest, RunScaleTest
+from app.tracker.controller_state import ControllerState
+from app.tracker.drive_tests import ProofKind, ProofMove
 from app.tracker.guards import axis_feedback, room_deg
-from app.tracker.mind import Mind
+from app.tracker.interlocks import Action, demand_drive
 from app.tracker.motion import AxisFeedback, Feedback
-from app.tracker.pace import paced
-from app.tracker.proofs import ProofKind, ProofMove
+from app.tracker.positioning import new_run
 from app.tracker.reason import Reason
-from app.tracker.runs import new_run
 from app.tracker.snapshot import EventKind
 from app.tracker.transitions import switch_tracking_off
 
@@ -21,12 +21,12 @@ SCALE_WAYS_DEG = (10.0, 30.0, 90.0)
 _KINDS = {MoveKind.DIRECTION: ProofKind.DIRECTION, MoveKind.SCALE: ProofKind.SCALE}
 
 
-def prove_direction(mind: Mind, command: ProveDirection) -> None:
+def test_direction(mind: ControllerState, command: RunDirectionTest) -> None:
     """Turn the axis by 3 degrees, or raise `CommandRejected`."""
-    _begin(mind, command.axis, DIRECTION_DEG, MoveKind.DIRECTION, Action.PROVE_DIRECTION)
+    _begin(mind, command.axis, DIRECTION_DEG, MoveKind.DIRECTION, Action.TEST_DIRECTION)
 
 
-def prove_scale(mind: Mind, command: ProveScale) -> None:
+def test_scale(mind: ControllerState, command: RunScaleTest) -> None:
     """Turn the axis by 10, 30 or 90 degrees, or raise `CommandRejected`."""
     if command.degrees not in SCALE_WAYS_DEG:
         raise CommandRejected(
@@ -36,10 +36,10 @@ def prove_scale(mind: Mind, command: ProveScale) -> None:
                 "Begin with 10 degrees; a longer travel gives a more accurate result.",
             )
         )
-    _begin(mind, command.axis, command.degrees, MoveKind.SCALE, Action.PROVE_SCALE)
+    _begin(mind, command.axis, command.degrees, MoveKind.SCALE, Action.TEST_SCALE)
 
 
-def arrived(mind: Mind, moving: Moving, feedback: Feedback) -> None:
+def arrived(mind: ControllerState, moving: Moving, feedback: Feedback) -> None:
     """Note where the axis stands after a move that somebody watches; other moves are not meant."""
     move = mind.memory.proofs.move
     if moving.kind not in _KINDS or move is None:
@@ -48,7 +48,7 @@ def arrived(mind: Mind, moving: Moving, feedback: Feedback) -> None:
     done = replace(move, to_deg=to_deg)
     mind.remember(proofs=replace(mind.memory.proofs, move=done))
     mind.say(
-        EventKind.PROOF_ENDED,
+        EventKind.DRIVE_TEST_ENDED,
         f"The {move.axis} axis has turned by {done.moved_deg:+.2f} degrees for the {move.kind} "
         "test. Enter what the panel did.",
         proof=move.kind,
@@ -57,7 +57,7 @@ def arrived(mind: Mind, moving: Moving, feedback: Feedback) -> None:
     )
 
 
-def free_way(mind: Mind, axis: Axis, seen: AxisFeedback, way_deg: float) -> int:
+def free_way(mind: ControllerState, axis: Axis, seen: AxisFeedback, way_deg: float) -> int:
     """Return the direction (1 or -1) in which an axis may turn this far, or raise `CommandRejected`.
 
     Upwards where both are free, unless there is more room downwards. Without a trusted zero the limit
@@ -76,7 +76,7 @@ def free_way(mind: Mind, axis: Axis, seen: AxisFeedback, way_deg: float) -> int:
     )
 
 
-def _room_deg(mind: Mind, axis: Axis, seen: AxisFeedback, sign: int) -> float:
+def _room_deg(mind: ControllerState, axis: Axis, seen: AxisFeedback, sign: int) -> float:
     if seen.at_upper_limit if sign > 0 else seen.at_lower_limit:
         return 0.0
     if mind.memory.home is None:
@@ -84,7 +84,7 @@ def _room_deg(mind: Mind, axis: Axis, seen: AxisFeedback, sign: int) -> float:
     return room_deg(mind.config.axis(axis), seen.position_deg, sign)
 
 
-def _begin(mind: Mind, axis: Axis, way_deg: float, kind: MoveKind, action: Action) -> None:
+def _begin(mind: ControllerState, axis: Axis, way_deg: float, kind: MoveKind, action: Action) -> None:
     feedback = demand_drive(mind, action)
     seen = axis_feedback(feedback, axis)
     degrees = free_way(mind, axis, seen, way_deg) * way_deg
@@ -97,7 +97,7 @@ def _begin(mind: Mind, axis: Axis, way_deg: float, kind: MoveKind, action: Actio
     move = ProofMove(_KINDS[kind], axis, seen.position_deg, mind.site_time, mind.actor)
     mind.remember(proofs=replace(mind.memory.proofs, move=move))
     mind.say(
-        EventKind.PROOF_STARTED,
+        EventKind.DRIVE_TEST_STARTED,
         f"The {axis} axis turns by {degrees:+g} degrees for the {move.kind} test.",
         proof=move.kind,
         axis=axis,

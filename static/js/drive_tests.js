@@ -2,7 +2,7 @@
 
 import { live } from "./live.js";
 
-const BUSY = new Set(["moving", "measuring", "stopping", "zeroing", "homing"]);
+const BUSY = new Set(["moving", "measuring", "stopping", "setting_home", "homing"]);
 let known = null;
 
 function ask() {

@@ -5,7 +5,7 @@ from dataclasses import replace
 from app.tracker.config import TrackerConfig
 from app.tracker.mode import Mode
 from app.tracker.motion import HALT, AxisFeedback, DriveCommand, Feedback, Position
-from app.tracker.mounts.abilities import abilities
+from app.tracker.mounts.capabilities import abilities
 from app.tracker.mounts.kinematics import fixed_deg
 from app.tracker.reason import Reason
 

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from app.drives.bus import BusUnit
-from app.drives.corrected import CorrectedDrive
 from app.drives.drive import Drive
 from app.drives.faults import Fault
+from app.drives.linear_actuator import TransmittedDrive
 from app.drives.plc import PlcDrive
+from app.drives.scaled import CorrectedDrive
 from app.drives.sim_training import COMMAND_WORDS, FIRST, training_words
 from app.drives.simulated import SimulatedDrive
-from app.drives.transmitted import TransmittedDrive
 
 TRAINED_PROFILE = "simulated-plc"
 """The one profile whose simulated device has training registers; a real device has none and refuses them."""
@@ -52,7 +52,7 @@ class HereTrainer:
 
     async def clear(self) -> None:
         """Be sound again."""
-        self._drive.clear_faults()
+        self._drive.end_injected_faults()
 
 
 class ThereTrainer:

@@ -7,7 +7,7 @@ from app.tracker.protections.config import LightProtection
 
 
 @dataclass(frozen=True, slots=True)
-class Hibernation:
+class LowLight:
     """Since when it holds, when it was last not seen dark, and whether the light suffices; steady time.
 
     `light_ok` is true as long as nothing is known.
@@ -18,22 +18,22 @@ class Hibernation:
     light_ok: bool = True
 
 
-AWAKE = Hibernation()
+AWAKE = LowLight()
 
 
-def step(state: Hibernation, limits: LightProtection, light_wm2: float | None, now: datetime) -> Hibernation:
+def step(state: LowLight, limits: LightProtection, light_wm2: float | None, now: datetime) -> LowLight:
     """Return the state after one look at the light, W/m2; None is not known.
 
     It must be dark for *more* than the delay. Light that exceeds the threshold by the hysteresis ends it at
     once. An unknown light begins the delay anew, and ends nothing.
     """
     if light_wm2 is None:
-        return state if state.since is not None else Hibernation(None, now, state.light_ok)
+        return state if state.since is not None else LowLight(None, now, state.light_ok)
     needed_wm2 = limits.threshold_wm2 + (0.0 if state.light_ok else limits.hysteresis_wm2)
     if light_wm2 >= needed_wm2:
-        return Hibernation(None, now, True)
+        return LowLight(None, now, True)
     light_at = state.light_at or now
     if state.since is not None:
-        return Hibernation(state.since, light_at, False)
+        return LowLight(state.since, light_at, False)
     dark = now - light_at > timedelta(seconds=limits.hold_s)
-    return Hibernation(now if dark else None, light_at, False)
+    return LowLight(now if dark else None, light_at, False)

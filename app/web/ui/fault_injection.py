@@ -6,11 +6,11 @@ from fastapi import Form
 from starlette.requests import Request
 from starlette.responses import Response
 
-from app.link.messages import ClearFaults, PlayFault, SiteDetail
+from app.link.messages import EndInjectedFaults, InjectFault, SiteDetail
 from app.link.weather_orders import SimulateWeather
 from app.tracker.config import DriveConfig, DriveKind
+from app.tracker.fault_scenarios import LESSONS, Lesson, Subject
 from app.tracker.simulated_weather import SimulatedStation
-from app.tracker.training import LESSONS, Lesson, Subject
 from app.web.deps import MachineDep
 from app.web.drive_contexts import TrainingPage, TrainingPlace
 from app.web.late_routes import page_router
@@ -20,7 +20,7 @@ from app.web.ui.orders import PressDep
 from app.web.ui.render import go, page
 from app.web.ui.wizard import tracker_of
 
-router = page_router(prefix="/trackers/{tracker_id}/training")
+router = page_router(prefix="/trackers/{tracker_id}/fault-injection")
 TRAINED_PROFILE = "simulated-plc"
 
 
@@ -45,14 +45,14 @@ async def training(request: Request, tracker_id: str, machine: MachineDep) -> Re
 @router.post("/play")
 async def play(tracker_id: str, press: PressDep, fault: Annotated[str, Form(max_length=40)] = "") -> Response:
     """Play one fault."""
-    await press.send(PlayFault(tracker_id, fault))
+    await press.send(InjectFault(tracker_id, fault))
     return press.answer("The fault is injected.")
 
 
 @router.post("/clear")
 async def clear(tracker_id: str, press: PressDep) -> Response:
     """End every fault that is played."""
-    await press.send(ClearFaults(tracker_id))
+    await press.send(EndInjectedFaults(tracker_id))
     return press.answer("All injected faults have ended. Reset the latched faults.")
 
 
@@ -60,7 +60,7 @@ async def clear(tracker_id: str, press: PressDep) -> Response:
 async def weather(request: Request, tracker_id: str, press: PressDep) -> Response:
     """Make up quiet weather for the site, so that storms and broken sensors can be played."""
     await press.send(SimulateWeather(SimulatedStation()))
-    return go(request, f"/trackers/{tracker_id}/training#weather")
+    return go(request, f"/trackers/{tracker_id}/fault-injection#weather")
 
 
 def _place(drive: DriveConfig) -> TrainingPlace:

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from datetime import datetime
 
-from app.tracker.mind import Mind
+from app.tracker.controller_state import ControllerState
 from app.tracker.observation import Observation
 from app.tracker.protections.guarding import HOLDS, OFF_GUARD, Guarding, latched, limits_of, step
 from app.tracker.protections.words import Protection, ProtectionState, Reaction, StowName
@@ -13,9 +13,9 @@ from app.tracker.weather import NOTHING_SENSED, Quality, Quantity, Sensed
 
 TWILIGHT_DEG = -1.0
 """The sun is followed along the horizon from here on, so that the panel faces it when it rises."""
-LATCHED = (Protection.TYPHOON, Protection.SNOW)
+LATCHED = (Protection.WIND_STOW, Protection.SNOW)
 """What must be seen good before tracking goes on, also after a restart."""
-DEMANDS = (Protection.TYPHOON, Protection.SNOW, Protection.WAIT, Protection.HIBERNATE)
+DEMANDS = (Protection.WIND_STOW, Protection.SNOW, Protection.WAIT, Protection.LOW_LIGHT_HOLD)
 TITLES = {Quantity.WIND: "wind sensor", Quantity.SNOW: "snow sensor", Quantity.LIGHT: "irradiance sensor"}
 BAD = {
     Quality.MISSING: "reports nothing",
@@ -33,7 +33,7 @@ REACTS = {
 }
 
 
-def look(mind: Mind, seen: Observation) -> None:
+def look(mind: ControllerState, seen: Observation) -> None:
     """Take in the weather: run every timer, latch what holds, and say what begins and ends."""
     sensed, before = seen.weather, guarding(mind)
     if before is OFF_GUARD and sensed is NOTHING_SENSED and not mind.made_up and not _expected(mind):
@@ -50,14 +50,14 @@ def look(mind: Mind, seen: Observation) -> None:
         _say_change(mind, before, after)
 
 
-def guarding(mind: Mind) -> Guarding:
+def guarding(mind: ControllerState) -> Guarding:
     """Return the state of the protections; the first time what was latched before the restart."""
     if mind.guarding is None:
         mind.guarding = latched(mind.memory.protection, mind.now)
     return mind.guarding
 
 
-def demanded_stow(mind: Mind) -> StowName | None:
+def demanded_stow(mind: ControllerState) -> StowName | None:
     """Return where the panel belongs: wind wins over a command, a command over snow, snow over park."""
     by_weather, by_command = guarding(mind).stow, mind.memory.stow
     if by_weather is None:
@@ -66,7 +66,7 @@ def demanded_stow(mind: Mind) -> StowName | None:
     return by_weather if parked or by_weather is StowName.WIND else by_command
 
 
-def hold_reason(mind: Mind) -> Reason | None:
+def hold_reason(mind: ControllerState) -> Reason | None:
     """Return why tracking stays where it is: too little light, or a sensor that must be seen well."""
     state = guarding(mind)
     if state.held is not None:
@@ -74,7 +74,7 @@ def hold_reason(mind: Mind) -> Reason | None:
     return reason(mind) if state.kind in HOLDS else None
 
 
-def protection_state(mind: Mind) -> ProtectionState | None:
+def protection_state(mind: ControllerState) -> ProtectionState | None:
     """Return what the weather demands now, None where it demands nothing; instants by the site's clock."""
     state = guarding(mind)
     if state.held is not None and state.stow is None:
@@ -84,14 +84,14 @@ def protection_state(mind: Mind) -> ProtectionState | None:
     if state.kind not in DEMANDS or state.since is None:
         return None
     end = None
-    if state.kind is Protection.TYPHOON:
-        end = state.typhoon.earliest_end(mind.config.protection.wind)
+    if state.kind is Protection.WIND_STOW:
+        end = state.wind_stow.earliest_end(mind.config.protection.wind)
     return ProtectionState(
         state.kind, _at_site(mind, state.since), None if end is None else _at_site(mind, end), reason(mind)
     )
 
 
-def reason(mind: Mind) -> Reason:
+def reason(mind: ControllerState) -> Reason:
     """Return the sentence for what holds; it says so where the weather is simulated."""
     found = _reason(mind)
     if mind.seen is None or not mind.seen.weather.simulated:
@@ -100,10 +100,10 @@ def reason(mind: Mind) -> Reason:
     return replace(found, message=f"{text} The reading is SIMULATED.")
 
 
-def _reason(mind: Mind) -> Reason:
+def _reason(mind: ControllerState) -> Reason:
     state, config, name = guarding(mind), mind.config.protection, mind.config.name
     match state.kind:
-        case Protection.TYPHOON:
+        case Protection.WIND_STOW:
             return _typhoon_reason(mind, state)
         case Protection.SNOW:
             load = (
@@ -125,7 +125,7 @@ def _reason(mind: Mind) -> Reason:
             )
 
 
-def doubt_reason(mind: Mind, quantity: Quantity) -> Reason:
+def doubt_reason(mind: ControllerState, quantity: Quantity) -> Reason:
     """Return what is wrong with a sensor, and what that does."""
     quality = mind.seen.weather.reading(quantity).quality if mind.seen else Quality.MISSING
     bad = BAD.get(quality, "was faulty and is monitored until it has been good for long enough")
@@ -140,7 +140,7 @@ def doubt_reason(mind: Mind, quantity: Quantity) -> Reason:
     )
 
 
-def doubts(mind: Mind) -> tuple[Reason, ...]:
+def doubts(mind: ControllerState) -> tuple[Reason, ...]:
     """Return the sensors that have been bad for too long and are not ignored."""
     state, config = guarding(mind), mind.config.protection
     return tuple(
@@ -150,14 +150,14 @@ def doubts(mind: Mind) -> tuple[Reason, ...]:
     )
 
 
-def _sobered(mind: Mind, before: Guarding, sensed: Sensed) -> Guarding:
+def _sobered(mind: ControllerState, before: Guarding, sensed: Sensed) -> Guarding:
     """Return the state to go on from: what made-up weather did ends with it, for nothing else would."""
     ended = mind.made_up and not sensed.simulated
     mind.made_up = sensed.simulated
     return OFF_GUARD if ended else before
 
 
-def _learnt(mind: Mind, sensed: Sensed) -> tuple[Quantity, ...]:
+def _learnt(mind: ControllerState, sensed: Sensed) -> tuple[Quantity, ...]:
     """Return the sensors that can be missed: every real one is remembered, made-up ones are not."""
     known = mind.memory.sensors
     if sensed is NOTHING_SENSED:
@@ -172,21 +172,21 @@ def _learnt(mind: Mind, sensed: Sensed) -> tuple[Quantity, ...]:
     return known + fresh
 
 
-def _expected(mind: Mind) -> bool:
+def _expected(mind: ControllerState) -> bool:
     """Return whether there should be a sensor."""
     config = mind.config.protection
     required = config.wind.required or config.snow.required or config.light.required
     return required or bool(mind.memory.sensors)
 
 
-def _is_night(mind: Mind, seen: Observation) -> bool:
+def _is_night(mind: ControllerState, seen: Observation) -> bool:
     if seen.sun is None:
         return False
     height_deg = seen.sun.apparent_elevation_deg if mind.config.refraction else seen.sun.elevation_deg
     return height_deg < TWILIGHT_DEG
 
 
-def _typhoon_reason(mind: Mind, state: Guarding) -> Reason:
+def _typhoon_reason(mind: ControllerState, state: Guarding) -> Reason:
     name, limits = mind.config.name, mind.config.protection.wind
     minutes = f"{limits.resume_after_s / 60.0:g}"
     hint = f"Once the wind has been calm for {minutes} minutes, tracking continues if it was on."
@@ -200,12 +200,12 @@ def _typhoon_reason(mind: Mind, state: Guarding) -> Reason:
         return Reason("wind", text, hint)
     if wind is None or wind.good is None:
         return Reason("wind", f"The wind at {name} was too strong and is not known to be calm.", hint)
-    if state.typhoon.unsafe_at == mind.now:
+    if state.wind_stow.unsafe_at == mind.now:
         return Reason("wind", f"The wind at {name} is too strong: {wind.good:.1f} m/s.", hint)
     return Reason("wind", f"The wind at {name} was too strong; it is {wind.good:.1f} m/s now.", hint)
 
 
-def _say_change(mind: Mind, before: Guarding, after: Guarding) -> None:
+def _say_change(mind: ControllerState, before: Guarding, after: Guarding) -> None:
     if before.kind in DEMANDS:
         text = f"{str(before.kind).capitalize()} has ended for {mind.config.name}."
         mind.say(EventKind.PROTECTION_ENDED, text, protection=before.kind)
@@ -214,17 +214,17 @@ def _say_change(mind: Mind, before: Guarding, after: Guarding) -> None:
         mind.say(EventKind.PROTECTION_BEGAN, why.message, protection=after.kind, code=why.code)
 
 
-def _say_doubts(mind: Mind, before: Guarding, after: Guarding, sensed: Sensed) -> None:
+def _say_doubts(mind: ControllerState, before: Guarding, after: Guarding, sensed: Sensed) -> None:
     for quantity in Quantity:
         was, ripe = before.doubt(quantity).ripe, after.doubt(quantity).ripe
         if ripe and not was:
             quality = sensed.reading(quantity).quality
             text = doubt_reason(mind, quantity).message
-            mind.say(EventKind.SENSOR_DOUBTED, text, quantity=quantity, quality=quality)
+            mind.say(EventKind.SENSOR_INVALID, text, quantity=quantity, quality=quality)
         elif was and not ripe:
             text = f"The {TITLES[quantity]} reports valid values again."
-            mind.say(EventKind.SENSOR_TRUSTED, text, quantity=quantity)
+            mind.say(EventKind.SENSOR_VALID, text, quantity=quantity)
 
 
-def _at_site(mind: Mind, steady: datetime) -> datetime:
+def _at_site(mind: ControllerState, steady: datetime) -> datetime:
     return mind.site_time + (steady - mind.now)

@@ -10,8 +10,8 @@ from typing import TypeVar
 from sqlalchemy.exc import SQLAlchemyError
 
 from app.access import sessions
+from app.access.access_cache import Book
 from app.access.accounts import Accounts, note
-from app.access.book import Book
 from app.access.events import AccessEvent, Recorded
 from app.access.passwords import Passwords
 from app.access.principal import Principal, SignInNeeded, Via, nobody, this_computer

@@ -6,9 +6,7 @@ from datetime import datetime
 from app.tracker.axes import Axis, AxisConfig
 from app.tracker.commissioning import StepStatus
 from app.tracker.config import AxisDrive, DriveConfig, TrackerConfig
-from app.tracker.memory import HomeTrust, TrackerMemory
-from app.tracker.motion import DriveCapabilities
-from app.tracker.proofs import (
+from app.tracker.drive_tests import (
     AxisEnd,
     DirectionProof,
     LimitProof,
@@ -20,6 +18,8 @@ from app.tracker.proofs import (
     StopProof,
     StopSpeed,
 )
+from app.tracker.memory import HomeTrust, TrackerMemory
+from app.tracker.motion import DriveCapabilities
 from app.tracker.reason import Reason
 
 WATCHDOG_LATE_S = 0.25

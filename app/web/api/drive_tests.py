@@ -9,8 +9,8 @@ from app.link.messages import AnswerDirection, AnswerScale, CheckConnection, Res
 from app.tracker.axes import Axis
 from app.tracker.config import DriveConfig, TrackerConfig
 from app.tracker.drive_check import DriveCheck, DriveChoices
-from app.tracker.proof_states import ProofState
-from app.tracker.proofs import AxisEnd, Proofs
+from app.tracker.drive_test_states import ProofState
+from app.tracker.drive_tests import AxisEnd, Proofs
 from app.web.api.base import NOT_FOUND, REFUSED, Input, Output, TrackerId, api_router
 from app.web.api.orders import SenderDep
 from app.web.api.trackers import DriveChange, detail_of, merged
@@ -30,13 +30,13 @@ class DriveProofs(Output):
 
 
 class SeenDirection(Input):
-    """What somebody saw after `prove_direction`."""
+    """What somebody saw after `test_direction`."""
 
     right: bool = Field(description="True: the panel turned as the sign of `measured.move` says.")
 
 
 class MeasuredAngle(Input):
-    """What somebody measured after `prove_scale`."""
+    """What somebody measured after `test_scale`."""
 
     measured_deg: Annotated[float, Field(gt=0, le=720, description="Degrees, without a sign.")]
 
@@ -48,38 +48,38 @@ class TakenLimit(Input):
     end: AxisEnd
 
 
-@router.get("/proofs", summary="What was proven about the drive", responses=NOT_FOUND)
-async def read_proofs(tracker_id: TrackerId, machine: MachineDep) -> DriveProofs:
+@router.get("/drive-tests", summary="What was proven about the drive", responses=NOT_FOUND)
+async def read_drive_tests(tracker_id: TrackerId, machine: MachineDep) -> DriveProofs:
     """Return every proof; they begin with a command of type `prove_...` or `measure_...`."""
     tracker = await detail_of(machine, tracker_id)
     return DriveProofs(states=tracker.proofs, measured=tracker.state.memory.proofs)
 
 
-@router.post("/proofs/direction", summary="Say which way it went", responses=NOT_FOUND | REFUSED)
-async def judge_direction(
+@router.post("/drive-tests/direction", summary="Say which way it went", responses=NOT_FOUND | REFUSED)
+async def answer_direction_test(
     tracker_id: TrackerId, seen: SeenDirection, sender: SenderDep, machine: MachineDep
 ) -> DriveProofs:
     """Keep that the direction is right, or turn it round in the settings: then prove it again."""
     await sender.send(AnswerDirection(tracker_id, seen.right))
-    return await read_proofs(tracker_id, machine)
+    return await read_drive_tests(tracker_id, machine)
 
 
-@router.post("/proofs/scale", summary="Say how far it went", responses=NOT_FOUND | REFUSED)
-async def judge_scale(
+@router.post("/drive-tests/scale", summary="Say how far it went", responses=NOT_FOUND | REFUSED)
+async def answer_scale_test(
     tracker_id: TrackerId, measured: MeasuredAngle, sender: SenderDep, machine: MachineDep
 ) -> DriveProofs:
     """Keep that the scale is right (within 0.2 degrees), or correct the gear ratio: then prove it again."""
     await sender.send(AnswerScale(tracker_id, measured.measured_deg))
-    return await read_proofs(tracker_id, machine)
+    return await read_drive_tests(tracker_id, machine)
 
 
-@router.post("/proofs/limits", summary="Take a soft limit here", responses=NOT_FOUND | REFUSED)
-async def take_limit(
+@router.post("/drive-tests/limits", summary="Take a soft limit here", responses=NOT_FOUND | REFUSED)
+async def set_soft_limit(
     tracker_id: TrackerId, taken: TakenLimit, sender: SenderDep, machine: MachineDep
 ) -> DriveProofs:
     """Take the place where the axis stands as its lower or upper soft limit."""
     await sender.send(SetSoftLimit(tracker_id, taken.axis, taken.end))
-    return await read_proofs(tracker_id, machine)
+    return await read_drive_tests(tracker_id, machine)
 
 
 @router.get("/drive/choices", summary="Profiles and serial ports", responses=NOT_FOUND)

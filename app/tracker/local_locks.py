@@ -1,25 +1,25 @@
 """What people at the machine forbid: locks, the switch at the cabinet, service mode. None: nothing."""
 
 from app.tracker.config import TrackerConfig
+from app.tracker.controller_state import ControllerState
 from app.tracker.memory import TrackerMemory
-from app.tracker.mind import Mind
 from app.tracker.reason import Reason
 
 
-def unlocked(mind: Mind) -> Reason | None:
+def unlocked(mind: ControllerState) -> Reason | None:
     """Return that somebody works on the machine."""
     lock = mind.memory.lock
     if lock is None:
         return None
     why = f" ({lock.reason})" if lock.reason else ""
     return Reason(
-        "locked_out",
+        "maintenance_inhibit",
         f"{mind.config.name} has a maintenance inhibit set by {lock.name}{why}.",
         f"Ask {lock.name}; the maintenance inhibit is released on the tracker's page.",
     )
 
 
-def settings_open(mind: Mind) -> Reason | None:
+def settings_open(mind: ControllerState) -> Reason | None:
     """Return that the settings are locked as they were commissioned."""
     return locked_settings(mind.config, mind.memory)
 
@@ -36,14 +36,14 @@ def locked_settings(config: TrackerConfig, memory: TrackerMemory) -> Reason | No
     )
 
 
-def locked(mind: Mind) -> Reason | None:
+def locked(mind: ControllerState) -> Reason | None:
     """Return that there is no lock to release."""
     if mind.memory.lock is not None:
         return None
     return Reason("not_locked", f"{mind.config.name} has no maintenance inhibit.", "No action is needed.")
 
 
-def remote(mind: Mind) -> Reason | None:
+def remote(mind: ControllerState) -> Reason | None:
     """Return that the switch at the cabinet is on local: nothing here moves the machine."""
     if mind.feedback is None or not mind.feedback.local:
         return None
@@ -54,7 +54,7 @@ def remote(mind: Mind) -> Reason | None:
     )
 
 
-def served(mind: Mind) -> Reason | None:
+def served(mind: ControllerState) -> Reason | None:
     """Return that nobody serves the machine, so that service mode cannot be left or confirmed."""
     if mind.memory.service is not None:
         return None
@@ -63,7 +63,7 @@ def served(mind: Mind) -> Reason | None:
     )
 
 
-def unserved(mind: Mind) -> Reason | None:
+def unserved(mind: ControllerState) -> Reason | None:
     """Return that somebody serves the machine: nothing else than slow hand motion."""
     service = mind.memory.service
     if service is None:
@@ -75,7 +75,7 @@ def unserved(mind: Mind) -> Reason | None:
     )
 
 
-def cleared(mind: Mind) -> Reason | None:
+def cleared(mind: ControllerState) -> Reason | None:
     """Return that in service mode nobody has said of late that the area is clear."""
     confirmed_now = mind.clear_until is not None and mind.now < mind.clear_until
     if mind.memory.service is None or confirmed_now:
