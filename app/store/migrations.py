@@ -88,8 +88,8 @@ def _newest(scripts: Path, found: str | None) -> str | None:
     known = {script.revision for script in directory.walk_revisions()}
     if found is not None and found not in known:
         raise StoreUnfit(
-            f"The database was written by a newer version of Heliopanel (revision {found}; this one knows "
-            f"up to {newest}). Install that version, or restore a backup that this version wrote."
+            f"The database was written by a newer version of Heliopanel (revision {found}; this version "
+            f"supports up to {newest}). Install that version, or restore a backup that this version wrote."
         )
     return newest
 

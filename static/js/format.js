@@ -66,7 +66,8 @@ export function words(value) {
 }
 
 // A user has a name; what sits at this computer has none and is told in the language of the page.
-const who = (value) => (value === "local user" ? _("local user") : String(value));
+// A user at the controller's computer has no name; versions before 0.2 wrote "this computer".
+const who = (value) => (value === "local user" || value === "this computer" ? _("local user") : String(value));
 
 const FORMS = {
   text: String,

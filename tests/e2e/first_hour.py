@@ -21,7 +21,7 @@ NOTES = {
         "priority and is on every page, as is **STOP** in the footer. STOP is not an emergency stop."
     ),
     "location": (
-        "Everything begins with the place: the sun's position follows from it. Type your own latitude "
+        "Everything begins with the location: the sun's position follows from it. Type your own latitude "
         "and longitude instead of these, and choose the side of the equator and of Greenwich. Before "
         "you save, compare today's sunrise, noon, and sunset with what you know: a lost minus sign "
         "shows at once."
@@ -42,7 +42,7 @@ NOTES = {
     ),
     "track": (
         "*Start tracking* moves the panel to the sun and keeps it there. By night it waits for "
-        "sunrise and says so. From now on, tracking resumes by itself after a restart of the "
+        "sunrise and says so. From now on, tracking resumes automatically after a restart of the "
         "software, as long as the home position is valid; after **STOP** it does not."
     ),
     "tracked": (
@@ -59,7 +59,7 @@ NOTES = {
         "not, one button takes the shortest duration that works."
     ),
     "replay": (
-        "Every show, and every day that a tracker works, is recorded from its first instant. In the "
+        "Every show, and every day that a tracker works, is recorded from its first sample. In the "
         "player nothing moves."
     ),
     "record": (

@@ -105,11 +105,11 @@ def test_a_wrong_setting(command: str, name: str, value: str, tmp_path: Path) ->
 @pytest.mark.parametrize(
     ("command", "write", "what"),
     [
-        ("serve", users_by_newer, "The users were"),
-        ("web", users_by_newer, "The users were"),
-        ("users list", users_by_newer, "The users were"),
-        ("serve", database_by_newer, "The database was"),
-        ("machine", database_by_newer, "The database was"),
+        ("serve", users_by_newer, "The users were stored"),
+        ("web", users_by_newer, "The users were stored"),
+        ("users list", users_by_newer, "The users were stored"),
+        ("serve", database_by_newer, "The database was written"),
+        ("machine", database_by_newer, "The database was written"),
     ],
 )
 def test_what_a_newer_version_wrote(
@@ -117,6 +117,6 @@ def test_what_a_newer_version_wrote(
 ) -> None:
     write(data)
     code, _, err = started(command, data, LOG_LEVEL="error")
-    told = f"{what} written by a newer version of Heliopanel ({NEWER}; this one is {VERSION}). Install that"
+    told = f"{what} by a newer version of Heliopanel ({NEWER}; this version is {VERSION}). Install"
     assert (code, len(err)) == (2, 1)
     assert err[0].startswith(told)

@@ -9,7 +9,8 @@ from app.web.languages.known import in_words
 from app.zones import zone_of
 
 UNKNOWN = "–"
-NAMELESS = "local user"
+NAMELESS, NAMELESS_BEFORE = "local user", "this computer"
+"""Who has no name: a user at the controller's computer, as written now and by versions before 0.2."""
 MACHINE, CONTEXT = "machine", "record"
 """What the controller is called where it did something by itself, as in a record."""
 NO_NAMES = ("site", "network", "panel")
@@ -93,7 +94,7 @@ def who(value: object) -> str:
     """Return a name as it is; this computer and the machine are told in the language of the page."""
     if value == MACHINE:
         return CATALOGUE.get().pgettext(CONTEXT, MACHINE)
-    return CATALOGUE.get().said(NAMELESS) if value == NAMELESS else str(value)
+    return CATALOGUE.get().said(NAMELESS) if value in (NAMELESS, NAMELESS_BEFORE) else str(value)
 
 
 def thing(value: str) -> str:
