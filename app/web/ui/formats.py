@@ -9,8 +9,8 @@ from app.web.languages.known import in_words
 from app.zones import zone_of
 
 UNKNOWN = "–"
-NAMELESS, NAMELESS_BEFORE = "local user", "this computer"
-"""Who has no name: a user at the controller's computer, as written now and by versions before 0.2."""
+NAMELESS = "local user"
+"""Who has no name: a user at the controller's computer."""
 MACHINE, CONTEXT = "machine", "record"
 """What the controller is called where it did something by itself, as in a record."""
 NO_NAMES = ("site", "network", "panel")
@@ -94,7 +94,8 @@ def who(value: object) -> str:
     """Return a name as it is; this computer and the machine are told in the language of the page."""
     if value == MACHINE:
         return CATALOGUE.get().pgettext(CONTEXT, MACHINE)
-    return CATALOGUE.get().said(NAMELESS) if value in (NAMELESS, NAMELESS_BEFORE) else str(value)
+    is_nameless = value == NAMELESS or value == "this computer"  # noqa: PLR1714 - the second as it was stored once
+    return CATALOGUE.get().said(NAMELESS) if is_nameless else str(value)
 
 
 def thing(value: str) -> str:
