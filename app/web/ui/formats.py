@@ -94,7 +94,7 @@ def who(value: object) -> str:
     """Return a name as it is; this computer and the machine are told in the language of the page."""
     if value == MACHINE:
         return CATALOGUE.get().pgettext(CONTEXT, MACHINE)
-    is_nameless = value == NAMELESS or value == "this computer"  # noqa: PLR1714 - the second as it was stored once
+    is_nameless = value == NAMELESS or value == "this computer"  # as it was stored once
     return CATALOGUE.get().said(NAMELESS) if is_nameless else str(value)
 
 
