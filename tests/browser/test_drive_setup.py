@@ -52,7 +52,7 @@ def state(page: Page, proof: str, row: int = 0) -> Locator:
     return page.locator(f"#proof-{proof} .proof-states > li").nth(row)
 
 
-def test_direction(page: Page, hands: Hands, picture: Picture, name: str) -> None:
+def check_direction(page: Page, hands: Hands, picture: Picture, name: str) -> None:
     hands.press(page.get_by_role("button", name="Turn elevation by 3°"))
     expect(page.locator(".ask")).to_contain_text("tilt up, toward the sky?")
     picture(page, f"proof-direction-{name}")
@@ -73,7 +73,7 @@ def turn_round(page: Page, hands: Hands) -> None:
     expect(state(page, "direction")).to_have_attribute("data-status", "done")
 
 
-def test_scale(page: Page, hands: Hands) -> None:
+def check_scale(page: Page, hands: Hands) -> None:
     form = page.locator("#proof-scale")
     hands.press(form.get_by_role("button", name="Turn elevation"))
     hands.write(page.locator("#f-measured"), "12,5")
@@ -122,9 +122,9 @@ def test_a_drive_is_connected_and_proven_with_a_mouse(
     url = arrive(page, hands, service, "drive-mouse")
     connect(page, hands, url, sim_port, picture, "desk")
     opened(page, f"{url}/drive-tests")
-    test_direction(page, hands, picture, "desk")
+    check_direction(page, hands, picture, "desk")
     turn_round(page, hands)
-    test_scale(page, hands)
+    check_scale(page, hands)
     measure(page, hands, picture, "desk")
     set_limits(page, hands)
     opened(page, f"{url}/record")
@@ -143,5 +143,5 @@ def test_a_drive_is_connected_and_its_watchdog_tested_with_a_finger(
     url = arrive(page, hands, service, "drive-finger")
     connect(page, hands, url, sim_port, picture, "phone")
     opened(page, f"{url}/drive-tests")
-    test_direction(page, hands, picture, "phone")
+    check_direction(page, hands, picture, "phone")
     measure(page, hands, picture, "phone")
