@@ -170,7 +170,7 @@ WRONG_ECHOES: dict[str, tuple[list[int], Answer]] = {
 async def test_a_write_whose_echo_is_wrong_fails_and_is_not_sent_again(name: str) -> None:
     words, answer = WRONG_ECHOES[name]
     async with linked(answer, good) as (link, server, _):
-        with pytest.raises(DriveError, match="not sent again"):
+        with pytest.raises(DriveError, match="The request is not repeated"):
             await link.write(10, words, what="a set-point", ticket=None)
         assert len(server.requests) == 1
 
@@ -196,7 +196,7 @@ async def test_what_a_device_does_not_know_is_refused_for_good(code: int) -> Non
 async def test_a_busy_device_is_asked_again_later(code: int, fault: FaultResult) -> None:
     async with linked(exception(code), good) as (link, server, _):
         began = time.monotonic()
-        with pytest.raises(DriveError, match="asked again") as caught:
+        with pytest.raises(DriveError, match="The request is repeated in the next cycle") as caught:
             await read(link)
         fault.noticed(time.monotonic() - began, REAL)
         fault.shows(str(caught.value))
