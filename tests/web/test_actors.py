@@ -61,8 +61,8 @@ def test_a_printed_record_tells_who_did_it() -> None:
     try:
         assert told_value(INSTANT, "It is over. (machine)").endswith("(Maschine)")
         assert told_value(INSTANT, "It is over. (Ada)").endswith("(Ada)")
-        assert told_value("by", "local user") == "dieser Rechner"
-        assert told_value("clock", f"done, {INSTANT} by local user.").endswith("dieser Rechner.")
+        assert told_value("by", "local user") == "lokaler Benutzer"
+        assert told_value("clock", f"done, {INSTANT} by local user.").endswith("lokaler Benutzer.")
         assert (who("machine"), who("machinist")) == ("Maschine", "machinist")
     finally:
         CATALOGUE.reset(before)

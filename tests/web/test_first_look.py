@@ -27,7 +27,7 @@ def test_who_may_press_a_key_and_what_is_made_up_are_told_in_german() -> None:
 def test_only_who_has_no_name_is_told_in_the_language_of_the_page() -> None:
     before = CATALOGUE.set(catalogue_of("de"))
     try:
-        assert shown("local user", "who", "UTC") == "dieser Rechner"
+        assert shown("local user", "who", "UTC") == "lokaler Benutzer"
         assert shown("Open", "who", "UTC") == "Open"
         assert shown(-33.6, "horizon", "UTC") == "unter dem Horizont"
         assert shown(0.2, "horizon", "UTC") == "über dem Horizont"
