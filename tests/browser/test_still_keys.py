@@ -158,6 +158,35 @@ def lost(plant: Plant) -> None:
     plant.do(lambda: setattr(tracker, "snapshot", unheard))
 
 
+SLOW_PING = """(() => {
+  const send = WebSocket.prototype.send;
+  WebSocket.prototype.send = function (data) {
+    const late = window.slowBy && String(data).includes('"ping"');
+    if (late) setTimeout(() => send.call(this, data), window.slowBy);
+    else send.call(this, data);
+  };
+})()"""
+
+
+@pytest.mark.parametrize("size", ["tablet", "phone"])
+def test_a_connection_that_becomes_slow_moves_no_key(size: str, opened: Opened, plant: Plant) -> None:
+    for language in LANGUAGES:
+        page = opened(HOMING, size)
+        page.context.add_cookies([{"name": "language", "value": language, "url": plant.url}])
+        page.add_init_script(SLOW_PING)
+        page.reload()
+        page.wait_for_selector(PAGE_READY)
+        page.wait_for_selector(LINK_MEASURED)
+        before = page.evaluate(KEYS)
+        page.evaluate("window.slowBy = 1300")
+        page.wait_for_selector('#link-quality[data-level="3"]')
+        expect(page.locator("#link-verdict")).not_to_be_empty()
+        after = page.evaluate(KEYS)
+        moved = max(abs(x - y) for a, b in zip(before, after, strict=True) for x, y in zip(a, b, strict=True))
+        assert moved <= 1, language
+        page.close()
+
+
 @pytest.mark.parametrize("path", [HOMING, "/trackers/T1"])
 @pytest.mark.parametrize("size", ["tablet", "phone"])
 def test_the_last_reading_has_its_room_and_moves_no_key(
