@@ -119,10 +119,10 @@ check: $(VENV)/.dev ## Formatting, lint, types, import contracts, migrations, ve
 	@$(BIN)/python static/vendor/vendor.py check
 	@$(BIN)/python -m app.store.migrations check
 	@$(BIN)/python -m app.access.migrations
-	@$(BIN)/python -m app.web.languages.catalogues check
+	@$(BIN)/python -m app.web.translation.catalogues check
 
 translations: $(VENV)/.dev ## Bring catalogues, and fonts cut for them, up to date with the texts of the sources
-	@$(BIN)/python -m app.web.languages.catalogues update
+	@$(BIN)/python -m app.web.translation.catalogues update
 	@$(BIN)/python static/vendor/vendor.py letters
 
 fuzz: $(VENV)/.dev ## Send 10,000 bad requests to the API, and hostile values into every form

@@ -1,4 +1,4 @@
-"""Carries the folders beside the program into the wheel, where `app.own` finds them."""
+"""Carries the folders beside the program into the wheel, where `app.base.own` finds them."""
 
 import filecmp
 import os

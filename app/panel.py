@@ -2,12 +2,12 @@
 
 import sys
 
-from app.errors import Foreseen
+from app.base.errors import Foreseen
+from app.base.settings import Settings, read_settings
+from app.base.startup import hurry, late
 from app.machine.process import raise_priority_of_panel
 from app.machine.starting import as_service, check_data_dir, check_port
 from app.machine.supervised import end_with_supervisor, tell_ready
-from app.settings import Settings, read_settings
-from app.startup import hurry, late
 
 
 def serve(settings: Settings) -> None:

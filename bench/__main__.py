@@ -19,11 +19,11 @@ NOT_BENCHMARKS = {"__main__", "table"}
 
 HEAD = """# Benchmarks
 
-Made by `make bench`, which runs every section below; each says when, where and at which commit it was
-measured. A time holds only within its own run: what to compare is how many times better ours is than the
-bound or than the peer of the same run. From 1 on that is good, in every row; a row below its bound says
-**missed**, one below its peer **behind**. A p99.9 is told of a thousand values or more; of fewer the maximum
-is. Every row names its command.
+`make bench` runs every section below and writes this page; each section has its date, place, and commit. A
+time holds only within its own run: compare how many times better ours is than the bound or than the peer of
+the same run. From 1 on this is good, in every row; a row below its bound says **missed**, one below its peer
+**behind**. A p99.9 is given for a thousand values or more, otherwise the maximum.
+Every row names its command.
 """
 
 
@@ -68,7 +68,7 @@ def commit() -> str:
 
 def _priority() -> str:
     """Return what is to be known of who measured: as root the controller gets real-time scheduling."""
-    return "; as root, so that controller and panel ran in real time" if os.geteuid() == 0 else ""
+    return "; as root, so that controller and web process ran in real time" if os.geteuid() == 0 else ""
 
 
 def renewed(report: str, measured: dict[str, str]) -> str:

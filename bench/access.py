@@ -13,8 +13,8 @@ from app.access.authenticator import Keeper, WrongPassword
 from app.access.opening import open_keeper
 from app.access.principal import this_computer
 from app.access.roles import Role
-from app.clock import VirtualClock
-from app.settings import Settings
+from app.base.clock import VirtualClock
+from app.base.settings import Settings
 from bench.table import Row, at_most
 from tests.fake_data import NOON
 

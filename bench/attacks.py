@@ -193,7 +193,7 @@ ATTACKS: dict[str, Attack] = {
     "500 live pages": _pages,
     "a body of 1 GB": _body,
     "JSON 900,000 levels deep": _deep,
-    "a SunSpec client that takes no answers": _deaf,
+    "a SunSpec client that reads no answers": _deaf,
     "four SunSpec clients that pipeline": _pipelines,
     "17 idle SunSpec clients": _crowd,
     "a flood of MQTT commands": _commands,

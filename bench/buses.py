@@ -15,13 +15,13 @@ from pathlib import Path
 from pymodbus.client import AsyncModbusSerialClient, AsyncModbusTcpClient
 from pymodbus.exceptions import ModbusException
 
-from app.clock import SystemClock
-from app.drives.bus import Bus
-from app.drives.buses import Buses
-from app.drives.drive import DriveError
-from app.drives.modbus_tcp import TcpWire
-from app.drives.wire import Timing
-from app.tracker.config import DriveConfig, DriveKind, SerialConfig
+from app.base.clock import SystemClock
+from app.drives.connections.buses import Buses
+from app.modbus.bus import Bus
+from app.modbus.errors import DriveError
+from app.modbus.tcp import TcpWire
+from app.modbus.wire import Timing
+from app.tracker.settings.config import DriveConfig, DriveKind, SerialConfig
 from bench.drives import FIXED_SERVER, REGISTERS
 from bench.table import NotMeasured, Row, at_most, beside, must_hold, percentile, spread
 

@@ -10,16 +10,16 @@ from datetime import UTC, datetime, timedelta
 from statistics import median
 from time import perf_counter
 
-from app.angles import separation_deg
-from app.clock import VirtualClock
-from app.drives.simulated import SimulatedDrive
+from app.base.angles import separation_deg
+from app.base.clock import VirtualClock
+from app.simulation.simulated import SimulatedDrive
 from app.sun.position import Algorithm, Location, SunPosition, sun_position
-from app.tracker.commands import Home, SelectMode, Track
-from app.tracker.config import TrackerConfig
+from app.tracker.commands.commands import Home, SelectMode, Track
 from app.tracker.controller import Controller
-from app.tracker.memory import TrackerMemory
-from app.tracker.mode import Mode
-from app.tracker.observation import Observation
+from app.tracker.memory.memory import TrackerMemory
+from app.tracker.memory.observation import Observation
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.values.mode import Mode
 from bench.table import Row, at_most, beside
 
 COMMAND = "python -m bench controller"

@@ -20,8 +20,8 @@ import httpx
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.sun.position import Location
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import ClockSetting, SiteState, TrackerMemory, TrackerState
+from app.tracker.memory.memory import ClockSetting, SiteState, TrackerMemory, TrackerState
+from app.tracker.settings.config import TrackerConfig
 from bench.table import NotMeasured, Row, at_most
 from tests.e2e.product import Product, eventually
 
@@ -83,7 +83,7 @@ def written_a_minute(disk: Disk, trackers: int, size: Size) -> tuple[float, str]
     prepare(disk.folder / "data", trackers)
     product = Product.start(disk.folder / "data")
     try:
-        children = [product.starts(child)[-1] for child in ("machine", "web")]
+        children = [product.starts(child)[-1] for child in ("controller", "web")]
         with httpx.Client(base_url=product.url, timeout=30.0) as calling:
             track_all(calling, trackers)
             _report(calling, size.settling_s)
@@ -121,7 +121,7 @@ def track_all(calling: httpx.Client, trackers: int) -> None:
     for name in names:
         _command(calling, name, type="home")
     eventually(
-        lambda: all(one["home_trusted"] and one["activity"] == "holding" for one in _trackers(calling)),
+        lambda: all(one["homed"] and one["activity"] == "holding" for one in _trackers(calling)),
         "every tracker is homed",
         within_s=LONGEST_HOMING_S,
     )

@@ -13,14 +13,14 @@ from pathlib import Path
 
 from pymodbus.client import AsyncModbusTcpClient
 
-from app.clock import SystemClock, VirtualClock
-from app.drives.bus import Bus
-from app.drives.factory import DriveFactory
-from app.drives.modbus_tcp import TcpWire
-from app.drives.simulated import SimulatedDrive
-from app.drives.wire import Timing
-from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
-from app.tracker.motion import DriveCommand, Position
+from app.base.clock import SystemClock, VirtualClock
+from app.machine.drive_factory import DriveFactory
+from app.modbus.bus import Bus
+from app.modbus.tcp import TcpWire
+from app.modbus.wire import Timing
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.settings.config import DriveConfig, DriveKind, TrackerConfig
+from app.tracker.values.motion import DriveCommand, Position
 from bench.table import Row, alone, at_most, spread
 
 COMMAND = "python -m bench drives"
@@ -31,7 +31,7 @@ MASTER_BOUND, DRIVE_BOUND = 1.25, 2.0
 SERVER = """
 import sys
 from pathlib import Path
-from app.drives.sim_server import Doors, run_drive_sim
+from app.simulation.servers.sim_server import Doors, run_drive_sim
 run_drive_sim(Doors("127.0.0.1:0"), "simulated-plc", memory=Path(sys.argv[1]))
 """
 
@@ -158,5 +158,5 @@ def measure(size: Size = Size()) -> list[Row]:
         _row("Modbus TCP master, 40 registers of drive-sim", sim["link"], sim["pymodbus"], MASTER_BOUND),
         _row("Modbus drive: a reading, checked and decoded", sim["drive"], sim["pymodbus"], DRIVE_BOUND),
         at_most("simulated drive, a tick while tracking", steady, TICK_BOUND_US, "us", COMMAND),
-        alone("simulated drive, a tick with a new set-point", f"{moving:.1f} us", COMMAND),
+        alone("simulated drive, a tick with a new setpoint", f"{moving:.1f} us", COMMAND),
     ]

@@ -27,8 +27,8 @@ from app.fast.sun import psa_plus_angles, spa_angles
 from app.sun import fast
 from app.sun.position import Algorithm, Location, sun_path
 from app.sun.trigonometry import Array
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.mode import Mode
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.values.mode import Mode
 from bench.table import Row, at_most, beside
 
 COMMAND = "python -m bench fast"

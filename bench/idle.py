@@ -1,6 +1,6 @@
 """Idle: how long a start takes until pages, controller and database answer, and what it then holds in memory
 
-The data folder has been used before, but for the first start, which makes the database. Memory is the
+The data folder has been used before, but for the first start, which creates the database. Memory is the
 proportional share (PSS): what processes have in common counts once.
 """
 
@@ -62,8 +62,8 @@ def _started(data_dir: Path, idle_s: float) -> tuple[Start, dict[str, float]]:
         ready_s = time.monotonic() - began
         processes = {
             "supervisor": product.process.pid,
-            "controller": product.starts("machine")[-1],
-            "panel": product.starts("web")[-1],
+            "controller": product.starts("controller")[-1],
+            "web process": product.starts("web")[-1],
         }
         start = Start(ready_s, sum(_used_s(process_id) for process_id in processes.values()))
         time.sleep(idle_s)
@@ -89,7 +89,7 @@ def _start_rows(first: Start, later: list[Start]) -> list[Row]:
     told = f"{slowest_s:.2f} s, {used_s:.2f} s of a processor"
     return [
         at_most(
-            "the first start, which makes the database: until pages, controller and database answer",
+            "the first start, which creates the database: until pages, controller and database answer",
             first.ready_s,
             LONGEST_START_S,
             "s",

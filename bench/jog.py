@@ -66,10 +66,10 @@ def _honest(*tallies: Tally) -> list[Row]:
     return [
         at_most("the longest of all after the network was cut", max(after), LONGEST_MS, "ms", COMMAND),
         at_most(
-            "holds whose axis was told to rest while heartbeats went on", by_itself / max(1, held),
+            "holds whose axis was stopped although heartbeats continued", by_itself / max(1, held),
             MOST_BY_ITSELF, "of one", COMMAND, ours=f"{by_itself} of {held:,}",
         ),
-        must_hold("axes that turned again after they were let go", f"{again}", "0", COMMAND, holds=not again),
+        must_hold("axes that moved again after release", f"{again}", "0", COMMAND, holds=not again),
         alone(
             "presses refused; presses whose heartbeats the bench itself sent too late (not counted above)",
             f"{refused}; {not_held}", COMMAND,

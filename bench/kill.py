@@ -1,4 +1,4 @@
-"""Kills: the machine killed while it tracks, the panel killed while a show runs, on a Modbus drive"""
+"""Kills: the controller killed while tracking, the web process killed during a show, on a Modbus drive"""
 
 import tempfile
 from dataclasses import dataclass
@@ -60,7 +60,7 @@ def _panel_row(killing: Killing, kills: int) -> Row:
     missed = max(0, wanted - int(ticks_after - ticks))
     lost = max(0, frames - elapsed_s.size)
     return must_hold(
-        f"panel killed {kills} times in a show",
+        f"web process killed {kills} times in a show",
         f"{missed} of {wanted} ticks missed, {lost} of {frames} frames lost, "
         f"longest gap {np.diff(elapsed_s).max() * 1000:.0f} ms",
         "none missed, none lost", COMMAND, holds=missed == lost == 0,
@@ -70,8 +70,8 @@ def _panel_row(killing: Killing, kills: int) -> Row:
 def _controller_rows(killing: Killing, kills: int) -> list[Row]:
     rested_s = [killing.kill_tracking() for _ in range(kills)]
     name = f"controller killed {kills} times while it tracked"
-    kept = "nothing acknowledged lost, every restart told, tracking resumed each time"
+    kept = "nothing acknowledged lost, every restart reported, tracking resumed each time"
     return [
         must_hold(name, kept, "the same, or the run fails", COMMAND, holds=True),
-        at_most(f"{name}: axes at rest", max(rested_s), REST_BOUND_S, "s", COMMAND),
+        at_most(f"{name}: axes stopped", max(rested_s), REST_BOUND_S, "s", COMMAND),
     ]

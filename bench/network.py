@@ -1,4 +1,4 @@
-"""Network: what becomes of ticks, Stop, requests and memory while one computer attacks every way in
+"""Network: ticks, Stop, requests, and memory while one computer attacks every interface
 
 The attacker is a process of its own at nice 19, as if it had a computer of its own, and asks from the same
 address as whoever is measured, of which the panel takes 256 connections. Meanwhile one tracker is stopped
@@ -95,7 +95,7 @@ def _attacked(folder: Path, mqtt: int) -> Iterator[tuple[Product, Target]]:
     """Run the product with every way in open and a second tracker that tracks."""
     sunspec = free_port()
     ways_in = {"sunspec_port": str(sunspec), "mqtt_host": "127.0.0.1", "mqtt_port": str(mqtt)}
-    ways_in |= {"mqtt_topic": "flooded", "mqtt_commands": "true"}
+    ways_in |= {"mqtt_base_topic": "flooded", "mqtt_commands": "true"}
     product = Product.start(folder / "data", **ways_in)
     try:
         yield product, Target(product.port, sunspec, mqtt, _prepare(product))
@@ -237,10 +237,10 @@ def _rows(name: str, felt: Felt) -> list[Row]:
         alone(f"under {name}: a read over SunSpec", spread(felt.scada_ms or [inf]), COMMAND),
         must_hold(f"under {name}: requests answered", answered, "all", COMMAND, holds=not felt.failed),
         must_hold(
-            f"under {name}: controller and panel", lives, "none dies, it tracks on", COMMAND,
+            f"under {name}: controller and web process", lives, "none dies, it tracks on", COMMAND,
             holds=not felt.deaths and felt.tracking,
         ),
-        at_most(f"under {name}: the panel's memory (resident)", felt.memory_mb, MEMORY_MB, "MB", COMMAND),
+        at_most(f"under {name}: memory of the web process (RSS)", felt.memory_mb, MEMORY_MB, "MB", COMMAND),
         at_most(
             f"under {name}: the latest of {felt.ticks:.0f} ticks", felt.late_ms, LATE_MS, "ms", COMMAND,
             ours=f"at most {felt.late_ms:g} ms",

@@ -10,10 +10,10 @@ import numpy as np
 
 from app.show.simulate import simulate, simulate_show
 from app.sun.position import Location, sun_path
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mode import Mode
+from app.tracker.memory.memory import Pointing
 from app.tracker.programs.show import ShowPlan
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.values.mode import Mode
 from bench.table import Row, at_most, beside
 
 SAMSUN = Location(41.2867, 36.33, 4.0)

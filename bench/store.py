@@ -17,7 +17,7 @@ from app.store.engine import open_reader, open_writer
 from app.store.migrations import upgrade
 from app.store.store import JournalFilter
 from app.store.writer import DatabaseWriter
-from app.tracker.recording import COLUMNS, Frames
+from app.tracker.memory.recording import COLUMNS, Frames
 from bench.table import Row, at_most, beside, must_hold
 from tests.store.samples import event
 from tests.store.test_durability import killed_after

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.link.messages import MachineUnreachable
-from app.tracker.config import DriveKind
+from app.tracker.settings.config import DriveKind
 from bench.table import Row, at_most, must_hold
 from tests.machine import fieldwork
 from tests.machine.field import Line
@@ -137,7 +137,7 @@ async def _lost(name: str, field: FieldSize, line: Line) -> Row:
 async def _largest(field: FieldSize) -> list[Row]:
     steady, ready_s = await fieldwork.start(field)
     return [
-        at_most(f"start, {field}, panel and controller ready", ready_s, READY_WITHIN_S, "s", COMMAND),
+        at_most(f"start, {field}, web process and controller ready", ready_s, READY_WITHIN_S, "s", COMMAND),
         _row(f"steady, {field}", steady, None),
         _row(f"wind over the limit, {field}", await fieldwork.storm(field), AT_ONCE_S),
     ]

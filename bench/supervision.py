@@ -13,9 +13,9 @@ import websockets
 
 from app.link.metrics import LATENESS_BOUNDS_MS
 from app.store.engine import open_reader
-from app.tracker.commands import SelectMode, Track
-from app.tracker.mode import Mode
-from app.tracker.recording import RecordingKind
+from app.tracker.commands.commands import SelectMode, Track
+from app.tracker.memory.recording import RecordingKind
+from app.tracker.values.mode import Mode
 from bench.table import Row, at_most, must_hold
 from tests.machine.service import DriveSimulator, Service
 from tests.machine.stories import kill_mid_show, kill_panel
@@ -68,11 +68,11 @@ async def _tracking_rows(data_dir: Path, size: Size) -> list[Row]:
     ticks = after.trackers["T1"].ticks - before.trackers["T1"].ticks
     missed, lost = max(0, wanted - ticks), _gaps(data_dir)
     told = f"{missed} of {wanted} ticks missed, {lost} frames lost"
-    name = f"panel killed {size.panel_kills} times while tracking"
+    name = f"web process killed {size.panel_kills} times while tracking"
     stormed = f"tick lateness, {size.viewers} viewers and a request storm"
     return [
         must_hold(name, told, "none", COMMAND, holds=missed == lost == 0),
-        _late_row("tick lateness, nobody looks", quiet),
+        _late_row("tick lateness, without viewers", quiet),
         _late_row(stormed, loaded),
     ]
 
@@ -157,10 +157,10 @@ async def _kill_rows(data_dir: Path, kills: int) -> list[Row]:
     return [
         must_hold(
             name,
-            "nothing committed lost, every restart told",
+            "nothing committed lost, every restart reported",
             "the same, or the run fails",
             COMMAND,
             holds=True,
         ),
-        at_most(f"{name}: axes at rest", max(stopped_s), REST_BOUND_S, "s", COMMAND),
+        at_most(f"{name}: axes stopped", max(stopped_s), REST_BOUND_S, "s", COMMAND),
     ]

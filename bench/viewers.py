@@ -1,4 +1,4 @@
-"""Viewers: what a thousand pages that look on cost the panel, and how late they are told
+"""Viewers: the load of a thousand viewing pages on the web process, and their delay
 
 The pages are read by processes of their own at nice 10, on this computer, whose share is all that the panel
 serves: a thousand. Only the panel's processor time is counted. How late: from the instant that the controller
@@ -85,14 +85,14 @@ def _worked_s(process_id: int) -> float:
 
 
 def _rows(viewers: int, seen: Seen) -> list[Row]:
-    who = f"{viewers:,} viewers of one tracker at rest, two states a second"
+    who = f"{viewers:,} viewers of one tracker at standstill, two states a second"
     served = f"{viewers - seen.refused:,} of {viewers:,}"
     rows = [must_hold(f"{who}: served", served, "all", COMMAND, holds=not seen.refused)]
     if seen.late_ms:
         name, _ = worst(seen.late_ms)
         told = f"{spread(seen.late_ms)} ({len(seen.late_ms):,} states, to the {name})"
         rows.append(at_most(f"{who}: late, p99", _p99(seen.late_ms), LATE_BOUND_MS, "ms", COMMAND, ours=told))
-    rows.append(at_most(f"{who}: the panel's share of a core", seen.core, CORE_BOUND, "of a core", COMMAND))
+    rows.append(at_most(f"{who}: web process, share of a core", seen.core, CORE_BOUND, "of a core", COMMAND))
     return rows
 
 

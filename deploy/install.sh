@@ -43,7 +43,7 @@ done
 here=$(cd "$(dirname "$0")" && pwd)
 programs=$root/opt/heliopanel settings=$root/etc/heliopanel data=$root/var/lib/heliopanel
 units=$root/etc/systemd/system command=$root/usr/local/bin/heliopanel
-services="heliopanel-machine heliopanel-web"
+services="heliopanel-controller heliopanel-web"
 scratch=""
 made=""
 
@@ -190,9 +190,16 @@ keep_backup() {
 
 # A panel whose controller service is down serves nobody, and would be taken for another program at its port.
 stop_lone_panel() {
-    if runs_systemd && ! systemctl --quiet is-active heliopanel-machine; then
+    if runs_systemd && ! systemctl --quiet is-active heliopanel-controller; then
         systemctl stop heliopanel-web 2>/dev/null || true
     fi
+}
+
+# Until 0.2.0 the controller service had another name; two of them would contend for the drives.
+end_former_unit() {
+    [ -f "$units/heliopanel-machine.service" ] || return 0
+    ! runs_systemd || systemctl disable --now heliopanel-machine
+    rm -f "$units/heliopanel-machine.service"
 }
 
 use_environment() {
@@ -211,19 +218,20 @@ use_environment() {
     made=""
     install -D -m 0755 "$here/heliopanel" "$command"
     for service in $services; do install -D -m 0644 "$here/$service.service" "$units/$service.service"; done
+    end_former_unit
     ! runs_systemd || systemctl daemon-reload
 }
 
 # An older version refuses a newer one's data, so this is done before it starts.
 restore_backup() {
     [ -n "$restore" ] || return 0
-    ! runs_systemd || systemctl stop heliopanel-web heliopanel-machine
+    ! runs_systemd || systemctl stop heliopanel-web heliopanel-controller
     as_user "$programs/current/bin/heliopanel" restore "$restore" || code=1 fail "The backup was not restored."
 }
 
 start() {
     if [ -z "$root" ] && command -v systemctl >/dev/null; then
-        systemctl --quiet enable heliopanel-machine heliopanel-web
+        systemctl --quiet enable heliopanel-controller heliopanel-web
     fi
     if ! runs_systemd; then
         say "Heliopanel $version is installed; systemd does not run here, so nothing was started"
@@ -262,6 +270,7 @@ take_away() {
     fi
     say "taking away settings, data and the user"
     rm -rf "$settings" "$data"
+    ! runs_systemd || rm -rf /run/heliopanel
     if has_user && [ "$(id -u heliopanel)" -lt 1000 ]; then userdel heliopanel; fi
 }
 

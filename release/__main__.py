@@ -21,7 +21,7 @@ from release.refused import Refused
 VERSION = re.compile(r"\d+\.\d+\.\d+")
 IN_BUILD = re.compile(r'^VERSION = "(?P<version>[^"]+)"$', re.MULTILINE)
 BUILT_AT = re.compile(r"^BUILT_AT = datetime\(.*\)$", re.MULTILINE)
-BUILD, CHANGELOG, DATABASES = "app/build.py", "CHANGELOG.md", "tests/golden/databases"
+BUILD, CHANGELOG, DATABASES = "app/base/build.py", "CHANGELOG.md", "tests/golden/databases"
 
 
 def main() -> int:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from app.logs import NAME
+from app.base.logs import NAME
 
 
 class _Kept(logging.Handler):

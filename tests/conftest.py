@@ -2,11 +2,14 @@
 
 import gc
 import os
-from collections.abc import Callable
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
 
+from app.base import outliving
 from tests.fault_result import FaultResult
 from tests.loopback import sitecustomize as guard
 
@@ -15,6 +18,17 @@ guard.stay_here()
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.register_profile("new", deadline=None)
 settings.load_profile("new" if "HELIOPANEL_SOAK" in os.environ else "same")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def runtime_directory() -> Iterator[Path | None]:
+    """Give controllers that are killed a place in memory to leave something, and remove what they left."""
+    if not outliving.SHARED_MEMORY.is_dir():
+        yield None
+        return
+    with tempfile.TemporaryDirectory(dir=outliving.SHARED_MEMORY, prefix="tests-") as place:
+        os.environ["RUNTIME_DIRECTORY"] = place
+        yield Path(place)
 
 
 def pytest_collection_finish() -> None:

@@ -7,7 +7,7 @@ from datetime import datetime
 from app.alarms.catalogue import CATALOGUE
 from app.alarms.view import ASIDE
 from app.link.alarm_orders import AcknowledgeAlarm, AlarmOrder, ShelveAlarm
-from app.tracker.alarm_words import AlarmCounts, AlarmNow, AlarmState
+from app.tracker.values.alarm_words import AlarmCounts, AlarmNow, AlarmState
 
 
 def alarm(code: str, at: datetime, tracker_id: str | None = "T1") -> AlarmNow:

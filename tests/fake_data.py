@@ -5,9 +5,9 @@ from math import cos, pi, sin
 
 import numpy as np
 
+from app.base.message import N_
 from app.sun.position import Location, SunPosition
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.memory import (
+from app.tracker.memory.memory import (
     ClockSetting,
     Confirmation,
     HomeTrust,
@@ -16,8 +16,9 @@ from app.tracker.memory import (
     TrackerMemory,
     TrackerState,
 )
-from app.tracker.mode import Mode
-from app.tracker.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
+from app.tracker.memory.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.values.mode import Mode
 
 SAMSUN = Location(41.2867, 36.33, 4.0)
 TIME_ZONE = "Europe/Istanbul"
@@ -55,7 +56,7 @@ def commissioned(tracker_id: str, name: str, *, tracking: bool) -> TrackerState:
         mode=Mode.DUAL,
         orientation=HELD,
         tracking_on=tracking,
-        home=HomeTrust(COMMISSIONED_AT, "operator", "set manually", 3),
+        home=HomeTrust(COMMISSIONED_AT, "operator", N_("set manually"), 3),
         confirmations={step: Confirmation(COMMISSIONED_AT, "operator", 1) for step in steps},
     )
     return TrackerState(TrackerConfig(tracker_id, name), memory)
@@ -73,8 +74,8 @@ def recording(
         tracker_name="North field",
         title=title,
         began_at=COMMISSIONED_AT,
-        sun_begin_at=begin,
-        sun_end_at=begin + timedelta(hours=hours),
+        sun_start=begin,
+        sun_end=begin + timedelta(hours=hours),
         duration_s=duration_s,
         location=SAMSUN,
         time_zone=TIME_ZONE,
@@ -85,7 +86,7 @@ def recording(
         drive="Simulated drive",
         ended_at=COMMISSIONED_AT + timedelta(seconds=duration_s),
         outcome="completed",
-        frame_count=len(frame_times(duration_s)),
+        sample_count=len(frame_times(duration_s)),
     )
 
 
@@ -97,7 +98,7 @@ def frame_times(duration_s: float) -> np.ndarray:
 def frames(info: RecordingInfo) -> Frames:
     """Return frames in which the panel follows the made-up sun a little behind."""
     elapsed_s = frame_times(info.duration_s)
-    sun_span_s = (info.sun_end_at - info.sun_begin_at).total_seconds()
+    sun_span_s = (info.sun_end - info.sun_start).total_seconds()
     sun_time_s = elapsed_s * sun_span_s / info.duration_s
     turn = 2 * pi * (sun_time_s - sun_span_s / 2) / 86400.0
     azimuth = (180.0 + np.degrees(turn)) % 360.0

@@ -1,5 +1,7 @@
 """A store that lives in memory."""
 
+from datetime import datetime
+
 from app.alarms.alarm import Alarm
 from app.audit.chain import FIRST
 from app.audit.entry import Entry, Sealed, seal
@@ -14,12 +16,12 @@ from app.store.store import (
     RecordHead,
     SignedRecord,
 )
-from app.tracker.memory import (
+from app.tracker.memory.memory import (
     SiteState,
     TrackerState,
 )
-from app.tracker.recording import Frames, RecordingInfo, RecordingKind
-from app.tracker.snapshot import (
+from app.tracker.memory.recording import Frames, RecordingInfo, RecordingKind
+from app.tracker.state.snapshot import (
     Event,
     EventKind,
 )
@@ -94,10 +96,12 @@ class FakeReader:
         """Return that there never was an alarm."""
         return []
 
-    def signed_records(self, tracker_id: str | None = None, *, limit: int = 200) -> list[RecordHead]:
+    def signed_records(
+        self, tracker_id: str | None = None, *, limit: int = 200, before: int | None = None
+    ) -> list[RecordHead]:
         """Return the heads of signed records, newest first."""
         heads = [one.head for one in reversed(self.signed) if tracker_id in (None, one.head.tracker_id)]
-        return heads[:limit]
+        return [one for one in heads if before is None or one.number < before][:limit]
 
     def signed_record(self, number: int) -> SignedRecord | None:
         """Return one signed record."""
@@ -120,12 +124,18 @@ class FakeReader:
         return self.shows.get(show_id)
 
     def recordings(
-        self, *, kind: RecordingKind | None = None, tracker_id: str | None = None, limit: int = 200
+        self,
+        *,
+        kind: RecordingKind | None = None,
+        tracker_id: str | None = None,
+        limit: int = 200,
+        before: tuple[datetime, str] | None = None,
     ) -> list[RecordingInfo]:
         """Return recordings that match."""
         found = [
             head for head in self.heads.values()
             if kind in (None, head.kind) and tracker_id in (None, head.tracker_id)
+            and (before is None or (head.began_at, head.recording_id) < before)
         ]  # fmt: skip
         return found[:limit]
 
@@ -149,6 +159,6 @@ def _matches(entry: JournalEntry, wanted: JournalFilter) -> bool:
         and (not wanted.kinds or entry.event.kind in wanted.kinds)
         and wanted.actor in (None, entry.event.actor)
         and (wanted.text or "").lower() in entry.event.message.lower()
-        and (wanted.since is None or entry.event.at >= wanted.since)
-        and (wanted.until is None or entry.event.at <= wanted.until)
+        and (wanted.start is None or entry.event.at >= wanted.start)
+        and (wanted.end is None or entry.event.at <= wanted.end)
     )

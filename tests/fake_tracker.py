@@ -4,9 +4,9 @@ from dataclasses import replace
 from datetime import datetime, timedelta
 from math import copysign
 
-from app.angles import separation_deg
-from app.tracker.axes import Axis, JogSpeed
-from app.tracker.commands import (
+from app.base.angles import separation_deg
+from app.base.message import N_, Word, join
+from app.tracker.commands.commands import (
     Command,
     CommandRejected,
     EndJog,
@@ -27,17 +27,15 @@ from app.tracker.commands import (
     Track,
     UndoHome,
 )
-from app.tracker.config import Orientation
-from app.tracker.drive_check import DriveCheck
-from app.tracker.memory import (
+from app.tracker.memory.drive_check import DriveCheck
+from app.tracker.memory.memory import (
     HomeTrust,
     TrackerState,
 )
-from app.tracker.mode import Mode
-from app.tracker.motion import DriveCapabilities
 from app.tracker.programs.show import ShowPlan
-from app.tracker.reason import Reason
-from app.tracker.snapshot import (
+from app.tracker.settings.axes import Axis, JogSpeed
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import (
     ActivityName,
     AxisState,
     Pair,
@@ -46,6 +44,9 @@ from app.tracker.snapshot import (
     ShowProgress,
     Snapshot,
 )
+from app.tracker.values.mode import Mode
+from app.tracker.values.motion import DriveCapabilities
+from app.tracker.values.reason import Reason
 from tests.fake_data import made_up_sun
 
 ACTIONS = (
@@ -86,12 +87,12 @@ class FakeTracker:
                 self._jog(command)
             case EndJog(press_id=press):
                 self._end_press(press)
-            case Step(axis=axis, degrees=degrees):
+            case Step(axis=axis, delta_deg=degrees):
                 self._turn(axis, degrees)
             case SetHome():
                 self.before_zero = (self.position, self.memory.home)
                 self.position = Pair(0.0, 0.0)
-                self.memory = replace(self.memory, home=HomeTrust(now, actor, "set manually", 3))
+                self.memory = replace(self.memory, home=HomeTrust(now, actor, N_("set manually"), 3))
             case UndoHome():
                 if self.before_zero is None:
                     raise CommandRejected(NO_FORMER_HOME)
@@ -179,7 +180,7 @@ class FakeTracker:
             activity=self.activity,
             approaching=self.approaching,
             sensors=self.sensors,
-            activity_text=f"{self.activity.value.capitalize()}.",
+            activity_text=join("", (Word(self.activity.value.capitalize()), ".")),
             mode=self.memory.mode or Mode.FIXED,
             orientation=self.memory.orientation,
             tracking_on=self.memory.tracking_on,
@@ -193,7 +194,7 @@ class FakeTracker:
             following_error_deg=0.01,
             off_sun_deg=off if sun.elevation_deg > 0 else None,
             in_position=not moving,
-            home_trusted=self.memory.home is not None,
+            homed=self.memory.home is not None,
             azimuth=replace(axis, position_deg=where.azimuth_deg),
             elevation=replace(axis, position_deg=where.elevation_deg),
             can_undo_home=self.before_zero is not None,

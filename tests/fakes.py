@@ -18,7 +18,9 @@ import httpx
 import uvicorn
 from fastapi import FastAPI
 
-from app.clock import Clock, SystemClock
+from app.base.clock import Clock, SystemClock
+from app.base.message import say
+from app.base.settings import Settings
 from app.link.alarm_orders import AcknowledgeAlarm, ShelveAlarm, UnshelveAlarm
 from app.link.messages import (
     AddTracker,
@@ -47,17 +49,15 @@ from app.link.outlet import Outlet
 from app.link.place_orders import SetHorizon
 from app.link.record_orders import AddRecordPhoto, RemoveRecordPhoto, SignRecord
 from app.link.weather_orders import ReportWeather, SetMetStation, SetWeatherWindows, SimulateWeather
-from app.settings import Settings
 from app.store.store import PlannedShow
-from app.tracker.alarm_words import AlarmNow
-from app.tracker.commands import (
+from app.tracker.commands.commands import (
     CommandRejected,
     Stop,
 )
-from app.tracker.commissioning import Step as WizardStep
-from app.tracker.commissioning import StepStatus
-from app.tracker.drive_test_states import proof_states
-from app.tracker.memory import (
+from app.tracker.commissioning.drive_test_states import proof_states
+from app.tracker.commissioning.steps import Step as WizardStep
+from app.tracker.commissioning.steps import StepStatus
+from app.tracker.memory.memory import (
     ClockSetting,
     Confirmation,
     SiteState,
@@ -65,8 +65,7 @@ from app.tracker.memory import (
     TrackerMemory,
     TrackerState,
 )
-from app.tracker.reason import Reason
-from app.tracker.snapshot import (
+from app.tracker.state.snapshot import (
     ClockState,
     Event,
     EventKind,
@@ -74,7 +73,9 @@ from app.tracker.snapshot import (
     SiteSnapshot,
     Snapshot,
 )
-from app.tracker.weather import WeatherNow
+from app.tracker.values.alarm_words import AlarmNow
+from app.tracker.values.reason import Reason
+from app.tracker.weather.weather import WeatherNow
 from app.web.main import create_app
 from tests.fake_alarms import after, counted
 from tests.fake_data import commissioned, made_up_sun, site_state
@@ -96,20 +97,23 @@ GATEWAYS = (
         GatewayStatus.LISTENING,
         "127.0.0.1:5021",
         2,
-        writes="10.0.0.5 may write; all other hosts can only read.",
+        writes=say("{hosts} may write; all other hosts can only read.", hosts="10.0.0.5"),
     ),
     GatewayMetrics(
         "MQTT",
         GatewayStatus.CONNECTING,
         "broker.example:8883",
-        error=(
-            "The broker at broker.example:8883 cannot be reached: Connection refused. "
-            "Heliopanel retries automatically."
+        error=say(
+            "The broker at {where} cannot be reached: {first}. Heliopanel retries automatically.",
+            where="broker.example:8883",
+            first="Connection refused",
         ),
         waiting=128,
     ),
     GatewayMetrics(
-        "SunSpec over Modbus RTU", GatewayStatus.OFF, "set HELIOPANEL_SUNSPEC_SERIAL to enable it"
+        "SunSpec over Modbus RTU",
+        GatewayStatus.OFF,
+        say("set HELIOPANEL_{variable} to enable it", variable="SUNSPEC_SERIAL_PORT"),
     ),
 )
 

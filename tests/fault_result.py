@@ -5,7 +5,7 @@ from collections.abc import Callable
 VIRTUAL, REAL = "virtual clock", "real clock"
 RESET = "the operator resets the fault"
 HOME_AGAIN = "the home position is set again"
-BY_ITSELF = "by itself"
+BY_ITSELF = "automatic"
 Record = Callable[[str, object], None]
 
 
@@ -29,7 +29,7 @@ class FaultResult:
 
     def shows(self, text: str) -> None:
         """Take the sentence, or its part, that a user was shown or answered."""
-        self._record("shown", text)
+        self._record("shown", str(text))
 
     def shows_nothing(self, why: str) -> None:
         """Take why no user has to be told."""

@@ -17,12 +17,12 @@ from pathlib import Path
 
 import uvicorn
 
-from app.clock import SystemClock
+from app.base.clock import SystemClock
 from app.link.messages import DeleteRecording, Order, RemoveTracker
 from app.store.migrations import upgrade
-from app.tracker.commands import CommandRejected
-from app.tracker.reason import Reason
-from app.tracker.snapshot import SiteSnapshot
+from app.tracker.commands.commands import CommandRejected
+from app.tracker.state.snapshot import SiteSnapshot
+from app.tracker.values.reason import Reason
 from tests.alone import begin_alone
 from tests.fakes import FakeMachine, fake_app
 from tests.web.test_forms import fuzz

@@ -39,8 +39,8 @@ class Area:
 AREAS = {
     "guards": Area(
         (
-            "app.tracker.following_error.", "app.tracker.guards.",
-            "app.tracker.protect.", "app.tracker.protections.",
+            "app.tracker.motion.following_error.", "app.tracker.motion.guards.",
+            "app.tracker.supervision.protect.", "app.tracker.protections.",
         ),
         (
             "tests/tracker/protections", "tests/tracker/test_controller_doubt.py",
@@ -51,8 +51,8 @@ AREAS = {
     "access": Area(("app.access.",), ("tests/access",)),
     "limits": Area(
         (
-            "app.budget.", "app.gateway.", "app.link.lanes.", "app.turnstile.", "app.web.limits.",
-            "app.web.hold_to_run.",
+            "app.base.budget.", "app.gateway.", "app.link.lanes.", "app.base.turnstile.",
+            "app.web.http.limits.", "app.web.live.hold_to_run.",
         ),
         (
             "tests/test_budget.py", "tests/test_turnstile.py", "tests/link/test_lanes.py",
@@ -62,14 +62,14 @@ AREAS = {
         ),
     ),
     "panel": Area(
-        ("app.web.gate.", "app.web.live_protocol.", "app.web.server."),
+        ("app.web.http.gate.", "app.web.live.live_protocol.", "app.web.http.server."),
         (
             "tests/web/test_connections.py", "tests/web/test_gate_alone.py", "tests/web/test_gate_rules.py",
             "tests/web/test_http_alone.py", "tests/web/test_socket_alone.py",
         ),
     ),
     "drives": Area(
-        ("app.drives.",),
+        ("app.drives.", "app.modbus.", "app.simulation."),
         (
             "tests/drives/test_conformance.py", "tests/drives/test_kept_positions.py",
             "tests/drives/test_lost_commands.py", "tests/drives/test_modbus_clients.py",
@@ -79,7 +79,7 @@ AREAS = {
         ),
     ),
     "control": Area(
-        ("app.tracker.authority.", "app.tracker.control.", "app.site."),
+        ("app.tracker.access.authority.", "app.tracker.commands.control.", "app.site."),
         (
             "tests/tracker/test_authority.py", "tests/tracker/test_faults.py", "tests/site/test_authority.py",
             "tests/site/test_control.py", "tests/site/test_control_told.py",

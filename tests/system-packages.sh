@@ -6,7 +6,7 @@ missing=""
 need() { # program, package
     PATH="$PATH:/usr/sbin" command -v "$1" >/dev/null 2>&1 || missing="$missing $2"
 }
-need chromium chromium
+need chromium-headless-shell chromium-headless-shell
 need mosquitto mosquitto
 need mosquitto_passwd mosquitto
 need mbpoll mbpoll

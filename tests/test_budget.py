@@ -3,8 +3,8 @@
 import asyncio
 from datetime import UTC, datetime, timedelta
 
-from app.budget import Budget
-from app.clock import VirtualClock
+from app.base.budget import Budget
+from app.base.clock import VirtualClock
 
 
 def clock() -> VirtualClock:

@@ -8,11 +8,11 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from app.build import VERSION
+from app.base.build import VERSION
 from app.store.engine import open_reader, open_writer
 from app.store.migrations import upgrade
 from app.sun.position import Algorithm, Location, sun_position
-from app.tracker.memory import SiteState
+from app.tracker.memory.memory import SiteState
 from tests.command_line import Run, run
 
 __all__ = ["run"]
@@ -154,7 +154,7 @@ def test_help_names_every_command(run: Run) -> None:
 
     for command in (
         "serve",
-        "machine",
+        "controller",
         "web",
         "sun",
         "simulate",

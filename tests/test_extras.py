@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from app import extras
-from app.extras import LIBRARIES, ExtraMissing
+from app.base import extras
+from app.base.extras import LIBRARIES, ExtraMissing
 from app.store.connections import parse_url
 from tests.command_line import Run, run
 from tests.fakes import FakeMachine, fake_app, serving

@@ -5,14 +5,14 @@ from dataclasses import replace
 import pytest
 from pydantic import ValidationError
 
-from app.hosts import checked_host, host_fault
+from app.base.hosts import checked_host, host_fault
+from app.base.settings import Settings
 from app.link.alarm_orders import SetNotifications
 from app.link.messages import CheckConnection, ConfigureTracker
 from app.link.weather_orders import SetMetStation
-from app.settings import Settings
-from app.tracker.config import DriveConfig, DriveKind
-from app.tracker.memory import MetStation
-from app.tracker.notifications import Notifications
+from app.tracker.memory.memory import MetStation
+from app.tracker.settings.config import DriveConfig, DriveKind
+from app.tracker.values.notifications import Notifications
 from tests.site.plant import make_plant
 
 GOOD = (

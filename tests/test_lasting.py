@@ -3,8 +3,8 @@
 import asyncio
 from datetime import timedelta
 
-from app.clock import VirtualClock
-from app.lasting import begun
+from app.base.clock import VirtualClock
+from app.base.lasting import begun
 from tests.captured_logs import capture_logs
 from tests.fake_data import NOON
 from tests.site.plant import settle

@@ -2,7 +2,7 @@
 
 import gc
 
-from app.startup import RELAXED, SELDOM, hurry, late, settle
+from app.base.startup import RELAXED, SELDOM, hurry, late, settle
 
 
 def test_the_collector_rests_until_everything_is_loaded() -> None:

@@ -8,7 +8,7 @@ from typing import Literal
 
 import pytest
 
-from app.logs import get_logger, set_up_logs
+from app.base.logs import get_logger, set_up_logs
 from tests.captured_logs import capture_logs
 
 
@@ -25,7 +25,7 @@ def _logs_as_before() -> Iterator[None]:
 
 def told_by(log_format: Literal["json", "text"]) -> io.StringIO:
     stream = io.StringIO()
-    set_up_logs("machine", log_format=log_format, log_level="info", stream=stream)
+    set_up_logs("controller", log_format=log_format, log_level="info", stream=stream)
     return stream
 
 
@@ -73,7 +73,7 @@ def test_a_line_for_people_is_one_line() -> None:
     get_logger().warning("link_dropped", reason="two\nlines", code=3)
     (line,) = stream.getvalue().splitlines()
     assert line.split(maxsplit=1)[1] == (
-        "[warning ] link_dropped                   process=machine reason='two\\nlines' code=3"
+        "[warning ] link_dropped                   process=controller reason='two\\nlines' code=3"
     )
 
 

@@ -83,8 +83,8 @@ def made(sources: Path) -> Path:
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
     """Return a small repository that could be released."""
-    (tmp_path / "app").mkdir()
-    (tmp_path / "app" / "build.py").write_text('VERSION = "1.2.0"\n')
+    (tmp_path / "app" / "base").mkdir(parents=True)
+    (tmp_path / "app" / "base" / "build.py").write_text('VERSION = "1.2.0"\n')
     (tmp_path / "CHANGELOG.md").write_text(f"# Changelog\n\n## [Unreleased]\n\n{NEWS}\n")
     git(tmp_path, "init", "--quiet")
     git(tmp_path, "config", "user.name", "Ada")
@@ -99,9 +99,9 @@ def test_it_is_committed_and_tagged_and_nothing_else_changed(sources: Path) -> N
     assert git(sources, "log", "-1", "--format=%s %D") == f"release: {VERSION} HEAD -> main, tag: v{VERSION}"
     assert git(sources, "cat-file", "-t", f"v{VERSION}") == "tag"
     changed = set(git(sources, "diff", "--name-only", "HEAD~1").splitlines())
-    assert changed == {"app/build.py", "CHANGELOG.md", "docs/openapi.json"}
+    assert changed == {"app/base/build.py", "CHANGELOG.md", "docs/openapi.json"}
     assert present_version(sources) == VERSION
-    assert "BUILT_AT = datetime(2030, 5, 17, tzinfo=UTC)" in (sources / "app/build.py").read_text()
+    assert "BUILT_AT = datetime(2030, 5, 17, tzinfo=UTC)" in (sources / "app/base/build.py").read_text()
     told = (sources / "CHANGELOG.md").read_text()
     assert f"## [Unreleased]\n\n## [{VERSION}] - 2030-05-17\n\n### Added\n\n{NEWS}\n" in told
 
@@ -204,7 +204,7 @@ def noted_in(data: Path) -> str | None:
 
 def test_no_other_place_of_the_program_says_a_version(sources: Path) -> None:
     names = git(sources, "grep", "-lF", VERSION).splitlines()
-    assert set(names) == {"app/build.py", "CHANGELOG.md", "docs/openapi.json", "tests/test_release.py"}
+    assert set(names) == {"app/base/build.py", "CHANGELOG.md", "docs/openapi.json", "tests/test_release.py"}
     before = present_version(ROOT)
     found = git(
         sources, "grep", "-lF", f'"{before}"', "--", "app", "templates", "pyproject.toml", "setup.py", "."

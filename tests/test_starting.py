@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from app.build import VERSION
-from app.errors import Foreseen
+from app.base.build import VERSION
+from app.base.errors import Foreseen
+from app.base.settings import SettingsWrong
 from app.machine import starting
 from app.machine.starting import as_service, check_data_dir
-from app.settings import SettingsWrong
 from app.store.connections import parse_url
 from app.store.migrations import upgrade
 from app.store.store import StoreFailed
@@ -40,12 +40,12 @@ def never_served(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object) -> None:
         raise AssertionError("It was started.")
 
-    for module in ("app.cli_serve.supervise", "app.web.main.run"):
+    for module in ("app.cli.serve.supervise", "app.web.main.run"):
         monkeypatch.setattr(module, fail)
 
 
 @pytest.mark.usefixtures("never_served")
-@pytest.mark.parametrize("command", ["serve", "web", "machine"])
+@pytest.mark.parametrize("command", ["serve", "web", "controller"])
 def test_a_data_folder_that_cannot_be_made_is_one_sentence(run: Run, tmp_path: Path, command: str) -> None:
     (tmp_path / "file").touch()
     code, out, err = run(command, "--data-dir", str(tmp_path / "file" / "data"))
@@ -84,7 +84,7 @@ def test_options_count_before_the_environment_and_reach_what_is_started(
 ) -> None:
     port, file = free_port(), tmp_path / "settings.toml"
     file.write_text("tick_ms = 200\n")
-    monkeypatch.setattr("app.cli_serve.supervise", lambda *_: None)
+    monkeypatch.setattr("app.cli.serve.supervise", lambda *_: None)
     options = ["--config", str(file), "--data-dir", str(tmp_path / "other"), "--port", str(port)]
     code, out, _ = run("serve", *options, "--host", "::1" if socket.has_ipv6 else "127.0.0.1")
     assert (code, "starting" in out) == (0, True)
@@ -131,7 +131,7 @@ def test_what_does_not_answer_is_told_with_exit_code_1(run: Run, data: Path) -> 
     assert f"data in {data}\nController service: does not answer\nPanel: does not answer at http://" in out
     code, out, _ = run("status", "--json")
     told = json.loads(out)
-    assert (code, told["version"], told["machine_answers"], told["panel_version"]) == (1, VERSION, False, "")
+    assert (code, told["version"], told["controller_answers"], told["web_version"]) == (1, VERSION, False, "")
 
 
 def test_diagnostics_are_written_of_what_is_there(run: Run, data: Path, tmp_path: Path) -> None:
@@ -142,7 +142,7 @@ def test_diagnostics_are_written_of_what_is_there(run: Run, data: Path, tmp_path
         texts = {name: json.loads(archive.read(name)) for name in archive.namelist()}
     assert texts["about.json"]["version"] == VERSION
     assert texts["settings.json"]["data_dir"] == str(data)
-    assert set(texts["missing.json"]) == {"journal", "machine"}
+    assert set(texts["missing.json"]) == {"journal", "controller"}
     assert file.stat().st_mode & 0o077 == 0
     code, _, err = run("diagnostics", str(file))
     assert (code, "exists already" in err) == (2, True)

@@ -2,7 +2,7 @@
 
 import asyncio
 
-from app.turnstile import Turnstile
+from app.base.turnstile import Turnstile
 
 
 async def turns(count: int = 10) -> None:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from app.twins import HEAD, Twins
+from app.base.twins import HEAD, Twins
 
 ROOM = 20
 COPY = HEAD.size + ROOM

@@ -11,7 +11,7 @@ COMMAND_LINE = {"pygments", "rich", "shellingham", "structlog", "typer"}
 OF_THE_PANEL = {"argon2", "fastapi", "jinja2", "markdown_it", "starlette", "tzfpy", "uvicorn", "websockets"}
 OF_THE_CONTROLLER = {"aiomqtt", "paho", "pymodbus", "serial", "app.drives", "app.gateway", "app.site"}
 WORKED_OUT_ELSEWHERE = {
-    "app.papers.gezegin",
+    "app.research.gezegin",
     "app.show.simulate",
     "app.studies.compute",
     "numpy.fft",
@@ -49,8 +49,8 @@ def test_a_process_loads_only_what_it_needs_all_the_time(module: str, not_needed
 def test_only_the_routes_that_stop_are_worked_out_at_the_start(tmp_path: Path) -> None:
     code = f"""if True:
         from pathlib import Path
-        from app.settings import Settings
-        from app.web.late_routes import LateRoute
+        from app.base.settings import Settings
+        from app.web.http.late_routes import LateRoute
         from app.web.main import create_app
         routes = create_app(Settings(data_dir=Path({str(tmp_path)!r}))).routes
         late = [route for route in routes if isinstance(route, LateRoute)]

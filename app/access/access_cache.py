@@ -5,11 +5,12 @@ from dataclasses import dataclass, field
 from datetime import datetime
 
 from app.access.principal import Principal, Via
-from app.access.roles import Permission, Role, permissions_of
+from app.access.roles import Role, permissions_of
 from app.access.sessions import Session, SessionState, state
 from app.access.tokens import Token, is_valid, token_id_of
 from app.access.tokens import permissions_of as permissions_of_scopes
 from app.access.users import User
+from app.base.permission import Permission
 
 RESTING = frozenset({Permission.OPEN, Permission.KNOWN, Permission.READ, Permission.STOP, Permission.OWN})
 

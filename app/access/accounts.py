@@ -17,6 +17,7 @@ from app.access.users import (
     checked_roles,
     keep_an_administrator,
 )
+from app.base.message import N_, say
 
 LONGEST_TOKEN_NAME = 64
 
@@ -46,9 +47,11 @@ class Accounts:
         with self._store.writing() as change:
             users = change.users()
             if name in users:
-                raise AccessRefused(f"User {name} already exists; choose another name.")
+                raise AccessRefused(say("User {name} already exists; choose another name.", name=name))
             if not users and not user.is_administrator:
-                raise AccessRefused("The first user must be an administrator, to be able to add the others.")
+                raise AccessRefused(
+                    N_("The first user must be an administrator, to be able to add the others.")
+                )
             change.put_user(user)
             note(change, by, "user_added", f"{name}: {_words(wanted)}", now)
         return user
@@ -126,7 +129,7 @@ class Accounts:
         """Remove all users, sessions, tokens and wrong passwords."""
         with self._store.writing() as change:
             change.empty()
-            note(change, by, "factory_reset", "all users, sessions and tokens", now)
+            note(change, by, "factory_reset", N_("all users, sessions and tokens"), now)
 
 
 def note(change: Change, by: Principal, action: str, thing: str, now: datetime, result: str = "done") -> None:
@@ -136,17 +139,17 @@ def note(change: Change, by: Principal, action: str, thing: str, now: datetime, 
 
 def _known(users: dict[str, User], name: str) -> User:
     if (user := users.get(name.lower())) is None:
-        raise AccessRefused(f"There is no user {name}; heliopanel users list shows all users.")
+        raise AccessRefused(say("There is no user {name}; heliopanel users list shows all users.", name=name))
     return user
 
 
 def _check(wish: TokenWish) -> None:
     if not 1 <= len(wish.name.strip()) <= LONGEST_TOKEN_NAME:
-        raise AccessRefused("Enter a token name of 1 to 64 characters that describes its purpose.")
+        raise AccessRefused(N_("Enter a token name of 1 to 64 characters that describes its purpose."))
     if not wish.scopes and not wish.pin:
-        raise AccessRefused(f"Choose the purpose of the token: {', '.join(Scope)}.")
+        raise AccessRefused(say("Choose the purpose of the token: {scope}.", scope=", ".join(Scope)))
     if not timedelta(hours=1) <= wish.lifetime <= LONGEST_LIFETIME:
-        raise AccessRefused("A token is valid for 1 hour to 366 days.")
+        raise AccessRefused(N_("A token is valid for 1 hour to 366 days."))
 
 
 def _words(words: Iterable[str]) -> str:

@@ -16,7 +16,7 @@ from app.access.events import AccessEvent, Recorded
 from app.access.passwords import Passwords
 from app.access.principal import Principal, SignInNeeded, Via, nobody, this_computer
 from app.access.refusals import Allowance, Refusals
-from app.access.roles import NOBODY, Permission, Role
+from app.access.roles import NOBODY, Role
 from app.access.sessions import Session, digest_of, new_id
 from app.access.setup import Setup
 from app.access.store import AccessStore, Change
@@ -25,8 +25,10 @@ from app.access.tickets import OneShots, csrf_token, read_stop_ticket, stop_tick
 from app.access.tokens import digest_of as token_digest
 from app.access.tokens import token_id_of
 from app.access.users import AccessRefused
-from app.clock import Clock
-from app.logs import get_logger
+from app.base.clock import Clock
+from app.base.logs import get_logger
+from app.base.message import N_, say
+from app.base.permission import Permission
 from app.store.store import StoreFailed
 
 log = get_logger()
@@ -38,7 +40,7 @@ LOOPBACK_ADDRESSES = frozenset({"127.0.0.1", "::1"})
 WRONG_AT_ONCE, WRONG_EVERY = 200, timedelta(minutes=1)
 """How many wrong passwords are recorded one by one: at most 1,440 a day after the first 200."""
 
-WRONG = "The name or the password is wrong."
+WRONG = N_("The name or the password is wrong.")
 
 
 class WrongPassword(Exception):
@@ -51,7 +53,9 @@ class Throttled(Exception):
     def __init__(self, wait: timedelta) -> None:
         self.wait = wait
         seconds = max(1, round(wait.total_seconds() + 0.499))
-        super().__init__(f"There were too many wrong passwords. Wait {seconds} s, then try again.")
+        super().__init__(
+            say("There were too many wrong passwords. Wait {seconds} s, then try again.", seconds=seconds)
+        )
 
 
 class TooManyAtOnce(Exception):
@@ -126,7 +130,7 @@ class Keeper:
         if given.bearer:
             found = self.book.by_token(given.bearer, now, given.address)
             if found is None:
-                raise SignInNeeded("This token is unknown, revoked or has expired. Ask for a new one.")
+                raise SignInNeeded(N_("This token is unknown, revoked or has expired. Ask for a new one."))
             return found
         if given.ticket and (found := self._one_shots.redeem(given.ticket, now)):
             return found
@@ -241,12 +245,12 @@ class Keeper:
             token = self.book.tokens.get(session.token_id)
             if token is None:
                 raise AccessRefused(
-                    "A PIN works only on a cabinet display; sign in with a name and password."
+                    N_("A PIN works only on a cabinet display; sign in with a name and password.")
                 )
             subject = (f"pin:{token.token_id}",)
             self._wait(subject, principal)
             if not self._passwords.matches(token.pin_hash, pin):
-                self._fail(f"PIN of {token.name}", subject, principal.address)
+                self._fail(say("PIN of {name}", name=token.name), subject, principal.address)
             until = self._clock.now() + sessions.STEP_UP
             with self._store.writing() as change:
                 change.forgive(subject)
@@ -262,7 +266,7 @@ class Keeper:
             now, subject = self._clock.now(), (f"setup@{address}",)
             self._wait(subject, nobody(address))
             if not self.setup.accepts(code):
-                self._fail("setup code", subject, address)
+                self._fail(N_("setup code"), subject, address)
             self.accounts.add(nobody(address), name, {Role.ADMINISTRATOR}, password, now)
             self.setup.used()
 
@@ -293,7 +297,7 @@ class Keeper:
     async def do(self, work: Callable[[], T]) -> T:
         """Do something slow in a thread, one after the other, and judge by its result from now on."""
         if self._waiting >= MOST_WAITING:
-            raise TooManyAtOnce("Many users are signing in now. Wait a few seconds, then try again.")
+            raise TooManyAtOnce(N_("Many users are signing in now. Wait a few seconds, then try again."))
         self._waiting += 1
         try:
             async with self._one_at_a_time:
@@ -369,7 +373,7 @@ class Keeper:
     def _session(self, principal: Principal) -> Session:
         session = self.book.sessions.get(principal.credential)
         if session is None:
-            raise SignInNeeded("This session has ended. Sign in again.")
+            raise SignInNeeded(N_("This session has ended. Sign in again."))
         return session
 
     def _knows(self, account: str, held: str) -> bool:

@@ -7,9 +7,10 @@ from pathlib import Path
 from sqlalchemy import Connection, Engine, column, select, table
 
 from app.access.tables import REVISION, VERSION_TABLE, meta, metadata
-from app.build import VERSION
-from app.own import own_folder
-from app.startup import late
+from app.base.build import VERSION
+from app.base.message import say
+from app.base.own import own_folder
+from app.base.startup import late
 from app.store.connections import revision_of, sharing_engine, transaction
 from app.store.files import copy_sqlite
 from app.store.putting import put
@@ -47,19 +48,24 @@ def _refuse_newer(connection: Connection, found: str | None) -> str | None:
     if found is None:
         return None
     if found > REVISION:
-        raise _newer(f"revision {found}; this version supports up to {REVISION}")
+        raise _newer(
+            say("revision {found}; this version supports up to {revision}", found=found, revision=REVISION)
+        )
     asked = select(meta.c.value).where(meta.c.name == WRITTEN_BY)
     noted: str | None = connection.execute(asked).scalar_one_or_none()
     if noted is not None and is_newer(noted, VERSION):
-        raise _newer(f"{noted}; this version is {VERSION}")
+        raise _newer(say("{noted}; this version is {version}", noted=noted, version=VERSION))
     return noted
 
 
 def _newer(what: str) -> StoreUnfit:
     return StoreUnfit(
-        f"The users were stored by a newer version of Heliopanel ({what}). Install that version, "
-        "or start with new users: move access.db out of the data folder, or drop the access_* "
-        "tables in PostgreSQL."
+        say(
+            "The users were stored by a newer version of Heliopanel ({what}). Install that "
+            "version, or start with new users: move access.db out of the data folder, or drop "
+            "the access_* tables in PostgreSQL.",
+            what=what,
+        )
     )
 
 

@@ -8,9 +8,10 @@ from app.access.passwords import Argon, Hasher, Passwords
 from app.access.principal import nobody
 from app.access.setup import CODE_FILE, Setup
 from app.access.store import AccessStore
-from app.clock import Clock
-from app.logs import get_logger
-from app.settings import Settings
+from app.base.clock import Clock
+from app.base.logs import get_logger
+from app.base.message import N_
+from app.base.settings import Settings
 
 log = get_logger()
 
@@ -25,7 +26,7 @@ def open_keeper(settings: Settings, clock: Clock, hasher: Hasher | None = None) 
     store, passwords = open_store(settings), Passwords(hasher or Argon())
     setup = Setup(settings.data_dir, settings.is_loopback)
     if setup.reset_wanted():
-        Accounts(store, passwords).factory_reset(nobody("data folder"), clock.now())
+        Accounts(store, passwords).factory_reset(nobody(N_("data folder")), clock.now())
         log.warning("access was reset: all users, sessions and tokens are removed")
     keeper = Keeper(store, passwords, clock, setup)
     if keeper.is_closed:

@@ -10,6 +10,7 @@ from argon2 import PasswordHasher
 from argon2.exceptions import InvalidHashError, VerificationError, VerifyMismatchError
 
 from app.access.users import AccessRefused
+from app.base.message import N_, say
 
 SHORTEST, LONGEST = 12, 128
 TIME_COST, MEMORY_KIB, LANES = 3, 64 * 1024, 1
@@ -73,7 +74,7 @@ class Passwords:
         """Return the hash of a cabinet panel's PIN, or raise `AccessRefused`."""
         if not PIN.fullmatch(pin) or len(set(pin)) < 3 or pin in ROWS[0]:
             raise AccessRefused(
-                "A PIN has 6 to 12 digits, with at least three different digits and no simple sequence."
+                N_("A PIN has 6 to 12 digits, with at least three different digits and no simple sequence.")
             )
         return self._hasher.hash(pin)
 
@@ -87,10 +88,14 @@ class Passwords:
 def weakness(password: str, name: str = "") -> str | None:
     """Return why a password is refused, None if it is good enough. Nothing is said of kinds of characters."""
     if not SHORTEST <= len(password) <= LONGEST:
-        return f"A password has {SHORTEST} to {LONGEST} characters; four unrelated words work well."
+        return say(
+            "A password has {shortest} to {longest} characters; four unrelated words work well.",
+            shortest=SHORTEST,
+            longest=LONGEST,
+        )
     plain = password.lower()
     if _repeats(plain) or _is_row(plain) or _is_common(plain, name.lower()):
-        return (
+        return N_(
             "This password is easy to guess: it uses common words, a name, or a keyboard "
             "sequence. Choose another."
         )

@@ -4,7 +4,10 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
-from app.access.roles import DOES, NOBODY, ORDERS, RANKS, Permission, Role, permissions_of, who_may
+from app.access.roles import DOES, NOBODY, RANKS, Role, permissions_of, who_may
+from app.base.message import N_, Message, Word, join, say
+from app.base.permission import Permission
+from app.tracker.values.order_spec import OrderSpec
 
 
 class Via(StrEnum):
@@ -53,11 +56,11 @@ class Principal:
         """Return the name for journals; programs and tickets are told apart from people."""
         match self.via:
             case Via.TOKEN:
-                return f"{self.name} (token)"
+                return say("{name} (token)", name=self.name)
             case Via.KIOSK:
-                return f"{self.name} (kiosk)"
+                return say("{name} (kiosk)", name=self.name)
             case Via.STOP_TICKET:
-                return f"{self.name} (stop ticket)"
+                return say("{name} (stop ticket)", name=self.name)
             case _:
                 return self.name
 
@@ -81,40 +84,47 @@ class Principal:
         )
         return permission in self.permissions and within
 
-    def may_order(self, kind: str, tracker_id: str | None = None) -> bool:
-        """Return whether an order of this kind is allowed; an unknown kind is not.
+    def may_order(self, order: OrderSpec, tracker_id: str | None = None) -> bool:
+        """Return whether such an order is allowed.
 
         What concerns the whole site is not allowed to a token that is limited to some trackers; Stop is.
         """
-        permission = ORDERS.get(kind)
-        if permission is None:
-            return False
-        everywhere = tracker_id is None and self.trackers is not None and permission is not Permission.STOP
-        return self.may(permission, tracker_id) and not everywhere
+        everywhere = tracker_id is None and self.trackers is not None and order.needs is not Permission.STOP
+        return self.may(order.needs, tracker_id) and not everywhere
 
     def require(self, permission: Permission, tracker_id: str | None = None) -> None:
         """Raise the error that says why this is not allowed, if it is not."""
         if self.may(permission, tracker_id):
             return
         if not self.is_known:
-            raise SignInNeeded("Sign in first: Heliopanel shows and moves nothing for unknown users.")
+            raise SignInNeeded(N_("Sign in first: Heliopanel shows and moves nothing for unknown users."))
         if self.rests and permission in permissions_of(self.roles):
-            raise ProofNeeded("There was no activity for 30 minutes. Enter your password to continue.")
+            raise ProofNeeded(N_("There was no activity for 30 minutes. Enter your password to continue."))
         raise NotAllowed(self.refusal(permission, tracker_id))
 
-    def require_order(self, kind: str, tracker_id: str | None = None) -> None:
-        """Raise the error that says why an order is not allowed, if it is not."""
-        if not self.may_order(kind, tracker_id):
-            self.require(ORDERS.get(kind, Permission.ADMINISTER), tracker_id)
-            raise NotAllowed(f"{self.name} may not send the command {kind} here.")
+    def require_order(self, kind: str, order: OrderSpec, tracker_id: str | None = None) -> None:
+        """Raise the error that says why an order is not allowed, if it is not; it names its kind."""
+        if not self.may_order(order, tracker_id):
+            self.require(order.needs, tracker_id)
+            raise NotAllowed(say("{name} may not send the command {kind} here.", name=self.name, kind=kind))
 
-    def refusal(self, permission: Permission, tracker_id: str | None = None) -> str:
+    def refusal(self, permission: Permission, tracker_id: str | None = None) -> Message:
         """Return the sentence that says why this is not allowed and who may do it."""
         if permission in self.permissions and tracker_id is not None:
-            return f"{self.name} may not access tracker {tracker_id}; the token is for other trackers."
-        who = " and ".join(sorted(role.value for role in self.roles)) or self.via.value.replace("_", " ")
-        return (
-            f"{self.name} ({who}) may not {DOES[permission]}. Ask a user whose role is {who_may(permission)}."
+            return say(
+                "{name} may not access tracker {tracker_id}; the token is for other trackers.",
+                name=self.name,
+                tracker_id=tracker_id,
+            )
+        who = join(" and ", map(Word, sorted(role.value for role in self.roles))) or Word(
+            self.via.value.replace("_", " ")
+        )
+        return say(
+            "{name} ({who}) may not {does}. Ask a user whose role is {permission}.",
+            name=self.name,
+            who=who,
+            does=DOES[permission],
+            permission=who_may(permission),
         )
 
 
@@ -126,4 +136,4 @@ def nobody(address: str) -> Principal:
 def this_computer(address: str) -> Principal:
     """Return whoever sits at the computer while there are no users."""
     roles = frozenset({Role.ENGINEER, Role.ADMINISTRATOR})
-    return Principal("local user", roles, permissions_of(roles), Via.LOOPBACK, address)
+    return Principal(N_("local user"), roles, permissions_of(roles), Via.LOOPBACK, address)

@@ -7,6 +7,7 @@ from threading import Lock
 
 from app.access.events import AccessEvent
 from app.access.principal import Principal
+from app.base.message import say
 
 BURST = 60
 ONE_MORE_EVERY = timedelta(minutes=3)
@@ -16,6 +17,7 @@ TELL_EVERY = timedelta(hours=1)
 SAME_WITHIN = timedelta(minutes=1)
 MOST_REMEMBERED = 500
 LEFT_OUT = "refusals_left_out"
+LONGEST_WHY = 300
 
 
 @dataclass(slots=True)
@@ -46,9 +48,11 @@ class Refusals:
             if not self._allowance.take(now):
                 self._left_out += 1 + more
                 return
-            often = f" ({more} more times before)" if more else ""
+            told = why if len(why) <= LONGEST_WHY else why[:LONGEST_WHY]
+            if more:
+                told = say("{why} ({more} more times before)", why=told, more=more)
             event = AccessEvent(
-                now, who.actor[:100], who.via.value, who.address[:64], action, thing[:100], why[:300] + often
+                now, who.actor[:100], who.via.value, who.address[:64], action, thing[:100], told
             )
             self._waiting.append(event)
 
@@ -63,7 +67,7 @@ class Refusals:
             due, self._waiting = self._waiting, []
             if self._left_out and (self._told_at is None or now - self._told_at >= TELL_EVERY):
                 self._told_at = now
-                result = f"{self._left_out} refusals were not recorded individually."
+                result = say("{left_out} refusals were not recorded individually.", left_out=self._left_out)
                 due.append(AccessEvent(now, "nobody", "nobody", "", LEFT_OUT, "panel", result))
                 self._left_out = 0
             return due

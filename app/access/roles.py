@@ -1,21 +1,9 @@
-"""The table of who may do what: roles, permissions, and the permission of every kind of order."""
+"""The table of who may do what: roles and what each is granted."""
 
 from enum import StrEnum
 
-
-class Permission(StrEnum):
-    """What a request needs; every route and every order has exactly one."""
-
-    OPEN = "open"
-    KNOWN = "known"
-    STOP = "stop"
-    OWN = "own"
-    READ = "read"
-    REPORT = "report"
-    SIMULATE = "simulate"
-    OPERATE = "operate"
-    CONFIGURE = "configure"
-    ADMINISTER = "administer"
+from app.base.message import N_, Message, Word, join
+from app.base.permission import Permission
 
 
 class Role(StrEnum):
@@ -44,90 +32,17 @@ RANKS = {Role.VIEWER: 0, Role.ADMINISTRATOR: 0, Role.OPERATOR: 1, Role.ENGINEER:
 """Whose word counts more at a tracker."""
 
 DOES = {
-    Permission.OPEN: "open this",
-    Permission.KNOWN: "read their own identity",
-    Permission.STOP: "stop motion",
-    Permission.OWN: "change their own account",
-    Permission.READ: "read this",
-    Permission.REPORT: "report weather",
-    Permission.SIMULATE: "simulate and study",
-    Permission.OPERATE: "move trackers",
-    Permission.CONFIGURE: "change the tracker and site setup",
-    Permission.ADMINISTER: "manage users, tokens and backups",
+    Permission.OPEN: N_("open this"),
+    Permission.KNOWN: N_("read their own identity"),
+    Permission.STOP: N_("stop motion"),
+    Permission.OWN: N_("change their own account"),
+    Permission.READ: N_("read this"),
+    Permission.REPORT: N_("report weather"),
+    Permission.SIMULATE: N_("simulate and study"),
+    Permission.OPERATE: N_("move trackers"),
+    Permission.CONFIGURE: N_("change the tracker and site setup"),
+    Permission.ADMINISTER: N_("manage users, tokens and backups"),
 }
-
-ORDERS: dict[str, Permission] = {
-    "stop": Permission.STOP,
-    "stop_all": Permission.STOP,
-    "end_jog": Permission.STOP,
-    "jog": Permission.OPERATE,
-    "step": Permission.OPERATE,
-    "move": Permission.OPERATE,
-    "park": Permission.OPERATE,
-    "track": Permission.OPERATE,
-    "set_mode": Permission.OPERATE,
-    "stow": Permission.OPERATE,
-    "resume": Permission.OPERATE,
-    "set_inhibit": Permission.OPERATE,
-    "release_inhibit": Permission.OPERATE,
-    "inject_fault": Permission.CONFIGURE,
-    "end_injected_faults": Permission.CONFIGURE,
-    "begin_service_mode": Permission.CONFIGURE,
-    "confirm_area_clear": Permission.CONFIGURE,
-    "end_service_mode": Permission.CONFIGURE,
-    "go_to_start": Permission.OPERATE,
-    "run_show": Permission.OPERATE,
-    "pause_show": Permission.OPERATE,
-    "resume_show": Permission.OPERATE,
-    "stop_show": Permission.OPERATE,
-    "save_plan": Permission.OPERATE,
-    "request_control": Permission.OPERATE,
-    "answer_control": Permission.OPERATE,
-    "release_control": Permission.OPERATE,
-    "renew_control": Permission.OPERATE,
-    "reset_fault": Permission.OPERATE,
-    "acknowledge_alarm": Permission.OPERATE,
-    "shelve_alarm": Permission.OPERATE,
-    "unshelve_alarm": Permission.OPERATE,
-    "set_notifications": Permission.CONFIGURE,
-    "test_notification": Permission.CONFIGURE,
-    "report_weather": Permission.REPORT,
-    "save_recording": Permission.SIMULATE,
-    "delete_recording": Permission.CONFIGURE,
-    "set_home": Permission.CONFIGURE,
-    "undo_home": Permission.CONFIGURE,
-    "home": Permission.CONFIGURE,
-    "test_direction": Permission.CONFIGURE,
-    "test_scale": Permission.CONFIGURE,
-    "test_stop": Permission.CONFIGURE,
-    "test_communication_loss": Permission.CONFIGURE,
-    "answer_direction": Permission.CONFIGURE,
-    "answer_scale": Permission.CONFIGURE,
-    "set_soft_limit": Permission.CONFIGURE,
-    "restore_drive": Permission.CONFIGURE,
-    "undo_settings": Permission.CONFIGURE,
-    "undo_site_settings": Permission.CONFIGURE,
-    "check_connection": Permission.CONFIGURE,
-    "set_location": Permission.CONFIGURE,
-    "set_horizon": Permission.CONFIGURE,
-    "set_met_station": Permission.CONFIGURE,
-    "simulate_weather": Permission.CONFIGURE,
-    "set_weather_windows": Permission.CONFIGURE,
-    "set_clock": Permission.CONFIGURE,
-    "rename_site": Permission.CONFIGURE,
-    "add_tracker": Permission.CONFIGURE,
-    "configure_tracker": Permission.CONFIGURE,
-    "remove_tracker": Permission.CONFIGURE,
-    "confirm_step": Permission.CONFIGURE,
-    "lock_settings": Permission.CONFIGURE,
-    "unlock_settings": Permission.CONFIGURE,
-    "add_record_photo": Permission.CONFIGURE,
-    "remove_record_photo": Permission.CONFIGURE,
-    "sign_record": Permission.CONFIGURE,
-    "take_sighting": Permission.CONFIGURE,
-    "apply_sightings": Permission.CONFIGURE,
-}
-"""What every kind of order needs; a kind that is not here is refused."""
 
 
 def permissions_of(roles: frozenset[Role]) -> frozenset[Permission]:
@@ -135,6 +50,6 @@ def permissions_of(roles: frozenset[Role]) -> frozenset[Permission]:
     return NOBODY.union(*(GRANTS[role] for role in roles))
 
 
-def who_may(permission: Permission) -> str:
+def who_may(permission: Permission) -> Message:
     """Return the roles that may do this, in words, such as `operator or engineer`."""
-    return " or ".join(role.value for role, granted in GRANTS.items() if permission in granted)
+    return join(" or ", (Word(role.value) for role, granted in GRANTS.items() if permission in granted))

@@ -18,6 +18,7 @@ from app.access.throttle import FORGOTTEN_AFTER, Failures
 from app.access.tokens import Scope, Token
 from app.access.users import User
 from app.audit.chain import FIRST, Link
+from app.base.message import parts_of, with_parts
 from app.store.connections import sharing_engine, sqlite_path, transaction
 from app.store.files import keep_private, make_folder
 
@@ -207,6 +208,7 @@ class Change:
         last = select(tables.events.c.hash).order_by(tables.events.c.number.desc()).limit(1)
         previous = self._connection.execute(last).scalar_one_or_none() or FIRST
         row = asdict(event) | {"prev_hash": previous, "hash": chained(previous, event)}
+        row["result_parts"] = parts_of(event.result)
         self._connection.execute(insert(tables.events), row)
 
     def _put(self, table: Table, key: str, row: dict[str, Any]) -> None:
@@ -256,6 +258,7 @@ def _token(row: dict[str, Any]) -> Token:
 def _event(row: dict[str, Any]) -> tuple[AccessEvent, str, str]:
     previous, own = row.pop("prev_hash"), row.pop("hash")
     row.pop("number")
+    row["result"] = with_parts(row["result"], row.pop("result_parts"))
     return AccessEvent(**row), previous, own
 
 

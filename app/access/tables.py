@@ -5,7 +5,7 @@ from sqlalchemy import Column, Identity, Integer, MetaData, String, Table, Text
 from app.store.tables import Instant, Number
 
 VERSION_TABLE = "access_version"
-REVISION = "0001"
+REVISION = "0002"
 
 metadata = MetaData(naming_convention={"pk": "pk_%(table_name)s"})
 
@@ -67,6 +67,7 @@ events = Table(
     Column("action", String(50), nullable=False),
     Column("object", String(100), nullable=False),
     Column("result", Text, nullable=False),
+    Column("result_parts", Text),
     Column("prev_hash", String(64), nullable=False),
     Column("hash", String(64), nullable=False),
     sqlite_autoincrement=True,

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from enum import StrEnum
 
-from app.access.roles import KNOWN, Permission
+from app.access.roles import KNOWN
+from app.base.permission import Permission
 
 ALPHABET = string.digits + string.ascii_uppercase + string.ascii_lowercase
 PREFIX = "hp_"

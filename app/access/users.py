@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from app.access.roles import Role
+from app.base.message import N_, join, say
 
 NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9._-]{0,30}[A-Za-z0-9])?")
 RESERVED = frozenset({"nobody", "this-computer", "operator", "controller", "system"})
@@ -35,8 +36,11 @@ def checked_name(name: str) -> str:
     """Return the name in lower case if it can be one, else raise `AccessRefused`."""
     if not NAME.fullmatch(name) or name.lower() in RESERVED:
         raise AccessRefused(
-            "A user name has 1 to 32 letters, digits, dots, or dashes and begins with a letter or "
-            f"a digit, such as anna.k; {', '.join(sorted(RESERVED))} are reserved."
+            say(
+                "A user name has 1 to 32 letters, digits, dots, or dashes and begins with a letter "
+                "or a digit, such as anna.k; {join} are reserved.",
+                join=join(", ", sorted(RESERVED)),
+            )
         )
     return name.lower()
 
@@ -45,7 +49,7 @@ def checked_roles(roles: Iterable[Role]) -> frozenset[Role]:
     """Return the roles if there is one, else raise `AccessRefused`."""
     found = frozenset(roles)
     if not found:
-        raise AccessRefused(f"Choose a role: {', '.join(Role)}.")
+        raise AccessRefused(say("Choose a role: {role}.", role=join(", ", Role)))
     return found
 
 
@@ -54,4 +58,6 @@ def keep_an_administrator(users: Iterable[User], changed: str, roles: frozenset[
     others = [user for user in users if user.name != changed]
     if Role.ADMINISTRATOR in roles or any(user.is_administrator for user in others):
         return
-    raise AccessRefused("Heliopanel needs at least one administrator: give that role to another user first.")
+    raise AccessRefused(
+        N_("Heliopanel needs at least one administrator: give that role to another user first.")
+    )

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from app.alarms.catalogue import Entry, entry_of
-from app.tracker.alarm_words import AlarmState
+from app.base.message import NOTHING, Message, plain, say
+from app.tracker.values.alarm_words import AlarmState
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,8 +28,8 @@ class Alarm:
     code: str
     tracker_id: str | None
     where: str
-    message: str
-    hint: str = ""
+    message: Message
+    hint: Message = NOTHING
     active: bool = False
     told: bool = False
     raised_at: datetime | None = None
@@ -77,3 +78,8 @@ class Alarm:
     def stands(self) -> bool:
         """Return whether it is in the list: anything but normal."""
         return self.state is not AlarmState.NORMAL
+
+
+def place_of(alarm: Alarm) -> Message:
+    """Return where an alarm stands: the name of a tracker as it is, the site as a word."""
+    return plain(alarm.where) if alarm.tracker_id is None else say("{name}", name=alarm.where)

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from datetime import timedelta
 from enum import StrEnum
 
+from app.base.message import N_, Message, plain, say
+
 SOON = timedelta(0)
 SHORT = timedelta(seconds=3)
 LONG = timedelta(seconds=30)
@@ -46,9 +48,9 @@ class Entry:
     code: str
     priority: int
     group: Group
-    title: str
-    consequence: str
-    do: str
+    title: Message
+    consequence: Message
+    do: Message
     on_delay: timedelta = SOON
     off_delay: timedelta = SHORT
     suppressed_by: tuple[str, ...] = ()
@@ -61,274 +63,286 @@ class Entry:
 
     def __post_init__(self) -> None:
         if self.priority not in (1, 2, 3, 4):
-            raise ValueError(f"Alarm {self.code} has priority {self.priority}; the valid range is 1 to 4.")
+            raise ValueError(
+                say(
+                    "Alarm {code} has priority {priority}; the valid range is 1 to 4.",
+                    code=self.code,
+                    priority=self.priority,
+                )
+            )
 
 
 ENTRIES = (
     Entry(
-        "not_stowed", 1, Group.WEATHER, "Not stowed",
-        "Wind or snow may damage the panel.",
-        ("Remove what blocks the panel, then press Stow against wind or Stow against snow. If the "
+        "not_stowed", 1, Group.WEATHER, N_("Not stowed"),
+        N_("Wind or snow may damage the panel."),
+        N_("Remove what blocks the panel, then press Stow against wind or Stow against snow. If the "
         "panel does not move, keep everyone clear and use the manual control at the cabinet."),
         SHORT, caused_by=(Group.MOTION, Group.DRIVE),
     ),
     Entry(
-        "stop_overdue", 1, Group.MOTION, "Axes do not stop",
-        "The panel is still moving after a stop command.",
-        "Press the emergency stop at the cabinet, then find the fault in the drive.",
+        "stop_overdue", 1, Group.MOTION, N_("Axes do not stop"),
+        N_("The panel is still moving after a stop command."),
+        N_("Press the emergency stop at the cabinet, then find the fault in the drive."),
     ),
     Entry(
-        "internal_error", 1, Group.MOTION, "Controller error: tracker not controlled",
-        "This tracker no longer moves, not even to stow in strong wind.",
-        ("Reset the fault. If the fault recurs, keep everyone clear, stow the panel with the "
+        "internal_error", 1, Group.MOTION, N_("Controller error: tracker not controlled"),
+        N_("This tracker no longer moves, not even to stow in strong wind."),
+        N_("Reset the fault. If the fault recurs, keep everyone clear, stow the panel with the "
         "manual control at the cabinet, and send the diagnostics file."),
     ),
     Entry(
-        "config_rejected", 2, Group.MOTION, "Stored settings rejected",
-        "The tracker is at standstill and does not stow. Stored settings that were not valid were replaced.",
-        ("Compare the stored and used values on the tracker's Settings page, correct and save "
+        "config_rejected", 2, Group.MOTION, N_("Stored settings rejected"),
+        N_("The tracker is at standstill and does not stow. Stored settings that were not "
+            "valid were replaced."),
+        N_("Compare the stored and used values on the tracker's Settings page, correct and save "
         "them, then set the home position again."),
     ),
     Entry(
-        "wrong_direction", 2, Group.MOTION, "Axis moves the wrong way",
-        "The panel moves away from its target and may reach its mechanical end.",
-        ("Check the motor's phases and the direction set in the drive. Reset the fault, then set "
+        "wrong_direction", 2, Group.MOTION, N_("Axis moves the wrong way"),
+        N_("The panel moves away from its target and may reach its mechanical end."),
+        N_("Check the motor's phases and the direction set in the drive. Reset the fault, then set "
         "the home position again."),
     ),
     Entry(
-        "following_error", 2, Group.MOTION, "Axis does not follow",
-        "The axis is blocked, or the motor has no torque: no tracking and no stow.",
-        "Remove what blocks the axis, check the motor and coupling, then reset the fault.",
+        "following_error", 2, Group.MOTION, N_("Axis does not follow"),
+        N_("The axis is blocked, or the motor has no torque: no tracking and no stow."),
+        N_("Remove what blocks the axis, check the motor and coupling, then reset the fault."),
     ),
     Entry(
-        "encoder_jump", 2, Group.MOTION, "Position jumped",
-        "The true position is unknown: the soft limits do not protect the tracker.",
-        "Check the encoder and its cable, reset the fault, then set the home position again in step 3.",
+        "encoder_jump", 2, Group.MOTION, N_("Position jumped"),
+        N_("The true position is unknown: the soft limits do not protect the tracker."),
+        N_("Check the encoder and its cable, reset the fault, then set the home position again in step 3."),
     ),
     Entry(
-        "limit_switch", 2, Group.MOTION, "Limit switch reached",
-        "The axis is at its end; the home position may be wrong.",
-        "Jog the axis away from the switch and check the home position.",
+        "limit_switch", 2, Group.MOTION, N_("Limit switch reached"),
+        N_("The axis is at its end; the home position may be wrong."),
+        N_("Jog the axis away from the switch and check the home position."),
     ),
     Entry(
-        "limit_switch_wiring", 2, Group.MOTION, "Limit switches contradict each other",
-        "The switches do not protect the tracker.",
-        "Check the wiring of the switches, then reset the fault.",
+        "limit_switch_wiring", 2, Group.MOTION, N_("Limit switches contradict each other"),
+        N_("The switches do not protect the tracker."),
+        N_("Check the wiring of the switches, then reset the fault."),
     ),
     Entry(
-        "position_frozen", 2, Group.MOTION, "Position frozen",
-        "The drive reports motion, but its counter does not change: the true position is unknown.",
-        "Check the encoder and its cable, reset the fault, then set the home position again in step 3.",
+        "position_frozen", 2, Group.MOTION, N_("Position frozen"),
+        N_("The drive reports motion, but its counter does not change: the true position is unknown."),
+        N_("Check the encoder and its cable, reset the fault, then set the home position again in step 3."),
     ),
     Entry(
-        "axes_swapped", 2, Group.MOTION, "The wrong axis moves",
-        ("The panel moves in an uncommanded direction: the axes are swapped, or two drives have "
+        "axes_swapped", 2, Group.MOTION, N_("The wrong axis moves"),
+        N_("The panel moves in an uncommanded direction: the axes are swapped, or two drives have "
         "the same address."),
-        "Check the unit ids and the motor cables of both axes, then reset the fault.",
+        N_("Check the unit ids and the motor cables of both axes, then reset the fault."),
     ),
     Entry(
-        "limit_stuck", 2, Group.MOTION, "Limit switch stays on",
-        "The switch does not protect the tracker and blocks motion in one direction.",
-        "Check the switch and its cable, then reset the fault.",
+        "limit_stuck", 2, Group.MOTION, N_("Limit switch stays on"),
+        N_("The switch does not protect the tracker and blocks motion in one direction."),
+        N_("Check the switch and its cable, then reset the fault."),
     ),
     Entry(
-        "over_travel", 2, Group.MOTION, "Axis beyond its soft limits",
-        "The axis may reach its end; the home position may be wrong.",
-        "Find out why the axis did not stop, reset the fault, then set the home position again in step 3.",
+        "over_travel", 2, Group.MOTION, N_("Axis beyond its soft limits"),
+        N_("The axis may reach its end; the home position "
+            "may be wrong."),
+        N_("Find out why the axis did not stop, reset the fault, then set the home "
+            "position again in step 3."),
     ),
     Entry(
-        "creep", 2, Group.MOTION, "Axis moves without a command",
-        "The panel drifts, or another master moves it.",
-        "Keep everyone clear; check the brake, and whether wind or another master moves the axis.",
+        "creep", 2, Group.MOTION, N_("Axis moves without a command"),
+        N_("The panel drifts, or another master moves it."),
+        N_("Keep everyone clear; check the brake, and whether wind or another master moves the axis."),
     ),
     Entry(
-        "overrun", 3, Group.MOTION, "Stopping distance exceeded",
-        ("The axis may run into its end or hit a person. It moves slowly until its stopping "
+        "overrun", 3, Group.MOTION, N_("Stopping distance exceeded"),
+        N_("The axis may run into its end or hit a person. It moves slowly until its stopping "
         "distance is short again."),
-        "Check the brake and load, then repeat the stop test on the Drive tests page.",
+        N_("Check the brake and load, then repeat the stop test on the Drive tests page."),
     ),
     Entry(
-        "supply_voltage", 2, Group.DRIVE, "Supply voltage out of range",
-        "The tracker is at standstill and does not stow.",
-        "Check the supply and its cables, then reset the fault.",
+        "supply_voltage", 2, Group.DRIVE, N_("Supply voltage out of range"),
+        N_("The tracker is at standstill and does not stow."),
+        N_("Check the supply and its cables, then reset the fault."),
     ),
     Entry(
-        "move_overdue", 2, Group.MOTION, "Move takes too long",
-        "The axis is slow or blocked: a stow would also be late.",
-        "Remove what blocks the axis, then start the move again.",
+        "move_overdue", 2, Group.MOTION, N_("Move takes too long"),
+        N_("The axis is slow or blocked: a stow would also be late."),
+        N_("Remove what blocks the axis, then start the move again."),
     ),
     Entry(
-        "home_position_not_set", 3, Group.MOTION, "Home position not set",
-        "Without a home position, the tracker does not track or stow.",
-        "Read the reason in the journal, then set the home position again in step 3.",
+        "home_position_not_set", 3, Group.MOTION, N_("Home position not set"),
+        N_("Without a home position, the tracker does not track or stow."),
+        N_("Read the reason in the journal, then set the home position again in step 3."),
         suppressed_by=("drive_lost",),
     ),
     Entry(
-        "home_lost", 2, Group.MOTION, "Home reference lost",
-        "The tracker does not track or stow until the home position is set again.",
-        "Compare the panel with the angles shown, then go to step 3, Homing, and set the home position.",
+        "home_lost", 2, Group.MOTION, N_("Home reference lost"),
+        N_("The tracker does not track or stow until the home position is set again."),
+        N_("Compare the panel with the angles shown, then go to step 3, Homing, and set the home position."),
         suppressed_by=("drive_lost",),
     ),
     Entry(
-        "fault", 2, Group.MOTION, "Stopped with a fault",
-        "The tracker is at standstill and does not stow.",
-        "Read the fault on the tracker's page, remove its cause, then reset the fault.",
+        "fault", 2, Group.MOTION, N_("Stopped with a fault"),
+        N_("The tracker is at standstill and does not stow."),
+        N_("Read the fault on the tracker's page, remove its cause, then reset the fault."),
     ),
     Entry(
-        "drive_fault", 2, Group.DRIVE, "Drive reports a fault",
-        "The tracker is at standstill and does not stow.",
-        "Look up the code in the drive's manual, remove the cause, then reset the fault.",
+        "drive_fault", 2, Group.DRIVE, N_("Drive reports a fault"),
+        N_("The tracker is at standstill and does not stow."),
+        N_("Look up the code in the drive's manual, remove the cause, then reset the fault."),
     ),
     Entry(
-        "drive_lost", 2, Group.DRIVE, "Drive does not answer",
-        "Position unknown: no tracking, no stow. A drive with a watchdog has stopped automatically.",
-        "Check its power and cable. Heliopanel retries the connection automatically.",
+        "drive_lost", 2, Group.DRIVE, N_("Drive does not answer"),
+        N_("Position unknown: no tracking, no stow. A drive with a watchdog has stopped automatically."),
+        N_("Check its power and cable. Heliopanel retries the connection automatically."),
         SHORT,
     ),
     Entry(
-        "watchdog_tripped", 3, Group.DRIVE, "Drive stopped by its watchdog",
-        "The connection or the controller's computer is too slow at times; tracking is interrupted.",
-        "Check the network and the load on the controller's computer, then press Start tracking.",
+        "watchdog_tripped", 3, Group.DRIVE, N_("Drive stopped by its watchdog"),
+        N_("The connection or the controller's computer is too slow at times; tracking is interrupted."),
+        N_("Check the network and the load on the controller's computer, then press Start tracking."),
     ),
     Entry(
-        "drive_restarted", 3, Group.DRIVE, "Drive has restarted",
-        "The home position of the drive may be lost.",
-        "Find out why the drive lost its supply. If prompted, set the home position again in step 3.",
+        "drive_restarted", 3, Group.DRIVE, N_("Drive has restarted"),
+        N_("The home position of the drive may be lost."),
+        N_("Find out why the drive lost its supply. If prompted, set the home position again in step 3."),
     ),
     Entry(
-        "drive_elsewhere", 3, Group.DRIVE, "Position changed while drive was offline",
-        "The home position may be wrong.",
-        "Compare the angles with the panel. If they differ, set the home position again in step 3.",
+        "drive_elsewhere", 3, Group.DRIVE, N_("Position changed while drive was offline"),
+        N_("The home position may be wrong."),
+        N_("Compare the angles with the panel. If they differ, set the home position again in step 3."),
     ),
     Entry(
-        "stopped_meanwhile", 3, Group.DRIVE, "Motion stopped during communication loss",
-        "The motion in progress did not finish.",
-        "Find out why the connection failed, then restart the interrupted motion.",
+        "stopped_meanwhile", 3, Group.DRIVE, N_("Motion stopped during communication loss"),
+        N_("The motion in progress did not finish."),
+        N_("Find out why the connection failed, then restart the interrupted motion."),
     ),
     Entry(
-        "link_poor", 3, Group.DRIVE, "Connection to the drive is poor",
-        "Readings fail repeatedly; the connection may be lost soon.",
-        "Check the cable, shield, termination, and address; see the link quality in the metrics.",
+        "link_poor", 3, Group.DRIVE, N_("Connection to the drive is poor"),
+        N_("Readings fail repeatedly; the connection may be lost soon."),
+        N_("Check the cable, shield, termination, and address; see the link quality in the metrics."),
         LONG, LONG, ("drive_lost",),
     ),
     Entry(
-        "operator_needed", 3, Group.MOTION, "Tracking waits for the operator",
-        "No energy is gained by tracking until an operator starts it.",
-        "Find out why tracking was interrupted, then press Start tracking.",
+        "operator_needed", 3, Group.MOTION, N_("Tracking waits for the operator"),
+        N_("No energy is gained by tracking until an operator starts it."),
+        N_("Find out why tracking was interrupted, then press Start tracking."),
         SHORT, SHORT, ("drive_lost", "drive_fault", "home_lost"),
     ),
     Entry(
-        "wind_sensor_bad", 2, Group.WEATHER, "Wind sensor fault",
-        "Strong wind would not be detected, or the panel stays stowed.",
-        "Check the sensor, its cable, and its address; stow the panel if strong wind is forecast.",
+        "wind_sensor_bad", 2, Group.WEATHER, N_("Wind sensor fault"),
+        N_("Strong wind would not be detected, or the panel stays stowed."),
+        N_("Check the sensor, its cable, and its address; stow the panel if strong wind is forecast."),
         SHORT, LONG,
     ),
     Entry(
-        "wind_sensors_disagree", 3, Group.WEATHER, "Wind sensors disagree",
-        ("The higher wind speed is used: the panel may be stowed unnecessarily, or the faulty "
+        "wind_sensors_disagree", 3, Group.WEATHER, N_("Wind sensors disagree"),
+        N_("The higher wind speed is used: the panel may be stowed unnecessarily, or the faulty "
         "sensor may miss a storm."),
-        "Compare both sensors with the actual wind; check or switch off the faulty one.",
+        N_("Compare both sensors with the actual wind; check or switch off the faulty one."),
         SHORT, LONG,
     ),
     Entry(
-        "snow_sensor_bad", 3, Group.WEATHER, "Snow sensor fault",
-        "A snow load would not be detected.",
-        "Check the sensor, its cable, and its address; inspect the panel when it snows.",
+        "snow_sensor_bad", 3, Group.WEATHER, N_("Snow sensor fault"),
+        N_("A snow load would not be detected."),
+        N_("Check the sensor, its cable, and its address; inspect the panel when it snows."),
         SHORT, LONG,
     ),
     Entry(
-        "light_sensor_bad", 4, Group.WEATHER, "Irradiance sensor fault",
-        "The tracker does not enter low-light hold in the dark, or holds in daylight.",
-        "Check the sensor, its cable, and its address.",
+        "light_sensor_bad", 4, Group.WEATHER, N_("Irradiance sensor fault"),
+        N_("The tracker does not enter low-light hold in the dark, or holds in daylight."),
+        N_("Check the sensor, its cable, and its address."),
         SHORT, LONG,
     ),
     Entry(
-        "clock_jumped", 3, Group.CLOCK, "Clock has jumped",
-        "Automatic motion is held until the clock is confirmed or has been stable for 60 s.",
-        "Compare the clock in the header with a reliable clock and confirm it in step 2.",
+        "clock_jumped", 3, Group.CLOCK, N_("Clock has jumped"),
+        N_("Automatic motion is held until the clock is confirmed or has been stable for 60 s."),
+        N_("Compare the clock in the header with a reliable clock and confirm it in step 2."),
     ),
     Entry(
-        "clock_implausible", 2, Group.CLOCK, "Clock time implausible",
-        "No tracking: the sun position is unknown.",
-        "Set the clock in step 2. If this happens after every start, replace the clock battery.",
+        "clock_implausible", 2, Group.CLOCK, N_("Clock time implausible"),
+        N_("No tracking: the sun position is unknown."),
+        N_("Set the clock in step 2. If this happens after every start, replace the clock battery."),
     ),
     Entry(
-        "clock_drifts", 3, Group.CLOCK, "Clock drift",
-        "The panel has a small pointing error. Tracking stops at a clock error of 5 minutes.",
-        ("Compare the clock in the header with a reliable clock and set it in step 2. Use NTP to "
+        "clock_drifts", 3, Group.CLOCK, N_("Clock drift"),
+        N_("The panel has a small pointing error. Tracking stops at a clock error of 5 minutes."),
+        N_("Compare the clock in the header with a reliable clock and set it in step 2. Use NTP to "
         "keep the clock correct."),
     ),
     Entry(
-        "clock_off", 2, Group.CLOCK, "Clock is minutes off",
-        "No tracking: the panel would have a pointing error.",
-        ("Set the clock in step 2. If the sun check reports this although the clock is right, "
+        "clock_off", 2, Group.CLOCK, N_("Clock is minutes off"),
+        N_("No tracking: the panel would have a pointing error."),
+        N_("Set the clock in step 2. If the sun check reports this although the clock is right, "
         "check the home position."),
     ),
     Entry(
-        "zones_missing", 4, Group.CLOCK, "Time zones are missing",
-        "All times are shown in UTC; tracking is not affected.",
-        "Install tzdata on the controller's computer, then restart Heliopanel.",
+        "zones_missing", 4, Group.CLOCK, N_("Time zones are missing"),
+        N_("All times are shown in UTC; tracking is not affected."),
+        N_("Install tzdata on the controller's computer, then restart Heliopanel."),
     ),
     Entry(
-        "store_behind", 2, Group.STORE, "Nothing can be stored",
-        "Tracking continues, but the journal, settings, and recordings are lost if power fails.",
-        "Free disk space, or check the card and the database. Restart Heliopanel if the alarm stays active.",
+        "store_behind", 2, Group.STORE, N_("Nothing "
+            "can be stored"),
+        N_("Tracking continues, but the journal, settings, and recordings are lost if power fails."),
+        N_("Free disk space, or check the card and the database. Restart Heliopanel if the "
+            "alarm stays active."),
         SHORT, SHORT, ("disk_full",),
     ),
     Entry(
-        "store_damaged", 1, Group.STORE, "Database damaged",
-        "Safe mode: no motion, not even to stow in strong wind; drives can be stopped. Nothing is recorded.",
-        ("Restore a backup on the Restore page. Keep everyone clear; in strong wind, stow with the "
+        "store_damaged", 1, Group.STORE, N_("Database damaged"),
+        N_("Safe mode: no motion, not even to stow in strong wind; drives can be stopped. "
+            "Nothing is recorded."),
+        N_("Restore a backup on the Restore page. Keep everyone clear; in strong wind, stow with the "
         "manual control at the cabinet."),
     ),
     Entry(
-        "disk_full", 2, Group.STORE, "Disk is full",
-        "No more samples are recorded; soon the journal and settings cannot be stored either.",
-        "Delete recordings or other files on the controller's computer now.",
+        "disk_full", 2, Group.STORE, N_("Disk is full"),
+        N_("No more samples are recorded; soon the journal and settings cannot be stored either."),
+        N_("Delete recordings or other files on the controller's computer now."),
         SHORT, LONG,
     ),
     Entry(
-        "disk_low", 3, Group.STORE, "Disk is nearly full",
-        "Soon nothing can be stored.",
-        "Delete recordings that are not needed, or other files on the controller's computer.",
+        "disk_low", 3, Group.STORE, N_("Disk is nearly full"),
+        N_("Soon nothing can be stored."),
+        N_("Delete recordings that are not needed, or other files on the controller's computer."),
         LONG, LONG, ("disk_full",),
     ),
     Entry(
-        "overloaded", 3, Group.LOAD, "Controller is overloaded",
-        "Pages show new values once a second and nothing is recorded; motion and stops stay on time.",
-        ("Close other programs on the controller's computer. If that does not help, use fewer "
+        "overloaded", 3, Group.LOAD, N_("Controller is overloaded"),
+        N_("Pages show new values once a second and nothing is recorded; motion and stops stay on time."),
+        N_("Close other programs on the controller's computer. If that does not help, use fewer "
         "trackers or a longer period."),
         SOON, SHORT,
     ),
     Entry(
-        "ticks_late", 3, Group.LOAD, "Control cycle overrun",
-        "The controller's computer is overloaded: trackers react late, and jogging may end early.",
-        "Close other programs on the controller's computer; see the tick lateness in the metrics.",
+        "ticks_late", 3, Group.LOAD, N_("Control cycle overrun"),
+        N_("The controller's computer is overloaded: trackers react late, and jogging may end early."),
+        N_("Close other programs on the controller's computer; see the tick lateness in the metrics."),
         SHORT, LONG,
     ),
     Entry(
-        "memory_high", 3, Group.LOAD, "Controller memory high",
-        "At twice its memory limit, the system may end the controller service. Drives then stop; "
-        "tracking continues after the restart.",
-        "Press Stop when tracking can be interrupted for a few seconds: the controller service "
-        "then restarts automatically. Afterward, start tracking again.",
+        "memory_high", 3, Group.LOAD, N_("Controller memory high"),
+        N_("At twice its memory limit, the system may end the controller service. Drives then stop; "
+        "tracking continues after the restart."),
+        N_("Press Stop when tracking can be interrupted for a few seconds: the controller service "
+        "then restarts automatically. Afterward, start tracking again."),
         SHORT, LONG,
     ),
     Entry(
-        "gateway_down", 4, Group.INTERFACES, "An integration is not connected",
-        "Other systems receive no data from this site.",
-        "See Integrations on the Site page for the interface and the cause.",
+        "gateway_down", 4, Group.INTERFACES, N_("An integration is not connected"),
+        N_("Other systems receive no data from this site."),
+        N_("See Integrations on the Site page for the interface and the cause."),
         LONG, SHORT,
     ),
     Entry(
-        "notification_failed", 4, Group.INTERFACES, "Alarms are not sent",
-        "Users away from this screen are not notified of alarms.",
-        "Open Notifications on the Site page, correct the address, and send a test message.",
+        "notification_failed", 4, Group.INTERFACES, N_("Alarms are not sent"),
+        N_("Users away from this screen are not notified of alarms."),
+        N_("Open Notifications on the Site page, correct the address, and send a test message."),
     ),
     Entry(
-        "alarm_flood", 2, Group.ALARMS, "Alarm flood",
-        "More than 10 alarms were raised within 10 minutes; priorities 3 and 4 are listed last.",
-        "Respond to priorities 1 and 2 first, starting with the alarm marked as first.",
+        "alarm_flood", 2, Group.ALARMS, N_("Alarm flood"),
+        N_("More than 10 alarms were raised within 10 minutes; priorities 3 and 4 are listed last."),
+        N_("Respond to priorities 1 and 2 first, starting with the alarm marked as first."),
         SOON, SOON,
     ),
 )  # fmt: skip
@@ -346,7 +360,7 @@ def entry_of(code: str) -> Entry:
     known = CATALOGUE.get(code)
     if known is not None:
         return known
-    title = code.replace("_", " ").capitalize()
+    title = plain(code.replace("_", " ").capitalize())
     return Entry(
-        code, 4, Group.ALARMS, title, "No longer known.", "No action: this alarm is from the history."
+        code, 4, Group.ALARMS, title, N_("No longer known."), N_("No action: this alarm is from the history.")
     )

@@ -4,10 +4,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from app.alarms.catalogue import ANY_FAULT, CATALOGUE
-from app.tracker.reason import Reason
-from app.tracker.snapshot import SiteSnapshot, Snapshot
+from app.base.message import N_, NOTHING, Message, say, with_format
+from app.tracker.state.snapshot import SiteSnapshot, Snapshot
+from app.tracker.values.reason import Reason
 
-SITE = "Site"
+SITE = N_("Site")
 MEGABYTE = 1024 * 1024
 
 
@@ -18,8 +19,8 @@ class Condition:
     code: str
     tracker_id: str | None
     where: str
-    message: str
-    hint: str = ""
+    message: Message
+    hint: Message = NOTHING
 
     @property
     def alarm_id(self) -> str:
@@ -97,7 +98,13 @@ def _told(tracker: Snapshot, reason: Reason, code: str | None = None) -> Conditi
 
 
 def _of_link(tracker: Snapshot, unread: float | None, before: frozenset[str]) -> Iterator[Condition]:
-    text = "" if unread is None else f"{100.0 * unread:.0f} % of the readings of the last minute failed."
+    text = (
+        NOTHING
+        if unread is None
+        else say(
+            "{value} % of the readings of the last minute failed.", value=with_format(100.0 * unread, ".0f")
+        )
+    )
     found = Condition("link_poor", tracker.tracker_id, tracker.name, text)
     if LINK_POOR.holds(unread, before=found.alarm_id in before):
         yield found
@@ -115,11 +122,21 @@ def _told_by_site(site: SiteSnapshot) -> Iterator[Condition]:
 def _of_health(health: SiteHealth, before: frozenset[str]) -> Iterator[Condition]:
     yield from health.troubles
     if health.store_behind:
-        yield Condition("store_behind", None, SITE, "The last changes and events were not stored.")
+        yield Condition("store_behind", None, SITE, N_("The last changes and events were not stored."))
     free_mb = None if health.disk_free_bytes is None else health.disk_free_bytes / MEGABYTE
-    text = "" if free_mb is None else f"{free_mb:.0f} MB are free on the database disk."
+    text = (
+        NOTHING
+        if free_mb is None
+        else say("{free_mb} MB are free on the database disk.", free_mb=with_format(free_mb, ".0f"))
+    )
     used = None if free_mb is None else -free_mb
-    late = "" if health.late is None else f"{100.0 * health.late:.0f} % of the ticks were over 100 ms late."
+    late = (
+        NOTHING
+        if health.late is None
+        else say(
+            "{value} % of the ticks were over 100 ms late.", value=with_format(100.0 * health.late, ".0f")
+        )
+    )
     for code, band, value, words in (
         ("disk_full", DISK_FULL, used, text),
         ("disk_low", DISK_LOW, used, text),

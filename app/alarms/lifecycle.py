@@ -11,7 +11,8 @@ from enum import StrEnum
 from app.alarms.alarm import Alarm, Shelf
 from app.alarms.catalogue import FLOOD
 from app.alarms.conditions import SITE, Condition
-from app.tracker.alarm_words import AlarmState
+from app.base.message import N_, NOTHING, say
+from app.tracker.values.alarm_words import AlarmState
 
 LONGEST_SHELF = timedelta(hours=24)
 SHORTEST_SHELF = timedelta(minutes=1)
@@ -117,11 +118,11 @@ def shelve(
     """
     alarm = _standing(book, name)
     if alarm.entry.priority == ALWAYS_ANNOUNCED:
-        raise ValueError("An alarm of priority 1 cannot be shelved. Acknowledge it and remove its cause.")
+        raise ValueError(N_("An alarm of priority 1 cannot be shelved. Acknowledge it and remove its cause."))
     if not reason.strip():
-        raise ValueError("Enter the reason for shelving the alarm.")
+        raise ValueError(N_("Enter the reason for shelving the alarm."))
     if not SHORTEST_SHELF <= duration <= LONGEST_SHELF:
-        raise ValueError("An alarm can be shelved for 1 minute to 24 hours.")
+        raise ValueError(N_("An alarm can be shelved for 1 minute to 24 hours."))
     shelved = replace(alarm, shelf=Shelf(now + duration, by, reason.strip()), told=False)
     return _with(book, shelved), (Change(Happened.SHELVED, shelved, by),)
 
@@ -153,14 +154,17 @@ def to_keep(before: Book, after: Book, at: datetime) -> tuple[tuple[Alarm, datet
 def _lasting(alarm: Alarm | None) -> Alarm | None:
     if alarm is None:
         return None
-    return replace(alarm, message="", hint="", where="", seen_since=None, gone_since=None)
+    return replace(alarm, message=NOTHING, hint=NOTHING, where="", seen_since=None, gone_since=None)
 
 
 def _standing(book: Book, name: str) -> Alarm:
     alarm = book.alarms.get(name)
     if alarm is None or not alarm.stands:
         raise UnknownAlarm(
-            f"There is no alarm {name} now; it may have returned to normal. See the alarm history."
+            say(
+                "There is no alarm {name} now; it may have returned to normal. See the alarm history.",
+                name=name,
+            )
         )
     return alarm
 
@@ -174,7 +178,7 @@ def _fresh(condition: Condition) -> Alarm:
 
 
 def _flood_condition(book: Book) -> Condition:
-    text = f"{len(book.raised)} alarms were raised within 10 minutes."
+    text = say("{raised} alarms were raised within 10 minutes.", raised=len(book.raised))
     return Condition(FLOOD, None, SITE, text)
 
 

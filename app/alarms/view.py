@@ -7,13 +7,14 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import cast
 
-from app.alarms.alarm import Alarm
+from app.alarms.alarm import Alarm, place_of
 from app.alarms.catalogue import Group
-from app.tracker.alarm_words import MOST_SHOWN, PRIORITIES, AlarmCounts, AlarmNow, AlarmState
+from app.base.message import N_
+from app.tracker.values.alarm_words import MOST_SHOWN, PRIORITIES, AlarmCounts, AlarmNow, AlarmState
 
 COLLAPSED_FROM = 3
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
-MAINTENANCE = "inhibited for maintenance"
+MAINTENANCE = N_("inhibited for maintenance")
 SILENCED = (AlarmState.SUPPRESSED, AlarmState.OUT_OF_SERVICE)
 ASIDE = (AlarmState.SHELVED, *SILENCED)
 Four = tuple[int, int, int, int]
@@ -103,7 +104,7 @@ def _now(alarm: Alarm, at: datetime, now: datetime, *, flood: bool) -> AlarmNow:
         alarm_id=alarm.alarm_id,
         code=alarm.code,
         tracker_id=alarm.tracker_id,
-        where=alarm.where,
+        where=place_of(alarm),
         priority=entry.priority,
         title=entry.title,
         message=alarm.message,

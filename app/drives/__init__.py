@@ -1,1 +1,1 @@
-"""The outside world: simulated and real drives behind one small protocol."""
+"""Drives behind one small protocol: profiles, scaling, dialects and connections."""

@@ -3,21 +3,8 @@
 from datetime import datetime
 from typing import Protocol, runtime_checkable
 
-from app.drives.line_turn import LineTurn
-from app.errors import Foreseen
-from app.tracker.motion import DriveCapabilities, DriveCommand, Feedback
-
-
-class DriveError(Foreseen):
-    """A drive could not be read or written; the text says what happened and what to do."""
-
-
-class DriveSilent(DriveError):
-    """Nothing came back in time, or there is no connection."""
-
-
-class DriveRefused(DriveError):
-    """The drive answered that it will not do this; asking again will not help."""
+from app.modbus.line_turn import LineTurn
+from app.tracker.values.motion import DriveCapabilities, DriveCommand, Feedback
 
 
 class Drive(Protocol):

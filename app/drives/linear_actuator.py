@@ -8,11 +8,13 @@ from dataclasses import replace
 from datetime import datetime
 from typing import assert_never
 
+from app.base.message import join, say
 from app.drives.drive import Drive, answers_at_once, line_turn
-from app.drives.line_turn import LineTurn
-from app.tracker.axes import Axis, AxisConfig
-from app.tracker.config import TrackerConfig
-from app.tracker.motion import (
+from app.modbus.line_turn import LineTurn
+from app.tracker.settings.axes import Axis, AxisConfig
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.settings.transmission import LinearActuator
+from app.tracker.values.motion import (
     AxisCommand,
     AxisFeedback,
     DriveCapabilities,
@@ -22,7 +24,6 @@ from app.tracker.motion import (
     Position,
     Velocity,
 )
-from app.tracker.transmission import LinearActuator
 
 READING_DIGITS = 9
 """Readings are rounded to 1e-9 degrees, far below any encoder, so that an axis at its zero reads zero."""
@@ -56,7 +57,14 @@ class TransmittedDrive:
         """Return what the drive can do."""
         can = self._inner.capabilities
         moved = [axis.value for axis, actuator in self._actuators.items() if actuator is not None]
-        return replace(can, description=f"{can.description} Linear actuators: {' and '.join(moved)}.")
+        return replace(
+            can,
+            description=say(
+                "{description} Linear actuators: {moved}.",
+                description=can.description,
+                moved=join(" and ", moved),
+            ),
+        )
 
     async def read(self) -> Feedback:
         """Return a fresh reading in axis degrees, or raise `DriveError`."""

@@ -3,12 +3,13 @@
 from collections.abc import Mapping
 from datetime import datetime
 
-from app.clock import Clock
-from app.drives.drive import DriveError
+from app.base.clock import Clock
+from app.base.message import say, with_format
 from app.drives.register import Register
-from app.tracker.axes import Axis
-from app.tracker.config import TrackerConfig
-from app.tracker.motion import AxisFeedback, Feedback
+from app.modbus.errors import DriveError
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.values.motion import AxisFeedback, Feedback
 
 FASTER_THAN_RATED = 1.5
 NOISE_DEG = 0.5
@@ -42,7 +43,9 @@ class Plausibility:
         doubt = self.doubt(second)
         agree = self._out_of_range(second) is None and self._too_far(first, second, 0.0) is None
         if doubt is not None and not agree:
-            raise DriveError(f"{doubt} The reading was rejected. Check the encoder and network.")
+            raise DriveError(
+                say("{doubt} The reading was rejected. Check the encoder and network.", doubt=doubt)
+            )
         return second
 
     def accept(self, feedback: Feedback) -> None:
@@ -53,9 +56,13 @@ class Plausibility:
         for axis, register in self._registers.items():
             position_deg = _of(feedback, axis).position_deg
             if not register.is_plausible(position_deg):
-                return (
-                    f"The drive reports {axis} {position_deg:g} degrees, outside the profile's range of "
-                    f"{register.minimum:g} to {register.maximum:g}."
+                return say(
+                    "The drive reports {axis} {position_deg} degrees, outside the profile's range of "
+                    "{minimum} to {maximum}.",
+                    axis=axis,
+                    position_deg=with_format(position_deg, "g"),
+                    minimum=with_format(register.minimum, "g"),
+                    maximum=with_format(register.maximum, "g"),
                 )
         return None
 
@@ -64,9 +71,12 @@ class Plausibility:
             way_deg = abs(_of(feedback, axis).position_deg - _of(last, axis).position_deg)
             reach_deg = self._config.axis(axis).speed_dps * FASTER_THAN_RATED * elapsed_s + NOISE_DEG
             if way_deg > reach_deg:
-                return (
-                    f"The drive reports that {axis} moved by {way_deg:.2f} degrees in {elapsed_s:.2f} s, "
-                    "faster than it can turn."
+                return say(
+                    "The drive reports that {axis} moved by {way_deg} degrees in {elapsed_s} s, faster "
+                    "than it can turn.",
+                    axis=axis,
+                    way_deg=with_format(way_deg, ".2f"),
+                    elapsed_s=with_format(elapsed_s, ".2f"),
                 )
         return None
 

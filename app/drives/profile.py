@@ -18,7 +18,7 @@ from app.drives.profile_rules import (
 from app.drives.profile_text import ProfileError as ProfileError
 from app.drives.profile_text import Source, Table
 from app.drives.register import Access, Register, WordOrder, WordType
-from app.drives.wire import Timing
+from app.modbus.wire import Timing
 
 PROFILES = Path(__file__).parent / "profiles"
 SUFFIX = ".toml"

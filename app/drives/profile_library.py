@@ -3,6 +3,7 @@
 from functools import lru_cache
 from pathlib import Path
 
+from app.base.message import say
 from app.drives.profile import PROFILES, SUFFIX, Profile, ProfileError, known_profiles, read_profile
 from app.drives.profile_rules import NAME
 
@@ -26,11 +27,20 @@ class ProfileLibrary:
                 if path is not None and path.is_file():
                     return _read(path, path.stat().st_mtime_ns)
         raise ProfileError(
-            f"There is no drive profile {name!r}. Choose one of {', '.join(self.names())}{self._advice()}."
+            say(
+                "There is no drive profile {name}. Choose one of {join}{advice}.",
+                name=repr(name),
+                join=", ".join(self.names()),
+                advice=self._advice(),
+            )
         )
 
     def _advice(self) -> str:
-        return "" if self._own is None else f", or save your own as name{SUFFIX} in {self._own}"
+        return (
+            ""
+            if self._own is None
+            else say(", or save your own as name{suffix} in {own}", suffix=SUFFIX, own=self._own)
+        )
 
 
 @lru_cache(maxsize=64)

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Mapping
 
+from app.base.message import say
 from app.drives.profile_text import Source
 from app.drives.register import RANGES, Access, Register
 
@@ -14,7 +15,9 @@ Registers = Mapping[str, Register]
 def check_name(name: str, source: Source) -> None:
     """Raise `ProfileError` for a name that could not be asked for."""
     if not NAME.fullmatch(name):
-        rule = f"must have at most 64 lowercase letters, digits, '-', and '_', not {name!r}"
+        rule = say(
+            "must have at most 64 lowercase letters, digits, '-', and '_', not {name}", name=repr(name)
+        )
         raise source.error("name", rule)
 
 
@@ -56,7 +59,7 @@ def check_bits(bits: Mapping[str, Mapping[str, int]], registers: Registers, sour
         last = 16 * registers[name].count - 1
         for word, number in numbers.items():
             if number > last:
-                rule = f"must lie between 0 and {last}, not {number}"
+                rule = say("must lie between 0 and {last}, not {number}", last=last, number=number)
                 raise source.error(f"bits.{name}.{word}", rule)
 
 
@@ -64,7 +67,12 @@ def check_enums(names: Iterable[str], registers: Registers, source: Source) -> N
     """Raise `ProfileError` for words that no register takes."""
     for name in names:
         if not any(has_words(register.name, name) for register in registers.values()):
-            rule = f"there is no register named {name}, *_{name} or {name}_kind that takes these words"
+            rule = say(
+                "there is no register named {name}, *_{name2} or {name3}_kind that takes these words",
+                name=name,
+                name2=name,
+                name3=name,
+            )
             raise source.error(f"enums.{name}", rule)
 
 

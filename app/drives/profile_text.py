@@ -6,7 +6,7 @@ from enum import StrEnum
 from math import isfinite
 from typing import Any, TypeVar
 
-from app.drives.drive import DriveError
+from app.modbus.errors import DriveError
 
 T = TypeVar("T")
 Word = TypeVar("Word", bound=StrEnum)

@@ -1,6 +1,6 @@
 """A drive that counts degrees itself, turned round and stretched to the degrees of the axis.
 
-Drives that count motor steps are corrected where steps become degrees (`app.drives.gearing`).
+Drives that count motor steps are corrected where steps become degrees (`app.drives.dialects.gearing`).
 """
 
 from collections.abc import Callable
@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import assert_never
 
+from app.base.message import say, with_format
 from app.drives.drive import Drive, answers_at_once, line_turn
-from app.drives.line_turn import LineTurn
-from app.tracker.axes import Axis, AxisConfig
-from app.tracker.config import AxisDrive, TrackerConfig
-from app.tracker.motion import (
+from app.modbus.line_turn import LineTurn
+from app.tracker.settings.axes import Axis, AxisConfig
+from app.tracker.settings.config import AxisDrive, TrackerConfig
+from app.tracker.values.motion import (
     AxisCommand,
     AxisFeedback,
     DriveCapabilities,
@@ -140,9 +141,12 @@ def check_ratio(gear_ratio: float) -> None:
     """Raise `ValueError` if a drive that counts degrees of the axis cannot be off by this much."""
     if not 1.0 / LARGEST_RATIO <= gear_ratio <= LARGEST_RATIO:
         raise ValueError(
-            f"A gear ratio of {gear_ratio:g} does not fit this drive: it counts degrees of the "
-            "axis, so the ratio is near 1. Measure again, or choose the profile of a drive that "
-            "counts steps."
+            say(
+                "A gear ratio of {gear_ratio} does not fit this drive: it counts degrees of the "
+                "axis, so the ratio is near 1. Measure again, or choose the profile of a drive that "
+                "counts steps.",
+                gear_ratio=with_format(gear_ratio, "g"),
+            )
         )
 
 

@@ -3,11 +3,12 @@
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from app.drives.bus import Priority
-from app.drives.drive import DriveError, DriveRefused
-from app.drives.line_turn import LineTurn
+from app.base.message import Message, say
 from app.drives.profile import Block, Profile
 from app.drives.register import runs
+from app.modbus.bus import Priority
+from app.modbus.errors import DriveError, DriveRefused
+from app.modbus.line_turn import LineTurn
 
 
 class Link(Protocol):
@@ -116,8 +117,12 @@ class Unit:
     def not_taken(self, what: str) -> DriveError:
         """Return the error that a command was acknowledged and not carried out."""
         return DriveError(
-            f"The drive at {self.where} acknowledged a command but did not carry it out ({what}). "
-            "Check that the drive is in remote operation."
+            say(
+                "The drive at {where} acknowledged a command but did not carry it out ({what}). "
+                "Check that the drive is in remote operation.",
+                where=self.where,
+                what=what,
+            )
         )
 
     async def put(
@@ -154,7 +159,9 @@ class Unit:
         self.forget()
         words = self.words(values)
         for address, run in runs(words, words):
-            await self._link.stop(address, run, what=self._what(f"stop, {self.profile.at(address)}"))
+            await self._link.stop(
+                address, run, what=self._what(say("stop, {address}", address=self.profile.at(address)))
+            )
 
     def forget(self) -> None:
         """Believe no longer that the device holds what was written."""
@@ -193,5 +200,5 @@ class Unit:
     def _is_asked(self, name: str) -> bool:
         return name in self.profile.registers and self._refused.get(name) != self._link.ticket
 
-    def _what(self, name: str) -> str:
-        return f"{name} of profile {self.profile.name}"
+    def _what(self, name: str) -> Message:
+        return say("{name} of profile {name2}", name=name, name2=self.profile.name)

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 from app.drives.profile import Profile
 from app.drives.register import Access, runs
-from app.drives.rtu_frame import request_frame
-from app.drives.wire import Ask
+from app.modbus.rtu_frame import request_frame
+from app.modbus.wire import Ask
 
 
 def write_frame(profile: Profile, values: Mapping[str, float], unit: int) -> bytes:

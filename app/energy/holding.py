@@ -10,9 +10,10 @@ from typing import assert_never
 import numpy as np
 from numpy.typing import NDArray
 
+from app.base.message import N_
 from app.energy.ideal import AxisPath
 from app.sun.trigonometry import PER_DEGREE, PER_RADIAN, Array
-from app.tracker.strategy import (
+from app.tracker.settings.strategy import (
     Continuous,
     Deadband,
     EncoderDeadband,
@@ -61,7 +62,7 @@ def held_axes(
         case Interval():
             return _taken(ideal, _interval(strategy, columns, step_min))
         case Stepped():
-            raise ValueError("A step program has its own positions; use `program_axes`.")
+            raise ValueError(N_("A step program has its own positions; use `program_axes`."))
     assert_never(strategy)
 
 

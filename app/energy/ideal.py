@@ -9,9 +9,9 @@ import numpy as np
 
 from app.energy.plane import Around, Light, plane_wm2
 from app.sun.trigonometry import ARRAY, Array
-from app.tracker.config import MountConfig, Orientation
-from app.tracker.mode import Mode
 from app.tracker.mounts.kinematics import direction, followed
+from app.tracker.settings.config import MountConfig, Orientation
+from app.tracker.values.mode import Mode
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from app.base.message import N_
 from app.energy.holding import turned_deg
 from app.energy.ideal import AxisPath
 from app.sun.trigonometry import Array
@@ -26,7 +27,7 @@ class DriveCosts:
 
     def __post_init__(self) -> None:
         if min(self.degree_wh, self.start_wh, self.standby_w) < 0.0:
-            raise ValueError("The drive energy for travel, starts, and standby cannot be below zero.")
+            raise ValueError(N_("The drive energy for travel, starts, and standby cannot be below zero."))
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,6 +14,7 @@ from math import atan2, ceil, degrees, radians
 import numpy as np
 from numpy.typing import NDArray
 
+from app.base.message import N_, say, with_format
 from app.energy.equatorial import (
     DEGREES_AN_HOUR,
     NOON_H,
@@ -49,13 +50,13 @@ class Limits:
 
     def __post_init__(self) -> None:
         if not 1.0 <= self.range_deg <= 120.0:
-            raise ValueError("The range to either side of noon lies between 1 and 120 degrees.")
+            raise ValueError(N_("The range to either side of noon lies between 1 and 120 degrees."))
         if not 0.0 <= self.step_h <= 1.0:
-            raise ValueError("A step takes between 0 and 60 minutes.")
+            raise ValueError(N_("A step takes between 0 and 60 minutes."))
         if self.per_whm2 <= 0.0:
-            raise ValueError("Panel area and efficiency must be above zero.")
+            raise ValueError(N_("Panel area and efficiency must be above zero."))
         if min(self.degree_wh, self.move_wh) < 0.0:
-            raise ValueError("The energy of a move and of a degree of travel cannot be below zero.")
+            raise ValueError(N_("The energy of a move and of a degree of travel cannot be below zero."))
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +87,7 @@ def best_programs(
     Without `tilt_deg` the tilt is the best one for each program.
     """
     if not 0 <= most_steps <= MOST_STEPS:
-        raise ValueError(f"Choose between 0 and {MOST_STEPS} steps.")
+        raise ValueError(say("Choose between 0 and {most_steps} steps.", most_steps=MOST_STEPS))
     searched = _search(day, most_steps, limits, tilt_deg)
     found = []
     for count in range(most_steps + 1):
@@ -102,8 +103,13 @@ def best_steps(day: SolarDay, count: int, limits: Limits, tilt_deg: float | None
     """Return the best program of so many steps; raises `ValueError` if they do not fit into the range."""
     if not _fits(count, limits):
         raise ValueError(
-            f"{count} steps of {limits.step_h * 60:g} minutes do not fit into +-{limits.range_deg:g} "
-            "degrees; take fewer or shorter steps."
+            say(
+                "{count} steps of {step_h} minutes do not fit into +-{range_deg} degrees; take fewer "
+                "or shorter steps.",
+                count=count,
+                step_h=with_format(limits.step_h * 60, "g"),
+                range_deg=with_format(limits.range_deg, "g"),
+            )
         )
     return best_programs(day, count, limits, tilt_deg)[count]
 

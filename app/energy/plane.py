@@ -14,6 +14,7 @@ from typing import assert_never
 
 import numpy as np
 
+from app.base.message import N_
 from app.sun.trigonometry import PER_DEGREE, Array
 
 LEAST_COS_ZENITH = 0.01745
@@ -68,7 +69,7 @@ class Around:
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.albedo <= 1.0:
-            raise ValueError("The albedo of the ground lies between 0 and 1.")
+            raise ValueError(N_("The albedo of the ground lies between 0 and 1."))
 
 
 def plane_wm2(light: Light, panel_azimuth_deg: Array, panel_elevation_deg: Array, around: Around) -> Array:

@@ -2,7 +2,7 @@
 
 from app.energy.equatorial import panel_declination_deg
 from app.energy.stepping import Steps
-from app.tracker.programs.stepped import StepFrame, StepProgram, TimeBase, program_of
+from app.tracker.settings.stepped import StepFrame, StepProgram, TimeBase, program_of
 
 
 def step_program(name: str, steps: Steps, latitude_deg: float) -> StepProgram:

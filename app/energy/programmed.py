@@ -4,9 +4,9 @@ import numpy as np
 
 from app.energy.ideal import AxisPath, faced
 from app.sun.trigonometry import ARRAY, Array
-from app.tracker.config import MountConfig, MountKind
 from app.tracker.mounts.kinematics import angles, direction
-from app.tracker.programs.stepped import HOURS_A_DAY, StepFrame, StepProgram, TimeBase
+from app.tracker.settings.config import MountConfig, MountKind
+from app.tracker.settings.stepped import HOURS_A_DAY, StepFrame, StepProgram, TimeBase
 
 
 def equatorial_mount(latitude_deg: float) -> MountConfig:

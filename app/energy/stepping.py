@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from app.base.message import N_
 from app.energy.equatorial import (
     DEGREES_AN_HOUR,
     NOON_H,
@@ -39,7 +40,9 @@ class SolarDay:
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.begin_h <= self.end_h <= 24.0:
-            raise ValueError("The counted hours of a day must be between 0 and 24 and in ascending order.")
+            raise ValueError(
+                N_("The counted hours of a day must be between 0 and 24 and in ascending order.")
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +59,9 @@ class Steps:
 
     def __post_init__(self) -> None:
         if len(self.angles_deg) != len(self.starts_h) + 1:
-            raise ValueError("A step program has one more angle than steps.")
+            raise ValueError(N_("A step program has one more angle than steps."))
         if any(after - before < self.step_h - 1e-9 for before, after in pairwise(self.starts_h)):
-            raise ValueError("A step must end before the next begins; take fewer or shorter steps.")
+            raise ValueError(N_("A step must end before the next begins; take fewer or shorter steps."))
 
     @property
     def travel_deg(self) -> float:

@@ -18,8 +18,8 @@ from app.fast.sun import spa_path
 from app.fast.year import collected_whm2
 from app.sun.position import Location
 from app.sun.trigonometry import Array
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.mode import Mode
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.values.mode import Mode
 
 DEADBANDS_DEG = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0)
 REPRESENTATIVE_DAYS = (17, 47, 75, 105, 135, 162, 198, 228, 258, 288, 318, 344)

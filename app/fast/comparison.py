@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from app.sun.position import Location
-from app.tracker.config import Orientation
-from app.tracker.mode import Mode
+from app.tracker.settings.config import Orientation
+from app.tracker.values.mode import Mode
 
 
 @dataclass(frozen=True, slots=True)

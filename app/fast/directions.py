@@ -11,10 +11,10 @@ from app.sun.events import next_rise
 from app.sun.position import Location, SunPath, SunPosition, sun_path, sun_position
 from app.sun.trigonometry import Array
 from app.tracker.activities.tracking import night_near_deg
-from app.tracker.config import NightBehaviour, Orientation, TrackerConfig
-from app.tracker.mode import Mode
-from app.tracker.mount import mode_direction
-from app.tracker.weather_protection import TWILIGHT_DEG
+from app.tracker.mounts.mount import mode_direction
+from app.tracker.settings.config import NightBehaviour, Orientation, TrackerConfig
+from app.tracker.supervision.weather_protection import TWILIGHT_DEG
+from app.tracker.values.mode import Mode
 
 NO_DAWN_FOR = timedelta(hours=1)
 

@@ -15,9 +15,9 @@ from app.fast.compiled import compiled, inlined
 from app.fast.directions import Directions
 from app.fast.trigonometry import sine_cosine
 from app.sun.trigonometry import Array
-from app.tracker.axes import AxisConfig
-from app.tracker.config import TrackerConfig
-from app.tracker.setpoint_scheduler import UNWIND_DEG, trigger_deg
+from app.tracker.activities.setpoint_scheduler import UNWIND_DEG, trigger_deg
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import TrackerConfig
 
 Columns = tuple[Array, Array, Array, Array, Array, Array]
 """Azimuth, elevation, nearest azimuth (degrees) and night, meant, up (0 or 1), one value a tick."""

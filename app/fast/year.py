@@ -14,8 +14,8 @@ from app.fast.compiled import compiled, inlined
 from app.fast.trigonometry import sine_cosine
 from app.sun.position import SunPath
 from app.sun.trigonometry import Array
-from app.tracker.config import Orientation
-from app.tracker.mode import Mode
+from app.tracker.settings.config import Orientation
+from app.tracker.values.mode import Mode
 
 MODES: Final = (Mode.FIXED, Mode.AZIMUTH, Mode.ELEVATION, Mode.DUAL)
 DEGREE = pi / 180.0

@@ -3,11 +3,12 @@
 from dataclasses import dataclass
 from enum import Enum, auto
 
+from app.base.message import N_, say
 from app.gateway.ports import Door, Update, refused, send
 from app.link.messages import RequestControl, UnknownTracker
-from app.tracker.commands import CommandRejected, Home, Stop, Track
-from app.tracker.reason import Reason
-from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
+from app.tracker.commands.commands import CommandRejected, Home, Stop, Track
+from app.tracker.state.snapshot import ActivityName, Event, EventKind, Snapshot
+from app.tracker.values.reason import Reason
 
 PASSING = ("busy_", "axes_moving")
 BY_HAND = {"busy_jogging", "busy_setting_home", "busy_measuring"}
@@ -45,7 +46,12 @@ class Calibrations:
         against = lasting(await self._now(tracker))
         if against:
             rejected = CommandRejected(*against)
-            refused(self._door, tracker.tracker_id, actor, f"The calibration was not started: {rejected}")
+            refused(
+                self._door,
+                tracker.tracker_id,
+                actor,
+                say("The calibration was not started: {rejected}", rejected=rejected),
+            )
             raise rejected
         await send(self._door, RequestControl((tracker.tracker_id,)), tracker.tracker_id, actor)
         if (await self._now(tracker)).actions["home"]:
@@ -85,11 +91,11 @@ class Calibrations:
 
     async def _step(self, tracker: Snapshot, running: Calibration, events: tuple[Event, ...]) -> None:
         if any(event.kind is EventKind.STOPPED and event.actor != running.actor for event in events):
-            self._give_up(tracker, running, "the tracker was stopped.")
+            self._give_up(tracker, running, N_("the tracker was stopped."))
         elif running.phase is _Phase.HOMING:
             await self._homing(tracker, running, events)
         elif tracker.activity not in COMES_TO_REST:
-            self._give_up(tracker, running, f"the tracker is {tracker.activity}.")
+            self._give_up(tracker, running, say("the tracker is {activity}.", activity=tracker.activity))
         elif not (await self._now(tracker)).actions["home"]:
             await self._home(tracker.tracker_id, running.actor)
 
@@ -97,7 +103,7 @@ class Calibrations:
         ended = next((event for event in events if event.kind is EventKind.HOMING_ENDED), None)
         if ended is None:
             if tracker.activity is not ActivityName.HOMING:
-                self._give_up(tracker, running, "homing was interrupted.")
+                self._give_up(tracker, running, N_("homing was interrupted."))
             return
         self.forget(tracker.tracker_id)
         if ended.data.get("outcome") == "homed":
@@ -109,7 +115,7 @@ class Calibrations:
 
     def _give_up(self, tracker: Snapshot, running: Calibration, why: str) -> None:
         self.forget(tracker.tracker_id)
-        message = f"The calibration was aborted, and tracking was not started: {why}"
+        message = say("The calibration was aborted, and tracking was not started: {why}", why=why)
         refused(self._door, tracker.tracker_id, running.actor, message)
 
 

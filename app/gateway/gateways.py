@@ -5,29 +5,30 @@ from collections.abc import AsyncIterator, Callable
 from dataclasses import replace
 from typing import Protocol
 
-from app.clock import Clock
-from app.gateway.mqtt import MQTT, MqttGateway
+from app.base.clock import Clock
+from app.base.lasting import begun
+from app.base.logs import get_logger
+from app.base.message import N_, NOTHING, Message, say
+from app.base.settings import Settings
+from app.base.startup import late
 from app.gateway.notices import post_webhook, send_mail
 from app.gateway.notifier import Deliver, Notifier
 from app.gateway.outbox import Outbox
-from app.gateway.ports import Door
+from app.gateway.ports import MQTT_NAME, Door
 from app.gateway.sunspec import RTU, TCP, SunSpecRtu, SunSpecTcp
 from app.gateway.sunspec_device import SERIAL, SunSpecDevice
-from app.lasting import begun
 from app.link.messages import Order, SiteDetail, Update
 from app.link.metrics import GatewayMetrics, GatewayStatus, MachineMetrics
 from app.link.outlet import Listener
-from app.logs import get_logger
-from app.settings import Settings
 from app.store.store import Reader
-from app.tracker.notifications import Channel
-from app.tracker.snapshot import SiteSnapshot, Snapshot
+from app.tracker.state.snapshot import SiteSnapshot, Snapshot
+from app.tracker.values.notifications import Channel
 
 TELL_AGAIN_S = 1.0
 OUTBOX_NAME = "mqtt-outbox.json"
 
 CHANNELS: tuple[tuple[str, Channel, Deliver], ...] = (
-    ("Webhook", Channel.WEBHOOK, post_webhook),
+    (N_("Webhook"), Channel.WEBHOOK, post_webhook),
     ("E-mail", Channel.MAIL, send_mail),
 )
 
@@ -64,7 +65,7 @@ class Gateways:
         self._machine = machine
         self._clock = clock
         device = SunSpecDevice(
-            machine, clock, unit=settings.sunspec_unit, write_hosts=settings.sunspec_write_hosts
+            machine, clock, unit=settings.sunspec_unit_id, write_hosts=settings.sunspec_write_hosts
         )
         self._sunspec = device
         self._writes = writes(settings)
@@ -73,10 +74,18 @@ class Gateways:
         self._notifiers: list[Notifier] = []
         self._tasks: list[asyncio.Task[None]] = []
         self._add(TCP, "SUNSPEC_PORT", settings.sunspec_port, lambda: SunSpecTcp(device, clock, settings))
-        self._add(RTU, "SUNSPEC_SERIAL", settings.sunspec_serial, lambda: SunSpecRtu(device, clock, settings))
+        self._add(
+            RTU,
+            "SUNSPEC_SERIAL_PORT",
+            settings.sunspec_serial_port,
+            lambda: SunSpecRtu(device, clock, settings),
+        )
         outbox = Outbox(reader, settings.data_dir / OUTBOX_NAME)
         self._add(
-            MQTT, "MQTT_HOST", settings.mqtt_host, lambda: MqttGateway(machine, clock, settings, outbox)
+            MQTT_NAME,
+            "MQTT_HOST",
+            settings.mqtt_host,
+            lambda: late("app.gateway.mqtt").MqttGateway(machine, clock, settings, outbox),
         )
         for name, channel, deliver in CHANNELS:
             sent = Outbox(reader, settings.data_dir / f"{channel}-outbox.json")
@@ -85,7 +94,7 @@ class Gateways:
     def _add(self, name: str, variable: str, wanted: object, make: Callable[[], Gateway]) -> None:
         """Make a door if the settings want it, else note how it is opened."""
         if wanted is None:
-            off = f"set HELIOPANEL_{variable} to enable it"
+            off = say("set HELIOPANEL_{variable} to enable it", variable=variable)
             self._off.append(GatewayMetrics(name, GatewayStatus.OFF, off))
         else:
             self._open.append(make())
@@ -95,7 +104,7 @@ class Gateways:
         for gateway in (*self._open, *self._notifiers):
             self._tasks.append(begun(gateway.metrics().name, gateway.run, self._clock))
         if self._open:
-            self._tasks.append(begun("SunSpec controls", self._sunspec.follow, self._clock))
+            self._tasks.append(begun(N_("SunSpec controls"), self._sunspec.follow, self._clock))
 
     async def close(self) -> None:
         """Close the doors; one that goes on, because an error came together with its end, is told again."""
@@ -136,21 +145,24 @@ class Gateways:
         """Return the machine's counters and how its doors are doing."""
         sent = tuple(notifier.metrics() for notifier in self._notifiers)
         doors = (gateway.metrics() for gateway in self._open)
-        told = (replace(door, writes=self._writes.get(door.name, "")) for door in doors)
+        told = (replace(door, writes=self._writes.get(door.name, NOTHING)) for door in doors)
         gateways = (*told, *self._off, *sent)
         return replace(await self._machine.metrics(), gateways=gateways)
 
 
-def writes(settings: Settings) -> dict[str, str]:
+def writes(settings: Settings) -> dict[str, Message]:
     """Return for every door that takes orders who may give them."""
     hosts = [host for host in settings.sunspec_write_hosts if host != SERIAL]
-    commands = f"Any client that may publish below {settings.mqtt_topic} at the broker may send commands."
+    commands = say(
+        "Any client that may publish below {mqtt_base_topic} at the broker may send commands.",
+        mqtt_base_topic=settings.mqtt_base_topic,
+    )
     return {
-        TCP: f"{', '.join(hosts)} may write; all other hosts can only read."
+        TCP: say("{hosts} may write; all other hosts can only read.", hosts=", ".join(hosts))
         if hosts
-        else "No host may write.",
-        RTU: "The master on the line may write."
+        else N_("No host may write."),
+        RTU: N_("The master on the line may write.")
         if SERIAL in settings.sunspec_write_hosts
-        else "No host may write.",
-        MQTT: commands if settings.mqtt_commands else "No commands are accepted.",
+        else N_("No host may write."),
+        MQTT_NAME: commands if settings.mqtt_commands else N_("No commands are accepted."),
     }

@@ -17,7 +17,10 @@ from aiomqtt.exceptions import MqttConnectError
 from paho.mqtt.subscribeoptions import SubscribeOptions
 
 from app.alarms.conditions import SITE, Condition
-from app.clock import Clock
+from app.base.clock import Clock
+from app.base.logs import get_logger
+from app.base.message import NOTHING, Message, plain, say
+from app.base.settings import Settings
 from app.gateway.mqtt_discovery import announcements
 from app.gateway.mqtt_lanes import CommandLanes
 from app.gateway.mqtt_messages import (
@@ -32,14 +35,11 @@ from app.gateway.mqtt_messages import (
     tracker_payload,
 )
 from app.gateway.outbox import Outbox
-from app.gateway.ports import Door
+from app.gateway.ports import MQTT_NAME, Door
 from app.link.metrics import GatewayMetrics, GatewayStatus
-from app.logs import get_logger
-from app.settings import Settings
 from app.store.store import StoreFailed
-from app.tracker.snapshot import SiteSnapshot
+from app.tracker.state.snapshot import SiteSnapshot
 
-MQTT = "MQTT"
 FIRST_DELAY, LONGEST_DELAY = timedelta(seconds=1), timedelta(seconds=30)
 LOOK_FOR_EVENTS = timedelta(milliseconds=500)
 LOOK_FOR_RECORDINGS = timedelta(seconds=5)
@@ -70,10 +70,10 @@ class MqttGateway:
         self._clock = clock
         self._settings = settings
         self._outbox = outbox
-        self._topics = Topics(settings.mqtt_topic)
-        self._every = timedelta(seconds=settings.mqtt_snapshot_s)
+        self._topics = Topics(settings.mqtt_base_topic)
+        self._every = timedelta(seconds=settings.mqtt_publish_interval_s)
         self._status = GatewayStatus.CONNECTING
-        self._error = ""
+        self._error = NOTHING
         self._waiting = 0
         self._announced: dict[str, bytes] = {}
         self._alarms: dict[str, bytes] | None = None
@@ -82,7 +82,9 @@ class MqttGateway:
     def metrics(self) -> GatewayMetrics:
         """Return how it is doing."""
         connected = self._status is GatewayStatus.CONNECTED
-        return GatewayMetrics(MQTT, self._status, self._where, int(connected), self._error, self._waiting)
+        return GatewayMetrics(
+            MQTT_NAME, self._status, plain(self._where), int(connected), self._error, self._waiting
+        )
 
     @property
     def _port(self) -> int:
@@ -93,11 +95,13 @@ class MqttGateway:
         return f"{self._settings.mqtt_host}:{self._port}"
 
     @property
-    def _deaf(self) -> str:
+    def _deaf(self) -> Message:
         """Return why no commands are heard although they are allowed, empty if they are."""
         if self._protocol is ProtocolVersion.V5 or not self._settings.mqtt_commands:
-            return ""
-        return f"The broker at {self._where} does not speak MQTT 5, so no commands are accepted."
+            return NOTHING
+        return say(
+            "The broker at {where} does not speak MQTT 5, so no commands are accepted.", where=self._where
+        )
 
     async def run(self) -> None:
         """Connect, tell, and connect again, until cancelled."""
@@ -123,10 +127,12 @@ class MqttGateway:
         if isinstance(first, MqttConnectError) and first.rc == UNSUPPORTED_VERSION:
             self._protocol = ProtocolVersion.V311
             log.warning("mqtt_older_broker", broker=self._where, commands="none are taken")
-        self._error = (
-            f"The broker at {self._where} cannot be reached: {first}. Heliopanel retries automatically."
+        self._error = say(
+            "The broker at {where} cannot be reached: {first}. Heliopanel retries automatically.",
+            where=self._where,
+            first=first,
         )
-        self._door.trouble(MQTT, Condition("gateway_down", None, SITE, self._error))
+        self._door.trouble(MQTT_NAME, Condition("gateway_down", None, SITE, self._error))
         log.warning("mqtt_disconnected", reason=str(first), broker=self._where)
 
     @asynccontextmanager
@@ -138,7 +144,7 @@ class MqttGateway:
             await client.publish(self._topics.availability, ONLINE, AT_LEAST_ONCE, retain=True)
             self._status, self._error, self._announced = GatewayStatus.CONNECTED, self._deaf, {}
             self._alarms = None
-            self._door.trouble(MQTT, None)
+            self._door.trouble(MQTT_NAME, None)
             log.info("mqtt_connected", broker=self._where)
             try:
                 yield client
@@ -157,7 +163,7 @@ class MqttGateway:
             self._port,
             username=settings.mqtt_username,
             password=None if password is None else password.get_secret_value(),
-            identifier=settings.mqtt_client,
+            identifier=settings.mqtt_client_id,
             will=Will(self._topics.availability, OFFLINE, AT_LEAST_ONCE, retain=True),
             tls_params=self._tls() if settings.mqtt_tls else None,
             timeout=ANSWER_WITHIN_S,
@@ -197,7 +203,7 @@ class MqttGateway:
 
     async def _tell_site(self, client: Client, site: SiteSnapshot) -> None:
         await heeding(client.publish(self._topics.site, site_payload(site)))
-        if self._settings.mqtt_snapshots == "columns":
+        if self._settings.mqtt_payload == "columns":
             await heeding(client.publish(self._topics.columns, columns_payload(site)))
             return
         for tracker in site.trackers:

@@ -1,20 +1,23 @@
 """Commands over MQTT: read, sent through the same orders as every door, and answered."""
 
 from dataclasses import asdict
-from typing import Annotated, Literal
+from typing import Annotated, Any, Union, get_args
 
 import orjson
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
+from app.base.instants import Instant
+from app.base.message import N_, join, say, told_by
 from app.gateway.ports import MQTT, Door, refused
-from app.instants import Instant
 from app.link.messages import MachineUnreachable, Order, UnknownTracker
-from app.tracker.commands import Command, CommandRejected, Home, Move, Park, ResetFault, Stop, Track
-from app.tracker.config import Orientation
-from app.tracker.reason import Reason
+from app.link.order_models import OrderModel, order_model
+from app.link.orders import kind_of
+from app.tracker.commands.commands import Command, CommandRejected, Stop
+from app.tracker.values.order_spec import Interface
+from app.tracker.values.reason import Reason
 
 
-class _Message(BaseModel):
+class Message(OrderModel):
     """What every command carries: who asks, and what keeps a repeat or a late one from being carried out."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True)
@@ -24,47 +27,22 @@ class _Message(BaseModel):
     issued_at: Instant | None = None
 
 
-class _Plain(_Message):
-    """A command without values."""
-
-    type: Literal["track", "park", "stop", "home", "reset_fault"]
-
-    def command(self) -> Command:
-        return PLAIN[self.type]()
-
-
-class _Move(_Message):
-    """Go to an orientation and stay there."""
-
-    type: Literal["move"]
-    azimuth_deg: float = Field(ge=0, lt=360)
-    elevation_deg: float = Field(ge=-90, le=90)
-
-    def command(self) -> Command:
-        return Move(Orientation(self.azimuth_deg, self.elevation_deg))
-
-
-PLAIN: dict[str, type[Track | Park | Stop | Home | ResetFault]] = {
-    "track": Track,
-    "park": Park,
-    "stop": Stop,
-    "home": Home,
-    "reset_fault": ResetFault,
-}
 UNNAMED = "unnamed"
 """Who stopped, where a message does not say it rightly."""
 RETAINED = Reason(
     "retained",
-    "A retained command is not carried out: every new connection would repeat it.",
-    "Send the command again without the retain flag, and clear the retained message with an empty one.",
+    N_("A retained command is not carried out: every new connection would repeat it."),
+    N_("Send the command again without the retain flag, and clear the retained message with an empty one."),
 )
-MESSAGES: TypeAdapter[_Plain | _Move] = TypeAdapter(Annotated[_Plain | _Move, Field(discriminator="type")])
+MODELS = {one: order_model(one, Message) for one in get_args(Command) if Interface.MQTT in one.spec.by}
+_ANY: Any = Annotated[Union[tuple(MODELS.values())], Field(discriminator="type")]  # noqa: UP007
+MESSAGES: TypeAdapter[Message] = TypeAdapter(_ANY)
 
 
 TOO_MANY = Reason(
     "too_many",
-    "Too many commands arrived over MQTT; this command was not carried out.",
-    "Send commands more slowly.",
+    N_("Too many commands arrived over MQTT; this command was not carried out."),
+    N_("Send commands more slowly."),
 )
 
 
@@ -79,17 +57,22 @@ async def obey(door: Door, tracker_id: str, payload: bytes, *, against: tuple[Re
     except ValidationError as error:
         if not is_stop(payload):
             return _answer(None, _malformed(error))
-        message = _Plain(type="stop", client=UNNAMED)
+        message = MODELS[Stop].model_validate({"type": "stop", "client": UNNAMED})
     actor = f"mqtt {message.client}"
-    goes = message.type == "stop" or not against
+    goes = message.order is Stop or not against
     reasons = await _carry_out(door, tracker_id, message, actor) if goes else against
     if reasons:
-        told = " ".join(reason.message for reason in reasons)
-        refused(door, tracker_id, actor, f"{message.type} over MQTT was refused: {told}")
+        told = join(" ", (reason.message for reason in reasons))
+        refused(
+            door,
+            tracker_id,
+            actor,
+            say("{type} over MQTT was refused: {told}", type=kind_of(message.order), told=told),
+        )
     return _answer(message.key, *reasons)
 
 
-async def _carry_out(door: Door, tracker_id: str, message: _Plain | _Move, actor: str) -> tuple[Reason, ...]:
+async def _carry_out(door: Door, tracker_id: str, message: Message, actor: str) -> tuple[Reason, ...]:
     """Return why it was refused, nothing if it was carried out."""
     order = Order(message.command(), actor, tracker_id, message.key, message.issued_at, MQTT)
     try:
@@ -97,7 +80,7 @@ async def _carry_out(door: Door, tracker_id: str, message: _Plain | _Move, actor
     except CommandRejected as rejected:
         return rejected.reasons
     except (UnknownTracker, MachineUnreachable, ValueError) as error:
-        return (Reason(type(error).__name__, str(error)),)
+        return (Reason(type(error).__name__, told_by(error)),)
     return ()
 
 
@@ -111,11 +94,13 @@ def is_stop(payload: bytes) -> bool:
 
 
 def _malformed(error: ValidationError) -> Reason:
-    places = "; ".join(
-        f"{'.'.join(map(str, one['loc'])) or 'message'}: {one['msg']}" for one in error.errors()
+    places = join(
+        "; ", (f"{'.'.join(map(str, one['loc'])) or 'message'}: {one['msg']}" for one in error.errors())
     )
     return Reason(
-        "malformed", f"This is not a valid command: {places}.", "The MQTT document lists every command."
+        "malformed",
+        say("This is not a valid command: {places}.", places=places),
+        N_("The MQTT document lists every command."),
     )
 
 

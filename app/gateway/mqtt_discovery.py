@@ -5,9 +5,9 @@ from typing import Any
 
 import orjson
 
-from app.build import VERSION
+from app.base.build import VERSION
 from app.gateway.mqtt_messages import OFFLINE, ONLINE, Topics
-from app.tracker.snapshot import Snapshot
+from app.tracker.state.snapshot import Snapshot
 
 PREFIX = "homeassistant"
 SENSORS: tuple[tuple[str, str, dict[str, Any]], ...] = (

@@ -3,11 +3,11 @@
 import asyncio
 from collections.abc import Awaitable, Callable
 
-from app.budget import Budget
-from app.clock import Clock
+from app.base.budget import Budget
+from app.base.clock import Clock
 from app.gateway.mqtt_commands import RETAINED, TOO_MANY, is_stop, obey
 from app.gateway.ports import Door
-from app.tracker.reason import Reason
+from app.tracker.values.reason import Reason
 
 COMMANDS_PER_S, MOST_AT_ONCE = 20.0, 50
 MOST_WAITING = 100

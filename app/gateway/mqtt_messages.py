@@ -8,15 +8,15 @@ import orjson
 
 from app.gateway.outbox import recording_state
 from app.store.store import JournalEntry
-from app.tracker.alarm_words import AlarmNow
-from app.tracker.recording import RecordingInfo
-from app.tracker.snapshot import Pair, SiteSnapshot, Snapshot
+from app.tracker.memory.recording import RecordingInfo
+from app.tracker.state.snapshot import Pair, SiteSnapshot, Snapshot
+from app.tracker.values.alarm_words import AlarmNow
 
 ONLINE, OFFLINE = "online", "offline"
 COLUMNS = (
     "tracker_id", "activity", "tracking_on", "target_azimuth_deg", "target_elevation_deg",
     "measured_azimuth_deg", "measured_elevation_deg", "following_error_deg", "off_sun_deg",
-    "position_age_s", "in_position", "home_trusted", "fault",
+    "position_age_s", "in_position", "homed", "fault",
 )  # fmt: skip
 
 
@@ -158,7 +158,7 @@ def _values(tracker: Snapshot) -> dict[str, Any]:
         tracker.off_sun_deg,
         tracker.position_age_s,
         tracker.in_position,
-        tracker.home_trusted,
+        tracker.homed,
         None if tracker.fault is None else tracker.fault.code,
     )
     return dict(zip(COLUMNS, values, strict=True))

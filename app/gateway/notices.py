@@ -12,10 +12,11 @@ from urllib.parse import urlsplit
 
 import orjson
 
-from app.settings import Settings
+from app.base.message import N_, say, told_by
+from app.base.settings import Settings
 from app.store.store import JournalEntry
-from app.tracker.notifications import Notifications
-from app.tracker.snapshot import Event, EventKind
+from app.tracker.state.snapshot import Event, EventKind
+from app.tracker.values.notifications import Notifications
 
 WITHIN_S = 5.0
 SIGNATURE = "X-Heliopanel-Signature"
@@ -40,7 +41,10 @@ def post_webhook(settings: Settings, wanted: Notifications, series: str, entry: 
     status = _post(wanted.webhook_url, body, headers)
     if not 200 <= status < 300:
         raise NotDelivered(
-            f"The webhook answered {status}; it must answer with 200 to 299. Check its address."
+            say(
+                "The webhook answered {status}; it must answer with 200 to 299. Check its address.",
+                status=status,
+            )
         )
 
 
@@ -59,7 +63,7 @@ def _post(url: str, body: bytes, headers: Mapping[str, str]) -> int:
         connection = kind(host, port, timeout=WITHIN_S)
     except (ValueError, http.client.HTTPException) as error:
         raise NotDelivered(
-            f"The webhook's address is wrong: {error}. Correct it on the Site page."
+            say("The webhook's address is wrong: {error}. Correct it on the Site page.", error=told_by(error))
         ) from error
     path = (parts.path or "/") + (f"?{parts.query}" if parts.query else "")
     try:
@@ -68,7 +72,11 @@ def _post(url: str, body: bytes, headers: Mapping[str, str]) -> int:
         answer.read(LONGEST_ANSWER)
     except (OSError, ValueError, http.client.HTTPException) as error:
         raise NotDelivered(
-            f"The webhook at {host} cannot be reached: {error}. Check its address and the network."
+            say(
+                "The webhook at {host} cannot be reached: {error}. Check its address and the network.",
+                host=host,
+                error=told_by(error),
+            )
         ) from error
     finally:
         connection.close()
@@ -79,7 +87,7 @@ def send_mail(settings: Settings, wanted: Notifications, series: str, entry: Jou
     """Send one alarm by e-mail, or raise `NotDelivered`."""
     if settings.smtp_host is None:
         raise NotDelivered(
-            "No mail server is set. Set HELIOPANEL_SMTP_HOST and restart, or remove the addresses."
+            N_("No mail server is set. Set HELIOPANEL_SMTP_HOST and restart, or remove the addresses.")
         )
     message = mail(settings, wanted, series, entry)
     try:
@@ -90,8 +98,12 @@ def send_mail(settings: Settings, wanted: Notifications, series: str, entry: Jou
             server.send_message(message)
     except (OSError, ValueError, smtplib.SMTPException) as error:
         raise NotDelivered(
-            f"The mail server {settings.smtp_host} did not accept the message: {error}. Check the "
-            "server and the addresses."
+            say(
+                "The mail server {smtp_host} did not accept the message: {error}. Check the server "
+                "and the addresses.",
+                smtp_host=settings.smtp_host,
+                error=told_by(error),
+            )
         ) from error
 
 
@@ -128,7 +140,7 @@ def subject(event: Event) -> str:
     """Return what an e-mail is about, the priority first."""
     data = event.data
     if event.kind is EventKind.NOTIFICATION_TESTED:
-        return "Heliopanel: test message"
+        return N_("Heliopanel: test message")
     over = "over: " if event.kind is EventKind.ALARM_RETURNED else ""
     return f"[P{data['priority']}] {over}{data['title']}, {data['where']}"
 
@@ -141,10 +153,10 @@ def text(event: Event) -> str:
     lines = (
         event.message,
         "",
-        f"Where: {data['where']}",
-        f"Since: {data['since']}",
+        say("Where: {data}", data=data["where"]),
+        say("Since: {data}", data=data["since"]),
         f"Do:    {data['do']}",
         "",
-        "Acknowledge the alarm in Heliopanel, on the Alarms page.",
+        N_("Acknowledge the alarm in Heliopanel, on the Alarms page."),
     )
     return "\n".join(lines) + "\n"

@@ -5,23 +5,24 @@ from collections.abc import Callable
 from datetime import timedelta
 
 from app.alarms.conditions import SITE, Condition
-from app.clock import Clock
+from app.base.clock import Clock
+from app.base.logs import get_logger
+from app.base.masking import masked
+from app.base.message import N_, NOTHING, Message, plain, say, told_by
+from app.base.settings import Settings
 from app.gateway.notices import NotDelivered
 from app.gateway.outbox import Outbox
 from app.gateway.ports import Door
 from app.link.metrics import GatewayMetrics, GatewayStatus
-from app.logs import get_logger
-from app.masking import masked
-from app.settings import Settings
 from app.store.store import JournalEntry, StoreFailed
-from app.tracker.notifications import Channel, Notifications
-from app.tracker.snapshot import Event, EventKind
+from app.tracker.state.snapshot import Event, EventKind
+from app.tracker.values.notifications import Channel, Notifications
 
 LOOK_EVERY = timedelta(seconds=1)
 FIRST_DELAY, LONGEST_DELAY = timedelta(seconds=2), timedelta(minutes=5)
 AT_ONCE = 50
 FAILED = "notification_failed"
-OFF = "enter an address on this page to enable it"
+OFF = N_("enter an address on this page to enable it")
 
 Deliver = Callable[[Settings, Notifications, str, JournalEntry], None]
 
@@ -48,7 +49,7 @@ class Notifier:
         self._clock = clock
         self._settings = settings
         self._outbox = outbox
-        self._error = ""
+        self._error = NOTHING
         self._waiting = 0
         self._delay = FIRST_DELAY
         self._begun = False
@@ -58,7 +59,7 @@ class Notifier:
         if not self._door.notifications.reaches(self._channel):
             return GatewayMetrics(self._name, GatewayStatus.OFF, OFF)
         status = GatewayStatus.CONNECTING if self._error else GatewayStatus.CONNECTED
-        return GatewayMetrics(self._name, status, self._where(), 0, self._error, self._waiting)
+        return GatewayMetrics(self._name, status, plain(self._where()), 0, self._error, self._waiting)
 
     async def run(self) -> None:
         """Send what the journal has, and look again, until cancelled."""
@@ -89,7 +90,7 @@ class Notifier:
         """Go on to the end of the journal: whoever opens the channel later hears of what happens then."""
         newest = await asyncio.to_thread(self._outbox.newest)
         if newest is not None:
-            self._turn("")
+            self._turn(NOTHING)
             await asyncio.to_thread(self._outbox.skip, newest)
         self._waiting = 0
 
@@ -98,24 +99,27 @@ class Notifier:
         wanted = self._door.notifications
         if not is_sent(entry.event, self._channel, wanted):
             if not wanted.reaches(self._channel):
-                self._turn("")
+                self._turn(NOTHING)
             return True
         series = await asyncio.to_thread(lambda: self._outbox.series)
         try:
             await asyncio.to_thread(self._deliver, self._settings, wanted, series, entry)
         except NotDelivered as failure:
-            self._turn(f"{failure} Heliopanel retries automatically.")
+            self._turn(say("{failure} Heliopanel retries automatically.", failure=told_by(failure)))
             self._delay = min(2 * self._delay, LONGEST_DELAY)
             return False
-        self._turn("")
+        self._turn(NOTHING)
         await asyncio.to_thread(self._outbox.acknowledge, entry)
         return True
 
-    def _turn(self, error: str) -> None:
+    def _turn(self, error: Message) -> None:
         """Note how the last message fared; a failure is an alarm until one arrives."""
         if error:
             log.warning("notification_failed", channel=self._channel, reason=error)
-            self._door.trouble(self._name, Condition(FAILED, None, SITE, f"{self._name}: {error}"))
+            self._door.trouble(
+                self._name,
+                Condition(FAILED, None, SITE, say("{name}: {error}", name=self._name, error=error)),
+            )
         elif self._error:
             self._door.trouble(self._name, None)
         if not error:

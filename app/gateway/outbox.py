@@ -12,7 +12,7 @@ from uuid import uuid4
 import orjson
 
 from app.store.store import JournalEntry, JournalFilter, Reader
-from app.tracker.recording import RecordingInfo
+from app.tracker.memory.recording import RecordingInfo
 
 MOST_UNSENT = 100_000
 RECORDINGS_KNOWN = 500

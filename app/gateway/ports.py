@@ -3,16 +3,19 @@
 from typing import Protocol
 
 from app.alarms.conditions import Condition
+from app.base.message import Message, plain, say, told_by
 from app.link.messages import Machine, Order, RequestControl, Update
-from app.tracker.commands import Command, CommandRejected
-from app.tracker.notifications import Notifications
-from app.tracker.snapshot import Event, EventKind, SiteSnapshot
+from app.tracker.commands.commands import Command, CommandRejected
+from app.tracker.state.snapshot import Event, EventKind, SiteSnapshot
+from app.tracker.values.notifications import Notifications
 
-__all__ = ["Door", "Update", "refused", "send", "written"]
+__all__ = ["MQTT_NAME", "Door", "Update", "refused", "send", "written"]
 
 
 SUNSPEC, MQTT = "sunspec", "mqtt"
 """How orders of these doors are known; each is one holder of control, whichever host or client wrote."""
+MQTT_NAME = plain("MQTT")
+"""How that gateway is called where people read; here, so that its library loads only where it is used."""
 
 
 class Door(Machine, Protocol):
@@ -34,21 +37,26 @@ async def send(door: Door, command: Command | RequestControl, tracker_id: str | 
     try:
         await door.execute(Order(command, actor, tracker_id, via=SUNSPEC))
     except CommandRejected as rejected:
-        refused(door, tracker_id, actor, f"{command.kind} was refused: {rejected}")
+        refused(
+            door,
+            tracker_id,
+            actor,
+            say("{kind} was refused: {rejected}", kind=command.kind, rejected=told_by(rejected)),
+        )
         raise
 
 
-def written(door: Door, tracker_id: str | None, actor: str, message: str) -> None:
+def written(door: Door, tracker_id: str | None, actor: str, message: Message) -> None:
     """Journal what was written."""
     _note(door, EventKind.REMOTE_WRITTEN, tracker_id, actor, message)
 
 
-def refused(door: Door, tracker_id: str | None, actor: str, message: str) -> None:
+def refused(door: Door, tracker_id: str | None, actor: str, message: Message) -> None:
     """Journal what was refused."""
     _note(door, EventKind.REMOTE_REFUSED, tracker_id, actor, message)
 
 
-def _note(door: Door, kind: EventKind, tracker_id: str | None, actor: str, message: str) -> None:
+def _note(door: Door, kind: EventKind, tracker_id: str | None, actor: str, message: Message) -> None:
     site: SiteSnapshot | None = door.latest()
     if site is not None:
         door.note(Event(site.at, kind, tracker_id, message, actor))

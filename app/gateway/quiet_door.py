@@ -7,8 +7,8 @@ from datetime import datetime, timedelta
 from app.alarms.conditions import Condition
 from app.gateway.ports import Door
 from app.link.messages import Order, SiteDetail, Update
-from app.tracker.notifications import Notifications
-from app.tracker.snapshot import Event, EventKind, SiteSnapshot, Snapshot
+from app.tracker.state.snapshot import Event, EventKind, SiteSnapshot, Snapshot
+from app.tracker.values.notifications import Notifications
 
 TELL_AGAIN = timedelta(minutes=1)
 MOST_REMEMBERED = 500

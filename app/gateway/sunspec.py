@@ -4,19 +4,20 @@ import asyncio
 from contextlib import suppress
 from datetime import timedelta
 
-from app.budget import Budget
-from app.clock import Clock
-from app.drives.line import SerialLine
-from app.drives.modbus_clients import Limits
-from app.drives.modbus_server import ModbusServer
-from app.drives.rtu_server import RtuServer
+from app.base.budget import Budget
+from app.base.clock import Clock
+from app.base.logs import get_logger
+from app.base.message import N_, NOTHING, plain, say, told_by
+from app.base.settings import Settings
 from app.gateway.sunspec_device import SERIAL, SunSpecDevice
 from app.link.metrics import GatewayMetrics, GatewayStatus
-from app.logs import get_logger
-from app.settings import Settings
-from app.tracker.config import Parity, SerialConfig
+from app.modbus.clients import Limits
+from app.modbus.line import SerialLine
+from app.modbus.rtu_server import RtuServer
+from app.modbus.server import ModbusServer
+from app.tracker.settings.config import Parity, SerialConfig
 
-TCP, RTU = "SunSpec over Modbus TCP", "SunSpec over Modbus RTU"
+TCP, RTU = N_("SunSpec over Modbus TCP"), N_("SunSpec over Modbus RTU")
 TRY_AGAIN = timedelta(seconds=10)
 LIMITS = Limits(most=16, requests_per_s=200.0, burst=50, idle_s=600.0)
 """Enough to read and write 100 trackers every second; a control system that asks faster is slowed down."""
@@ -32,10 +33,10 @@ class SunSpecTcp:
         self._host = settings.sunspec_host
         self._port = settings.sunspec_port or 0
         self._server = ModbusServer(
-            device, settings.sunspec_unit, respond=device.respond, limits=LIMITS, clock=clock
+            device, settings.sunspec_unit_id, respond=device.respond, limits=LIMITS, clock=clock
         )
         self._listening = False
-        self._error = ""
+        self._error = NOTHING
 
     @property
     def port(self) -> int:
@@ -45,7 +46,7 @@ class SunSpecTcp:
     def metrics(self) -> GatewayMetrics:
         """Return how it is doing."""
         status = GatewayStatus.LISTENING if self._listening else GatewayStatus.FAILED
-        where = f"{self._host}:{self._port}"
+        where = plain(f"{self._host}:{self._port}")
         return GatewayMetrics(TCP, status, where, self._server.client_count, self._error)
 
     async def run(self) -> None:
@@ -62,14 +63,17 @@ class SunSpecTcp:
         try:
             self._port = await self._server.start(self._host, self._port)
         except OSError as error:
-            self._error = (
-                f"SunSpec cannot listen on {self._host} port {self._port}: {error.strerror}. Stop "
-                "the program that uses the port, or choose another with HELIOPANEL_SUNSPEC_PORT."
+            self._error = say(
+                "SunSpec cannot listen on {host} port {port}: {strerror}. Stop the program that uses "
+                "the port, or choose another with HELIOPANEL_SUNSPEC_PORT.",
+                host=self._host,
+                port=self._port,
+                strerror=error.strerror,
             )
             log.error("sunspec_not_listening", reason=self._error)
             await self._clock.sleep_until(self._clock.now() + TRY_AGAIN)
         else:
-            self._listening, self._error = True, ""
+            self._listening, self._error = True, NOTHING
 
 
 class SunSpecRtu:
@@ -78,18 +82,23 @@ class SunSpecRtu:
     def __init__(self, device: SunSpecDevice, clock: Clock, settings: Settings) -> None:
         self._device = device
         self._clock = clock
-        self._unit = settings.sunspec_unit
+        self._unit = settings.sunspec_unit_id
         self._serial = SerialConfig(
-            settings.sunspec_serial or "", settings.sunspec_baud, Parity(settings.sunspec_parity)
+            settings.sunspec_serial_port or "", settings.sunspec_baud_rate, Parity(settings.sunspec_parity)
         )
         self._serving = False
-        self._error = ""
+        self._error = NOTHING
 
     def metrics(self) -> GatewayMetrics:
         """Return how it is doing."""
         status = GatewayStatus.LISTENING if self._serving else GatewayStatus.FAILED
         line = self._serial
-        where = f"{line.port}, {line.baud_rate} baud, parity {line.parity}"
+        where = say(
+            "{port}, {baud_rate} baud, parity {parity}",
+            port=line.port,
+            baud_rate=line.baud_rate,
+            parity=line.parity,
+        )
         return GatewayMetrics(RTU, status, where, error=self._error)
 
     async def run(self) -> None:
@@ -103,11 +112,11 @@ class SunSpecRtu:
             )
             try:
                 await server.start()
-                self._serving, self._error = True, ""
+                self._serving, self._error = True, NOTHING
                 await server.until_lost()
-                self._error = "The serial line was lost."
+                self._error = N_("The serial line was lost.")
             except OSError as error:
-                self._error = f"{error} Heliopanel retries automatically."
+                self._error = say("{error} Heliopanel retries automatically.", error=told_by(error))
             finally:
                 self._serving = False
                 with suppress(OSError):

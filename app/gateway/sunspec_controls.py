@@ -4,16 +4,17 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import assert_never
 
-from app.drives.modbus_server import ILLEGAL_ADDRESS, ILLEGAL_VALUE, Refusal
+from app.base.message import N_, join, say, with_format
 from app.gateway.calibration import Calibrations
 from app.gateway.ports import SUNSPEC, Door, Update, refused, send, written
 from app.gateway.quiet_door import QuietDoor
 from app.gateway.sunspec_values import Control, Targets
 from app.link.messages import Order, RenewControl, RequestControl, UnknownTracker
-from app.tracker.commands import CommandRejected, Move, Track
-from app.tracker.config import Orientation
-from app.tracker.reason import Reason
-from app.tracker.snapshot import ActivityName, EventKind, SiteSnapshot, Snapshot
+from app.modbus.server import ILLEGAL_ADDRESS, ILLEGAL_VALUE, Refusal
+from app.tracker.commands.commands import CommandRejected, Move, Track
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ActivityName, EventKind, SiteSnapshot, Snapshot
+from app.tracker.values.reason import Reason
 
 ACTOR = "sunspec "
 """What the actor of every order of this door begins with; the host follows."""
@@ -33,7 +34,9 @@ TAKES_OVER = {
 }
 WRONG_VALUE = {"beyond_limits", "no_target"}
 NO_TARGET = Reason(
-    "no_target", "Manual mode was written without a target.", "Write ElCtl and AzCtl, then write 1 to Ctl."
+    "no_target",
+    N_("Manual mode was written without a target."),
+    N_("Write ElCtl and AzCtl, then write 1 to Ctl."),
 )
 
 Written = Mapping[str, float | None]
@@ -73,7 +76,7 @@ class Controls:
         )
         self.targets[tracker_id] = kept
         if self._has_changed(tracker_id, values, actor):
-            written(self._door, tracker_id, actor, f"{told} was written over SunSpec.")
+            written(self._door, tracker_id, actor, say("{told} was written over SunSpec.", told=told))
         try:
             if "Ctl" in values:
                 await self._act(tracker_id, Control(int(values["Ctl"] or 0)), kept, actor)
@@ -115,10 +118,13 @@ class Controls:
         for name, value in values.items():
             low, high = TARGETS.get(name, (min(Control), max(Control)))
             if value is None or not low <= value <= high:
-                name = name if tracker_id else f"Glbl{name}"
-                message = (
-                    f"{_said(value)} was written to {name} over SunSpec; "
-                    f"it must lie between {low:g} and {high:g}."
+                name = name if tracker_id else "Glbl" + name
+                message = say(
+                    "{value} was written to {name} over SunSpec; it must lie between {low} and {high}.",
+                    value=_said(value),
+                    name=name,
+                    low=with_format(low, "g"),
+                    high=with_format(high, "g"),
                 )
                 refused(self._door, tracker_id, actor, message)
                 raise Refusal(ILLEGAL_VALUE)
@@ -188,7 +194,7 @@ class Controls:
             azimuth_deg = tracker.measured.azimuth_deg if azimuth_deg is None else azimuth_deg
             elevation_deg = tracker.measured.elevation_deg if elevation_deg is None else elevation_deg
         if azimuth_deg is None or elevation_deg is None:
-            refused(self._door, tracker.tracker_id, actor, f"{NO_TARGET.message} {NO_TARGET.hint}")
+            refused(self._door, tracker.tracker_id, actor, join(" ", (NO_TARGET.message, NO_TARGET.hint)))
             raise CommandRejected(NO_TARGET)
         orientation = Orientation(azimuth_deg % 360.0, elevation_deg)
         await send(self._door, Move(orientation), tracker.tracker_id, actor)
@@ -210,7 +216,7 @@ def _is_there(tracker: Snapshot, targets: Targets) -> bool:
 
 
 def _said(value: float | None) -> str:
-    return "Nothing" if value is None else f"{value:g}"
+    return N_("Nothing") if value is None else f"{value:g}"
 
 
 def _addressed(site: SiteSnapshot | None, tracker_id: str | None) -> tuple[Snapshot, ...]:

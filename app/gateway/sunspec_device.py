@@ -4,14 +4,15 @@ from collections.abc import Sequence
 from datetime import datetime, timedelta
 from ipaddress import ip_address, ip_network
 
-from app.clock import Clock
-from app.drives.modbus_server import ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, Refusal, answer
+from app.base.clock import Clock
+from app.base.logs import get_logger
+from app.base.message import say
 from app.gateway.ports import Door, refused
 from app.gateway.sunspec_controls import ACTOR, BUSY, Controls
 from app.gateway.sunspec_map import BASE, END, MARKER, Block, Placed, SunSpecMap, sunspec_map
 from app.gateway.sunspec_values import UNKNOWN_TYPE, View, block_words, tracker_type
-from app.logs import get_logger
-from app.tracker.snapshot import EventKind
+from app.modbus.server import ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, Refusal, answer
+from app.tracker.state.snapshot import EventKind
 
 FAILURE = 4
 SERIAL = "serial"
@@ -159,8 +160,18 @@ class SunSpecDevice:
         count += 1
         if told_at is None or now - told_at >= TELL_AGAIN:
             message = (
-                f"{host} tried {'' if count == 1 else f'{count} times '}to write over SunSpec, "
-                f"but only the hosts in {SETTING} may."
+                say(
+                    "{host} tried to write over SunSpec, but only the hosts in {setting} may.",
+                    host=host,
+                    setting=SETTING,
+                )
+                if count == 1
+                else say(
+                    "{host} tried {count} times to write over SunSpec, but only the hosts in {setting} may.",
+                    host=host,
+                    count=count,
+                    setting=SETTING,
+                )
             )
             refused(self._door, None, f"{ACTOR}{host}", message)
             told_at, count = now, 0

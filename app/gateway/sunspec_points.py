@@ -109,7 +109,7 @@ def _int16(name: str, units: str, text: str, scale: int = 0) -> Point:
 
 
 CONTROLS = "0 automatic, 1 manual, 2 calibrate"
-ALARMS = "bit 0 set point, 1 elevation obstructed, 2 azimuth obstructed"
+ALARMS = "bit 0 setpoint, 1 elevation obstructed, 2 azimuth obstructed"
 
 COMMON = Model(
     1,

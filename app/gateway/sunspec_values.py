@@ -6,13 +6,13 @@ from datetime import datetime
 from enum import IntEnum
 from uuid import getnode
 
-from app.build import VERSION
+from app.base.build import VERSION
+from app.base.zones import zone_of
 from app.gateway.sunspec_map import Block
 from app.gateway.sunspec_points import COMMON, DEGREES_SF, LOCATION, TRACKERS, WEATHER, Value
-from app.tracker.config import MountKind
-from app.tracker.snapshot import ActivityName, Pair, SiteSnapshot, Snapshot
-from app.tracker.weather import Weather
-from app.zones import zone_of
+from app.tracker.settings.config import MountKind
+from app.tracker.state.snapshot import ActivityName, Pair, SiteSnapshot, Snapshot
+from app.tracker.weather.weather import Weather
 
 UNKNOWN_TYPE, OTHER_TYPE = 0, 99
 TYPES = {

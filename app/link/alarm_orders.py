@@ -1,9 +1,12 @@
 """What people order about alarms and where they are sent, plain data on the wire."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
-from app.tracker.notifications import Channel, Notifications
+from app.base.permission import Permission
+from app.link.settings_orders import UndoSiteSettings
+from app.tracker.values.notifications import Channel, Notifications
+from app.tracker.values.order_spec import STORED_S, OrderSpec, setting
 
 
 @dataclass(frozen=True, slots=True)
@@ -12,6 +15,7 @@ class AcknowledgeAlarm:
 
     alarm_id: str
     kind: Literal["acknowledge_alarm"] = "acknowledge_alarm"
+    spec: ClassVar = OrderSpec(needs=Permission.OPERATE, within_s=STORED_S, in_safe_mode=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +26,7 @@ class ShelveAlarm:
     minutes: int
     reason: str
     kind: Literal["shelve_alarm"] = "shelve_alarm"
+    spec: ClassVar = OrderSpec(needs=Permission.OPERATE, within_s=STORED_S, in_safe_mode=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +35,7 @@ class UnshelveAlarm:
 
     alarm_id: str
     kind: Literal["unshelve_alarm"] = "unshelve_alarm"
+    spec: ClassVar = OrderSpec(needs=Permission.OPERATE, within_s=STORED_S, in_safe_mode=True)
 
 
 AlarmOrder = AcknowledgeAlarm | ShelveAlarm | UnshelveAlarm
@@ -42,6 +48,7 @@ class SetNotifications:
 
     notifications: Notifications
     kind: Literal["set_notifications"] = "set_notifications"
+    spec: ClassVar = setting(undone_by=UndoSiteSettings)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +58,7 @@ class TestNotification:
     __test__ = False
     channel: Channel
     kind: Literal["test_notification"] = "test_notification"
+    spec: ClassVar = setting()
 
 
 NotificationOrder = SetNotifications | TestNotification

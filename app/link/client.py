@@ -10,7 +10,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from app.clock import Clock, SystemClock
+from app.base.clock import Clock, SystemClock
+from app.base.message import say
 from app.link.codec import (
     Answer,
     Ask,
@@ -33,23 +34,17 @@ from app.link.lanes import Lanes
 from app.link.messages import (
     MachineUnreachable,
     Order,
-    SaveRecording,
-    SiteCommand,
     SiteDetail,
-    StopAll,
     Update,
 )
 from app.link.metrics import MachineMetrics
 from app.link.outlet import Outlet
-from app.link.record_orders import AddRecordPhoto, SignRecord
 from app.link.whole import Whole, with_tracker
-from app.tracker.commands import EndJog, Jog, Stop
-from app.tracker.snapshot import SiteSnapshot, Snapshot
+from app.tracker.commands.commands import Jog
+from app.tracker.state.snapshot import SiteSnapshot, Snapshot
+from app.tracker.values.order_spec import AT_ONCE_S, STORED_S
 
 SILENCE_S = 1.5
-ANSWER_S = 1.0
-STORED_ANSWER_S = 5.0
-LONG_ANSWER_S = 30.0
 CATCH_UP_S = 0.05
 """So long the answer to a stop waits for the snapshot that shows it, which comes behind everything else."""
 MOST_WAITING = 256
@@ -93,14 +88,14 @@ class LinkClient:
 
     async def execute(self, order: Order) -> SiteSnapshot:
         """Carry out one order and return the snapshot after it; somebody's stops never pile up."""
-        if not isinstance(order.command, Stop | StopAll | EndJog):
-            return self._after(await self._ask(self._request(order), _patience_s(order)))
+        if not order.command.spec.ends_motion:
+            return self._after(await self._ask(self._request(order), order.command.spec.within_s))
         alike = (order.command, order.tracker_id, order.actor, order.via, order.address)
         return await self._stops.ask(alike, partial(self._stop, order))
 
     async def _stop(self, order: Order) -> SiteSnapshot:
         """Send a stop by the lane that nothing else is on, or by the common one while that is down."""
-        request, patience_s = self._request(order), _patience_s(order)
+        request, patience_s = self._request(order), order.command.spec.within_s
         if not self._stop_lane.up:
             return self._after(await self._main.ask(request, patience_s))
         try:
@@ -120,7 +115,7 @@ class LinkClient:
                     update = await heard.next()
 
     def _request(self, order: Order) -> Execute:
-        patience_s = _patience_s(order)
+        patience_s = order.command.spec.within_s
         good_for_s = order.command.lease.total_seconds() if isinstance(order.command, Jog) else patience_s
         now_s = asyncio.get_running_loop().time()
         return Execute(
@@ -149,7 +144,7 @@ class LinkClient:
 
     async def tracker(self, tracker_id: str) -> Snapshot:
         """Return one tracker now, with what may be asked of it."""
-        answer = await self._ask(Look(next(self._numbers), tracker_id), ANSWER_S)
+        answer = await self._ask(Look(next(self._numbers), tracker_id), AT_ONCE_S)
         if not isinstance(answer, Seen):
             raise _out_of_place(answer)
         return answer.tracker
@@ -161,7 +156,7 @@ class LinkClient:
 
     async def detail(self) -> SiteDetail:
         """Return stored settings, steps and capabilities."""
-        answer = await self._ask(Ask(next(self._numbers), "detail"), STORED_ANSWER_S)
+        answer = await self._ask(Ask(next(self._numbers), "detail"), STORED_S)
         if not isinstance(answer, Detailed):
             raise _out_of_place(answer)
         try:
@@ -171,7 +166,7 @@ class LinkClient:
 
     async def metrics(self) -> MachineMetrics:
         """Return what the machine counts about itself."""
-        answer = await self._ask(Ask(next(self._numbers), "metrics"), ANSWER_S)
+        answer = await self._ask(Ask(next(self._numbers), "metrics"), AT_ONCE_S)
         if not isinstance(answer, Measured):
             raise _out_of_place(answer)
         return answer.metrics
@@ -179,7 +174,7 @@ class LinkClient:
     async def ping(self) -> timedelta:
         """Return how long the machine took to answer."""
         begun = self._clock.now()
-        await self._ask(Ask(next(self._numbers), "ping"), ANSWER_S)
+        await self._ask(Ask(next(self._numbers), "ping"), AT_ONCE_S)
         return self._clock.now() - begun
 
     def latest(self) -> SiteSnapshot | None:
@@ -222,14 +217,10 @@ class LinkClient:
         self._outlet.end()
 
 
-def _patience_s(order: Order) -> float:
-    """Return how long to wait: what is stored may have to wait for a slow disk."""
-    if isinstance(order.command, SaveRecording | AddRecordPhoto | SignRecord):
-        return LONG_ANSWER_S
-    return STORED_ANSWER_S if isinstance(order.command, SiteCommand) else ANSWER_S
-
-
 def _out_of_place(answer: Answer) -> MachineUnreachable:
     return MachineUnreachable(
-        f"The controller service sent {answer.tell!r} in reply to another request; update both processes."
+        say(
+            "The controller service sent {tell} in reply to another request; update both processes.",
+            tell=repr(answer.tell),
+        )
     )

@@ -6,33 +6,36 @@ from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import orjson
-from pydantic import Discriminator, TypeAdapter
+from pydantic import ConfigDict, Discriminator, TypeAdapter
 from pydantic_core import to_jsonable_python
 
 from app.alarms.lifecycle import UnknownAlarm
+from app.base.message import N_, Message, encoded, told_by
 from app.link.messages import (
     MachineUnreachable,
     Order,
     SiteCommand,
     SiteDetail,
-    StopAll,
     TrackerDetail,
     UnknownRecording,
     UnknownTracker,
     Update,
 )
 from app.link.metrics import MachineMetrics
-from app.tracker.alarm_words import AlarmCounts
-from app.tracker.commands import Command, CommandRejected, EndJog, Jog, Stop
-from app.tracker.control import refusal
-from app.tracker.reason import Reason
-from app.tracker.snapshot import Event, SiteSnapshot, Snapshot
+from app.tracker.commands.commands import Command, CommandRejected, Jog
+from app.tracker.commands.control import refusal
+from app.tracker.state.snapshot import Event, SiteSnapshot, Snapshot
+from app.tracker.values.alarm_words import AlarmCounts
+from app.tracker.values.reason import Reason
 
 LENGTH_BYTES = 4
+PLAIN_KEYS_AND_TEXTS = orjson.OPT_NON_STR_KEYS | orjson.OPT_PASSTHROUGH_SUBCLASS
 LONGEST_FRAME = 32 * 1024 * 1024
+LATE = ConfigDict(defer_build=True)
+"""Each process reads one of the two kinds of frames: what reads them is made with the first."""
 
 
 class FrameBroken(Exception):
@@ -113,7 +116,7 @@ class Problem:
     """A domain error on the wire."""
 
     kind: ProblemKind
-    message: str
+    message: Message
     reasons: tuple[Reason, ...] = ()
 
     def error(self) -> Exception:
@@ -221,35 +224,37 @@ Answer = Done | Detailed | Seen | Measured | Pong | Refused
 Unasked = Told | Details
 Telling = Answer | Unasked
 
-_requests: TypeAdapter[Request] = TypeAdapter(Annotated[Request, Discriminator("do")])
-_tellings: TypeAdapter[Telling] = TypeAdapter(Annotated[Telling, Discriminator("tell")])
+_requests: TypeAdapter[Request] = TypeAdapter(Annotated[Request, Discriminator("do")], config=LATE)
+_tellings: TypeAdapter[Telling] = TypeAdapter(Annotated[Telling, Discriminator("tell")], config=LATE)
 
 
 def ends_motion(request: Request) -> bool:
     """Return whether this is an order to stop: never too late, never one too many."""
-    return isinstance(request, Execute) and isinstance(request.command, Stop | StopAll | EndJog)
+    return isinstance(request, Execute) and request.command.spec.ends_motion
 
 
 def problem_of(error: Exception) -> Problem:
     """Return how an exception of the machine crosses the wire."""
     match error:
         case CommandRejected():
-            return Problem(ProblemKind.REJECTED, str(error), tuple(error.reasons))
+            return Problem(ProblemKind.REJECTED, told_by(error), tuple(error.reasons))
         case UnknownTracker():
-            return Problem(ProblemKind.UNKNOWN_TRACKER, str(error))
+            return Problem(ProblemKind.UNKNOWN_TRACKER, told_by(error))
         case UnknownRecording():
-            return Problem(ProblemKind.UNKNOWN_RECORDING, str(error))
+            return Problem(ProblemKind.UNKNOWN_RECORDING, told_by(error))
         case UnknownAlarm():
-            return Problem(ProblemKind.UNKNOWN_ALARM, str(error))
+            return Problem(ProblemKind.UNKNOWN_ALARM, told_by(error))
         case MachineUnreachable():
-            return Problem(ProblemKind.FAILED, str(error))
+            return Problem(ProblemKind.FAILED, told_by(error))
         case ValueError():
-            return Problem(ProblemKind.INVALID, str(error))
+            return Problem(ProblemKind.INVALID, told_by(error))
         case _:
             return Problem(
                 ProblemKind.FAILED,
-                "The controller service met an unexpected error while it carried this out; "
-                "its log says which. Check the state before you ask again.",
+                N_(
+                    "The controller service met an unexpected error while it carried this out; "
+                    "its log says which. Check the state before you ask again."
+                ),
             )
 
 
@@ -280,7 +285,11 @@ def encode_request(request: Request) -> bytes:
 
 def encode_telling(telling: Telling) -> bytes:
     """Return one frame with an answer or an update; this is a sixth of the work that pydantic makes of it."""
-    return _framed(orjson.dumps(telling, default=to_jsonable_python, option=orjson.OPT_NON_STR_KEYS))
+    return _framed(orjson.dumps(telling, default=_plain, option=PLAIN_KEYS_AND_TEXTS))
+
+
+def _plain(value: object) -> object:
+    return encoded(value) if isinstance(value, str) else to_jsonable_python(value)
 
 
 def decode_request(body: bytes) -> Request:
@@ -304,7 +313,22 @@ def decode_telling(body: bytes) -> Telling:
     try:
         return _tellings.validate_json(body)
     except ValueError as error:
+        with suppress(ValueError):
+            return _tellings.validate_python(_in_english(orjson.loads(body)))
         raise FrameBroken(str(error)) from error
+
+
+def _in_english(told: Any) -> Any:
+    """Return what was told with texts for messages: one in the wrong place ends no connection."""
+    match told:
+        case {"text": str(text), "template": str(), "values": dict()}:
+            return text
+        case dict():
+            return {name: _in_english(value) for name, value in told.items()}
+        case list():
+            return [_in_english(value) for value in told]
+        case _:
+            return told
 
 
 async def read_body(reader: asyncio.StreamReader) -> bytes:

@@ -7,7 +7,9 @@ from datetime import timedelta
 from pathlib import Path
 from typing import Any
 
-from app.clock import Clock
+from app.base.clock import Clock
+from app.base.logs import get_logger
+from app.base.message import N_
 from app.link.codec import (
     Answer,
     FrameBroken,
@@ -20,15 +22,14 @@ from app.link.codec import (
     read_body,
 )
 from app.link.messages import MachineUnreachable
-from app.logs import get_logger
 
 RECONNECT_AFTER = timedelta(milliseconds=300)
 
-DOWN = (
+DOWN = N_(
     "The controller service does not answer; nothing was done. Wait until the page shows live "
     "values again, or check that the service is running."
 )
-TOO_LATE = (
+TOO_LATE = N_(
     "The controller service did not answer in time; it may or may not have carried out the "
     "request. Check the live values before you try again."
 )

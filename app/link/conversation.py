@@ -5,8 +5,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol, assert_never
 
-from app.budget import Budget
-from app.clock import give_way
+from app.base.budget import Budget
+from app.base.clock import give_way
+from app.base.logs import get_logger
+from app.base.message import N_
 from app.link.codec import (
     Ask,
     Done,
@@ -32,7 +34,7 @@ from app.link.details import Sent, answer
 from app.link.messages import Machine, Order, Update
 from app.link.metrics import MachineMetrics
 from app.link.outlet import Listener
-from app.logs import get_logger
+from app.tracker.state.snapshot import SiteSnapshot
 
 MOST_REQUESTS = 256
 MOST_UNSENT_BYTES = 64 * 1024 * 1024
@@ -40,11 +42,11 @@ REQUESTS_PER_S, MOST_AT_ONCE = 1000.0, 500
 """What one conversation may ask, stops aside: twenty held keys are 400 requests a second."""
 LATE = Problem(
     ProblemKind.FAILED,
-    ("The controller service received this request too late and did not carry it out. Try again."),
+    N_("The controller service received this request too late and did not carry it out. Try again."),
 )
 BUSY = Problem(
     ProblemKind.FAILED,
-    ("The controller service has too many requests at once; this request was not carried out."),
+    N_("The controller service has too many requests at once; this request was not carried out."),
 )
 
 log = get_logger()
@@ -78,7 +80,15 @@ class _Stream:
 
     async def _answer(self, request: Request) -> None:
         try:
-            answer = await self._carry_out(request)
+            if isinstance(request, Execute):
+                at_s = asyncio.get_running_loop().time()
+                if at_s > request.good_until_s and not ends_motion(request):
+                    answer: Telling = Refused(request.number, LATE)
+                else:
+                    order = request.order(at_s)
+                    answer = self._done(request.number, order, await self._machine.execute(order))
+            else:
+                answer = await self._reply(request)
         except Exception as error:
             problem = problem_of(error)
             if problem.kind is ProblemKind.FAILED:
@@ -91,14 +101,13 @@ class _Stream:
             log.exception("link_not_told", request=request.do, action="the panel connects anew")
             self._writer.transport.abort()
 
-    async def _carry_out(self, request: Request) -> Telling:
-        raise NotImplementedError
+    async def _reply(self, request: Ask | Look | Watch) -> Telling:
+        raise TypeError(request)
 
     def _tell_what_waits(self) -> None:
         """Tell what an order changed before it is answered, so that whoever gave it sees its effect."""
 
-    async def _execute(self, number: int, order: Order) -> Done:
-        site = await self._machine.execute(order)
+    def _done(self, number: int, order: Order, site: SiteSnapshot) -> Done:
         if site is self._machine.latest():
             return Done(number, None, site.sequence)
         about = order.tracker_id or getattr(order.command, "tracker_id", None)
@@ -127,11 +136,6 @@ class StopLane(_Stream):
                 await give_way()
         finally:
             await asyncio.gather(*self._tasks, return_exceptions=True)
-
-    async def _carry_out(self, request: Request) -> Telling:
-        if not isinstance(request, Execute):
-            raise TypeError(request)
-        return await self._execute(request.number, request.order(asyncio.get_running_loop().time()))
 
 
 class Conversation(_Stream):
@@ -201,24 +205,19 @@ class Conversation(_Stream):
         while (update := self._reader.take()) is not None:
             self._put(self._encode(update))
 
-    async def _carry_out(self, request: Request) -> Telling:
+    async def _reply(self, request: Ask | Look | Watch) -> Telling:
         match request:
-            case Execute():
-                at_s = asyncio.get_running_loop().time()
-                if at_s > request.good_until_s and not ends_motion(request):
-                    return Refused(request.number, LATE)
-                return await self._execute(request.number, request.order(at_s))
             case Look():
                 return Seen(request.number, await self._machine.tracker(request.tracker_id))
             case Watch():
                 await self._machine.watch(request.tracker_ids, self)
                 return Pong(request.number)
             case Ask():
-                return await self._reply(request)
+                return await self._tell_of(request)
             case _:
                 assert_never(request)
 
-    async def _reply(self, asked: Ask) -> Telling:
+    async def _tell_of(self, asked: Ask) -> Telling:
         match asked.do:
             case "detail":
                 return await self._detail(asked.number)

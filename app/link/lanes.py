@@ -5,7 +5,7 @@ from collections.abc import Callable, Coroutine, Hashable
 from datetime import timedelta
 from typing import Any, Generic, TypeVar
 
-from app.clock import Clock, set_or_at
+from app.base.clock import Clock, set_or_at
 
 T = TypeVar("T")
 Work = Callable[[], Coroutine[Any, Any, T]]

@@ -3,26 +3,28 @@
 from collections.abc import AsyncIterator
 from dataclasses import dataclass, field
 from datetime import datetime
-from typing import Literal, Protocol
+from typing import ClassVar, Literal, Protocol
 
+from app.base.permission import Permission
 from app.link.alarm_orders import AlarmOrder, NotificationOrder
 from app.link.place_orders import SetHorizon
 from app.link.record_orders import RecordOrder
 from app.link.settings_orders import UndoSettings, UndoSiteSettings
 from app.link.weather_orders import ReportWeather, SetMetStation, SetWeatherWindows, SimulateWeather
 from app.sun.position import Location
-from app.tracker.axes import Axis
-from app.tracker.commands import Command
-from app.tracker.commissioning import Step
-from app.tracker.config import DriveConfig, TrackerConfig
-from app.tracker.drive_check import DriveCheck, DriveChoices
-from app.tracker.drive_test_states import ProofState
-from app.tracker.drive_tests import AxisEnd
-from app.tracker.memory import Sighting, SiteState, StepName, TrackerState
-from app.tracker.motion import DriveCapabilities
+from app.tracker.commands.commands import Command
+from app.tracker.commissioning.drive_test_states import ProofState
+from app.tracker.commissioning.steps import Step
+from app.tracker.memory.drive_check import DriveCheck, DriveChoices
+from app.tracker.memory.drive_tests import AxisEnd
+from app.tracker.memory.memory import Sighting, SiteState, StepName, TrackerState
+from app.tracker.memory.recording import RecordingInfo
 from app.tracker.programs.show import ShowPlan
-from app.tracker.recording import RecordingInfo
-from app.tracker.snapshot import Event, SiteSnapshot, Snapshot
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import DriveConfig, TrackerConfig
+from app.tracker.state.snapshot import Event, SiteSnapshot, Snapshot
+from app.tracker.values.motion import DriveCapabilities
+from app.tracker.values.order_spec import LONG_S, STORED_S, Interface, Motion, OrderSpec, setting
 
 
 class MachineUnreachable(Exception):
@@ -44,6 +46,7 @@ class SetLocation:
     location: Location
     time_zone: str
     kind: Literal["set_location"] = "set_location"
+    spec: ClassVar = setting(sealed=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +57,7 @@ class SetClock:
     at: datetime | None = None
     time_zone: str | None = None
     kind: Literal["set_clock"] = "set_clock"
+    spec: ClassVar = setting()
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +66,7 @@ class RenameSite:
 
     name: str
     kind: Literal["rename_site"] = "rename_site"
+    spec: ClassVar = setting(undone_by=UndoSiteSettings)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +75,7 @@ class AddTracker:
 
     config: TrackerConfig
     kind: Literal["add_tracker"] = "add_tracker"
+    spec: ClassVar = setting()
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +84,7 @@ class ConfigureTracker:
 
     config: TrackerConfig
     kind: Literal["configure_tracker"] = "configure_tracker"
+    spec: ClassVar = setting(sealed=True, undone_by=UndoSettings)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +93,7 @@ class RemoveTracker:
 
     tracker_id: str
     kind: Literal["remove_tracker"] = "remove_tracker"
+    spec: ClassVar = setting(sealed=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +103,7 @@ class ConfirmStep:
     tracker_id: str
     step: StepName
     kind: Literal["confirm_step"] = "confirm_step"
+    spec: ClassVar = setting()
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +112,7 @@ class TakeSighting:
 
     tracker_id: str
     kind: Literal["take_sighting"] = "take_sighting"
+    spec: ClassVar = setting()
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +122,7 @@ class ApplySightings:
     tracker_id: str
     keep: tuple[Sighting, ...]
     kind: Literal["apply_sightings"] = "apply_sightings"
+    spec: ClassVar = setting(sealed=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,6 +132,7 @@ class AnswerDirection:
     tracker_id: str
     right: bool
     kind: Literal["answer_direction"] = "answer_direction"
+    spec: ClassVar = setting(sealed=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +142,7 @@ class AnswerScale:
     tracker_id: str
     measured_deg: float
     kind: Literal["answer_scale"] = "answer_scale"
+    spec: ClassVar = setting(sealed=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,6 +153,7 @@ class SetSoftLimit:
     axis: Axis
     end: AxisEnd
     kind: Literal["set_soft_limit"] = "set_soft_limit"
+    spec: ClassVar = setting(sealed=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,6 +162,7 @@ class RestoreDrive:
 
     tracker_id: str
     kind: Literal["restore_drive"] = "restore_drive"
+    spec: ClassVar = setting(sealed=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,6 +172,7 @@ class CheckConnection:
     tracker_id: str
     drive: DriveConfig
     kind: Literal["check_connection"] = "check_connection"
+    spec: ClassVar = OrderSpec(needs=Permission.CONFIGURE, within_s=STORED_S, audited=False)
 
 
 DriveOrder = AnswerDirection | AnswerScale | SetSoftLimit | RestoreDrive | CheckConnection
@@ -171,6 +187,9 @@ class RequestControl:
     takes: bool = False
     reason: str = ""
     kind: Literal["request_control"] = "request_control"
+    spec: ClassVar = OrderSpec(
+        needs=Permission.OPERATE, within_s=STORED_S, by=Interface.PEOPLE | Interface.SUNSPEC
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,6 +199,7 @@ class AnswerControl:
     tracker_id: str
     grants: bool
     kind: Literal["answer_control"] = "answer_control"
+    spec: ClassVar = OrderSpec(needs=Permission.OPERATE, within_s=STORED_S)
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,6 +208,7 @@ class ReleaseControl:
 
     tracker_id: str
     kind: Literal["release_control"] = "release_control"
+    spec: ClassVar = OrderSpec(needs=Permission.OPERATE, within_s=STORED_S)
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,6 +217,9 @@ class RenewControl:
 
     tracker_ids: tuple[str, ...]
     kind: Literal["renew_control"] = "renew_control"
+    spec: ClassVar = OrderSpec(
+        needs=Permission.OPERATE, within_s=STORED_S, by=Interface.PAGE | Interface.SUNSPEC, audited=False
+    )
 
 
 ControlOrder = RequestControl | AnswerControl | ReleaseControl | RenewControl
@@ -208,6 +232,7 @@ class LockSettings:
 
     tracker_id: str
     kind: Literal["lock_settings"] = "lock_settings"
+    spec: ClassVar = setting()
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,6 +242,7 @@ class UnlockSettings:
     tracker_id: str
     reason: str
     kind: Literal["unlock_settings"] = "unlock_settings"
+    spec: ClassVar = setting()
 
 
 LockOrder = LockSettings | UnlockSettings
@@ -230,6 +256,7 @@ class SavePlan:
     tracker_id: str
     plan: ShowPlan
     kind: Literal["save_plan"] = "save_plan"
+    spec: ClassVar = setting(Permission.OPERATE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,6 +264,9 @@ class StopAll:
     """Stop every tracker of the site now."""
 
     kind: Literal["stop_all"] = "stop_all"
+    spec: ClassVar = OrderSpec(
+        needs=Permission.STOP, within_s=STORED_S, motion=Motion.STOPS, in_safe_mode=True
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,6 +276,7 @@ class SaveRecording:
     info: RecordingInfo
     chunks: tuple[str, ...]
     kind: Literal["save_recording"] = "save_recording"
+    spec: ClassVar = setting(Permission.SIMULATE, within_s=LONG_S)
 
 
 @dataclass(frozen=True, slots=True)
@@ -254,6 +285,7 @@ class DeleteRecording:
 
     recording_id: str
     kind: Literal["delete_recording"] = "delete_recording"
+    spec: ClassVar = setting()
 
 
 @dataclass(frozen=True, slots=True)
@@ -263,6 +295,7 @@ class InjectFault:
     tracker_id: str
     fault: str
     kind: Literal["inject_fault"] = "inject_fault"
+    spec: ClassVar = OrderSpec(needs=Permission.CONFIGURE, within_s=STORED_S)
 
 
 @dataclass(frozen=True, slots=True)
@@ -271,6 +304,7 @@ class EndInjectedFaults:
 
     tracker_id: str
     kind: Literal["end_injected_faults"] = "end_injected_faults"
+    spec: ClassVar = OrderSpec(needs=Permission.CONFIGURE, within_s=STORED_S)
 
 
 SiteCommand = (

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from app.base.message import NOTHING, Message
+
 LATENESS_BOUNDS_MS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0)
 
 
@@ -46,11 +48,11 @@ class GatewayMetrics:
 
     name: str
     status: GatewayStatus
-    where: str = ""
+    where: Message = NOTHING
     clients: int = 0
-    error: str = ""
+    error: Message = NOTHING
     waiting: int = 0
-    writes: str = ""
+    writes: Message = NOTHING
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +67,7 @@ class MachineMetrics:
     orders_refused: int = 0
     events: int = 0
     events_waiting: int = 0
-    frames_waiting: int = 0
+    samples_waiting: int = 0
     store_queue: int = 0
     store_failures: int = 0
     resident_bytes: int = 0

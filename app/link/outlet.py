@@ -5,7 +5,7 @@ from collections.abc import AsyncIterator, Callable, Iterable
 from contextlib import closing
 
 from app.link.messages import Update
-from app.tracker.snapshot import Event, SiteSnapshot, Snapshot
+from app.tracker.state.snapshot import Event, SiteSnapshot, Snapshot
 
 MOST_EVENTS_WAITING = 10_000
 MOST_TRACKERS_AT_ONCE = 20

@@ -1,9 +1,11 @@
 """Orders about the place where the site stands."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
+from app.link.settings_orders import UndoSiteSettings
 from app.sun.horizon import Horizon
+from app.tracker.values.order_spec import setting
 
 
 @dataclass(frozen=True, slots=True)
@@ -12,3 +14,4 @@ class SetHorizon:
 
     horizon: Horizon
     kind: Literal["set_horizon"] = "set_horizon"
+    spec: ClassVar = setting(undone_by=UndoSiteSettings)

@@ -1,7 +1,9 @@
 """Orders about commissioning records: photos for the next one, and signing it."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
+
+from app.tracker.values.order_spec import LONG_S, setting
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,6 +16,7 @@ class AddRecordPhoto:
     height: int
     caption: str
     kind: Literal["add_record_photo"] = "add_record_photo"
+    spec: ClassVar = setting(within_s=LONG_S)
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +26,7 @@ class RemoveRecordPhoto:
     tracker_id: str
     number: int
     kind: Literal["remove_record_photo"] = "remove_record_photo"
+    spec: ClassVar = setting()
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +38,7 @@ class SignRecord:
     digest: str
     photos: tuple[int, ...] = ()
     kind: Literal["sign_record"] = "sign_record"
+    spec: ClassVar = setting(within_s=LONG_S)
 
 
 RecordOrder = AddRecordPhoto | RemoveRecordPhoto | SignRecord

@@ -6,8 +6,9 @@ from collections.abc import Callable, Coroutine
 from pathlib import Path
 from typing import Any
 
-from app.budget import Budget
-from app.clock import Clock, SystemClock
+from app.base.budget import Budget
+from app.base.clock import Clock, SystemClock
+from app.base.logs import get_logger
 from app.link.codec import FrameBroken, encode_telling, let_go, stop_path, told
 from app.link.conversation import (
     MOST_AT_ONCE,
@@ -17,7 +18,6 @@ from app.link.conversation import (
     StopLane,
 )
 from app.link.messages import Update
-from app.logs import get_logger
 
 TAKE_WITHIN_S = 5.0
 

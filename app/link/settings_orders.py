@@ -1,7 +1,9 @@
 """Orders about settings that go back to what was."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
+
+from app.tracker.values.order_spec import setting
 
 
 @dataclass(frozen=True, slots=True)
@@ -10,6 +12,7 @@ class UndoSettings:
 
     tracker_id: str
     kind: Literal["undo_settings"] = "undo_settings"
+    spec: ClassVar = setting(sealed=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,3 +20,4 @@ class UndoSiteSettings:
     """Set what holds for the site, its place and clock aside, as it was before it was changed last."""
 
     kind: Literal["undo_site_settings"] = "undo_site_settings"
+    spec: ClassVar = setting()

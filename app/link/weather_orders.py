@@ -2,12 +2,15 @@
 
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Literal
+from typing import ClassVar, Literal
 
-from app.tracker.memory import MetStation
-from app.tracker.simulated_weather import SimulatedStation
-from app.tracker.weather import Weather
-from app.tracker.weather_windows import WeatherWindows
+from app.base.permission import Permission
+from app.link.settings_orders import UndoSiteSettings
+from app.tracker.memory.memory import MetStation
+from app.tracker.values.order_spec import STORED_S, Interface, OrderSpec, setting
+from app.tracker.weather.simulated_weather import SimulatedStation
+from app.tracker.weather.weather import Weather
+from app.tracker.weather.weather_windows import WeatherWindows
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,6 +20,7 @@ class ReportWeather:
     readings: Weather
     measured_at: datetime | None = None
     kind: Literal["report_weather"] = "report_weather"
+    spec: ClassVar = OrderSpec(needs=Permission.REPORT, by=Interface.API, within_s=STORED_S, audited=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +29,7 @@ class SetMetStation:
 
     station: MetStation | None
     kind: Literal["set_met_station"] = "set_met_station"
+    spec: ClassVar = setting(undone_by=UndoSiteSettings)
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +41,7 @@ class SimulateWeather:
 
     station: SimulatedStation | None
     kind: Literal["simulate_weather"] = "simulate_weather"
+    spec: ClassVar = setting(undone_by=UndoSiteSettings)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +50,7 @@ class SetWeatherWindows:
 
     windows: WeatherWindows
     kind: Literal["set_weather_windows"] = "set_weather_windows"
+    spec: ClassVar = setting(undone_by=UndoSiteSettings)
 
 
 WeatherOrder = ReportWeather | SetMetStation | SimulateWeather | SetWeatherWindows

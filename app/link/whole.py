@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from app.link.codec import Told
-from app.tracker.snapshot import Event, SiteSnapshot, Snapshot
+from app.tracker.state.snapshot import Event, SiteSnapshot, Snapshot
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,10 +2,10 @@
 
 import sys
 
-from app.errors import Foreseen
+from app.base.errors import Foreseen
+from app.base.settings import read_settings
+from app.base.startup import hurry, late
 from app.machine.supervised import end_with_supervisor
-from app.settings import read_settings
-from app.startup import hurry, late
 
 
 def main() -> int:

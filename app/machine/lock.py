@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 
-from app.errors import WRONG, Foreseen
+from app.base.errors import WRONG, Foreseen
 
 LOCK_NAME = "machine.lock"
 

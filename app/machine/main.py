@@ -10,14 +10,19 @@ from uuid import uuid4
 
 from app.alarms.conditions import MEGABYTE, SITE, Condition
 from app.audit.entry import Entry, told
-from app.build import BUILT_AT, VERSION
-from app.clock import SystemClock
-from app.drives.factory import DriveFactory
-from app.drives.met_station import met_reader
-from app.drives.probe import DriveProbe
+from app.base.build import BUILT_AT, VERSION
+from app.base.clock import SystemClock
+from app.base.logs import get_logger, set_up_logs
+from app.base.message import N_, Message
+from app.base.outliving import memory_beside
+from app.base.settings import Settings
+from app.base.startup import settle
+from app.base.zones import zones_missing
+from app.drives.connections.met_station import met_reader
+from app.drives.connections.probe import DriveProbe
 from app.gateway.gateways import Gateways
 from app.link.server import LinkServer
-from app.logs import get_logger, set_up_logs
+from app.machine.drive_factory import DriveFactory
 from app.machine.lock import only_instance
 from app.machine.loop import run_loop
 from app.machine.marker import mark_running, mark_stopped, version_before
@@ -28,22 +33,21 @@ from app.machine.starting import check_data_dir
 from app.machine.supervised import tell_ready
 from app.machine.systemd import notify
 from app.machine.watchdog import LoopWatchdog
-from app.settings import Settings
-from app.site.ntp import kernel_clock
+from app.simulation.kept_positions import KeptPositions
+from app.site.clock.ntp import kernel_clock
+from app.site.clock.timekeeping import Timekeeper
 from app.site.site import Site, SiteOptions
 from app.site.startup import Beginning, begin
-from app.site.timekeeping import Timekeeper
-from app.site.validation import NO_ZONES
-from app.startup import settle
+from app.site.state.validation import NO_ZONES
+from app.store.backup.restore import apply_pending_restore
 from app.store.engine import open_writer
 from app.store.files import keep_all_private
 from app.store.integrity import sqlite_notice
 from app.store.migrations import make_apart, upgrade
-from app.store.restore import apply_pending_restore
 from app.store.store import JournalFilter, StoreDamaged, StoreFailed, Writer
 from app.store.writer_thread import WriterThread
-from app.tracker.snapshot import Event, EventKind
-from app.zones import zones_missing
+from app.tracker.state.snapshot import Event, EventKind
+from app.tracker.values.actors import CONTROLLER
 
 log = get_logger()
 
@@ -54,23 +58,26 @@ def run(settings: Settings) -> None:
     With a damaged database it runs in safe mode. Raises `SettingsWrong` if the data folder cannot be
     written, `AlreadyRunning` if another holds it, `StoreFailed` if the store cannot be opened otherwise.
     """
-    set_up_logs("machine", log_format=settings.log_format, log_level=settings.log_level)
+    set_up_logs("controller", log_format=settings.log_format, log_level=settings.log_level)
     check_data_dir(settings.data_dir)
     clock = SystemClock()
     with only_instance(settings.data_dir, clock.now()):
         keep_all_private(settings.data_dir)
         _restore_if_asked(settings, clock.now())
+        positions = KeptPositions(settings.data_dir / "drives", memory_beside(settings.data_dir))
         try:
             make_apart(settings.url)
             upgrade(settings.url)
             writer = open_writer(settings.url)
         except StoreDamaged as damage:
-            run_loop(serve_safely(settings, clock, damage))
+            run_loop(serve_safely(settings, clock, damage, positions))
+            positions.close()
             return
         try:
             audit_version(settings.data_dir, writer, VERSION, clock.now())
-            run_loop(_serve(settings, clock, writer))
+            run_loop(_serve(settings, clock, writer, positions))
         finally:
+            positions.close()
             writer.close()
 
 
@@ -105,11 +112,11 @@ def _restore_if_asked(settings: Settings, now: datetime) -> None:
         log.info("restored", site=restored.backup.site_name)
 
 
-async def _serve(settings: Settings, clock: SystemClock, writer: Writer) -> None:
+async def _serve(settings: Settings, clock: SystemClock, writer: Writer, positions: KeptPositions) -> None:
     raise_priority()
     background = WriterThread(writer, _on_store_failure)
     beginning = begin(writer, clock.now(), unclean_since=mark_running(settings.data_dir, clock.now()))
-    site = _site(settings, clock, background, writer, beginning)
+    site = _site(settings, clock, background, writer, beginning, positions)
     gateways = Gateways(site, clock, settings, writer)
     server = LinkServer(gateways, settings.link_path)
     stopped = on_signals()
@@ -148,7 +155,9 @@ async def _take_down(
     await gateways.close()
     watching.cancel()
     await asyncio.gather(watching, return_exceptions=True)
-    event = Event(site.model.now(), EventKind.CONTROLLER_STOPPED, None, "The controller service was stopped.")
+    event = Event(
+        site.model.now(), EventKind.CONTROLLER_STOPPED, None, N_("The controller service was stopped.")
+    )
     await site.close(event)
     await server.close()
     if background.close():
@@ -157,8 +166,8 @@ async def _take_down(
 
 
 def _memory_guard(settings: Settings, clock: SystemClock, site: Site, stopped: asyncio.Event) -> MemoryGuard:
-    def restart(why: str) -> None:
-        site.note(site.model.event(EventKind.CONTROLLER_RESTARTS, why, "machine"))
+    def restart(why: Message) -> None:
+        site.note(site.model.event(EventKind.CONTROLLER_RESTARTS, why, CONTROLLER))
         stopped.set()
 
     return MemoryGuard(clock, site, settings.memory_limit_mb * MEGABYTE, restart)
@@ -170,6 +179,7 @@ def _site(
     background: WriterThread,
     writer: Writer,
     beginning: Beginning,
+    positions: KeptPositions,
 ) -> Site:
     timekeeper = Timekeeper(
         clock,
@@ -179,7 +189,9 @@ def _site(
         not_before=_newest_event(writer),
     )
     period = timedelta(milliseconds=settings.tick_ms)
-    factory = DriveFactory(clock, settings.data_dir, sun=lambda: site.model.sun(), tick=period)
+    factory = DriveFactory(
+        clock, settings.data_dir, positions=positions, sun=lambda: site.model.sun(), tick=period
+    )
     site = Site(
         clock,
         factory.make,
@@ -191,9 +203,9 @@ def _site(
             boot_id=uuid4().hex,
             period=period,
             retention=timedelta(days=settings.telemetry_retention_days),
-            recordings_keep=settings.recordings_keep,
+            recordings_max=settings.recordings_max,
             samples_every=timedelta(seconds=settings.sample_store_s),
-            weather_stale_after=timedelta(seconds=settings.weather_stale_s),
+            weather_stale_after=timedelta(seconds=settings.weather_max_age_s),
             make_station=partial(met_reader, factory.buses),
             weather_file=settings.data_dir / "weather",
             journal_retention=timedelta(days=settings.journal_retention_days),
@@ -201,6 +213,9 @@ def _site(
         ),
         tools=DriveProbe(factory.buses, factory.profiles),
         alarms=beginning.alarms,
+    )
+    positions.when_stale(
+        lambda: site.model.ledger.post_along("simulated positions", lambda _: positions.flush())
     )
     return site
 

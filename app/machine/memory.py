@@ -5,8 +5,9 @@ from datetime import timedelta
 from typing import Protocol
 
 from app.alarms.conditions import MEGABYTE, SITE, Band, Condition
-from app.clock import Clock
-from app.site.health import resident_bytes
+from app.base.clock import Clock
+from app.base.message import N_, Message, say, with_format
+from app.site.publishing.health import resident_bytes
 
 LOOK_EVERY = timedelta(seconds=10)
 EARLIEST = timedelta(minutes=10)
@@ -33,7 +34,7 @@ class MemoryGuard:
         clock: Clock,
         site: Watched,
         limit_bytes: int,
-        restart: Callable[[str], None],
+        restart: Callable[[Message], None],
         *,
         resident: Callable[[], int | None] = resident_bytes,
     ) -> None:
@@ -58,12 +59,20 @@ class MemoryGuard:
             self._site.trouble("memory", None)
             return
         held_mb, limit_mb = resident / MEGABYTE, self._limit_bytes / MEGABYTE
-        text = f"The controller service uses {held_mb:.0f} MB of memory; the limit is {limit_mb:.0f} MB."
-        hint = "At its limit, the service restarts automatically as soon as every tracker is at standstill."
+        text = say(
+            "The controller service uses {held_mb} MB of memory; the limit is {limit_mb} MB.",
+            held_mb=with_format(held_mb, ".0f"),
+            limit_mb=with_format(limit_mb, ".0f"),
+        )
+        hint = N_(
+            "At its limit, the service restarts automatically as soon as every tracker is at standstill."
+        )
         self._site.trouble("memory", Condition("memory_high", None, SITE, text, hint))
         if resident >= self._limit_bytes and self._may_restart:
             self._ending = True
-            self._restart(f"{text} The service restarts now, while every tracker is at standstill.")
+            self._restart(
+                say("{text} The service restarts now, while every tracker is at standstill.", text=text)
+            )
 
     @property
     def _may_restart(self) -> bool:

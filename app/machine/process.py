@@ -5,7 +5,7 @@ import os
 import signal
 import sys
 
-from app.logs import get_logger
+from app.base.logs import get_logger
 
 FIFO_PRIORITY = 10
 PANEL_PRIORITY = 3

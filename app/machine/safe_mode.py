@@ -8,33 +8,36 @@ from pathlib import Path
 from uuid import uuid4
 
 from app.alarms.conditions import SITE, Condition
-from app.clock import Clock, SystemClock
-from app.drives.factory import DriveFactory
+from app.base.clock import Clock, SystemClock
+from app.base.logs import get_logger
+from app.base.message import N_, say
+from app.base.settings import Settings
 from app.link.server import LinkServer
-from app.logs import get_logger
+from app.machine.drive_factory import DriveFactory
 from app.machine.process import on_signals, raise_priority
 from app.machine.supervised import tell_ready
 from app.machine.systemd import notify
 from app.machine.watchdog import LoopWatchdog
-from app.settings import Settings
+from app.simulation.kept_positions import KeptPositions
 from app.site.site import Site, SiteOptions
-from app.store.backups import backups
+from app.store.backup.backups import backups
+from app.store.backup.restore import PENDING_NAME
 from app.store.engine import open_reader
-from app.store.restore import PENDING_NAME
 from app.store.store import StoreDamaged, StoreFailed
-from app.tracker.memory import SiteState, TrackerMemory, TrackerState
-from app.tracker.reason import Reason
-from app.tracker.snapshot import EventKind
+from app.tracker.memory.memory import SiteState, TrackerMemory, TrackerState
+from app.tracker.state.snapshot import EventKind
+from app.tracker.values.actors import CONTROLLER
+from app.tracker.values.reason import Reason
 
 LOOK_EVERY = timedelta(seconds=1)
-HINT = "An administrator can restore a backup on the Restore page, or with: heliopanel restore FILE."
+HINT = N_("An administrator can restore a backup on the Restore page, or with: heliopanel restore FILE.")
 
 log = get_logger()
 
 
 def safe_mode(damage: StoreDamaged) -> Reason:
     """Return why nothing may be moved or changed."""
-    return Reason("safe_mode", f"Heliopanel runs in safe mode: {damage}", HINT)
+    return Reason("safe_mode", say("Heliopanel runs in safe mode: {damage}", damage=damage), HINT)
 
 
 def rescued(url: str, data_dir: Path) -> tuple[SiteState, tuple[TrackerState, ...]]:
@@ -65,20 +68,22 @@ def _read(url: str) -> tuple[SiteState, tuple[TrackerState, ...]] | None:
 
 
 def _untrusted(trackers: Sequence[TrackerState]) -> tuple[TrackerState, ...]:
-    memory = TrackerMemory(home_lost="the database is damaged.")
+    memory = TrackerMemory(home_lost=N_("the database is damaged."))
     return tuple(replace(one, memory=memory) for one in trackers)
 
 
-async def serve_safely(settings: Settings, clock: SystemClock, damage: StoreDamaged) -> None:
+async def serve_safely(
+    settings: Settings, clock: SystemClock, damage: StoreDamaged, positions: KeptPositions
+) -> None:
     """Serve what is left until told to end, or until a backup was handed over: the next start restores it."""
     raise_priority()
     why = safe_mode(damage)
     log.critical("safe_mode", reason=str(damage))
-    site = _site(settings, clock, why)
+    site = _site(settings, clock, why, positions)
     server = LinkServer(site, settings.link_path)
     stopped = on_signals()
     site.trouble("store", Condition("store_damaged", None, SITE, why.message, why.hint))
-    event = site.model.event(EventKind.CONTROLLER_STARTED, why.message, "machine", clean=False)
+    event = site.model.event(EventKind.CONTROLLER_STARTED, why.message, CONTROLLER, clean=False)
     await site.start(event)
     await server.start()
     watching = asyncio.create_task(
@@ -98,11 +103,11 @@ async def serve_safely(settings: Settings, clock: SystemClock, damage: StoreDama
     log.info("controller_stopped")
 
 
-def _site(settings: Settings, clock: SystemClock, why: Reason) -> Site:
+def _site(settings: Settings, clock: SystemClock, why: Reason, positions: KeptPositions) -> Site:
     """Return a site that keeps nothing and refuses every motion."""
     state, trackers = rescued(settings.url, settings.data_dir)
     options = SiteOptions(boot_id=uuid4().hex, period=timedelta(milliseconds=settings.tick_ms), safe_mode=why)
-    factory = DriveFactory(clock, settings.data_dir)
+    factory = DriveFactory(clock, settings.data_dir, positions=positions)
     return Site(clock, factory.make, state, trackers, options=options)
 
 

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from app.errors import AT_RUN_TIME
-from app.settings import Settings, SettingsWrong
+from app.base.errors import AT_RUN_TIME
+from app.base.settings import Settings, SettingsWrong
 
 WRITTEN = ("*.db", "machine.*")
 """What both processes write in the data folder; somebody who ran one as root left files that are root's."""

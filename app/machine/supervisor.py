@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from datetime import timedelta
 from typing import NoReturn
 
-from app.clock import Clock, SystemClock
-from app.errors import WRONG
-from app.logs import get_logger, set_up_logs
+from app.base.clock import Clock, SystemClock
+from app.base.errors import WRONG
+from app.base.logs import get_logger, set_up_logs
+from app.base.own import own_process
 from app.machine.supervised import READY, SUPERVISED
-from app.own import own_process
 
 FIRST_PAUSE = timedelta(milliseconds=200)
 LONGEST_PAUSE = timedelta(seconds=5)
@@ -122,7 +122,9 @@ def supervise(log_format: str, log_level: str) -> NoReturn:
 
 
 async def _supervise() -> int:
-    supervisor = Supervisor(SystemClock(), Child("machine", ("app.machine",)), Child("web", ("app.panel",)))
+    supervisor = Supervisor(
+        SystemClock(), Child("controller", ("app.machine",)), Child("web", ("app.panel",))
+    )
     for number in (signal.SIGTERM, signal.SIGINT):
         asyncio.get_running_loop().add_signal_handler(number, supervisor.stop)
     return await supervisor.run()

@@ -8,8 +8,8 @@ from concurrent.futures import TimeoutError as TooLate
 from datetime import timedelta
 from typing import Any
 
-from app.clock import Clock
-from app.logs import get_logger
+from app.base.clock import Clock
+from app.base.logs import get_logger
 from app.machine.systemd import notify
 
 LOOK_EVERY_S = 0.25

@@ -1,11 +1,11 @@
 """Where the axes of a recording stood: frames of most mounts tell directions of the sky."""
 
 from app.sun.trigonometry import ARRAY, Array
-from app.tracker.config import MountKind, Orientation, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mount import sky, to_axes
-from app.tracker.recording import Frames
-from app.tracker.strategy import CLEAR
+from app.tracker.memory.memory import Pointing
+from app.tracker.memory.recording import Frames
+from app.tracker.mounts.mount import sky, to_axes
+from app.tracker.settings.config import MountKind, Orientation, TrackerConfig
+from app.tracker.settings.strategy import CLEAR
 
 
 def axis_angles(

@@ -4,20 +4,21 @@ from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
-from app.clock import VirtualClock
-from app.drives.simulated import SimulatedDrive
-from app.drives.sunlight import Sunlight
+from app.base.clock import VirtualClock
+from app.base.message import N_, say
 from app.show.simulated_weather import MadeUpWeather
-from app.site.sky import Sky
+from app.simulation.simulated import SimulatedDrive
+from app.simulation.sunlight import Sunlight
+from app.site.weather.sky import Sky
 from app.sun.position import Location, SunPosition
-from app.tracker.commands import Command, Home
-from app.tracker.config import TrackerConfig
+from app.tracker.commands.commands import Command, Home
 from app.tracker.controller import Controller
-from app.tracker.memory import Pointing, TrackerMemory
-from app.tracker.motion import DriveCommand, Halt
-from app.tracker.observation import Observation
-from app.tracker.snapshot import ActivityName, Event, Snapshot
-from app.tracker.weather import NOTHING_SENSED
+from app.tracker.memory.memory import Pointing, TrackerMemory
+from app.tracker.memory.observation import Observation
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.state.snapshot import ActivityName, Event, Snapshot
+from app.tracker.values.motion import DriveCommand, Halt
+from app.tracker.weather.weather import NOTHING_SENSED
 
 SHORT_STEP = timedelta(milliseconds=100)
 STEADY_TICKS = 10
@@ -60,7 +61,7 @@ class Rehearsal:
         """Search the origin switches until the zero is trusted."""
         self.tick()
         self.ask(Home())
-        self.prepare_until(lambda seen: seen.home_trusted and self._rests(seen), "it was homed")
+        self.prepare_until(lambda seen: seen.homed and self._rests(seen), N_("it was homed"))
 
     def ask(self, command: Command) -> tuple[Event, ...]:
         """Give the controller a command."""
@@ -76,7 +77,9 @@ class Rehearsal:
             steady = steady + 1 if ready(self.controller.snapshot(self.site_time)) else 0
             if steady >= STEADY_TICKS:
                 return
-        raise RehearsalFailed(f"The simulated tracker waited an hour until {what}; check its settings.")
+        raise RehearsalFailed(
+            say("The simulated tracker waited an hour until {what}; check its settings.", what=what)
+        )
 
     def tick(self, sun: SunPosition | None = None) -> tuple[Event, ...]:
         """Read, decide and write once at the present instant; the sun may come worked out in advance."""

@@ -10,25 +10,26 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
+from app.base.message import N_, Message, say, with_format
+from app.base.zones import zone_of
 from app.show.rehearsal import SHORT_STEP, Rehearsal, RehearsalFailed
 from app.show.simulated_weather import MadeUpWeather
 from app.store.chunks import encode_all
 from app.sun.events import day_events
 from app.sun.position import Location, SunPosition, sun_path
-from app.tracker.commands import GoToStart, Move, RunShow, SelectMode, Track
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mode import Mode
+from app.tracker.commands.commands import GoToStart, Move, RunShow, SelectMode, Track
+from app.tracker.memory.memory import Pointing
+from app.tracker.memory.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
 from app.tracker.programs.show import ShowPlan, schedule_of
-from app.tracker.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
-from app.tracker.snapshot import ActivityName, EventKind, ShowPhase, Snapshot
-from app.tracker.weather_day import WeatherDay
-from app.zones import zone_of
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.state.snapshot import ActivityName, EventKind, ShowPhase, Snapshot
+from app.tracker.values.mode import Mode
+from app.tracker.weather.weather_day import WeatherDay
 
 SECOND = timedelta(seconds=1)
 LONGEST = timedelta(days=3)
 MOST_FRAMES = 1_000_000
-DRIVE = "Simulated tracker on a virtual clock; no real tracker moved."
+DRIVE = N_("Simulated tracker on a virtual clock; no real tracker moved.")
 
 
 def simulate(
@@ -57,7 +58,7 @@ def simulate(
     rehearsal.home()
     rehearsal.ask(SelectMode(mode, orientation))
     rehearsal.ask(Move(orientation) if mode is Mode.FIXED else Track())
-    rehearsal.prepare_until(_settled, "it was in position")
+    rehearsal.prepare_until(_settled, N_("it was in position"))
     rehearsal.weather = None if weather is None else MadeUpWeather(weather)
     frames = _run(rehearsal, begin, end, step, sparing=sparing)
     info = _info(config, location, time_zone, mode, orientation, begin, end)
@@ -77,7 +78,7 @@ def simulate_show(
     rehearsal = Rehearsal(config, pointing, plan.location, plan.begin_at)
     rehearsal.home()
     rehearsal.ask(GoToStart(plan))
-    rehearsal.prepare_until(_ready_for_show, "it was at the start of the show")
+    rehearsal.prepare_until(_ready_for_show, N_("it was at the start of the show"))
     rehearsal.ask(RunShow(plan))
     rows = _run_show(rehearsal, plan, step)
     info = _info(config, plan.location, time_zone, plan.mode, plan.orientation, plan.begin_at, plan.end_at)
@@ -140,13 +141,18 @@ def encoded(frames: Frames) -> tuple[str, ...]:
 
 def _check_span(begin: datetime, end: datetime, step: timedelta) -> None:
     if begin.tzinfo is None or end.tzinfo is None:
-        raise ValueError("Enter the start and the end of a simulation with their time zone.")
+        raise ValueError(N_("Enter the start and the end of a simulation with their time zone."))
     if not timedelta(0) < end - begin <= LONGEST:
-        raise ValueError("A simulation must end after it starts and last at most three days.")
+        raise ValueError(N_("A simulation must end after it starts and last at most three days."))
     if not SHORT_STEP <= step <= timedelta(minutes=1):
-        raise ValueError("The step of a simulation must be 0.1 to 60 seconds.")
+        raise ValueError(N_("The step of a simulation must be 0.1 to 60 seconds."))
     if (end - begin) / step > MOST_FRAMES:
-        raise ValueError(f"A simulation has at most {MOST_FRAMES} samples; choose a longer step.")
+        raise ValueError(
+            say(
+                "A simulation has at most {most_frames} samples; choose a longer step.",
+                most_frames=MOST_FRAMES,
+            )
+        )
 
 
 def _settled(seen: Snapshot) -> bool:
@@ -191,7 +197,7 @@ def _run_show(rehearsal: Rehearsal, plan: ShowPlan, step: timedelta) -> list[tup
         elapsed_s = (rehearsal.clock.now() - begun).total_seconds()
         rows.append((elapsed_s, sun_s, *rehearsal.controller.frame()[2:]))
         rehearsal.clock.advance(step)
-    raise RehearsalFailed("The simulated show did not end within its planned time.")
+    raise RehearsalFailed(N_("The simulated show did not end within its planned time."))
 
 
 def _frames(rows: NDArray[np.float64], elapsed_s: NDArray[np.float64]) -> Frames:
@@ -201,13 +207,21 @@ def _frames(rows: NDArray[np.float64], elapsed_s: NDArray[np.float64]) -> Frames
     return Frames(values)
 
 
-def _day_title(config: TrackerConfig, time_zone: str, begin: datetime) -> str:
-    return f"Simulated {begin.astimezone(zone_of(time_zone)):%Y-%m-%d}, {config.name}"
+def _day_title(config: TrackerConfig, time_zone: str, begin: datetime) -> Message:
+    return say(
+        "Simulated {astimezone}, {name}",
+        astimezone=with_format(begin.astimezone(zone_of(time_zone)), "%Y-%m-%d"),
+        name=config.name,
+    )
 
 
-def _show_title(plan: ShowPlan, time_zone: str) -> str:
+def _show_title(plan: ShowPlan, time_zone: str) -> Message:
     begin, end = (at.astimezone(zone_of(time_zone)) for at in (plan.begin_at, plan.end_at))
-    return f"Simulated show of {begin:%Y-%m-%d %H:%M} to {end:%H:%M}"
+    return say(
+        "Simulated show of {begin} to {end}",
+        begin=with_format(begin, "%Y-%m-%d %H:%M"),
+        end=with_format(end, "%H:%M"),
+    )
 
 
 def _finished(info: RecordingInfo, title: str, frames: Frames) -> RecordingInfo:
@@ -219,7 +233,7 @@ def _finished(info: RecordingInfo, title: str, frames: Frames) -> RecordingInfo:
         ended_at=info.began_at + timedelta(seconds=lasted_s),
         duration_s=lasted_s,
         outcome="completed",
-        frame_count=len(frames),
+        sample_count=len(frames),
     )
 
 
@@ -239,8 +253,8 @@ def _info(
         tracker_name=config.name,
         title="",
         began_at=begin,
-        sun_begin_at=begin,
-        sun_end_at=end,
+        sun_start=begin,
+        sun_end=end,
         duration_s=(end - begin).total_seconds(),
         location=location,
         time_zone=time_zone,

@@ -2,13 +2,14 @@
 
 from datetime import datetime, timedelta
 
-from app.site.weather import WeatherStation
+from app.base.message import say
+from app.site.weather.weather import WeatherStation
 from app.sun.position import SunPosition
-from app.tracker.weather import NOTHING_SENSED, SIMULATED, Sensed
-from app.tracker.weather_day import WeatherDay
+from app.tracker.weather.weather import NOTHING_SENSED, SIMULATED, Sensed
+from app.tracker.weather.weather_day import WeatherDay
 
 EVERY = timedelta(seconds=2)
-SOURCE = f"{SIMULATED} day"
+SOURCE = say("{simulated} day", simulated=SIMULATED)
 
 
 class MadeUpWeather:

@@ -5,16 +5,16 @@ from datetime import datetime, timedelta
 import numpy as np
 from numpy.typing import NDArray
 
-from app.angles import separation_deg
+from app.base.angles import separation_deg
 from app.show.axis_angles import axis_angles, faced
 from app.show.simulate import simulate
 from app.show.strategy_told import CURVE_S, StrategyDay
 from app.sun.position import Location, SunPosition, sun_path
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mode import Mode
+from app.tracker.memory.memory import Pointing
+from app.tracker.memory.recording import Frames
 from app.tracker.programs.schedule import Followed
-from app.tracker.recording import Frames
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.values.mode import Mode
 
 FRAME_S = 5
 STILL_DEG = 1e-6

@@ -9,52 +9,47 @@ from pathlib import Path
 
 from app.alarms.alarm import Alarm
 from app.alarms.conditions import Condition
-from app.clock import Clock
+from app.base.clock import Clock
+from app.base.logs import get_logger
+from app.base.message import N_, say, with_format
 from app.drives.drive import Drive
-from app.link.alarm_orders import AlarmOrder
-from app.link.messages import (
-    CheckConnection,
-    ControlOrder,
-    EndInjectedFaults,
-    InjectFault,
-    Order,
-    SetClock,
-    SiteCommand,
-    SiteDetail,
-    StopAll,
-    Update,
-)
+from app.link.messages import Order, SiteCommand, SiteDetail, Update
 from app.link.metrics import MachineMetrics
 from app.link.outlet import Listener, Outlet
-from app.link.weather_orders import ReportWeather
 from app.link.whole import with_tracker
-from app.logs import get_logger
-from app.site import changes, control, sightings, site_orders, tracker_orders
-from app.site.alarming import AlarmDesk
-from app.site.auditing import Auditor, as_action
-from app.site.connection_test import Checks, DriveTools
-from app.site.details import Details
-from app.site.gathering import BackgroundWriter
-from app.site.health import resident_bytes
-from app.site.idempotency import Overtaken, Repeats, refuse_untimely
-from app.site.kept_weather import WeatherFile
-from app.site.loop import TrackerLoop
-from app.site.met_poll import StationReader
-from app.site.model import SiteModel
-from app.site.overload import CODE, Overload
-from app.site.publishing import Publisher, concerned
-from app.site.recorder import Recorder
-from app.site.timekeeping import Timekeeper
-from app.site.weather import WeatherStation
-from app.site.write_queue import Ledger
-from app.tracker.commands import CommandRejected, EndJog, Jog, Stop
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import MetStation, SiteState, TrackerState
-from app.tracker.notifications import Notifications
-from app.tracker.observation import Observation
-from app.tracker.reason import Reason
-from app.tracker.snapshot import Event, EventKind, SiteSnapshot, Snapshot
-from app.tracker.weather_windows import USUAL_OLD_S, same_age
+from app.site.clock.timekeeping import Timekeeper
+from app.site.loop.loop import TrackerLoop
+from app.site.loop.overload import CODE, Overload
+from app.site.orders import (
+    control,
+    dispatch,
+    sightings,
+    tracker_orders,
+)
+from app.site.orders.idempotency import Overtaken, Repeats, refuse_untimely
+from app.site.publishing.alarming import AlarmDesk
+from app.site.publishing.details import Details
+from app.site.publishing.health import resident_bytes
+from app.site.publishing.publishing import Publisher, concerned
+from app.site.recording.auditing import Auditor, as_action
+from app.site.recording.gathering import BackgroundWriter
+from app.site.recording.recorder import Recorder
+from app.site.recording.write_queue import Ledger
+from app.site.state.connection_test import Checks, DriveTools
+from app.site.state.model import SiteModel
+from app.site.weather.kept_weather import WeatherFile
+from app.site.weather.met_poll import StationReader
+from app.site.weather.weather import WeatherStation
+from app.tracker.commands.commands import Command, CommandRejected
+from app.tracker.memory.memory import MetStation, SiteState, TrackerState
+from app.tracker.memory.observation import Observation
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.state.snapshot import Event, EventKind, SiteSnapshot, Snapshot
+from app.tracker.values.actors import CONTROLLER
+from app.tracker.values.notifications import Notifications
+from app.tracker.values.order_spec import Motion
+from app.tracker.values.reason import Reason
+from app.tracker.weather.weather_windows import USUAL_OLD_S, same_age
 
 PULSE = timedelta(milliseconds=500)
 CONTROL_EVERY = timedelta(milliseconds=250)
@@ -75,7 +70,7 @@ class SiteOptions:
     boot_id: str = "boot"
     period: timedelta = timedelta(milliseconds=100)
     retention: timedelta = timedelta(days=400)
-    recordings_keep: int = 500
+    recordings_max: int = 500
     samples_every: timedelta = SAMPLES_EVERY
     weather_stale_after: timedelta = timedelta(seconds=USUAL_OLD_S)
     journal_retention: timedelta = timedelta(days=1825)
@@ -125,6 +120,7 @@ class Site:
             self.model.add(tracker)
         self._auditor = Auditor(self._options.boot_id, self.model.timekeeper, ledger.post_entry)
         self._alarms = AlarmDesk.open(self.model, alarms, self._options.disk_free)
+        self._handlers = dispatch.handlers_with(self._alarms)
         self._outlet = Outlet()
         self._repeats = Repeats()
         self._overtaken = Overtaken()
@@ -146,8 +142,8 @@ class Site:
         await self.model.met.follow(self.model.station)
         self.publisher.publish(self.model.loops, events)
         self._tasks = (
-            asyncio.create_task(self._beat(), name="site pulse"),
-            asyncio.create_task(self._watch_control(), name="control authority"),
+            asyncio.create_task(self._beat(), name=N_("site pulse")),
+            asyncio.create_task(self._watch_control(), name=N_("control authority")),
             asyncio.create_task(self.publisher.run(), name="publisher"),
         )
 
@@ -162,7 +158,7 @@ class Site:
         await self.model.weather_file.close(self.model.measured.kept(self.model.now(), self._clock.now()))
         now = self.model.now()
         for tracker_id in self.model.loops:
-            self.model.recorder.finish(tracker_id, now, "controller stopped")
+            self.model.recorder.finish(tracker_id, now, N_("controller stopped"))
         self.model.recorder.flush(self._clock.now(), at_once=True)
         self.model.ledger.post_events(events)
         self.publisher.publish(self.model.loops, events)
@@ -191,7 +187,9 @@ class Site:
         """Carry out one order and return the snapshot after it."""
         self._orders += 1
         try:
-            return await self._repeats.once(order, self._record)
+            if order.key is None:
+                return await self._carry_out(order)
+            return await self._repeats.once(order, self._carry_out)
         except Exception:
             self._refused += 1
             raise
@@ -233,7 +231,7 @@ class Site:
             orders_refused=self._refused,
             events=model.ledger.event_count,
             events_waiting=self._outlet.waiting,
-            frames_waiting=model.recorder.frames_waiting,
+            samples_waiting=model.recorder.samples_waiting,
             store_queue=getattr(writer, "pending", 0),
             store_failures=getattr(writer, "failed", 0) + getattr(writer, "dropped", 0),
             resident_bytes=resident_bytes() or 0,
@@ -252,51 +250,48 @@ class Site:
         """Return whether no tracker moves or means to."""
         return all(self.model.rests(loop) for loop in self.model.loops.values())
 
-    async def _record(self, order: Order) -> SiteSnapshot:
-        return await self._auditor.record(order, self._carry_out)
-
     async def _carry_out(self, order: Order) -> SiteSnapshot:
+        with self._auditor.recording(order):
+            command, given_s = order.command, self._given_s(order)
+            if isinstance(command, SiteCommand):
+                events = await dispatch.carry_out(self._handlers, self.model, command, order)
+            else:
+                loop, command = await self._admitted(order, command)
+                self._overtaken.refuse(command, loop.config, given_s)
+                events = await tracker_orders.command(self.model, loop, command, order.actor, order.via)
+                if command.spec.held and not events:
+                    return self.publisher.newest
+            return await self._told(order, events)
+
+    def _given_s(self, order: Order) -> float:
+        """Note a stop and return when an order was given, or raise `CommandRejected`."""
         refuse_untimely(order, self.model.now())
-        command, given_s = order.command, order.given_s
+        spec, given_s = order.command.spec, order.given_s
         if given_s is None:
             given_s = asyncio.get_running_loop().time()
-        if isinstance(command, Stop | StopAll):
+        if spec.motion is Motion.STOPS:
             stopped = (one for one in self.model.loops if order.tracker_id in (None, one))
             self._overtaken.stopped(given_s, stopped)
-        if self._options.safe_mode is not None and not isinstance(command, Stop | StopAll | AlarmOrder):
+        if self._options.safe_mode is not None and not spec.in_safe_mode:
             raise CommandRejected(self._options.safe_mode)
-        if isinstance(command, SiteCommand):
-            events = await self._carry_out_for_site(order, command)
-        else:
-            loop = self.model.tracker(order.tracker_id)
-            with as_action("take_control"):
-                command, taken = await control.admit(self.model, loop, order, command)
-            if taken:
-                self.publisher.publish((loop.config.tracker_id,), taken)
-            loop = self.model.tracker(order.tracker_id)
-            self._overtaken.refuse(command, loop.config, given_s)
-            events = await tracker_orders.command(self.model, loop, command, order.actor, order.via)
-            if isinstance(command, Jog | EndJog) and not events:
-                return self.publisher.newest
+        return given_s
+
+    async def _admitted(self, order: Order, command: Command) -> tuple[TrackerLoop, Command]:
+        """Return the tracker and the command if whoever ordered has control, or takes it by it."""
+        loop = self.model.tracker(order.tracker_id)
+        with as_action("take_control"):
+            command, taken = await control.admit(self.model, loop, order, command)
+        if taken:
+            self.publisher.publish((loop.config.tracker_id,), taken)
+        return self.model.tracker(order.tracker_id), command
+
+    async def _told(self, order: Order, events: tuple[Event, ...]) -> SiteSnapshot:
+        """Tell what happened and return the site after it; the tracker it is about has its `actions`."""
         about = concerned(order, self.model.loops)
         await self.publisher.tell(about, events)
         if len(about) != 1 or about[0] not in self.model.loops:
             return self.publisher.newest
         return with_tracker(self.publisher.newest, await self.tracker(about[0]))
-
-    async def _carry_out_for_site(self, order: Order, command: SiteCommand) -> tuple[Event, ...]:
-        if isinstance(command, AlarmOrder):
-            return self._alarms.carry_out(command, order.actor)
-        if isinstance(command, StopAll | CheckConnection | InjectFault | EndInjectedFaults | ReportWeather):
-            return await site_orders.carry_out(self.model, command, order.actor)
-        if isinstance(command, ControlOrder):
-            return await control.carry_out(self.model, command, order)
-        async with self.model.changing:
-            refuse_untimely(order, self.model.now())
-            events = await changes.carry_out(self.model, command, order.actor)
-        if isinstance(command, SetClock):
-            await site_orders.set_drive_clocks(self.model)
-        return events
 
     def _on_tick(self, loop: TrackerLoop, seen: Observation, events: tuple[Event, ...]) -> None:
         """Keep what a tick changed, record it and tell it."""
@@ -361,9 +356,12 @@ class Site:
         moved_s = jump.by.total_seconds()
         event = self.model.event(
             EventKind.CLOCK_JUMPED,
-            f"The system clock jumped by {moved_s:+.1f} s; automatic motion is held until the "
-            "clock is confirmed or has been stable for 60 s.",
-            "machine",
+            say(
+                "The system clock jumped by {moved_s} s; automatic motion is held until the clock is "
+                "confirmed or has been stable for 60 s.",
+                moved_s=with_format(moved_s, "+.1f"),
+            ),
+            CONTROLLER,
             seconds=moved_s,
         )
         self.model.state = replace(self.model.state, clock=self.model.timekeeper.setting)
@@ -373,7 +371,7 @@ class Site:
     def _prune(self) -> None:
         self._pruned_at = self._clock.now()
         writer, before = self.model.ledger.writer, self.model.now() - self._options.retention
-        keep = self._options.recordings_keep
+        keep = self._options.recordings_max
         if writer is not None:
             self.model.ledger.hand_over()
             writer.post(lambda store: store.prune(days_before=before, keep=keep))
@@ -382,5 +380,9 @@ class Site:
 
     def _pruned(self, oldest: datetime, entries: int) -> Event:
         """Return the event that says what retention removed."""
-        text = f"Retention removed {entries} journal entries from before {oldest:%Y-%m-%d}."
-        return self.model.event(EventKind.JOURNAL_PRUNED, text, "machine", entries=entries)
+        text = say(
+            "Retention removed {entries} journal entries from before {oldest}.",
+            entries=entries,
+            oldest=with_format(oldest, "%Y-%m-%d"),
+        )
+        return self.model.event(EventKind.JOURNAL_PRUNED, text, CONTROLLER, entries=entries)

@@ -4,17 +4,18 @@ from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 
 from app.alarms.alarm import Alarm
-from app.build import VERSION
-from app.site.validation import check_config
+from app.base.build import VERSION
+from app.base.message import N_, NOTHING, Message, join, say, told_by, with_format
+from app.site.state.validation import check_config
 from app.store.config_repair import fallen_back
 from app.store.store import StoreFailed, Writer
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import RejectedSetting, SiteState, TrackerMemory, TrackerState
-from app.tracker.recording import RecordingInfo, RecordingKind
-from app.tracker.snapshot import Event, EventKind
+from app.tracker.memory.memory import RejectedSetting, SiteState, TrackerMemory, TrackerState
+from app.tracker.memory.recording import RecordingInfo, RecordingKind
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.state.snapshot import Event, EventKind
 
-FIRST_TRACKER = TrackerState(TrackerConfig("T1", "Tracker 1"), TrackerMemory())
-CUT_OFF = "interrupted: the controller service ended unexpectedly"
+FIRST_TRACKER = TrackerState(TrackerConfig("T1", N_("Tracker 1")), TrackerMemory())
+CUT_OFF = N_("interrupted: the controller service ended unexpectedly")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,39 +74,55 @@ def _judged(state: TrackerState, store: Writer) -> TrackerState:
     accepted = store.accepted_settings(state.config.tracker_id)
     if accepted is not None and accepted != state.config and not _wrong(accepted):
         return fallen_back(state, accepted, why=wrong)
-    why = RejectedSetting("combination of settings", "as below", "the same", wrong)
+    why = RejectedSetting(N_("combination of settings"), N_("as below"), N_("the same"), wrong)
     if why in state.memory.rejected:
         return state
     rejected = (*state.memory.rejected, why)
     return replace(state, memory=replace(state.memory, rejected=rejected, tracking_on=False))
 
 
-def _wrong(config: TrackerConfig) -> str:
+def _wrong(config: TrackerConfig) -> Message:
     """Return what is wrong with settings together, empty where nothing is."""
     try:
         check_config(config)
     except ValueError as error:
-        return str(error)
-    return ""
+        return told_by(error)
+    return NOTHING
 
 
 def _rejected(state: TrackerState, at: datetime) -> Event:
-    values = "; ".join(
-        f"{one.what}: stored {one.stored}, used {one.used} ({one.why})" for one in state.memory.rejected
+    values = join(
+        "; ",
+        (
+            say(
+                "{what}: stored {stored}, used {used} ({why})",
+                what=one.what,
+                stored=one.stored,
+                used=one.used,
+                why=one.why,
+            )
+            for one in state.memory.rejected
+        ),
     )
-    text = f"Stored settings of {state.config.name} were rejected at startup: {values}"
+    text = say(
+        "Stored settings of {name} were rejected at startup: {values}", name=state.config.name, values=values
+    )
     return Event(
         at, EventKind.CONFIG_REJECTED, state.config.tracker_id, text, data={"code": "config_rejected"}
     )
 
 
-def _message(unclean_since: datetime | None, cut: list[RecordingInfo]) -> str:
+def _message(unclean_since: datetime | None, cut: list[RecordingInfo]) -> Message:
     if unclean_since is None:
-        return "The controller service started."
-    shows = [f"{info.title} on {info.tracker_id}" for info in cut if info.kind is RecordingKind.SHOW]
-    lost = f" Cut off: {'; '.join(shows)}." if shows else ""
-    return (
-        "The controller service restarted. Its last run, started "
-        f"{unclean_since:%Y-%m-%d %H:%M:%S} UTC, ended unexpectedly (a crash or a power failure); "
-        f"drives with a watchdog stopped.{lost}"
+        return N_("The controller service started.")
+    shows = [
+        say("{title} on {tracker_id}", title=info.title, tracker_id=info.tracker_id)
+        for info in cut
+        if info.kind is RecordingKind.SHOW
+    ]
+    restarted = say(
+        "The controller service restarted. Its last run, started {unclean_since} UTC, ended "
+        "unexpectedly (a crash or a power failure); drives with a watchdog stopped.",
+        unclean_since=with_format(unclean_since, "%Y-%m-%d %H:%M:%S"),
     )
+    return join(" ", (restarted, say("Cut off: {shows}.", shows=join("; ", shows)))) if shows else restarted

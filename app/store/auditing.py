@@ -9,6 +9,7 @@ from sqlalchemy import Connection, RowMapping, Select, insert, select
 from app.audit.chain import FIRST
 from app.audit.difference import difference
 from app.audit.entry import Entry, Sealed, seal, told, with_change
+from app.base.message import parts_of, with_parts
 from app.store.documents import plain
 from app.store.store import AuditFilter
 from app.store.tables import audit
@@ -49,6 +50,7 @@ def append(connection: Connection, entry: Entry) -> Sealed:
     ).one_or_none()
     sealed = seal(_storable(entry), 1 if last is None else last.seq + 1, FIRST if last is None else last.hash)
     row = {"seq": sealed.seq, **asdict(sealed.entry), "prev_hash": sealed.prev_hash, "hash": sealed.hash}
+    row["result_parts"] = parts_of(entry.result)
     connection.execute(insert(audit), row)
     return sealed
 
@@ -61,8 +63,8 @@ def query(wanted: AuditFilter) -> Select[tuple[Any, ...]]:
         columns.seq > wanted.after if wanted.after is not None else None,
         columns.actor == wanted.actor if wanted.actor is not None else None,
         columns.object == wanted.object if wanted.object is not None else None,
-        columns.utc >= wanted.since if wanted.since is not None else None,
-        columns.utc < wanted.until if wanted.until is not None else None,
+        columns.utc >= wanted.start if wanted.start is not None else None,
+        columns.utc < wanted.end if wanted.end is not None else None,
     ]
     found = select(audit).where(*(one for one in conditions if one is not None)).limit(wanted.limit)
     return found.order_by(columns.seq if wanted.after is not None else columns.seq.desc())
@@ -71,7 +73,8 @@ def query(wanted: AuditFilter) -> Select[tuple[Any, ...]]:
 def sealed(row: RowMapping) -> Sealed:
     """Return an entry from its row."""
     values = dict(row)
-    seq, previous, own = (values.pop(name) for name in ("seq", "prev_hash", "hash"))
+    seq, previous, own, parts = (values.pop(name) for name in ("seq", "prev_hash", "hash", "result_parts"))
+    values["result"] = with_parts(values["result"], parts)
     return Sealed(seq, Entry(**values), previous, own)
 
 

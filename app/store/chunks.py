@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.store.store import StoreFailed
-from app.tracker.recording import COLUMNS, Frames
+from app.tracker.memory.recording import COLUMNS, Frames
 
 CHUNK_FRAMES = 900
 VERSION = 1
@@ -23,7 +23,7 @@ WIDTHS = (2, 4, 8)
 HEADER = struct.Struct("<IHBB")
 LARGEST = 2**53
 CORRECTIONS = ("correction_azimuth_deg", "correction_elevation_deg")
-BESIDE = ("azimuth_dps", "elevation_dps", "supply_v", "wind_mps", "wind_mean_mps", "light_wm2")
+BESIDE = ("azimuth_dps", "elevation_dps", "supply_v", "wind_mps", "wind_mean_mps", "irradiance_wm2")
 LAYOUTS = {
     len(names): [COLUMNS.index(name) for name in names]
     for names in (

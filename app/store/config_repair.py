@@ -6,16 +6,17 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from app.adapter import adapter
 from app.audit.difference import difference
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import RejectedSetting, TrackerMemory, TrackerState
+from app.base.adapter import adapter
+from app.base.message import N_, Message, plain, told_of_value
+from app.tracker.memory.memory import RejectedSetting, TrackerMemory, TrackerState
+from app.tracker.settings.config import TrackerConfig
 
 MOST_MENDED = 50
 LONGEST_TOLD = 60
 OF_THE_CONFIG = ("config",)
-BESIDE = "The last accepted settings form one set; this setting is not in it."
-NO_TRACKER = "The stored data is not a tracker."
+BESIDE = N_("The last accepted settings form one set; this setting is not in it.")
+NO_TRACKER = N_("The stored data is not a tracker.")
 MEMORY = "memory "
 Place = tuple[str | int, ...]
 Rejected = tuple[RejectedSetting, ...]
@@ -34,7 +35,7 @@ def mended(text: str, tracker_id: str, accepted: TrackerConfig | None = None) ->
     if accepted is None or accepted.tracker_id != tracker_id:
         return None if found is None else _halted(*found)
     if found is None:
-        why = RejectedSetting("all settings", _told(text), "the last accepted", NO_TRACKER, True)
+        why = RejectedSetting(N_("all settings"), _told(text), N_("the last accepted"), NO_TRACKER, True)
         return _halted(TrackerState(accepted, TrackerMemory()), (why,))
     state, rejected = found
     return fallen_back(state, accepted, stored, rejected) if rejected else state
@@ -58,8 +59,8 @@ def fallen_back(
     for path in sorted(old | new):
         name = _name(path.split("."))
         reason = next((one.why for one in rejected if _is_within(name, one.what)), why)
-        used = _told(new[path]) if path in new else "none"
-        told.append(RejectedSetting(name, _told(old.get(path, "missing")), used, reason, True))
+        used = _told(new[path]) if path in new else N_("none")
+        told.append(RejectedSetting(name, _told(old.get(path, "missing")), used, plain(reason), True))
     return _halted(replace(state, config=accepted), tuple(told[:MOST_MENDED]))
 
 
@@ -83,7 +84,7 @@ def _piecewise(document: dict[str, Any], tracker_id: str) -> tuple[TrackerState,
             found = adapter(TrackerState).validate_json(json.dumps(document))
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
-            change = _give_way(document, usual, first["loc"], first["msg"].removeprefix("Value error, "))
+            change = _give_way(document, usual, first["loc"], told_of_value(first))
             if change is None:
                 return None
             rejected.append(change)
@@ -100,7 +101,7 @@ def _halted(found: TrackerState, rejected: Rejected) -> TrackerState:
         rejected=rejected,
         tracking_on=False,
         home=None,
-        home_lost="stored settings were rejected at the start.",
+        home_lost=N_("stored settings were rejected at the start."),
     )
     return replace(found, memory=memory)
 
@@ -117,11 +118,11 @@ def _give_way(document: dict[str, Any], usual: Any, where: Place, why: str) -> R
     stored = holder.get(str(last), "missing")
     holder[str(last)] = usual_holder[last]
     name = _name([str(part) for part in place if part != "config"])
-    return RejectedSetting(name, _told(stored), _told(usual_holder[last]), why)
+    return RejectedSetting(name, _told(stored), _told(usual_holder[last]), plain(why))
 
 
-def _name(path: list[str]) -> str:
-    return " ".join(path).replace("_", " ")
+def _name(path: list[str]) -> Message:
+    return plain(" ".join(path).replace("_", " "))
 
 
 def _is_within(name: str, other: str) -> bool:
@@ -151,6 +152,6 @@ def _at(value: Any, path: list[str | int]) -> Any:
     return value
 
 
-def _told(value: object) -> str:
+def _told(value: object) -> Message:
     text = value if isinstance(value, str) else json.dumps(value)
-    return text if len(text) <= LONGEST_TOLD else f"{text[:LONGEST_TOLD]}…"
+    return plain(text if len(text) <= LONGEST_TOLD else f"{text[:LONGEST_TOLD]}…")

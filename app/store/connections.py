@@ -22,7 +22,7 @@ from sqlalchemy import (
 from sqlalchemy import column as sql_column
 from sqlalchemy.exc import ArgumentError, SQLAlchemyError
 
-from app.extras import need
+from app.base.extras import need
 from app.store.failures import explained
 from app.store.store import StoreFailed, StoreUnfit
 from app.store.tables import REVISION

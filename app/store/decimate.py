@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from app.tracker.recording import COLUMNS, Frames
+from app.tracker.memory.recording import COLUMNS, Frames
 
 PEAKS = tuple(index for index, name in enumerate(COLUMNS) if name.endswith(("_deg", "_mps", "_wm2", "_dps")))
 FEWEST_POINTS = 2 + 2 * len(PEAKS)

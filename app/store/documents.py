@@ -5,51 +5,78 @@ from typing import Any, Generic, TypeVar
 from pydantic import ValidationError
 from pydantic_core import PydanticSerializationError
 
-from app.adapter import adapter
 from app.alarms.alarm import Alarm
+from app.base.adapter import adapter
+from app.base.message import N_, WHOLE, say, told_by
 from app.store.store import StoreFailed
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import SiteState, TrackerState
+from app.tracker.memory.memory import SiteState, TrackerState
+from app.tracker.memory.recording import RecordingInfo
 from app.tracker.programs.show import ShowPlan
-from app.tracker.recording import RecordingInfo
+from app.tracker.settings.config import TrackerConfig
 
 T = TypeVar("T")
 
 
 class Documents(Generic[T]):
-    """One kind of document: the type and what to call it in a sentence."""
+    """One kind of document: the type, what to call it in a sentence, and former names of its fields."""
 
-    def __init__(self, shape: type[T], name: str) -> None:
-        self._adapter = adapter(shape)
+    def __init__(self, shape: type[T], name: str, former: dict[str, str] | None = None) -> None:
+        self._shape = shape
         self._name = name
+        self._former = former or {}
 
     def write(self, value: T) -> str:
         """Return the JSON of a value."""
         try:
-            return self._adapter.dump_json(value).decode()
+            return adapter(self._shape).dump_json(value, context=WHOLE).decode()
         except PydanticSerializationError as error:
-            raise StoreFailed(f"The {self._name} cannot be stored: {error}.") from error
+            raise StoreFailed(
+                say("The {name} cannot be stored: {error}.", name=self._name, error=told_by(error))
+            ) from error
 
     def read(self, text: str, key: str = "") -> T:
         """Return the value of a stored document, or raise `StoreFailed` that names the record."""
         try:
-            return self._adapter.validate_json(text)
+            return adapter(self._shape).validate_json(self._today(text))
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
-            place = ".".join(str(part) for part in first["loc"]) or "the document"
+            place = ".".join(str(part) for part in first["loc"]) or N_("the document")
             raise StoreFailed(
-                f"The stored {self._name}{f' {key!r}' if key else ''} cannot be read "
-                f"({place}: {first['msg']}). Restore a backup, or install the version that wrote it."
+                say(
+                    "The stored {name} {key} cannot be read ({place}: {first}). Restore a backup, or "
+                    "install the version that wrote it.",
+                    name=self._name,
+                    key=repr(key),
+                    place=place,
+                    first=first["msg"],
+                )
+                if key
+                else say(
+                    "The stored {name} cannot be read ({place}: {first}). Restore a backup, or install "
+                    "the version that wrote it.",
+                    name=self._name,
+                    place=place,
+                    first=first["msg"],
+                )
             ) from error
 
+    def _today(self, text: str) -> str:
+        """Return a document with the names of this version; a quote within a text of it is escaped."""
+        for former, name in self._former.items():
+            text = text.replace(f'"{former}":', f'"{name}":')
+        return text
 
-SITE = Documents(SiteState, "site")
+
+FORMER_SITE = {"light_wm2": "irradiance_wm2"}
+FORMER_RECORDING = {"sun_begin_at": "sun_start", "sun_end_at": "sun_end", "frame_count": "sample_count"}
+
+SITE = Documents(SiteState, "site", FORMER_SITE)
 CONFIG = Documents(TrackerConfig, "settings")
 TRACKER = Documents(TrackerState, "tracker")
 PLAN = Documents(ShowPlan, "show")
-RECORDING = Documents(RecordingInfo, "recording")
+RECORDING = Documents(RecordingInfo, "recording", FORMER_RECORDING)
 ALARM = Documents(Alarm, "alarm")
-EVENT_DATA: Documents[dict[str, Any]] = Documents(dict[str, Any], "event data")
+EVENT_DATA: Documents[dict[str, Any]] = Documents(dict[str, Any], N_("event data"))
 
 
 def plain(text: str) -> str:

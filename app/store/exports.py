@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.extras import need
-from app.startup import late
+from app.base.extras import need
+from app.base.startup import late
 from app.store.documents import RECORDING
-from app.tracker.recording import COLUMNS, Frames, RecordingInfo
-from app.tracker.snapshot import ActivityName
+from app.tracker.memory.recording import COLUMNS, Frames, RecordingInfo
+from app.tracker.state.snapshot import ActivityName
 
 ROWS_A_PIECE = 5000
 ACTIVITIES = list(ActivityName)
@@ -45,7 +45,7 @@ def to_parquet(info: RecordingInfo, frames: Frames) -> bytes:
     pa, pq = late("pyarrow"), late("pyarrow.parquet")
     columns: dict[str, Any] = {
         "time_utc": _instants(info.began_at.timestamp(), frames.column("elapsed_s")),
-        "sun_time_utc": _instants(info.sun_begin_at.timestamp(), frames.column("sun_time_s")),
+        "sun_time_utc": _instants(info.sun_start.timestamp(), frames.column("sun_time_s")),
     }
     for name in NUMBERS:
         columns[name] = pa.array(frames.column(name), from_pandas=True)
@@ -79,7 +79,7 @@ def _row(info: RecordingInfo, values: list[float]) -> tuple[object, ...]:
 def _iso(info: RecordingInfo, seconds: float | None, *, sun: bool) -> str:
     if seconds is None:
         return ""
-    begin = info.sun_begin_at if sun else info.began_at
+    begin = info.sun_start if sun else info.began_at
     return _stamp(begin + timedelta(seconds=seconds))
 
 

@@ -2,17 +2,19 @@
 
 from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError, SQLAlchemyError
 
+from app.base.message import N_, say
 from app.store.store import StoreDamaged, StoreFailed
 
 SENTENCES = (
-    ("SQLITE_FULL", "The disk is full: nothing was stored. Free some space or delete old recordings."),
-    ("SQLITE_BUSY", "The database is locked by another program: nothing was stored. End that program."),
-    ("SQLITE_NOTADB", "The file is not a database. Restore a backup with: heliopanel restore FILE."),
-    ("SQLITE_CORRUPT", "The database file is damaged. Restore a backup with: heliopanel restore FILE."),
-    ("SQLITE_IOERR", "The disk failed to read or write. Check the disk or card, then restart Heliopanel."),
+    ("SQLITE_FULL", N_("The disk is full: nothing was stored. Free some space or delete old recordings.")),
+    ("SQLITE_BUSY", N_("The database is locked by another program: nothing was stored. End that program.")),
+    ("SQLITE_NOTADB", N_("The file is not a database. Restore a backup with: heliopanel restore FILE.")),
+    ("SQLITE_CORRUPT", N_("The database file is damaged. Restore a backup with: heliopanel restore FILE.")),
+    ("SQLITE_IOERR", N_("The disk failed to read or write. Check the disk or card, then restart "
+        "Heliopanel.")),
     ("SQLITE_READONLY",
-     "The database file cannot be written. Give Heliopanel's user write permission for it."),
-    ("SQLITE_CANTOPEN", "The database file cannot be opened. Check that the data folder exists."),
+     N_("The database file cannot be written. Give Heliopanel's user write permission for it.")),
+    ("SQLITE_CANTOPEN", N_("The database file cannot be opened. Check that the data folder exists.")),
 )  # fmt: skip
 UNREACHABLE = ("", "57P01", "57P02", "57P03", "08006")
 """PostgreSQL: no answer at all, shut down, crashed, not yet started, connection lost."""
@@ -41,8 +43,15 @@ def explained(error: SQLAlchemyError) -> StoreFailed:
     first_line = str(getattr(error, "orig", None) or error).strip().split("\n", maxsplit=1)[0]
     if isinstance(error, InterfaceError | OperationalError) and code in UNREACHABLE:
         return StoreFailed(
-            f"The database cannot be reached: nothing was stored. Check that it runs ({first_line})."
+            say(
+                "The database cannot be reached: nothing was stored. Check that it runs ({first_line}).",
+                first_line=first_line,
+            )
         )
     return StoreFailed(
-        f"The database rejected the data: nothing was stored ({code or 'no code'}: {first_line})."
+        say(
+            "The database rejected the data: nothing was stored ({value}: {first_line}).",
+            value=code or N_("no code"),
+            first_line=first_line,
+        )
     )

@@ -5,6 +5,7 @@ import sqlite3
 from contextlib import closing, suppress
 from pathlib import Path
 
+from app.base.message import say, told_by
 from app.store.store import StoreFailed
 
 PRIVATE = 0o600
@@ -21,7 +22,11 @@ def make_folder(folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise StoreFailed(
-            f"The folder {folder} cannot be created ({error.strerror}). Choose another folder."
+            say(
+                "The folder {folder} cannot be created ({strerror}). Choose another folder.",
+                folder=folder,
+                strerror=error.strerror,
+            )
         ) from error
 
 
@@ -36,7 +41,11 @@ def keep_private(path: Path) -> None:
             _close_to_others(path.with_name(name))
     except OSError as error:
         raise StoreFailed(
-            f"The file {path} cannot be protected from other users ({error.strerror}). Check its owner."
+            say(
+                "The file {path} cannot be protected from other users ({strerror}). Check its owner.",
+                path=path,
+                strerror=error.strerror,
+            )
         ) from error
 
 
@@ -82,7 +91,14 @@ def copy_sqlite(source: Path, target: Path) -> None:
         put_in_place(unfinished, target)
     except (sqlite3.Error, OSError) as error:
         remove_sqlite(unfinished)
-        raise StoreFailed(f"The database {source} could not be copied to {target}: {error}.") from error
+        raise StoreFailed(
+            say(
+                "The database {source} could not be copied to {target}: {error}.",
+                source=source,
+                target=target,
+                error=told_by(error),
+            )
+        ) from error
 
 
 def remove_sqlite(path: Path) -> None:

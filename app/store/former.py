@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from app.tracker.snapshot import EventKind
+from app.tracker.state.snapshot import EventKind
 
 FORMER_KINDS = {
     "area_cleared": EventKind.AREA_CONFIRMED_CLEAR,

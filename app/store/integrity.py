@@ -4,6 +4,7 @@ import sqlite3
 
 from sqlalchemy import text
 
+from app.base.message import N_, join, say
 from app.store import tables
 from app.store.connections import reading_engine, sqlite_path, transaction
 from app.store.store import StoreDamaged
@@ -11,7 +12,7 @@ from app.store.store import StoreDamaged
 FIRST_SAFE_SQLITE = (3, 51, 3)
 """Older ones may damage a database in WAL mode if two connections write at once; here only one writes."""
 
-RESTORE = "Restore a backup with: heliopanel restore FILE."
+RESTORE = N_("Restore a backup with: heliopanel restore FILE.")
 
 
 def check_file(url: str) -> None:
@@ -35,8 +36,8 @@ def check_file(url: str) -> None:
                     else ()
                 )
                 if any(line != "ok" for line in found):
-                    damage = f"The database {path} is damaged (table {name})."
-                    raise StoreDamaged(f"{damage} {RESTORE}")
+                    damage = say("The database {path} is damaged (table {name}).", path=path, name=name)
+                    raise StoreDamaged(join(" ", (damage, RESTORE)))
     finally:
         engine.dispose()
 
@@ -45,8 +46,9 @@ def sqlite_notice() -> str | None:
     """Return what a log should say about the linked SQLite, None if it is known to be good."""
     if sqlite3.sqlite_version_info >= FIRST_SAFE_SQLITE:
         return None
-    return (
-        f"SQLite {sqlite3.sqlite_version} is older than 3.51.3, which fixed a rare error with two "
-        "writers. Heliopanel writes through one connection only; do not let another program write "
-        "to its database."
+    return say(
+        "SQLite {sqlite_version} is older than 3.51.3, which fixed a rare error with two "
+        "writers. Heliopanel writes through one connection only; do not let another program "
+        "write to its database.",
+        sqlite_version=sqlite3.sqlite_version,
     )

@@ -3,17 +3,20 @@
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, Engine, Row, Select, select
+from sqlalchemy import Connection, Engine, Row, Select, and_, or_, select
 
 from app.alarms.alarm import Alarm
 from app.audit.entry import Sealed
+from app.base.message import say
 from app.store import alarming, auditing, recording, signed_records, tables
 from app.store.chunks import ChunkDamaged, decode_all
 from app.store.config_repair import mended
 from app.store.connections import require_revision, transaction
 from app.store.documents import CONFIG, EVENT_DATA, PLAN, RECORDING, SITE, TRACKER
+from app.store.event_message import kept_message
 from app.store.former import kind_of, stored_as
 from app.store.store import (
     AlarmFilter,
@@ -27,10 +30,11 @@ from app.store.store import (
     SignedRecord,
     StoreFailed,
 )
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import SiteState, TrackerState
-from app.tracker.recording import Frames, RecordingInfo, RecordingKind
-from app.tracker.snapshot import Event
+from app.tracker.memory.memory import SiteState, TrackerState
+from app.tracker.memory.recording import Frames, RecordingInfo, RecordingKind
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.state.snapshot import Event
+from app.tracker.values.actors import actor_of, names_of
 
 
 class DatabaseReader:
@@ -110,10 +114,12 @@ class DatabaseReader:
             rows = connection.execute(alarming.history(wanted)).all()
         return [alarming.kept(row) for row in rows]
 
-    def signed_records(self, tracker_id: str | None = None, *, limit: int = 200) -> list[RecordHead]:
-        """Return the heads of signed commissioning records, newest first."""
+    def signed_records(
+        self, tracker_id: str | None = None, *, limit: int = 200, before: int | None = None
+    ) -> list[RecordHead]:
+        """Return the heads of signed commissioning records, newest first: those before a number."""
         with self._read() as connection:
-            return signed_records.heads(connection, tracker_id, limit)
+            return signed_records.heads(connection, tracker_id, limit, before)
 
     def signed_record(self, number: int) -> SignedRecord | None:
         """Return one signed record."""
@@ -149,15 +155,24 @@ class DatabaseReader:
         return None if row is None else PlannedShow(row.tracker_id, PLAN.read(row.document, show_id))
 
     def recordings(
-        self, *, kind: RecordingKind | None = None, tracker_id: str | None = None, limit: int = 200
+        self,
+        *,
+        kind: RecordingKind | None = None,
+        tracker_id: str | None = None,
+        limit: int = 200,
+        before: tuple[datetime, str] | None = None,
     ) -> list[RecordingInfo]:
-        """Return recordings, newest first."""
+        """Return recordings, newest first: those that began before an instant, or at it with a lower id."""
         columns = tables.recordings.c
         query = recording.heads().order_by(columns.began_at.desc(), columns.recording_id.desc()).limit(limit)
         if kind is not None:
             query = query.where(columns.kind == kind)
         if tracker_id is not None:
             query = query.where(columns.tracker_id == tracker_id)
+        if before is not None:
+            began_at, recording_id = before
+            same = and_(columns.began_at == began_at, columns.recording_id < recording_id)
+            query = query.where(or_(columns.began_at < began_at, same))
         with self._read() as connection:
             rows = connection.execute(query).all()
         return [head(row) for row in rows]
@@ -177,8 +192,11 @@ class DatabaseReader:
             return _between(decode_all(stored), begin_s, end_s)
         except ChunkDamaged as error:
             raise StoreFailed(
-                f"Samples of the recording {recording_id!r} are damaged and cannot be shown. "
-                "Restore a backup to recover them, or delete the recording."
+                say(
+                    "Samples of the recording {recording_id} are damaged and cannot be shown. Restore a "
+                    "backup to recover them, or delete the recording.",
+                    recording_id=repr(recording_id),
+                )
             ) from error
 
     def close(self) -> None:
@@ -189,7 +207,7 @@ class DatabaseReader:
 def head(row: Row[*tuple[Any, ...]]) -> RecordingInfo:
     """Return the head of a recording from its row."""
     info = RECORDING.read(row.document, row.recording_id)
-    return replace(info, ended_at=row.ended_at, outcome=row.outcome, frame_count=row.frame_count)
+    return replace(info, ended_at=row.ended_at, outcome=row.outcome, sample_count=row.frame_count)
 
 
 def _journal_query(wanted: JournalFilter) -> Select[Any]:
@@ -205,7 +223,7 @@ def _journal_query(wanted: JournalFilter) -> Select[Any]:
     if wanted.kinds:
         query = query.where(columns.kind.in_(stored_as(wanted.kinds)))
     if wanted.actor is not None:
-        query = query.where(columns.actor == wanted.actor)
+        query = query.where(columns.actor.in_(names_of(wanted.actor)))
     if wanted.text is not None:
         query = query.where(columns.message.icontains(wanted.text, autoescape=True))
     return _within(query, wanted)
@@ -213,10 +231,10 @@ def _journal_query(wanted: JournalFilter) -> Select[Any]:
 
 def _within(query: Select[Any], wanted: JournalFilter) -> Select[Any]:
     columns = tables.events.c
-    if wanted.since is not None:
-        query = query.where(columns.at >= wanted.since)
-    if wanted.until is not None:
-        query = query.where(columns.at <= wanted.until)
+    if wanted.start is not None:
+        query = query.where(columns.at >= wanted.start)
+    if wanted.end is not None:
+        query = query.where(columns.at <= wanted.end)
     return query
 
 
@@ -224,11 +242,15 @@ def _entry(row: Row[*tuple[Any, ...]]) -> JournalEntry:
     kind = kind_of(row.kind)
     if kind is None:
         raise StoreFailed(
-            f"Entry {row.number} of the journal is of the unknown kind {row.kind!r}. "
-            "Install the version that wrote it."
+            say(
+                "Entry {number} of the journal is of the unknown kind {kind}. Install the version "
+                "that wrote it.",
+                number=row.number,
+                kind=repr(row.kind),
+            )
         )
     data = EVENT_DATA.read(row.data, str(row.number))
-    event = Event(row.at, kind, row.tracker_id, row.message, row.actor, data)
+    event = Event(row.at, kind, row.tracker_id, kept_message(row.message, data), actor_of(row.actor), data)
     return JournalEntry(row.number, event)
 
 

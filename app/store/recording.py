@@ -6,12 +6,12 @@ from typing import Any
 
 from sqlalchemy import Connection, Select, delete, func, insert, select, update
 
-from app.logs import get_logger
+from app.base.logs import get_logger
 from app.store import tables
 from app.store.chunks import CHUNK_FRAMES, ChunkDamaged, decode, decode_all, encode_all
 from app.store.documents import RECORDING, plain
 from app.store.store import Recorded
-from app.tracker.recording import Frames, RecordingInfo
+from app.tracker.memory.recording import Frames, RecordingInfo
 
 IDS_AT_ONCE = 500
 RUNS = tables.recordings.c.ended_at.is_(None)

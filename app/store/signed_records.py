@@ -5,6 +5,7 @@ from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, Row, delete, insert, select, update
 
+from app.base.message import N_
 from app.store.documents import plain
 from app.store.store import Photo, RecordHead, SignedRecord, StoreFailed
 from app.store.tables import record_photos, records
@@ -18,11 +19,13 @@ HEAD = (
 )
 
 
-def heads(connection: Connection, tracker_id: str | None, limit: int) -> list[RecordHead]:
-    """Return the heads of signed records, newest first."""
+def heads(connection: Connection, tracker_id: str | None, limit: int, before: int | None) -> list[RecordHead]:
+    """Return the heads of signed records, newest first: those before a number."""
     query = select(*HEAD).order_by(records.c.number.desc()).limit(limit)
     if tracker_id is not None:
         query = query.where(records.c.tracker_id == tracker_id)
+    if before is not None:
+        query = query.where(records.c.number < before)
     return [_head(row) for row in connection.execute(query)]
 
 
@@ -55,7 +58,9 @@ def sign(connection: Connection, head: RecordHead, document: str, taken: Sequenc
         update(record_photos).where(columns.number.in_(taken), *waiting).values(record_number=number)
     )
     if moved.rowcount != len(taken):
-        raise StoreFailed("A photo of this record was removed meanwhile. Load the page again and sign again.")
+        raise StoreFailed(
+            N_("A photo of this record was removed meanwhile. Load the page again and sign again.")
+        )
     return number
 
 

@@ -4,7 +4,8 @@ import re
 
 from sqlalchemy import Connection, inspect, select
 
-from app.build import VERSION
+from app.base.build import VERSION
+from app.base.message import say
 from app.store.putting import put
 from app.store.store import StoreUnfit
 from app.store.tables import software
@@ -30,8 +31,12 @@ def refuse_newer(connection: Connection) -> None:
     found = version_of(connection)
     if found is not None and is_newer(found, VERSION):
         raise StoreUnfit(
-            f"The database was written by a newer version of Heliopanel ({found}; this version is "
-            f"{VERSION}). Install that version, or restore a backup that this version wrote."
+            say(
+                "The database was written by a newer version of Heliopanel ({found}; this version is "
+                "{version}). Install that version, or restore a backup that this version wrote.",
+                found=found,
+                version=VERSION,
+            )
         )
 
 

@@ -8,12 +8,12 @@ from typing import Protocol
 
 from app.alarms.alarm import Alarm
 from app.audit.entry import Entry, Sealed
-from app.errors import WRONG, Foreseen
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import SiteState, TrackerState
+from app.base.errors import WRONG, Foreseen
+from app.tracker.memory.memory import SiteState, TrackerState
+from app.tracker.memory.recording import Frames, RecordingInfo, RecordingKind
 from app.tracker.programs.show import ShowPlan
-from app.tracker.recording import Frames, RecordingInfo, RecordingKind
-from app.tracker.snapshot import Event, EventKind
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.state.snapshot import Event, EventKind
 
 
 class StoreFailed(Foreseen):
@@ -58,8 +58,8 @@ class JournalFilter:
     limit: int = 100
     tracker_id: str | None = None
     kinds: tuple[EventKind, ...] = ()
-    since: datetime | None = None
-    until: datetime | None = None
+    start: datetime | None = None
+    end: datetime | None = None
     after: int | None = None
     actor: str | None = None
     text: str | None = None
@@ -96,8 +96,8 @@ class AuditFilter:
     limit: int = 100
     actor: str | None = None
     object: str | None = None
-    since: datetime | None = None
-    until: datetime | None = None
+    start: datetime | None = None
+    end: datetime | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,8 +173,10 @@ class Reader(Protocol):
     def alarm_history(self, wanted: AlarmFilter) -> list[KeptAlarm]:
         """Return alarms, those that stand and those that ended, newest first."""
 
-    def signed_records(self, tracker_id: str | None = None, *, limit: int = 200) -> list[RecordHead]:
-        """Return the heads of signed commissioning records, newest first."""
+    def signed_records(
+        self, tracker_id: str | None = None, *, limit: int = 200, before: int | None = None
+    ) -> list[RecordHead]:
+        """Return the heads of signed commissioning records, newest first: those before a number."""
 
     def signed_record(self, number: int) -> SignedRecord | None:
         """Return one signed record."""
@@ -192,9 +194,14 @@ class Reader(Protocol):
         """Return the plan of a show."""
 
     def recordings(
-        self, *, kind: RecordingKind | None = None, tracker_id: str | None = None, limit: int = 200
+        self,
+        *,
+        kind: RecordingKind | None = None,
+        tracker_id: str | None = None,
+        limit: int = 200,
+        before: tuple[datetime, str] | None = None,
     ) -> list[RecordingInfo]:
-        """Return recordings, newest first."""
+        """Return recordings, newest first: those that began before an instant, or at it with a lower id."""
 
     def recording(self, recording_id: str) -> RecordingInfo | None:
         """Return the head of one recording."""

@@ -21,7 +21,7 @@ from sqlalchemy import (
     UniqueConstraint,
 )
 
-REVISION = "0007"
+REVISION = "0008"
 """The newest migration: what the tables of a database must be for this software to use them."""
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
@@ -180,6 +180,7 @@ audit = Table(
     Column("before", Text, nullable=False),
     Column("after", Text, nullable=False),
     Column("result", Text, nullable=False),
+    Column("result_parts", Text),
     Column("prev_hash", String(64), nullable=False),
     Column("hash", String(64), nullable=False),
     Index(None, "utc"),

@@ -8,18 +8,20 @@ from sqlalchemy import ColumnElement, Connection, Engine, Table, delete, select
 from sqlalchemy.exc import SQLAlchemyError
 
 from app.audit.entry import Entry
+from app.base.message import say, told_by
 from app.store import alarming, auditing, recording, signed_records, tables
 from app.store.chunks import ChunkDamaged
 from app.store.connections import require_revision
 from app.store.documents import CONFIG, EVENT_DATA, PLAN, SITE, TRACKER, plain
+from app.store.event_message import with_message
 from app.store.failures import explained, is_lasting
 from app.store.putting import adding, put
 from app.store.reader import DatabaseReader, head
 from app.store.software import note_version, version_of
 from app.store.store import KeptAlarm, Photo, PlannedShow, Recorded, RecordHead, StoreFailed
-from app.tracker.memory import SiteState, TrackerState
-from app.tracker.recording import Frames, RecordingInfo, RecordingKind
-from app.tracker.snapshot import Event
+from app.tracker.memory.memory import SiteState, TrackerState
+from app.tracker.memory.recording import Frames, RecordingInfo, RecordingKind
+from app.tracker.state.snapshot import Event
 
 SITE_NUMBER = 1
 SHOWS_KEPT = 1000
@@ -189,21 +191,37 @@ class DatabaseWriter(DatabaseReader):
             return
         with self._write() as connection:
             if not recording.is_open(connection, recording_id):
-                raise StoreFailed(f"The recording {recording_id!r} is not open; no samples were added to it.")
+                raise StoreFailed(
+                    say(
+                        "The recording {recording_id} is not open; no samples were added to it.",
+                        recording_id=repr(recording_id),
+                    )
+                )
             recording.append(connection, {recording_id: frames})
 
     def finish_recording(self, recording_id: str, ended_at: datetime, outcome: str) -> None:
         """Close a recording."""
         with self._write() as connection:
             if not recording.close(connection, recording_id, ended_at, outcome):
-                raise StoreFailed(f"The recording {recording_id!r} is not open; it cannot be closed.")
+                raise StoreFailed(
+                    say(
+                        "The recording {recording_id} is not open; it cannot be closed.",
+                        recording_id=repr(recording_id),
+                    )
+                )
 
     def save_recording(self, info: RecordingInfo, chunks: Sequence[bytes]) -> None:
         """Store a whole finished recording, all or nothing; chunks in the store's own encoding."""
         try:
             blocks = [recording.block(chunk) for chunk in chunks]
         except ChunkDamaged as error:
-            raise StoreFailed(f"The recording {info.recording_id!r} was not stored: {error}") from error
+            raise StoreFailed(
+                say(
+                    "The recording {recording_id} was not stored: {error}",
+                    recording_id=repr(info.recording_id),
+                    error=told_by(error),
+                )
+            ) from error
         with self._write() as connection:
             recording.insert_head(connection, info, sum(one["frame_count"] for one in blocks))
             recording.insert_chunks(connection, info.recording_id, blocks)
@@ -263,7 +281,7 @@ def _append(connection: Connection, events: Sequence[Event]) -> None:
             "tracker_id": event.tracker_id,
             "actor": plain(event.actor),
             "message": plain(event.message),
-            "data": EVENT_DATA.write(event.data),
+            "data": EVENT_DATA.write(with_message(event)),
         }
         for event in events
     ]

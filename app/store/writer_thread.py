@@ -10,7 +10,8 @@ from contextlib import suppress
 from datetime import datetime, timedelta
 from typing import TypeVar
 
-from app.clock import Clock, SystemClock
+from app.base.clock import Clock, SystemClock
+from app.base.message import N_
 from app.store.store import StoreFailed, Writer
 
 T = TypeVar("T")
@@ -21,12 +22,12 @@ STUCK = timedelta(seconds=1)
 """A write that takes longer than this holds up all others."""
 LAST = 20
 
-FULL = "The disk is too slow: {capacity} writes are waiting. Nothing was stored; check the disk or card."
-FLOODED = (
+FULL = N_("The disk is too slow: {capacity} writes are waiting. Nothing was stored; check the disk or card.")
+FLOODED = N_(
     "Too many events at once: {capacity} writes are waiting, although the disk is fast enough. "
     "Nothing was stored; check the journal for their source."
 )
-CLOSED = "The store is closed: nothing was stored. Start Heliopanel again."
+CLOSED = N_("The store is closed: nothing was stored. Start Heliopanel again.")
 
 
 class WriterThread:

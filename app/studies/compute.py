@@ -15,9 +15,9 @@ from app.studies.rehearsed import rehearsed_axes
 from app.studies.request import Fidelity, Module, Span, StudyMode, StudyRequest, StudyStrategy
 from app.studies.result import CaseResult, DayCurve, StudyResult
 from app.sun.trigonometry import Array
-from app.tracker.config import MountConfig, MountKind, Rows
-from app.tracker.mode import Mode
-from app.tracker.strategy import Continuous, Deadband, Interval, Strategy
+from app.tracker.settings.config import MountConfig, MountKind, Rows
+from app.tracker.settings.strategy import Continuous, Deadband, Interval, Strategy
+from app.tracker.values.mode import Mode
 
 Progress = Callable[[int, int, str], None]
 """What is told of the work: cases done, cases in all, the name of the case that begins."""

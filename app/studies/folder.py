@@ -10,7 +10,8 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from app.adapter import adapter
+from app.base.adapter import adapter
+from app.base.message import N_, say
 from app.studies.jobs import WeatherSeen
 from app.studies.request import StudyRequest
 from app.studies.result import StudyResult
@@ -20,7 +21,7 @@ MOST_WEATHER_FILES = 20
 LARGEST_WEATHER = 8 * 1024 * 1024
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,79}")
 STUDY_ID = re.compile(r"[0-9]{8}T[0-9]{6}-[0-9a-f]{6}")
-INTERRUPTED = "Heliopanel was restarted while the study was running; run the study again."
+INTERRUPTED = N_("Heliopanel was restarted while the study was running; run the study again.")
 
 
 class StudyUnknown(LookupError):
@@ -116,7 +117,7 @@ class StudyFolder:
         self._folder(study_id)
         found = self._state(study_id)
         if found is None:
-            raise StudyUnknown(f"There is no study {study_id}.")
+            raise StudyUnknown(say("There is no study {study_id}.", study_id=study_id))
         return _interrupted(found, frozenset(alive))
 
     def request(self, study_id: str) -> StudyRequest:
@@ -150,7 +151,7 @@ class StudyFolder:
     def weather_path(self, name: str) -> Path:
         """Return where a stored weather file lies; raises `StudyUnknown`."""
         if NAME.fullmatch(name) is None or not (self._weather / name).is_file():
-            raise StudyUnknown(f"There is no weather file {name!r}: upload it first.")
+            raise StudyUnknown(say("There is no weather file {name}: upload it first.", name=repr(name)))
         return self._weather / name
 
     def put_weather(self, name: str, content: bytes) -> Path:
@@ -176,19 +177,27 @@ class StudyFolder:
     def _check_weather(self, name: str, content: bytes) -> None:
         if NAME.fullmatch(name) is None or name.endswith((".json", ".new")):
             raise WeatherFileRefused(
-                "Name the weather file with at most 80 letters, digits, spaces, dots, and dashes, "
-                "not ending in .json."
+                N_(
+                    "Name the weather file with at most 80 letters, digits, spaces, dots, and dashes, "
+                    "not ending in .json."
+                )
             )
         if not content:
-            raise WeatherFileRefused("The weather file is empty: choose the file again.")
+            raise WeatherFileRefused(N_("The weather file is empty: choose the file again."))
         if len(content) > LARGEST_WEATHER:
             raise WeatherFileRefused(
-                f"A weather file has at most {LARGEST_WEATHER // 1024 // 1024} megabytes."
+                say(
+                    "A weather file has at most {largest_weather} megabytes.",
+                    largest_weather=LARGEST_WEATHER // 1024 // 1024,
+                )
             )
         others = [one for one in self.weather_files() if one.name != name]
         if len(others) >= MOST_WEATHER_FILES:
             raise WeatherFileRefused(
-                f"There are already {MOST_WEATHER_FILES} weather files: delete one that is not needed."
+                say(
+                    "There are already {most_weather_files} weather files: delete one that is not needed.",
+                    most_weather_files=MOST_WEATHER_FILES,
+                )
             )
 
     def _state(self, name: str) -> StudyState | None:
@@ -201,7 +210,7 @@ class StudyFolder:
     def _folder(self, study_id: str) -> Path:
         folder = self._studies / study_id
         if STUDY_ID.fullmatch(study_id) is None or not folder.is_dir():
-            raise StudyUnknown(f"There is no study {study_id}.")
+            raise StudyUnknown(say("There is no study {study_id}.", study_id=study_id))
         return folder
 
     def _read(self, study_id: str, name: str) -> bytes:
@@ -209,7 +218,9 @@ class StudyFolder:
         try:
             return path.read_bytes()
         except FileNotFoundError:
-            raise StudyUnknown(f"The study {study_id} has no result yet: wait until it is done.") from None
+            raise StudyUnknown(
+                say("The study {study_id} has no result yet: wait until it is done.", study_id=study_id)
+            ) from None
 
 
 def _interrupted(state: StudyState, alive: frozenset[str]) -> StudyState:

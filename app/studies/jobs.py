@@ -7,12 +7,13 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Discriminator, TypeAdapter
 
+from app.base.message import N_, join, say, with_format
 from app.energy.optimiser import MOST_STEPS
 from app.fast.comparison import ClearSky, Comparison
 from app.studies.request import FIRST_YEAR, LAST_YEAR, LightModel, StudyRequest
 from app.studies.result import StudyResult
 from app.sun.position import Location
-from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.settings.config import Orientation, TrackerConfig
 
 
 class ProgramLight(StrEnum):
@@ -51,7 +52,7 @@ class ProgramQuestion:
     def __post_init__(self) -> None:
         wrong = _program_errors(self)
         if wrong:
-            raise ValueError(" ".join(wrong))
+            raise ValueError(join(" ", wrong))
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +84,7 @@ class ProgramAnswer:
     fixed_wh: float
     continuous_wh: float
     declination_deg: float
-    begin_h: float
+    start_h: float
     end_h: float
     hours: tuple[float, ...]
     beam_wm2: tuple[float, ...]
@@ -127,7 +128,13 @@ class CompareSite:
 
     def __post_init__(self) -> None:
         if not FIRST_YEAR <= self.year <= LAST_YEAR:
-            raise ValueError(f"The year lies between {FIRST_YEAR} and {LAST_YEAR}.")
+            raise ValueError(
+                say(
+                    "The year lies between {first_year} and {last_year}.",
+                    first_year=FIRST_YEAR,
+                    last_year=LAST_YEAR,
+                )
+            )
 
 
 Job = Annotated[WorkOut | CheckWeather | FindPrograms | CompareSite, Discriminator("do")]
@@ -197,19 +204,25 @@ TOLD: TypeAdapter[Told] = TypeAdapter(Told, config=LATE)
 def _program_errors(asked: ProgramQuestion) -> list[str]:
     tilt_deg = 0.0 if asked.tilt_deg is None else asked.tilt_deg
     bounds = (
-        ("The year", asked.on.year, FIRST_YEAR, LAST_YEAR, ""),
-        ("The number of steps", asked.most_steps, 1, MOST_STEPS, ""),
-        ("The range to either side of noon", asked.range_deg, 5.0, 120.0, " degrees"),
-        ("The duration of a step", asked.step_s, 0.0, 3600.0, " seconds"),
-        ("The turbidity", asked.turbidity, 1.0, 10.0, ""),
-        ("The tilt (below 0: toward north)", tilt_deg, -90.0, 90.0, " degrees"),
-        ("The panel's area", asked.area_m2, 0.01, 1e6, " m2"),
-        ("The panel's efficiency", asked.efficiency, 0.001, 1.0, ""),
-        ("The energy for a degree", asked.degree_wh, 0.0, 1e4, " Wh"),
-        ("The energy for a move", asked.move_wh, 0.0, 1e5, " Wh"),
+        (N_("The year"), asked.on.year, FIRST_YEAR, LAST_YEAR, ""),
+        (N_("The number of steps"), asked.most_steps, 1, MOST_STEPS, ""),
+        (N_("The range to either side of noon"), asked.range_deg, 5.0, 120.0, " degrees"),
+        (N_("The duration of a step"), asked.step_s, 0.0, 3600.0, " seconds"),
+        (N_("The turbidity"), asked.turbidity, 1.0, 10.0, ""),
+        (N_("The tilt (below 0: toward north)"), tilt_deg, -90.0, 90.0, " degrees"),
+        (N_("The panel's area"), asked.area_m2, 0.01, 1e6, " m2"),
+        (N_("The panel's efficiency"), asked.efficiency, 0.001, 1.0, ""),
+        (N_("The energy for a degree"), asked.degree_wh, 0.0, 1e4, " Wh"),
+        (N_("The energy for a move"), asked.move_wh, 0.0, 1e5, " Wh"),
     )
     return [
-        f"{name} lies between {least:g} and {most:g}{unit}."
+        say(
+            "{name} lies between {least} and {most}{unit}.",
+            name=name,
+            least=with_format(least, "g"),
+            most=with_format(most, "g"),
+            unit=unit,
+        )
         for name, value, least, most, unit in bounds
         if not least <= value <= most
     ]

@@ -7,13 +7,14 @@ import numpy as np
 import pandas as pd
 from pvlib import atmosphere, clearsky, irradiance
 
+from app.base.message import say
+from app.base.zones import zone_of
 from app.energy.plane import Light
 from app.studies.days import days_of
 from app.studies.request import CLEAR_SKIES, LightModel, StudyRequest
 from app.studies.weather import WeatherYear
 from app.sun.position import RISE_ELEVATION_DEG, Algorithm, Location, SunPath, sun_path
 from app.sun.trigonometry import Array
-from app.zones import zone_of
 
 DAY_S = 86_400.0
 HOURS = 24
@@ -48,7 +49,7 @@ def clear_days(asked: StudyRequest) -> Days:
     at_s = midnights_s(days, offset_h)[:, None] + 60.0 * asked.step_min * (np.arange(steps) + 0.5)
     light = clear_light(asked.light, asked.location, at_s)
     air, wind = (np.full_like(at_s, value) for value in (asked.module.air_degc, asked.module.wind_mps))
-    source = f"clear sky by {CLEAR_SKIES[asked.light]}"
+    source = say("clear sky by {clear_skies}", clear_skies=CLEAR_SKIES[asked.light])
     return Days(asked.location, offset_h, source, days, weights, asked.step_min, at_s, light, air, wind)
 
 
@@ -70,7 +71,7 @@ def weather_days(asked: StudyRequest, weather: WeatherYear) -> Days:
     columns = (local(one) for one in (weather.direct_wm2, weather.diffuse_wm2, weather.global_wm2))
     light = _light(path, at_s, *columns)
     air, wind = local(weather.air_degc), local(weather.wind_mps)
-    source = f"weather file, {weather.format}"
+    source = say("weather file, {format}", format=weather.format)
     return Days(weather.location, offset_h, source, chosen, weights, 60, at_s, light, air, wind)
 
 

@@ -36,7 +36,7 @@ def find_programs(asked: ProgramQuestion) -> ProgramAnswer:
         fixed_wh=limits.per_whm2 * fixed_whm2(day, day.latitude_deg),
         continuous_wh=limits.per_whm2 * following_whm2(day, best.steps.tilt_deg, asked.range_deg),
         declination_deg=day.declination_deg,
-        begin_h=day.begin_h,
+        start_h=day.begin_h,
         end_h=day.end_h,
         hours=tuple(hours.tolist()),
         beam_wm2=tuple(day.beam(hours).tolist()),

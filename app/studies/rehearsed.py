@@ -5,16 +5,17 @@ from datetime import UTC, datetime, timedelta
 
 import numpy as np
 
+from app.base.message import N_
 from app.energy.ideal import AxisPath
 from app.show.axis_angles import axis_angles
 from app.show.simulate import simulate
 from app.studies.light import Days
 from app.studies.request import StudyRequest, StudyStrategy
 from app.sun.trigonometry import Array
-from app.tracker.config import MountKind, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mode import Mode
-from app.tracker.strategy import Continuous, Deadband, Interval, Stepped
+from app.tracker.memory.memory import Pointing
+from app.tracker.settings.config import MountKind, TrackerConfig
+from app.tracker.settings.strategy import Continuous, Deadband, Interval, Stepped
+from app.tracker.values.mode import Mode
 
 FRAME = timedelta(minutes=1)
 
@@ -22,7 +23,7 @@ FRAME = timedelta(minutes=1)
 def rehearsed_axes(asked: StudyRequest, days: Days, mode: Mode, strategy: StudyStrategy) -> AxisPath:
     """Return the measured axis angles in the middle of every step of the one day of a study."""
     if asked.tracker is None:
-        raise ValueError("A study with the controller's control needs a tracker: choose one.")
+        raise ValueError(N_("A study with the controller's control needs a tracker: choose one."))
     config = _with(asked, asked.tracker, strategy)
     at_s = days.at_unix_s[0]
     begin = datetime.fromtimestamp(at_s[0] - 30.0 * days.step_min, UTC)
@@ -56,5 +57,5 @@ def _with(asked: StudyRequest, config: TrackerConfig, strategy: StudyStrategy) -
             return replace(config, strategy=Interval(asked.interval_min))
         case StudyStrategy.PROGRAM:
             if asked.program is None:
-                raise ValueError("The strategy 'program' needs a program.")
+                raise ValueError(N_("The strategy 'program' needs a program."))
             return replace(config, strategy=Stepped(asked.program))

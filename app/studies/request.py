@@ -7,12 +7,13 @@ from enum import StrEnum
 from types import MappingProxyType
 from typing import Final
 
+from app.base.message import N_, join, say
 from app.energy.motion import DriveCosts
 from app.energy.plane import Around
 from app.sun.position import Location
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.programs.stepped import StepProgram
+from app.tracker.memory.memory import Pointing
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.settings.stepped import StepProgram
 
 FIRST_YEAR, LAST_YEAR = 1950, 2049
 LONGEST_TITLE = 120
@@ -41,9 +42,9 @@ class LightModel(StrEnum):
 
 CLEAR_SKIES: Final[Mapping[LightModel, str]] = MappingProxyType(
     {
-        LightModel.INEICHEN: "Ineichen and Perez, Linke turbidity of the location",
-        LightModel.SOLIS: "simplified Solis",
-        LightModel.HAURWITZ: "Haurwitz, split by Erbs",
+        LightModel.INEICHEN: N_("Ineichen and Perez, Linke turbidity of the location"),
+        LightModel.SOLIS: N_("simplified Solis"),
+        LightModel.HAURWITZ: N_("Haurwitz, split by Erbs"),
     }
 )
 
@@ -93,15 +94,17 @@ class Module:
 
     def __post_init__(self) -> None:
         if not 1.0 <= self.power_w <= 1e9:
-            raise ValueError("The power of the panels lies between 1 W and 1 GW.")
+            raise ValueError(N_("The power of the panels lies between 1 W and 1 GW."))
         if not -0.02 <= self.per_kelvin <= 0.0:
-            raise ValueError("The temperature coefficient must be between -2 and 0 percent per kelvin.")
+            raise ValueError(N_("The temperature coefficient must be between -2 and 0 percent per kelvin."))
         if not 0.0 <= self.losses_percent < 100.0:
-            raise ValueError("The losses must be at least 0 and below 100 percent.")
+            raise ValueError(N_("The losses must be at least 0 and below 100 percent."))
         if not -60.0 <= self.air_degc <= 60.0 or not 0.0 <= self.wind_mps <= 50.0:
             raise ValueError(
-                "The air temperature must be between -60 and 60 degrees Celsius, the "
-                "wind speed at most 50 m/s."
+                N_(
+                    "The air temperature must be between -60 and 60 degrees Celsius, the "
+                    "wind speed at most 50 m/s."
+                )
             )
 
 
@@ -142,7 +145,7 @@ class StudyRequest:
     def __post_init__(self) -> None:
         wrong = (*_general(self), *_settings(self), *_size(self), *_controller(self))
         if wrong:
-            raise ValueError(" ".join(wrong))
+            raise ValueError(join(" ", wrong))
 
     @property
     def cases(self) -> tuple[tuple[StudyMode, StudyStrategy], ...]:
@@ -158,36 +161,44 @@ class StudyRequest:
 
 
 def _general(asked: StudyRequest) -> list[str]:
-    found = []
+    found: list[str] = []
     if len(asked.title) > LONGEST_TITLE or not asked.title.isprintable():
-        found.append(f"The title has at most {LONGEST_TITLE} printable characters.")
+        found.append(
+            say("The title has at most {longest_title} printable characters.", longest_title=LONGEST_TITLE)
+        )
     if not FIRST_YEAR <= asked.on.year <= LAST_YEAR:
-        found.append(f"Choose a year between {FIRST_YEAR} and {LAST_YEAR}.")
+        found.append(
+            say(
+                "Choose a year between {first_year} and {last_year}.",
+                first_year=FIRST_YEAR,
+                last_year=LAST_YEAR,
+            )
+        )
     if asked.step_min not in STEPS_MIN:
-        found.append(f"The step is one of {', '.join(map(str, STEPS_MIN))} minutes.")
+        found.append(say("The step is one of {join} minutes.", join=join(", ", map(str, STEPS_MIN))))
     if not asked.strategies:
-        found.append("Choose at least one strategy.")
+        found.append(N_("Choose at least one strategy."))
     if len(set(asked.modes)) < len(asked.modes) or len(set(asked.strategies)) < len(asked.strategies):
-        found.append("Enter each mode and each strategy only once.")
+        found.append(N_("Enter each mode and each strategy only once."))
     if (asked.light is LightModel.WEATHER) != (asked.weather_file is not None):
-        found.append("Enter a weather file if, and only if, the irradiance comes from one.")
+        found.append(N_("Enter a weather file if, and only if, the irradiance comes from one."))
     return found
 
 
 def _settings(asked: StudyRequest) -> list[str]:
-    found = []
+    found: list[str] = []
     if not 0.05 <= asked.deadband_deg <= 30.0:
-        found.append("The deadband lies between 0.05 and 30 degrees.")
+        found.append(N_("The deadband lies between 0.05 and 30 degrees."))
     if not 1 <= asked.interval_min <= 240:
-        found.append("The interval lies between 1 and 240 minutes.")
+        found.append(N_("The interval lies between 1 and 240 minutes."))
     if StudyStrategy.PROGRAM in asked.strategies and asked.program is None:
-        found.append("The strategy 'program' needs a program: give one, or a tracker that has one.")
+        found.append(N_("The strategy 'program' needs a program: give one, or a tracker that has one."))
     if not 0.0 <= asked.rows_ratio <= 1.0:
-        found.append("The ground coverage ratio of rows lies between 0 (no rows) and 1.")
+        found.append(N_("The ground coverage ratio of rows lies between 0 (no rows) and 1."))
     if not 5.0 <= asked.range_deg <= 180.0:
-        found.append("The range of single and polar axes lies between 5 and 180 degrees to either side.")
+        found.append(N_("The range of single and polar axes lies between 5 and 180 degrees to either side."))
     if not 0.0 <= asked.axis_tilt_deg <= 90.0:
-        found.append("The tilt of the tilted axis lies between 0 and 90 degrees.")
+        found.append(N_("The tilt of the tilted axis lies between 0 and 90 degrees."))
     return found
 
 
@@ -196,11 +207,22 @@ def _size(asked: StudyRequest) -> list[str]:
         return []
     cases, values = len(asked.cases), asked.day_count * 24 * 60 // asked.step_min
     if cases > MOST_CASES:
-        return [f"A study compares at most {MOST_CASES} cases, not {cases}: take fewer modes or strategies."]
+        return [
+            say(
+                "A study compares at most {most_cases} cases, not {cases}: take fewer modes or strategies.",
+                most_cases=MOST_CASES,
+                cases=cases,
+            )
+        ]
     if cases * values > MOST_VALUES:
         return [
-            f"{cases} cases of {values} instants are too many (at most {MOST_VALUES} in all): "
-            "choose a longer step, fewer days, or fewer modes and strategies."
+            say(
+                "{cases} cases of {values} instants are too many (at most {most_values} in all): "
+                "choose a longer step, fewer days, or fewer modes and strategies.",
+                cases=cases,
+                values=values,
+                most_values=MOST_VALUES,
+            )
         ]
     return []
 
@@ -208,16 +230,20 @@ def _size(asked: StudyRequest) -> list[str]:
 def _controller(asked: StudyRequest) -> list[str]:
     if asked.fidelity is not Fidelity.CONTROLLER:
         return []
-    found = []
+    found: list[str] = []
     if asked.span is not Span.DAY:
-        found.append("A study with the controller's control covers one day: choose a day, or ideal drives.")
+        found.append(
+            N_("A study with the controller's control covers one day: choose a day, or ideal drives.")
+        )
     if asked.tracker is None:
-        found.append("A study with the controller's control needs a tracker: choose one.")
+        found.append(N_("A study with the controller's control needs a tracker: choose one."))
     if not set(asked.modes) <= set(OF_THE_CONTROLLER):
         found.append(
-            "A study with the controller's control has the modes fixed, azimuth, elevation, and "
-            "dual of the tracker's own mount: omit the others, or choose ideal drives."
+            N_(
+                "A study with the controller's control has the modes fixed, azimuth, elevation, and "
+                "dual of the tracker's own mount: omit the others, or choose ideal drives."
+            )
         )
     if asked.light is LightModel.WEATHER:
-        found.append("A study with the controller's control has a clear sky: choose a clear-sky model.")
+        found.append(N_("A study with the controller's control has a clear sky: choose a clear-sky model."))
     return found

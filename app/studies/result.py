@@ -6,19 +6,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import date
 
+from app.base.message import N_
 from app.studies.request import StudyMode, StudyStrategy
 from app.sun.position import Location
 
 MODE_NAMES = {
-    StudyMode.FIXED: "Fixed",
-    StudyMode.AZIMUTH: "Azimuth",
-    StudyMode.ELEVATION: "Elevation",
-    StudyMode.ELEVATION_LEAST: "Elevation, least incidence",
-    StudyMode.DUAL: "Dual-axis",
-    StudyMode.EQUATORIAL: "Equatorial",
-    StudyMode.HORIZONTAL_AXIS: "Horizontal axis",
-    StudyMode.TILTED_AXIS: "Tilted axis",
-    StudyMode.VERTICAL_AXIS: "Vertical axis",
+    StudyMode.FIXED: N_("Fixed"),
+    StudyMode.AZIMUTH: N_("Azimuth"),
+    StudyMode.ELEVATION: N_("Elevation"),
+    StudyMode.ELEVATION_LEAST: N_("Elevation, least incidence"),
+    StudyMode.DUAL: N_("Dual-axis"),
+    StudyMode.EQUATORIAL: N_("Equatorial"),
+    StudyMode.HORIZONTAL_AXIS: N_("Horizontal axis"),
+    StudyMode.TILTED_AXIS: N_("Tilted axis"),
+    StudyMode.VERTICAL_AXIS: N_("Vertical axis"),
 }
 STRATEGY_NAMES = {
     StudyStrategy.CONTINUOUS: "continuous",

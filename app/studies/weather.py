@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 from pvlib.iotools import read_epw, read_pvgis_hourly, read_pvgis_tmy, read_tmy3
 
+from app.base.message import N_, say, told_by, with_format
 from app.sun.position import Algorithm, Location, sun_path
 from app.sun.trigonometry import PER_DEGREE, Array
 
@@ -60,8 +61,12 @@ def read_weather(path: Path, year: int | None = None) -> WeatherYear:
         raise
     except (ValueError, KeyError, IndexError, TypeError, UnicodeDecodeError, pd.errors.ParserError) as error:
         raise WeatherRefused(
-            f"The file begins like {kind} but cannot be read in that format: {error}. Download it "
-            "again and upload it unchanged."
+            say(
+                "The file begins like {kind} but cannot be read in that format: {error}. Download it "
+                "again and upload it unchanged.",
+                kind=kind,
+                error=told_by(error),
+            )
         ) from error
 
 
@@ -76,7 +81,7 @@ def _format_of(path: Path) -> WeatherFormat:
     if "Date (MM/DD/YYYY)" in start:
         return WeatherFormat.TMY3
     raise WeatherRefused(
-        "Heliopanel cannot read this weather file: use TMY3 or PVGIS as CSV, or EPW, as downloaded."
+        N_("Heliopanel cannot read this weather file: use TMY3 or PVGIS as CSV, or EPW, as downloaded.")
     )
 
 
@@ -85,7 +90,12 @@ def _check_whole(path: Path) -> None:
         lines = sum(1 for _ in file)
     if lines <= HOURS:
         raise WeatherRefused(
-            f"The file ends after {lines} lines, too few hours; a whole year has {HOURS}. Download it again."
+            say(
+                "The file ends after {lines} lines, too few hours; a whole year has {hours}. "
+                "Download it again.",
+                lines=lines,
+                hours=HOURS,
+            )
         )
 
 
@@ -103,7 +113,7 @@ def _epw(path: Path, _: int | None) -> WeatherYear:
 
 def _pvgis_tmy(path: Path, _: int | None) -> WeatherYear:
     data, head = read_pvgis_tmy(str(path), pvgis_format="csv")
-    centre_h = float(head["inputs"].get("irradiance time offset", 0.0))
+    centre_h = float(head["inputs"].get(N_("irradiance time offset"), 0.0))
     return _year(WeatherFormat.PVGIS_TMY, _pvgis_place(head), 0.0, centre_h, data)
 
 
@@ -111,14 +121,21 @@ def _pvgis_hourly(path: Path, year: int | None) -> WeatherYear:
     """Return one year of an hourly file of a level plane; the beam is turned from level to facing the sun."""
     data, head = read_pvgis_hourly(str(path), pvgis_format="csv")
     if not {"poa_direct", "poa_sky_diffuse"} <= set(data.columns):
-        raise WeatherRefused("Select the radiation components in PVGIS: this file has only their sum.")
+        raise WeatherRefused(N_("Select the radiation components in PVGIS: this file has only their sum."))
     if not str(head["inputs"].get("Slope", "")).startswith("0"):
-        raise WeatherRefused("Select a horizontal plane (slope 0) in PVGIS: this file is for a tilted plane.")
+        raise WeatherRefused(
+            N_("Select a horizontal plane (slope 0) in PVGIS: this file is for a tilted plane.")
+        )
     years = sorted(set(data.index.year))
     year = years[0] if year is None else year
     if year not in years:
         raise WeatherRefused(
-            f"The file has the years {years[0]} to {years[-1]}, not {year}: choose one of them."
+            say(
+                "The file has the years {years} to {years2}, not {year}: choose one of them.",
+                years=years[0],
+                years2=years[-1],
+                year=year,
+            )
         )
     data = data[(data.index.year == year) & ~((data.index.month == 2) & (data.index.day == 29))]
     place, centre_h = _pvgis_place(head), data.index[0].minute / 60.0
@@ -149,7 +166,9 @@ def _year(
     kind: WeatherFormat, place: Location, utc_offset_h: float, centre_h: float, data: pd.DataFrame
 ) -> WeatherYear:
     if len(data) != HOURS:
-        raise WeatherRefused(f"The file has {len(data)} hours; a whole year has {HOURS}.")
+        raise WeatherRefused(
+            say("The file has {data} hours; a whole year has {hours}.", data=len(data), hours=HOURS)
+        )
     direct, diffuse, level = (_column(data, name, 0.0, LARGEST_WM2) for name in ("dni", "dhi", "ghi"))
     air, wind = _column(data, "temp_air", -90.0, 70.0), _column(data, "wind_speed", 0.0, 100.0)
     return WeatherYear(kind, place, float(utc_offset_h), centre_h, direct, diffuse, level, air, wind)
@@ -158,7 +177,9 @@ def _year(
 def _column(data: pd.DataFrame, name: str, least: float, most: float) -> Array:
     """Return one column of numbers within bounds; irradiance a little below zero counts as none."""
     if name not in data.columns:
-        raise WeatherRefused(f"The file has no column {name}; download it with all its columns.")
+        raise WeatherRefused(
+            say("The file has no column {name}; download it with all its columns.", name=name)
+        )
     values = np.asarray(pd.to_numeric(data[name], errors="coerce"), dtype=np.float64)
     if name in ("dni", "dhi", "ghi"):
         values = np.where((values < 0.0) & (values > -10.0), 0.0, values)
@@ -166,7 +187,14 @@ def _column(data: pd.DataFrame, name: str, least: float, most: float) -> Array:
     if wrong.any():
         hour = int(wrong.argmax())
         raise WeatherRefused(
-            f"In hour {hour + 1} of the file, {name} is {data[name].iloc[hour]}; the valid range "
-            f"is {least:g} to {most:g}. Download the file again, or use another source."
+            say(
+                "In hour {hour} of the file, {name} is {iloc}; the valid range is {least} to {most}. "
+                "Download the file again, or use another source.",
+                hour=hour + 1,
+                name=name,
+                iloc=data[name].iloc[hour],
+                least=with_format(least, "g"),
+                most=with_format(most, "g"),
+            )
         )
     return values

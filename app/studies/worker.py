@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from time import perf_counter
 
+from app.base.message import told_by
 from app.fast.compare import compare
 from app.studies.compute import finished, work_out
 from app.studies.jobs import (
@@ -46,7 +47,7 @@ def _answer(line: bytes) -> Told:
     try:
         return done(JOB.validate_json(line))
     except (ValueError, OSError) as error:
-        return Refused(str(error))
+        return Refused(told_by(error))
 
 
 def done(job: Job) -> Told:

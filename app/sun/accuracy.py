@@ -12,6 +12,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from app.base.message import say, with_format
 from app.sun.algorithms import Algorithm
 from app.sun.position import Location, SunPath, sun_path
 from app.sun.trigonometry import PER_DEGREE, PER_RADIAN, Array
@@ -49,10 +50,21 @@ class Question:
     def __post_init__(self) -> None:
         if not FIRST_YEAR <= self.from_year <= self.to_year <= LAST_YEAR:
             raise ValueError(
-                f"Years must lie between {FIRST_YEAR} and {LAST_YEAR}, the first not after the last."
+                say(
+                    "Years must lie between {first_year} and {last_year}, the first not after the last.",
+                    first_year=FIRST_YEAR,
+                    last_year=LAST_YEAR,
+                )
             )
         if not FEWEST <= self.samples <= MOST:
-            raise ValueError(f"Choose between {FEWEST:,} and {MOST:,} samples, not {self.samples:,}.")
+            raise ValueError(
+                say(
+                    "Choose between {fewest} and {most} samples, not {samples}.",
+                    fewest=with_format(FEWEST, ","),
+                    most=with_format(MOST, ","),
+                    samples=with_format(self.samples, ","),
+                )
+            )
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ from enum import StrEnum
 from types import MappingProxyType
 from typing import Final
 
+from app.base.message import N_, Message, say, with_format
 from app.sun import alexandru, cooper, fast, koblick, psa, psa_plus, spa, spencer_lamm
 from app.sun.trigonometry import ARRAY, SCALAR, Array, Trigonometry
 
@@ -47,9 +48,11 @@ class Published:
     many: Many
 
     @property
-    def expected(self) -> str:
+    def expected(self) -> Message:
         """Return the title with the error to expect beside it."""
-        return f"{self.title}, error up to {self.max_deg:g}°"
+        return say(
+            "{title}, error up to {max_deg}°", title=self.title, max_deg=with_format(self.max_deg, "g")
+        )
 
 
 def _one(position: Callable[[float, float, float, Trigonometry[float]], tuple[float, float]]) -> One:
@@ -60,17 +63,17 @@ def _many(position: Callable[[Array, float, float, Trigonometry[Array]], tuple[A
     return lambda unix_s, latitude_deg, longitude_deg: position(unix_s, latitude_deg, longitude_deg, ARRAY)
 
 
-_COOPER = "Cooper, Solar Energy 12 (1969) 333-346, as in Nalini and Hemavathi (2023)"
+_COOPER = N_("Cooper, Solar Energy 12 (1969) 333-346, as in Nalini and Hemavathi (2023)")
 _COOPER_DOI = "10.1016/0038-092X(69)90047-4"
-_LAMM = "Spencer, Search 2 (1971) 172, and Lamm, Solar Energy 26 (1981) 465, as in Xia et al. (2015)"
+_LAMM = N_("Spencer, Search 2 (1971) 172, and Lamm, Solar Energy 26 (1981) 465, as in Xia et al. (2015)")
 _LAMM_DOI = "10.1016/0038-092X(81)90229-2"
-_KOBLICK = "Koblick, MATLAB Central 23051 (2008), as in Gezegin and Dirik (2022)"
+_KOBLICK = N_("Koblick, MATLAB Central 23051 (2008), as in Gezegin and Dirik (2022)")
 
 PUBLISHED: Final[Mapping[Algorithm, Published]] = MappingProxyType(
     {
         Algorithm.PSA: Published(
-            "PSA (2001)",
-            "Blanco-Muriel et al., Solar Energy 70 (2001) 431-441",
+            N_("PSA (2001)"),
+            N_("Blanco-Muriel et al., Solar Energy 70 (2001) 431-441"),
             "10.1016/S0038-092X(00)00156-0",
             0.0099,
             0.0033,
@@ -78,8 +81,8 @@ PUBLISHED: Final[Mapping[Algorithm, Published]] = MappingProxyType(
             _many(psa.position),
         ),
         Algorithm.PSA_PLUS: Published(
-            "PSA+ (2020)",
-            "Blanco, Milidonis and Bonanos, Solar Energy 212 (2020) 339-341",
+            N_("PSA+ (2020)"),
+            N_("Blanco, Milidonis and Bonanos, Solar Energy 212 (2020) 339-341"),
             "10.1016/j.solener.2020.10.084",
             0.0085,
             0.0029,
@@ -87,10 +90,10 @@ PUBLISHED: Final[Mapping[Algorithm, Published]] = MappingProxyType(
             _many(psa_plus.position),
         ),
         Algorithm.KOBLICK: Published(
-            "Koblick", _KOBLICK, "", 0.0124, 0.0044, fast.koblick, _many(koblick.position)
+            N_("Koblick"), _KOBLICK, "", 0.0124, 0.0044, fast.koblick, _many(koblick.position)
         ),
         Algorithm.KOBLICK_PARALLAX: Published(
-            "Koblick with parallax",
+            N_("Koblick with parallax"),
             _KOBLICK,
             "",
             0.0100,
@@ -99,7 +102,7 @@ PUBLISHED: Final[Mapping[Algorithm, Published]] = MappingProxyType(
             _many(koblick.position_with_parallax),
         ),
         Algorithm.SPENCER_LAMM: Published(
-            "Spencer and Lamm",
+            N_("Spencer and Lamm"),
             _LAMM,
             _LAMM_DOI,
             0.89,
@@ -108,7 +111,7 @@ PUBLISHED: Final[Mapping[Algorithm, Published]] = MappingProxyType(
             _many(spencer_lamm.position),
         ),
         Algorithm.SPENCER_LAMM_PHASE: Published(
-            "Spencer and Lamm, phase fixed",
+            N_("Spencer and Lamm, phase fixed"),
             _LAMM,
             _LAMM_DOI,
             0.12,
@@ -117,7 +120,7 @@ PUBLISHED: Final[Mapping[Algorithm, Published]] = MappingProxyType(
             _many(spencer_lamm.position_phase),
         ),
         Algorithm.COOPER: Published(
-            "Cooper, as printed",
+            N_("Cooper, as printed"),
             _COOPER,
             _COOPER_DOI,
             4.16,
@@ -126,7 +129,7 @@ PUBLISHED: Final[Mapping[Algorithm, Published]] = MappingProxyType(
             _many(cooper.position),
         ),
         Algorithm.COOPER_EOT: Published(
-            "Cooper with equation of time",
+            N_("Cooper with equation of time"),
             _COOPER,
             _COOPER_DOI,
             1.50,
@@ -135,8 +138,8 @@ PUBLISHED: Final[Mapping[Algorithm, Published]] = MappingProxyType(
             _many(cooper.position_with_equation_of_time),
         ),
         Algorithm.ALEXANDRU: Published(
-            "Alexandru",
-            "Alexandru, Mathematics 12 (2024) 1034",
+            N_("Alexandru"),
+            N_("Alexandru, Mathematics 12 (2024) 1034"),
             "10.3390/math12071034",
             1.87,
             0.64,
@@ -144,8 +147,8 @@ PUBLISHED: Final[Mapping[Algorithm, Published]] = MappingProxyType(
             _many(alexandru.position),
         ),
         Algorithm.SPA: Published(
-            "NREL SPA",
-            "Reda and Andreas, Solar Energy 76 (2004) 577-589, by pvlib",
+            N_("NREL SPA"),
+            N_("Reda and Andreas, Solar Energy 76 (2004) 577-589, by pvlib"),
             "10.1016/j.solener.2003.12.003",
             0.0003,
             0.0003,

@@ -14,7 +14,8 @@ from math import atan2, cos, degrees, radians, sin
 
 import numpy as np
 
-from app.angles import wrap180
+from app.base.angles import wrap180
+from app.base.message import N_
 from app.sun.position import (
     RISE_ELEVATION_DEG,
     Algorithm,
@@ -91,7 +92,7 @@ def crossings(
 ) -> tuple[Crossing, ...]:
     """Return every rise and set in [begin, end), in order, aware UTC."""
     if begin.tzinfo is None or end.tzinfo is None or end <= begin:
-        raise InstantRefused("Give two instants with their time zone, the first before the second.")
+        raise InstantRefused(N_("Give two instants with their time zone, the first before the second."))
     sky = _Elevation(algorithm, location)
     knots = _monotone_pieces(sky, begin.astimezone(UTC), end.astimezone(UTC))
     found = []

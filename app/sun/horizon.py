@@ -4,6 +4,8 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from itertools import pairwise
 
+from app.base.message import N_, say, with_format
+
 OUTLINE_STEP_DEG = 5.0
 MOST_POINTS = 72
 
@@ -20,16 +22,26 @@ class Horizon:
 
     def __post_init__(self) -> None:
         if len(self.points) > MOST_POINTS:
-            raise ValueError(f"The horizon takes at most {MOST_POINTS} points.")
+            raise ValueError(say("The horizon takes at most {most_points} points.", most_points=MOST_POINTS))
         for azimuth_deg, elevation_deg in self.points:
             if not 0.0 <= azimuth_deg < 360.0:
-                raise ValueError(f"An azimuth of the horizon must be 0 to below 360, not {azimuth_deg:g}.")
+                raise ValueError(
+                    say(
+                        "An azimuth of the horizon must be 0 to below 360, not {azimuth_deg}.",
+                        azimuth_deg=with_format(azimuth_deg, "g"),
+                    )
+                )
             if not 0.0 <= elevation_deg < 90.0:
-                raise ValueError(f"An elevation of the horizon must be 0 to below 90, not {elevation_deg:g}.")
+                raise ValueError(
+                    say(
+                        "An elevation of the horizon must be 0 to below 90, not {elevation_deg}.",
+                        elevation_deg=with_format(elevation_deg, "g"),
+                    )
+                )
         azimuths = [azimuth_deg for azimuth_deg, _ in self.points]
         if any(after <= before for before, after in pairwise(azimuths)):
             raise ValueError(
-                "The points of the horizon must be in ascending order of azimuth, each azimuth only once."
+                N_("The points of the horizon must be in ascending order of azimuth, each azimuth only once.")
             )
 
     def height_deg(self, azimuth_deg: float) -> float:

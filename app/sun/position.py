@@ -6,7 +6,8 @@ from datetime import datetime
 import numpy as np
 from numpy.typing import NDArray
 
-from app.angles import wrap360
+from app.base.angles import wrap360
+from app.base.message import N_, say
 from app.sun.algorithms import PUBLISHED
 from app.sun.algorithms import Algorithm as Algorithm
 from app.sun.refraction import refraction_deg, refraction_path
@@ -39,11 +40,26 @@ class Location:
 
     def __post_init__(self) -> None:
         if not -90.0 <= self.latitude_deg <= 90.0:
-            raise ValueError(f"Latitude must lie between -90 and 90 degrees, not {self.latitude_deg}.")
+            raise ValueError(
+                say(
+                    "Latitude must lie between -90 and 90 degrees, not {latitude_deg}.",
+                    latitude_deg=self.latitude_deg,
+                )
+            )
         if not -180.0 <= self.longitude_deg <= 180.0:
-            raise ValueError(f"Longitude must lie between -180 and 180 degrees, not {self.longitude_deg}.")
+            raise ValueError(
+                say(
+                    "Longitude must lie between -180 and 180 degrees, not {longitude_deg}.",
+                    longitude_deg=self.longitude_deg,
+                )
+            )
         if not -500.0 <= self.altitude_m <= 9000.0:
-            raise ValueError(f"Altitude must lie between -500 and 9000 meters, not {self.altitude_m}.")
+            raise ValueError(
+                say(
+                    "Altitude must lie between -500 and 9000 meters, not {altitude_m}.",
+                    altitude_m=self.altitude_m,
+                )
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,10 +93,14 @@ class SunPath:
 def sun_position(algorithm: Algorithm, location: Location, at: datetime) -> SunPosition:
     """Return where the sun stands at an aware instant; raises `InstantRefused` outside 1901 to 2099."""
     if at.tzinfo is None:
-        raise InstantRefused(f"{at} has no time zone: give the instant with its offset, for example +00:00.")
+        raise InstantRefused(
+            say("{at} has no time zone: give the instant with its offset, for example +00:00.", at=at)
+        )
     unix_s = at.timestamp()
     if not FIRST_UNIX_S <= unix_s < END_UNIX_S:
-        raise InstantRefused(f"The sun position is available for the years 1901 to 2099 (UTC), not for {at}.")
+        raise InstantRefused(
+            say("The sun position is available for the years 1901 to 2099 (UTC), not for {at}.", at=at)
+        )
     one = PUBLISHED[algorithm].one
     azimuth_deg, elevation_deg = one(unix_s, location.latitude_deg, location.longitude_deg)
     return SunPosition(wrap360(azimuth_deg), elevation_deg, elevation_deg + refraction_deg(elevation_deg))
@@ -93,7 +113,10 @@ def sun_path(algorithm: Algorithm, location: Location, at_unix_s: Array) -> SunP
     """
     if at_unix_s.size and (at_unix_s.min() < FIRST_UNIX_S or at_unix_s.max() >= END_UNIX_S):
         raise InstantRefused(
-            "The sun position is available only for the years 1901 to 2099 (UTC); choose times in this range."
+            N_(
+                "The sun position is available only for the years 1901 to 2099 (UTC); choose "
+                "times in this range."
+            )
         )
     many = PUBLISHED[algorithm].many
     columns = np.empty((3, at_unix_s.size))

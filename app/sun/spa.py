@@ -19,6 +19,7 @@ from typing import Final
 
 import numpy as np
 
+from app.base.message import N_
 from app.sun.psa import horizontal
 from app.sun.trigonometry import PER_DEGREE, PER_RADIAN, SCALAR, Array
 
@@ -126,10 +127,10 @@ def _solar_position(package: str = "pvlib") -> Many:
     """Load pvlib's spa.py by its path, without the package around it."""
     found = importlib.util.find_spec(package)
     if found is None or found.origin is None:
-        raise AlgorithmMissing("NREL SPA needs pvlib: install it (pip install pvlib), or choose PSA+.")
+        raise AlgorithmMissing(N_("NREL SPA needs pvlib: install it (pip install pvlib), or choose PSA+."))
     spec = importlib.util.spec_from_file_location("pvlib_spa_alone", Path(found.origin).with_name("spa.py"))
     if spec is None or spec.loader is None:
-        raise AlgorithmMissing("The installed pvlib has no spa.py: install pvlib 0.16, or choose PSA+.")
+        raise AlgorithmMissing(N_("The installed pvlib has no spa.py: install pvlib 0.16, or choose PSA+."))
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     calculate: Many = module.solar_position_numpy

@@ -1,10 +1,11 @@
-"""One tracker's mind: `handle` and `tick` are the two ways in."""
+"""One tracker's state: `handle` and `tick` are the two ways in."""
 
 from dataclasses import replace
 from datetime import datetime, timedelta
 from typing import NamedTuple, assert_never
 
-from app.tracker import report
+from app.base.message import N_
+from app.tracker.access.authority import watch_local, watch_service
 from app.tracker.activities import (
     faulted,
     homing,
@@ -15,10 +16,28 @@ from app.tracker.activities import (
     stowing,
     tracking,
 )
-from app.tracker.activity import (
+from app.tracker.activities.approach import has_reached
+from app.tracker.commands.commands import Command
+from app.tracker.commissioning.steps import Standing
+from app.tracker.memory.drive_tests import Proofs
+from app.tracker.memory.memory import (
+    CommissioningLock,
+    Confirmation,
+    Pointing,
+    Sighting,
+    StepName,
+    TrackerMemory,
+)
+from app.tracker.memory.observation import Observation
+from app.tracker.mounts.missing_axes import as_mounted, for_drive
+from app.tracker.mounts.mount import upright
+from app.tracker.orders import HANDLERS, refuse_absent_axis
+from app.tracker.recovery import recover
+from app.tracker.report import report
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.state.activity import (
     HOLDING,
     NAMES,
-    AxisPair,
     Faulted,
     Holding,
     Homing,
@@ -32,38 +51,35 @@ from app.tracker.activity import (
     Stowing,
     Tracking,
 )
-from app.tracker.announce import is_announced
-from app.tracker.approach import has_reached
-from app.tracker.authority import watch_local, watch_service
-from app.tracker.commands import Command
-from app.tracker.commissioning import Standing
-from app.tracker.config import TrackerConfig
-from app.tracker.controller_state import HALTED, NOWHERE, STANDING, ControllerState, Turn
-from app.tracker.drive_tests import Proofs
-from app.tracker.home_shift import forget
-from app.tracker.machine_guard import watch_machine
-from app.tracker.memory import CommissioningLock, Confirmation, Pointing, Sighting, StepName, TrackerMemory
-from app.tracker.motion import (
-    AxisCommand,
+from app.tracker.state.announce import call_off, is_announced
+from app.tracker.state.controller_state import HALTED, STANDING, ControllerState, Turn
+from app.tracker.state.home_trust import lose_home
+from app.tracker.state.positioning import at_rest
+from app.tracker.state.setpoints import forget_correction, forget_setpoints, note_setpoint
+from app.tracker.state.snapshot import ActivityName, Event, EventKind, Snapshot
+from app.tracker.state.transitions import begin, leave
+from app.tracker.state.waiting import wait_for
+from app.tracker.supervision.home_shift import forget
+from app.tracker.supervision.machine_guard import is_silent, watch_machine
+from app.tracker.supervision.protect import (
+    check_following,
+    forget_aftermath,
+    forget_following,
+    found,
+    miss,
+    obey_switches,
+    protect,
+)
+from app.tracker.supervision.regions import bar
+from app.tracker.supervision.weather_protection import guarding, look
+from app.tracker.values.actors import CONTROLLER
+from app.tracker.values.motion import (
     DriveCapabilities,
     DriveCommand,
     Feedback,
-    Halt,
-    Position,
     RequestKind,
 )
-from app.tracker.mount import upright
-from app.tracker.mounts.missing_axes import as_mounted, for_drive
-from app.tracker.observation import Observation
-from app.tracker.orders import obey
-from app.tracker.positioning import at_rest
-from app.tracker.protect import check_following, found, miss, obey_switches, protect
-from app.tracker.reason import Reason
-from app.tracker.recovery import recover
-from app.tracker.regions import bar
-from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
-from app.tracker.transitions import leave, lose_home
-from app.tracker.weather_protection import guarding, look
+from app.tracker.values.reason import Reason
 
 ANNOUNCED = (Tracking, Showing, Moving, Stowing)
 """Activities whose first motion may have to wait for its warning."""
@@ -89,32 +105,32 @@ class Controller:
         *,
         resumes: bool = True,
     ) -> None:
-        self._mind = ControllerState(config, memory, capabilities)
+        self._state = ControllerState(config, memory, capabilities)
         self._resumes = resumes
         if not resumes and (memory.stow is not None or memory.show_moves):
-            self._mind.wait = _BEGUN_ANEW
+            wait_for(self._state, _BEGUN_ANEW)
         if memory.fault_code is not None:
-            self._mind.activity = Faulted(Reason(memory.fault_code, memory.fault_text, _RESET_HINT))
+            begin(self._state, Faulted(Reason(memory.fault_code, memory.fault_text, _RESET_HINT)))
 
     @property
     def config(self) -> TrackerConfig:
         """Return what the engineer set."""
-        return self._mind.config
+        return self._state.config
 
     @property
     def memory(self) -> TrackerMemory:
         """Return what must survive a power cut; a new object whenever it changed."""
-        return self._mind.memory
+        return self._state.memory
 
     @property
     def activity(self) -> ActivityName:
         """Return what the tracker is doing."""
-        return NAMES[type(self._mind.activity)]
+        return NAMES[type(self._state.activity)]
 
     @property
     def is_silent(self) -> bool:
         """Return whether the drive is to be told nothing at all, so that its watchdog is not fed."""
-        return measuring.is_silent(self._mind)
+        return is_silent(self._state)
 
     def handle(
         self, command: Command, now: datetime, actor: str = "operator", via: str = ""
@@ -124,30 +140,33 @@ class Controller:
         `now` is the machine's steady time, as in `Observation.now`. The drive hears of it at the next tick.
         `via` is how whoever ordered was known, as in `Order`: what a program starts is announced.
         """
-        mind = self._mind
-        mind.site_time = mind.seen.site_time + (now - mind.seen.now) if mind.seen else now
-        mind.now, mind.actor, mind.via = now, actor, via
-        obey(mind, command)
-        mind.aftermath = None
-        return mind.drain()
+        state = self._state
+        state.site_time = state.seen.site_time + (now - state.seen.now) if state.seen else now
+        state.now, state.actor, state.via = now, actor, via
+        refuse_absent_axis(state, command)
+        HANDLERS[type(command)](state, command)
+        if state.memory.show_moves and not isinstance(state.activity, Showing):
+            state.remember(show_moves=False)
+        forget_aftermath(state)
+        return state.drain()
 
     def tick(self, seen: Observation) -> Tick:
         """Return what the drive shall do from now on and what happened since the last tick."""
-        mind = self._mind
-        if mind.config.mount.single_axis:
-            seen = seen._replace(feedback=as_mounted(mind.config, seen.feedback))
-        mind.now, mind.site_time, mind.seen, mind.actor = seen.now, seen.site_time, seen, "machine"
-        mind.via = ""
-        mind.ticks += 1
-        if mind.started_at is None:
+        state = self._state
+        if state.config.mount.single_axis:
+            seen = seen._replace(feedback=as_mounted(state.config, seen.feedback))
+        state.now, state.site_time, state.seen, state.actor = seen.now, seen.site_time, seen, CONTROLLER
+        state.via = ""
+        state.ticks += 1
+        if state.started_at is None:
             self._start(seen.now)
-        look(mind, seen)
+        look(state, seen)
         command = self._blind(seen) if seen.feedback is None else self._see(seen, seen.feedback)
-        mind.command = command = for_drive(mind.config, command)
-        if mind.alarmed is not None or guarding(mind).stow is not None:
+        state.command = command = for_drive(state.config, command)
+        if state.alarmed is not None or guarding(state).stow is not None:
             self._note_not_stowed()
-        horn = mind.warning is not None and mind.feedback is not None
-        return Tick(replace(command, horn=True) if horn else command, mind.drain())
+        horn = state.countdowns.motion is not None and state.feedback is not None
+        return Tick(replace(command, horn=True) if horn else command, state.drain())
 
     def snapshot(self, at: datetime, now: datetime | None = None, *, asked: bool = True) -> Snapshot:
         """Return everything known after the last tick, stamped `at`.
@@ -155,25 +174,25 @@ class Controller:
         `now` is the machine's steady time, to which ages are counted; without it, that of the last tick.
         Unless `asked`, `actions` are left out.
         """
-        return report.snapshot(self._mind, at, now or self._mind.now, asked=asked)
+        return report.snapshot(self._state, at, now or self._state.now, asked=asked)
 
     @property
     def standing(self) -> Standing:
         """Return what the five steps go by of how the tracker stands."""
-        return report.standing(self._mind)
+        return report.standing(self._state)
 
     def frame(self) -> tuple[float, ...]:
         """Return the last tick as one row of `recording.COLUMNS`; the first two columns are NaN."""
-        return report.frame(self._mind)
+        return report.frame(self._state)
 
     def deadline(self) -> datetime | None:
         """Return the instant by which `tick` must be called again, else None.
 
         That is when a jog's lease ends, and soon again while it is measured how an axis comes to rest.
         """
-        activity = self._mind.activity
+        activity = self._state.activity
         if isinstance(activity, Measuring) and activity.asked is not None:
-            return self._mind.now + measuring.LOOK_EVERY
+            return self._state.now + measuring.LOOK_EVERY
         return activity.until if isinstance(activity, Jogging) else None
 
     def configure(self, config: TrackerConfig, capabilities: DriveCapabilities) -> None:
@@ -181,178 +200,164 @@ class Controller:
 
         Another drive is another zero: trust in the old one is lost.
         """
-        mind = self._mind
-        leave(mind, "the configuration was changed.")
-        if config.drive != mind.config.drive:
-            mind.feedback = mind.feedback_at = None
-            lose_home(mind, Reason("drive_changed", "another drive was configured."))
-            forget(mind)
-        mind.config, mind.capabilities = config, capabilities
-        mind.setpoint, mind.target, mind.watches = NOWHERE, None, {}
-        mind.corrected = None
-        if mind.memory.rejected:
-            mind.remember(rejected=())
+        state = self._state
+        leave(state, N_("the configuration was changed."))
+        if config.drive != state.config.drive:
+            state.feedback = state.feedback_at = None
+            lose_home(state, Reason("drive_changed", N_("another drive was configured.")))
+            forget(state)
+        state.config, state.capabilities = config, capabilities
+        forget_setpoints(state)
+        forget_following(state)
+        state.target = None
+        if state.memory.rejected:
+            state.remember(rejected=())
 
     def know(self, capabilities: DriveCapabilities) -> None:
         """Take over what the drive is able to do as it was read last: its watchdog may be off, or another."""
-        if capabilities != self._mind.capabilities:
-            self._mind.capabilities = capabilities
+        if capabilities != self._state.capabilities:
+            self._state.capabilities = capabilities
 
     def set_pointing(self, pointing: Pointing) -> None:
         """Take over a correction from sightings; what the light sensors found goes with the old one."""
-        self._mind.remember(pointing=pointing)
-        self._mind.corrected = None
+        self._state.remember(pointing=pointing)
+        forget_correction(self._state)
 
     def confirm(self, step: StepName, confirmation: Confirmation) -> None:
         """Remember that the operator said a step is right."""
-        confirmations = {**self._mind.memory.confirmations, step: confirmation}
-        self._mind.remember(confirmations=confirmations)
+        confirmations = {**self._state.memory.confirmations, step: confirmation}
+        self._state.remember(confirmations=confirmations)
 
     def set_proofs(self, proofs: Proofs) -> None:
         """Take over what somebody said about the drive."""
-        self._mind.remember(proofs=proofs)
+        self._state.remember(proofs=proofs)
 
     def set_control_epoch(self, epoch: int) -> None:
         """Remember the newest epoch of control, so that no later life gives it again."""
-        self._mind.remember(control_epoch=epoch)
+        self._state.remember(control_epoch=epoch)
 
     def set_settings_lock(self, lock: CommissioningLock | None) -> None:
         """Take over who locked the settings, None where nobody did."""
-        self._mind.remember(settings_lock=lock)
+        self._state.remember(settings_lock=lock)
 
     def set_sightings(self, sightings: tuple[Sighting, ...]) -> None:
         """Keep these sightings and forget all others."""
-        self._mind.remember(sightings=sightings)
+        self._state.remember(sightings=sightings)
 
     def _start(self, now: datetime) -> None:
-        mind = self._mind
-        mind.started_at = now
-        if mind.memory.showing is not None:
-            show_id = mind.memory.showing
-            mind.remember(showing=None)
-            message = "The show was interrupted: the controller restarted."
-            mind.say(EventKind.SHOW_ENDED, message, outcome="interrupted", show_id=show_id)
+        state = self._state
+        state.started_at = now
+        if state.memory.showing is not None:
+            show_id = state.memory.showing
+            state.remember(showing=None)
+            message = N_("The show was interrupted: the controller restarted.")
+            state.say(EventKind.SHOW_ENDED, message, outcome="interrupted", show_id=show_id)
 
     def _blind(self, seen: Observation) -> DriveCommand:
         """Go on for one failed reading, then stop: absence of information is a reason to stop."""
-        mind = self._mind
-        miss(mind, seen.now, seen.silence)
-        mind.sun = seen.sun
-        if isinstance(mind.activity, Jogging) and seen.now >= mind.activity.until:
-            jogging.end(mind, mind.activity, "the jog command was not renewed in time.", "expired")
-        if mind.lost or isinstance(mind.activity, Holding | Stopping | Faulted | Stowed):
-            return STANDING if mind.command is STANDING or _may_search(mind) else HALTED
-        return mind.command
+        state = self._state
+        miss(state, seen.now, seen.silence)
+        state.sun = seen.sun
+        if isinstance(state.activity, Jogging) and seen.now >= state.activity.until:
+            jogging.end(state, state.activity, N_("the jog command was not renewed in time."), "expired")
+        if state.connection.lost or isinstance(state.activity, Holding | Stopping | Faulted | Stowed):
+            return STANDING if state.command is STANDING or _may_search(state) else HALTED
+        return state.command
 
     def _see(self, seen: Observation, feedback: Feedback) -> DriveCommand:
-        mind = self._mind
-        before, before_at = mind.feedback, mind.feedback_at
-        if mind.misses:
-            found(mind, feedback)
-        mind.feedback, mind.feedback_at = feedback, seen.now
-        watch_local(mind, before, feedback)
-        protect(mind, before, feedback, seen.now - (before_at or seen.now))
-        watch_service(mind)
-        watch_machine(mind, before, feedback)
-        if mind.watches or mind.command is not HALTED:
-            check_following(mind, feedback, seen.now)
-        if before is None and mind.started_at is not None and seen.now - mind.started_at <= RESUME_WITHIN:
+        state = self._state
+        before, before_at = state.feedback, state.feedback_at
+        if state.connection.misses:
+            found(state, feedback)
+        state.feedback, state.feedback_at = feedback, seen.now
+        watch_local(state, before, feedback)
+        protect(state, before, feedback, seen.now - (before_at or seen.now))
+        watch_service(state)
+        watch_machine(state, before, feedback)
+        if state.watches or state.command is not HALTED:
+            check_following(state, feedback, seen.now)
+        if before is None and state.started_at is not None and seen.now - state.started_at <= RESUME_WITHIN:
             self._first_reading()
-        recover(mind, feedback)
-        stowing.guard(mind, feedback)
+        recover(state, feedback)
+        stowing.guard(state, feedback)
         turn = self._step(feedback, seen)
-        mind.reached = has_reached(mind, turn, feedback)
-        mind.activity, mind.target = turn.activity, upright(turn.target)
-        mind.sun = seen.sun if turn.sun is None else turn.sun
+        state.reached = has_reached(state, turn, feedback)
+        if turn.activity is not state.activity:
+            begin(state, turn.activity)
+        state.target = upright(turn.target)
+        state.sun = seen.sun if turn.sun is None else turn.sun
         if turn.command is HALTED:
             return STANDING if feedback.homing and not isinstance(turn.activity, Homing) else HALTED
-        return self._note(bar(mind, obey_switches(mind, turn.command, feedback), feedback))
+        command = bar(state, obey_switches(state, turn.command, feedback), feedback)
+        note_setpoint(state, command)
+        return command
 
     def _first_reading(self) -> None:
         """Decide once whether tracking goes on after a restart."""
-        if self._resumes and isinstance(self._mind.activity, Holding | Faulted):
-            tracking.resume(self._mind)
+        if self._resumes and isinstance(self._state.activity, Holding | Faulted):
+            tracking.resume(self._state)
 
     def _note_not_stowed(self) -> None:
         """Say once that the panel is not stowed though it should be, and remember why."""
-        mind = self._mind
-        before, mind.alarmed = mind.alarmed, stowing.not_stowed(mind)
-        if mind.alarmed is not None and before is None:
-            mind.say(EventKind.NOT_STOWED, mind.alarmed.message, hint=mind.alarmed.hint)
+        state = self._state
+        before, state.alarmed = state.alarmed, stowing.not_stowed(state)
+        if state.alarmed is not None and before is None:
+            state.say(EventKind.NOT_STOWED, state.alarmed.message, hint=state.alarmed.hint)
 
     def _step(self, feedback: Feedback, seen: Observation) -> Turn:
         """Return the activity's turn; a motion that is being announced waits."""
-        mind = self._mind
-        if mind.warning is not None and self._waits():
-            return Turn(mind.activity, HALTED, mind.target, seen.sun)
-        activity = mind.activity
+        state = self._state
+        if state.countdowns.motion is not None and self._waits():
+            return Turn(state.activity, HALTED, state.target, seen.sun)
+        activity = state.activity
         match activity:
             case Tracking():
-                return tracking.step(mind, activity, feedback, seen)
+                return tracking.step(state, activity, feedback, seen)
             case Holding() | Stopping():
                 return Turn(HOLDING if at_rest(feedback) else activity)
             case Showing():
-                return showing.step(mind, activity, feedback)
+                return showing.step(state, activity, feedback)
             case Jogging() | Moving() | Measuring() | Stowing() | Stowed():
-                return _step_by_order(mind, activity, feedback)
+                return _step_by_order(state, activity, feedback)
             case SettingHome() | Homing():
-                return homing.step(mind, activity, feedback)
+                return homing.step(state, activity, feedback)
             case Faulted():
-                return faulted.step(mind, activity, feedback)
+                return faulted.step(state, activity, feedback)
         assert_never(activity)
 
     def _waits(self) -> bool:
         """Return whether the motion is still being announced; what does not move needs no warning."""
-        if isinstance(self._mind.activity, ANNOUNCED):
-            return is_announced(self._mind)
-        self._mind.warning = None
+        if isinstance(self._state.activity, ANNOUNCED):
+            return is_announced(self._state)
+        call_off(self._state)
         return False
-
-    def _note(self, command: DriveCommand) -> DriveCommand:
-        """Keep in mind where the axes were told to go."""
-        before = self._mind.setpoint
-        self._mind.setpoint = AxisPair(
-            _setpoint_deg(command.azimuth, before.azimuth_deg),
-            _setpoint_deg(command.elevation, before.elevation_deg),
-        )
-        return command
 
 
 def _step_by_order(
-    mind: ControllerState, activity: Jogging | Moving | Measuring | Stowing | Stowed, feedback: Feedback
+    state: ControllerState, activity: Jogging | Moving | Measuring | Stowing | Stowed, feedback: Feedback
 ) -> Turn:
     match activity:
         case Jogging():
-            return jogging.step(mind, activity, feedback)
+            return jogging.step(state, activity, feedback)
         case Moving():
-            return moving.step(mind, activity, feedback)
+            return moving.step(state, activity, feedback)
         case Measuring():
-            return measuring.step(mind, activity, feedback)
+            return measuring.step(state, activity, feedback)
         case Stowing() | Stowed():
-            return stowing.step(mind, activity, feedback)
+            return stowing.step(state, activity, feedback)
     assert_never(activity)
 
 
-def _may_search(mind: ControllerState) -> bool:
+def _may_search(state: ControllerState) -> bool:
     """Return whether the drive may still pursue its origin switches, as far as is known."""
-    request = mind.command.request
+    request = state.command.request
     told = request is not None and request.kind is RequestKind.HOME
-    return told or (mind.feedback is not None and mind.feedback.homing)
-
-
-def _setpoint_deg(command: AxisCommand, before_deg: float | None) -> float | None:
-    match command:
-        case Position():
-            return command.position_deg
-        case Halt():
-            return before_deg
-        case _:
-            return None
+    return told or (state.feedback is not None and state.feedback.homing)
 
 
 _BEGUN_ANEW = Reason(
     "operator_needed",
-    "The controller restarted after an unexpected error.",
-    "Press Stow, or Start tracking.",
+    N_("The controller restarted after an unexpected error."),
+    N_("Press Stow, or Start tracking."),
 )
-_RESET_HINT = "Remove the cause, then reset the fault."
+_RESET_HINT = N_("Remove the cause, then reset the fault.")

@@ -14,39 +14,36 @@ from starlette.routing import BaseRoute
 
 from app.access.opening import open_keeper
 from app.access.passwords import Hasher
-from app.access.roles import Permission
-from app.build import VERSION
-from app.clock import Clock, SystemClock
-from app.errors import Foreseen
-from app.lasting import lasting
+from app.base.build import VERSION
+from app.base.clock import Clock, SystemClock
+from app.base.errors import Foreseen
+from app.base.lasting import lasting
+from app.base.logs import get_logger, set_up_logs
+from app.base.own import own_folder
+from app.base.permission import Permission
+from app.base.settings import Settings, fixed_by_environment
+from app.base.startup import settle
+from app.base.turnstile import Turnstile
 from app.link.client import LinkClient
 from app.link.messages import Machine
-from app.logs import get_logger, set_up_logs
-from app.own import own_folder
-from app.settings import Settings, fixed_by_environment
-from app.startup import settle
 from app.store.engine import open_reader
 from app.store.reader import DatabaseReader
 from app.store.store import Reader
-from app.turnstile import Turnstile
-from app.web import errors, live, manual
-from app.web.api.operations import router as operations
-from app.web.api.router import api_routes
-from app.web.assets import Assets
-from app.web.deps import Panel
+from app.web import sockets
 from app.web.documented import DocumentedApp
-from app.web.gate import Gate, record_foreign
-from app.web.hub import Hub
-from app.web.languages.choice import Speech
-from app.web.late_routes import LateRoute
-from app.web.limits import StreamLimit
-from app.web.live_protocol import cautious_sockets
-from app.web.mdns import announced
-from app.web.nesting import NestingLimit
-from app.web.network import NOT_SERVED, NetworkDesk, Stage
-from app.web.routes import guarded_routes, needs
-from app.web.security import LARGEST_BODY, Guard, SecurityHeaders, Uploads, host_names
-from app.web.server import (
+from app.web.features.operations.operations_api import router as operations
+from app.web.http import errors, manual
+from app.web.http.assets import Assets
+from app.web.http.gate import Gate, record_foreign
+from app.web.http.late_routes import LateRoute
+from app.web.http.limits import StreamLimit
+from app.web.http.mdns import announced
+from app.web.http.needs import Need, need_of, needs
+from app.web.http.nesting import NestingLimit
+from app.web.http.network import NOT_SERVED, NetworkDesk, Stage
+from app.web.http.routes import guarded_routes
+from app.web.http.security import LARGEST_BODY, Guard, SecurityHeaders, Uploads, host_names
+from app.web.http.server import (
     FAREWELL_S,
     KEEP_ALIVE_S,
     LARGEST_MESSAGE,
@@ -56,11 +53,16 @@ from app.web.server import (
     cautious,
     reserve_descriptors,
 )
-from app.web.simulations import Simulations
-from app.web.studies import Studies
-from app.web.ui.asked import AskFirst
-from app.web.ui.pages import ROUTERS, error_page
-from app.web.ui.render import environment
+from app.web.languages.choice import Speech
+from app.web.live.hub import Hub
+from app.web.live.live_protocol import cautious_sockets
+from app.web.pages import ROUTERS, error_page
+from app.web.router import api_routes
+from app.web.services.simulations import Simulations
+from app.web.services.studies import Studies
+from app.web.shell.asked import AskFirst
+from app.web.shell.deps import Panel
+from app.web.shell.render import environment
 
 log = get_logger()
 
@@ -101,6 +103,7 @@ def create_app(
     app.state.panel = panel
     app.state.templates, app.state.error_page = environment(), error_page
     app.mount("/s", panel.assets, name="static")
+    needs(Permission.READ)(panel.manual)
     app.mount(manual.PATH, panel.manual, name="manual")
     app.router.routes.extend(_doors())
     app.state.routes = guarded_routes(app.routes)
@@ -138,10 +141,10 @@ def _doors() -> tuple[BaseRoute, ...]:
     root = APIRouter()
     root.include_router(operations, include_in_schema=False)
     pages = [route for router in ROUTERS for route in router.routes]
-    doors = (*live.router.routes, *api_routes(), *root.routes, *pages)
+    doors = (*sockets.router.routes, *api_routes(), *root.routes, *pages)
     for door in doors:
         door.matches(NOWHERE)
-        if isinstance(door, LateRoute) and needs(door, Permission.STOP):
+        if isinstance(door, LateRoute) and need_of(door.endpoint) == Need(Permission.STOP):
             door.work_out()
     return doors
 

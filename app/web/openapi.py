@@ -1,6 +1,6 @@
 """Writes docs/openapi.json: `python -m app.web.openapi`."""
 
-from app.settings import Settings
+from app.base.settings import Settings
 from app.web.documented import DOCUMENT, written
 from app.web.main import create_app
 

@@ -1,10 +1,10 @@
 // The alarm strip of every page, and the sound of alarms that nobody has acknowledged.
 
+import { facts } from "./facts.js";
 import { live } from "./live.js";
 import { clockTime } from "./format.js";
 import { _ } from "./i18n.js";
 
-const CALLS = ["unacknowledged", "returned"];
 const SOUND = "heliopanel-sound";
 const MUTED = "heliopanel-muted-until";
 const MUTE_MS = 10 * 60 * 1000;
@@ -13,11 +13,11 @@ const LOUD_UP_TO = 2;
 const TONES_HZ = [880, 660];
 const TONE_S = 0.18;
 
-const calls = (alarm) => CALLS.includes(alarm.state);
+const calls = (alarm) => facts.alarms.calling.includes(alarm.state);
 const one = (id) => document.getElementById(id);
 
 // The title of an alarm; one that waits to be seen though its cause is gone does not read as if it stood.
-export const headingOf = (alarm) => (alarm.state === "returned" ? _("Returned to normal: {title}", { title: alarm.title }) : alarm.title);
+export const headingOf = (alarm) => (alarm.state === facts.alarms.returned ? _("Returned to normal: {title}", { title: alarm.title }) : alarm.title);
 
 const UNKNOWN = _("Alarm status unavailable");
 

@@ -1,8 +1,8 @@
 // Keeps the proofs true: asks for them again when a move or a test has ended, or an answer was taken.
 
+import { facts } from "./facts.js";
 import { live } from "./live.js";
 
-const BUSY = new Set(["moving", "measuring", "stopping", "setting_home", "homing"]);
 let known = null;
 
 function ask() {
@@ -12,7 +12,7 @@ function ask() {
 function look() {
   const { tracker } = live;
   if (!tracker) return;
-  const now = JSON.stringify([BUSY.has(tracker.activity), tracker.home_trusted, tracker.fault?.code]);
+  const now = JSON.stringify([facts.activities.under_test.includes(tracker.activity), tracker.homed, tracker.fault?.code]);
   const changed = known !== null && now !== known;
   known = now;
   if (changed) ask();

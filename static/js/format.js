@@ -1,5 +1,6 @@
-// How values read on a page; app/web/ui/formats.py says the same on the server.
+// How values read on a page; app/web/shell/formats.py says the same on the server.
 
+import { facts } from "./facts.js";
 import { _, spoken } from "./i18n.js";
 
 const UNKNOWN = "–";
@@ -50,6 +51,12 @@ export function clockTime(iso, zone, seconds = true) {
 
 const isoDateIn = (iso, zone) => inZone(zone, DATE).format(new Date(iso));
 
+// By how much the clocks of a zone are ahead of UTC.
+export function offsetS(seconds, zone) {
+  const whole = Math.floor(seconds);
+  return Date.parse(`${isoDateIn(whole * 1000, zone)}T${clockTime(whole * 1000, zone)}Z`) / 1000 - whole;
+}
+
 function written(pattern, iso, zone) {
   const [year, month, day] = isoDateIn(iso, zone).split("-");
   return pattern.replace("%Y", year).replace("%m", month).replace("%d", day);
@@ -65,29 +72,17 @@ export function words(value) {
   return _(text.charAt(0).toUpperCase() + text.slice(1));
 }
 
-// A user has a name; what sits at this computer has none and is told in the language of the page.
-// A user at the controller's computer has no name; versions before 0.2 wrote "this computer".
-const who = (value) => (value === "local user" || value === "this computer" ? _("local user") : String(value));
+// A user at the controller's computer has no name and is told in the language of the page; so was "this computer".
+const who = (value) => (value === facts.nameless || value === "this computer" ? _("local user") : String(value));
 
 const FORMS = {
   text: String,
   who,
   words,
-  angle2: (value) => angle(value, 2),
-  angle0: (value) => angle(value, 0),
-  angle1: (value) => angle(value, 1),
   compass,
   horizon: (value) => (value < 0 ? _("below the horizon") : _("above the horizon")),
   duration,
   signed_seconds: signedSeconds,
-  age: (value) => `${decimals(value, 1)} s`,
-  mps: (value) => `${decimals(value, 1)} m/s`,
-  wm2: (value) => `${decimals(value, 0)} W/m²`,
-  degc: (value) => `${decimals(value, 1)} °C`,
-  percent: (value) => `${decimals(value, 0)} %`,
-  hpa: (value) => `${decimals(value, 0)} hPa`,
-  mm: (value) => `${decimals(value, 1)} mm`,
-  kg: (value) => `${decimals(value, 1)} kg`,
   freshness: (value) => (value ? _("Stale, not used") : _("Current")),
   factor: (value) => `${Math.round(value).toLocaleString("en").replace(/,/g, " ")} ×`,
   clock: (value, zone) => clockTime(value, zone),
@@ -98,5 +93,9 @@ const FORMS = {
 
 export function shown(value, form, zone) {
   if (value === null || value === undefined) return UNKNOWN;
+  if (form in facts.measures) {
+    const [digits, unit] = facts.measures[form];
+    return decimals(value, digits) + unit;
+  }
   return (FORMS[form] ?? FORMS.text)(value, zone);
 }

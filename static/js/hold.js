@@ -1,10 +1,10 @@
 // A button that must be held for 2 s before it counts: what it does is easily done by mistake, and hard to see.
 
+import { facts } from "./facts.js";
 import { live } from "./live.js";
 
 const HOLD_MS = 2000;
 const KEYS = new Set([" ", "Enter"]);
-const BY_HAND = new Set(["jogging", "moving"]);
 
 let held = null;
 let spent = false;
@@ -89,6 +89,6 @@ live.on("state", ({ tracker }) => {
 
 // Once an axis was moved by hand, setting the home position is what this page is for.
 live.on("state", ({ tracker }) => {
-  if (!BY_HAND.has(tracker?.activity)) return;
+  if (!facts.activities.by_hand.includes(tracker?.activity)) return;
   for (const key of document.querySelectorAll("[data-after-jog]")) key.classList.add("key-primary");
 });

@@ -1,12 +1,12 @@
-// The texts of the scripts in the language of the page, and how it writes numbers, dates and the compass.
+// The texts of the scripts in the language of the page; English is what they are written in.
 
-const ENGLISH = { point: ".", date: "%Y-%m-%d", texts: {},
-  compass: ["N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"] };
+import { facts } from "./facts.js";
+
 const told = document.getElementById("texts");
 
-export const spoken = told ? JSON.parse(told.textContent) : ENGLISH;
+export const spoken = { point: facts.point, date: facts.date, compass: facts.compass, texts: told ? JSON.parse(told.textContent).texts : {} };
 
-// Returns a text with its gaps filled: `_("{n} of {all} heartbeats lost", { n, all })`.
+// Returns a text with its gaps filled: `_(", {lost} of {all} heartbeats lost", { lost, all })`.
 export function _(text, values = {}) {
   return (spoken.texts[text] ?? text).replace(/\{(\w+)\}/g, (gap, name) => values[name] ?? gap);
 }

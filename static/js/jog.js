@@ -1,5 +1,6 @@
 // Hold-to-run: an axis moves only while this page says so, twenty times a second; every way of letting go ends it.
 
+import { facts } from "./facts.js";
 import { live } from "./live.js";
 import { randomId } from "./orders.js";
 import { _ } from "./i18n.js";
@@ -7,8 +8,7 @@ import { keepStill, letGo } from "./scroll_anchor.js";
 
 const BEAT_MS = 50;
 const SLIDE_PX = 24;
-const SLOW_LINK_MS = 120;
-const LEVELS = [40, SLOW_LINK_MS, Infinity];
+const LEVELS = [40, facts.slow_link_ms, Infinity];
 const LEVEL_WORDS = [_("not measured yet"), _("good"), _("fair"), _("too slow")];
 const TOLD_WITHIN_MS = 3000;
 const KEYS = new Set([" ", "Enter"]);
@@ -125,7 +125,7 @@ function paintBeats(lost, all) {
 function paintLink() {
   if (live.link !== "live") return paintNoLink();
   const trip = live.roundTripMs;
-  const slow = trip !== null && trip > SLOW_LINK_MS;
+  const slow = trip !== null && trip > facts.slow_link_ms;
   const level = trip === null ? 0 : LEVELS.findIndex((most) => trip <= most) + 1;
   document.getElementById("link-quality").dataset.level = level;
   document.getElementById("link-words-jog").textContent = LEVEL_WORDS[level];

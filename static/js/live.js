@@ -1,5 +1,6 @@
 // One WebSocket a page: state in, jog and stop out. Nothing is kept for later: what cannot be sent now is dropped.
 
+import { facts } from "./facts.js";
 import { loadAgain } from "./reload.js";
 import { shown } from "./format.js";
 import { _ } from "./i18n.js";
@@ -7,7 +8,6 @@ import { _ } from "./i18n.js";
 const OLD_MS = 1500;
 const DEAD_MS = 3000;
 const RETRY_MS = 300;
-const FLOODED = 4029;
 const root = document.documentElement;
 const listeners = { state: new Set(), jog: new Set(), stopped: new Set(), event: new Set(), link: new Set(), pong: new Set(), problem: new Set() };
 
@@ -68,7 +68,7 @@ function connect() {
   mine.onclose = (closing) => {
     if (mine !== socket) return;
     socket = null;
-    if (closing.code === FLOODED) tell("problem", { detail: _("This page sent more messages than Heliopanel accepts and was disconnected. The page reconnects automatically; STOP works.") });
+    if (closing.code === facts.flooded) tell("problem", { detail: _("This page sent more messages than Heliopanel accepts and was disconnected. The page reconnects automatically; STOP works.") });
     judge("closed");
     setTimeout(connect, RETRY_MS);
   };
@@ -234,8 +234,9 @@ function paintLink() {
   document.getElementById("link-banner").hidden = !off;
   if (off) {
     const age = ageSeconds();
-    const since = age === null ? "" : ` ${_("Values are {age} s old.", { age: Math.round(age) })}`;
-    document.getElementById("link-banner-words").textContent = `${OFF_WORDS[live.link]}${since}`;
+    const told = [OFF_WORDS[live.link]];
+    if (age !== null) told.push(_("Values are {age} s old.", { age: Math.round(age) }));
+    document.getElementById("link-banner-words").textContent = told.join(" ");
     const advice = document.getElementById("link-banner-advice");
     advice.hidden = live.link === "signed-out";
     if (!advice.hidden) advice.textContent = OFF_ADVICE[live.link];

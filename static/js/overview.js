@@ -1,19 +1,18 @@
 // The overview: moves the bars of every tracker, counts its alarms, and counts what the trackers do.
 
+import { facts } from "./facts.js";
 import { headingOf } from "./alarms.js";
 import { live } from "./live.js";
 import { _ } from "./i18n.js";
 
-const WIDTH = 200;
-const QUIET = ["shelved", "suppressed", "out_of_service"];
 
-// Where an angle, or its like a turn away, lies on the bar; app/web/ui/glances.py says the same on the server.
+// Where an angle, or its like a turn away, lies on the bar; app/web/shell/glances.py says the same on the server.
 export function placeOn(angle, least, most) {
   if (angle === null || angle === undefined) return null;
   let turned = angle;
   while (turned > most && turned - 360 >= least) turned -= 360;
   while (turned < least && turned + 360 <= most) turned += 360;
-  return WIDTH * Math.min(1, Math.max(0, (turned - least) / (most - least)));
+  return facts.bar * Math.min(1, Math.max(0, (turned - least) / (most - least)));
 }
 
 function paintBar(svg, one) {
@@ -28,7 +27,7 @@ function paintBar(svg, one) {
 
 // That a tracker does not stow is its own state: the list of alarms is cut off in a storm and may not name it.
 function alarmsOf(trackerId) {
-  const mine = live.site.alarms.filter((alarm) => alarm.tracker_id === trackerId && !QUIET.includes(alarm.state));
+  const mine = live.site.alarms.filter((alarm) => alarm.tracker_id === trackerId && !facts.alarms.quiet.includes(alarm.state));
   const unlisted = live.trackerOf(trackerId)?.not_stowed && !mine.some((alarm) => alarm.code === "not_stowed");
   return unlisted ? [...mine, { priority: 1, title: _("Not stowed") }] : mine;
 }

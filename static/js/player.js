@@ -29,7 +29,7 @@ let tickAt = 0;
 let toldAt = 0;
 
 async function read(id, begin, zone) {
-  const answer = await fetch(`/api/v1/recordings/${encodeURIComponent(id)}/frames?points=${POINTS}`);
+  const answer = await fetch(`/api/v1/recordings/${encodeURIComponent(id)}/samples?points=${POINTS}`);
   if (!answer.ok) throw new Error((await answer.json()).detail);
   const { columns, activities } = await answer.json();
   const beginS = Date.parse(begin) / 1000;

@@ -1,5 +1,6 @@
 // Puts the cross of the picture of the forbidden regions where the axes stand.
 
+import { scaleOf } from "./chart_axis.js";
 import { live } from "./live.js";
 
 function place() {
@@ -11,9 +12,7 @@ function place() {
   const known = azimuth !== null && elevation !== null;
   mark.setAttribute("visibility", known ? "visible" : "hidden");
   if (!known) return;
-  const of = (name) => Number(picture.dataset[name]);
-  const x = of("left") + (azimuth - of("azimuth")) * of("scale");
-  const y = of("bottom") - (elevation - of("elevation")) * of("scale");
+  const [x, y] = [scaleOf(picture.dataset.x).at(azimuth), scaleOf(picture.dataset.y).at(elevation)];
   mark.setAttribute("transform", `translate(${x.toFixed(1)} ${y.toFixed(1)})`);
 }
 

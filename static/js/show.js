@@ -1,5 +1,6 @@
 // A show on the machine: the picture, the progress, the planned curves and what is measured along them.
 
+import { facts } from "./facts.js";
 import { chart } from "./chart.js";
 import { clockTime, duration, words } from "./format.js";
 import { live } from "./live.js";
@@ -58,7 +59,7 @@ const anglesData = () => [table.time, table.plannedAzimuth, table.azimuth, table
 const errorData = () => [table.time, table.off];
 
 function note(show) {
-  if (!table || !["running", "paused"].includes(show.phase) || !live.tracker.measured) return;
+  if (!table || !facts.show.on_its_way.includes(show.phase) || !live.tracker.measured) return;
   const at = Date.parse(show.sun_time) / 1000;
   const [first, last] = [table.time[0], table.time[table.time.length - 1]];
   const index = Math.round(((at - first) / (last - first)) * (table.time.length - 1));
@@ -96,7 +97,7 @@ function finish() {
   const { show, sun } = last;
   picture(sun, null);
   document.getElementById("show-phase").textContent = _("Ended");
-  if (show.phase !== "running" || show.duration_s - show.elapsed_s > MESSAGE_S) return;
+  if (show.phase !== facts.show.running || show.duration_s - show.elapsed_s > MESSAGE_S) return;
   last.show = { ...show, elapsed_s: show.duration_s, sun_time: showEnd };
   progress(last.show);
 }

@@ -1,7 +1,5 @@
 // Signature fields: strokes are kept as points of a field of 1000 x 300, so that they print as lines on any paper.
 
-const WIDTH = 1000;
-const HEIGHT = 300;
 const NEAR = 4;
 
 const drawnOf = (pad) => pad.closest("form").elements[`${pad.dataset.signPad}_drawn`];
@@ -16,7 +14,7 @@ function strokesOf(pad) {
 
 function draw(pad, strokes) {
   const paper = pad.getContext("2d");
-  paper.clearRect(0, 0, WIDTH, HEIGHT);
+  paper.clearRect(0, 0, pad.width, pad.height);
   paper.strokeStyle = "#000";
   paper.lineWidth = 5;
   paper.lineCap = paper.lineJoin = "round";
@@ -31,7 +29,7 @@ function draw(pad, strokes) {
 function place(pad, event) {
   const box = pad.getBoundingClientRect();
   const within = (value, most) => Math.max(0, Math.min(most, Math.round(value)));
-  return [within(((event.clientX - box.left) / box.width) * WIDTH, WIDTH), within(((event.clientY - box.top) / box.height) * HEIGHT, HEIGHT)];
+  return [within(((event.clientX - box.left) / box.width) * pad.width, pad.width), within(((event.clientY - box.top) / box.height) * pad.height, pad.height)];
 }
 
 function watch(pad) {

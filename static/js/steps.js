@@ -7,7 +7,7 @@ let known = null;
 function decisive() {
   const { site, tracker } = live;
   if (!tracker) return null;
-  return JSON.stringify([tracker.activity, tracker.home_trusted, tracker.mode, tracker.orientation, tracker.tracking_on, tracker.in_position,
+  return JSON.stringify([tracker.activity, tracker.homed, tracker.mode, tracker.orientation, tracker.tracking_on, tracker.in_position,
     tracker.fault?.code, Boolean(tracker.measured), site.clock.trusted, site.clock.source, site.location, site.time_zone]);
 }
 

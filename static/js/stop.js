@@ -11,7 +11,7 @@ const hasController = () => live.link === "live" || live.link === "signed-out" |
 
 let pending = null;
 
-function say(text, failed) {
+function tell(text, failed) {
   document.getElementById("stopped-words").textContent = text;
   document.getElementById("stop-failed").textContent = failed ? text : "";
   document.getElementById("stop-answer").hidden = !failed;
@@ -20,13 +20,13 @@ function say(text, failed) {
 function confirmed() {
   clearTimeout(pending?.timer);
   pending = null;
-  say(_("Stopped."), false);
+  tell(_("Stopped."), false);
 }
 
 function failed(press, text) {
   if (press !== pending) return;
   clearTimeout(press.timer);
-  say(text, true);
+  tell(text, true);
 }
 
 export function stop(form) {
@@ -35,10 +35,10 @@ export function stop(form) {
   const press = { sent: live.send(told) };
   pending = press;
   if (hasController()) {
-    say("", false);
+    tell("", false);
     press.timer = setTimeout(() => failed(press, NOT_CONFIRMED), CONFIRM_MS);
   } else {
-    say(NOT_SENT, true);
+    tell(NOT_SENT, true);
   }
   return fetch(form.action, { method: "POST", body: new URLSearchParams({ back: "/" }), headers: { "HX-Request": "true" }, keepalive: true })
     .then((answer) => (answer.ok ? press === pending && confirmed() : failed(press, hasController() ? NOT_CONFIRMED : NOT_SENT)))
@@ -61,7 +61,7 @@ export function start() {
   key.addEventListener("pointerdown", press);
   form.addEventListener("submit", press);
   addEventListener("keydown", (event) => { if (event.key === "Escape" && !event.repeat) press(event); });
-  document.getElementById("stop-answer-close").addEventListener("click", () => say("", false));
+  document.getElementById("stop-answer-close").addEventListener("click", () => tell("", false));
   live.on("stopped", confirmed);
   live.on("problem", (problem) => { if (pending) failed(pending, `${problem.detail} ${NOT_CONFIRMED}`); });
 }

@@ -1,14 +1,12 @@
 // Day, sun and night at one tap, without loading the page again; or by the sun's elevation, as it moves.
 
+import { facts } from "./facts.js";
 import { live } from "./live.js";
 
-const CHOICES = ["day", "sun", "night", "auto"];
-const GLARE_ABOVE_DEG = 15;
-const NIGHT_BELOW_DEG = -3;
-const A_YEAR_S = 31536000;
+const { choices: CHOICES, glare_above_deg: GLARE_ABOVE_DEG, night_below_deg: NIGHT_BELOW_DEG } = facts.themes;
 const root = document.documentElement;
 
-// The same as theme_of in app/web/ui/themes.py.
+// The same as theme_of in app/web/shell/themes.py.
 function themeOf(choice) {
   if (choice !== "auto") return choice;
   const elevation = live.site?.sun?.apparent_elevation_deg;
@@ -39,7 +37,7 @@ export function start() {
     const next = CHOICES[(CHOICES.indexOf(root.dataset.choice) + 1) % CHOICES.length];
     event.preventDefault();
     root.dataset.choice = next;
-    document.cookie = `theme=${next}; path=/; max-age=${A_YEAR_S}; samesite=lax`;
+    document.cookie = `theme=${next}; path=/; max-age=${facts.kept_s}; samesite=lax`;
     const [key, words] = [form.querySelector("button"), form.querySelector("button span")];
     for (const icon of key.querySelectorAll("[data-choice-icon]")) {
       icon.hidden = icon.dataset.choiceIcon !== next;

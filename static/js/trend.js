@@ -4,7 +4,7 @@ import { chart } from "./chart.js";
 import { live } from "./live.js";
 import { _ } from "./i18n.js";
 
-const SPAN_S = 600;
+const SHOWN_S = 600;
 const EVERY_MS = 500;
 const holder = document.querySelector("[data-trend]");
 const POINTS = 1200;
@@ -17,12 +17,12 @@ let asked = false;
 // What was recorded goes before what was heard meanwhile; where it cannot be read, the curves begin now.
 async function recall() {
   const end = live.machineNow() ?? live.tracker.at;
-  const begin = new Date(Date.parse(end) - SPAN_S * 1000).toISOString();
-  const query = new URLSearchParams({ tracker_id: live.trackerId, begin, end, points: String(POINTS) });
+  const start = new Date(Date.parse(end) - SHOWN_S * 1000).toISOString();
+  const query = new URLSearchParams({ tracker_id: live.trackerId, start, end, points: String(POINTS) });
   const answer = await fetch(`/api/v1/telemetry?${query}`);
   if (!answer.ok) return;
   const { columns } = await answer.json();
-  const times = columns.elapsed_s.map((seconds) => Date.parse(begin) / 1000 + seconds);
+  const times = columns.elapsed_s.map((seconds) => Date.parse(start) / 1000 + seconds);
   const heardFrom = rows[0][0] ?? Infinity;
   const count = times.filter((at) => at < heardFrom).length;
   rows = [times, ...COLUMNS.map((name) => columns[name])].map((old, index) => [...old.slice(0, count), ...rows[index]]);
@@ -40,7 +40,7 @@ function take() {
   }
   const values = [Date.parse(one.at) / 1000, one.measured?.azimuth_deg, one.target?.azimuth_deg, one.measured?.elevation_deg, one.target?.elevation_deg];
   values.forEach((value, index) => rows[index].push(value ?? null));
-  while (rows[0].length && rows[0][0] < values[0] - SPAN_S) rows.forEach((row) => row.shift());
+  while (rows[0].length && rows[0][0] < values[0] - SHOWN_S) rows.forEach((row) => row.shift());
   paint();
 }
 
@@ -55,7 +55,7 @@ function paint() {
     zone: live.zone,
   });
   const last = rows[0][rows[0].length - 1];
-  plot.setScale("x", { min: last - SPAN_S, max: last });
+  plot.setScale("x", { min: last - SHOWN_S, max: last });
   plot.setData(rows, false);
 }
 

@@ -18,7 +18,7 @@ const CHARTS = {
   elevation: { columns: ["measured_elevation_deg", "setpoint_elevation_deg", "target_elevation_deg"], series: ANGLES },
   error: { columns: ["off_target_deg"], digits: 3, fromZero: 0.1, series: [{ label: _("Deviation from target"), colour: "text", width: 2 }] },
   wind: { columns: ["wind_mps", "wind_mean_mps"], unit: " m/s", digits: 1, fromZero: 5, series: [{ label: _("Gust"), colour: "text", width: 1.5 }, { label: _("Mean"), colour: "blue", width: 2.5, dash: [8, 4] }] },
-  light: { columns: ["light_wm2"], unit: " W/m²", digits: 0, fromZero: 100, series: [{ label: _("Irradiance"), colour: "text", width: 2 }] },
+  light: { columns: ["irradiance_wm2"], unit: " W/m²", digits: 0, fromZero: 100, series: [{ label: _("Irradiance"), colour: "text", width: 2 }] },
   speed: { columns: ["azimuth_dps", "elevation_dps"], unit: " °/s", series: [{ label: _("Azimuth axis"), colour: "text", width: 2 }, { label: _("Elevation axis"), colour: "blue", width: 2, dash: [8, 4] }] },
   supply: { columns: ["supply_v"], unit: " V", digits: 1, series: [{ label: _("Supply"), colour: "text", width: 2 }] },
 };
@@ -31,13 +31,13 @@ let asked = false;
 
 async function load() {
   const end = live.machineNow() ?? live.site.at;
-  const begin = new Date(Date.parse(end) - SPAN_S * 1000).toISOString();
-  const query = new URLSearchParams({ tracker_id: live.trackerId, begin, end, points: String(POINTS) });
+  const start = new Date(Date.parse(end) - SPAN_S * 1000).toISOString();
+  const query = new URLSearchParams({ tracker_id: live.trackerId, start, end, points: String(POINTS) });
   document.getElementById("trends-csv").href = `/api/v1/telemetry?${query}&format=csv`;
   const answer = await fetch(`/api/v1/telemetry?${query}`);
   if (!answer.ok) throw new Error((await answer.json()).detail);
   const { columns } = await answer.json();
-  const beginS = Date.parse(begin) / 1000;
+  const beginS = Date.parse(start) / 1000;
   table.time = columns.elapsed_s.map((seconds) => beginS + seconds);
   columns.off_target_deg = columns.measured_azimuth_deg.map((azimuth, row) => apart(azimuth, columns.measured_elevation_deg[row], columns.target_azimuth_deg[row], columns.target_elevation_deg[row]));
   for (const name of NAMES) table[name] = columns[name];
@@ -96,7 +96,7 @@ function rowOf(one, weather) {
     measured_azimuth_deg: measured?.azimuth_deg, setpoint_azimuth_deg: setpoint?.azimuth_deg, target_azimuth_deg: target?.azimuth_deg,
     measured_elevation_deg: measured?.elevation_deg, setpoint_elevation_deg: setpoint?.elevation_deg, target_elevation_deg: target?.elevation_deg,
     off_target_deg: apart(measured?.azimuth_deg, measured?.elevation_deg, target?.azimuth_deg, target?.elevation_deg),
-    wind_mps: weather?.gust_mps, wind_mean_mps: weather?.mean_mps, light_wm2: weather?.readings.light_wm2,
+    wind_mps: weather?.gust_mps, wind_mean_mps: weather?.mean_mps, irradiance_wm2: weather?.readings.irradiance_wm2,
   };
   return Object.fromEntries(NAMES.map((name) => [name, row[name] ?? null]));
 }

@@ -9,8 +9,8 @@ from app.access.events import AccessEvent
 from app.access.opening import open_keeper
 from app.access.principal import Principal, Via, this_computer
 from app.access.roles import Role
-from app.clock import VirtualClock
-from app.settings import Settings
+from app.base.clock import VirtualClock
+from app.base.settings import Settings
 from tests.access.fake_hasher import FakeHasher
 
 START = datetime(2026, 11, 21, 12, tzinfo=UTC)

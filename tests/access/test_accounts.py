@@ -10,9 +10,10 @@ from app.access.accounts import TokenWish
 from app.access.authenticator import Credentials
 from app.access.events import AccessEvent
 from app.access.principal import Principal, Via, nobody
-from app.access.roles import Permission, Role
+from app.access.roles import Role
 from app.access.tokens import Scope, digest_of, permissions_of, token_id_of
 from app.access.users import AccessRefused
+from app.base.permission import Permission
 from tests.access.door import ADDRESS, HERE, PASSWORD, START, Door
 
 OTHER = "quiet-lantern-meadow-4"

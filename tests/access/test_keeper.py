@@ -15,11 +15,12 @@ from app.access.authenticator import Credentials, Throttled, WrongPassword
 from app.access.events import chained
 from app.access.opening import open_store
 from app.access.principal import Via
-from app.access.roles import Permission, Role
+from app.access.roles import Role
 from app.access.setup import CODE_FILE, RESET_FILE
 from app.access.users import AccessRefused
 from app.audit.chain import FIRST
-from app.cli_users import users
+from app.base.permission import Permission
+from app.cli.users import users
 from tests.access.door import HERE, PASSWORD, Door
 from tests.fault_result import FaultResult
 
@@ -91,7 +92,7 @@ async def test_a_thousand_guesses_get_nowhere_and_lock_nobody_out(door: Door, fa
     assert 15.0 < longest_s <= 30.0
     fault.prevented(f"from the second wrong password on each waits longer, {longest_s:.0f} s at most")
     fault.shows(str(refused.value))
-    fault.recovers("nothing was lost: whoever knows the password signs in, from elsewhere at once")
+    fault.recovers("nothing was lost: who knows the password signs in, from elsewhere at once")
 
 
 async def test_the_wait_survives_a_restart_and_is_told_in_seconds(

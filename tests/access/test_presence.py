@@ -20,11 +20,12 @@ from app.access.authenticator import (
     WrongPassword,
 )
 from app.access.principal import SignInNeeded, Via, nobody
-from app.access.roles import NOBODY, Permission, Role
+from app.access.roles import NOBODY, Role
 from app.access.sessions import PROOF, digest_of, is_proven
 from app.access.setup import CODE_FILE
 from app.access.tokens import Scope
 from app.access.users import AccessRefused
+from app.base.permission import Permission
 from tests.access.door import ADDRESS, HERE, PASSWORD, START, Door
 
 OTHER = "quiet-lantern-meadow-4"

@@ -13,7 +13,10 @@ from app.access.principal import (
     nobody,
     this_computer,
 )
-from app.access.roles import ORDERS, Permission, Role, permissions_of
+from app.access.roles import Role, permissions_of
+from app.base.permission import Permission
+from app.link.orders import KINDS
+from app.tracker.values.order_spec import OrderSpec
 
 NOW = datetime(2026, 6, 21, 12, tzinfo=UTC)
 ADDRESS = "192.0.2.7"
@@ -28,33 +31,28 @@ def token(*permissions: Permission, trackers: frozenset[str] | None = None) -> P
     return Principal("script", frozenset(), frozenset(permissions), Via.TOKEN, ADDRESS, trackers=trackers)
 
 
-def order_of(permission: Permission) -> str:
-    return next(kind for kind, needed in ORDERS.items() if needed is permission)
+def order_of(permission: Permission) -> OrderSpec:
+    return next(one.spec for one in KINDS.values() if one.spec.needs is permission)
 
 
-def test_an_unknown_order_is_nobodys() -> None:
-    engineer = person(*Role)
-    assert not engineer.may_order("no_such_order")
-    assert not engineer.may_order("no_such_order", "T1")
-    with pytest.raises(NotAllowed) as refused:
-        engineer.require_order("no_such_order", "T1")
-    assert str(refused.value) == "ana may not send the command no_such_order here."
-    with pytest.raises(NotAllowed, match="role is"):
-        person(Role.VIEWER).require_order("no_such_order")
+def test_who_may_not_order_is_told_who_may() -> None:
+    with pytest.raises(NotAllowed, match="role is operator or engineer"):
+        person(Role.VIEWER).require_order("move", order_of(Permission.OPERATE), "T1")
+    person(Role.OPERATOR).require_order("move", order_of(Permission.OPERATE), "T1")
 
 
 def test_a_limited_token_orders_its_own_trackers_and_stops_them_all() -> None:
     limited = token(Permission.OPERATE, Permission.STOP, trackers=frozenset({"T2"}))
     moving, stopping = order_of(Permission.OPERATE), order_of(Permission.STOP)
     assert limited.may_order(moving, "T2")
-    limited.require_order(moving, "T2")
+    limited.require_order("move", moving, "T2")
     for tracker_id in ("T1", None):
         assert not limited.may_order(moving, tracker_id)
         assert limited.may_order(stopping, tracker_id)
         with pytest.raises(NotAllowed):
-            limited.require_order(moving, tracker_id)
+            limited.require_order("move", moving, tracker_id)
     with pytest.raises(NotAllowed) as refused:
-        limited.require_order(moving, "T1")
+        limited.require_order("move", moving, "T1")
     assert str(refused.value) == "script may not access tracker T1; the token is for other trackers."
 
 

@@ -16,8 +16,8 @@ from app.access.roles import Role
 from app.access.store import AccessStore, Change
 from app.access.users import User
 from app.audit.chain import FIRST
-from app.build import VERSION
-from app.settings import Settings
+from app.base.build import VERSION
+from app.base.settings import Settings
 from app.store.connections import sharing_engine, transaction
 from app.store.store import StoreFailed, StoreUnfit
 
@@ -72,7 +72,7 @@ def test_the_check_of_every_change_finds_no_difference() -> None:
 @pytest.mark.parametrize(
     ("statement", "told"),
     [
-        ("UPDATE access_version SET version_num = '9999'", "revision 9999; this version supports up to 0001"),
+        ("UPDATE access_version SET version_num = '9999'", "revision 9999; this version supports up to 0002"),
         (
             "UPDATE access_meta SET value = '999.0.1' WHERE name = 'version'",
             f"999.0.1; this version is {VERSION}",
@@ -120,7 +120,7 @@ def test_users_are_copied_before_their_tables_change(tmp_path: Path, monkeypatch
     opened = open_store(settings)
     assert opened.load().users == {"ada": ADA}
     opened.close()
-    copy = AccessStore(f"sqlite:///{tmp_path / 'access.db.before-0001'}", b"")
+    copy = AccessStore(f"sqlite:///{tmp_path / 'access.db.before-0002'}", b"")
     assert copy.load().users == {"ada": ADA}
     copy.close()
 

@@ -14,7 +14,7 @@ from app.alarms.catalogue import CATALOGUE, ENTRIES, Entry, Group
 from app.alarms.conditions import Condition
 from app.alarms.lifecycle import Book, Change, Happened, UnknownAlarm
 from app.alarms.view import Ranking, Shown
-from app.tracker.alarm_words import MOST_SHOWN, AlarmState
+from app.tracker.values.alarm_words import MOST_SHOWN, AlarmState
 
 NOON = datetime(2027, 6, 21, 9, 0, tzinfo=UTC)
 SITE_OFFSET = timedelta(hours=2, seconds=7)

@@ -7,11 +7,16 @@ import pytest
 
 from app.alarms.catalogue import ENTRIES, Entry
 from app.tracker.protections.fault_classes import CLASSES
-from app.tracker.protections.machine_config import FaultClass
+from app.tracker.settings.mechanics import FaultClass
 
 ROOT = Path(__file__).resolve().parents[2]
 GUIDE = (ROOT / "docs" / "operate" / "operators-guide.md").read_text()
-FAULTS = ("guards.py", "machine_guard.py", "protect.py", "activities/faulted.py")
+FAULTS = (
+    "motion/guards.py",
+    "supervision/machine_guard.py",
+    "supervision/protect.py",
+    "activities/faulted.py",
+)
 WHERE = ROOT / "app" / "tracker"
 EVENTS_ONLY = {"drive_back", "not_homed", "at_limit_switch"}
 """A drive that came back in order asks for nothing; a lost zero is told by `home_lost`, a switch that was run

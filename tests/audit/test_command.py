@@ -16,8 +16,8 @@ from typer.testing import CliRunner
 from app.access.events import AccessEvent
 from app.access.opening import open_store
 from app.audit.entry import Entry
+from app.base.settings import Settings
 from app.cli import cli
-from app.settings import Settings
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 

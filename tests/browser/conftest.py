@@ -122,7 +122,7 @@ def plant() -> Iterator[Plant]:
 def browser() -> Iterator[Browser]:
     """Run one browser for this folder; Playwright's loop must have ended before other tests run theirs."""
     if not Path(CHROMIUM).exists():
-        pytest.fail("These tests need Chromium: apt-get install -y chromium")
+        pytest.fail("These tests need Chromium: apt-get install -y chromium-headless-shell")
     expect.set_options(timeout=PATIENCE_MS)
     with sync_playwright() as playwright:
         started = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS, env=environment())

@@ -6,8 +6,8 @@ The list is held against the panel's own table of routes, without which no route
 from dataclasses import dataclass
 from enum import StrEnum
 
-from app.web.route_permissions import ROUTES
 from tests.soak import amount
+from tests.web.route_table import ROUTES
 
 T1 = "/trackers/T1"
 T3 = "/trackers/T3"

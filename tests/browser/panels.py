@@ -18,17 +18,17 @@ from playwright.sync_api import Browser, BrowserContext, Page, expect
 from app.access.accounts import TokenWish
 from app.access.principal import this_computer
 from app.access.roles import Role
-from app.clock import SystemClock
-from app.settings import Settings
+from app.base.clock import SystemClock
+from app.base.settings import Settings
 from app.store.store import PlannedShow
 from app.studies.compute import finished, work_out
 from app.studies.folder import StudyFolder, StudyState, StudyStatus
 from app.studies.light import clear_days
 from app.studies.request import Span, StudyMode, StudyRequest, StudyStrategy
-from app.tracker.config import Orientation
 from app.tracker.programs.plan import ShowPlan
+from app.tracker.settings.config import Orientation
+from app.web.http.network import Stage, Trial
 from app.web.main import create_app
-from app.web.network import Stage, Trial
 from tests.access.fake_hasher import FakeHasher
 from tests.browser.conftest import PATIENCE_MS, Served, listen
 from tests.browser.every_page import SHOW_ID, STUDY_ID, Leaf, Where
@@ -119,7 +119,7 @@ def built(where: Where, data: Path, machine: FakeMachine) -> FastAPI:
         settings = settings.model_copy(update={"host": "0.0.0.0"})
     if where is Where.STRANGER:
         notice = "Only for those who run this plant. Everything that is done is recorded."
-        settings = settings.model_copy(update={"login_notice": notice})
+        settings = settings.model_copy(update={"login_banner": notice})
     stage = None
     if where is Where.TRIAL:
         tried = Trial(settings.network, settings, HERE, "that-of-the-test")

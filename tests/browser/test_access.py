@@ -14,9 +14,11 @@ from playwright.sync_api import Browser, Page, expect
 
 from app.access.accounts import TokenWish
 from app.access.authenticator import Keeper
-from app.access.roles import Role
-from app.clock import SystemClock
-from app.settings import Settings
+from app.access.roles import Role, who_may
+from app.base.clock import SystemClock
+from app.base.message import say
+from app.base.permission import Permission
+from app.base.settings import Settings
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import LANGUAGES
 from app.web.main import create_app
@@ -243,6 +245,7 @@ def test_a_viewer_reads_in_full_who_may_acknowledge_an_alarm(door: Door) -> None
     machine = door.served.machine
     machine.alarms = tuple(alarm(code, machine.clock.now()) for code in ("not_stowed", "drive_lost"))
     page = door.signed_in("vera", "/alarms")
+    wanted = say("Only for {needed}.", needed=who_may(Permission.OPERATE))
     for size in ("phone", "tablet"):
         page.set_viewport_size(dict(zip(("width", "height"), SIZES[size], strict=True)))
         for language in LANGUAGES:
@@ -250,7 +253,7 @@ def test_a_viewer_reads_in_full_who_may_acknowledge_an_alarm(door: Door) -> None
             page.goto(f"{door.url}/alarms")
             expect(page.locator("#alarm-ack button")).to_be_disabled()
             why = page.locator("li.alarm .denied-why").first
-            expect(why).to_have_text(catalogue_of(language).said("Only for operator or engineer."))
+            expect(why).to_have_text(catalogue_of(language).said(wanted))
             assert page.evaluate(CUT_IN_STRIP) == [], (size, language)
             assert page.evaluate(BROKEN_STATES) == [], (size, language)
             assert why.evaluate("one => one.scrollWidth <= one.clientWidth"), (size, language)

@@ -8,8 +8,8 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from app.alarms.catalogue import CATALOGUE
-from app.tracker.alarm_words import AlarmState
-from app.tracker.reason import Reason
+from app.tracker.values.alarm_words import AlarmState
+from app.tracker.values.reason import Reason
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import LANGUAGES
 from tests.browser.conftest import Opened, Plant

@@ -103,7 +103,7 @@ def test_the_key_of_a_question_is_not_covered_when_it_appears(
     page.locator("#forward .key").click()
     reached(page, page.locator("#place-doubts label"))
     page = asking("/trackers/T1/settings")
-    page.locator('[name="azimuth_maximum"]').fill("400")
+    page.locator('[name="azimuth_maximum_deg"]').fill("400")
     page.locator("#settings-form .key-primary, form:has(#settings-outcome) > .key-primary").first.click()
     reached(page, page.locator("#limit-review button"))
     page.context.clear_cookies(name="language")

@@ -14,7 +14,6 @@ import httpx
 import pytest
 from playwright.sync_api import Browser, Page
 
-from app.web.route_permissions import ROUTES
 from tests.browser.axe_rules import looked_at
 from tests.browser.conftest import SIZES
 from tests.browser.every_page import EVERY_PAGE, LOOKED_AT, NO_PAGES, STUDY_ID, Leaf, Where, unvisited
@@ -22,6 +21,7 @@ from tests.browser.layout import LOOKS, faults, unfold
 from tests.browser.letters import foreign
 from tests.browser.panels import Panels, resize
 from tests.browser.reading import tree_faults
+from tests.web.route_table import ROUTES
 
 MOST_BYTES = 150_000
 SCREEN_SIZES = SIZES | {"wall": (1920, 1080)}

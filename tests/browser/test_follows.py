@@ -7,8 +7,8 @@ from datetime import datetime, timedelta
 import pytest
 from playwright.sync_api import Page, expect
 
-from app.tracker.recording import RecordingKind
-from app.tracker.weather import Weather, WeatherNow
+from app.tracker.memory.recording import RecordingKind
+from app.tracker.weather.weather import Weather, WeatherNow
 from tests.browser.conftest import Opened, Plant
 from tests.browser.hands import until
 from tests.fake_data import recording

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import CDPSession, Page
 
-from app.tracker.snapshot import ActivityName
+from app.tracker.state.snapshot import ActivityName
 from tests.browser.conftest import Opened, Plant, running
 from tests.browser.hands import LINK_MEASURED
 from tests.fault_result import FaultResult

@@ -23,19 +23,19 @@ def reloaded(page: Page) -> None:
 def test_what_was_typed_is_back_after_a_reload_until_it_is_saved(plant: Plant, opened: Opened) -> None:
     page = opened(SETTINGS)
     expect(page.locator(NOTE)).to_have_count(0)
-    page.locator("#f-deadband").fill("0,9")
+    page.locator("#f-deadband_deg").fill("0,9")
     page.locator("#f-night").select_option("park")
     page.locator('[name="refraction"]').uncheck()
     reloaded(page)
     expect(page.locator(NOTE)).to_contain_text("not saved yet")
-    expect(page.locator("#f-deadband")).to_have_value("0,9")
+    expect(page.locator("#f-deadband_deg")).to_have_value("0,9")
     expect(page.locator("#f-night")).to_have_value("park")
     expect(page.locator('[name="refraction"]')).not_to_be_checked()
     page.get_by_role("button", name="Save settings").click()
     expect(page.locator("#settings-outcome")).to_contain_text("saved")
     reloaded(page)
     expect(page.locator(NOTE)).to_have_count(0)
-    expect(page.locator("#f-deadband")).to_have_value("0.9")
+    expect(page.locator("#f-deadband_deg")).to_have_value("0.9")
 
 
 def test_what_was_typed_can_be_discarded_and_gives_way_to_a_newer_value(plant: Plant, opened: Opened) -> None:

@@ -11,7 +11,7 @@ from playwright.sync_api import Page, expect
 from app.web.languages import CATALOGUE
 from app.web.languages.catalogue import catalogue_of, offered
 from app.web.languages.known import LANGUAGES
-from app.web.ui.formats import shown
+from app.web.shell.formats import shown
 from tests.browser.conftest import Opened, Plant
 
 Picture = Callable[[Page, str], None]

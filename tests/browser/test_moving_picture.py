@@ -14,13 +14,13 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, Route
 
-from app.clock import SystemClock
+from app.base.clock import SystemClock
 from app.sun.horizon import Horizon
 from app.sun.trigonometry import SCALAR
-from app.tracker.config import MountKind, TrackerConfig
 from app.tracker.mounts.kinematics import direction
 from app.tracker.mounts.usual import mounted
-from app.tracker.snapshot import Pair
+from app.tracker.settings.config import MountKind, TrackerConfig
+from app.tracker.state.snapshot import Pair
 from tests.browser.conftest import PATIENCE_MS, SCREENS, SOFTWARE_NOTE, Served
 from tests.e2e.chromium import PAGE_READY
 from tests.fake_data import NOON

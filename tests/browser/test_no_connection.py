@@ -3,7 +3,7 @@
 import pytest
 from playwright.sync_api import Locator, Page, Route, WebSocketRoute, expect
 
-from app.tracker.snapshot import Event, EventKind
+from app.tracker.state.snapshot import Event, EventKind
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import LANGUAGES
 from tests.browser.conftest import SIZES, Opened, Plant

@@ -13,7 +13,7 @@ LIST = ".saved-what"
 SAVES: dict[str, tuple[str, str, dict[str, str], list[str]]] = {
     "settings": (
         f"{T1}/settings", "#settings-form > .key-primary",
-        {"#f-deadband": "0.7", "#f-night": "park"},
+        {"#f-deadband_deg": "0.7", "#f-night": "park"},
         ["Deadband: 0.5 ° → 0.7 °", "At night: Hold at sunrise position → Move to park"],
     ),
     "protections": (
@@ -65,14 +65,14 @@ def test_what_was_saved_is_said(
 def test_a_second_change_is_told_against_the_first_and_outlives_a_reload(opened: Opened) -> None:
     page = opened(f"{T1}/settings")
     for before, after in (("0.5", "0.7"), ("0.7", "0.9")):
-        page.locator("#f-deadband").fill(after)
+        page.locator("#f-deadband_deg").fill(after)
         page.locator("#settings-form > .key-primary").click()
         expect(page.locator(LIST)).to_have_text(f"Deadband: {before} ° → {after} °")
-    page.locator("#f-deadband").fill("1.1")
+    page.locator("#f-deadband_deg").fill("1.1")
     page.reload()
-    expect(page.locator("#f-deadband")).to_have_value("1.1")
+    expect(page.locator("#f-deadband_deg")).to_have_value("1.1")
     page.get_by_role("button", name="Discard it").click()
-    expect(page.locator("#f-deadband")).to_have_value("0.9")
+    expect(page.locator("#f-deadband_deg")).to_have_value("0.9")
 
 
 def test_a_save_without_a_change_says_so(opened: Opened) -> None:
@@ -89,6 +89,6 @@ def test_a_page_says_that_what_tells_it_is_still_coming(opened: Opened, plant: P
     page.wait_for_selector('html[data-link="live"][data-keeping="loading"]')
     held[0].continue_()
     page.wait_for_selector(PAGE_READY)
-    page.locator("#f-deadband").fill("0.7")
+    page.locator("#f-deadband_deg").fill("0.7")
     page.locator("#settings-form > .key-primary").click()
     expect(page.locator(LIST)).to_have_text("Deadband: 0.5 ° → 0.7 °")

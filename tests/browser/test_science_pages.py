@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page
 
-from app.settings import Settings
+from app.base.settings import Settings
 from app.studies.compute import finished, work_out
 from app.studies.folder import StudyFolder, StudyState, StudyStatus
 from app.studies.light import clear_days
 from app.studies.request import Span, StudyMode, StudyRequest, StudyStrategy
 from app.sun.position import Location
-from app.tracker.config import Orientation
+from app.tracker.settings.config import Orientation
 from app.web.main import create_app
 from tests.browser.conftest import SCREENS, SIZES, Served
 from tests.browser.layout import faults

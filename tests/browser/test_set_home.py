@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from playwright.sync_api import Page, expect
 
-from app.tracker.commands import SetHome, UndoHome
+from app.tracker.commands.commands import SetHome, UndoHome
 from tests.browser.conftest import Opened, Plant
 from tests.browser.hands import CONFIRM_MS, LINK_MEASURED, Finger, Hands, Keyboard, Mouse
 

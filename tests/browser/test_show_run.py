@@ -8,7 +8,7 @@ from playwright.sync_api import Page, expect
 
 from app.store.store import PlannedShow
 from app.tracker.programs.show import ShowPlan
-from app.tracker.snapshot import ActivityName, ShowPhase
+from app.tracker.state.snapshot import ActivityName, ShowPhase
 from tests.browser.conftest import Opened, Plant
 from tests.e2e.chromium import PAGE_READY
 from tests.fake_data import SAMSUN
@@ -121,7 +121,7 @@ def test_the_replay_key_plays_what_was_recorded_of_this_show(under_way: Plant, o
     shown = under_way.machine.store.heads["show-1"]
     under_way.machine.store.shows["s1"] = PlannedShow(
         "T1",
-        ShowPlan("s1", shown.sun_begin_at, shown.sun_end_at, timedelta(seconds=shown.duration_s), SAMSUN),
+        ShowPlan("s1", shown.sun_start, shown.sun_end, timedelta(seconds=shown.duration_s), SAMSUN),
     )
     page = opened(SHOW, "tablet", touch=True)
     page.get_by_role("link", name="Replay").tap()

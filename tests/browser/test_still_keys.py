@@ -7,7 +7,7 @@ from datetime import datetime
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from app.tracker.snapshot import Snapshot
+from app.tracker.state.snapshot import Snapshot
 from app.web.languages.known import LANGUAGES
 from tests.browser.conftest import SIZES, Opened, Plant
 from tests.browser.hands import LINK_MEASURED, until
@@ -171,7 +171,7 @@ SLOW_PING = """(() => {
 @pytest.mark.parametrize("size", ["tablet", "phone"])
 def test_a_connection_that_becomes_slow_moves_no_key(size: str, opened: Opened, plant: Plant) -> None:
     for language in LANGUAGES:
-        page = opened(HOMING, size)
+        page = opened(HOMING, size, allow=("WebSocket is closed before",))
         page.context.add_cookies([{"name": "language", "value": language, "url": plant.url}])
         page.add_init_script(SLOW_PING)
         page.reload()

@@ -15,12 +15,12 @@ from playwright.sync_api import Browser, Page, expect
 
 from app.access.principal import this_computer
 from app.access.roles import Role
-from app.clock import SystemClock
-from app.drives.simulated import SimulatedDrive
-from app.settings import Settings
+from app.base.clock import SystemClock
+from app.base.settings import Settings
+from app.simulation.simulated import SimulatedDrive
 from app.site.site import Site
-from app.tracker.memory import SiteState
-from app.tracker.snapshot import ActivityName, Event, EventKind
+from app.tracker.memory.memory import SiteState
+from app.tracker.state.snapshot import ActivityName, Event, EventKind
 from app.web.main import create_app
 from tests.access.fake_hasher import FakeHasher
 from tests.browser.hands import LINK_MEASURED, LOOK_EVERY_MS, middle, until

@@ -4,9 +4,8 @@ from dataclasses import replace
 from datetime import datetime, timedelta
 from typing import Any
 
-from app.tracker.alarm_words import AlarmNow, AlarmState
-from app.tracker.control import ControlRequest, ControlState
-from app.tracker.memory import CommissioningLock, RejectedSetting
+from app.tracker.commands.control import ControlRequest, ControlState
+from app.tracker.memory.memory import CommissioningLock, RejectedSetting
 from app.tracker.protections.words import (
     LinkQuality,
     MaintenanceLock,
@@ -14,12 +13,13 @@ from app.tracker.protections.words import (
     ProtectionState,
     ServiceMode,
     ServiceState,
-    StowName,
     WarningState,
 )
-from app.tracker.reason import Reason
-from app.tracker.snapshot import ActivityName, Pair, Snapshot
-from app.tracker.weather import Quality, Reading, Weather, WeatherNow
+from app.tracker.settings.protections import StowName
+from app.tracker.state.snapshot import ActivityName, Pair, Snapshot
+from app.tracker.values.alarm_words import AlarmNow, AlarmState
+from app.tracker.values.reason import Reason
+from app.tracker.weather.weather import Quality, Reading, Weather, WeatherNow
 from tests.fake_alarms import alarm
 from tests.fake_data import commissioned
 from tests.fake_tracker import FakeTracker
@@ -45,7 +45,7 @@ LOCAL = Reason(
     "The tracker is operated from its cabinet. Turn the switch to remote to use Heliopanel.",
 )
 ZERO = Reason(
-    "home_not_trusted", f"{NAME} is not homed.", "Go to step 3, Homing, and set the home position."
+    "tracker_not_homed", f"{NAME} is not homed.", "Go to step 3, Homing, and set the home position."
 )  # fmt: skip
 CLOCK = Reason(
     "clock_untrusted", "The site's clock is not trusted.", "Go to step 2, Clock, and set or confirm it."

@@ -12,6 +12,8 @@ from tests.e2e.chromium import PAGE_READY
 from tests.e2e.product import Product
 
 PRESSES = 5
+TURN_MS = 60_000
+"""A turn of the azimuth axis at 6 degrees a second: the afternoon sun is far from the home position."""
 PHOTOGRAPHED = "Applying inline style violates"
 """The browser's remark on the style that Playwright adds while it photographs a page."""
 Picture = Callable[[Page, str], None]
@@ -125,7 +127,7 @@ def choose_dual(page: Page, hands: Hands) -> None:
 
 def track(page: Page, hands: Hands) -> None:
     hands.press(page.locator('[data-action="track"]'))
-    expect(page.locator(".strip-activity")).to_contain_text("Tracking")
+    expect(page.locator(".strip-activity")).to_contain_text("Tracking", timeout=PATIENCE_MS + TURN_MS)
     expect(page.locator('.step[data-current][data-status="done"]')).to_be_visible()
 
 

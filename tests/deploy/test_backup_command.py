@@ -5,7 +5,7 @@ import re
 import subprocess
 from pathlib import Path
 
-from app.store.backup import inspect_backup
+from app.store.backup.backup import inspect_backup
 from app.store.migrations import upgrade
 from app.store.tables import REVISION
 from tests.e2e.product import COMMAND

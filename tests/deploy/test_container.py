@@ -11,7 +11,7 @@ import pytest
 import yaml
 from aiomqtt import Client, MqttError
 
-from app.settings import Settings
+from app.base.settings import Settings
 from tests.e2e.product import COMMAND
 from tests.gateway.test_mqtt import Broker
 
@@ -66,7 +66,7 @@ def test_heliopanel_takes_the_settings_that_were_made(tmp_path: Path) -> None:
         "HELIOPANEL_ALLOWED_HOSTS": "",
     }
     asked = (
-        "from app.settings import read_settings; found = read_settings(); "
+        "from app.base.settings import read_settings; found = read_settings(); "
         "print(found.url, found.mqtt_password.get_secret_value())"
     )
     told = subprocess.run(

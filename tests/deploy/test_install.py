@@ -122,7 +122,7 @@ def test_it_installs_upgrades_and_takes_away(computer: Computer) -> None:
     assert computer.libraries == {"heliopanel", "small_sun"}
     assert computer.data.stat().st_mode & 0o777 == 0o700
     assert computer.settings.stat().st_mode & 0o777 == 0o640
-    for unit in ("heliopanel-machine", "heliopanel-web"):
+    for unit in ("heliopanel-controller", "heliopanel-web"):
         text = (computer.root / f"etc/systemd/system/{unit}.service").read_text()
         assert "ExecStart=/opt/heliopanel/current/bin/heliopanel " in text
     assert os.access(computer.root / "usr/local/bin/heliopanel", os.X_OK)
@@ -144,8 +144,11 @@ def test_an_upgrade_keeps_settings_extras_a_backup_and_one_version(
     computer.settings.write_text("port = 8001\n")
     (computer.data / "machine.lock").touch()
     (computer.programs / "0.9-20260101T000000").mkdir()
+    former = computer.root / "etc/systemd/system/heliopanel-machine.service"
+    former.touch()
     done = computer.install("1.1")
     assert done.returncode == 0, done.stderr
+    assert not former.exists(), "two controller services would contend for the drives"
     assert (computer.versions, computer.current) == (["1.0", "1.1"], "1.1")
     assert computer.libraries == {"heliopanel", "small_sun", "small_pen"}
     assert computer.settings.read_text() == "port = 8001\n"

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
-UNITS = ("heliopanel-machine", "heliopanel-web")
+UNITS = ("heliopanel-controller", "heliopanel-web")
 MOST_EXPOSED = 3.0
 
 
@@ -41,3 +41,9 @@ def test_serial_ports_are_the_controllers_alone() -> None:
     assert "SupplementaryGroups=dialout\n" in machine
     assert "DeviceAllow=char-tty* rw\n" in machine
     assert "PrivateDevices=yes\n" in web
+
+
+def test_what_is_kept_in_memory_is_the_controllers_and_outlives_it() -> None:
+    lines = (DEPLOY / "heliopanel-controller.service").read_text().splitlines()
+    for line in ("RuntimeDirectory=heliopanel", "RuntimeDirectoryMode=0700", "RuntimeDirectoryPreserve=yes"):
+        assert line in lines

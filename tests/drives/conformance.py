@@ -6,10 +6,10 @@ from itertools import pairwise
 
 import pytest
 
-from app.drives.drive import DriveError, DriveSilent
-from app.drives.faults import Fault, FaultKind
-from app.tracker.axes import Axis
-from app.tracker.motion import (
+from app.modbus.errors import DriveError, DriveSilent
+from app.simulation.faults import Fault, FaultKind
+from app.tracker.settings.axes import Axis
+from app.tracker.values.motion import (
     DriveCommand,
     DriveRequest,
     Feedback,

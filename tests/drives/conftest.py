@@ -1,4 +1,4 @@
-"""Drives are tested on a loop that does not mind how busy the computer is, unless a test says otherwise."""
+"""Drives are tested on a loop that does not state how busy the computer is, unless a test says otherwise."""
 
 import asyncio
 from collections.abc import Callable, Mapping

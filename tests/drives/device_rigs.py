@@ -7,15 +7,15 @@ from datetime import timedelta
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from app.clock import VirtualClock
-from app.drives.devices.shelf import devices
+from app.base.clock import VirtualClock
 from app.drives.drive import Drive
-from app.drives.factory import DriveFactory
-from app.drives.modbus_server import Device, ModbusServer
-from app.drives.pty_line import PtyLine
-from app.drives.rtu_server import RtuServer
-from app.drives.simulated import SimulatedDrive
-from app.tracker.config import AxisDrive, DriveConfig, DriveKind, SerialConfig
+from app.machine.drive_factory import DriveFactory
+from app.modbus.pty_line import PtyLine
+from app.modbus.rtu_server import RtuServer
+from app.modbus.server import Device, ModbusServer
+from app.simulation.devices.shelf import devices
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.settings.config import AxisDrive, DriveConfig, DriveKind, SerialConfig
 from tests.drives.rigs import CONFIG, FULL, START, Rig, Trait, pending_tasks
 
 STEPPED = FULL - {Trait.BOOT_COUNT, Trait.CLOCK, Trait.WATCHDOG} | {Trait.STEPS}

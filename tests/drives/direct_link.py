@@ -4,24 +4,24 @@ import asyncio
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from app.clock import VirtualClock
-from app.drives.bus import Priority
-from app.drives.cia402_axis import Cia402Axis
-from app.drives.devices.shelf import devices
-from app.drives.dialect import Dialect
-from app.drives.direct_axis import DirectAxis
-from app.drives.drive import DriveError, DriveSilent
-from app.drives.gearing import Gearing, gearing_of
-from app.drives.modbus_server import Device
-from app.drives.pr_axis import PrAxis
+from app.base.clock import VirtualClock
+from app.drives.dialects.cia402_axis import Cia402Axis
+from app.drives.dialects.dialect import Dialect
+from app.drives.dialects.direct_axis import DirectAxis
+from app.drives.dialects.gearing import Gearing, gearing_of
+from app.drives.dialects.pr_axis import PrAxis
+from app.drives.dialects.register_axis import RegisterAxis
+from app.drives.dialects.sunspec import SunSpecDrive
+from app.drives.dialects.two_axes import TwoAxisDrive
 from app.drives.profile import Adapter, load_profile
-from app.drives.register_axis import RegisterAxis
-from app.drives.simulated import SimulatedDrive
-from app.drives.sunspec import SunSpecDrive
-from app.drives.two_axes import TwoAxisDrive
 from app.drives.unit import Unit
-from app.tracker.axes import Axis
-from app.tracker.config import AxisDrive
+from app.modbus.bus import Priority
+from app.modbus.errors import DriveError, DriveSilent
+from app.modbus.server import Device
+from app.simulation.devices.shelf import devices
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import AxisDrive
 from tests.drives.rigs import CONFIG, START, Rig
 
 GEAR_RATIO = 36.0

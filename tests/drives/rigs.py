@@ -10,19 +10,19 @@ from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from app.drives.drive import Drive
-from app.drives.factory import DriveFactory
-from app.drives.listening_line import ListeningLine
-from app.drives.modbus_server import Device
 from app.drives.profile import load_profile
-from app.drives.pty_line import PtyLine
-from app.drives.rtu_server import RtuServer
-from app.drives.sim_plc import SimulatedPlc
-from app.drives.sim_server import serve
-from app.drives.simulated import SimulatedDrive
-from app.tracker.config import DriveConfig, DriveKind, SerialConfig, TrackerConfig
-from app.tracker.motion import DriveCommand, Feedback
+from app.machine.drive_factory import DriveFactory
+from app.modbus.listening_line import ListeningLine
+from app.modbus.pty_line import PtyLine
+from app.modbus.rtu_server import RtuServer
+from app.modbus.server import Device
+from app.simulation.servers.sim_server import serve
+from app.simulation.sim_plc import SimulatedPlc
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.settings.config import DriveConfig, DriveKind, SerialConfig, TrackerConfig
+from app.tracker.values.motion import DriveCommand, Feedback
 
 START = datetime(2026, 6, 21, 4, 0, tzinfo=UTC)
 TICK = timedelta(milliseconds=50)

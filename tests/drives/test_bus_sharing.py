@@ -4,10 +4,12 @@ import asyncio
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives.bus import MOST_WAITING, Bus, BusUnit
-from app.drives.drive import DriveSilent
-from app.drives.wire import Ask, Timing, Unanswered
+from app.base.clock import VirtualClock
+from app.base.message import told_by
+from app.modbus.bus import MOST_WAITING, Bus, BusUnit
+from app.modbus.errors import DriveSilent
+from app.modbus.wire import Ask, Timing, Unanswered
+from app.web.languages.catalogue import catalogue_of
 from tests.site.plant import SUMMER_NOON
 
 DEVICES = 8
@@ -144,3 +146,15 @@ async def test_requests_that_nobody_waits_for_take_up_no_room() -> None:
     assert await asked == [0] * 40
     await blocking
     await closed(units)
+
+
+async def test_why_a_device_is_silent_is_read_in_the_language_of_the_reader() -> None:
+    wire, units = await line()
+    asked = reading(units[0])
+    await settle()
+    await wire.reply(silent=True)
+    with pytest.raises(DriveSilent) as silent:
+        await asked
+    told = catalogue_of("de").said(told_by(silent.value))
+    assert told.startswith("Der Antrieb an line unit 1 hat nicht")
+    assert "Check" not in told

@@ -8,20 +8,20 @@ from datetime import timedelta
 
 import pytest
 
-from app.clock import SystemClock
-from app.drives.bus_tools import record, replay, scan
-from app.drives.buses import Buses
-from app.drives.devices.shelf import devices
-from app.drives.drive import DriveError, DriveSilent
-from app.drives.faults import Fault, FaultKind
-from app.drives.modbus_server import ModbusServer
-from app.drives.probe import probe
+from app.base.clock import SystemClock
+from app.drives.connections.bus_tools import record, replay, scan
+from app.drives.connections.buses import Buses
+from app.drives.connections.probe import probe
 from app.drives.profile import Profile, load_profile
-from app.drives.simulated import SimulatedDrive
-from app.drives.trace import Exchange, Replay, ReplayDevice, parse_trace
-from app.drives.wire import Ask
-from app.tracker.config import AxisDrive, DriveConfig, DriveKind, TrackerConfig
-from app.tracker.drive_check import CheckOutcome
+from app.modbus.errors import DriveError, DriveSilent
+from app.modbus.server import ModbusServer
+from app.modbus.trace import Exchange, Replay, ReplayDevice, parse_trace
+from app.modbus.wire import Ask
+from app.simulation.devices.shelf import devices
+from app.simulation.faults import Fault, FaultKind
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.memory.drive_check import CheckOutcome
+from app.tracker.settings.config import AxisDrive, DriveConfig, DriveKind, TrackerConfig
 from tests.drives.rigs import CONFIG
 
 REPLY = (3, 5)

@@ -2,11 +2,11 @@
 
 import pytest
 
-from app.drives import cia402
-from app.drives.cia402 import State, state_of
-from app.drives.faults import Fault, FaultKind
-from app.drives.register_axis import DISABLED
-from app.tracker.motion import DriveCommand, DriveRequest, Position, RequestKind, Velocity
+from app.drives.dialects import cia402
+from app.drives.dialects.cia402 import State, state_of
+from app.drives.dialects.register_axis import DISABLED
+from app.simulation.faults import Fault, FaultKind
+from app.tracker.values.motion import DriveCommand, DriveRequest, Position, RequestKind, Velocity
 from tests.drives.device_rigs import BENCHES, device_rig
 from tests.drives.rigs import Rig
 

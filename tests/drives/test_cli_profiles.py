@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from app.cli_profiles import drive
-from app.clock import SystemClock
-from app.drives.devices.shelf import devices
-from app.drives.modbus_server import ModbusServer
+from app.base.clock import SystemClock
+from app.cli.profiles import drive
 from app.drives.profile import PROFILES, load_profile
-from app.drives.simulated import SimulatedDrive
+from app.modbus.server import ModbusServer
+from app.simulation.devices.shelf import devices
+from app.simulation.simulated import SimulatedDrive
 from tests.drives.rigs import CONFIG
 
 

@@ -5,13 +5,13 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives.faults import Fault, FaultKind
+from app.base.clock import VirtualClock
 from app.drives.scaled import CorrectedDrive, Stretch, corrected
-from app.drives.simulated import SimulatedDrive
-from app.tracker.axes import AZIMUTH_DEFAULT, Axis
-from app.tracker.config import AxisDrive, DriveConfig, TrackerConfig
-from app.tracker.motion import DriveCommand, Position, Velocity
+from app.simulation.faults import Fault, FaultKind
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.settings.axes import AZIMUTH_DEFAULT, Axis
+from app.tracker.settings.config import AxisDrive, DriveConfig, TrackerConfig
+from app.tracker.values.motion import DriveCommand, Position, Velocity
 
 START = datetime(2026, 6, 21, 4, 0, tzinfo=UTC)
 PLAIN = TrackerConfig("T1", "Tracker 1")

@@ -7,13 +7,13 @@ from typing import cast
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives import kept_positions
-from app.drives.factory import DriveFactory
-from app.drives.faults import Fault, FaultKind
-from app.drives.position_memory import AxisMemory, PositionFile, PositionMemory
-from app.drives.simulated import SimulatedDrive
-from app.tracker.motion import DriveCommand, DriveRequest, Feedback, Position, RequestKind, Velocity
+from app.base.clock import VirtualClock
+from app.machine.drive_factory import DriveFactory
+from app.simulation import kept_positions
+from app.simulation.faults import Fault, FaultKind
+from app.simulation.position_memory import AxisMemory, PositionFile, PositionMemory
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.values.motion import DriveCommand, DriveRequest, Feedback, Position, RequestKind, Velocity
 from tests.drives.rigs import CONFIG, START, Rig
 from tests.fault_result import BY_ITSELF, FaultResult
 

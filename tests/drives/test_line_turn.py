@@ -2,9 +2,9 @@
 
 import pytest
 
-from app.drives.line_turn import Part, serial_part_s
 from app.drives.profile import load_profile
-from app.tracker.config import SerialConfig
+from app.modbus.line_turn import Part, serial_part_s
+from app.tracker.settings.config import SerialConfig
 
 TIMING = load_profile("simulated-plc").timing
 

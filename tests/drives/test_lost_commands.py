@@ -5,10 +5,10 @@ from datetime import timedelta
 
 import pytest
 
-from app.drives.devices.sunspec import AUTOMATIC, CONTROL
-from app.drives.drive import DriveError, DriveSilent
-from app.tracker.axes import Axis
-from app.tracker.motion import DriveCommand, DriveRequest, Position, RequestKind
+from app.modbus.errors import DriveError, DriveSilent
+from app.simulation.devices.sunspec import AUTOMATIC, CONTROL
+from app.tracker.settings.axes import Axis
+from app.tracker.values.motion import DriveCommand, DriveRequest, Position, RequestKind
 from tests.drives.direct_link import (
     STATUSWORD_ENABLED,
     LinkedRig,

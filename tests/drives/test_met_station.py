@@ -4,13 +4,13 @@ from collections.abc import AsyncIterator, Sequence
 
 import pytest
 
-from app.clock import SystemClock
-from app.drives.buses import Buses
-from app.drives.drive import DriveError
-from app.drives.met_station import MetReader, met_reader, weather_of
-from app.drives.modbus_server import ModbusServer, Refusal
-from app.tracker.memory import MetStation
-from app.tracker.weather import Weather
+from app.base.clock import SystemClock
+from app.drives.connections.buses import Buses
+from app.drives.connections.met_station import MetReader, met_reader, weather_of
+from app.modbus.errors import DriveError
+from app.modbus.server import ModbusServer, Refusal
+from app.tracker.memory.memory import MetStation
+from app.tracker.weather.weather import Weather
 
 COMMON = [1, 4, 0, 0, 0, 0]
 MET = [0xFFCE, 85, 1013, 17, 210, 3, 0x8000, 0x8000, 0x8000, 0x8000, 0x8000]

@@ -12,15 +12,15 @@ from struct import pack
 
 import pytest
 
-from app.budget import Budget
-from app.clock import VirtualClock
-from app.drives.line import SerialLine
-from app.drives.modbus_clients import Limits
-from app.drives.modbus_server import ModbusServer
-from app.drives.pty_line import PtyLine
-from app.drives.rtu_frame import sealed
-from app.drives.rtu_server import RtuServer
-from app.tracker.config import Parity, SerialConfig
+from app.base.budget import Budget
+from app.base.clock import VirtualClock
+from app.modbus.clients import Limits
+from app.modbus.line import SerialLine
+from app.modbus.pty_line import PtyLine
+from app.modbus.rtu_frame import sealed
+from app.modbus.rtu_server import RtuServer
+from app.modbus.server import ModbusServer
+from app.tracker.settings.config import Parity, SerialConfig
 from tests.captured_logs import capture_logs
 from tests.fault_result import REAL, FaultResult
 from tests.gateway.rigs import eventually
@@ -140,11 +140,11 @@ async def test_a_client_that_takes_no_replies_is_cut_off(fault: FaultResult) -> 
         assert server.client_count == 0
         assert [(line["event"], line["host"]) for line in logged] == [("modbus_client_dropped", "127.0.0.1")]
         fault.noticed(cut_off_s, REAL)
-        fault.shows_nothing("nobody else is held up; the log names the host")
+        fault.shows_nothing("no one else is held up; the log names the host")
         again = await opened(port)
         assert await is_answered(*again)
         again[1].close()
-        fault.recovers("by itself: the client connects again")
+        fault.recovers("automatic: the client connects again")
 
 
 async def test_a_client_that_asks_faster_than_it_may_is_slowed_down() -> None:
@@ -234,3 +234,15 @@ async def test_a_master_that_floods_a_serial_line_and_reads_nothing_changes_noth
     finally:
         await server.close()
         master.close()
+
+
+async def test_a_client_that_is_accepted_while_the_server_closes_is_cut_off() -> None:
+    here, there = socket.socketpair()
+    _, writer = await asyncio.open_connection(sock=here)
+    async with served(Limits()) as (server, _, _):
+        pass
+    server._clients.admit(asyncio.StreamReader(), writer)
+    there.settimeout(10)
+    assert await asyncio.to_thread(there.recv, 1) == b""
+    assert server.client_count == 0
+    there.close()

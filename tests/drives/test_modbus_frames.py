@@ -6,12 +6,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.clock import VirtualClock
-from app.drives.modbus_reply import BadReply, is_complete, wanted_read, wanted_write
-from app.drives.modbus_server import answer
+from app.base.clock import VirtualClock
 from app.drives.profile import load_profile
-from app.drives.sim_plc import SimulatedPlc
-from app.drives.simulated import SimulatedDrive
+from app.modbus.reply import BadReply, is_complete, wanted_read, wanted_write
+from app.modbus.server import answer
+from app.simulation.sim_plc import SimulatedPlc
+from app.simulation.simulated import SimulatedDrive
 from tests.drives.rigs import CONFIG, START
 from tests.drives.scripted_server import right
 

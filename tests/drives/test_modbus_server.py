@@ -8,14 +8,14 @@ from struct import pack, unpack_from
 import pytest
 from pymodbus.client import AsyncModbusTcpClient
 
-from app.clock import VirtualClock
-from app.drives.faults import Fault, FaultKind
+from app.base.clock import VirtualClock
 from app.drives.profile import load_profile
-from app.drives.sim_server import serve
-from app.drives.sim_training import FIRST, training_words
-from app.drives.simulated import SimulatedDrive
-from app.tracker.axes import Axis
-from app.tracker.motion import DriveCommand, Velocity
+from app.simulation.faults import Fault, FaultKind
+from app.simulation.servers.sim_server import serve
+from app.simulation.sim_training import FIRST, training_words
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.settings.axes import Axis
+from app.tracker.values.motion import DriveCommand, Velocity
 from tests.drives.rigs import CONFIG, START
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from app.drives.profile import PROFILES
-from app.tracker.motion import DriveCommand, Velocity
+from app.tracker.values.motion import DriveCommand, Velocity
 from tests.drives.device_rigs import BENCHES, Bench, device_rig
 from tests.drives.rigs import Trait
 

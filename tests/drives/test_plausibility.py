@@ -5,13 +5,13 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives.drive import DriveError
+from app.base.clock import VirtualClock
 from app.drives.plausibility import Plausibility
 from app.drives.register import Register, WordType
-from app.tracker.axes import Axis
-from app.tracker.config import TrackerConfig
-from app.tracker.motion import AxisFeedback, Feedback
+from app.modbus.errors import DriveError
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.values.motion import AxisFeedback, Feedback
 
 CONFIG = TrackerConfig("T1", "North")
 REGISTERS = {

@@ -8,22 +8,22 @@ from datetime import timedelta
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives.bus import Bus, BusUnit
-from app.drives.drive import DriveError, DriveRefused
-from app.drives.factory import DriveFactory
-from app.drives.faults import Fault, FaultKind
-from app.drives.modbus_server import ModbusServer
-from app.drives.modbus_tcp import TcpWire
-from app.drives.plc import PlcDrive
-from app.drives.plc_map import PlcMap
-from app.drives.plc_signs import MOST_UNCHANGED
+from app.base.clock import VirtualClock
+from app.drives.dialects.plc import PlcDrive
+from app.drives.dialects.plc_map import PlcMap
+from app.drives.dialects.plc_signs import MOST_UNCHANGED
 from app.drives.profile import Profile, load_profile
-from app.drives.sim_plc import SimulatedPlc
-from app.drives.simulated import SimulatedDrive
-from app.drives.wire import Timing
-from app.tracker.config import DriveConfig, DriveKind
-from app.tracker.motion import (
+from app.machine.drive_factory import DriveFactory
+from app.modbus.bus import Bus, BusUnit
+from app.modbus.errors import DriveError, DriveRefused
+from app.modbus.server import ModbusServer
+from app.modbus.tcp import TcpWire
+from app.modbus.wire import Timing
+from app.simulation.faults import Fault, FaultKind
+from app.simulation.sim_plc import SimulatedPlc
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.settings.config import DriveConfig, DriveKind
+from app.tracker.values.motion import (
     HALT,
     AxisFeedback,
     DriveCommand,

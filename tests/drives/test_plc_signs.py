@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from app.drives.drive import DriveError
-from app.drives.plc_signs import MOST_UNCHANGED, SignsOfLife
+from app.drives.dialects.plc_signs import MOST_UNCHANGED, SignsOfLife
 from app.drives.profile import Profile, load_profile
-from app.tracker.motion import AxisFeedback, Feedback
+from app.modbus.errors import DriveError
+from app.tracker.values.motion import AxisFeedback, Feedback
 
 PROFILE = load_profile("simulated-plc")
 FIRST = 2

@@ -7,18 +7,18 @@ from pathlib import Path
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives.buses import Buses
-from app.drives.faults import Fault, FaultKind
-from app.drives.modbus_server import ModbusServer
-from app.drives.probe import DriveProbe
+from app.base.clock import VirtualClock
+from app.drives.connections.buses import Buses
+from app.drives.connections.probe import DriveProbe
 from app.drives.profile import load_profile
 from app.drives.profile_library import ProfileLibrary
-from app.drives.sim_server import serve
-from app.drives.simulated import SimulatedDrive
-from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
-from app.tracker.drive_check import CheckOutcome
-from app.tracker.motion import DriveCommand, Velocity
+from app.modbus.server import ModbusServer
+from app.simulation.faults import Fault, FaultKind
+from app.simulation.servers.sim_server import serve
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.memory.drive_check import CheckOutcome
+from app.tracker.settings.config import DriveConfig, DriveKind, TrackerConfig
+from app.tracker.values.motion import DriveCommand, Velocity
 
 START = datetime(2026, 6, 21, 4, 0, tzinfo=UTC)
 

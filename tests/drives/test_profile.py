@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from app.drives.plc_map import PlcMap
+from app.drives.connections.profile_needs import check_needs
+from app.drives.dialects.plc_map import PlcMap
 from app.drives.profile import PROFILES, ProfileError, known_profiles, load_profile, parse_profile
-from app.drives.profile_needs import check_needs
-from app.drives.profile_page import DOCS, renewed
 from app.drives.register import Register, WordOrder, WordType
+from app.simulation.profile_page import DOCS, renewed
 
 TEXT = (PROFILES / "simulated-plc.toml").read_text(encoding="utf-8")
 
@@ -24,7 +24,7 @@ def test_every_profile_that_ships_can_be_loaded(name: str) -> None:
 @pytest.mark.parametrize("name", known_profiles())
 def test_the_page_of_every_profile_is_up_to_date(name: str) -> None:
     written = (DOCS / f"{name}.md").read_text(encoding="utf-8")
-    assert written == renewed(written, load_profile(name)), "run python -m app.drives.profile_page"
+    assert written == renewed(written, load_profile(name)), "run python -m app.simulation.profile_page"
 
 
 def test_a_profile_can_be_a_file_of_ones_own(tmp_path: Path) -> None:

@@ -2,9 +2,9 @@
 
 import re
 
+from app.drives.connections.profile_needs import check_needs
 from app.drives.profile import Adapter, parse_profile
-from app.drives.profile_needs import check_needs
-from app.drives.profile_page import DOCS
+from app.simulation.profile_page import DOCS
 
 PAGE = (DOCS / "writing-a-profile.md").read_text(encoding="utf-8")
 

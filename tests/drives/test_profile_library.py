@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives.factory import DriveFactory
+from app.base.clock import VirtualClock
 from app.drives.profile import PROFILES, ProfileError, known_profiles
 from app.drives.profile_library import ProfileLibrary
-from app.tracker.config import DriveConfig, DriveKind
+from app.machine.drive_factory import DriveFactory
+from app.tracker.settings.config import DriveConfig, DriveKind
 from tests.drives.rigs import CONFIG, START
 
 TEXT = (PROFILES / "simulated-plc.toml").read_text(encoding="utf-8")

@@ -2,7 +2,8 @@
 
 import pytest
 
-from app.drives.gearing import Gearing, gearing_of
+from app.drives.connections.profile_needs import check_needs
+from app.drives.dialects.gearing import Gearing, gearing_of
 from app.drives.profile import (
     PROFILES,
     ProfileError,
@@ -11,8 +12,7 @@ from app.drives.profile import (
     load_profile,
     parse_profile,
 )
-from app.drives.profile_needs import check_needs
-from app.tracker.config import AxisDrive
+from app.tracker.settings.config import AxisDrive
 
 
 def text_of(name: str) -> str:

@@ -7,14 +7,14 @@ from typing import Any
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives.bus import Priority
-from app.drives.drive import DriveError, DriveRefused
-from app.drives.line_turn import LineTurn
-from app.drives.plc import PlcDrive
+from app.base.clock import VirtualClock
+from app.drives.dialects.plc import PlcDrive
 from app.drives.profile import load_profile
 from app.drives.unit import Unit
-from app.tracker.motion import HALT, DriveCommand, Position, Velocity
+from app.modbus.bus import Priority
+from app.modbus.errors import DriveError, DriveRefused
+from app.modbus.line_turn import LineTurn
+from app.tracker.values.motion import HALT, DriveCommand, Position, Velocity
 from tests.drives.rigs import CONFIG, START
 
 CIA402, PR, DIRECT, PLC = map(load_profile, ("kinco-cia402", "leadshine-rs", "oriental-az", "simulated-plc"))

@@ -2,7 +2,7 @@
 
 from datetime import UTC, datetime, timedelta
 
-from app.drives.silences import LONGEST_REST, Silences
+from app.modbus.silences import LONGEST_REST, Silences
 
 NOON = datetime(2027, 6, 21, 12, tzinfo=UTC)
 WAITED = timedelta(seconds=0.3)

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives.faults import Fault, FaultKind
-from app.drives.position_memory import PositionFile
-from app.drives.simulated import SimulatedDrive
-from app.drives.simulated_axis import Mechanics
-from app.tracker.axes import Axis, AxisConfig
-from app.tracker.motion import DriveCommand, DriveRequest, Feedback, Position, RequestKind, Velocity
+from app.base.clock import VirtualClock
+from app.simulation.faults import Fault, FaultKind
+from app.simulation.position_memory import PositionFile
+from app.simulation.simulated import SimulatedDrive
+from app.simulation.simulated_axis import Mechanics
+from app.tracker.settings.axes import Axis, AxisConfig
+from app.tracker.values.motion import DriveCommand, DriveRequest, Feedback, Position, RequestKind, Velocity
 from tests.drives.rigs import CONFIG, START, Rig
 
 MOVE = DriveCommand(Position(120.0, 6.0), Position(50.0, 4.0))

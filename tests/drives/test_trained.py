@@ -6,20 +6,20 @@ from datetime import timedelta
 
 import pytest
 
-from app.clock import SystemClock, VirtualClock
-from app.drives.bus import Priority
-from app.drives.drive import DriveError, DriveRefused, DriveSilent
-from app.drives.factory import DriveFactory
-from app.drives.fault_injection import TRAINED_PROFILE, trainer_of
-from app.drives.faults import Fault, FaultKind
-from app.drives.modbus_server import Refusal
-from app.drives.plc import PlcDrive
+from app.base.clock import SystemClock, VirtualClock
+from app.drives.dialects.plc import PlcDrive
 from app.drives.profile import load_profile
-from app.drives.sim_plc import SimulatedPlc
-from app.drives.sim_server import serve
-from app.drives.simulated import SimulatedDrive
-from app.tracker.axes import Axis
-from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
+from app.machine.drive_factory import DriveFactory
+from app.modbus.bus import Priority
+from app.modbus.errors import DriveError, DriveRefused, DriveSilent
+from app.modbus.server import Refusal
+from app.simulation.fault_injection import TRAINED_PROFILE, trainer_of
+from app.simulation.faults import Fault, FaultKind
+from app.simulation.servers.sim_server import serve
+from app.simulation.sim_plc import SimulatedPlc
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import DriveConfig, DriveKind, TrackerConfig
 from tests.site.plant import SUMMER_NOON
 
 CONFIG = TrackerConfig("T1", "North")

@@ -8,18 +8,18 @@ from pathlib import Path
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives.factory import DriveFactory
-from app.drives.faults import Fault
+from app.base.clock import VirtualClock
 from app.drives.linear_actuator import TransmittedDrive, counted_mm, in_millimetres
-from app.drives.position_memory import AxisMemory, PositionFile, PositionMemory
-from app.drives.simulated import SimulatedDrive
-from app.drives.simulated_axis import Mechanics
-from app.tracker.axes import Axis, AxisConfig
-from app.tracker.config import MountConfig, MountKind, Orientation
-from app.tracker.mechanisms import alexandru_diurnal, alexandru_elevation
-from app.tracker.motion import DriveCommand, Feedback, Position, Velocity
-from app.tracker.transmission import LinearActuator, Point
+from app.machine.drive_factory import DriveFactory
+from app.simulation.faults import Fault
+from app.simulation.position_memory import AxisMemory, PositionFile, PositionMemory
+from app.simulation.simulated import SimulatedDrive
+from app.simulation.simulated_axis import Mechanics
+from app.tracker.settings.axes import Axis, AxisConfig
+from app.tracker.settings.config import MountConfig, MountKind, Orientation
+from app.tracker.settings.mechanisms import alexandru_diurnal, alexandru_elevation
+from app.tracker.settings.transmission import LinearActuator, Point
+from app.tracker.values.motion import DriveCommand, Feedback, Position, Velocity
 from tests.drives.conformance import BEGIN_ELEVATION_DEG, Story, stories_for
 from tests.drives.rigs import CONFIG, FULL, START, Rig
 

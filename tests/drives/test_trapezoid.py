@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from app.drives.trapezoid import Path, Phase, brake, move, rest
+from app.simulation.trapezoid import Path, Phase, brake, move, rest
 
 angles = st.floats(-400.0, 400.0)
 speeds = st.floats(0.01, 20.0)

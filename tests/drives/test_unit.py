@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 
-from app.clock import VirtualClock
-from app.drives.bus import Priority
-from app.drives.devices.shelf import devices
-from app.drives.drive import DriveRefused
+from app.base.clock import VirtualClock
 from app.drives.profile import load_profile
-from app.drives.simulated import SimulatedDrive
 from app.drives.unit import Unit
+from app.modbus.bus import Priority
+from app.modbus.errors import DriveRefused
+from app.simulation.devices.shelf import devices
+from app.simulation.simulated import SimulatedDrive
 from tests.drives.direct_link import GEAR_RATIO, DirectLink
 from tests.drives.rigs import CONFIG, START
 

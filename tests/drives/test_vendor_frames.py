@@ -10,16 +10,16 @@ from pathlib import Path
 
 import pytest
 
-from app.drives.bus import Priority
-from app.drives.cia402_axis import Cia402Axis
-from app.drives.gearing import Gearing
-from app.drives.pr_axis import PathBlock, PrAxis
+from app.drives.dialects.cia402_axis import Cia402Axis
+from app.drives.dialects.gearing import Gearing
+from app.drives.dialects.pr_axis import PathBlock, PrAxis
 from app.drives.profile import Profile, load_profile
 from app.drives.register import Register, WordOrder, WordType
-from app.drives.rtu_frame import is_sealed, is_whole, request_frame, sealed
 from app.drives.unit import Unit
-from app.drives.wire import Ask
 from app.drives.write_frame import write_frame
+from app.modbus.bus import Priority
+from app.modbus.rtu_frame import is_sealed, is_whole, request_frame, sealed
+from app.modbus.wire import Ask
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "vendor-frames.csv"
 ROWS = list(csv.DictReader(GOLDEN.read_text(encoding="utf-8").splitlines()))

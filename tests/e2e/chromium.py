@@ -18,14 +18,15 @@ from tests.e2e.letters import environment
 from tests.e2e.product import eventually
 from tests.loopback.sitecustomize import CHROMIUM_FLAGS
 
-PROGRAM = os.environ.get("HELIOPANEL_TEST_BROWSER", "/usr/bin/chromium")
+PROGRAM = os.environ.get("HELIOPANEL_TEST_BROWSER", "/usr/bin/chromium-headless-shell")
+"""Chromium without its windows: the same engine, at two thirds of the processor time for each page."""
 QUIET = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
     "--disable-background-networking", "--disable-component-update", "--disable-dev-shm-usage",
     "--disable-features=WebUIOmniboxPopup,WebUIOmniboxAimPopup", *CHROMIUM_FLAGS,
 ]  # fmt: skip
 """The last but one: two hidden pages of the address bar, for every page of ours, took a third of a core."""
-FLAGS = ["--headless=new", "--remote-debugging-port=0", "--window-size=1280,800", *QUIET]
+FLAGS = ["--headless", "--remote-debugging-port=0", "--window-size=1280,800", *QUIET]
 PAGE_READY = 'html[data-link="live"]:not([data-keeping])'
 """A page whose values are live, and whose scripts have all come."""
 ANSWERS_WITHIN_S = 15.0
@@ -46,7 +47,7 @@ class Chromium:
     @classmethod
     def start(cls) -> "Chromium":
         """Return once it takes orders."""
-        assert Path(PROGRAM).exists(), "These tests need Chromium: apt-get install -y chromium"
+        assert Path(PROGRAM).exists(), "These tests need Chromium: apt-get install -y chromium-headless-shell"
         folder = tempfile.TemporaryDirectory(prefix="e2e-chromium-", ignore_cleanup_errors=True)
         process = subprocess.Popen(
             [PROGRAM, *FLAGS, f"--user-data-dir={folder.name}", "about:blank"],

@@ -67,13 +67,13 @@ def import_everything() -> None:
 
 
 def configure() -> None:
-    (config,) = call(list, "list_trackers")
+    (config,) = call(m.TrackerConfigPage, "list_trackers").items
     assert isinstance(config, m.TrackerConfig), config
     assert isinstance(config.drive, m.DriveConfig)
-    drive = m.DriveChange(
+    drive = m.DriveConfigChange(
         kind=m.DriveKind("modbus-tcp"), profile="simulated-plc", host="127.0.0.1", port=DRIVE_PORT
     )
-    changed = call(m.TrackerConfig, "change_tracker", T1, body=m.TrackerChange(drive=drive))
+    changed = call(m.TrackerConfig, "change_tracker", T1, body=m.TrackerConfigChange(drive=drive))
     assert changed.drive.port == DRIVE_PORT
     until(is_allowed("jog"))
 
@@ -91,9 +91,9 @@ def place_and_time() -> None:
 def home_and_track() -> None:
     until(is_allowed("set_home"))
     command(m.SetHomeCommand(type_="set_home", confirmed=True))
-    until(lambda seen: seen.home_trusted)
-    command(m.ModeCommand(type_="set_mode", mode=m.Mode("dual")))
-    steps = call(list, "read_steps", T1)
+    until(lambda seen: seen.homed)
+    command(m.SetModeCommand(type_="set_mode", mode=m.Mode("dual")))
+    steps = call(m.StepPage, "read_steps", T1).items
     assert {one.name.value for one in steps if one.status.value == "done"} == {
         "location",
         "clock",
@@ -108,7 +108,7 @@ def home_and_track() -> None:
 
 def reuse_a_key() -> None:
     key = uuid4().hex
-    home, dual = m.ParkCommand(type_="park"), m.ModeCommand(type_="set_mode", mode=m.Mode("dual"))
+    home, dual = m.ParkCommand(type_="park"), m.SetModeCommand(type_="set_mode", mode=m.Mode("dual"))
     command(dual, idempotency_key=key)
     command(dual, idempotency_key=key)
     status, problem = ask("send_command", T1, body=home, idempotency_key=key)

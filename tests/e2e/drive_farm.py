@@ -16,11 +16,11 @@ import asyncio
 import gc
 import signal
 import sys
-from app.clock import SystemClock
+from app.base.clock import SystemClock
 from app.drives.profile import load_profile
-from app.drives.sim_server import serve
-from app.drives.simulated import SimulatedDrive
-from app.tracker.config import TrackerConfig
+from app.simulation.servers.sim_server import serve
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.settings.config import TrackerConfig
 
 async def main():
     clock, profile, servers = SystemClock(), load_profile("simulated-plc"), []

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from struct import pack, unpack_from
 
-from app.drives.sim_training import TRUE_AZIMUTH
+from app.simulation.sim_training import TRUE_AZIMUTH
 
 LOOK_EVERY_S = 0.003
 JUDGE_EVERY_S = 0.01

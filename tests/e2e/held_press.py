@@ -10,7 +10,7 @@ from uuid import uuid4
 from tests.e2e.product import Product
 from tests.e2e.socket_page import Answer
 
-SERVICES = ("web", "machine")
+SERVICES = ("web", "controller")
 
 
 class Spent(NamedTuple):

@@ -28,7 +28,7 @@ BEATS = (3, 6)
 PAUSE_S = (0.06, 0.12)
 RIG_LATE_S = 0.1
 """A heartbeat that this program sends so late after the one before is no sign of a button that is held."""
-FROZEN_S = {"web": 0.6, "machine": 0.8}
+FROZEN_S = {"web": 0.6, "controller": 0.8}
 
 
 @dataclass
@@ -169,7 +169,7 @@ class Rig:
 
     async def freeze(self, way: LetGo, times: int) -> Tally:
         """Freeze a service again and again while all buttons are held."""
-        tally, child = Tally(), "web" if way is LetGo.PANEL_FROZEN else "machine"
+        tally, child = Tally(), "web" if way is LetGo.PANEL_FROZEN else "controller"
         async with self._buttons(tally) as buttons:
             for _ in range(times):
                 frozen = Frozen(self.product, child, len(buttons))

@@ -118,7 +118,7 @@ class Integrator:
         """Walk step 3 where the panel stands: here is zero."""
         self.until_allowed("set_home")
         self.command("set_home", confirmed=True)
-        self.until(lambda seen: seen["home_trusted"], "the zero is trusted")
+        self.until(lambda seen: seen["homed"], "the zero is trusted")
 
     def commission(self, port: int, **change: Any) -> None:
         """Walk steps 1 to 4 with a drive at a port."""
@@ -129,5 +129,5 @@ class Integrator:
 
     def journal(self, kind: str) -> list[dict[str, Any]]:
         """Return the newest events of one kind, newest first."""
-        entries: list[dict[str, Any]] = self.get("/api/v1/journal", kind=kind, limit=1000)["entries"]
+        entries: list[dict[str, Any]] = self.get("/api/v1/journal", kind=kind, limit=1000)["items"]
         return [entry["event"] for entry in entries]

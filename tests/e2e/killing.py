@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from app.tracker.axes import AZIMUTH_DEFAULT
+from app.tracker.settings.axes import AZIMUTH_DEFAULT
 from tests.e2e.eyes import Eyes
 from tests.e2e.integrator import Integrator
 from tests.e2e.product import Product, eventually
@@ -25,7 +25,7 @@ RAMP_S = AZIMUTH_DEFAULT.speed_dps / AZIMUTH_DEFAULT.acceleration_dps2
 AWAY_DEG = 8.0
 LONGEST_INSTANT_S = 1.2
 TICKS_A_SECOND = 10
-SHOW = {"begin_at": "2027-06-21T06:00:00+03:00", "end_at": "2027-06-21T07:30:00+03:00"}
+SHOW = {"start": "2027-06-21T06:00:00+03:00", "end": "2027-06-21T07:30:00+03:00"}
 
 
 @dataclass
@@ -64,7 +64,7 @@ class Killing:
         assert len(shows) == before + 1
         assert all(show["ended_at"] is not None for show in shows)
         assert "interrupted" in shows[0]["outcome"]
-        assert shows[0]["frame_count"] == self._frames(shows[0]["recording_id"])["elapsed_s"].size
+        assert shows[0]["sample_count"] == self._frames(shows[0]["recording_id"])["elapsed_s"].size
         assert self.integrator.snapshot()["activity"] == "holding"
         assert shows[0]["recording_id"] in self.integrator.journal("controller_started")[0]["data"]["cut_off"]
         return rested_s
@@ -97,7 +97,7 @@ class Killing:
 
     def shows(self) -> list[dict[str, Any]]:
         """Return the recorded shows, newest first."""
-        found: list[dict[str, Any]] = self.integrator.get("/api/v1/recordings", kind="show")
+        found: list[dict[str, Any]] = self.integrator.get("/api/v1/recordings", kind="show")["items"]
         return found
 
     def elapsed_s(self, recording_id: str) -> np.ndarray:
@@ -105,15 +105,15 @@ class Killing:
         return self._frames(recording_id)["elapsed_s"]
 
     def _frames(self, recording_id: str) -> dict[str, np.ndarray]:
-        return columns(self.integrator.get(f"/api/v1/recordings/{recording_id}/frames"))
+        return columns(self.integrator.get(f"/api/v1/recordings/{recording_id}/samples"))
 
     def _kill(self) -> float:
-        machines = len(self.product.starts("machine"))
+        machines = len(self.product.starts("controller"))
         time.sleep(self.chance.uniform(0.0, LONGEST_INSTANT_S))
         self.names.append(f"Run {len(self.names)}")
         self.integrator.call("PATCH", "/api/v1/site", json={"name": self.names[-1]})
         rested_s = self._dead_until_rest()
-        eventually(lambda: len(self.product.starts("machine")) > machines, "the machine is started again")
+        eventually(lambda: len(self.product.starts("controller")) > machines, "the machine is started again")
         self.product.until_ready()
         self.integrator.until(lambda seen: seen["measured"], "the drive is found again")
         self._check_nothing_lost()
@@ -123,7 +123,7 @@ class Killing:
         """Kill the machine; its supervisor is kept from starting it again until the drive has stopped."""
         self.product.process.send_signal(signal.SIGSTOP)
         try:
-            at = self.product.signal("machine", signal.SIGKILL)
+            at = self.product.signal("controller", signal.SIGKILL)
             return self.eyes.first_rest_after(at)
         finally:
             self.product.process.send_signal(signal.SIGCONT)

@@ -31,7 +31,7 @@ def commission(api: httpx.Client) -> None:
     api.put("/site/location", json=SITE).raise_for_status()
     api.put("/site/clock", json={"source": "system"}).raise_for_status()
     api.post("/trackers/T1/commands", json={"type": "set_home", "confirmed": True}).raise_for_status()
-    eventually(lambda: api.get("/trackers/T1/snapshot").json()["home_trusted"], "the zero is trusted")
+    eventually(lambda: api.get("/trackers/T1/snapshot").json()["homed"], "the zero is trusted")
     api.post("/trackers/T1/commands", json={"type": "set_mode", "mode": "dual"}).raise_for_status()
 
 

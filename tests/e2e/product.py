@@ -16,7 +16,7 @@ from pathlib import Path
 from app.machine.process import FIFO_PRIORITY
 from tests.ports import free_port
 
-DRIVE_SIM = (sys.executable, "-c", "import typer; from app.cli_drives import drive_sim; typer.run(drive_sim)")
+DRIVE_SIM = (sys.executable, "-c", "import typer; from app.cli.drives import drive_sim; typer.run(drive_sim)")
 """The command `heliopanel drive-sim` alone, without the panel and machine that `heliopanel` imports."""
 COMMAND = str(Path(sys.executable).with_name("heliopanel"))
 LONGEST_WAIT_S = 40.0
@@ -159,7 +159,7 @@ class Product:
 
     def stop(self) -> int:
         """End it and everything it started, whatever state the tests left it in."""
-        for child in ("machine", "web"):
+        for child in ("controller", "web"):
             for process_id in self.starts(child)[-1:]:
                 with suppress(ProcessLookupError):
                     os.kill(process_id, signal.SIGCONT)

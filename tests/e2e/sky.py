@@ -37,7 +37,7 @@ def columns(frames: dict[str, Any]) -> dict[str, Column]:
 
 def off_spa_deg(info: dict[str, Any], frames: dict[str, Column]) -> Column:
     """Return how far the recorded sun lies from SPA, frame by frame."""
-    begin_s = pd.Timestamp(info["sun_begin_at"]).timestamp()
+    begin_s = pd.Timestamp(info["sun_start"]).timestamp()
     place = info["location"]
     azimuth, elevation = spa_deg(
         begin_s + frames["sun_time_s"],

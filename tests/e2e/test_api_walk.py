@@ -26,8 +26,8 @@ LONGYEARBYEN = {
 AFTER_MIDNIGHT = "2027-06-21T01:30:00+02:00"
 SHOWN_S = 75 * 60
 SHOW = {
-    "begin_at": "2027-06-21T02:00:00+02:00",
-    "end_at": "2027-06-21T03:15:00+02:00",
+    "start": "2027-06-21T02:00:00+02:00",
+    "end": "2027-06-21T03:15:00+02:00",
     "duration_s": 10,
 }
 JOGGED_S = 0.7
@@ -39,7 +39,7 @@ def commission_by_hand(integrator: Integrator, port: int) -> None:
     integrator.connect(port, refraction=False, deadband_deg=DEADBAND_DEG)
     integrator.place_and_time(AFTER_MIDNIGHT, LONGYEARBYEN)
     integrator.until(lambda seen: len(seen["actions"]["track"]) == 2, "place and time are known")
-    assert set(codes_of(integrator, "track")) == {"home_not_trusted", "mode_not_selected"}
+    assert set(codes_of(integrator, "track")) == {"tracker_not_homed", "mode_not_selected"}
     before = integrator.snapshot()["measured"]["azimuth_deg"]
     integrator.jog(JOGGED_S)
     integrator.until_allowed("set_home")
@@ -50,7 +50,7 @@ def commission_by_hand(integrator: Integrator, port: int) -> None:
 
 
 def states(integrator: Integrator) -> dict[str, str]:
-    return {step["name"]: step["status"] for step in integrator.get("/commissioning")}
+    return {step["name"]: step["status"] for step in integrator.get("/commissioning")["items"]}
 
 
 def codes_of(integrator: Integrator, action: str) -> list[str]:
@@ -106,7 +106,7 @@ def finished_show(integrator: Integrator) -> dict[str, Any]:
     """Return the head of the newest show once the store has its end."""
 
     def newest() -> dict[str, Any]:
-        return dict(integrator.get("/api/v1/recordings", kind="show")[0])
+        return dict(integrator.get("/api/v1/recordings", kind="show")["items"][0])
 
     eventually(lambda: newest()["ended_at"], "the recording is finished")
     info = newest()
@@ -115,20 +115,20 @@ def finished_show(integrator: Integrator) -> dict[str, Any]:
 
 
 def check_frames(integrator: Integrator, info: dict[str, Any]) -> dict[str, np.ndarray]:
-    answer = integrator.get(f"/api/v1/recordings/{info['recording_id']}/frames")
+    answer = integrator.get(f"/api/v1/recordings/{info['recording_id']}/samples")
     frames = columns(answer)
-    assert answer["frame_count"] == info["frame_count"] >= SHOW["duration_s"] * 9
+    assert answer["sample_count"] == info["sample_count"] >= SHOW["duration_s"] * 9
     assert frames["sun_time_s"][0] == pytest.approx(0.0, abs=60.0)
     assert frames["sun_time_s"][-1] == pytest.approx(SHOWN_S, abs=80.0)
     unknown = {name for name, values in frames.items() if np.isnan(values).any()}
-    assert unknown <= {"supply_v", "wind_mps", "wind_mean_mps", "light_wm2"}
+    assert unknown <= {"supply_v", "wind_mps", "wind_mean_mps", "irradiance_wm2"}
     assert off_spa_deg(info, frames).max() < SPA_LIMIT_DEG
     assert off_sun_deg(frames).max() <= DEADBAND_DEG
     return frames
 
 
 def check_files(integrator: Integrator, recording_id: str, frames: dict[str, np.ndarray]) -> None:
-    path = f"/api/v1/recordings/{recording_id}/frames"
+    path = f"/api/v1/recordings/{recording_id}/samples"
     csv = pd.read_csv(io.StringIO(integrator.call("GET", path, params={"format": "csv"}).text), comment="#")
     parquet = pyarrow.parquet.read_table(
         io.BytesIO(integrator.call("GET", path, params={"format": "parquet"}).content)
@@ -137,7 +137,7 @@ def check_files(integrator: Integrator, recording_id: str, frames: dict[str, np.
         np.testing.assert_allclose(csv[name], frames[name], atol=1e-3)
         np.testing.assert_allclose(parquet[name].to_numpy(), frames[name], atol=1e-9)
     few = integrator.get(path, points=40)
-    assert 18 <= few["frame_count"] <= 40
+    assert 18 <= few["sample_count"] <= 40
     page = integrator.http.get(f"/recordings/{recording_id}")
     assert page.status_code == 200
     assert recording_id in page.text
@@ -145,8 +145,8 @@ def check_files(integrator: Integrator, recording_id: str, frames: dict[str, np.
 
 def check_day(integrator: Integrator) -> None:
     """The day's recording has the real sun in every frame, also while the show followed another."""
-    (day,) = integrator.get("/api/v1/recordings", kind="day")
-    frames = columns(integrator.get(f"/api/v1/recordings/{day['recording_id']}/frames"))
+    (day,) = integrator.get("/api/v1/recordings", kind="day")["items"]
+    frames = columns(integrator.get(f"/api/v1/recordings/{day['recording_id']}/samples"))
     assert off_spa_deg(day, frames).max() < SPA_LIMIT_DEG
 
 
@@ -160,7 +160,7 @@ def check_rerun(integrator: Integrator, recording_id: str) -> None:
     act(integrator, show_id, "stop")
 
     integrator.until(lambda seen: seen["show"] is None, "the show is over")
-    again, first = integrator.get("/api/v1/recordings", kind="show")
+    again, first = integrator.get("/api/v1/recordings", kind="show")["items"]
     assert first["recording_id"] == recording_id
-    for name in ("sun_begin_at", "sun_end_at", "mode", "location"):
+    for name in ("sun_start", "sun_end", "mode", "location"):
         assert again[name] == first[name]

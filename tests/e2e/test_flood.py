@@ -3,7 +3,7 @@
 import httpx
 import pytest
 
-from app.web.live_protocol import FLOOD, FLOODED
+from app.web.live.live_protocol import FLOOD, FLOODED
 from tests.e2e.flood import Flooding, ends, stops
 from tests.e2e.integrator import Integrator
 from tests.e2e.product import Product
@@ -39,7 +39,7 @@ def test_a_socket_that_floods_is_closed_with_the_reason(
     assert integrator.call("POST", "/stop").status_code == 202
     assert page.closed() == (FLOODED, FLOOD)
     assert orders(product) - before <= 1 + 20
-    assert len(product.starts("machine")) == 1
+    assert len(product.starts("controller")) == 1
     fault.prevented("of 3,000 messages next to none is carried out")
     fault.shows(FLOOD)
     fault.recovers("the page is loaded again")
@@ -59,5 +59,5 @@ def test_two_hundred_sockets_that_flood_take_nobodys_stop(product: Product, inte
             asked += 1
     assert {page.closed() for page in pages} == {(FLOODED, FLOOD)}
     assert orders(product) - before - asked <= SOCKETS * SENT // 100, "next to none of it is carried out"
-    assert len(product.starts("machine")) == 1
+    assert len(product.starts("controller")) == 1
     assert product.deaths() == []

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from app.tracker.axes import AZIMUTH_DEFAULT
+from app.tracker.settings.axes import AZIMUTH_DEFAULT
 from tests.e2e.chromium import Chromium, Tab, chromium
 from tests.e2e.eyes import Eyes
 from tests.e2e.integrator import Integrator
@@ -132,16 +132,17 @@ def test_page_left(opened: Callable[..., Tab], eyes: Eyes) -> None:
 
 
 @pytest.mark.fault(58)
-def test_page_hidden_behind_another_tab(
+def test_page_put_out_of_sight(
     opened: Callable[..., Tab], browser: Chromium, eyes: Eyes, fault: FaultResult
 ) -> None:
     tab = opened()
     hold(tab, eyes)
+    window = browser.send("Browser.getWindowForTarget", targetId=tab.target)["windowId"]
     at = time.monotonic()
-    target = browser.send("Target.createTarget", url="about:blank")["targetId"]
+    browser.send("Browser.setWindowBounds", windowId=window, bounds={"windowState": "minimized"})
     fault.noticed(comes_to_rest(eyes, at), REAL)
     assert tab.evaluate("document.visibilityState") == "hidden"
-    browser.send("Target.closeTarget", targetId=target)
+    browser.send("Browser.setWindowBounds", windowId=window, bounds={"windowState": "normal"})
 
 
 def test_second_finger(opened: Callable[..., Tab], eyes: Eyes) -> None:
@@ -255,13 +256,13 @@ def test_web_process_killed(opened: Callable[..., Tab], ready: Product, eyes: Ey
 
 def test_machine_process_frozen(opened: Callable[..., Tab], ready: Product, eyes: Eyes) -> None:
     hold(opened(), eyes)
-    comes_to_rest(eyes, ready.signal("machine", signal.SIGSTOP), more_s=WATCHDOG_S)
-    stays(eyes, ready.signal("machine", signal.SIGCONT))
+    comes_to_rest(eyes, ready.signal("controller", signal.SIGSTOP), more_s=WATCHDOG_S)
+    stays(eyes, ready.signal("controller", signal.SIGCONT))
 
 
 def test_machine_process_killed(opened: Callable[..., Tab], ready: Product, eyes: Eyes) -> None:
     hold(opened(), eyes)
-    at = ready.signal("machine", signal.SIGKILL)
+    at = ready.signal("controller", signal.SIGKILL)
     comes_to_rest(eyes, at, more_s=WATCHDOG_S)
     ready.until_ready()
     stays(eyes, at + PROMISED_S + RAMP_S + WATCHDOG_S)

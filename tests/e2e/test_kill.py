@@ -45,7 +45,7 @@ def test_panel_killed_no_tick_missed_and_no_frame_lost(killing: Killing) -> None
     calling.until(lambda seen: seen["activity"] == "holding", "the show is over")
 
     assert ticks_after - ticks >= int((uptime_after_s - uptime_s) * TICKS_A_SECOND) - 1
-    (show,), (day,) = killing.shows(), calling.get("/api/v1/recordings", kind="day")
+    (show,), (day,) = killing.shows(), calling.get("/api/v1/recordings", kind="day")["items"]
     check_frames(killing.elapsed_s(show["recording_id"]), TICK_S)
     check_frames(killing.elapsed_s(day["recording_id"]), 1.0)
 

@@ -5,16 +5,16 @@ from math import nan
 
 import numpy as np
 
-from app.site.sky import Sky
+from app.site.weather.sky import Sky
 from app.sun.position import Algorithm, Location
-from app.tracker.commands import Command, Home, SelectMode, Track
-from app.tracker.config import TrackerConfig
+from app.tracker.commands.commands import Command, Home, SelectMode, Track
 from app.tracker.controller import Controller
-from app.tracker.memory import TrackerMemory
-from app.tracker.mode import Mode
-from app.tracker.observation import Observation
-from app.tracker.recording import Frames
-from app.tracker.snapshot import ActivityName, Snapshot
+from app.tracker.memory.memory import TrackerMemory
+from app.tracker.memory.observation import Observation
+from app.tracker.memory.recording import Frames
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.state.snapshot import ActivityName, Snapshot
+from app.tracker.values.mode import Mode
 from tests.drives.rigs import Rig, modbus_rig
 from tests.e2e.sky import separation_deg, spa_deg
 
@@ -66,7 +66,7 @@ class Day:
         for _ in range(5000):
             await self.tick(SHORT)
             seen = self.snapshot
-            if seen.activity is activity and seen.home_trusted and (seen.in_position or not in_position):
+            if seen.activity is activity and seen.homed and (seen.in_position or not in_position):
                 return
         raise AssertionError(f"not {activity}: {self.snapshot}")
 

@@ -13,8 +13,8 @@ from sqlalchemy import text
 from app.access.opening import open_store
 from app.access.roles import Role
 from app.access.users import User
-from app.build import VERSION
-from app.settings import Settings
+from app.base.build import VERSION
+from app.base.settings import Settings
 from app.store.connections import sharing_engine, transaction, writing_engine
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
@@ -69,7 +69,7 @@ def database_by_newer(data: Path) -> None:
     engine.dispose()
 
 
-@pytest.mark.parametrize("command", ["serve", "machine"])
+@pytest.mark.parametrize("command", ["serve", "controller"])
 def test_a_data_folder_that_cannot_be_made(command: str, tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     code, out, err = started(command, tmp_path / "file" / "data")
@@ -92,7 +92,7 @@ def test_a_busy_port(tmp_path: Path) -> None:
     ("command", "name", "value"),
     [
         *(("serve", "TICK_MS", "soon"), ("serve", "PORT", "99999")),
-        *(("web", "TICK_MS", "soon"), ("machine", "PORT", "99999")),
+        *(("web", "TICK_MS", "soon"), ("controller", "PORT", "99999")),
     ],
 )
 def test_a_wrong_setting(command: str, name: str, value: str, tmp_path: Path) -> None:
@@ -109,7 +109,7 @@ def test_a_wrong_setting(command: str, name: str, value: str, tmp_path: Path) ->
         ("web", users_by_newer, "The users were stored"),
         ("users list", users_by_newer, "The users were stored"),
         ("serve", database_by_newer, "The database was written"),
-        ("machine", database_by_newer, "The database was written"),
+        ("controller", database_by_newer, "The database was written"),
     ],
 )
 def test_what_a_newer_version_wrote(

@@ -10,11 +10,11 @@ import pytest
 
 from app.show.simulate import simulate_show
 from app.store.engine import open_reader
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import Pointing
+from app.tracker.memory.memory import Pointing
+from app.tracker.memory.recording import COLUMNS
 from app.tracker.programs.plan import ShowPlan
 from app.tracker.programs.show import ShowCourse
-from app.tracker.recording import COLUMNS
+from app.tracker.settings.config import TrackerConfig
 from tests.e2e.integrator import SAMSUN, SOLSTICE_MORNING, Integrator, Refused
 from tests.e2e.product import Product
 from tests.e2e.sky import Column, columns, off_spa_deg, off_sun_deg, separation_deg, spa_deg
@@ -51,20 +51,20 @@ PROMISES = {
     "solstice": Promise(SAMSUN, SOLSTICE, 180.0),
     "across midnight": Promise(
         SAMSUN,
-        {"begin_at": "2026-06-21T15:00:00+03:00", "end_at": "2026-06-22T12:00:00+03:00"},
+        {"start": "2026-06-21T15:00:00+03:00", "end": "2026-06-22T12:00:00+03:00"},
         180.0,
         ("sun_down",),
         spans_of_sun=2,
     ),
     "sun partly down": Promise(
         SAMSUN,
-        {"begin_at": "2026-06-21T16:00:00+03:00", "end_at": "2026-06-21T23:00:00+03:00"},
+        {"start": "2026-06-21T16:00:00+03:00", "end": "2026-06-21T23:00:00+03:00"},
         90.0,
         ("sun_down",),
     ),
     "polar day": Promise(
         SVALBARD,
-        {"begin_at": "2026-06-21T06:00:00+02:00", "end_at": "2026-06-22T06:00:00+02:00"},
+        {"start": "2026-06-21T06:00:00+02:00", "end": "2026-06-22T06:00:00+02:00"},
         300.0,
         ("unwinding",),
     ),
@@ -174,7 +174,7 @@ def test_a_simulated_day_is_on_the_sun_from_rise_to_set(planner: Integrator) -> 
         "PUT", "/api/v1/site/clock", json={"source": "manual", "at": SOLSTICE_MORNING, "confirmed": True}
     )
     info = planner.post("/api/v1/simulations", {"tracker_id": "T1", "mode": "dual", **SOLSTICE})
-    frames = columns(planner.get(f"/api/v1/recordings/{info['recording_id']}/frames"))
+    frames = columns(planner.get(f"/api/v1/recordings/{info['recording_id']}/samples"))
 
     up = frames["sun_elevation_deg"] > 0.5
     assert up.sum() > 14 * 3600

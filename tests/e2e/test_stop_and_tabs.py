@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from app.tracker.axes import AZIMUTH_DEFAULT
+from app.tracker.settings.axes import AZIMUTH_DEFAULT
 from tests.e2e.chromium import Chromium, Tab, chromium
 from tests.e2e.eyes import Eyes
 from tests.e2e.integrator import Integrator
@@ -104,7 +104,8 @@ def test_stop_from_any_of_eight_tabs(
 
 
 def test_stop_on_every_page(opened: Callable[..., Tab], integrator: Integrator, eyes: Eyes) -> None:
-    recordings = [f"/recordings/{one['recording_id']}" for one in integrator.get("/api/v1/recordings")]
+    kept = integrator.get("/api/v1/recordings")["items"]
+    recordings = [f"/recordings/{one['recording_id']}" for one in kept]
     tab = opened("/")
     for path in PAGES + recordings[:1]:
         tab.goto(str(integrator.http.base_url.join(path)))
@@ -131,7 +132,7 @@ def watch_link(tab: Tab) -> None:
 @pytest.mark.fault(44)
 @pytest.mark.fault(45)
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
-@pytest.mark.parametrize(("child", "path"), [("machine", LIVE), ("web", HOMING)])
+@pytest.mark.parametrize(("child", "path"), [("controller", LIVE), ("web", HOMING)])
 def test_lost_process_is_shown_within_two_seconds(
     child: str,
     path: str,

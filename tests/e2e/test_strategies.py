@@ -17,7 +17,7 @@ from tests.e2e.sky import columns
 
 PAGE = "/trackers/T1/strategy"
 PLACES = ((2.0, 2.0), (5.0, 4.0), (8.0, 6.0))
-SHOWN = {"begin_at": "2027-06-21T06:00:00+03:00", "end_at": "2027-06-21T07:30:00+03:00"}
+SHOWN = {"start": "2027-06-21T06:00:00+03:00", "end": "2027-06-21T07:30:00+03:00"}
 STEPS_AT = ("00:00", "06:30", "07:00")
 SWITCH_IN = timedelta(seconds=4)
 
@@ -100,7 +100,7 @@ def test_a_program_runs_on_the_machine(service: Integrator, how: str) -> None:
 def test_a_program_runs_in_a_simulation(service: Integrator, how: str) -> None:
     give(service, how, STEPS_AT)
     info = service.post("/api/v1/simulations", {"tracker_id": "T1", "step_s": 10, **SHOWN})
-    frames = columns(service.get(f"/api/v1/recordings/{info['recording_id']}/frames"))
+    frames = columns(service.get(f"/api/v1/recordings/{info['recording_id']}/samples"))
     azimuth, elevation = frames["measured_azimuth_deg"], frames["measured_elevation_deg"]
     assert_visited(azimuth, elevation)
     switched = np.flatnonzero(np.abs(np.diff(azimuth)) > 1.0) + 1
@@ -117,9 +117,9 @@ def test_a_wrapped_cable_unwinds_at_night_and_not_at_noon(service: Integrator) -
     """From a morning in the upper part of 540 degrees to the place of the next sunrise in the lower one."""
     wide = {"minimum_deg": -270.0, "maximum_deg": 270.0}
     service.call("PATCH", "", json={"azimuth": wide, "strategy": {"kind": "deadband"}})
-    span = {"begin_at": "2026-12-21T11:30:00+03:00", "end_at": "2026-12-21T19:00:00+03:00"}
+    span = {"start": "2026-12-21T11:30:00+03:00", "end": "2026-12-21T19:00:00+03:00"}
     info = service.post("/api/v1/simulations", {"tracker_id": "T1", "step_s": 10, "mode": "dual", **span})
-    frames = columns(service.get(f"/api/v1/recordings/{info['recording_id']}/frames"))
+    frames = columns(service.get(f"/api/v1/recordings/{info['recording_id']}/samples"))
     turned_deg = np.abs((np.diff(frames["measured_azimuth_deg"]) + 180.0) % 360.0 - 180.0)
     up = frames["sun_elevation_deg"][1:] > 0.0
     noon = np.abs(frames["sun_azimuth_deg"][1:] - 180.0) < 10.0

@@ -13,7 +13,7 @@ import pytest
 from app.access import migrations as of_access
 from app.access.store import AccessStore
 from app.alarms.catalogue import entry_of
-from app.build import VERSION
+from app.base.build import VERSION
 from app.store import software
 from app.store.connections import reading_engine, revision_of, transaction
 from app.store.engine import open_writer
@@ -21,6 +21,7 @@ from app.store.former import kind_of
 from app.store.migrations import SCRIPTS, upgrade
 from app.store.store import StoreUnfit
 from app.store.tables import REVISION
+from app.tracker.values.actors import actor_of
 from tests.e2e.integrator import Integrator
 from tests.e2e.product import Product
 from tests.golden.databases.folders import LARGEST, Folder, folders
@@ -58,22 +59,48 @@ def found_in(data: Path) -> tuple[str | None, str | None]:
     return found
 
 
-def in_words_of_today(told: dict[str, Any]) -> dict[str, Any]:
-    """Return what was told, with kinds of events and advice on alarms as this version has them.
+def in_words_of_today(before: dict[str, Any]) -> dict[str, Any]:
+    """Return what was told, with kinds of events, the controller's name, and advice as this version has them.
 
-    What is stored keeps its words: a kind is translated as it is read; advice and the names of activities
-    are not stored.
+    What is stored keeps its words: kinds and that name are translated as they are read; advice and the
+    names of activities are not stored.
     """
-    for one in told[ALARMS]["alarms"]:
+    told = {path.replace("/frames?", "/samples?"): _items(answer) for path, answer in before.items()}
+    for one in told[ALARMS]:
         one["alarm"]["do"] = entry_of(one["alarm"]["code"]).do
-    for one in told[JOURNAL]["entries"]:
+    for one in told[JOURNAL]:
         one["event"]["kind"] = kind_of(one["event"]["kind"])
+        one["event"]["actor"] = actor_of(one["event"]["actor"])
     for path, answer in told.items():
-        if "/frames" in path:
-            answer["activities"] = [
-                "setting_home" if one == "zeroing" else one for one in answer["activities"]
-            ]
+        for one in answer if isinstance(answer, list) else [answer]:
+            _rename(one, "/shows/" in path)
     return told
+
+
+def _items(answer: Any) -> Any:
+    """Return a list as it is told today, without what says where it continues."""
+    lists = [answer[name] for name in ("alarms", "entries") if name in answer]
+    return lists[0] if isinstance(answer, dict) and lists else answer
+
+
+FIELDS = {
+    "sun_begin_at": "sun_start",
+    "sun_end_at": "sun_end",
+    "frame_count": "sample_count",
+    "light_wm2": "irradiance_wm2",
+}
+OF_SHOWS = {"begin_at": "start", "end_at": "end"}
+
+
+def _rename(told: dict[str, Any], is_show: bool) -> None:
+    for former, name in (FIELDS | (OF_SHOWS if is_show else {})).items():
+        if former in told:
+            told[name] = told.pop(former)
+    for part in told.values():
+        if isinstance(part, dict):
+            _rename(part, is_show=False)
+    if "activities" in told:
+        told["activities"] = ["setting_home" if one == "zeroing" else one for one in told["activities"]]
 
 
 def test_there_is_a_folder_of_the_first_version_and_of_this_one() -> None:
@@ -94,7 +121,7 @@ def test_everything_is_there_after_the_upgrade(folder: Folder, data: Path) -> No
             assert browser.get("/trackers/T1").is_success
             one = Integrator(product.url)
             one.http = browser
-            one.until(lambda seen: seen["home_trusted"], "the zero is still trusted")
+            one.until(lambda seen: seen["homed"], "the zero is still trusted")
     finally:
         assert product.stop() == 0
     assert found_in(data) == (REVISION, VERSION)

@@ -13,10 +13,10 @@ from urllib.parse import urlsplit
 import httpx
 import pytest
 
-from app.build import VERSION
+from app.base.build import VERSION
 from app.store.connections import reading_engine, revision_of
 from app.store.tables import REVISION
-from app.web.guide import TITLES
+from app.web.features.guide.guide import TITLES
 from bench.installed import BOUND_MB, MEGABYTE, OWN, installation
 from tests.e2e import product
 from tests.e2e.product import Product
@@ -90,7 +90,7 @@ def run(*command: str, cwd: Path) -> str:
 
 
 def test_nothing_of_the_checkout_is_needed(installed: Path) -> None:
-    told = "import app.own, app.build; print(*map(app.own.own_folder, %r.split()), app.build.VERSION)"
+    told = "from app.base import build, own; print(*map(own.own_folder, %r.split()), build.VERSION)"
     folders = "alembic docs static templates"
     environment = os.environ | {"PYTHONPATH": str(installed)}
     done = subprocess.run(

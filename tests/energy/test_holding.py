@@ -9,10 +9,17 @@ from app.energy.motion import DriveCosts, drives_wh, travelled
 from app.energy.programmed import equatorial_mount, program_axes, solar_hours
 from app.sun.position import Algorithm, Location, sun_path
 from app.sun.trigonometry import ARRAY
-from app.tracker.config import MountConfig
 from app.tracker.mounts.kinematics import angles
-from app.tracker.programs.stepped import ProgramStep, StepFrame, StepProgram, program_of
-from app.tracker.strategy import Continuous, Deadband, EncoderDeadband, Interval, IntervalAim, Stepped
+from app.tracker.settings.config import MountConfig
+from app.tracker.settings.stepped import ProgramStep, StepFrame, StepProgram, program_of
+from app.tracker.settings.strategy import (
+    Continuous,
+    Deadband,
+    EncoderDeadband,
+    Interval,
+    IntervalAim,
+    Stepped,
+)
 
 SAMSUN = Location(41.2867, 36.33)
 DAYS, STEPS = 3, 1440

@@ -19,7 +19,7 @@ from app.energy.optimiser import (
 from app.energy.program import step_program
 from app.energy.stepping import SolarDay, Steps, clear_day, following_whm2, midpoint_h, stepped_whm2
 from app.sun.trigonometry import Array
-from app.tracker.programs.stepped import StepFrame, TimeBase
+from app.tracker.settings.stepped import StepFrame, TimeBase
 
 ANY_DAY = st.integers(1, 365)
 ANY_LATITUDE = st.floats(-66, 66)

@@ -7,8 +7,8 @@ import pytest
 from app.energy.ideal import Follower, ideal_axes, ideal_wm2
 from app.energy.plane import Around, Light, Transposition, plane_wm2, relative_air_mass
 from app.sun.position import Location
-from app.tracker.config import MountConfig, MountKind, Orientation, Rows
-from app.tracker.mode import Mode
+from app.tracker.settings.config import MountConfig, MountKind, Orientation, Rows
+from app.tracker.values.mode import Mode
 from tests.energy.light import ClearYear, clear_year, pvlib_wm2
 
 SAMSUN = Location(41.2867, 36.33, 4.0)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.angles import separation_deg
+from app.base.angles import separation_deg
 from app.fast.compiled import compiled
 from app.fast.spa_table import build, delta_t_s
 from app.fast.sun import psa_plus_path, spa_path

@@ -10,11 +10,11 @@ from app.fast.directions import directions
 from app.fast.park import park_day, trace
 from app.show.simulate import simulate
 from app.sun.position import Location
-from app.tracker.axes import AZIMUTH_DEFAULT
-from app.tracker.config import NightBehaviour, Orientation, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mode import Mode
-from app.tracker.recording import COLUMNS
+from app.tracker.memory.memory import Pointing
+from app.tracker.memory.recording import COLUMNS
+from app.tracker.settings.axes import AZIMUTH_DEFAULT
+from app.tracker.settings.config import NightBehaviour, Orientation, TrackerConfig
+from app.tracker.values.mode import Mode
 
 SAMSUN, HELD = Location(41.2867, 36.33), Orientation(180.0, 45.0)
 TRACKER = TrackerConfig("T1", "Tracker 1")

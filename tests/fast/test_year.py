@@ -10,8 +10,8 @@ from app.fast.spa_table import build
 from app.fast.sun import spa_path
 from app.fast.year import collected_whm2
 from app.sun.position import Location
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.mode import Mode
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.values.mode import Mode
 
 SKY = ClearSky(altitude_m=600.0, linke_turbidity=3.4, albedo=0.25)
 

@@ -6,15 +6,15 @@ from contextlib import asynccontextmanager
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+from app.base.settings import Settings
 from app.gateway.gateways import Gateways
 from app.link.metrics import GatewayMetrics
-from app.settings import Settings
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.store import Writer
 from app.store.writer_thread import WriterThread
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import TrackerMemory, TrackerState
+from app.tracker.memory.memory import TrackerMemory, TrackerState
+from app.tracker.settings.config import TrackerConfig
 from tests.site.plant import Plant, make_plant
 
 LOOK_EVERY_S = 0.01

@@ -2,9 +2,10 @@
 
 import asyncio
 import contextlib
+import gc
 import json
 import shutil
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from datetime import timedelta
@@ -16,16 +17,16 @@ from aiomqtt import Client, MqttError
 from pydantic import SecretStr
 
 from app.alarms.conditions import Condition
+from app.base.settings import Settings
 from app.gateway.gateways import Gateways
 from app.gateway.mqtt import heeding
 from app.link.alarm_orders import AcknowledgeAlarm
 from app.link.messages import RenameSite
 from app.link.metrics import GatewayMetrics, GatewayStatus
-from app.settings import Settings
 from app.store.store import JournalEntry, JournalFilter, Writer
-from app.tracker.commands import Move
-from app.tracker.config import Orientation
-from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.commands.commands import Move
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ActivityName, EventKind
 from tests.fault_result import FaultResult
 from tests.gateway.rigs import eventually, gateway, kept_plant, opened
 from tests.ports import free_port
@@ -114,7 +115,7 @@ async def broker(tmp_path: Path) -> AsyncIterator[Broker]:
 
 def settings(tmp_path: Path, broker: Broker, **more: Any) -> Settings:
     return Settings(
-        data_dir=tmp_path, mqtt_host="127.0.0.1", mqtt_port=broker.port, mqtt_topic="plant/north", **more
+        data_dir=tmp_path, mqtt_host="127.0.0.1", mqtt_port=broker.port, mqtt_base_topic="plant/north", **more
     )
 
 
@@ -126,11 +127,11 @@ async def test_snapshots_are_told_as_one_message_a_tracker(tmp_path: Path, broke
         await plant.commission()
         await plant.forward(seconds=1)
         topic = "plant/north/trackers/T1/snapshot"
-        await eventually(lambda: any(one["home_trusted"] for one in broker.told(topic)))
+        await eventually(lambda: any(one["homed"] for one in broker.told(topic)))
         newest = broker.told(topic)[-1]
         assert newest["measured_azimuth_deg"] == pytest.approx(plant.tracker().measured.azimuth_deg)  # type: ignore[union-attr]
         assert newest["activity"] == "holding"
-        assert broker.told("plant/north/trackers/T2/snapshot")[-1]["home_trusted"] is False
+        assert broker.told("plant/north/trackers/T2/snapshot")[-1]["homed"] is False
         site = broker.told("plant/north/site")[-1]
         assert site["location"]["latitude_deg"] == SAMSUN.latitude_deg
         assert site["trackers"] == ["T1", "T2"]
@@ -138,7 +139,7 @@ async def test_snapshots_are_told_as_one_message_a_tracker(tmp_path: Path, broke
 
 
 async def test_snapshots_are_told_as_columns(tmp_path: Path, broker: Broker) -> None:
-    wanted = settings(tmp_path, broker, mqtt_snapshots="columns")
+    wanted = settings(tmp_path, broker, mqtt_payload="columns")
     async with kept_plant(tmp_path, "T1", "T2", "T3") as (plant, store), opened(plant, wanted, store):
         await plant.forward(seconds=0.2)
         await eventually(lambda: broker.told("plant/north/columns"))
@@ -376,26 +377,28 @@ async def test_a_broker_that_learns_mqtt_5_is_asked_for_commands_at_the_next_con
     server.close()
     for task in talking:
         task.cancel()
+    await asyncio.gather(*talking, return_exceptions=True)
 
 
 async def _through(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, port: int) -> None:
-    behind, to_broker = await asyncio.open_connection("127.0.0.1", port)
-    with contextlib.closing(to_broker):
-        await asyncio.gather(_pass_on(reader, to_broker), _pass_on(behind, writer))
+    with contextlib.closing(writer):
+        behind, to_broker = await asyncio.open_connection("127.0.0.1", port)
+        with contextlib.closing(to_broker):
+            await asyncio.gather(_pass_on(reader, to_broker), _pass_on(behind, writer))
 
 
 async def _older(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, port: int) -> None:
     """A broker that knows MQTT 3.1.1: it refuses version 5 as that version's document says."""
-    connect = await reader.read(4096)
-    if connect[connect.index(b"MQTT") + 4] == 5:
-        writer.write(bytes((0x20, 2, 0, 1)))
-        await writer.drain()
-        writer.close()
-        return
-    behind, to_broker = await asyncio.open_connection("127.0.0.1", port)
-    to_broker.write(connect)
-    with contextlib.closing(writer), contextlib.closing(to_broker):
-        await asyncio.gather(_pass_on(reader, to_broker), _pass_on(behind, writer))
+    with contextlib.closing(writer):
+        connect = await reader.read(4096)
+        if connect[connect.index(b"MQTT") + 4] == 5:
+            writer.write(bytes((0x20, 2, 0, 1)))
+            await writer.drain()
+            return
+        behind, to_broker = await asyncio.open_connection("127.0.0.1", port)
+        to_broker.write(connect)
+        with contextlib.closing(to_broker):
+            await asyncio.gather(_pass_on(reader, to_broker), _pass_on(behind, writer))
 
 
 async def _pass_on(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
@@ -438,8 +441,16 @@ async def test_home_assistant_finds_sensors_and_buttons_only_if_commands_are_all
             assert broker.told("plant/north/trackers/T1/result")[0]["accepted"] is True
 
 
+@pytest.fixture
+def collected() -> Iterator[None]:
+    """Collect what a test leaves before the next one."""
+    yield
+    gc.collect()
+
+
 # paho leaves a socket to the garbage collector when it does not trust the broker's certificate.
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.usefixtures("collected")
 async def test_tls_and_a_password_open_a_broker_that_wants_them(tmp_path: Path) -> None:
     certificate, key, passwords = tmp_path / "cert.pem", tmp_path / "key.pem", tmp_path / "passwords"
     await _run("openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1",
@@ -477,8 +488,9 @@ RELAYED: list[asyncio.StreamWriter] = []
 
 async def _relay(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, port: int) -> None:
     """Pass bytes on both ways, so that a connection can be cut without a farewell."""
+    RELAYED.append(writer)
     there, back = await asyncio.open_connection("127.0.0.1", port)
-    RELAYED.extend((writer, back))
+    RELAYED.append(back)
 
     async def pass_on(source: asyncio.StreamReader, sink: asyncio.StreamWriter) -> None:
         with contextlib.suppress(ConnectionError):

@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from app.gateway.mqtt import SAY_AGAIN, quiet_logger
 from app.gateway.mqtt_lanes import MOST_AT_ONCE, MOST_WAITING, CommandLanes
 from app.link.messages import Order
-from app.tracker.commands import Stop
+from app.tracker.commands.commands import Stop
 from tests.gateway.rigs import eventually
 from tests.site.plant import SUMMER_NOON
 

@@ -13,15 +13,15 @@ import pytest
 from pydantic import SecretStr
 
 from app.alarms.conditions import Condition
+from app.base.settings import Settings
 from app.gateway.gateways import Gateways
 from app.gateway.notices import DELIVERY, SIGNATURE, signature
 from app.link.alarm_orders import SetNotifications, TestNotification
 from app.link.metrics import GatewayStatus
-from app.settings import Settings
 from app.store.store import JournalFilter
-from app.tracker.alarm_words import AlarmState
-from app.tracker.commands import CommandRejected
-from app.tracker.notifications import Channel, Notifications
+from app.tracker.commands.commands import CommandRejected
+from app.tracker.values.alarm_words import AlarmState
+from app.tracker.values.notifications import Channel, Notifications
 from tests.gateway.rigs import eventually, gateway, kept_plant, opened
 from tests.site.plant import Plant
 

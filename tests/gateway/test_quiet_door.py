@@ -5,7 +5,7 @@ from typing import Any
 
 from app.alarms.conditions import SITE, Condition
 from app.gateway.quiet_door import MOST_REMEMBERED, TELL_AGAIN, QuietDoor
-from app.tracker.snapshot import Event, EventKind
+from app.tracker.state.snapshot import Event, EventKind
 from tests.site.plant import SUMMER_NOON
 
 

@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
+from app.base.settings import Settings, SettingsWrong, read_settings
 from app.gateway.gateways import Gateways, writes
 from app.link.metrics import GatewayStatus
-from app.settings import Settings, SettingsWrong, read_settings
 from tests.gateway.rigs import HurriedClock, kept_plant
 
 
@@ -21,7 +21,7 @@ async def test_without_settings_every_door_is_shut_and_says_how_it_is_opened(tmp
     assert {one.status for one in told} == {GatewayStatus.OFF}
     assert [one.where.split()[1] for one in told] == [
         "HELIOPANEL_SUNSPEC_PORT",
-        "HELIOPANEL_SUNSPEC_SERIAL",
+        "HELIOPANEL_SUNSPEC_SERIAL_PORT",
         "HELIOPANEL_MQTT_HOST",
         "an",
         "an",
@@ -33,9 +33,9 @@ async def test_without_settings_every_door_is_shut_and_says_how_it_is_opened(tmp
     [
         ("SUNSPEC_HOST", "0.0.0.0", "Leave HELIOPANEL_SUNSPEC_HOST unset"),
         ("SUNSPEC_WRITE_HOSTS", "10.0.0.0/24, plant", "names 'plant', which is no address"),
-        ("SUNSPEC_UNIT", "0", "HELIOPANEL_SUNSPEC_UNIT is wrong"),
-        ("MQTT_TOPIC", "plant/#", "HELIOPANEL_MQTT_TOPIC is wrong"),
-        ("MQTT_SNAPSHOT_S", "0", "HELIOPANEL_MQTT_SNAPSHOT_S is wrong"),
+        ("SUNSPEC_UNIT_ID", "0", "HELIOPANEL_SUNSPEC_UNIT_ID is wrong"),
+        ("MQTT_BASE_TOPIC", "plant/#", "HELIOPANEL_MQTT_BASE_TOPIC is wrong"),
+        ("MQTT_PUBLISH_INTERVAL_S", "0", "HELIOPANEL_MQTT_PUBLISH_INTERVAL_S is wrong"),
     ],
 )
 def test_wrong_settings_are_named(monkeypatch: pytest.MonkeyPatch, name: str, value: str, words: str) -> None:
@@ -46,8 +46,8 @@ def test_wrong_settings_are_named(monkeypatch: pytest.MonkeyPatch, name: str, va
 
 def test_discovery_needs_one_message_a_tracker(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("HELIOPANEL_MQTT_DISCOVERY", "true")
-    monkeypatch.setenv("HELIOPANEL_MQTT_SNAPSHOTS", "columns")
-    with pytest.raises(SettingsWrong, match="HELIOPANEL_MQTT_SNAPSHOTS=trackers"):
+    monkeypatch.setenv("HELIOPANEL_MQTT_PAYLOAD", "columns")
+    with pytest.raises(SettingsWrong, match="HELIOPANEL_MQTT_PAYLOAD=trackers"):
         read_settings()
 
 
@@ -62,9 +62,9 @@ def test_lists_are_read_and_the_password_is_never_shown(monkeypatch: pytest.Monk
 async def test_a_taken_port_is_told_and_the_machine_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    taken = await asyncio.start_server(lambda reader, writer: None, "127.0.0.1", 0)
+    taken = await asyncio.start_server(lambda _, writer: writer.close(), "127.0.0.1", 0)
     monkeypatch.setenv("HELIOPANEL_SUNSPEC_PORT", str(taken.sockets[0].getsockname()[1]))
-    monkeypatch.setenv("HELIOPANEL_SUNSPEC_SERIAL", str(tmp_path / "not-there"))
+    monkeypatch.setenv("HELIOPANEL_SUNSPEC_SERIAL_PORT", str(tmp_path / "not-there"))
     async with kept_plant(tmp_path) as (plant, store):
         gateways = Gateways(plant.site, HurriedClock(), read_settings(), store)
         gateways.start()

@@ -13,21 +13,21 @@ import pytest
 import sunspec2.modbus.client as sunspec
 from sunspec2.modbus.modbus import ModbusClientException
 
-from app.clock import SystemClock
-from app.drives.drive import DriveRefused
-from app.drives.factory import DriveFactory
-from app.drives.faults import Fault, FaultKind
+from app.base.clock import SystemClock
+from app.base.settings import Settings
 from app.drives.profile import PROFILES
-from app.drives.simulated import SimulatedDrive
 from app.gateway.sunspec import SunSpecTcp
 from app.gateway.sunspec_device import SunSpecDevice
 from app.gateway.sunspec_map import BASE, END, map_table, sunspec_map
 from app.link.messages import ConfigureTracker, ReleaseControl, RequestControl
 from app.link.weather_orders import ReportWeather
-from app.settings import Settings
-from app.tracker.axes import Axis
-from app.tracker.commands import Jog, Move, SelectMode, Stop
-from app.tracker.config import (
+from app.machine.drive_factory import DriveFactory
+from app.modbus.errors import DriveRefused
+from app.simulation.faults import Fault, FaultKind
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.commands.commands import Jog, Move, SelectMode, Stop
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import (
     DriveConfig,
     DriveKind,
     MountConfig,
@@ -35,10 +35,10 @@ from app.tracker.config import (
     Orientation,
     TrackerConfig,
 )
-from app.tracker.mode import Mode
-from app.tracker.motion import DriveCommand, Position
-from app.tracker.snapshot import ActivityName, EventKind
-from app.tracker.weather import Weather
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.mode import Mode
+from app.tracker.values.motion import DriveCommand, Position
+from app.tracker.weather.weather import Weather
 from tests.captured_logs import capture_logs
 from tests.fault_result import REAL, FaultResult
 from tests.gateway.rigs import HurriedClock, eventually, tracker
@@ -298,7 +298,7 @@ async def test_calibrate_does_not_take_the_tracker_out_of_the_hands_that_move_it
         assert "is being jogged" in system.journal()[-1][2]
         await plant.forward(seconds=60)
         assert plant.tracker().activity is ActivityName.HOLDING
-        assert plant.tracker().home_trusted, "it was not begun afterwards either"
+        assert plant.tracker().homed, "it was not begun afterwards either"
 
 
 async def test_a_stop_by_somebody_else_ends_a_calibration_for_good() -> None:
@@ -362,7 +362,7 @@ async def test_the_same_value_written_in_cycles_is_journalled_and_ordered_once(
         fault.prevented("a value that is written again changes nothing")
         if len(words) == 5:
             fault.shows(f"once: {told}")
-        fault.recovers("by itself: the first other value is journalled and ordered")
+        fault.recovers("automatic: the first other value is journalled and ordered")
 
 
 async def test_a_refusal_in_cycles_is_journalled_once_in_a_while() -> None:
@@ -417,7 +417,7 @@ async def test_sixteen_idle_connections_do_not_lock_the_control_system_out(fault
         for _ in range(2):
             assert await system.read(BASE, 2) == [0x5375, 0x6E53]
         assert await asyncio.wait_for(idle[0][0].read(), 3.0) == b"", "the longest idle gave way"
-        fault.recovers("by itself: at every new connection")
+        fault.recovers("automatic: at every new connection")
         for _, writer in idle:
             writer.close()
 
@@ -443,7 +443,7 @@ async def test_a_client_that_reads_no_replies_keeps_neither_ticks_nor_stops_from
             assert system.plant.tracker().activity is ActivityName.STOPPING
             sending.cancel()
             await asyncio.gather(sending, return_exceptions=True)
-        fault.recovers("by itself: ticks and stops keep their turn meanwhile")
+        fault.recovers("automatic: ticks and stops keep their turn meanwhile")
 
 
 REFUSED = {
@@ -549,7 +549,7 @@ async def test_a_tracker_that_the_controller_does_not_have_is_told(tmp_path: Pat
     async with scada("T1", "T2") as system:
         wiring = DriveConfig(DriveKind.MODBUS_TCP, profile="second", port=system.server.port)
         drive = second_tracker(tmp_path, 3).make(TrackerConfig("X", "Another controller", drive=wiring))
-        with pytest.raises(DriveRefused, match="has 2 trackers, but profile second wants number 3"):
+        with pytest.raises(DriveRefused, match="has 2 trackers, but profile second needs number 3"):
             await drive.read()
         await drive.close()
 

@@ -23,12 +23,12 @@ from app.link.messages import Order
 from app.link.outlet import MOST_TRACKERS_AT_ONCE, Listener, Outlet
 from app.link.server import LinkServer
 from app.link.whole import Whole, with_tracker
-from app.tracker.alarm_words import AlarmCounts, AlarmNow, AlarmState
-from app.tracker.commands import Track
-from app.tracker.config import Orientation
-from app.tracker.mode import Mode
-from app.tracker.reason import Reason
-from app.tracker.snapshot import ActivityName, ClockState, Event, EventKind, SiteSnapshot, Snapshot
+from app.tracker.commands.commands import Track
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ActivityName, ClockState, Event, EventKind, SiteSnapshot, Snapshot
+from app.tracker.values.alarm_words import AlarmCounts, AlarmNow, AlarmState
+from app.tracker.values.mode import Mode
+from app.tracker.values.reason import Reason
 from tests.link.test_link import Link, ScriptedMachine
 
 NOON = datetime(2026, 6, 21, 12, tzinfo=UTC)

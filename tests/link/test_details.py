@@ -12,8 +12,8 @@ from app.link.codec import Detailed, Details, decode_telling, encode_telling
 from app.link.details import MOST_AT_ONCE, Received, Sent, answer
 from app.link.messages import MachineUnreachable, SiteDetail, TrackerDetail
 from app.link.server import LinkServer
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import SiteState, TrackerMemory, TrackerState
+from app.tracker.memory.memory import SiteState, TrackerMemory, TrackerState
+from app.tracker.settings.config import TrackerConfig
 from tests.gateway.rigs import eventually
 from tests.link.test_link import Link, ScriptedMachine, snapshot
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from app.link.lanes import Lanes
 from tests.fake_data import NOON
 

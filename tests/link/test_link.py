@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from app.link.client import LinkClient
 from app.link.codec import (
     Ask,
@@ -42,12 +42,12 @@ from app.link.metrics import MachineMetrics
 from app.link.outlet import MOST_EVENTS_WAITING, Listener, Outlet
 from app.link.server import LinkServer
 from app.sun.position import Location
-from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, Jog, Stop, Track
-from app.tracker.memory import SiteState
+from app.tracker.commands.commands import CommandRejected, Jog, Stop, Track
+from app.tracker.memory.memory import SiteState
 from app.tracker.programs.show import ShowPlan
-from app.tracker.reason import Reason
-from app.tracker.snapshot import ClockState, Event, EventKind, SiteSnapshot, Snapshot
+from app.tracker.settings.axes import Axis
+from app.tracker.state.snapshot import ClockState, Event, EventKind, SiteSnapshot, Snapshot
+from app.tracker.values.reason import Reason
 from tests.captured_logs import capture_logs
 from tests.gateway.rigs import eventually
 

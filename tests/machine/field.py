@@ -7,16 +7,15 @@ from datetime import UTC, datetime, timedelta
 from itertools import accumulate
 from pathlib import Path
 
-from app.clock import SystemClock
-from app.drives.kept_positions import KeptPositions
-from app.drives.position_memory import AxisMemory, PositionFile, PositionMemory
+from app.base.clock import SystemClock
 from app.link.messages import SiteCommand
 from app.link.metrics import Lateness, MachineMetrics
+from app.simulation.kept_positions import KeptPositions
+from app.simulation.position_memory import AxisMemory, PositionFile, PositionMemory
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.sun.position import Algorithm, Location, sun_position
-from app.tracker.config import DriveConfig, DriveKind, NightBehaviour, Orientation, TrackerConfig
-from app.tracker.memory import (
+from app.tracker.memory.memory import (
     ClockSetting,
     Confirmation,
     HomeTrust,
@@ -25,9 +24,10 @@ from app.tracker.memory import (
     TrackerMemory,
     TrackerState,
 )
-from app.tracker.mode import Mode
-from app.tracker.snapshot import ActivityName, EventKind, SiteSnapshot
-from app.tracker.weather_protection import TWILIGHT_DEG
+from app.tracker.settings.config import DriveConfig, DriveKind, NightBehaviour, Orientation, TrackerConfig
+from app.tracker.state.snapshot import ActivityName, EventKind, SiteSnapshot
+from app.tracker.supervision.weather_protection import TWILIGHT_DEG
+from app.tracker.values.mode import Mode
 from tests.machine.service import Service
 
 SHELTERED = frozenset({ActivityName.STOWING, ActivityName.STOWED})

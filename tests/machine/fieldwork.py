@@ -17,10 +17,10 @@ from app.link.messages import MachineUnreachable, SetLocation, StopAll
 from app.link.metrics import MachineMetrics
 from app.link.weather_orders import ReportWeather
 from app.sun.position import Location
-from app.tracker.commands import CommandRejected, Track
-from app.tracker.config import DriveConfig, DriveKind, SerialConfig
-from app.tracker.snapshot import ActivityName, Event, EventKind, SiteSnapshot, Snapshot
-from app.tracker.weather import Weather
+from app.tracker.commands.commands import CommandRejected, Track
+from app.tracker.settings.config import DriveConfig, DriveKind, SerialConfig
+from app.tracker.state.snapshot import ActivityName, Event, EventKind, SiteSnapshot, Snapshot
+from app.tracker.weather.weather import Weather
 from tests.e2e.product import DRIVE_SIM
 from tests.machine.field import (
     Line,

@@ -18,8 +18,7 @@ from app.link.messages import ConfigureTracker, MachineUnreachable, RenameSite, 
 from app.store.engine import open_reader
 from app.store.reader import DatabaseReader
 from app.store.store import AuditFilter, JournalFilter
-from app.tracker.axes import Axis, JogSpeed
-from app.tracker.commands import (
+from app.tracker.commands.commands import (
     CommandRejected,
     GoToStart,
     Jog,
@@ -30,11 +29,12 @@ from app.tracker.commands import (
     Stop,
     Track,
 )
-from app.tracker.config import Orientation
-from app.tracker.mode import Mode
+from app.tracker.memory.recording import RecordingKind
 from app.tracker.programs.show import ShowPlan
-from app.tracker.recording import RecordingKind
-from app.tracker.snapshot import ActivityName, Event, EventKind, ShowPhase, Snapshot
+from app.tracker.settings.axes import Axis, JogSpeed
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ActivityName, Event, EventKind, ShowPhase, Snapshot
+from app.tracker.values.mode import Mode
 from tests.e2e.eyes import Eyes
 from tests.e2e.killing import LATEST_FEED_S, RAMP_S, WATCHDOG_S
 from tests.machine.lives import Machine
@@ -83,7 +83,7 @@ class Killing:
         await self.machine.ask(SetClock("manual", MORNING))
         await self._until(lambda seen: not seen.actions["set_home"], "the zero can be set")
         await self.machine.ask(SetHome())
-        await self._until(lambda seen: seen.home_trusted, "the zero is trusted")
+        await self._until(lambda seen: seen.homed, "the zero is trusted")
         await self.machine.ask(SelectMode(Mode.DUAL))
 
     async def kill(self) -> float:

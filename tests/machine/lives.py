@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from multiprocessing.context import ForkServerProcess
 from pathlib import Path
 
+from app.base.settings import Settings
 from app.link.client import LinkClient
 from app.link.messages import Order, SiteCommand
 from app.machine.main import run
 from app.machine.supervised import end_with_parent
-from app.settings import Settings
-from app.tracker.commands import Command
-from app.tracker.snapshot import SiteSnapshot, Snapshot
+from app.tracker.commands.commands import Command
+from app.tracker.state.snapshot import SiteSnapshot, Snapshot
 from tests.machine.service import eventually
 
 FORKING = multiprocessing.get_context("forkserver")

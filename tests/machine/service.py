@@ -10,16 +10,16 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from app.clock import SystemClock
+from app.base.clock import SystemClock
 from app.drives.drive import Drive
-from app.drives.factory import DriveFactory
 from app.link.client import LinkClient
 from app.link.messages import ConfigureTracker, MachineUnreachable, Order, SetClock, SetLocation, SiteCommand
+from app.machine.drive_factory import DriveFactory
 from app.sun.position import Location
-from app.tracker.commands import Command, SetHome
-from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
-from app.tracker.motion import Feedback
-from app.tracker.snapshot import ActivityName, SiteSnapshot, Snapshot
+from app.tracker.commands.commands import Command, SetHome
+from app.tracker.settings.config import DriveConfig, DriveKind, TrackerConfig
+from app.tracker.state.snapshot import ActivityName, SiteSnapshot, Snapshot
+from app.tracker.values.motion import Feedback
 from tests.e2e.product import DRIVE_SIM
 from tests.ports import free_port
 
@@ -173,7 +173,7 @@ class Service:
         await self.ask(SetClock("system"))
         await self.until(lambda seen: not seen.actions["set_home"])
         await self.ask(SetHome())
-        await self.until(lambda seen: seen.home_trusted and seen.activity is ActivityName.HOLDING)
+        await self.until(lambda seen: seen.homed and seen.activity is ActivityName.HOLDING)
 
     async def stop(self) -> int:
         await self.link.close()

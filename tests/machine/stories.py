@@ -12,10 +12,10 @@ import httpx
 from app.link.messages import RenameSite
 from app.store.engine import open_reader
 from app.store.store import JournalFilter
-from app.tracker.commands import GoToStart, RunShow
+from app.tracker.commands.commands import GoToStart, RunShow
+from app.tracker.memory.recording import RecordingInfo, RecordingKind
 from app.tracker.programs.show import ShowPlan
-from app.tracker.recording import RecordingInfo, RecordingKind
-from app.tracker.snapshot import ActivityName, Event, EventKind, ShowPhase
+from app.tracker.state.snapshot import ActivityName, Event, EventKind, ShowPhase
 from tests.machine.service import SAMSUN, DriveSimulator, Service, eventually
 
 LONGEST_START_S = 60
@@ -36,7 +36,7 @@ async def kill_mid_show(service: Service, drive: DriveSimulator, number: int) ->
     await asyncio.sleep(random.uniform(0.0, 0.5))
     name = f"Run {number}"
     await service.ask(RenameSite(name))
-    service.signal("machine", signal.SIGKILL)
+    service.signal("controller", signal.SIGKILL)
     stopped_after_s = await drive.rests(within_s=WATCHDOG_AND_RAMP_S + 2.0)
     await _until_restarted(service, boot_id)
     await eventually(lambda: len(_starts(service)) > starts)

@@ -13,17 +13,15 @@ from enum import StrEnum
 from pathlib import Path
 from uuid import uuid4
 
-from app.drives.kept_positions import KeptPositions
-from app.drives.position_memory import AxisMemory, Memory, PositionFile, PositionMemory
+from app.base.settings import Settings
 from app.link.messages import MachineUnreachable, Order
 from app.link.weather_orders import ReportWeather
-from app.settings import Settings
+from app.simulation.kept_positions import KeptPositions
+from app.simulation.position_memory import AxisMemory, Memory, PositionFile, PositionMemory
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
-from app.tracker.axes import Axis, JogSpeed
-from app.tracker.commands import GoToStart, Jog, RunShow
-from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
-from app.tracker.memory import (
+from app.tracker.commands.commands import GoToStart, Jog, RunShow
+from app.tracker.memory.memory import (
     ClockSetting,
     Confirmation,
     HomeTrust,
@@ -32,11 +30,13 @@ from app.tracker.memory import (
     TrackerMemory,
     TrackerState,
 )
-from app.tracker.mode import Mode
 from app.tracker.programs.show import ShowPlan
-from app.tracker.protections.words import StowName
-from app.tracker.snapshot import ActivityName, ShowPhase, SiteSnapshot, Snapshot
-from app.tracker.weather import Weather
+from app.tracker.settings.axes import Axis, JogSpeed
+from app.tracker.settings.config import DriveConfig, DriveKind, TrackerConfig
+from app.tracker.settings.protections import StowName
+from app.tracker.state.snapshot import ActivityName, ShowPhase, SiteSnapshot, Snapshot
+from app.tracker.values.mode import Mode
+from app.tracker.weather.weather import Weather
 from tests.machine.lives import Machine
 from tests.machine.service import SAMSUN, eventually
 
@@ -190,7 +190,7 @@ class Storm:
         """Start it in calm weather, and set going what does not go by itself."""
         await machine.start()
         await begin(machine, ReportWeather(CALM), None)
-        await until(machine, lambda seen: all(one.home_trusted for one in seen.trackers))
+        await until(machine, lambda seen: all(one.homed for one in seen.trackers))
         for name, left in self.plot.lefts.items():
             if left is Left.TO_START:
                 await begin(machine, GoToStart(SHOW), name)
@@ -251,7 +251,7 @@ class Storm:
         assert "The wind at T1" in self.text
         for one in after.trackers:
             left = self.plot.lefts[one.tracker_id]
-            assert one.home_trusted, one
+            assert one.homed, one
             assert left.by_itself or one.activity is ActivityName.HOLDING, one
             assert left.by_itself or one.protection is not None, one
             _check_place(tracker(before, one.tracker_id), one)

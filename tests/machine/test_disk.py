@@ -14,10 +14,10 @@ import pytest_asyncio
 from app.link.messages import RenameSite, SetClock, SetLocation
 from app.store.engine import open_reader
 from app.store.store import JournalFilter
-from app.tracker.alarm_words import AlarmState
-from app.tracker.commands import CommandRejected, SelectMode, SetHome, Stop, Track
-from app.tracker.mode import Mode
-from app.tracker.snapshot import ActivityName
+from app.tracker.commands.commands import CommandRejected, SelectMode, SetHome, Stop, Track
+from app.tracker.state.snapshot import ActivityName
+from app.tracker.values.alarm_words import AlarmState
+from app.tracker.values.mode import Mode
 from tests.fault_result import REAL, FaultResult
 from tests.machine.failing_disk import DiskFault, failing, filled, small_disk
 from tests.machine.service import SAMSUN, Service, eventually
@@ -57,7 +57,7 @@ async def begin_to_track(service: Service) -> None:
     await service.ask_until_taken(Stop())
     await service.until(lambda seen: not seen.actions["set_home"])
     await service.ask(SetHome())
-    await service.until(lambda seen: seen.home_trusted and seen.activity is ActivityName.HOLDING)
+    await service.until(lambda seen: seen.homed and seen.activity is ActivityName.HOLDING)
     await service.ask(SelectMode(Mode.DUAL))
     await service.ask(Track())
 
@@ -109,7 +109,7 @@ async def refused(service: Service, name: str) -> str:
 async def test_a_stalled_card_delays_what_is_stored_and_no_tick(
     service: Service, tmp_path: Path, fault: FaultResult
 ) -> None:
-    async with failing(service.starts("machine")[-1], DiskFault.STALLED, tmp_path / "log"):
+    async with failing(service.starts("controller")[-1], DiskFault.STALLED, tmp_path / "log"):
         await service.ask(RenameSite("Slowly"))
         await watch_ticks(service)
     check_database(service, "Slowly")
@@ -144,7 +144,7 @@ async def full(service: Service, disk: Path, log: Path) -> AsyncIterator[None]:
         with filled(disk):
             yield
     else:
-        async with failing(service.starts("machine")[-1], DiskFault.FULL, log):
+        async with failing(service.starts("controller")[-1], DiskFault.FULL, log):
             yield
 
 
@@ -181,7 +181,7 @@ async def test_a_disk_that_fails_is_not_trusted_until_it_was_opened_and_checked_
     service: Service, tmp_path: Path, broken: DiskFault, fault: FaultResult
 ) -> None:
     await service.ask(RenameSite(f"Before {broken}"))
-    async with failing(service.starts("machine")[-1], broken, tmp_path / "log"):
+    async with failing(service.starts("controller")[-1], broken, tmp_path / "log"):
         began = time.monotonic()
         told = await refused(service, "Not stored")
         fault.noticed(time.monotonic() - began, REAL)
@@ -190,7 +190,7 @@ async def test_a_disk_that_fails_is_not_trusted_until_it_was_opened_and_checked_
         await watch_ticks(service)
         await eventually(lambda: "store_behind" in alarms(service))
     await refused(service, "Still not stored")
-    service.signal("machine", signal.SIGKILL)
+    service.signal("controller", signal.SIGKILL)
     await begin_to_track(service)
     await service.ask(RenameSite("Again"))
     check_database(service, "Again")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.tracker.config import DriveKind
+from app.tracker.settings.config import DriveKind
 from tests.fault_result import BY_ITSELF, REAL, FaultResult
 from tests.machine.fieldwork import (
     Size,
@@ -59,7 +59,7 @@ async def test_a_line_that_falls_silent_is_told_by_all_of_its_trackers_which_com
     assert "no longer answers" in trial.shown
     fault.noticed(trial.took_s, REAL)
     fault.shows(trial.shown)
-    fault.recovers("by itself; the operator starts tracking again", trial.back_s)
+    fault.recovers("automatic; the operator starts tracking again", trial.back_s)
 
 
 async def test_a_serial_line_carries_as_many_drives_as_it_takes(tmp_path: Path) -> None:
@@ -75,7 +75,7 @@ async def test_a_panel_that_is_killed_in_a_storm_has_all_its_viewers_again(fault
     assert_punctual(trial)
     assert trial.took_s <= AT_ONCE_S
     fault.noticed(trial.took_s, REAL)
-    fault.shows_nothing("every tracker stows, and says so to whoever looks again")
+    fault.shows_nothing("every tracker stows, and every page says so again")
     fault.recovers(BY_ITSELF, trial.back_s)
 
 

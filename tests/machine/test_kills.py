@@ -45,5 +45,5 @@ async def test_killed_in_motion_nothing_is_lost_and_nothing_moves_on(
     counted = ", ".join(f"{motion} {times}" for motion, times in sorted(killing.counted.items()))
     print(f"{KILLS} kills in {monotonic() - begun:.0f} s ({counted}), at rest after at most {latest_s:.2f} s")
     fault.noticed(latest_s, REAL)
-    fault.recovers("by itself: the controller starts again; tracking that was on resumes, nothing else moves")
+    fault.recovers("automatic: the controller starts again; tracking that was on resumes, nothing else moves")
     fault.shows(re.sub(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d", "AT", killing.told))

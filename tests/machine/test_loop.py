@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 
-from app.drives.line import TcpLine
-from app.drives.modbus_server import ModbusServer
-from app.drives.modbus_tcp import TcpWire
+from app.base.settings import Settings
 from app.machine import main
 from app.machine.loop import ControllerLoop, run_loop
-from app.settings import Settings
+from app.modbus.line import TcpLine
+from app.modbus.server import ModbusServer
+from app.modbus.tcp import TcpWire
 from tests.drives.test_modbus_clients import Registers
 
 DRIVES = 2 * (min(32, (os.cpu_count() or 1) + 4))

@@ -17,17 +17,17 @@ from typing import Literal
 
 import pytest
 
-from app.clock import SystemClock, VirtualClock
-from app.errors import WRONG
-from app.logs import get_logger, set_up_logs
+from app.base.clock import SystemClock, VirtualClock
+from app.base.errors import WRONG
+from app.base.logs import get_logger, set_up_logs
+from app.base.settings import SettingsWrong, read_settings
 from app.machine.lock import LOCK_NAME, AlreadyRunning, holder, only_instance
 from app.machine.main import audit_version
 from app.machine.marker import VERSION_NAME, mark_running, mark_stopped
 from app.machine.supervisor import Child, Supervisor
 from app.machine.systemd import notify
 from app.machine.watchdog import EXIT_CODE, LoopWatchdog
-from app.settings import SettingsWrong, read_settings
-from app.site.ntp import kernel_clock
+from app.site.clock.ntp import kernel_clock
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.store import AuditFilter
@@ -224,7 +224,7 @@ def _logs_as_before() -> Iterator[None]:
 @pytest.mark.usefixtures("_logs_as_before")
 def test_logs_are_json_lines_with_the_process_in_them() -> None:
     stream = io.StringIO()
-    set_up_logs("machine", log_format="json", log_level="info", stream=stream)
+    set_up_logs("controller", log_format="json", log_level="info", stream=stream)
     get_logger().info("tick_failed", tracker="T1")
     logging.getLogger("y").warning("from a library")
     get_logger().debug("not shown")
@@ -232,7 +232,7 @@ def test_logs_are_json_lines_with_the_process_in_them() -> None:
     lines = [json.loads(line) for line in stream.getvalue().splitlines()]
 
     assert [line["event"] for line in lines] == ["tick_failed", "from a library"]
-    assert all(line["process"] == "machine" for line in lines)
+    assert all(line["process"] == "controller" for line in lines)
     assert lines[0]["tracker"] == "T1"
 
 

@@ -18,11 +18,11 @@ from app.link.messages import MachineUnreachable, RenameSite
 from app.machine.marker import MARKER_NAME
 from app.store.engine import open_reader
 from app.store.store import JournalFilter
-from app.tracker.axes import Axis, JogSpeed
-from app.tracker.commands import Jog, Move, SelectMode, Stop, Track
-from app.tracker.config import Orientation
-from app.tracker.mode import Mode
-from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.commands.commands import Jog, Move, SelectMode, Stop, Track
+from app.tracker.settings.axes import Axis, JogSpeed
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.mode import Mode
 from tests.fault_result import REAL, FaultResult
 from tests.machine.service import DriveSimulator, Service, eventually
 from tests.machine.stories import WATCHDOG_AND_RAMP_S, kill_mid_show, kill_panel, until_served
@@ -77,7 +77,7 @@ async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service, fau
     seen = service.tracker()
     assert seen is not None
     assert seen.tracking_on
-    fault.recovers("by itself: the web process is started again; tracking went on")
+    fault.recovers("automatic: the web process is started again; tracking went on")
 
 
 async def test_the_panel_moves_and_the_machine_misses_no_tick(service: Service) -> None:
@@ -108,7 +108,7 @@ async def test_the_panel_moves_and_the_machine_misses_no_tick(service: Service) 
 
 def started(service: Service) -> tuple[int, int]:
     """Return how often panel and machine have been started."""
-    return len(service.starts("web")), len(service.starts("machine"))
+    return len(service.starts("web")), len(service.starts("controller"))
 
 
 @pytest.mark.timeout(60 + 15 * KILLS)
@@ -128,20 +128,20 @@ async def test_a_frozen_machine_moves_nothing_and_does_not_catch_up(
     await service.until(lambda seen: not seen.actions["jog"])
     jogging = asyncio.create_task(_hold(service))
     await service.until(lambda seen: seen.activity is ActivityName.JOGGING)
-    service.signal("machine", signal.SIGSTOP)
+    service.signal("controller", signal.SIGSTOP)
 
     fault.noticed(await drive.rests(within_s=WATCHDOG_AND_RAMP_S + 1.0), REAL)
     stood_at = (await drive.look()).azimuth.position_deg
     await asyncio.sleep(1.5)
     assert service.link.latest() is None
     jogging.cancel()
-    service.signal("machine", signal.SIGCONT)
+    service.signal("controller", signal.SIGCONT)
     await service.until(lambda seen: seen.activity is not ActivityName.JOGGING)
     await asyncio.sleep(1.0)
 
     assert (await drive.look()).azimuth.position_deg == pytest.approx(stood_at, abs=0.1)
     assert started(service) == processes
-    fault.recovers("by itself: the jog is over; nothing is caught up")
+    fault.recovers("automatic: the jog is over; nothing is caught up")
 
 
 async def _hold(service: Service) -> None:
@@ -174,7 +174,7 @@ async def test_another_master_stops_the_move_and_is_named(
     await drive.rests(within_s=WATCHDOG_AND_RAMP_S + 1.0)
     await service.until(lambda seen: not seen.tracking_on and seen.activity is ActivityName.HOLDING)
     await service.until(lambda seen: not seen.actions["move"])
-    fault.recovers("by itself: once the other master is silent; the operator commands the next motion")
+    fault.recovers("automatic: once the other master is silent; the operator commands the next motion")
 
 
 async def azimuth_deg(drive: DriveSimulator) -> float:
@@ -200,14 +200,14 @@ async def test_a_second_machine_refuses_to_start_and_says_who_runs(
 ) -> None:
     environment = os.environ | {"HELIOPANEL_DATA_DIR": str(service.data_dir)}
     second = await asyncio.create_subprocess_exec(
-        sys.executable, "-m", "app.cli", "machine", env=environment, stderr=asyncio.subprocess.PIPE
+        sys.executable, "-m", "app.cli", "controller", env=environment, stderr=asyncio.subprocess.PIPE
     )
     _, told = await second.communicate()
 
     assert second.returncode == 2
     sentence = told.decode().strip()
     assert sentence.startswith(f"The data folder {service.data_dir} is in use by process")
-    assert str(service.starts("machine")[-1]) in sentence
+    assert str(service.starts("controller")[-1]) in sentence
     assert "\n" not in sentence
     fault.prevented("it does not start")
     fault.shows(sentence.replace(str(service.data_dir), "DIR"))
@@ -216,7 +216,7 @@ async def test_a_second_machine_refuses_to_start_and_says_who_runs(
 
 async def test_serve_ends_both_processes_and_leaves_no_mark(tmp_path: Path) -> None:
     service = await Service.start(tmp_path / "data")
-    processes = [service.starts(child)[0] for child in ("machine", "web")]
+    processes = [service.starts(child)[0] for child in ("controller", "web")]
     assert (service.data_dir / MARKER_NAME).exists()
 
     assert await service.stop() == 0
@@ -241,7 +241,7 @@ def still_there(processes: list[int]) -> list[int]:
 async def test_when_the_supervisor_is_killed_its_children_end_properly(tmp_path: Path) -> None:
     service = await Service.start(tmp_path / "data")
     service.process.kill()
-    processes = [service.starts(child)[0] for child in ("machine", "web")]
+    processes = [service.starts(child)[0] for child in ("controller", "web")]
 
     await eventually(lambda: not still_there(processes))
 

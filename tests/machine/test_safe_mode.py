@@ -8,10 +8,10 @@ import httpx
 import pytest
 
 from app.link.messages import RenameSite, SetClock, SetLocation
-from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, Jog, Park, SelectMode, SetHome, Stop, Track
-from app.tracker.mode import Mode
-from app.tracker.snapshot import ActivityName
+from app.tracker.commands.commands import CommandRejected, Jog, Park, SelectMode, SetHome, Stop, Track
+from app.tracker.settings.axes import Axis
+from app.tracker.state.snapshot import ActivityName
+from app.tracker.values.mode import Mode
 from tests.fault_result import FaultResult
 from tests.machine.service import SAMSUN, Service, eventually
 from tests.machine.stories import until_served
@@ -38,7 +38,7 @@ async def kept(data_dir: Path) -> str:
         await service.ask(SetClock("system"))
         await service.ask(RenameSite("Kept"))
         await service.ask(SetHome())
-        await service.until(lambda seen: seen.home_trusted)
+        await service.until(lambda seen: seen.homed)
         await service.ask(SelectMode(Mode.DUAL))
         await service.ask(Track())
         await until_served(service.port)
@@ -82,7 +82,7 @@ async def test_a_damaged_database_moves_nothing_and_offers_the_backup(
             assert begun.status_code == 202, begun.text
             assert begun.json()["site_name"] == "Kept"
         await eventually(lambda: restored(service))
-        assert len(service.starts("machine")) == 2
+        assert len(service.starts("controller")) == 2
         await service.ask(RenameSite("Goes on"))
     finally:
         await service.stop()

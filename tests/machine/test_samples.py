@@ -16,7 +16,7 @@ from app.link.messages import SetClock, SetLocation
 from app.site.startup import CUT_OFF
 from app.store.engine import open_reader
 from app.store.migrations import upgrade
-from app.tracker.recording import RecordingInfo, RecordingKind
+from app.tracker.memory.recording import RecordingInfo, RecordingKind
 from tests.fault_result import REAL, FaultResult
 from tests.machine.service import SAMSUN, Service, eventually
 from tests.soak import amount
@@ -57,9 +57,9 @@ def more_days(service: Service, than: int) -> bool:
 async def killed(service: Service) -> datetime:
     """Kill the controller at some instant and return which, once it runs again."""
     await asyncio.sleep(random.uniform(STORE_S + 1.0, 3.0 * STORE_S))
-    starts, at = len(service.starts("machine")), datetime.now(UTC)
-    service.signal("machine", signal.SIGKILL)
-    await eventually(lambda: len(service.starts("machine")) > starts)
+    starts, at = len(service.starts("controller")), datetime.now(UTC)
+    service.signal("controller", signal.SIGKILL)
+    await eventually(lambda: len(service.starts("controller")) > starts)
     await eventually(lambda: service.link.latest() is not None)
     return at
 
@@ -78,10 +78,10 @@ async def test_a_kill_costs_at_most_the_set_seconds_of_samples_and_all_files_are
         assert cut.ended_at is not None
         lost = at - cut.ended_at
         assert lost <= timedelta(seconds=STORE_S + SAMPLE_AND_COMMIT_S)
-        assert cut.frame_count == pytest.approx((cut.ended_at - cut.began_at).total_seconds() + 1, abs=1)
+        assert cut.sample_count == pytest.approx((cut.ended_at - cut.began_at).total_seconds() + 1, abs=1)
     fault.noticed(STORE_S + SAMPLE_AND_COMMIT_S, REAL)
     names = {path.name: path.stat().st_mode & 0o777 for path in service.data_dir.glob("*.db*")}
     assert names.keys() >= {"heliopanel.db", "heliopanel.db-wal", "heliopanel.db-shm"}
     assert set(names.values()) == {0o600}
     fault.shows(str(cut.outcome))
-    fault.recovers("by itself: a new recording of the day begins")
+    fault.recovers("automatic: a new recording of the day begins")

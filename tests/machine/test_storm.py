@@ -15,8 +15,8 @@ import pytest
 
 from app.link.messages import StopAll
 from app.link.weather_orders import ReportWeather
-from app.tracker.snapshot import ActivityName, EventKind
-from app.tracker.weather import Weather
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.weather.weather import Weather
 from tests.fault_result import BY_ITSELF, REAL, FaultResult
 from tests.machine.field import Punctuality, doing, last_of, noon_place, prepare, sheltered
 from tests.machine.service import Service, eventually

@@ -11,8 +11,8 @@ from websockets.asyncio.client import connect
 
 from app.link.messages import SetClock, SetLocation
 from app.link.metrics import LATENESS_BOUNDS_MS
-from app.tracker.commands import SelectMode, SetHome, Track
-from app.tracker.mode import Mode
+from app.tracker.commands.commands import SelectMode, SetHome, Track
+from app.tracker.values.mode import Mode
 from tests.machine.service import SAMSUN, Service
 from tests.machine.stories import until_served
 
@@ -50,7 +50,7 @@ async def test_ticks_come_on_time_while_100_pages_are_open(tmp_path: Path) -> No
         await service.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
         await service.ask(SetClock("system"))
         await service.ask(SetHome())
-        await service.until(lambda seen: seen.home_trusted)
+        await service.until(lambda seen: seen.homed)
         await service.ask(SelectMode(Mode.DUAL))
         await service.ask(Track())
         await until_served(service.port)

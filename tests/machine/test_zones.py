@@ -7,7 +7,7 @@ import pytest
 
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
-from app.tracker.memory import SiteState
+from app.tracker.memory.memory import SiteState
 from tests.fault_result import FaultResult
 from tests.machine.service import SAMSUN, Service, eventually
 from tests.machine.stories import until_served
@@ -58,7 +58,7 @@ async def test_without_time_zones_it_starts_shows_utc_and_says_so(data_dir: Path
         fault.prevented("noticed at the start; tracking needs no time zone")
         fault.shows("Time zones are missing")
         fault.recovers("tzdata is installed and the controller started again")
-        assert len(service.starts("machine")) == 1
+        assert len(service.starts("controller")) == 1
     finally:
         await service.stop()
 

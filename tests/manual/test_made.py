@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from app.settings import FILE_VARIABLE, PREFIX, Settings
+from app.base.settings import FILE_VARIABLE, PREFIX, Settings
 from tests.manual.made.pages import REFERENCE, pages
 from tests.manual.site import ROOT
 

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.papers.effect import Effect, Measured, effect, not_measured
-from app.papers.library import LIBRARY, paper
-from app.papers.sampling import sample
+from app.research.effect import Effect, Measured, effect, not_measured
+from app.research.library import LIBRARY, paper
+from app.research.sampling import sample
 from app.sun.accuracy import separations_deg
 from app.sun.trigonometry import Array
 
-SOURCES = Path(__file__).parents[2] / "app" / "papers"
+SOURCES = Path(__file__).parents[2] / "app" / "research"
 GIVEN = {"MOUNTAIN_KM"}
 """What an effect names and does not claim: the height at which it is told."""
 

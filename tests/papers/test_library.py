@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from app.papers import alexandru_published
-from app.papers.document import document
-from app.papers.effect import figures as significant
-from app.papers.library import LIBRARY, UnknownPaper, paper, papers, shown, text
-from app.papers.nalini_table import TABLE_1
-from app.papers.result import Figure, Group, Standing
+from app.research import alexandru_published
+from app.research.document import document
+from app.research.effect import figures as significant
+from app.research.library import LIBRARY, UnknownPaper, paper, papers, shown, text
+from app.research.nalini_table import TABLE_1
+from app.research.result import Figure, Group, Standing
 from tests.golden.table import numbers
 
 ROOT = Path(__file__).parents[2]

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from app.clock import SystemClock
-from app.drives.bus import BusUnit
-from app.drives.buses import Buses
-from app.drives.drive import DriveRefused
-from app.drives.wire import Timing
-from app.tracker.config import DriveConfig, DriveKind, Parity, SerialConfig
+from app.base.clock import SystemClock
+from app.drives.connections.buses import Buses
+from app.modbus.bus import BusUnit
+from app.modbus.errors import DriveRefused
+from app.modbus.wire import Timing
+from app.tracker.settings.config import DriveConfig, DriveKind, Parity, SerialConfig
 from tests.peers.processes import HERE, cable, output, program, running
 from tests.ports import free_port
 

@@ -9,20 +9,20 @@ from typing import Any
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives.line import SerialLine
-from app.drives.modbus_server import ModbusServer
+from app.base.clock import VirtualClock
+from app.base.settings import Settings
 from app.drives.profile import load_profile
-from app.drives.rtu_server import RtuServer
-from app.drives.sim_plc import SimulatedPlc
-from app.drives.simulated import SimulatedDrive
 from app.gateway.sunspec import SunSpecRtu, SunSpecTcp
 from app.gateway.sunspec_device import SunSpecDevice
 from app.link.metrics import GatewayStatus
-from app.settings import Settings
-from app.tracker.config import Parity, SerialConfig, TrackerConfig
-from app.tracker.motion import Velocity
-from app.tracker.snapshot import ActivityName, EventKind
+from app.modbus.line import SerialLine
+from app.modbus.rtu_server import RtuServer
+from app.modbus.server import ModbusServer
+from app.simulation.sim_plc import SimulatedPlc
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.settings.config import Parity, SerialConfig, TrackerConfig
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.motion import Velocity
 from tests.gateway.rigs import HurriedClock, eventually
 from tests.peers.processes import cable, mbpoll, modbus_serial
 from tests.site.plant import SUMMER_NOON, Plant, make_plant
@@ -57,7 +57,7 @@ async def sunspec(folder: Path) -> AsyncIterator[Served]:
     async with cable(folder) as (ours, theirs):
         wanted = Settings(
             sunspec_port=0,
-            sunspec_serial=ours,
+            sunspec_serial_port=ours,
             sunspec_parity="none",
             sunspec_write_hosts=("127.0.0.1", "serial"),
         )

@@ -9,14 +9,14 @@ import pytest
 
 from app.show.simulate import encoded, simulate, simulate_date, simulate_show
 from app.sun.position import Algorithm, Location
-from app.tracker.axes import AxisConfig
-from app.tracker.commands import CommandRejected
-from app.tracker.config import NightBehaviour, Orientation, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mode import Mode
+from app.tracker.commands.commands import CommandRejected
+from app.tracker.memory.memory import Pointing
+from app.tracker.memory.recording import Frames, RecordingInfo
 from app.tracker.programs.show import ShowPlan
-from app.tracker.recording import Frames, RecordingInfo
-from app.tracker.snapshot import ActivityName
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import NightBehaviour, Orientation, TrackerConfig
+from app.tracker.state.snapshot import ActivityName
+from app.tracker.values.mode import Mode
 
 SAMSUN = Location(41.2867, 36.33, 4.0)
 ACTIVITIES = list(ActivityName)
@@ -61,7 +61,7 @@ def separation(a_az: np.ndarray, a_el: np.ndarray, b_az: np.ndarray, b_el: np.nd
 
 def spa(info: RecordingInfo, frames: Frames) -> tuple[np.ndarray, np.ndarray]:
     """Return azimuth and true elevation by NREL's SPA, as pvlib computes it."""
-    at = pd.to_datetime(info.sun_begin_at.timestamp() + frames.column("sun_time_s"), unit="s", utc=True)
+    at = pd.to_datetime(info.sun_start.timestamp() + frames.column("sun_time_s"), unit="s", utc=True)
     found = pvlib.solarposition.get_solarposition(
         at,
         info.location.latitude_deg,
@@ -173,7 +173,7 @@ def test_the_solstice_in_three_minutes() -> None:
 
     assert info.duration_s == pytest.approx(180.0, abs=0.2)
     assert frames.column("sun_time_s")[-1] == pytest.approx(
-        info.sun_end_at.timestamp() - info.sun_begin_at.timestamp(), abs=60.0
+        info.sun_end.timestamp() - info.sun_start.timestamp(), abs=60.0
     )
     assert np.all(np.diff(frames.column("sun_time_s")) >= 0.0)
     assert set(frames.column("activity")) == {ACTIVITIES.index(ActivityName.SHOWING)}

@@ -6,25 +6,24 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 import pytest
 
-from app.angles import separation_deg
+from app.base.angles import separation_deg
 from app.show.simulate import simulate, simulate_show
 from app.show.strategy_day import strategy_day
 from app.show.strategy_told import StrategyDay
 from app.sun.position import Location, sun_position
 from app.sun.trigonometry import SCALAR
-from app.tracker.axes import AxisConfig
-from app.tracker.commands import Track
-from app.tracker.config import MountConfig, MountKind, Orientation, Rows, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mode import Mode
+from app.tracker.commands.commands import Track
+from app.tracker.memory.memory import Pointing
 from app.tracker.mounts.capabilities import default_mode
 from app.tracker.mounts.kinematics import followed
 from app.tracker.programs.examples import ALEXANDRU_TABLE_3
 from app.tracker.programs.schedule import Moment, solar_hour
 from app.tracker.programs.show import ShowPlan, check_show, schedule_of
 from app.tracker.programs.step_table import from_table, to_table
-from app.tracker.programs.stepped import ProgramStep, StepFrame, StepProgram, TimeBase
-from app.tracker.strategy import (
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import MountConfig, MountKind, Orientation, Rows, TrackerConfig
+from app.tracker.settings.stepped import ProgramStep, StepFrame, StepProgram, TimeBase
+from app.tracker.settings.strategy import (
     Continuous,
     Deadband,
     EncoderDeadband,
@@ -35,6 +34,7 @@ from app.tracker.strategy import (
     Stepped,
     Strategy,
 )
+from app.tracker.values.mode import Mode
 from tests.tracker.plant import READY, Plant
 
 HELD = Orientation(180.0, 45.0)

@@ -4,12 +4,12 @@ from datetime import UTC, datetime, timedelta
 
 from app.show.simulate import simulate
 from app.sun.position import Location
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mode import Mode
-from app.tracker.recording import Frames
-from app.tracker.snapshot import ActivityName
-from app.tracker.weather_day import WeatherDay, read_steps, stepped_day
+from app.tracker.memory.memory import Pointing
+from app.tracker.memory.recording import Frames
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.state.snapshot import ActivityName
+from app.tracker.values.mode import Mode
+from app.tracker.weather.weather_day import WeatherDay, read_steps, stepped_day
 
 SAMSUN = Location(41.2867, 36.33, 4.0)
 MIDNIGHT = datetime(2026, 6, 21, tzinfo=UTC)

@@ -6,16 +6,15 @@ from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from random import Random
 
-from app.clock import VirtualClock
-from app.drives.faults import Fault, FaultKind
-from app.drives.simulated import SimulatedDrive
+from app.base.clock import VirtualClock
 from app.link.messages import Order, ReportWeather, SetClock, SetLocation, SiteCommand
-from app.site.gathering import BackgroundWriter
-from app.site.health import resident_bytes
-from app.site.loop import TrackerLoop
+from app.simulation.faults import Fault, FaultKind
+from app.simulation.simulated import SimulatedDrive
+from app.site.loop.loop import TrackerLoop
+from app.site.publishing.health import resident_bytes
+from app.site.recording.gathering import BackgroundWriter
 from app.site.site import Site, SiteOptions
-from app.tracker.axes import Axis
-from app.tracker.commands import (
+from app.tracker.commands.commands import (
     Command,
     CommandRejected,
     Home,
@@ -24,11 +23,12 @@ from app.tracker.commands import (
     Stop,
     Track,
 )
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import SiteState, TrackerMemory, TrackerState
-from app.tracker.mode import Mode
-from app.tracker.snapshot import ActivityName
-from app.tracker.weather import Weather
+from app.tracker.memory.memory import SiteState, TrackerMemory, TrackerState
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.state.snapshot import ActivityName
+from app.tracker.values.mode import Mode
+from app.tracker.weather.weather import Weather
 from tests.site.plant import SAMSUN, settle
 from tests.tracker.witness import AUTOMATIC, LIVE
 
@@ -131,9 +131,11 @@ class Field:
         if storm:
             self._wind_mps = 22.0
         if storm or self.chance.random() < 0.9:
-            light_wm2 = self.chance.choice((20.0, 400.0, 900.0))
+            irradiance_wm2 = self.chance.choice((20.0, 400.0, 900.0))
             snow_kg = 5.0 if self.chance.random() < 0.02 else 0.0
-            await self.ask(ReportWeather(Weather(self._wind_mps, light_wm2=light_wm2, snow_kg=snow_kg)))
+            await self.ask(
+                ReportWeather(Weather(self._wind_mps, irradiance_wm2=irradiance_wm2, snow_kg=snow_kg))
+            )
 
     async def _suffer(self, name: str) -> None:
         """Break a drive now and then; after a while somebody mends it and gets the tracker going."""
@@ -167,7 +169,7 @@ class Field:
         if loop.moving and activity in AUTOMATIC:
             assert loop.memory.home is not None
             assert loop.memory.fault_code is None
-        if loop.controller._mind.setpoint.azimuth_deg is not None and loop.moving:
+        if loop.controller._state.setpoints.axes.azimuth_deg is not None and loop.moving:
             assert activity in LIVE | {ActivityName.HOLDING, ActivityName.STOPPING, ActivityName.STOWED}
 
 

@@ -6,18 +6,18 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from app.drives.drive import Drive
-from app.drives.position_memory import Memory
-from app.drives.simulated import SimulatedDrive
 from app.link.messages import Order, ReleaseControl, SetClock, SetLocation, SiteCommand
-from app.site.gathering import BackgroundWriter
+from app.simulation.position_memory import Memory
+from app.simulation.simulated import SimulatedDrive
+from app.site.recording.gathering import BackgroundWriter
 from app.site.site import Site, SiteOptions
 from app.sun.position import Location
-from app.tracker.commands import Command, CommandRejected, Home
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import SiteState, TrackerMemory, TrackerState
-from app.tracker.snapshot import ActivityName, Event, EventKind, SiteSnapshot, Snapshot
+from app.tracker.commands.commands import Command, CommandRejected, Home
+from app.tracker.memory.memory import SiteState, TrackerMemory, TrackerState
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.state.snapshot import ActivityName, Event, EventKind, SiteSnapshot, Snapshot
 
 SUMMER_NOON = datetime(2027, 6, 21, 9, 40, tzinfo=UTC)
 SAMSUN = Location(41.2867, 36.33, 4.0)
@@ -80,8 +80,7 @@ class Plant:
         await self.ask(Home(), tracker_id)
         await self.until(
             lambda _: (
-                self.tracker(tracker_id).home_trusted
-                and self.tracker(tracker_id).activity is ActivityName.HOLDING
+                self.tracker(tracker_id).homed and self.tracker(tracker_id).activity is ActivityName.HOLDING
             )
         )
         with suppress(CommandRejected):

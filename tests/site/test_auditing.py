@@ -18,12 +18,12 @@ from app.store.migrations import upgrade
 from app.store.store import AuditFilter
 from app.store.writer import DatabaseWriter
 from app.store.writer_thread import WriterThread
-from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, EndJog, Jog, Move, SelectMode, Stop, Track
-from app.tracker.config import Orientation
-from app.tracker.mode import Mode
-from app.tracker.snapshot import ActivityName
-from app.tracker.weather import Weather
+from app.tracker.commands.commands import CommandRejected, EndJog, Jog, Move, SelectMode, Stop, Track
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ActivityName
+from app.tracker.values.mode import Mode
+from app.tracker.weather.weather import Weather
 from tests.captured_logs import capture_logs
 from tests.fault_result import FaultResult
 from tests.site.direct_writer import DirectWriter
@@ -188,7 +188,7 @@ async def test_motion_that_cannot_be_recorded_is_refused_and_stop_passes(
     await plant.ask(Move(Orientation(90.0, 30.0)))
     await plant.forward(seconds=1)
     assert plant.tracker().activity is ActivityName.MOVING
-    fault.recovers("by itself: once the audit can be written")
+    fault.recovers("automatic: once the audit can be written")
     await plant.close()
     store.close()
 

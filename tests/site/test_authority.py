@@ -9,12 +9,12 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
-from app.site import authority as rules
-from app.site.authority import Authority, Due, Verdict, Wish
-from app.site.controls import Controls
-from app.tracker.commands import CommandRejected
-from app.tracker.control import ControlHeld, ControlLost, ControlState, Holder, refusal
-from app.tracker.reason import Reason
+from app.site.state import authority as rules
+from app.site.state.authority import Authority, Due, Verdict, Wish
+from app.site.state.controls import Controls
+from app.tracker.commands.commands import CommandRejected
+from app.tracker.commands.control import ControlHeld, ControlLost, ControlState, Holder, refusal
+from app.tracker.values.reason import Reason
 from tests.fault_result import FaultResult
 
 NOON = datetime(2027, 6, 21, 9, 40, tzinfo=UTC)

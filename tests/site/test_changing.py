@@ -9,21 +9,21 @@ from typing import TypeVar
 
 import pytest
 
-from app.drives.faults import Fault, FaultKind
-from app.drives.simulated import SimulatedDrive
 from app.link.messages import ConfigureTracker, ConfirmStep, Order, RemoveTracker, RenameSite, SetClock
 from app.link.weather_orders import ReportWeather
+from app.simulation.faults import Fault, FaultKind
+from app.simulation.simulated import SimulatedDrive
 from app.site.startup import begin
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.store import StoreFailed, Writer
-from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, SelectMode
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.memory import StepName, TrackerMemory, TrackerState
-from app.tracker.mode import Mode
-from app.tracker.transmission import LinearActuator, Point
-from app.tracker.weather import Weather
+from app.tracker.commands.commands import CommandRejected, SelectMode
+from app.tracker.memory.memory import StepName, TrackerMemory, TrackerState
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.settings.transmission import LinearActuator, Point
+from app.tracker.values.mode import Mode
+from app.tracker.weather.weather import Weather
 from tests.site.plant import FIRST, SUMMER_NOON, Plant, make_plant, settle
 from tests.site.wrapped_drive import WrappedDrive, wrapped
 

@@ -4,10 +4,10 @@ from datetime import UTC, datetime
 
 import pytest
 
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from app.link.messages import SetClock
-from app.site.timekeeping import Timekeeper
-from app.tracker.memory import ClockSetting
+from app.site.clock.timekeeping import Timekeeper
+from app.tracker.memory.memory import ClockSetting
 from tests.site.plant import make_plant
 
 BEGINNING = datetime(1970, 1, 1, tzinfo=UTC)

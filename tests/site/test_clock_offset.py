@@ -7,14 +7,14 @@ from datetime import timedelta
 import pytest
 
 from app.link.messages import SetClock, TakeSighting
-from app.site.clock_offset import ClockOffset
-from app.site.ntp import KernelClock
-from app.site.timekeeping import Timekeeper
-from app.tracker.commands import Move, SelectMode, Track
-from app.tracker.config import Orientation
-from app.tracker.memory import ClockSetting
-from app.tracker.mode import Mode
-from app.tracker.snapshot import ActivityName
+from app.site.clock.clock_offset import ClockOffset
+from app.site.clock.ntp import KernelClock
+from app.site.clock.timekeeping import Timekeeper
+from app.tracker.commands.commands import Move, SelectMode, Track
+from app.tracker.memory.memory import ClockSetting
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ActivityName
+from app.tracker.values.mode import Mode
 from tests.fault_result import VIRTUAL, FaultResult
 from tests.site.plant import Plant, make_plant
 
@@ -77,7 +77,7 @@ async def test_a_clock_that_creeps_is_told_from_30_s_on_and_stops_tracking_from_
     assert timedelta(seconds=30) < drifts_at < timedelta(seconds=34)
     fault.noticed((drifts_at - timedelta(seconds=30)) / CREEP * 0.5, VIRTUAL)
     fault.shows(alarms(plant)["clock_drifts"])
-    fault.recovers("by itself: when the clock is set or an NTP server keeps it")
+    fault.recovers("automatic: when the clock is set or an NTP server keeps it")
     assert plant.tracker().activity is ActivityName.TRACKING
     assert plant.tracker().tracking_on
 

@@ -18,8 +18,7 @@ from app.link.messages import (
     UnlockSettings,
 )
 from app.sun.position import Location
-from app.tracker.axes import Axis
-from app.tracker.commands import (
+from app.tracker.commands.commands import (
     Command,
     CommandRejected,
     Jog,
@@ -30,11 +29,12 @@ from app.tracker.commands import (
     Stop,
     Track,
 )
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.control import ControlHeld, ControlLost
-from app.tracker.memory import TrackerMemory, TrackerState
-from app.tracker.mode import Mode
-from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.commands.control import ControlHeld, ControlLost
+from app.tracker.memory.memory import TrackerMemory, TrackerState
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.mode import Mode
 from tests.fault_result import FaultResult
 from tests.site.plant import SAMSUN, Plant, make_plant, settle
 
@@ -88,7 +88,7 @@ async def test_the_first_who_moves_has_control_and_the_other_may_only_stop(
     assert ready.tracker().activity is ActivityName.HOLDING
     await bo.ask(SetInhibit("bo", "works at the gear"))
     assert ready.tracker().control.holder == "ada"
-    fault.recovers("control is handed over, or ends when nobody renews it")
+    fault.recovers("control is handed over, or ends when it is not renewed")
 
 
 @pytest.mark.fault(56)

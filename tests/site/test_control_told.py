@@ -12,9 +12,8 @@ from app.link.messages import (
     RequestControl,
     UnknownTracker,
 )
-from app.site.authority import ASK_LASTS, COUNTDOWN, LEASE
-from app.tracker.axes import Axis
-from app.tracker.commands import (
+from app.site.state.authority import ASK_LASTS, COUNTDOWN, LEASE
+from app.tracker.commands.commands import (
     JOG_LEASE,
     BeginServiceMode,
     CommandRejected,
@@ -29,12 +28,13 @@ from app.tracker.commands import (
     Stow,
     Track,
 )
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.control import ControlHeld, ControlLost
-from app.tracker.memory import TrackerMemory, TrackerState
-from app.tracker.mode import Mode
-from app.tracker.protections.words import StowName
-from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.commands.control import ControlHeld, ControlLost
+from app.tracker.memory.memory import TrackerMemory, TrackerState
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.settings.protections import StowName
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.mode import Mode
 from tests.site.plant import Plant, make_plant, settle
 from tests.site.test_control import AWAY, SECOND, TAKE, Person
 
@@ -86,7 +86,7 @@ async def test_an_order_takes_control_and_silence_ends_it(ready: Plant) -> None:
     text = "There was no signal from ada for 15 s: no user has control of Tracker 1 now."
     assert told(ready, since) == [
         taken("ada"),
-        (EventKind.CONTROL_RELEASED, text, "machine", {"expired": True}),
+        (EventKind.CONTROL_RELEASED, text, "controller", {"expired": True}),
     ]
     assert ready.site.model.tracker("T1").memory.control_epoch == first.epoch + 1
 
@@ -137,7 +137,7 @@ async def test_a_wish_that_nobody_answers_lapses(ready: Plant) -> None:
     lapsed = (
         EventKind.CONTROL_DECLINED,
         "The request for control of Tracker 1 was not answered.",
-        "machine",
+        "controller",
         {},
     )
     assert told(ready, since)[-1] == lapsed

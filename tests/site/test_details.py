@@ -7,7 +7,7 @@ from datetime import timedelta
 
 import pytest
 
-from app.drives.drive import Drive, DriveSilent
+from app.drives.drive import Drive
 from app.link.messages import (
     AddTracker,
     ConfigureTracker,
@@ -16,15 +16,16 @@ from app.link.messages import (
     SetLocation,
     TrackerDetail,
 )
-from app.site.details import MOST_AT_ONCE, Details
-from app.site.timekeeping import Timekeeper
+from app.modbus.errors import DriveSilent
+from app.site.clock.timekeeping import Timekeeper
+from app.site.publishing.details import MOST_AT_ONCE, Details
 from app.sun.position import Location
-from app.tracker.commands import SelectMode, Stop, Track
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.drive_check import CheckOutcome, DriveCheck, DriveReadings
-from app.tracker.memory import ClockSetting, StepName, TrackerMemory, TrackerState
-from app.tracker.mode import Mode
-from app.tracker.motion import Feedback
+from app.tracker.commands.commands import SelectMode, Stop, Track
+from app.tracker.memory.drive_check import CheckOutcome, DriveCheck, DriveReadings
+from app.tracker.memory.memory import ClockSetting, StepName, TrackerMemory, TrackerState
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.values.mode import Mode
+from app.tracker.values.motion import Feedback
 from tests.site.plant import Plant, make_plant
 from tests.site.wrapped_drive import WrappedDrive, wrapped
 

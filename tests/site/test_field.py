@@ -9,8 +9,8 @@ import pytest
 
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
-from app.tracker.recording import RecordingKind
-from app.tracker.snapshot import ActivityName
+from app.tracker.memory.recording import RecordingKind
+from app.tracker.state.snapshot import ActivityName
 from tests.site.direct_writer import DirectWriter
 from tests.site.field import Field
 from tests.soak import amount
@@ -33,7 +33,7 @@ async def test_a_field_lives_through_weather_and_faults_and_needs_no_more_memory
     store = open_writer(url)
     field = Field(TRACKERS, BEGIN, seed=SEED, writer=DirectWriter(store))
     await field.live(MINUTES)
-    samples = sum(day.frame_count for day in store.recordings(kind=RecordingKind.DAY))
+    samples = sum(day.sample_count for day in store.recordings(kind=RecordingKind.DAY))
     store.close()
     assert samples >= TRACKERS * MINUTES * 20
     seen = field.seen

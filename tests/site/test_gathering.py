@@ -6,17 +6,17 @@ from pathlib import Path
 
 import pytest
 
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from app.link.messages import StopAll
 from app.link.weather_orders import ReportWeather
-from app.site.gathering import EVERY
-from app.site.write_queue import Ledger
+from app.site.recording.gathering import EVERY
+from app.site.recording.write_queue import Ledger
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.store import JournalFilter, StoreFailed, Writer
 from app.tracker.protections.words import Protection
-from app.tracker.snapshot import ActivityName, Event, EventKind
-from app.tracker.weather import Weather
+from app.tracker.state.snapshot import ActivityName, Event, EventKind
+from app.tracker.weather.weather import Weather
 from tests.site.plant import SUMMER_NOON, settle
 from tests.site.test_sample_batches import CountingWriter
 from tests.site.tracking_field import ONE_HZ, activities, field_of

@@ -2,7 +2,7 @@
 
 from app.link.place_orders import SetHorizon
 from app.sun.horizon import Horizon
-from app.tracker.snapshot import EventKind
+from app.tracker.state.snapshot import EventKind
 from tests.site.plant import Plant
 
 

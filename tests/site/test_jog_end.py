@@ -4,10 +4,10 @@ from datetime import timedelta
 
 import pytest
 
-from app.tracker.axes import Axis
-from app.tracker.commands import JOG_LEASE, EndJog, Jog
-from app.tracker.controller_state import HALTED
-from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.commands.commands import JOG_LEASE, EndJog, Jog
+from app.tracker.settings.axes import Axis
+from app.tracker.state.controller_state import HALTED
+from app.tracker.state.snapshot import ActivityName, EventKind
 from tests.site.plant import Plant, make_plant, settle
 from tests.site.wrapped_drive import WrappedDrive, wrapped
 

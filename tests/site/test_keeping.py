@@ -27,14 +27,14 @@ from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.store import JournalFilter, StoreFailed, Writer
 from app.store.writer_thread import WriterThread
-from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, GoToStart, Jog, RunShow, SelectMode, Stop, Track
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.memory import Pointing, StepName
-from app.tracker.mode import Mode
+from app.tracker.commands.commands import CommandRejected, GoToStart, Jog, RunShow, SelectMode, Stop, Track
+from app.tracker.memory.memory import Pointing, StepName
+from app.tracker.memory.recording import RecordingKind
 from app.tracker.programs.show import ShowPlan
-from app.tracker.recording import RecordingKind
-from app.tracker.snapshot import EventKind, ShowPhase, Snapshot
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.state.snapshot import EventKind, ShowPhase, Snapshot
+from app.tracker.values.mode import Mode
 from tests.site.plant import SAMSUN, SUMMER_NOON, Plant, make_plant
 
 T = TypeVar("T")
@@ -226,7 +226,7 @@ async def test_a_show_that_is_stopped_ends_its_recording(kept: tuple[Plant, Imme
 
     (info,) = writer.writer.recordings(kind=RecordingKind.SHOW)
     assert info.ended_at is not None
-    assert info.frame_count == pytest.approx(50, abs=5)
+    assert info.sample_count == pytest.approx(50, abs=5)
 
 
 async def test_days_are_recorded_at_one_frame_a_second_and_change_at_local_midnight(
@@ -239,9 +239,9 @@ async def test_days_are_recorded_at_one_frame_a_second_and_change_at_local_midni
     await plant.forward(seconds=30)
 
     newest, older = writer.writer.recordings(kind=RecordingKind.DAY)
-    assert newest.sun_begin_at == pytest.approx(midnight, abs=timedelta(seconds=0.2))
+    assert newest.sun_start == pytest.approx(midnight, abs=timedelta(seconds=0.2))
     assert older.outcome == "completed"
-    assert older.sun_end_at == midnight
+    assert older.sun_end == midnight
     frames = writer.writer.frames(newest.recording_id)
     assert np.diff(frames.column("elapsed_s")) == pytest.approx(np.ones(len(frames) - 1), abs=0.11)
 

@@ -4,16 +4,16 @@ from datetime import timedelta
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives.factory import DriveFactory
-from app.drives.line_turn import LineTurn
+from app.base.clock import VirtualClock
 from app.link.messages import AddTracker, ConfigureTracker
-from app.site.line_pace import LinePace, Pace
+from app.machine.drive_factory import DriveFactory
+from app.modbus.line_turn import LineTurn
+from app.site.loop.line_pace import LinePace, Pace
 from app.site.site import Site, SiteOptions
-from app.tracker.commands import CommandRejected
-from app.tracker.config import DriveConfig, DriveKind, SerialConfig, TrackerConfig
-from app.tracker.memory import SiteState, TrackerMemory, TrackerState
-from app.tracker.observation import SILENCE
+from app.tracker.commands.commands import CommandRejected
+from app.tracker.memory.memory import SiteState, TrackerMemory, TrackerState
+from app.tracker.memory.observation import SILENCE
+from app.tracker.settings.config import DriveConfig, DriveKind, SerialConfig, TrackerConfig
 from tests.site.plant import SUMMER_NOON, Plant
 
 PERIOD = timedelta(milliseconds=100)

@@ -9,10 +9,10 @@ import pytest
 
 from app.alarms.conditions import MEGABYTE
 from app.machine.memory import EARLIEST, LOOK_EVERY, MemoryGuard
-from app.site.health import resident_bytes
-from app.tracker.commands import SelectMode, Stop, Track
-from app.tracker.mode import Mode
-from app.tracker.snapshot import ActivityName
+from app.site.publishing.health import resident_bytes
+from app.tracker.commands.commands import SelectMode, Stop, Track
+from app.tracker.state.snapshot import ActivityName
+from app.tracker.values.mode import Mode
 from tests.fault_result import VIRTUAL, FaultResult
 from tests.site.plant import Plant, make_plant
 
@@ -76,7 +76,7 @@ async def test_growing_memory_is_told_and_the_restart_waits_for_standstill(
         await plant.forward(seconds=0.5)
     fault.noticed((plant.clock.now() - since).total_seconds(), VIRTUAL)
     fault.shows(alarms(plant)["memory_high"])
-    fault.recovers("by itself: with its cause, or with a restart while all trackers are at standstill")
+    fault.recovers("automatic: with its cause, or with a restart while all trackers are at standstill")
     assert "310 MB" in alarms(plant)["memory_high"]
 
     process.held_mb = 401.0

@@ -5,11 +5,11 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives.drive import DriveError
-from app.site.met_poll import UNFORESEEN, MetPoll
-from app.tracker.memory import MetStation
-from app.tracker.weather import Weather
+from app.base.clock import VirtualClock
+from app.modbus.errors import DriveError
+from app.site.weather.met_poll import UNFORESEEN, MetPoll
+from app.tracker.memory.memory import MetStation
+from app.tracker.weather.weather import Weather
 from tests.captured_logs import capture_logs
 from tests.site.plant import settle
 

@@ -6,16 +6,16 @@ from itertools import pairwise
 
 import pytest
 
-from app.drives.simulated import SimulatedDrive
-from app.drives.simulated_machine import STOP_ALL
 from app.link.messages import Order, StopAll
 from app.link.weather_orders import ReportWeather
-from app.site.overload import BEGINS_AFTER, CODE, ENDS_AFTER, LATE_MS, Overload
-from app.site.scheduler import MOST_ASKED_AT_ONCE
-from app.site.site_orders import MOST_AT_ONCE as STOPPED_AT_ONCE
-from app.tracker.snapshot import ActivityName, EventKind
-from app.tracker.weather import Weather
-from app.web.metrics import exposition
+from app.simulation.simulated import SimulatedDrive
+from app.simulation.simulated_machine import STOP_ALL
+from app.site.loop.overload import BEGINS_AFTER, CODE, ENDS_AFTER, LATE_MS, Overload
+from app.site.loop.scheduler import MOST_ASKED_AT_ONCE
+from app.site.orders.site_orders import MOST_AT_ONCE as STOPPED_AT_ONCE
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.weather.weather import Weather
+from app.web.services.metrics import exposition
 from tests.fault_result import VIRTUAL, FaultResult
 from tests.site.plant import SUMMER_NOON, Plant, settle
 from tests.site.tracking_field import ONE_HZ, activities, field_of
@@ -50,7 +50,7 @@ def test_an_overload_begins_after_two_bad_seconds_and_ends_after_ten_good_ones(f
     assert told == [True, False]
     fault.noticed(float(BEGINS_AFTER), VIRTUAL)
     fault.shows(condition.message)
-    fault.recovers(f"by itself: after {ENDS_AFTER} s on time")
+    fault.recovers(f"automatic: after {ENDS_AFTER} s on time")
 
 
 def test_one_pause_of_the_computer_and_single_late_ticks_are_no_overload() -> None:

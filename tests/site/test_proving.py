@@ -5,10 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from app.drives.drive import Drive
 from app.drives.scaled import corrected
-from app.drives.simulated import SimulatedDrive
 from app.link.messages import (
     AnswerDirection,
     AnswerScale,
@@ -16,9 +15,9 @@ from app.link.messages import (
     RestoreDrive,
     SetSoftLimit,
 )
+from app.simulation.simulated import SimulatedDrive
 from app.site.site import Site
-from app.tracker.axes import Axis, AxisConfig
-from app.tracker.commands import (
+from app.tracker.commands.commands import (
     CommandRejected,
     Move,
     RunCommunicationLossTest,
@@ -29,12 +28,13 @@ from app.tracker.commands import (
     Step,
     Stop,
 )
-from app.tracker.commissioning import StepStatus
-from app.tracker.config import AxisDrive, Orientation, TrackerConfig
-from app.tracker.drive_test_states import ProofState
-from app.tracker.drive_tests import AxisEnd, ProofKind, StopSpeed
-from app.tracker.memory import SiteState, TrackerMemory, TrackerState
-from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.commissioning.drive_test_states import ProofState
+from app.tracker.commissioning.steps import StepStatus
+from app.tracker.memory.drive_tests import AxisEnd, ProofKind, StopSpeed
+from app.tracker.memory.memory import SiteState, TrackerMemory, TrackerState
+from app.tracker.settings.axes import Axis, AxisConfig
+from app.tracker.settings.config import AxisDrive, Orientation, TrackerConfig
+from app.tracker.state.snapshot import ActivityName, EventKind
 from tests.site.plant import SUMMER_NOON, Plant
 
 WIDE = AxisConfig(-350.0, 350.0, 6.0, 6.0, 0.5, 3.0)
@@ -185,17 +185,17 @@ async def test_a_longer_way_is_measured_more_exactly(plant: Site1) -> None:
 async def test_another_direction_loses_the_zero_and_can_be_undone(plant: Site1) -> None:
     await plant.ask(SetHome())
     await plant.rest()
-    assert plant.tracker().home_trusted
+    assert plant.tracker().homed
     await plant.turn(RunDirectionTest(Axis.AZIMUTH), Axis.AZIMUTH)
     await plant.ask(AnswerDirection("T1", right=False))
     await plant.forward(seconds=0.5)
-    assert not plant.tracker().home_trusted
+    assert not plant.tracker().homed
     assert plant.memory.former_drive == BUILT.drive
     await plant.ask(RestoreDrive("T1"))
     assert plant.config.drive == BUILT.drive
     assert plant.memory.former_drive is not None
     assert plant.memory.former_drive.azimuth.inverted
-    assert not plant.tracker().home_trusted
+    assert not plant.tracker().homed
 
 
 async def test_nothing_is_undone_where_nothing_was_changed(plant: Site1) -> None:
@@ -213,7 +213,7 @@ async def test_limits_are_taken_where_the_axis_stands(plant: Site1) -> None:
         await plant.rest()
         await plant.ask(SetSoftLimit("T1", Axis.AZIMUTH, end))
         await plant.forward(seconds=0.5)
-        assert plant.tracker().home_trusted
+        assert plant.tracker().homed
     assert plant.config.azimuth.minimum_deg == pytest.approx(-20.0, abs=0.06)
     assert plant.config.azimuth.maximum_deg == pytest.approx(200.0, abs=0.06)
     assert (await plant.proof(ProofKind.LIMITS, Axis.AZIMUTH)).status is StepStatus.DONE

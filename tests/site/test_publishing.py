@@ -10,11 +10,11 @@ import pytest
 from app.link.codec import LENGTH_BYTES, Told, decode_telling, read_body
 from app.link.messages import AddTracker, RemoveTracker, StopAll
 from app.link.server import LinkServer
-from app.site.publishing import MOST_AT_ONCE
-from app.tracker.config import TrackerConfig
-from app.tracker.interlocks import Action
-from app.tracker.memory import TrackerMemory, TrackerState
-from app.tracker.snapshot import EventKind
+from app.site.publishing.publishing import MOST_AT_ONCE
+from app.tracker.access.interlocks import Action
+from app.tracker.memory.memory import TrackerMemory, TrackerState
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.state.snapshot import EventKind
 from tests.site.plant import Plant, make_plant, settle
 
 
@@ -165,7 +165,7 @@ async def test_storms_are_told_ten_times_a_second_and_slower_where_every_says_so
     async def told_in_two_seconds() -> int:
         before = plant.site.latest()
         for _ in range(200):
-            event = plant.site.model.event(EventKind.MOVE_STARTED, "Moves.", "machine", "T000")
+            event = plant.site.model.event(EventKind.MOVE_STARTED, "Moves.", "controller", "T000")
             plant.site.publisher.mark(("T000",), (event,))
             await plant.forward(seconds=0.01)
         after = plant.site.latest()

@@ -5,21 +5,21 @@ from contextlib import suppress
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives.bus import Bus, BusUnit, Priority
+from app.base.clock import VirtualClock
+from app.drives.dialects.plc import PlcDrive
 from app.drives.drive import Drive
-from app.drives.faults import Fault, FaultKind
-from app.drives.plc import PlcDrive
 from app.drives.profile import load_profile
-from app.drives.sim_plc import SimulatedPlc
-from app.drives.simulated import SimulatedDrive
-from app.drives.wire import Ask, Timing
+from app.modbus.bus import Bus, BusUnit, Priority
+from app.modbus.wire import Ask, Timing
+from app.simulation.faults import Fault, FaultKind
+from app.simulation.sim_plc import SimulatedPlc
+from app.simulation.simulated import SimulatedDrive
 from app.site.site import Site
-from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, Jog
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import SiteState
-from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.commands.commands import CommandRejected, Jog
+from app.tracker.memory.memory import SiteState
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.state.snapshot import ActivityName, EventKind
 from tests.fault_result import BY_ITSELF, VIRTUAL, FaultResult
 from tests.site.plant import FIRST, SUMMER_NOON, Plant
 

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 from sqlalchemy import update
 
+from app.base.settings import Settings
 from app.link.messages import ConfigureTracker
-from app.settings import Settings
 from app.site.startup import begin
 from app.store import tables
 from app.store.config_repair import BESIDE
@@ -21,11 +21,11 @@ from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.store import JournalFilter, StoreFailed
 from app.store.writer import DatabaseWriter
-from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, Jog, Stop, Track
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.memory import HomeTrust, TrackerMemory, TrackerState
-from app.tracker.snapshot import EventKind
+from app.tracker.commands.commands import CommandRejected, Jog, Stop, Track
+from app.tracker.memory.memory import HomeTrust, TrackerMemory, TrackerState
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.state.snapshot import EventKind
 from tests.fault_result import FaultResult
 from tests.site.plant import Plant, make_plant
 
@@ -120,7 +120,11 @@ def test_values_that_do_not_fit_give_way_to_the_usual_where_no_others_are_known(
     assert found.config.deadband_deg == 0.7, "what fits stays"
     assert found.config.in_position_deg == 0.05
     assert found.config.azimuth.minimum_deg == 0.0
-    assert {one.what for one in found.memory.rejected} == {"in position deg", "azimuth", "strategy"}
+    assert {one.what for one in found.memory.rejected} == {
+        "in position deg",
+        "azimuth minimum deg",
+        "strategy",
+    }
     assert not any(one.is_last_accepted for one in found.memory.rejected)
     writer.close()
 
@@ -138,10 +142,10 @@ def test_only_the_tracker_whose_settings_do_not_fit_falls_back(tmp_path: Path) -
 
 @pytest.mark.fault(52)
 def test_settings_that_do_not_go_together_are_told_too(tmp_path: Path) -> None:
-    odd = replace(KEPT, config=replace(KEPT.config, park=Orientation(180.0, 45.0), deadband_deg=99.0))
+    odd = replace(KEPT, config=replace(KEPT.config, park=Orientation(180.0, 45.0), in_position_deg=0.9))
     writer = stored(tmp_path, state=odd)
     (found,) = begin(writer, NOW, unclean_since=None).trackers
-    assert "The deadband must lie between 0.02 and 10.0 degrees." in found.memory.rejected[0].why
+    assert "must not exceed the deadband" in found.memory.rejected[0].why
     assert found.memory.home is not None, "the zero has nothing to do with it"
     writer.close()
 
@@ -153,7 +157,7 @@ def test_settings_that_do_not_go_together_give_way_to_those_accepted_last(tmp_pa
     assert found.config == KEPT.config
     (told,) = found.memory.rejected
     assert (told.what, told.stored, told.used, told.is_last_accepted) == ("deadband deg", "99.0", "0.7", True)
-    assert "The deadband must lie between 0.02 and 10.0 degrees." in told.why
+    assert "Deadband must be between 0.02 and 10." in told.why
     writer.close()
 
 

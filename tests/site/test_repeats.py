@@ -5,10 +5,20 @@ import asyncio
 import pytest
 
 from app.link.messages import Order, StopAll
-from app.site.idempotency import Repeats
-from app.tracker.axes import Axis
-from app.tracker.commands import Command, CommandRejected, EndJog, Jog, Park, SetInhibit, Step, Stop, Track
-from app.tracker.snapshot import ActivityName, SiteSnapshot
+from app.site.orders.idempotency import Repeats
+from app.tracker.commands.commands import (
+    Command,
+    CommandRejected,
+    EndJog,
+    Jog,
+    Park,
+    SetInhibit,
+    Step,
+    Stop,
+    Track,
+)
+from app.tracker.settings.axes import Axis
+from app.tracker.state.snapshot import ActivityName, SiteSnapshot
 from tests.fakes import FakeMachine
 from tests.fault_result import FaultResult
 from tests.site.plant import Plant, settle

@@ -12,20 +12,20 @@ import pytest
 
 from app.alarms.catalogue import CATALOGUE
 from app.alarms.conditions import MEGABYTE
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from app.link.weather_orders import ReportWeather
-from app.site.sample_batches import MOST_WAITING, SampleBatches
+from app.site.recording.sample_batches import MOST_WAITING, SampleBatches
+from app.site.recording.write_queue import Ledger
 from app.site.site import SiteOptions
 from app.site.startup import begin
-from app.site.write_queue import Ledger
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.store import StoreFailed, Writer
-from app.tracker.commands import SelectMode, Track
-from app.tracker.mode import Mode
-from app.tracker.recording import COLUMNS, Frames, RecordingKind
-from app.tracker.snapshot import EventKind
-from app.tracker.weather import Weather
+from app.tracker.commands.commands import SelectMode, Track
+from app.tracker.memory.recording import COLUMNS, Frames, RecordingKind
+from app.tracker.state.snapshot import EventKind
+from app.tracker.values.mode import Mode
+from app.tracker.weather.weather import Weather
 from tests.fault_result import FaultResult
 from tests.site.plant import SUMMER_NOON, Plant, make_plant
 from tests.store.tracked_day import MIDNIGHT, day_info, tracked_day
@@ -117,14 +117,14 @@ def test_what_waits_goes_after_the_set_time_and_what_begins_or_ends_at_once(
     assert not batches.is_due(now + EVERY - timedelta(seconds=1))
     assert batches.is_due(now + EVERY)
     batches.hand_over(now + EVERY)
-    assert (writer.transactions, batches.frames_waiting) == (2, 0)
+    assert (writer.transactions, batches.samples_waiting) == (2, 0)
     batches.add({"day-1": frames_of(120, 7)})
     batches.end("day-1", now + EVERY, "completed")
     assert batches.is_due(now + EVERY)
     batches.hand_over(now + EVERY)
     stored = writer.writer.recording("day-1")
     assert stored is not None
-    assert (stored.frame_count, stored.outcome, writer.transactions) == (107, "completed", 3)
+    assert (stored.sample_count, stored.outcome, writer.transactions) == (107, "completed", 3)
 
 
 def test_a_batch_that_was_not_stored_comes_back_and_goes_with_the_next(
@@ -137,7 +137,7 @@ def test_a_batch_that_was_not_stored_comes_back_and_goes_with_the_next(
         batches.add({"day-1": frames_of(10.0 * number, 10)})
         batches.hand_over(MIDNIGHT)
     assert batches.ledger.behind
-    assert batches.frames_waiting == 30
+    assert batches.samples_waiting == 30
     assert len(writer.writer.frames("day-1")) == 0
     assert not batches.is_due(MIDNIGHT + timedelta(seconds=9))
     assert batches.is_due(MIDNIGHT + timedelta(seconds=10))
@@ -145,7 +145,7 @@ def test_a_batch_that_was_not_stored_comes_back_and_goes_with_the_next(
     batches.hand_over(MIDNIGHT)
     elapsed_s = writer.writer.frames("day-1").column("elapsed_s")
     assert np.round(elapsed_s).tolist() == list(range(30))
-    assert batches.frames_waiting == 0
+    assert batches.samples_waiting == 0
 
 
 def test_a_disk_that_takes_nothing_costs_the_oldest_samples_and_no_more_memory(
@@ -156,7 +156,7 @@ def test_a_disk_that_takes_nothing_costs_the_oldest_samples_and_no_more_memory(
     for second in range(0, 2 * MOST_WAITING, 900):
         batches.add({"day-1": frames_of(second, 900)})
         batches.hand_over(MIDNIGHT)
-    assert batches.frames_waiting == MOST_WAITING
+    assert batches.samples_waiting == MOST_WAITING
     writer.refuses = False
     batches.hand_over(MIDNIGHT)
     assert round(float(writer.writer.frames("day-1").column("elapsed_s")[0])) == MOST_WAITING
@@ -259,7 +259,7 @@ async def test_a_disk_with_hardly_any_room_is_spared_samples(store: Writer, faul
     await plant.commission()
     await plant.forward(seconds=12)
     (day,) = store.recordings(kind=RecordingKind.DAY)
-    assert day.frame_count == 0
+    assert day.sample_count == 0
     raised = next(one for one in plant.happened(EventKind.ALARM_RAISED) if one.data["code"] == "disk_full")
     consequence = CATALOGUE["disk_full"].consequence
     assert "No more samples are recorded" in consequence
@@ -283,7 +283,7 @@ class HungWriter(CountingWriter):
 async def test_a_disk_that_hangs_costs_the_oldest_samples_and_no_more_memory(
     store: Writer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.site.recorder.MOST_WAITING", 60)
+    monkeypatch.setattr("app.site.recording.recorder.MOST_WAITING", 60)
     writer, beginning = HungWriter(store), begin(store, SUMMER_NOON, unclean_since=None)
     plant = make_plant(writer=writer, state=beginning.site, trackers=beginning.trackers)
     await plant.start()
@@ -291,9 +291,9 @@ async def test_a_disk_that_hangs_costs_the_oldest_samples_and_no_more_memory(
     recorder = plant.site.model.recorder
     writer.hangs = True
     recorder.flush(plant.clock.now(), at_once=True)
-    under_way = recorder.frames_waiting
+    under_way = recorder.samples_waiting
     await plant.forward(seconds=150.0)
-    assert recorder.frames_waiting == under_way + 60
+    assert recorder.samples_waiting == under_way + 60
     await plant.close()
 
 
@@ -304,7 +304,7 @@ async def test_while_recording_is_suspended_no_sample_is_kept(
     recorder = plant.site.model.recorder
     recorder.flush(plant.clock.now(), at_once=True)
     (day,) = counting.writer.recordings(kind=RecordingKind.DAY)
-    kept = day.frame_count
+    kept = day.sample_count
     for why in ("disk", "load"):
         recorder.suspend(why)
     recorder.resume("load")

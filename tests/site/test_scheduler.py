@@ -7,12 +7,12 @@ from datetime import datetime, timedelta
 
 import pytest
 
-from app.clock import VirtualClock
-from app.site.scheduler import GRACE, MOST_ASKED_AT_ONCE, MOST_DUE_AT_ONCE, Scheduler, Slot
-from app.tracker.axes import Axis, JogSpeed
-from app.tracker.commands import JOG_LEASE, Jog
-from app.tracker.motion import HALT, DriveCommand, Feedback, Velocity
-from app.tracker.snapshot import EventKind
+from app.base.clock import VirtualClock
+from app.site.loop.scheduler import GRACE, MOST_ASKED_AT_ONCE, MOST_DUE_AT_ONCE, Scheduler, Slot
+from app.tracker.commands.commands import JOG_LEASE, Jog
+from app.tracker.settings.axes import Axis, JogSpeed
+from app.tracker.state.snapshot import EventKind
+from app.tracker.values.motion import HALT, DriveCommand, Feedback, Velocity
 from tests.site.plant import SUMMER_NOON, Plant, make_plant, settle
 from tests.site.wrapped_drive import WrappedDrive
 

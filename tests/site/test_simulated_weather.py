@@ -7,15 +7,15 @@ import pytest
 
 from app.link.messages import AddTracker, ConfigureTracker
 from app.link.weather_orders import ReportWeather, SetMetStation, SetWeatherWindows, SimulateWeather
-from app.site.weather import WeatherStation
-from app.tracker.commands import CommandRejected, SelectMode, Track
-from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
-from app.tracker.memory import MetStation, SiteState
-from app.tracker.mode import Mode
-from app.tracker.simulated_weather import Scenario, SimulatedStation
-from app.tracker.snapshot import ActivityName, EventKind
-from app.tracker.weather import Quality, Weather, WeatherNow
-from app.tracker.weather_windows import LIMITS, WeatherWindows
+from app.site.weather.weather import WeatherStation
+from app.tracker.commands.commands import CommandRejected, SelectMode, Track
+from app.tracker.memory.memory import MetStation, SiteState
+from app.tracker.settings.config import DriveConfig, DriveKind, TrackerConfig
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.mode import Mode
+from app.tracker.weather.simulated_weather import Scenario, SimulatedStation
+from app.tracker.weather.weather import Quality, Weather, WeatherNow
+from app.tracker.weather.weather_windows import LIMITS, WeatherWindows
 from tests.site.plant import SUMMER_NOON, Plant, make_plant
 from tests.site.test_weather_quality import at, quality, report
 

@@ -7,9 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from app.drives.drive import Drive
-from app.drives.factory import DriveFactory
 from app.link.messages import (
     AddTracker,
     ApplySightings,
@@ -25,20 +24,37 @@ from app.link.messages import (
     TakeSighting,
     UnknownTracker,
 )
+from app.machine.drive_factory import DriveFactory
+from app.site.clock.timekeeping import Timekeeper
 from app.site.site import Site
-from app.site.sky import Sky
-from app.site.timekeeping import Timekeeper
+from app.site.weather.sky import Sky
 from app.sun.position import Algorithm, Location
-from app.tracker.axes import Axis, JogSpeed
-from app.tracker.commands import Command, CommandRejected, Jog, Move, ResetFault, SelectMode, Stop, Track
-from app.tracker.commissioning import StepStatus
-from app.tracker.config import AxisDrive, DriveConfig, DriveKind, Orientation, SerialConfig, TrackerConfig
+from app.tracker.commands.commands import (
+    Command,
+    CommandRejected,
+    Jog,
+    Move,
+    ResetFault,
+    SelectMode,
+    Stop,
+    Track,
+)
+from app.tracker.commissioning.steps import StepStatus
 from app.tracker.controller import Controller, Tick
-from app.tracker.memory import ClockSetting, SiteState, StepName, TrackerMemory, TrackerState
-from app.tracker.mode import Mode
-from app.tracker.motion import DriveCapabilities
-from app.tracker.observation import Observation
-from app.tracker.snapshot import ActivityName, Event, EventKind
+from app.tracker.memory.memory import ClockSetting, SiteState, StepName, TrackerMemory, TrackerState
+from app.tracker.memory.observation import Observation
+from app.tracker.settings.axes import Axis, JogSpeed
+from app.tracker.settings.config import (
+    AxisDrive,
+    DriveConfig,
+    DriveKind,
+    Orientation,
+    SerialConfig,
+    TrackerConfig,
+)
+from app.tracker.state.snapshot import ActivityName, Event, EventKind
+from app.tracker.values.mode import Mode
+from app.tracker.values.motion import DriveCapabilities
 from tests.fault_result import FaultResult
 from tests.site.plant import FIRST, SAMSUN, SUMMER_NOON, Plant, make_plant, settle
 from tests.site.wrapped_drive import WrappedDrive, wrapped
@@ -47,7 +63,7 @@ SECOND = TrackerState(TrackerConfig("T2", "Tracker 2"), TrackerMemory())
 
 
 class BrokenController(Controller):
-    """A mind that fails at whatever it is asked."""
+    """A state that fails at whatever it is asked."""
 
     def __init__(self, state: TrackerState) -> None:
         super().__init__(state.config, state.memory, DriveCapabilities(True, None, True, True, "", True))
@@ -153,7 +169,7 @@ async def test_trackers_come_and_go(plant: Plant) -> None:
         (TrackerConfig("T2", "  "), "A name has"),
         (TrackerConfig("T2", "x", deadband_deg=0.0), "deadband"),
         (TrackerConfig("T2", "x", in_position_deg=0.6), "must not exceed the deadband"),
-        (TrackerConfig("T2", "x", following_error_deg=float("nan")), "following error"),
+        (TrackerConfig("T2", "x", following_error_deg=float("nan")), "Following error must be"),
         (TrackerConfig("T2", "x", park=Orientation(0.0, 120.0)), "park position's elevation"),
         (TrackerConfig("T2", "x", drive=DriveConfig(DriveKind.MODBUS_TCP, port=0)), "port"),
         (TrackerConfig("T2", "x", drive=DriveConfig(DriveKind.MODBUS_TCP, host=" ")), "host"),
@@ -228,13 +244,13 @@ async def test_a_new_name_keeps_the_zero_and_another_drive_loses_it(plant: Plant
     config = plant.site.model.tracker("T1").config
 
     await plant.ask(ConfigureTracker(replace(config, name="North", deadband_deg=0.4)))
-    assert plant.tracker().home_trusted
+    assert plant.tracker().homed
 
     other = DriveConfig(DriveKind.SIMULATED, profile="another")
     await plant.ask(ConfigureTracker(replace(config, drive=other)))
     await plant.forward(seconds=1)
 
-    assert not plant.tracker().home_trusted
+    assert not plant.tracker().homed
     assert "another drive" in plant.site.model.tracker("T1").memory.home_lost
 
 

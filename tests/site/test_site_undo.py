@@ -10,11 +10,11 @@ from app.link.place_orders import SetHorizon
 from app.link.settings_orders import UndoSiteSettings
 from app.link.weather_orders import SetMetStation, SetWeatherWindows, SimulateWeather
 from app.sun.horizon import Horizon
-from app.tracker.commands import CommandRejected
-from app.tracker.memory import MetStation, SiteState
-from app.tracker.notifications import Notifications
-from app.tracker.simulated_weather import SimulatedStation
-from app.tracker.weather_windows import WeatherWindows
+from app.tracker.commands.commands import CommandRejected
+from app.tracker.memory.memory import MetStation, SiteState
+from app.tracker.values.notifications import Notifications
+from app.tracker.weather.simulated_weather import SimulatedStation
+from app.tracker.weather.weather_windows import WeatherWindows
 from tests.site.plant import Plant, make_plant
 
 STATION = MetStation("192.0.2.7")

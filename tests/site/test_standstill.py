@@ -6,16 +6,16 @@ from typing import TypeVar, cast
 
 import pytest
 
-from app.drives.faults import Fault, FaultKind
-from app.drives.simulated import SimulatedDrive
 from app.link.messages import Order, RenameSite, SetLocation, StopAll
+from app.simulation.faults import Fault, FaultKind
+from app.simulation.simulated import SimulatedDrive
 from app.store.store import Writer
-from app.tracker.commands import CommandRejected, Move, ResetFault, SelectMode, Stop, Track
-from app.tracker.config import Orientation
-from app.tracker.memory import TrackerState
-from app.tracker.mode import Mode
-from app.tracker.motion import DriveCommand
-from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.commands.commands import CommandRejected, Move, ResetFault, SelectMode, Stop, Track
+from app.tracker.memory.memory import TrackerState
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.mode import Mode
+from app.tracker.values.motion import DriveCommand
 from tests.site.plant import SAMSUN, Plant, make_plant, settle
 from tests.site.wrapped_drive import WrappedDrive, wrapped
 
@@ -52,7 +52,7 @@ async def test_a_command_that_was_not_taken_is_not_sent_to_a_drive_that_restarte
     assert {(told.azimuth, told.elevation) for told in drive.written} == {
         (DriveCommand().azimuth, DriveCommand().elevation)
     }
-    assert not plant.tracker().home_trusted
+    assert not plant.tracker().homed
     await plant.close()
 
 

@@ -4,13 +4,13 @@ from datetime import timedelta
 
 import pytest
 
-from app.angles import separation_deg
+from app.base.angles import separation_deg
 from app.link.messages import SetLocation
 from app.sun.position import Location
-from app.tracker.axes import Axis, JogSpeed
-from app.tracker.commands import CommandRejected, EndJog, Jog, SelectMode, Stop, Track
-from app.tracker.mode import Mode
-from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.commands.commands import CommandRejected, EndJog, Jog, SelectMode, Stop, Track
+from app.tracker.settings.axes import Axis, JogSpeed
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.mode import Mode
 from tests.site.plant import Plant
 
 

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.tracker.commands import SelectMode, Track
-from app.tracker.mode import Mode
-from app.tracker.snapshot import ActivityName, EventKind
-from app.web.ui.formats import local
+from app.tracker.commands.commands import SelectMode, Track
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.mode import Mode
+from app.web.shell.formats import local
 from tests.site.plant import Plant, make_plant
 
 ZONES = ("Pacific/Kiritimati", "Pacific/Midway", "Australia/Lord_Howe", "Antarctica/Troll")

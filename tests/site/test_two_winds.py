@@ -6,11 +6,11 @@ import pytest
 
 from app.link.messages import Order
 from app.link.weather_orders import ReportWeather
-from app.site.weather import WeatherStation
-from app.tracker.commands import SelectMode, Track
-from app.tracker.mode import Mode
-from app.tracker.snapshot import ActivityName
-from app.tracker.weather import Quality, Weather, WeatherNow
+from app.site.weather.weather import WeatherStation
+from app.tracker.commands.commands import SelectMode, Track
+from app.tracker.state.snapshot import ActivityName
+from app.tracker.values.mode import Mode
+from app.tracker.weather.weather import Quality, Weather, WeatherNow
 from tests.fault_result import VIRTUAL, FaultResult
 from tests.site.plant import Plant
 
@@ -103,7 +103,7 @@ async def test_two_sensors_that_disagree_stow_by_the_higher_and_are_told_with_bo
     assert "m/s" in message
     fault.noticed(float(taken_s), VIRTUAL)
     fault.shows(message)
-    fault.recovers("by itself: when they agree")
+    fault.recovers("automatic: when they agree")
     await plant.until(lambda seen: seen.activity is ActivityName.STOWED)
 
     for second in range(120):

@@ -6,8 +6,8 @@ import pytest
 
 from app.link.messages import ConfigureTracker, LockSettings, RemoveTracker
 from app.link.settings_orders import UndoSettings
-from app.tracker.commands import CommandRejected
-from app.tracker.config import Orientation, TrackerConfig
+from app.tracker.commands.commands import CommandRejected
+from app.tracker.settings.config import Orientation, TrackerConfig
 from tests.site.plant import Plant, make_plant
 
 

@@ -4,10 +4,10 @@ from collections.abc import AsyncIterator
 
 import pytest
 
-from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, Move, SetHome, Step, UndoHome
-from app.tracker.config import Orientation
-from app.tracker.snapshot import ActivityName, AxisState, EventKind, Snapshot
+from app.tracker.commands.commands import CommandRejected, Move, SetHome, Step, UndoHome
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ActivityName, AxisState, EventKind, Snapshot
 from tests.site.plant import Plant, make_plant
 
 
@@ -29,7 +29,7 @@ def angles(seen: Snapshot) -> tuple[float, float]:
 
 async def set_here(plant: Plant) -> None:
     await plant.ask(SetHome())
-    await plant.until(lambda seen: seen.activity is ActivityName.HOLDING and seen.home_trusted)
+    await plant.until(lambda seen: seen.activity is ActivityName.HOLDING and seen.homed)
     assert angles(plant.tracker()) == (0.0, 0.0)
 
 
@@ -42,7 +42,7 @@ async def test_undone_the_angles_and_who_set_it_are_those_before(plant: Plant) -
     await plant.forward(seconds=2.0)
     now = plant.tracker()
     assert angles(now) == (102.4, 36.6)
-    assert (now.home, now.home_trusted, now.fault) == (before.home, True, None)
+    assert (now.home, now.homed, now.fault) == (before.home, True, None)
     assert [event.actor for event in plant.happened(EventKind.HOME_POSITION_UNDONE)] == ["technician"]
     with pytest.raises(CommandRejected, match="no former home position"):
         await plant.ask(UndoHome())
@@ -88,7 +88,7 @@ async def test_an_axis_that_was_not_homed_before_is_not_shown_as_homed_again() -
     assert [axis.homed for axis in axes(plant)] == [True, True]
     await plant.ask(UndoHome())
     await plant.forward(seconds=1.0)
-    assert not plant.tracker().home_trusted
+    assert not plant.tracker().homed
     assert [axis.homed for axis in axes(plant)] == [False, False]
     await set_here(plant)
     assert [axis.homed for axis in axes(plant)] == [True, True]

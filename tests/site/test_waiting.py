@@ -6,11 +6,9 @@ from datetime import datetime
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives.bus import Bus
-from app.drives.plc import PlcDrive
+from app.base.clock import VirtualClock
+from app.drives.dialects.plc import PlcDrive
 from app.drives.profile import load_profile
-from app.drives.wire import Ask, Timing, Unanswered
 from app.link.messages import (
     ConfigureTracker,
     EndInjectedFaults,
@@ -22,10 +20,12 @@ from app.link.messages import (
     SiteCommand,
 )
 from app.link.weather_orders import SetMetStation
-from app.tracker.commands import CommandRejected
-from app.tracker.config import AxisDrive, TrackerConfig
-from app.tracker.memory import MetStation
-from app.tracker.motion import DriveCapabilities, DriveCommand, Feedback
+from app.modbus.bus import Bus
+from app.modbus.wire import Ask, Timing, Unanswered
+from app.tracker.commands.commands import CommandRejected
+from app.tracker.memory.memory import MetStation
+from app.tracker.settings.config import AxisDrive, TrackerConfig
+from app.tracker.values.motion import DriveCapabilities, DriveCommand, Feedback
 from tests.site.plant import SUMMER_NOON, Plant, make_plant, settle
 
 WELL_BELOW_S = 2.5

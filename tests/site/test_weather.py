@@ -6,8 +6,8 @@ from math import nan
 import pytest
 
 from app.link.weather_orders import ReportWeather
-from app.tracker.snapshot import ActivityName
-from app.tracker.weather import RANGES, Weather
+from app.tracker.state.snapshot import ActivityName
+from app.tracker.weather.weather import RANGES, Weather
 from tests.site.plant import Plant, settle
 
 
@@ -34,7 +34,7 @@ async def test_a_report_grows_old_and_stale_and_a_new_one_takes_its_place(plant:
 
 async def test_the_age_of_a_report_counts_from_its_measurement(plant: Plant) -> None:
     measured_at = plant.site.model.now() - timedelta(seconds=100)
-    told = await plant.ask(ReportWeather(Weather(light_wm2=800.0), measured_at))
+    told = await plant.ask(ReportWeather(Weather(irradiance_wm2=800.0), measured_at))
     assert told.weather is not None
     assert told.weather.age_s == pytest.approx(100.0)
 

@@ -5,13 +5,14 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from app.link.weather_orders import ReportWeather
-from app.site.weather import WeatherStation
-from app.tracker.commands import SelectMode, Stow, Track
-from app.tracker.mode import Mode
-from app.tracker.protections.words import Protection, StowName
-from app.tracker.snapshot import ActivityName, EventKind
-from app.tracker.weather import NOTHING_SENSED, Quality, Weather
-from app.tracker.weather_windows import same_age
+from app.site.weather.weather import WeatherStation
+from app.tracker.commands.commands import SelectMode, Stow, Track
+from app.tracker.protections.words import Protection
+from app.tracker.settings.protections import StowName
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.mode import Mode
+from app.tracker.weather.weather import NOTHING_SENSED, Quality, Weather
+from app.tracker.weather.weather_windows import same_age
 from tests.site.plant import Plant
 
 BEGIN = datetime(2026, 6, 21, 6, tzinfo=UTC)
@@ -39,15 +40,15 @@ def test_before_the_first_report_nothing_is_sensed() -> None:
 def test_every_quantity_has_its_own_source_and_age() -> None:
     station = WeatherStation()
     report(station, 0, "mast", wind_mps=5.0)
-    report(station, 100, "roof", light_wm2=700.0)
+    report(station, 100, "roof", irradiance_wm2=700.0)
     seen = station.now(at(110))
     assert seen is not None
-    assert seen.readings == Weather(wind_mps=5.0, light_wm2=700.0)
+    assert seen.readings == Weather(wind_mps=5.0, irradiance_wm2=700.0)
     told = {name: (one.source, one.age_s) for name, one in seen.quantities.items()}
-    assert told == {"wind_mps": ("mast", 110.0), "light_wm2": ("roof", 10.0)}
+    assert told == {"wind_mps": ("mast", 110.0), "irradiance_wm2": ("roof", 10.0)}
     later = station.now(at(350))
     assert later is not None
-    assert later.readings == Weather(light_wm2=700.0)
+    assert later.readings == Weather(irradiance_wm2=700.0)
     assert later.quantities["wind_mps"].quality is Quality.STALE
     assert not later.stale
 
@@ -90,7 +91,7 @@ def test_a_wind_that_never_changes_is_frozen_but_calm_is_not(
 def test_dark_nights_and_bare_panels_are_not_frozen() -> None:
     station = WeatherStation()
     for minute in range(120):
-        report(station, 60.0 * minute, light_wm2=0.0, snow_kg=0.0)
+        report(station, 60.0 * minute, irradiance_wm2=0.0, snow_kg=0.0)
     seen = station.sensed(at(60.0 * 119))
     assert (seen.light.quality, seen.snow.quality) == (Quality.GOOD, Quality.GOOD)
 
@@ -108,7 +109,7 @@ def test_a_jump_that_no_wind_makes_is_believed_only_when_confirmed() -> None:
 def test_what_is_no_number_or_out_of_range_is_a_condition_of_its_own() -> None:
     station = WeatherStation()
     report(station, 0, wind_mps=3.0)
-    station.receive(Weather(light_wm2=500.0), None, "mast", at(1), at(1), impossible=("wind_mps",))
+    station.receive(Weather(irradiance_wm2=500.0), None, "mast", at(1), at(1), impossible=("wind_mps",))
     seen = station.sensed(at(1))
     assert seen.wind.quality is Quality.IMPOSSIBLE
     assert seen.light.good == 500.0

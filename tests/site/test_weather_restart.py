@@ -9,19 +9,19 @@ from pathlib import Path
 
 import pytest
 
-from app.drives.simulated import SimulatedDrive
+from app.base.twins import Twins
 from app.link.weather_orders import ReportWeather, SimulateWeather
-from app.site import kept_weather
-from app.site.kept_weather import KeptWeather, WeatherFile
+from app.simulation.simulated import SimulatedDrive
 from app.site.site import SiteOptions
-from app.tracker.commands import Move
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.memory import ClockSetting, SiteState, TrackerMemory, TrackerState
-from app.tracker.protections.config import ProtectionConfig, WindProtection
-from app.tracker.simulated_weather import Scenario, SimulatedStation
-from app.tracker.snapshot import SiteSnapshot
-from app.tracker.weather import Quality, Weather, WeatherNow
-from app.twins import Twins
+from app.site.weather import kept_weather
+from app.site.weather.kept_weather import KeptWeather, WeatherFile
+from app.tracker.commands.commands import Move
+from app.tracker.memory.memory import ClockSetting, SiteState, TrackerMemory, TrackerState
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.settings.protections import ProtectionConfig, WindProtection
+from app.tracker.state.snapshot import SiteSnapshot
+from app.tracker.weather.simulated_weather import Scenario, SimulatedStation
+from app.tracker.weather.weather import Quality, Weather, WeatherNow
 from tests.fault_result import BY_ITSELF, FaultResult
 from tests.site.plant import SAMSUN, SUMMER_NOON, Plant, make_plant, settle
 
@@ -107,7 +107,7 @@ def stows(plant: Plant) -> list[bool]:
 
 
 async def blow(plant: Plant, wind_mps: float) -> None:
-    await plant.ask(ReportWeather(Weather(wind_mps=wind_mps, light_wm2=700.0)), None)
+    await plant.ask(ReportWeather(Weather(wind_mps=wind_mps, irradiance_wm2=700.0)), None)
 
 
 @pytest.mark.fault(81)
@@ -121,7 +121,7 @@ async def test_a_storm_reported_just_before_a_kill_holds_afterwards(lives: Lives
     assert stows(plant) == [True, False]
     seen = told(plant)
     assert (seen.before_restart, seen.stale, seen.usable, seen.source) == (True, True, None, "technician")
-    assert (seen.readings.wind_mps, seen.readings.light_wm2) == (18.5, 700.0)
+    assert (seen.readings.wind_mps, seen.readings.irradiance_wm2) == (18.5, 700.0)
     assert seen.age_s == pytest.approx(7.5, abs=0.3)
     assert {one.quality for one in seen.quantities.values()} == {Quality.BEFORE_RESTART}
     fault.recovers(f"{BY_ITSELF} once the wind has been heard calm for the whole delay")
@@ -261,7 +261,7 @@ async def test_a_damaged_file_is_no_weather(lives: Lives, damage: bytes, fault: 
     assert stows(plant) == [True, True]
     fault.prevented("the copy before it is read; where both are damaged nothing is believed")
     fault.shows_nothing("as long as no weather is heard, none is shown")
-    fault.recovers("by itself: with the next report")
+    fault.recovers("automatic: with the next report")
 
 
 async def test_a_disk_that_fails_keeps_no_report_from_acting(

@@ -2,11 +2,10 @@
 
 from datetime import timedelta
 
-from app.drives.position_memory import AxisMemory, PositionMemory
-from app.site.gathering import BackgroundWriter
+from app.simulation.position_memory import AxisMemory, PositionMemory
+from app.site.recording.gathering import BackgroundWriter
 from app.site.site import SiteOptions
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import (
+from app.tracker.memory.memory import (
     ClockSetting,
     Confirmation,
     HomeTrust,
@@ -15,8 +14,9 @@ from app.tracker.memory import (
     TrackerMemory,
     TrackerState,
 )
-from app.tracker.mode import Mode
-from app.tracker.snapshot import ActivityName
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.state.snapshot import ActivityName
+from app.tracker.values.mode import Mode
 from tests.site.plant import SAMSUN, SUMMER_NOON, Plant, make_plant
 
 TEN_HZ = timedelta(milliseconds=100)

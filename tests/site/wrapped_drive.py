@@ -4,8 +4,9 @@ import asyncio
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 
-from app.drives.drive import Drive, DriveSilent
-from app.tracker.motion import DriveCapabilities, DriveCommand, Feedback
+from app.drives.drive import Drive
+from app.modbus.errors import DriveSilent
+from app.tracker.values.motion import DriveCapabilities, DriveCommand, Feedback
 from tests.site.plant import Plant
 
 

@@ -64,7 +64,7 @@ def _batches(writer: DatabaseWriter, recording_id: str) -> int:
     """Return how many batches of samples a recording has, whole and in their order."""
     head, frames = writer.recording(recording_id), writer.frames(recording_id)
     assert head is not None
-    assert len(frames) == head.frame_count
+    assert len(frames) == head.sample_count
     found = (frames.column("elapsed_s") // FRAMES_A_COMMIT).astype(int).tolist()
     count = len(found) // FRAMES_A_COMMIT
     assert found == [number for number in range(1, count + 1) for _ in range(FRAMES_A_COMMIT)]

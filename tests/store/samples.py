@@ -3,8 +3,7 @@
 from datetime import UTC, datetime, timedelta
 
 from app.sun.position import Location
-from app.tracker.config import DriveConfig, DriveKind, Orientation, TrackerConfig
-from app.tracker.memory import (
+from app.tracker.memory.memory import (
     ClockSetting,
     Confirmation,
     HomeTrust,
@@ -15,9 +14,10 @@ from app.tracker.memory import (
     TrackerMemory,
     TrackerState,
 )
-from app.tracker.mode import Mode
 from app.tracker.programs.show import ShowPlan
-from app.tracker.snapshot import Event, EventKind
+from app.tracker.settings.config import DriveConfig, DriveKind, Orientation, TrackerConfig
+from app.tracker.state.snapshot import Event, EventKind
+from app.tracker.values.mode import Mode
 
 NOON = datetime(2026, 6, 21, 9, 30, 15, 123456, tzinfo=UTC)
 SAMSUN = Location(41.2867, 36.33, 4.0)

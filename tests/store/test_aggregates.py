@@ -6,13 +6,15 @@ from datetime import timedelta
 import pytest
 from sqlalchemy import insert, text
 
-from app.store import tables
+from app.base.message import say
+from app.store import documents, tables
 from app.store.connections import transaction, writing_engine
 from app.store.reader import DatabaseReader
 from app.store.store import JournalFilter, PlannedShow, StoreFailed
 from app.store.writer import SHOWS_KEPT, DatabaseWriter
-from app.tracker.memory import SiteState, TrackerMemory
-from app.tracker.snapshot import EventKind
+from app.tracker.memory.memory import SiteState, TrackerMemory
+from app.tracker.state.snapshot import EventKind
+from app.tracker.weather.simulated_weather import SimulatedStation
 from tests.store.samples import NOON, SITE, event, plan, tracker
 
 ALL = JournalFilter()
@@ -97,9 +99,9 @@ def test_the_journal_is_read_newest_first_by_a_cursor(writer: DatabaseWriter, re
         (JournalFilter(tracker_id="T2"), [3]),
         (JournalFilter(after=1, limit=2), [1, 2]),
         (JournalFilter(kinds=(EventKind.STOPPED, EventKind.JOG_STARTED)), [2, 1]),
-        (JournalFilter(since=NOON + timedelta(seconds=2)), [3, 2]),
-        (JournalFilter(until=NOON + timedelta(seconds=1)), [1, 0]),
-        (JournalFilter(since=NOON + timedelta(seconds=1), kinds=(EventKind.STOPPED,)), [1]),
+        (JournalFilter(start=NOON + timedelta(seconds=2)), [3, 2]),
+        (JournalFilter(end=NOON + timedelta(seconds=1)), [1, 0]),
+        (JournalFilter(start=NOON + timedelta(seconds=1), kinds=(EventKind.STOPPED,)), [1]),
     ],
 )
 def test_filters_narrow_the_journal(
@@ -132,6 +134,18 @@ def test_text_that_no_database_holds_is_made_plain(writer: DatabaseWriter, reade
     assert entry.event.message == "before\N{REPLACEMENT CHARACTER}after ?"
 
 
+@pytest.mark.parametrize(("name", "values"), [("Row 6", {"name": "Row 6"}), ("a\x00 \ud800", {})])
+def test_the_journal_keeps_template_and_values_of_a_message(
+    writer: DatabaseWriter, reader: DatabaseReader, name: str, values: dict[str, str]
+) -> None:
+    told = say("The drive of {name} does not answer.", name=name)
+    writer.append_events([replace(event(), message=told, data={"code": "drive_lost"})])
+    (entry,) = reader.journal(ALL)
+    assert entry.event.data == {"code": "drive_lost"}
+    assert entry.event.message.values == values
+    assert entry.event.message.template == (told.template if values else entry.event.message)
+
+
 @pytest.mark.parametrize(
     ("statement", "sentence"),
     [
@@ -157,6 +171,23 @@ def test_a_document_that_does_not_fit_is_named(
         _read_all(writer)
 
 
+def test_what_former_versions_called_the_controller_is_found_as_the_controller(
+    url: str, writer: DatabaseWriter
+) -> None:
+    engine = writing_engine(url)
+    with transaction(engine) as connection:
+        connection.execute(
+            text(
+                "INSERT INTO events (at, kind, actor, message, data) "
+                "VALUES (0, 'stopped', 'machine', 'x', '{}')"
+            )
+        )
+    engine.dispose()
+    writer.append_events([event(1, kind=EventKind.STOPPED)])
+    found = writer.journal(JournalFilter(actor="controller"))
+    assert [entry.event.actor for entry in found] == ["controller"]
+
+
 def test_an_unknown_kind_of_event_is_named(url: str, writer: DatabaseWriter) -> None:
     engine = writing_engine(url)
     with transaction(engine) as connection:
@@ -171,3 +202,10 @@ def test_an_unknown_kind_of_event_is_named(url: str, writer: DatabaseWriter) -> 
 def _read_all(reader: DatabaseReader) -> None:
     reader.site()
     reader.trackers()
+
+
+def test_a_site_that_named_irradiance_light_is_read() -> None:
+    site = SiteState(simulated_weather=SimulatedStation(irradiance_wm2=300.0))
+    former = documents.SITE.write(site).replace("irradiance_wm2", "light_wm2")
+    assert "light_wm2" in former
+    assert documents.SITE.read(former) == site

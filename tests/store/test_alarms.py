@@ -10,7 +10,7 @@ from app.alarms.alarm import Alarm
 from app.store.connections import transaction, writing_engine
 from app.store.store import AlarmFilter, JournalFilter, KeptAlarm, StoreFailed
 from app.store.writer import DatabaseWriter
-from app.tracker.snapshot import Event, EventKind
+from app.tracker.state.snapshot import Event, EventKind
 
 NOON = datetime(2027, 6, 21, 9, 0, tzinfo=UTC)
 RAISED = Alarm(

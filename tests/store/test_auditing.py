@@ -10,10 +10,11 @@ from sqlalchemy import text
 
 from app.audit.chain import FIRST, first_break
 from app.audit.entry import Entry
-from app.store.backup import backup
+from app.base.message import Message, say
+from app.store.backup.backup import backup
+from app.store.backup.restore import restore
 from app.store.connections import transaction, writing_engine
 from app.store.engine import open_reader, open_writer
-from app.store.restore import restore
 from app.store.store import AuditFilter, StoreFailed
 from app.store.writer import DatabaseWriter
 from tests.store.samples import NOON, SITE, tracker
@@ -45,6 +46,16 @@ def test_an_entry_tells_what_its_transaction_changed(writer: DatabaseWriter) -> 
     stored = writer.site()
     assert stored is not None
     assert stored.name == "North field"
+
+
+def test_a_refusal_is_read_with_its_values_and_its_chain_holds(writer: DatabaseWriter) -> None:
+    refused = say("refused: {error}", error=say("{name} is in service mode.", name="T1"))
+    with writer.audited(replace(ENTRY, result=refused)):
+        writer.save_site(SITE)
+    (kept,) = writer.audit(AuditFilter())
+    assert isinstance(kept.entry.result, Message)
+    assert kept.entry.result.values == refused.values
+    assert first_break([kept.link()]) is None
 
 
 def test_what_is_not_done_is_not_recorded_as_done(writer: DatabaseWriter) -> None:
@@ -90,7 +101,7 @@ def test_entries_form_a_chain_and_are_found(audited: DatabaseWriter) -> None:
     assert numbers(audited, before=3) == [2, 1]
     assert numbers(audited, object="T3") == [4]
     assert numbers(audited, actor="nobody") == []
-    assert numbers(audited, since=NOON + timedelta(minutes=3), until=NOON + timedelta(minutes=4)) == [4]
+    assert numbers(audited, start=NOON + timedelta(minutes=3), end=NOON + timedelta(minutes=4)) == [4]
 
 
 @pytest.mark.parametrize(

@@ -9,11 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from app.store.backup import backup, inspect_backup
-from app.store.chunks import encode_all
-from app.store.engine import open_reader, open_writer
-from app.store.migrations import upgrade
-from app.store.restore import (
+from app.store.backup.backup import backup, inspect_backup
+from app.store.backup.restore import (
     LOCK_NAME,
     PENDING_NAME,
     REFUSED_NAME,
@@ -23,10 +20,13 @@ from app.store.restore import (
     request_restore,
     restore,
 )
+from app.store.chunks import encode_all
+from app.store.engine import open_reader, open_writer
+from app.store.migrations import upgrade
 from app.store.store import JournalEntry, JournalFilter, PlannedShow, StoreFailed
 from app.store.tables import REVISION
-from app.tracker.memory import SiteState, TrackerState
-from app.tracker.recording import RecordingInfo
+from app.tracker.memory.memory import SiteState, TrackerState
+from app.tracker.memory.recording import RecordingInfo
 from tests.fault_result import FaultResult
 from tests.store.postgres import fresh_database
 from tests.store.samples import SITE, event, plan, tracker

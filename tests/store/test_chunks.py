@@ -21,7 +21,7 @@ from app.store.chunks import (
     encode_all,
     join,
 )
-from app.tracker.recording import COLUMNS, Frames
+from app.tracker.memory.recording import COLUMNS, Frames
 from tests.store.tracked_day import tracked_day
 
 WIDEST_ROUNDING = 1e-9

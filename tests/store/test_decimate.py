@@ -8,7 +8,7 @@ from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
 from app.store.decimate import FEWEST_POINTS, PEAKS, decimate
-from app.tracker.recording import COLUMNS, Frames
+from app.tracker.memory.recording import COLUMNS, Frames
 from tests.store.tracked_day import tracked_day
 
 values = st.one_of(st.floats(-400.0, 400.0), st.just(np.nan))

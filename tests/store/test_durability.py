@@ -69,7 +69,7 @@ def test_no_acknowledged_commit_is_lost_when_the_process_is_killed(url: str) -> 
         stored = site.location_revision
         assert stored >= max(acknowledged)
         assert events == list(range(stored, 0, -1)), "an event and its change belong together"
-        assert len(frames) == head.frame_count
+        assert len(frames) == head.sample_count
         in_frames = set((frames.column("elapsed_s") // FRAMES_A_COMMIT).astype(int).tolist())
         assert acknowledged <= in_frames
 
@@ -110,7 +110,7 @@ def test_a_full_disk_is_told_and_nothing_is_half_written(
     with limited(on_sqlite, "max_page_count = 1000000"):
         on_sqlite.save_site(large, [event(2)])
     assert on_sqlite.site() == large
-    fault.recovers("by itself: what waited is stored once there is room")
+    fault.recovers("automatic: what waited is stored once there is room")
 
 
 @pytest.mark.fault(48)
@@ -129,7 +129,7 @@ def test_a_locked_database_is_told_and_works_again(
         other.execute("ROLLBACK")
         on_sqlite.save_site(SITE)
     assert on_sqlite.site() == SITE
-    fault.recovers("by itself: what waited is stored once the lock is gone")
+    fault.recovers("automatic: what waited is stored once the lock is gone")
 
 
 def overwrite(path: Path) -> None:

@@ -6,7 +6,7 @@ import pytest
 
 from app.store.engine import open_writer
 from app.store.store import JournalFilter
-from app.tracker.snapshot import Event, EventKind
+from app.tracker.state.snapshot import Event, EventKind
 
 NTP_ERA = datetime(2036, 2, 7, 6, 28, 16, tzinfo=UTC)
 UNIX_32_BIT = datetime(2038, 1, 19, 3, 14, 8, tzinfo=UTC)
@@ -24,8 +24,8 @@ def test_the_journal_knows_no_end_of_an_era(url: str, era: datetime) -> None:
         [Event(at, EventKind.STOPPED, "T1", f"Stopped at {at.isoformat()}.", "technician") for at in around]
     )
     everything = [entry.event.at for entry in writer.journal(JournalFilter())]
-    after = [entry.event.at for entry in writer.journal(JournalFilter(since=era))]
-    before = [entry.event.at for entry in writer.journal(JournalFilter(until=era - SECOND))]
+    after = [entry.event.at for entry in writer.journal(JournalFilter(start=era))]
+    before = [entry.event.at for entry in writer.journal(JournalFilter(end=era - SECOND))]
     writer.close()
     assert everything == around[::-1]
     assert after == [era + SECOND, era]

@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 
 from app.store.documents import RECORDING
 from app.store.exports import HEAD_KEY, to_csv, to_parquet
-from app.tracker.recording import COLUMNS, Frames
+from app.tracker.memory.recording import COLUMNS, Frames
 from tests.store.tracked_day import MIDNIGHT, day_info, tracked_day
 
 

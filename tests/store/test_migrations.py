@@ -250,4 +250,4 @@ def test_a_migration_that_is_killed_midway_leaves_the_old_database(
     assert still_usable(url)
     fault.prevented("the migration is one transaction")
     fault.shows_nothing("the next start migrates again")
-    fault.recovers("by itself: with the next start")
+    fault.recovers("automatic: with the next start")

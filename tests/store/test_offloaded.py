@@ -7,7 +7,7 @@ from datetime import timedelta
 
 import pytest
 
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.store import JournalFilter, StoreFailed, Writer

@@ -69,7 +69,7 @@ def test_no_power_cut_loses_what_was_acknowledged(
     assert lost_after_cuts(recording, tmp_path, CUTS) == [0] * CUTS
     fault.prevented("what is acknowledged is on the disk")
     fault.shows_nothing("the start tells how the last run ended, as after a kill: row 43")
-    fault.recovers("by itself: every database opens whole")
+    fault.recovers("automatic: every database opens whole")
 
 
 def test_the_same_cuts_find_the_loss_of_a_database_that_does_not_sync_every_commit(tmp_path: Path) -> None:

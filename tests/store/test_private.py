@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from app.access.store import AccessStore
-from app.store.backup import backup
+from app.store.backup.backup import backup
+from app.store.backup.restore import Restored, RestorePending, request_restore
 from app.store.engine import open_reader, open_writer
 from app.store.files import copy_sqlite, keep_all_private
 from app.store.migrations import upgrade
-from app.store.restore import Restored, RestorePending, request_restore
 from tests.store.samples import NOON, SITE
 
 

@@ -13,7 +13,7 @@ from app.store.connections import transaction, writing_engine
 from app.store.reader import DatabaseReader
 from app.store.store import StoreFailed
 from app.store.writer import DatabaseWriter
-from app.tracker.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
+from app.tracker.memory.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
 from tests.store.tracked_day import MIDNIGHT, day_info, tracked_day
 
 RESOLUTION = 0.00051
@@ -41,7 +41,7 @@ def test_a_recording_grows_and_is_closed(writer: DatabaseWriter, reader: Databas
     ended_at = MIDNIGHT + timedelta(seconds=2150)
     writer.finish_recording("day-1", ended_at, "complete")
     assert reader.recording("day-1") == replace(
-        day_info(), ended_at=ended_at, outcome="complete", frame_count=2150
+        day_info(), ended_at=ended_at, outcome="complete", sample_count=2150
     )
 
 
@@ -97,7 +97,7 @@ def test_a_whole_recording_is_stored_all_or_nothing(writer: DatabaseWriter, read
         writer.save_recording(finished("show-1", days=0), chunks[:1])
     stored = reader.recording("show-1")
     assert stored is not None
-    assert stored.frame_count == len(reader.frames("show-1")) == 1000
+    assert stored.sample_count == len(reader.frames("show-1")) == 1000
 
 
 def test_only_an_open_recording_grows(writer: DatabaseWriter) -> None:

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from app.build import VERSION
+from app.base.build import VERSION
 from app.store import software
-from app.store.backup import backup
+from app.store.backup.backup import backup
+from app.store.backup.restore import restore
 from app.store.engine import open_reader, open_writer
 from app.store.migrations import upgrade
-from app.store.restore import restore
 from app.store.software import is_newer
 from app.store.store import StoreUnfit
 from tests.fault_result import FaultResult

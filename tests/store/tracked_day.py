@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.sun.position import Algorithm, Location, sun_path
-from app.tracker.mode import Mode
-from app.tracker.recording import Frames, RecordingInfo, RecordingKind
-from app.tracker.snapshot import ActivityName
+from app.tracker.memory.recording import Frames, RecordingInfo, RecordingKind
+from app.tracker.state.snapshot import ActivityName
+from app.tracker.values.mode import Mode
 
 SAMSUN = Location(41.2867, 36.33)
 MIDNIGHT = datetime(2026, 6, 21, tzinfo=UTC)
@@ -26,8 +26,8 @@ def day_info(recording_id: str = "day-1", *, kind: RecordingKind = RecordingKind
         tracker_name="Tracker 1",
         title="21 June",
         began_at=MIDNIGHT,
-        sun_begin_at=MIDNIGHT,
-        sun_end_at=MIDNIGHT + timedelta(days=1),
+        sun_start=MIDNIGHT,
+        sun_end=MIDNIGHT + timedelta(days=1),
         duration_s=86400.0,
         location=SAMSUN,
         time_zone="Europe/Istanbul",

@@ -9,7 +9,7 @@ import pandas as pd
 import pvlib
 import pytest
 
-from app.adapter import adapter
+from app.base.adapter import adapter
 from app.energy.program import step_program
 from app.energy.stepping import Steps, midpoint_h
 from app.studies.compute import finished, work_out
@@ -21,8 +21,8 @@ from app.studies.request import Fidelity, LightModel, Span, StudyMode, StudyRequ
 from app.studies.result import CaseResult, StudyResult, curves_csv, table_csv
 from app.studies.weather import HOURS, WeatherFormat, WeatherRefused, read_weather
 from app.sun.position import Location
-from app.tracker.axes import AxisConfig
-from app.tracker.config import MountConfig, MountKind, Orientation, TrackerConfig
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import MountConfig, MountKind, Orientation, TrackerConfig
 from tests.studies import files
 
 # pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.

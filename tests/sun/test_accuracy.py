@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.angles import separation_deg
+from app.base.angles import separation_deg
 from app.sun.accuracy import MEASURED, Question, Sight, Survey, separations_deg, survey
 from app.sun.accuracy_table import table
 from app.sun.algorithms import PUBLISHED, Algorithm

@@ -4,7 +4,7 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from app.angles import wrap180, wrap360
+from app.base.angles import wrap180, wrap360
 from app.sun import koblick
 from app.sun.trigonometry import SCALAR
 from tests.golden.table import GoldenRow, golden

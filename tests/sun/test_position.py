@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.angles import wrap180
+from app.base.angles import wrap180
 from app.sun.algorithms import PUBLISHED
 from app.sun.position import (
     Algorithm,

@@ -5,7 +5,7 @@ from math import degrees
 
 import pytest
 
-from app.angles import wrap180, wrap360
+from app.base.angles import wrap180, wrap360
 from app.sun import psa
 from app.sun.trigonometry import SCALAR
 from tests.golden.table import GoldenRow, golden

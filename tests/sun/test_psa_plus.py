@@ -4,7 +4,7 @@ from math import degrees
 
 import pytest
 
-from app.angles import wrap360
+from app.base.angles import wrap360
 from app.sun import psa, psa_plus
 from app.sun.trigonometry import SCALAR
 from tests.golden.table import GoldenRow, golden

@@ -4,7 +4,7 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from app.angles import wrap360
+from app.base.angles import wrap360
 from app.sun import alexandru, cooper, spencer_lamm
 from app.sun.solar_days import day_and_hour, day_of_cycle, day_of_year
 from app.sun.trigonometry import SCALAR

@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-from app.angles import wrap360
+from app.base.angles import wrap360
 from app.sun import koblick, spa
 from app.sun.trigonometry import SCALAR
 from tests.golden.table import GoldenRow, golden

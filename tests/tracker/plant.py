@@ -3,20 +3,20 @@
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 
-from app.clock import VirtualClock
-from app.drives.simulated import SimulatedDrive
+from app.base.clock import VirtualClock
+from app.simulation.simulated import SimulatedDrive
 from app.sun.events import next_rise
 from app.sun.position import Algorithm, Location, SunPosition, sun_position
-from app.tracker.commands import Command
-from app.tracker.config import TrackerConfig
+from app.tracker.commands.commands import Command
 from app.tracker.controller import Controller
-from app.tracker.memory import HomeTrust, TrackerMemory
-from app.tracker.mode import Mode
-from app.tracker.motion import DriveCommand, DriveRequest, RequestKind
-from app.tracker.observation import Observation
+from app.tracker.memory.memory import HomeTrust, TrackerMemory
+from app.tracker.memory.observation import Observation
 from app.tracker.protections.words import LinkQuality
-from app.tracker.snapshot import ActivityName, Event, EventKind, Snapshot
-from app.tracker.weather import NOTHING_SENSED, Quality, Reading, Sensed
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.state.snapshot import ActivityName, Event, EventKind, Snapshot
+from app.tracker.values.mode import Mode
+from app.tracker.values.motion import DriveCommand, DriveRequest, RequestKind
+from app.tracker.weather.weather import NOTHING_SENSED, Quality, Reading, Sensed
 
 SAMSUN = Location(41.2867, 36.33, 4.0)
 MORNING = datetime(2026, 6, 21, 6, 0, tzinfo=UTC)
@@ -94,13 +94,13 @@ class Plant:
         wind_mps: float | None = 3.0,
         *,
         snow_kg: float | None = 0.0,
-        light_wm2: float | None = 600.0,
+        irradiance_wm2: float | None = 600.0,
         wind_from_deg: float | None = None,
     ) -> "Plant":
         """Have a station report this from now on; None is a sensor that reports nothing."""
         wind, snow, light = (
             Reading() if value is None else Reading(value, Quality.GOOD, 0.0, "station")
-            for value in (wind_mps, snow_kg, light_wm2)
+            for value in (wind_mps, snow_kg, irradiance_wm2)
         )
         self.weather = Sensed(wind, snow, light, wind_mps, wind_from_deg)
         return self

@@ -4,14 +4,14 @@ from dataclasses import replace
 from datetime import timedelta
 from typing import Any
 
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from app.sun.position import Algorithm, SunPosition, sun_position
-from app.tracker.commands import Command
+from app.tracker.commands.commands import Command
 from app.tracker.controller import Controller
-from app.tracker.memory import TrackerMemory
-from app.tracker.motion import AxisFeedback, DriveCapabilities, DriveCommand, Feedback
-from app.tracker.observation import Observation
-from app.tracker.snapshot import Event, EventKind, Snapshot
+from app.tracker.memory.memory import TrackerMemory
+from app.tracker.memory.observation import Observation
+from app.tracker.state.snapshot import Event, EventKind, Snapshot
+from app.tracker.values.motion import AxisFeedback, DriveCapabilities, DriveCommand, Feedback
 from tests.tracker.plant import BLANK, CONFIG, MORNING, SAMSUN
 
 CAPABILITIES = DriveCapabilities(

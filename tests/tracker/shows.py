@@ -6,9 +6,9 @@ from typing import Any
 
 from app.sun.events import day_events
 from app.sun.position import Algorithm, Location
-from app.tracker.axes import AxisConfig
-from app.tracker.config import TrackerConfig
 from app.tracker.programs.show import ShowPlan
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import TrackerConfig
 
 DAY = timedelta(days=1)
 SAMSUN = Location(41.2867, 36.33)

@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.angles import separation_deg, wrap180
+from app.base.angles import separation_deg, wrap180
 from app.sun.position import Algorithm, Location, sun_position
 from app.sun.trigonometry import SCALAR
-from app.tracker.alignment import Mistake, diagnose, fit
-from app.tracker.commands import CommandRejected
-from app.tracker.memory import Pointing, Sighting
-from app.tracker.mount import PLAIN, to_axes
+from app.tracker.commands.commands import CommandRejected
+from app.tracker.commissioning.alignment import Mistake, diagnose, fit
+from app.tracker.memory.memory import Pointing, Sighting
+from app.tracker.mounts.mount import PLAIN, to_axes
 
 SAMSUN = Location(41.2867, 36.33)
 JUNE = datetime(2026, 6, 21, tzinfo=UTC)

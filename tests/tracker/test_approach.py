@@ -5,12 +5,12 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from app.tracker.commands import Stop, Stow, Track
-from app.tracker.config import Orientation
-from app.tracker.mode import Mode
-from app.tracker.protections.words import StowName
-from app.tracker.snapshot import ActivityName
-from app.tracker.strategy import Continuous, Strategy
+from app.tracker.commands.commands import Stop, Stow, Track
+from app.tracker.settings.config import Orientation
+from app.tracker.settings.protections import StowName
+from app.tracker.settings.strategy import Continuous, Strategy
+from app.tracker.state.snapshot import ActivityName
+from app.tracker.values.mode import Mode
 from tests.tracker.plant import CONFIG, READY, Plant
 
 APPROACH = "Moving to the sun"

@@ -4,9 +4,8 @@ from datetime import timedelta
 
 import pytest
 
-from app.drives.faults import Fault, FaultKind
-from app.tracker.axes import Axis
-from app.tracker.commands import (
+from app.simulation.faults import Fault, FaultKind
+from app.tracker.commands.commands import (
     BeginServiceMode,
     Command,
     CommandRejected,
@@ -17,8 +16,9 @@ from app.tracker.commands import (
     Stow,
     Track,
 )
-from app.tracker.protections.words import StowName
-from app.tracker.snapshot import ActivityName, Event, EventKind
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.protections import StowName
+from app.tracker.state.snapshot import ActivityName, Event, EventKind
 from tests.tracker.plant import READY
 from tests.tracker.test_faults import SOUTH, Plant, block_and_free, guarded, moving
 
@@ -112,7 +112,7 @@ def test_what_was_held_back_does_not_go_on_after_the_switch() -> None:
     plant = moving()
     turn_switch(plant, local=True)
     plant.forward(0.2)
-    assert plant.controller._mind.held_back is None
+    assert not plant.controller._state.waiting.untouched
     assert plant.snapshot.setpoint is None
 
 

@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import pytest
 
-from app.tracker.commands import Move, RunShow, SelectMode, SetHome, Track
-from app.tracker.commissioning import Standing, Step, StepStatus, standing_of, steps
-from app.tracker.config import Orientation
-from app.tracker.memory import ClockSetting, Confirmation, SiteState, StepName, TrackerMemory
-from app.tracker.mode import Mode
-from app.tracker.reason import Reason
-from app.tracker.snapshot import ClockState, Snapshot
+from app.tracker.commands.commands import Move, RunShow, SelectMode, SetHome, Track
+from app.tracker.commissioning.steps import Standing, Step, StepStatus, standing_of, steps
+from app.tracker.memory.memory import ClockSetting, Confirmation, SiteState, StepName, TrackerMemory
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ClockState, Snapshot
+from app.tracker.values.mode import Mode
+from app.tracker.values.reason import Reason
 from tests.tracker.plant import BLANK, MORNING, READY, SAMSUN, Plant
 from tests.tracker.test_controller_show import PLAN, at_start
 

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import pytest
 
-from app.tracker.commands import Command, Home, Move, Park, SelectMode, Track
-from app.tracker.config import Orientation
-from app.tracker.memory import StepName
-from app.tracker.mode import Mode
-from app.tracker.motion import DriveCommand, Velocity
-from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.commands.commands import Command, Home, Move, Park, SelectMode, Track
+from app.tracker.memory.memory import StepName
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.mode import Mode
+from app.tracker.values.motion import DriveCommand, Velocity
 from tests.tracker.plant import READY, Plant
 from tests.tracker.scripted import Scripted
 

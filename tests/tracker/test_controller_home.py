@@ -5,13 +5,13 @@ from datetime import timedelta
 
 import pytest
 
-from app.drives.faults import Fault, FaultKind
-from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, Home, SetHome, Stop, Track
-from app.tracker.config import DriveConfig, DriveKind
-from app.tracker.memory import Confirmation, Pointing, Sighting, StepName
-from app.tracker.motion import AxisFeedback, Feedback, RequestKind
-from app.tracker.snapshot import ActivityName, EventKind
+from app.simulation.faults import Fault, FaultKind
+from app.tracker.commands.commands import CommandRejected, Home, SetHome, Stop, Track
+from app.tracker.memory.memory import Confirmation, Pointing, Sighting, StepName
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import DriveConfig, DriveKind
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.motion import AxisFeedback, Feedback, RequestKind
 from tests.fault_result import HOME_AGAIN, VIRTUAL, FaultResult
 from tests.tracker.plant import CONFIG, MORNING, READY, TRUST, Plant
 from tests.tracker.scripted import Scripted
@@ -27,7 +27,7 @@ def test_zero_is_set_axis_by_axis_read_back_and_trusted() -> None:
     assert plant.snapshot.activity_text == "Setting the home position"
     plant.forward(1.0)
     assert (plant.azimuth_deg, plant.elevation_deg) == (0.0, 0.0)
-    assert plant.snapshot.home_trusted
+    assert plant.snapshot.homed
     home = plant.controller.memory.home
     assert home is not None
     assert (home.by, home.how, home.boot_count) == ("technician", "set manually", 1)
@@ -41,11 +41,11 @@ def test_one_axis_alone_is_not_enough_for_trust() -> None:
     plant.ask(SetHome((Axis.ELEVATION,)))
     plant.forward(1.0)
     assert plant.happened(EventKind.HOME_POSITION_SET)[0].data == {"axes": ["elevation"]}
-    assert not plant.snapshot.home_trusted
-    assert all("home_not_trusted" in plant.reasons(action) for action in NEEDS_HOME)
+    assert not plant.snapshot.homed
+    assert all("tracker_not_homed" in plant.reasons(action) for action in NEEDS_HOME)
     plant.ask(SetHome((Axis.AZIMUTH,)))
     plant.forward(1.0)
-    assert plant.snapshot.home_trusted
+    assert plant.snapshot.homed
 
 
 def test_zero_needs_axes_at_rest_a_drive_and_an_axis() -> None:
@@ -79,7 +79,7 @@ def test_a_zero_that_does_not_read_back_fails_with_a_sentence(answer: dict[str, 
     script.reading = replace(script.reading, request_done=request.number, **answer)
     happened = [event.message for event in script.tick()]
     assert why in happened[0]
-    assert not script.snapshot.home_trusted
+    assert not script.snapshot.homed
     assert script.controller.activity is ActivityName.HOLDING
 
 
@@ -133,14 +133,14 @@ def test_a_search_that_is_stopped_leaves_no_zero_and_the_drive_at_rest(fault: Fa
     plant.ask(Stop())
     fault.noticed(0.0, VIRTUAL)
     plant.forward(1.0)
-    assert not plant.snapshot.home_trusted
+    assert not plant.snapshot.homed
     assert not plant.drive.observe().homing
     assert plant.activity is ActivityName.HOLDING
     assert "was not finished" in plant.controller.memory.home_lost
     fault.shows(plant.controller.memory.home_lost)
     plant.ask(Home())
     plant.forward(120.0)
-    assert plant.snapshot.home_trusted
+    assert plant.snapshot.homed
     fault.recovers(HOME_AGAIN)
 
 
@@ -200,7 +200,7 @@ def test_a_restarted_drive_has_lost_its_zero_and_tracking_waits() -> None:
     assert plant.happened(EventKind.TRACKING_INTERRUPTED)
     assert [reason.code for reason in plant.snapshot.waiting] == ["drive_restarted"], "one cause, told once"
     assert "step 3" in plant.snapshot.waiting[0].hint
-    assert "home_not_trusted" in plant.reasons("track")
+    assert "tracker_not_homed" in plant.reasons("track")
     assert "restarted" in plant.controller.memory.home_lost
 
 
@@ -229,16 +229,16 @@ def test_an_encoder_jump_ends_the_trust_and_an_ordinary_stop_does_not() -> None:
     plant.tick()
     plant.ask(Stop())
     plant.forward(1.0)
-    assert plant.snapshot.home_trusted
+    assert plant.snapshot.homed
     plant.drive.inject(Fault(FaultKind.ENCODER_JUMP, Axis.AZIMUTH, 12.0))
     plant.forward(0.2)
     assert "jumped by" in plant.happened(EventKind.HOME_LOST)[0].message
     plant.ask(SetHome((Axis.ELEVATION,)))
     plant.forward(1.0)
-    assert not plant.snapshot.home_trusted
+    assert not plant.snapshot.homed
     plant.ask(SetHome((Axis.AZIMUTH,)))
     plant.forward(1.0)
-    assert plant.snapshot.home_trusted
+    assert plant.snapshot.homed
 
 
 def test_another_drive_is_another_zero() -> None:
@@ -247,12 +247,12 @@ def test_another_drive_is_another_zero() -> None:
     renamed = replace(CONFIG, name="North mast")
     plant.controller.configure(renamed, plant.drive.capabilities)
     plant.tick()
-    assert plant.snapshot.home_trusted
+    assert plant.snapshot.homed
     assert plant.snapshot.name == "North mast"
     other = replace(CONFIG, drive=DriveConfig(DriveKind.MODBUS_TCP))
     plant.controller.configure(other, plant.drive.capabilities)
     plant.tick()
-    assert not plant.snapshot.home_trusted
+    assert not plant.snapshot.homed
     assert "another drive" in plant.happened(EventKind.HOME_LOST)[0].message
     assert plant.controller.config is other
 

@@ -5,13 +5,13 @@ from datetime import timedelta
 
 import pytest
 
-from app.drives.faults import Fault, FaultKind
-from app.tracker.axes import Axis, JogSpeed
-from app.tracker.commands import CommandRejected, EndJog, Jog, Move, SelectMode, Step, Stop, Track
-from app.tracker.config import Orientation
-from app.tracker.mode import Mode
-from app.tracker.motion import HALT, Position, Velocity
-from app.tracker.snapshot import ActivityName, EventKind
+from app.simulation.faults import Fault, FaultKind
+from app.tracker.commands.commands import CommandRejected, EndJog, Jog, Move, SelectMode, Step, Stop, Track
+from app.tracker.settings.axes import Axis, JogSpeed
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.mode import Mode
+from app.tracker.values.motion import HALT, Position, Velocity
 from tests.tracker.plant import CONFIG, READY, Plant
 
 

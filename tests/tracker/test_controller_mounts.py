@@ -8,21 +8,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.angles import separation_deg
+from app.base.angles import separation_deg
 from app.sun.position import Algorithm, Location, sun_position
 from app.sun.trigonometry import SCALAR
 from app.tracker.activities.tracking import TWILIGHT_DEG
-from app.tracker.axes import Axis, AxisConfig
-from app.tracker.commands import CommandRejected, Jog, Move, Park, SelectMode, SetHome, Step, Track
-from app.tracker.config import MountConfig, MountKind, Orientation, Rows, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mode import Mode
-from app.tracker.motion import HALT
-from app.tracker.mount import aim, mode_direction, sky
+from app.tracker.commands.commands import CommandRejected, Jog, Move, Park, SelectMode, SetHome, Step, Track
+from app.tracker.memory.memory import Pointing
 from app.tracker.mounts.capabilities import default_mode
 from app.tracker.mounts.kinematics import angles
+from app.tracker.mounts.mount import aim, mode_direction, sky
 from app.tracker.programs.show import ShowCourse, check_show
-from app.tracker.snapshot import EventKind
+from app.tracker.settings.axes import Axis, AxisConfig
+from app.tracker.settings.config import MountConfig, MountKind, Orientation, Rows, TrackerConfig
+from app.tracker.state.snapshot import EventKind
+from app.tracker.values.mode import Mode
+from app.tracker.values.motion import HALT
 from tests.fault_result import FaultResult
 from tests.tracker.plant import BLANK, CONFIG, MORNING, READY, SAMSUN, Plant
 from tests.tracker.shows import SYDNEY, daylight, show, utc
@@ -114,7 +114,7 @@ def test_a_single_axis_is_homed_by_its_first_axis_alone() -> None:
     plant.tick()
     plant.ask(SetHome())
     plant.forward(2.0)
-    assert plant.snapshot.home_trusted
+    assert plant.snapshot.homed
     assert plant.snapshot.azimuth is not None
     assert not plant.drive.observe().elevation.homed
 

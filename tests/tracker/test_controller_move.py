@@ -5,14 +5,14 @@ from datetime import timedelta
 
 import pytest
 
-from app.drives.faults import Fault, FaultKind
-from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, Home, Move, Park, SelectMode, Step, Stop, Track
-from app.tracker.config import Orientation
-from app.tracker.memory import Pointing, StepName
-from app.tracker.mode import Mode
-from app.tracker.motion import Position
-from app.tracker.snapshot import ActivityName, EventKind, Pair
+from app.simulation.faults import Fault, FaultKind
+from app.tracker.commands.commands import CommandRejected, Home, Move, Park, SelectMode, Step, Stop, Track
+from app.tracker.memory.memory import Pointing, StepName
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ActivityName, EventKind, Pair
+from app.tracker.values.mode import Mode
+from app.tracker.values.motion import Position
 from tests.tracker.plant import CONFIG, READY, Plant
 from tests.tracker.scripted import Scripted
 
@@ -68,7 +68,7 @@ def test_a_move_needs_a_trusted_zero_and_a_reachable_orientation_and_says_both()
     plant.tick()
     with pytest.raises(CommandRejected) as refused:
         plant.ask(Move(Orientation(10.0, -20.0)))
-    assert [reason.code for reason in refused.value.reasons] == ["home_not_trusted", "beyond_limits"]
+    assert [reason.code for reason in refused.value.reasons] == ["tracker_not_homed", "beyond_limits"]
     with pytest.raises(CommandRejected, match="cannot face"):
         plant.ask(Move(Orientation(float("nan"), 10.0)))
 
@@ -184,7 +184,7 @@ def test_no_move_during_a_search_for_the_origin() -> None:
     script.ask(Home())
     with pytest.raises(CommandRejected) as refused:
         script.ask(Move(SOUTH))
-    assert {reason.code for reason in refused.value.reasons} == {"home_not_trusted", "busy_homing"}
+    assert {reason.code for reason in refused.value.reasons} == {"tracker_not_homed", "busy_homing"}
 
 
 def test_a_blocked_axis_is_a_fault_that_is_latched_and_reset() -> None:
@@ -198,7 +198,7 @@ def test_a_blocked_axis_is_a_fault_that_is_latched_and_reset() -> None:
     assert plant.snapshot.fault is not None
     assert "does not follow" in plant.snapshot.fault.message
     assert plant.clock.now() - plant.happened(EventKind.FAULT_RAISED)[0].at < timedelta(seconds=5)
-    assert plant.snapshot.home_trusted
+    assert plant.snapshot.homed
 
 
 def test_a_small_step_is_no_faster_than_a_jog() -> None:

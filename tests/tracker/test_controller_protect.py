@@ -5,13 +5,13 @@ from datetime import timedelta
 
 import pytest
 
-from app.drives.faults import Fault, FaultKind
-from app.tracker.axes import Axis, AxisConfig
-from app.tracker.commands import CommandRejected, Jog, Move, ResetFault, SetHome, Stop, Track
-from app.tracker.config import Orientation
-from app.tracker.following_error import AxisWatch, watch
-from app.tracker.motion import HALT, AxisCommand, AxisFeedback, DriveCommand, Position, Velocity
-from app.tracker.snapshot import ActivityName, EventKind
+from app.simulation.faults import Fault, FaultKind
+from app.tracker.commands.commands import CommandRejected, Jog, Move, ResetFault, SetHome, Stop, Track
+from app.tracker.motion.following_error import AxisWatch, watch
+from app.tracker.settings.axes import Axis, AxisConfig
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.motion import HALT, AxisCommand, AxisFeedback, DriveCommand, Position, Velocity
 from tests.tracker.plant import MORNING, READY, Plant
 from tests.tracker.scripted import Scripted
 
@@ -104,7 +104,7 @@ def test_a_reset_clears_the_drive_too_and_nothing_moves_by_itself(plant: Plant) 
     assert plant.drive.observe().fault_code == 0
     plant.forward(5.0)
     assert plant.activity is ActivityName.HOLDING
-    assert "home_not_trusted" in {reason.code for reason in plant.snapshot.waiting}
+    assert "tracker_not_homed" in {reason.code for reason in plant.snapshot.waiting}
 
 
 @pytest.mark.parametrize("answers", [True, False])
@@ -208,7 +208,7 @@ def test_the_drives_own_watchdog_ends_a_move_but_tracking_goes_on(plant: Plant) 
     plant.clock.advance(timedelta(seconds=0.55))
     plant.tick()
     stopped = plant.happened(EventKind.STOPPED)
-    assert [event.actor for event in stopped] == ["machine"]
+    assert [event.actor for event in stopped] == ["controller"]
     assert "stopped automatically" in stopped[0].message
     assert plant.activity is ActivityName.HOLDING
     plant.forward(3.0)
@@ -232,7 +232,7 @@ def test_zeroing_is_allowed_again_after_a_jump_and_tells_nothing_twice(plant: Pl
     assert len(plant.happened(EventKind.HOME_LOST)) == 1
     plant.ask(SetHome())
     plant.forward(1.0)
-    assert plant.snapshot.home_trusted
+    assert plant.snapshot.homed
 
 
 AXIS = AxisConfig(-200.0, 200.0, 4.0, 2.0, 0.5, 2.0)

@@ -5,9 +5,8 @@ from datetime import timedelta
 
 import pytest
 
-from app.drives.faults import Fault, FaultKind
-from app.tracker.axes import Axis, AxisConfig
-from app.tracker.commands import (
+from app.simulation.faults import Fault, FaultKind
+from app.tracker.commands.commands import (
     Command,
     CommandRejected,
     Jog,
@@ -19,11 +18,12 @@ from app.tracker.commands import (
     Stop,
     Track,
 )
-from app.tracker.config import Orientation
-from app.tracker.drive_tests import LinkLossOutcome, ProofKind, ProofMove, Proofs, StopSpeed
-from app.tracker.memory import TrackerMemory
-from app.tracker.motion import AxisFeedback, DriveCommand, Feedback
-from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.memory.drive_tests import LinkLossOutcome, ProofKind, ProofMove, Proofs, StopSpeed
+from app.tracker.memory.memory import TrackerMemory
+from app.tracker.settings.axes import Axis, AxisConfig
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.motion import AxisFeedback, DriveCommand, Feedback
 from tests.tracker.plant import BLANK, CONFIG, READY, Plant
 from tests.tracker.scripted import Scripted
 

@@ -5,9 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.drives.faults import Fault, FaultKind
-from app.tracker.axes import Axis
-from app.tracker.commands import (
+from app.simulation.faults import Fault, FaultKind
+from app.tracker.commands.commands import (
     GoToStart,
     Jog,
     Park,
@@ -17,12 +16,13 @@ from app.tracker.commands import (
     Stop,
     Track,
 )
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import TrackerMemory
-from app.tracker.protections.config import ProtectionConfig, WindProtection
-from app.tracker.protections.words import Protection, Reaction, StowName
-from app.tracker.snapshot import ActivityName, EventKind, ShowPhase
-from app.tracker.weather import Quality, Quantity, Reading, Sensed
+from app.tracker.memory.memory import TrackerMemory
+from app.tracker.protections.words import Protection
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.settings.protections import ProtectionConfig, Reaction, StowName, WindProtection
+from app.tracker.state.snapshot import ActivityName, EventKind, ShowPhase
+from app.tracker.weather.weather import Quality, Quantity, Reading, Sensed
 from tests.fault_result import BY_ITSELF, VIRTUAL, FaultResult
 from tests.tracker.plant import CONFIG, READY, Plant
 from tests.tracker.shows import SOLSTICE

@@ -5,10 +5,9 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from app.angles import separation_deg
-from app.drives.faults import Fault, FaultKind
-from app.tracker.axes import Axis
-from app.tracker.commands import (
+from app.base.angles import separation_deg
+from app.simulation.faults import Fault, FaultKind
+from app.tracker.commands.commands import (
     CommandRejected,
     GoToStart,
     Move,
@@ -20,10 +19,11 @@ from app.tracker.commands import (
     StopShow,
     Track,
 )
-from app.tracker.config import Orientation
-from app.tracker.motion import HALT
 from app.tracker.programs.show import ShowCourse, ShowPlan
-from app.tracker.snapshot import ActivityName, EventKind, ShowPhase
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ActivityName, EventKind, ShowPhase
+from app.tracker.values.motion import HALT
 from tests.tracker.plant import CONFIG, READY, SAMSUN, Plant
 from tests.tracker.scripted import Scripted
 

@@ -6,8 +6,7 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from app.sun.position import Location
-from app.tracker.axes import Axis
-from app.tracker.commands import (
+from app.tracker.commands.commands import (
     CommandRejected,
     EndJog,
     GoToStart,
@@ -24,12 +23,21 @@ from app.tracker.commands import (
     Stow,
     Track,
 )
-from app.tracker.config import MountConfig, MountKind, Orientation, TrackerConfig
-from app.tracker.memory import TrackerMemory
-from app.tracker.protections.config import ProtectionConfig, StowPlace, Stows, WindProtection
-from app.tracker.protections.words import Facing, Protection, Reaction, StowName
-from app.tracker.snapshot import ActivityName, EventKind
-from app.tracker.weather import Quantity
+from app.tracker.memory.memory import TrackerMemory
+from app.tracker.protections.words import Protection
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import MountConfig, MountKind, Orientation, TrackerConfig
+from app.tracker.settings.protections import (
+    Facing,
+    ProtectionConfig,
+    Reaction,
+    StowName,
+    StowPlace,
+    Stows,
+    WindProtection,
+)
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.weather.weather import Quantity
 from tests.fault_result import HOME_AGAIN, VIRTUAL, FaultResult
 from tests.tracker.plant import CONFIG, READY, Plant
 from tests.tracker.shows import SOLSTICE
@@ -182,7 +190,9 @@ def test_a_jog_goes_on_for_five_seconds_while_the_wind_comes() -> None:
     assert warning is not None
     assert warning.reason.code == "hand_motion_ends"
     assert warning.remaining_s < 1.0
-    for _ in range(3):
+    for _ in range(2):  # the button is still held
+        sequence += 1
+        plant.ask(Jog("a", Axis.AZIMUTH, 1, sequence=sequence))
         plant.forward(0.1)
     assert doing(plant) is ActivityName.HOLDING
     with pytest.raises(CommandRejected):
@@ -269,7 +279,7 @@ def test_wind_takes_a_tracker_that_snow_has_stowed(fault: FaultResult) -> None:
     fault.shows(seen.reason.message)
     plant.blow(2.0, snow_kg=4.0).forward(CALM_S + 120)
     assert plant.snapshot.stow is StowName.SNOW
-    fault.recovers("by itself: after the calm the snow stow goes on")
+    fault.recovers("automatic: after the calm the snow stow continues")
 
 
 def test_snow_tips_the_panel_and_its_end_brings_it_back() -> None:
@@ -285,7 +295,7 @@ def test_snow_tips_the_panel_and_its_end_brings_it_back() -> None:
 
 def test_in_too_little_light_the_panel_stays_where_it_is() -> None:
     plant = tracking()
-    plant.blow(2.0, light_wm2=10.0).forward(620)
+    plant.blow(2.0, irradiance_wm2=10.0).forward(620)
     before = plant.azimuth_deg
     plant.forward(900)
     seen = plant.snapshot
@@ -294,7 +304,7 @@ def test_in_too_little_light_the_panel_stays_where_it_is() -> None:
     assert seen.protection.protection is Protection.LOW_LIGHT_HOLD
     assert "in low-light hold" in seen.activity_text
     assert [reason.code for reason in seen.waiting] == ["hibernation"]
-    plant.blow(2.0, light_wm2=700.0).forward(2)
+    plant.blow(2.0, irradiance_wm2=700.0).forward(2)
     assert plant.snapshot.warning is not None
     plant.forward(20)
     assert plant.azimuth_deg > before + 1.0
@@ -340,7 +350,7 @@ def test_after_a_restart_a_storm_that_was_not_seen_over_still_holds() -> None:
     plant = tracking()
     plant.blow(STORM).forward(60)
     fresh = restarted(plant)
-    fresh.blow(None, snow_kg=None, light_wm2=None).forward(3600)
+    fresh.blow(None, snow_kg=None, irradiance_wm2=None).forward(3600)
     assert doing(fresh) is ActivityName.STOWED
     assert fresh.controller.memory.protection is Protection.WIND_STOW
 
@@ -365,7 +375,7 @@ def test_a_wind_sensor_that_fails_stows_after_a_minute(fault: FaultResult) -> No
     fault.shows(seen.protection.reason.message)
     plant.blow(2.0).forward(CALM_S + 30)
     assert doing(plant) is ActivityName.TRACKING
-    fault.recovers(f"by itself: after {CALM_S - 1:.0f} s of calm that a good sensor saw")
+    fault.recovers(f"automatic: after {CALM_S - 1:.0f} s of calm that a good sensor saw")
 
 
 def test_a_bad_wind_sensor_may_also_hold_the_panel() -> None:
@@ -498,15 +508,15 @@ def test_in_the_polar_night_a_storm_stows_and_calm_brings_the_night_back() -> No
             at=datetime(2026, 12, 21, 12, tzinfo=UTC),
             location=Location(78.2, 15.6, 10.0),
         )
-        .blow(2.0, light_wm2=0.0)
+        .blow(2.0, irradiance_wm2=0.0)
         .forward(1)
     )
     plant.ask(Track())
     plant.forward(900)
     assert plant.snapshot.protection is None
-    plant.blow(STORM, light_wm2=0.0).forward(60)
+    plant.blow(STORM, irradiance_wm2=0.0).forward(60)
     assert doing(plant) is ActivityName.STOWED
-    plant.blow(2.0, light_wm2=0.0).forward(CALM_S + 30)
+    plant.blow(2.0, irradiance_wm2=0.0).forward(CALM_S + 30)
     assert doing(plant) is ActivityName.TRACKING
 
 

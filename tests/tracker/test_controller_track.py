@@ -6,13 +6,13 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from app.sun.position import Location, SunPosition
-from app.tracker.axes import Axis
-from app.tracker.commands import CommandRejected, Move, SelectMode, SetHome, Stop, Track
-from app.tracker.config import NightBehaviour, Orientation, TrackerConfig
-from app.tracker.memory import Confirmation, StepName, TrackerMemory
-from app.tracker.mode import Mode
-from app.tracker.motion import HALT
-from app.tracker.snapshot import ActivityName, EventKind, Snapshot
+from app.tracker.commands.commands import CommandRejected, Move, SelectMode, SetHome, Stop, Track
+from app.tracker.memory.memory import Confirmation, StepName, TrackerMemory
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import NightBehaviour, Orientation, TrackerConfig
+from app.tracker.state.snapshot import ActivityName, EventKind, Snapshot
+from app.tracker.values.mode import Mode
+from app.tracker.values.motion import HALT
 from tests.fault_result import FaultResult
 from tests.tracker.plant import BLANK, CONFIG, MORNING, READY, SAMSUN, Plant
 from tests.tracker.scripted import Scripted
@@ -191,7 +191,7 @@ def test_a_slow_azimuth_axis_says_that_it_passes_the_zenith(fault: FaultResult) 
     fault.shows("Tracking: passing the zenith as fast as the azimuth axis can")
     plant.forward(1800.0)
     assert plant.snapshot.in_position
-    fault.recovers("by itself: after the zenith the panel is in position again")
+    fault.recovers("automatic: after the zenith the panel is in position again")
 
 
 def test_tracking_needs_everything_that_the_earlier_steps_give_and_says_all_of_it() -> None:
@@ -201,7 +201,7 @@ def test_tracking_needs_everything_that_the_earlier_steps_give_and_says_all_of_i
     with pytest.raises(CommandRejected) as refused:
         plant.ask(Track())
     assert [reason.code for reason in refused.value.reasons] == [
-        "home_not_trusted",
+        "tracker_not_homed",
         "location_unknown",
         "clock_untrusted",
         "mode_not_selected",
@@ -234,7 +234,7 @@ def test_after_a_restart_tracking_goes_on_by_itself() -> None:
 @pytest.mark.parametrize(
     ("memory", "code"),
     [
-        (replace(READY, tracking_on=True, home=None), "home_not_trusted"),
+        (replace(READY, tracking_on=True, home=None), "tracker_not_homed"),
         (replace(READY, tracking_on=True, fault_code="drive_fault", fault_text="Hot."), "fault"),
     ],
 )

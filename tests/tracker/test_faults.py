@@ -11,9 +11,9 @@ from typing import Any
 
 import pytest
 
-from app.drives.faults import Fault, FaultKind
-from app.tracker.axes import Axis, JogSpeed
-from app.tracker.commands import (
+from app.simulation.faults import Fault, FaultKind
+from app.tracker.access.interlocks import Action
+from app.tracker.commands.commands import (
     BeginServiceMode,
     CommandRejected,
     ConfirmAreaClear,
@@ -28,15 +28,15 @@ from app.tracker.commands import (
     Stop,
     Track,
 )
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.drive_tests import StopProof, StopSpeed
-from app.tracker.interlocks import Action
-from app.tracker.machine_watch import Braking, allowed_overrun_deg
-from app.tracker.motion import HALT, Feedback
-from app.tracker.protections.machine_config import MachineProtection, Recoveries, Recovery, RecoveryPolicy
+from app.tracker.memory.drive_tests import StopProof, StopSpeed
+from app.tracker.motion.machine_watch import Braking, allowed_overrun_deg
 from app.tracker.protections.words import LinkQuality
-from app.tracker.reason import Reason
-from app.tracker.snapshot import ActivityName, EventKind, Snapshot
+from app.tracker.settings.axes import Axis, JogSpeed
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.settings.mechanics import MachineProtection, Recoveries, Recovery, RecoveryPolicy
+from app.tracker.state.snapshot import ActivityName, EventKind, Snapshot
+from app.tracker.values.motion import HALT, Feedback
+from app.tracker.values.reason import Reason
 from tests.fault_result import HOME_AGAIN, RESET, VIRTUAL, FaultResult
 from tests.tracker.plant import CONFIG, MORNING, READY, Plant
 
@@ -114,7 +114,7 @@ def test_a_drive_that_lost_its_power_has_lost_its_zero(witnessed: Witness) -> No
     hurt(plant, FaultKind.POWER_LOSS, None)
     witnessed(plant, "drive_restarted", within_s=0.5, policy=HOME_AGAIN)
     assert plant.controller.memory.home is None
-    assert "home_not_trusted" in plant.reasons("track") & plant.reasons("stow") & plant.reasons("move")
+    assert "tracker_not_homed" in plant.reasons("track") & plant.reasons("stow") & plant.reasons("move")
     assert plant.reasons("jog") == set(), "slow hand motion is the way back"
 
 
@@ -126,7 +126,7 @@ def test_slow_replies_end_and_refuse_motion_by_a_held_key(witnessed: Witness) ->
     plant.forward(0.1)
     assert plant.reasons("jog") == {"link_slow"}
     assert plant.reasons("step") == set()
-    assert witnessed(plant, "link_slow", within_s=0.5, policy="by itself: it ends with its cause") <= 0.5
+    assert witnessed(plant, "link_slow", within_s=0.5, policy="automatic: it ends with its cause") <= 0.5
     plant.link = LinkQuality(0.03, 0.08)
     plant.forward(0.1)
     assert plant.reasons("jog") == set()
@@ -187,7 +187,7 @@ def test_an_axis_that_creeps_is_told_until_it_rests(witnessed: Witness) -> None:
     plant.forward(1.0)
     hurt(plant, FaultKind.SLIP, Axis.ELEVATION, 0.5)
     took_s = witnessed(
-        plant, "creep", within_s=4.0, policy="by itself: it ends a minute after the last motion"
+        plant, "creep", within_s=4.0, policy="automatic: it ends a minute after the last motion"
     )
     assert took_s <= 4.0, "a degree at half a degree a second"
     plant.forward(30.0)
@@ -205,7 +205,7 @@ def test_an_axis_that_stops_too_late_is_slow_until_its_stops_are_short(witnessed
     plant.forward(10.0)
     hurt(plant, FaultKind.LONG_STOP)
     plant.ask(Stop())
-    witnessed(plant, "overrun", within_s=5.0, policy="by itself: three short stops in a row")
+    witnessed(plant, "overrun", within_s=5.0, policy="automatic: three short stops in a row")
     plant.drive.end_injected_faults()
     plant.forward(10.0)
     for _ in range(3):
@@ -297,11 +297,11 @@ def test_a_search_whose_switch_never_comes_ends_with_the_travel_and_says_whose(
     assert "did not find the home switch of the azimuth axis" in told.message
     assert stands(plant)
     assert "home_lost" in shown(plant.snapshot)
-    assert "home_not_trusted" in plant.reasons("track") & plant.reasons("move")
+    assert "tracker_not_homed" in plant.reasons("track") & plant.reasons("move")
     plant.drive.end_injected_faults()
     plant.ask(Home())
     plant.forward(120.0)
-    assert plant.snapshot.home_trusted
+    assert plant.snapshot.homed
     fault.recovers(HOME_AGAIN)
 
 
@@ -339,9 +339,9 @@ def test_an_ordinary_stop_keeps_the_zero_and_a_search_gives_it_up() -> None:
     plant = moving(tracks=True)
     plant.ask(Stop())
     plant.forward(3.0)
-    assert plant.snapshot.home_trusted
+    assert plant.snapshot.homed
     plant.ask(Home())
-    assert not plant.snapshot.home_trusted
+    assert not plant.snapshot.homed
 
 
 ALLOWED_ON_LOCAL = {

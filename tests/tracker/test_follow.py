@@ -6,9 +6,9 @@ from math import sqrt
 
 import pytest
 
-from app.tracker.axes import AxisConfig
-from app.tracker.following_error import AxisWatch, watch
-from app.tracker.motion import AxisCommand, AxisFeedback, Halt, Position, Velocity
+from app.tracker.motion.following_error import AxisWatch, watch
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.values.motion import AxisCommand, AxisFeedback, Halt, Position, Velocity
 from tests.tracker.plant import MORNING
 
 AXIS = AxisConfig(-200.0, 200.0, 4.0, 2.0, 0.5, 2.0)

@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import pytest
 
-from app.tracker import guards
-from app.tracker.axes import Axis, AxisConfig
-from app.tracker.config import MountKind
-from app.tracker.following_error import AxisWatch
-from app.tracker.motion import AxisCommand, AxisFeedback, Feedback, Halt, Position, Velocity
+from app.tracker.motion import guards
+from app.tracker.motion.following_error import AxisWatch
 from app.tracker.mounts.capabilities import axis_words
 from app.tracker.mounts.usual import mounted
-from app.tracker.reason import Reason
+from app.tracker.settings.axes import Axis, AxisConfig
+from app.tracker.settings.config import MountKind
+from app.tracker.values.motion import AxisCommand, AxisFeedback, Feedback, Halt, Position, Velocity
+from app.tracker.values.reason import Reason
 from tests.tracker.plant import CONFIG, MORNING, TRUST
 
 STANDS = AxisFeedback(30.0, 0.0, moving=False, homed=True)

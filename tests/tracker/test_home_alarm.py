@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from app.alarms.conditions import SiteHealth, of_tracker
-from app.tracker.axes import Axis
-from app.tracker.commands import Command, Home, SetHome, Stop, UndoHome
-from app.tracker.snapshot import ActivityName, Snapshot
+from app.tracker.commands.commands import Command, Home, SetHome, Stop, UndoHome
+from app.tracker.settings.axes import Axis
+from app.tracker.state.snapshot import ActivityName, Snapshot
 from tests.tracker.plant import BLANK, READY, Plant
 from tests.tracker.scripted import Scripted
 
@@ -46,7 +46,7 @@ def test_undoing_it_raises_no_alarm(memory: object) -> None:
     plant.forward(1.0)
     assert plant.snapshot.can_undo_home
     assert alarmed_during(plant, UndoHome(), 2.0) == 0
-    assert plant.snapshot.home_trusted == (memory is READY)
+    assert plant.snapshot.homed == (memory is READY)
 
 
 def test_a_drive_that_restarts_raises_the_alarm_at_once() -> None:

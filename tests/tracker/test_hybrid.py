@@ -7,18 +7,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.drives.faults import Fault, FaultKind
-from app.drives.sunlight import Sunlight
 from app.show.rehearsal import Rehearsal
+from app.simulation.faults import Fault, FaultKind
+from app.simulation.sunlight import Sunlight
 from app.sun.position import Location, SunPosition
-from app.tracker.axes import Axis
-from app.tracker.commands import SelectMode, Stop, Track
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.hybrid import AxisCorrection, HybridPhase, axis_correction
-from app.tracker.memory import Pointing
-from app.tracker.mode import Mode
-from app.tracker.motion import LightPair
-from app.tracker.strategy import Continuous, Deadband, HybridConfig, SimulatedLight, Strategy
+from app.tracker.commands.commands import SelectMode, Stop, Track
+from app.tracker.memory.memory import Pointing
+from app.tracker.motion.hybrid import AxisCorrection, HybridPhase, axis_correction
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.settings.strategy import Continuous, Deadband, HybridConfig, SimulatedLight, Strategy
+from app.tracker.values.mode import Mode
+from app.tracker.values.motion import LightPair
 
 PLACE = Location(41.2867, 36.33)
 MORNING = datetime(2026, 6, 21, 7, 0, tzinfo=UTC)

@@ -6,12 +6,12 @@ from zoneinfo import ZoneInfo
 
 import pytest
 
-from app.site.sky import Sky
+from app.site.weather.sky import Sky
 from app.sun.position import Algorithm, Location
-from app.tracker.commands import Track
-from app.tracker.mode import Mode
-from app.tracker.motion import DriveCommand
-from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.commands.commands import Track
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.mode import Mode
+from app.tracker.values.motion import DriveCommand
 from tests.fault_result import VIRTUAL, FaultResult
 from tests.tracker.plant import CONFIG, READY, SAMSUN, Plant
 from tests.tracker.scripted import Scripted
@@ -124,7 +124,7 @@ def test_the_midnight_sun_is_followed_all_around_within_the_limits(fault: FaultR
         faced.add(round(plant.azimuth_deg / 15.0))
     assert len(faced) == 8
     assert not plant.happened(EventKind.FAULT_RAISED)
-    fault.recovers("by itself: when the sun rises")
+    fault.recovers("automatic: when the sun rises")
 
 
 @pytest.mark.fault(26)
@@ -152,7 +152,7 @@ def test_a_clock_that_jumps_moves_nothing_until_it_is_trusted(by: timedelta, fau
     plant.forward(10.0)
     assert plant.activity is ActivityName.TRACKING
     assert plant.snapshot.in_position
-    fault.recovers("by itself: once the clock is trusted again")
+    fault.recovers("automatic: once the clock is trusted again")
 
 
 @pytest.mark.fault(32)

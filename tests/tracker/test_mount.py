@@ -6,13 +6,13 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from app.angles import separation_deg
+from app.base.angles import separation_deg
 from app.sun.position import SunPosition
-from app.tracker.axes import AxisConfig
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mode import Mode
-from app.tracker.mount import aim, mode_direction, sky
+from app.tracker.memory.memory import Pointing
+from app.tracker.mounts.mount import aim, mode_direction, sky
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.values.mode import Mode
 
 LEVEL = Pointing()
 PLAIN = TrackerConfig("t01", "T01")

@@ -9,16 +9,16 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from app.angles import separation_deg, wrap180
+from app.base.angles import separation_deg, wrap180
 from app.sun.position import SunPosition
 from app.sun.trigonometry import ARRAY, SCALAR
-from app.tracker.axes import AxisConfig
-from app.tracker.config import MountConfig, MountKind, Orientation, Rows, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mode import Mode
-from app.tracker.mount import aim, mode_direction, sky, to_axes
+from app.tracker.memory.memory import Pointing
 from app.tracker.mounts.capabilities import ABILITIES
 from app.tracker.mounts.kinematics import angles, direction, followed
+from app.tracker.mounts.mount import aim, mode_direction, sky, to_axes
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import MountConfig, MountKind, Orientation, Rows, TrackerConfig
+from app.tracker.values.mode import Mode
 
 FREE = AxisConfig(-180.0, 180.0, 6.0, 6.0, 0.5, 3.0)
 BOTH_WAYS = AxisConfig(-90.0, 90.0, 4.0, 6.0, 0.5, 2.0)
@@ -213,7 +213,7 @@ def test_over_the_top_of_a_leaning_mast_the_azimuth_axis_does_not_turn_over(
 def test_rows_belong_to_level_and_tilted_axes_only() -> None:
     with pytest.raises(ValueError, match="remove the rows"):
         MountConfig(MountKind.EQUATORIAL, rows=Rows(0.4))
-    with pytest.raises(ValueError, match="ground coverage"):
+    with pytest.raises(ValueError, match="Ground coverage ratio must be"):
         Rows(0.0)
 
 

@@ -5,13 +5,13 @@ from datetime import timedelta
 
 import pytest
 
-from app.tracker import guards
-from app.tracker.axes import Axis, AxisConfig
-from app.tracker.commands import Jog, Move, Track
-from app.tracker.config import Orientation
+from app.tracker.commands.commands import Jog, Move, Track
 from app.tracker.controller import Controller
-from app.tracker.motion import Feedback
-from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.motion import guards
+from app.tracker.settings.axes import Axis, AxisConfig
+from app.tracker.settings.config import Orientation
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.values.motion import Feedback
 from tests.tracker.plant import BLANK, CONFIG, READY
 from tests.tracker.scripted import CAPABILITIES, Scripted
 
@@ -92,10 +92,10 @@ def test_what_the_drive_did_is_forgotten_when_it_is_lost_again(script: Scripted)
     script.forward(1.0)
     script.reading = sound
     script.forward(0.2)
-    assert script.controller._mind.aftermath is not None
+    assert script.controller._state.connection.aftermath is not None
     script.reading = None
     script.forward(1.0)
-    assert script.controller._mind.aftermath is None
+    assert script.controller._state.connection.aftermath is None
 
 
 def test_a_fault_of_the_drive_is_told_with_the_trackers_name(script: Scripted) -> None:

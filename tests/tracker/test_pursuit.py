@@ -2,12 +2,12 @@
 
 from dataclasses import replace
 
-from app.tracker.activity import AxisPair
-from app.tracker.config import TrackerConfig
-from app.tracker.motion import AxisFeedback, Feedback
-from app.tracker.mount import AxisTarget
-from app.tracker.setpoint_scheduler import due
-from app.tracker.strategy import DEADBAND, EncoderDeadband
+from app.tracker.activities.setpoint_scheduler import due
+from app.tracker.mounts.mount import AxisTarget
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.settings.strategy import DEADBAND, EncoderDeadband
+from app.tracker.state.activity import AxisPair
+from app.tracker.values.motion import AxisFeedback, Feedback
 from tests.tracker.plant import CONFIG
 
 

@@ -5,12 +5,12 @@ from random import Random
 
 import pytest
 
-from app.tracker.axes import Axis, JogSpeed
-from app.tracker.commands import Command, CommandRejected, Jog, Move, Step
-from app.tracker.config import Orientation
-from app.tracker.protections.machine_config import Corner, MachineProtection, Region
-from app.tracker.regions import Span, touches
-from app.tracker.snapshot import ActivityName, EventKind
+from app.tracker.commands.commands import Command, CommandRejected, Jog, Move, Step
+from app.tracker.settings.axes import Axis, JogSpeed
+from app.tracker.settings.config import Orientation
+from app.tracker.settings.mechanics import Corner, MachineProtection, Region
+from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.supervision.regions import Span, touches
 from tests.fault_result import FaultResult
 from tests.tracker.plant import CONFIG, READY, Plant
 

@@ -8,12 +8,12 @@ from math import copysign, cos, radians, sqrt
 import numpy as np
 import pytest
 
-from app.angles import separation_deg, wrap180
-from app.tracker.axes import AxisConfig
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.memory import Pointing
+from app.base.angles import separation_deg, wrap180
+from app.tracker.memory.memory import Pointing
 from app.tracker.programs.path import branches
 from app.tracker.programs.show import ShowCourse, ShowPlan, check_show
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import Orientation, TrackerConfig
 from tests.tracker.shows import (
     ACROSS_MIDNIGHT,
     PLAIN,

@@ -12,11 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.sun.position import Location
-from app.tracker.axes import AxisConfig
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.mode import Mode
 from app.tracker.programs.show import ShowCourse, ShowPlan, check_show
-from app.tracker.reason import Reason
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.values.mode import Mode
+from app.tracker.values.reason import Reason
 from tests.tracker.shows import (
     ACROSS_MIDNIGHT,
     PLAIN,
@@ -287,7 +287,7 @@ def test_any_show_anywhere_is_either_inside_the_limits_or_refused_with_a_reason(
 
 
 def test_where_no_duration_works_the_hint_says_so() -> None:
-    crawling = replace(PLAIN, azimuth=AxisConfig(0.0, 360.0, 0.0005, 6.0, 0.0005, 0.0005))
+    crawling = replace(PLAIN, azimuth=AxisConfig(0.0, 360.0, 0.001, 6.0, 0.001, 0.001))
     check = check_show(SOLSTICE, crawling)
     assert check.shortest is None
     assert check.reasons[0].hint == "No simulation time up to 24 hours works: choose another interval."

@@ -9,15 +9,15 @@ from hypothesis import strategies as st
 
 from app.sun.daylight import daylight
 from app.sun.position import Algorithm, Location
-from app.tracker.axes import AxisConfig
-from app.tracker.config import MountKind, TrackerConfig
-from app.tracker.mode import Mode
 from app.tracker.mounts.capabilities import abilities, default_mode
 from app.tracker.mounts.usual import mounted
 from app.tracker.programs.plan import ShowPlan
 from app.tracker.programs.show import check_show, schedule_of
 from app.tracker.programs.usual import MINUTES, in_usual_time
-from app.tracker.strategy import Interval
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import MountKind, TrackerConfig
+from app.tracker.settings.strategy import Interval
+from app.tracker.values.mode import Mode
 from tests.tracker.shows import (
     DAY,
     PLAIN,

@@ -12,14 +12,14 @@ from hypothesis import strategies as some
 from pvlib import clearsky
 
 from app.sun.position import SunPosition
-from app.tracker.simulated_weather import (
+from app.tracker.weather.simulated_weather import (
     SPANS,
     Scenario,
     SimulatedStation,
-    clear_light_wm2,
+    clear_irradiance_wm2,
     weather_at,
 )
-from app.tracker.weather import Weather
+from app.tracker.weather.weather import Weather
 
 BEGIN = datetime(2026, 6, 21, 9, tzinfo=UTC)
 SUN = SunPosition(180.0, 60.0, 60.0)
@@ -48,8 +48,8 @@ def test_gusts_by_hand_exceed_the_mean_by_at_most_the_gustiness() -> None:
 
 
 def test_a_value_that_is_set_by_hand_trembles_as_a_sensor_that_works_does() -> None:
-    station = SimulatedStation(wind_mps=8.0, gustiness_pct=0.0, light_wm2=500.0)
-    winds, lights = (told(station, name, of=range(60)) for name in ("wind_mps", "light_wm2"))
+    station = SimulatedStation(wind_mps=8.0, gustiness_pct=0.0, irradiance_wm2=500.0)
+    winds, lights = (told(station, name, of=range(60)) for name in ("wind_mps", "irradiance_wm2"))
     assert len(set(winds)) == len(set(lights)) == 60
     assert max(abs(wind - 8.0) for wind in winds) <= 0.08
     assert max(abs(light - 500.0) for light in lights) <= 5.0
@@ -70,23 +70,25 @@ def test_snow_falls_and_slides_off() -> None:
 
 
 def test_clouds_pass_and_a_dark_bank_covers_the_sun_for_twenty_minutes() -> None:
-    clear_wm2 = clear_light_wm2(60.0)
-    light = told(SimulatedStation(Scenario.CLOUDS), "light_wm2", of=range(3600))
+    clear_wm2 = clear_irradiance_wm2(60.0)
+    light = told(SimulatedStation(Scenario.CLOUDS), "irradiance_wm2", of=range(3600))
     assert max(light[300:1800]) / min(light[300:1800]) > 1.8
     assert max(light[1980:3180]) < 0.02 * clear_wm2
     assert light[3500] > 0.4 * clear_wm2
 
 
 def test_without_a_sun_light_is_not_made_up_unless_by_hand() -> None:
-    assert read(SimulatedStation(Scenario.CALM), sun=None).light_wm2 is None
-    assert read(SimulatedStation(light_wm2=300.0), sun=None).light_wm2 == pytest.approx(300.0, rel=0.01)
-    assert read(SimulatedStation(), sun=SunPosition(0.0, -5.0, -5.0)).light_wm2 == 0.0
+    assert read(SimulatedStation(Scenario.CALM), sun=None).irradiance_wm2 is None
+    assert read(SimulatedStation(irradiance_wm2=300.0), sun=None).irradiance_wm2 == pytest.approx(
+        300.0, rel=0.01
+    )
+    assert read(SimulatedStation(), sun=SunPosition(0.0, -5.0, -5.0)).irradiance_wm2 == 0.0
 
 
 def test_clear_light_is_what_pvlib_makes_of_haurwitz() -> None:
     elevations = np.array([-3.0, 0.0, 0.2, 5.0, 30.0, 72.0, 90.0])
     expected = clearsky.haurwitz(pd.Series(90.0 - elevations))["ghi"].to_numpy()
-    assert [clear_light_wm2(one) for one in elevations] == pytest.approx(expected, abs=1e-9)
+    assert [clear_irradiance_wm2(one) for one in elevations] == pytest.approx(expected, abs=1e-9)
 
 
 @given(
@@ -100,7 +102,7 @@ def test_clear_light_is_what_pvlib_makes_of_haurwitz() -> None:
 def test_nothing_is_ever_made_up_that_no_station_can_measure(
     scenario: Scenario, seed: int, minutes: float, wind_mps: float, gustiness_pct: float, elevation_deg: float
 ) -> None:
-    station = SimulatedStation(scenario, seed, wind_mps, gustiness_pct, light_wm2=None)
+    station = SimulatedStation(scenario, seed, wind_mps, gustiness_pct, irradiance_wm2=None)
     read(station, minutes=minutes, sun=SunPosition(180.0, elevation_deg, elevation_deg))
 
 

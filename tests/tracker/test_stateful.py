@@ -23,9 +23,9 @@ from hypothesis.stateful import (
 )
 
 from app.alarms.catalogue import CATALOGUE
-from app.drives.faults import Fault, FaultKind
-from app.tracker.axes import Axis, JogSpeed
-from app.tracker.commands import (
+from app.simulation.faults import Fault, FaultKind
+from app.tracker.access.interlocks import Action
+from app.tracker.commands.commands import (
     Command,
     CommandRejected,
     EndJog,
@@ -49,12 +49,17 @@ from app.tracker.commands import (
     Stow,
     Track,
 )
-from app.tracker.config import Orientation
-from app.tracker.interlocks import Action
-from app.tracker.mode import Mode
-from app.tracker.protections.config import LightProtection, ProtectionConfig, SnowProtection, WindProtection
-from app.tracker.protections.words import StowName
-from app.tracker.snapshot import ActivityName
+from app.tracker.settings.axes import Axis, JogSpeed
+from app.tracker.settings.config import Orientation
+from app.tracker.settings.protections import (
+    LightProtection,
+    ProtectionConfig,
+    SnowProtection,
+    StowName,
+    WindProtection,
+)
+from app.tracker.state.snapshot import ActivityName
+from app.tracker.values.mode import Mode
 from tests.soak import SOAK, amount
 from tests.tracker.plant import CONFIG, READY, Plant
 from tests.tracker.test_controller_show import PLAN
@@ -179,11 +184,11 @@ class Operation(RuleBasedStateMachine):
     def time_passes(self, seconds: float) -> None:
         self._forward(seconds)
 
-    @rule(wind_mps=WINDS, snow_kg=SNOWS, light_wm2=LIGHTS, seconds=st.floats(0.1, 6.0))
+    @rule(wind_mps=WINDS, snow_kg=SNOWS, irradiance_wm2=LIGHTS, seconds=st.floats(0.1, 6.0))
     def the_weather(
-        self, wind_mps: float | None, snow_kg: float | None, light_wm2: float | None, seconds: float
+        self, wind_mps: float | None, snow_kg: float | None, irradiance_wm2: float | None, seconds: float
     ) -> None:
-        self.plant.blow(wind_mps, snow_kg=snow_kg, light_wm2=light_wm2)
+        self.plant.blow(wind_mps, snow_kg=snow_kg, irradiance_wm2=irradiance_wm2)
         self._forward(seconds)
 
     @rule(gust_mps=st.sampled_from([17.0, 25.0]), calm_s=st.sampled_from([9.0, 10.0, 11.5]))

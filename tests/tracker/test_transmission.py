@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.tracker.axes import AxisConfig
-from app.tracker.mechanisms import LATITUDE_DEG, alexandru_diurnal, alexandru_elevation
-from app.tracker.transmission import LinearActuator, Point
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.mechanisms import LATITUDE_DEG, alexandru_diurnal, alexandru_elevation
+from app.tracker.settings.transmission import LinearActuator, Point
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 DIURNAL, ELEVATION = alexandru_diurnal(), alexandru_elevation()
@@ -74,7 +74,7 @@ def test_the_ranges_are_those_that_the_paper_names() -> None:
         ({"joint": Point(0.0, 0.0, 50.0)}, "could not turn it"),
         ({"travel_mm": 400.0}, "it cannot go"),
         ({"retracted_mm": 601.0, "travel_mm": 200.0}, "does not jam"),
-        ({"speed_mm_s": 0.0}, "above zero"),
+        ({"speed_mm_s": 0.0}, "Speed must be between"),
     ],
 )
 def test_what_cannot_be_built_is_refused(change: dict[str, float], sentence: str) -> None:

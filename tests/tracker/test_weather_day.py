@@ -5,8 +5,8 @@ from zoneinfo import ZoneInfo
 
 import pytest
 
-from app.tracker.simulated_weather import Scenario
-from app.tracker.weather_day import (
+from app.tracker.weather.simulated_weather import Scenario
+from app.tracker.weather.weather_day import (
     MOST_STEPS,
     WeatherStep,
     day_of_scenario,
@@ -34,7 +34,7 @@ def test_a_step_holds_until_the_next_and_keeps_what_it_does_not_name() -> None:
     assert snowy.snow_kg == windy.snow_kg == 6.0
     assert windy.wind_mps == pytest.approx(22.0, rel=0.31)
     assert snowy.wind_mps == pytest.approx(4.0, rel=0.31), "the wind of the step before"
-    assert early.light_wm2 is None, "light is that of a clear sky, and there is no sun"
+    assert early.irradiance_wm2 is None, "light is that of a clear sky, and there is no sun"
 
 
 def test_steps_follow_the_civil_clock_over_a_change_of_the_hour() -> None:

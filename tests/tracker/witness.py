@@ -6,8 +6,7 @@ them; of the controller it asks only what it shows and remembers.
 
 from datetime import datetime, timedelta
 
-from app.tracker.axes import Axis
-from app.tracker.commands import (
+from app.tracker.commands.commands import (
     Command,
     ConfirmAreaClear,
     EndJog,
@@ -19,9 +18,10 @@ from app.tracker.commands import (
     SetInhibit,
     Stop,
 )
-from app.tracker.motion import AxisCommand, Halt, Position, Velocity
-from app.tracker.protections.words import StowName
-from app.tracker.snapshot import ActivityName
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.protections import StowName
+from app.tracker.state.snapshot import ActivityName
+from app.tracker.values.motion import AxisCommand, Halt, Position, Velocity
 from tests.tracker.plant import Plant
 
 AT_REST = {ActivityName.HOLDING, ActivityName.STOPPING, ActivityName.FAULTED, ActivityName.STOWED}

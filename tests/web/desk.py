@@ -8,7 +8,7 @@ from typing import Any, Self
 
 import httpx
 
-from app.settings import Settings
+from app.base.settings import Settings
 from app.store.engine import open_reader, open_writer
 from app.store.migrations import upgrade
 from app.web.main import create_app

@@ -10,11 +10,13 @@ from starlette.types import Scope as Asked
 
 from app.access.authenticator import Credentials
 from app.access.principal import Principal, SignInNeeded, Via, nobody
-from app.access.roles import GRANTS, KNOWN, NOBODY, Permission, Role
-from app.clock import VirtualClock
-from app.web.gate import Gate
-from app.web.routes import STATIC_PATH, Guarded
+from app.access.roles import GRANTS, KNOWN, NOBODY, Role
+from app.base.clock import VirtualClock
+from app.base.permission import Permission
+from app.web.http.gate import Gate
+from app.web.http.routes import STATIC_PATH, Guarded
 from tests.fake_data import NOON
+from tests.web.route_table import NEEDS
 
 FAR = "192.0.2.7"
 UNKNOWN_TOKEN = "This token is unknown."  # noqa: S105 - a sentence
@@ -125,7 +127,7 @@ class Gatehouse:
         self.panel_app = FastAPI()
         self.sent: list[Message] = []
         routes = [_guarded(key) for key in TAKEN]
-        routes.append(Guarded(STATIC_PATH, frozenset({"GET"}), compile_path("/s/{path:path}")[0]))
+        routes.append(Guarded(STATIC_PATH, frozenset({"GET"}), compile_path("/s/{path:path}")[0], None))
         keeper: Any = self.keeper
         self.gate = Gate(
             self.behind, panel_app=self.panel_app, keeper=keeper, clock=self.clock, routes=tuple(routes)
@@ -198,4 +200,4 @@ async def _a_few_turns() -> None:
 
 def _guarded(key: str) -> Guarded:
     method, path = key.split(" ")
-    return Guarded(path, frozenset({method}), compile_path(path)[0])
+    return Guarded(path, frozenset({method}), compile_path(path)[0], NEEDS[key])

@@ -9,8 +9,8 @@ import sys
 from datetime import datetime, timedelta
 from pathlib import Path
 
-from app.clock import SystemClock
-from app.settings import Settings
+from app.base.clock import SystemClock
+from app.base.settings import Settings
 from app.web.main import run
 
 FASTER = 15

@@ -12,8 +12,8 @@ from fastapi import FastAPI
 from app.access.authenticator import Keeper
 from app.access.principal import this_computer
 from app.access.roles import Role
-from app.clock import Clock, SystemClock
-from app.settings import Settings
+from app.base.clock import Clock, SystemClock
+from app.base.settings import Settings
 from app.web.main import create_app
 from tests.access.fake_hasher import FakeHasher
 from tests.fakes import PORT, FakeMachine
@@ -43,7 +43,7 @@ class Office:
         self.machine = FakeMachine(self.clock)
         self.hasher = FakeHasher()
         self.settings = Settings(data_dir=folder, port=PORT).model_copy(
-            update={"host": host, "login_notice": notice}
+            update={"host": host, "login_banner": notice}
         )
         self.app: FastAPI = create_app(
             self.settings,

@@ -10,8 +10,8 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.web.languages import CATALOGUE
 from app.web.languages.catalogue import DOCUMENTS, Catalogue
-from app.web.languages.catalogues import mo_bytes, template
 from app.web.languages.known import LANGUAGES
+from app.web.translation.catalogues import mo_bytes, template
 
 READ_ATTRIBUTES = ("aria-label", "aria-description", "aria-valuetext", "title", "placeholder", "alt", "label")
 VOID = frozenset(("area", "base", "br", "col", "hr", "img", "input", "link", "meta", "source", "wbr"))

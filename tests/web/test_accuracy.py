@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.sun.algorithms import PUBLISHED, Algorithm
-from app.web.ui.logchart import BOTTOM, LABEL_GAP, TOP, log_chart
+from app.web.charts.logchart import BOX, LABEL_GAP, log_chart
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
 
 HTMX = {"HX-Request": "true", "HX-Request-Type": "partial"}
@@ -25,7 +25,7 @@ async def client() -> AsyncIterator[httpx.AsyncClient]:
 
 
 async def test_page_and_api_tell_the_same(client: httpx.AsyncClient) -> None:
-    query = {"from_year": 2026, "to_year": 2026, "samples": 1000}
+    query = {"start_year": 2026, "end_year": 2026, "samples": 1000}
     told = (await client.get("/api/v1/sun/accuracy", params=query)).json()
     shown = (await client.get("/accuracy", params=QUICK, headers=HTMX)).text
     assert told["location"]["latitude_deg"] == pytest.approx(41.2867)
@@ -66,13 +66,13 @@ async def test_a_question_that_cannot_be_keeps_what_was_typed(
 
 
 async def test_the_api_refuses_years_in_the_wrong_order(client: httpx.AsyncClient) -> None:
-    answer = await client.get("/api/v1/sun/accuracy", params={"from_year": 2049, "to_year": 2000})
+    answer = await client.get("/api/v1/sun/accuracy", params={"start_year": 2049, "end_year": 2000})
     assert answer.status_code == 422
     assert "the first not after the last" in answer.json()["detail"]
 
 
 async def test_every_algorithm_has_a_card_and_a_sun(client: httpx.AsyncClient) -> None:
-    cards = (await client.get("/api/v1/sun/algorithms")).json()
+    cards = (await client.get("/api/v1/sun/algorithms")).json()["items"]
     assert [card["algorithm"] for card in cards] == list(Algorithm)
     assert all(card["max_deg"] == PUBLISHED[Algorithm(card["algorithm"])].max_deg for card in cards)
     for card in cards:
@@ -95,7 +95,7 @@ def test_names_of_curves_that_end_together_do_not_overlap() -> None:
     assert [line.label for line in drawn.lines] == ["curve 3", "curve 2", "curve 1"]
     assert [line.dashes for line in drawn.lines] == [1, 3, 2]
     assert np.diff(places).min() >= LABEL_GAP - 0.2
-    assert TOP <= places[0] < places[-1] <= BOTTOM + 0.1
+    assert BOX.top <= places[0] < places[-1] <= BOX.bottom + 0.1
 
 
 def test_a_curve_breaks_where_nothing_was_measured() -> None:

@@ -6,8 +6,8 @@ from collections.abc import AsyncIterator
 import httpx
 import pytest
 
-from app.tracker.snapshot import ActivityName, SensorState
-from app.tracker.weather import Quality, Quantity, Weather, WeatherNow
+from app.tracker.state.snapshot import ActivityName, SensorState
+from app.tracker.weather.weather import Quality, Quantity, Weather, WeatherNow
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
 
 T1 = "/trackers/T1"

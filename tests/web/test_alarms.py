@@ -24,7 +24,7 @@ async def desk(tmp_path: Path) -> AsyncIterator[Desk]:
 
 async def standing(desk: Desk) -> dict[str, dict[str, Any]]:
     answer = await desk.ask("GET", "/api/v1/alarms")
-    return {one["alarm_id"]: one for one in answer.json()["alarms"]}
+    return {one["alarm_id"]: one for one in answer.json()["items"]}
 
 
 async def test_an_alarm_is_told_acknowledged_and_kept_in_the_history(desk: Desk) -> None:
@@ -36,7 +36,7 @@ async def test_an_alarm_is_told_acknowledged_and_kept_in_the_history(desk: Desk)
     desk.plant.site.trouble("store", None)
     await desk.forward(11)
     assert "store_behind" not in await standing(desk)
-    history = (await desk.ask("GET", "/api/v1/alarms/history?priority=2")).json()["alarms"]
+    history = (await desk.ask("GET", "/api/v1/alarms/history?priority=2")).json()["items"]
     assert [(one["alarm"]["code"], one["ended"]) for one in history] == [("store_behind", True)]
     page = await desk.ask("GET", "/alarms?view=history")
     assert "Nothing can be stored" in page.text
@@ -82,19 +82,19 @@ async def test_the_list_is_narrowed_to_priorities(desk: Desk) -> None:
 
 
 async def test_every_alarm_is_in_the_guide_of_the_panel_and_the_api(desk: Desk) -> None:
-    kinds = (await desk.ask("GET", "/api/v1/alarms/catalogue")).json()
+    kinds = (await desk.ask("GET", "/api/v1/alarms/catalogue")).json()["items"]
     page = (await desk.ask("GET", "/alarms/guide")).text
     assert all(f'id="alarm-{one["code"]}"' in page for one in kinds)
 
 
 async def test_the_journal_is_narrowed_and_handed_out_as_a_file(desk: Desk) -> None:
     await desk.ask("POST", "/api/v1/alarms/store_behind/acknowledge")
-    found = (await desk.ask("GET", "/api/v1/journal?text=NOTHING%20can&kind=alarm_raised")).json()["entries"]
+    found = (await desk.ask("GET", "/api/v1/journal?text=NOTHING%20can&kind=alarm_raised")).json()["items"]
     assert [one["event"]["data"]["code"] for one in found] == ["store_behind"]
     actor = found[0]["event"]["actor"]
-    assert actor == "machine"
+    assert actor == "controller"
     others = (await desk.ask("GET", "/api/v1/journal?kind=alarm_raised&actor=nobody")).json()
-    assert others["entries"] == []
+    assert others["items"] == []
     file = await desk.ask("GET", "/api/v1/journal/export?kind=alarm_acknowledged")
     head, line = file.text.splitlines()
     assert head == "number,at,kind,tracker_id,actor,message,data"
@@ -105,11 +105,11 @@ async def test_the_journal_is_narrowed_and_handed_out_as_a_file(desk: Desk) -> N
 
 
 async def test_the_journal_page_keeps_what_was_typed(desk: Desk) -> None:
-    page = await desk.ask("GET", "/journal?text=stored&kind=alarm_raised&since=2027-06-21")
+    page = await desk.ask("GET", "/journal?text=stored&kind=alarm_raised&start=2027-06-21")
     assert page.status_code == 200
     assert 'value="stored"' in page.text
     assert "/api/v1/journal/export?format=csv&amp;kind=alarm_raised&amp;text=stored" in page.text
-    wrong = await desk.ask("GET", "/journal?since=tomorrow")
+    wrong = await desk.ask("GET", "/journal?start=tomorrow")
     assert wrong.status_code == 422
     assert 'value="tomorrow"' in wrong.text
 

@@ -15,14 +15,14 @@ import pytest
 from app.link import messages
 from app.store import store
 from app.sun import position
-from app.tracker import commands
-from app.tracker.axes import Axis, JogSpeed
-from app.tracker.commands import CommandRejected, EndJog, Jog, Move, SelectMode, Stop
-from app.tracker.config import Orientation
-from app.tracker.mode import Mode
-from app.tracker.reason import Reason
-from app.web import errors
-from app.web.errors import problem_of
+from app.tracker.commands import commands
+from app.tracker.commands.commands import CommandRejected, EndJog, Jog, Move, SelectMode, Stop
+from app.tracker.settings.axes import Axis, JogSpeed
+from app.tracker.settings.config import Orientation
+from app.tracker.values.mode import Mode
+from app.tracker.values.reason import Reason
+from app.web.http import errors
+from app.web.http.errors import problem_of
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.fault_result import FaultResult
 from tests.web.desk import Desk
@@ -162,7 +162,7 @@ async def test_wrong_values_are_422_and_change_nothing(
     assert answer.status_code == 422
     problem = answer.json()
     assert problem["detail"]
-    assert all(fault["location"] and fault["message"] for fault in problem.get("errors", []))
+    assert all(fault["pointer"] and fault["detail"] for fault in problem.get("errors", []))
     assert (machine.site, machine.trackers["T1"].config) == before
 
 
@@ -180,8 +180,8 @@ async def test_what_does_not_exist_is_a_problem_too(
 
 
 async def test_frames_come_as_columns_csv_and_parquet(api: httpx.AsyncClient) -> None:
-    frames = "/recordings/show-1/frames"
-    columns = (await api.get(frames, params={"points": 50, "begin_s": 10, "end_s": 20})).json()["columns"]
+    frames = "/recordings/show-1/samples"
+    columns = (await api.get(frames, params={"points": 50, "start_s": 10, "end_s": 20})).json()["columns"]
     assert 18 <= len(columns["elapsed_s"]) <= 50
     assert 10 <= columns["elapsed_s"][0] <= columns["elapsed_s"][-1] <= 20
     lines = (await api.get(frames, params={"format": "csv", "end_s": 1})).text.splitlines()
@@ -249,15 +249,15 @@ async def test_simulation_and_backups_against_the_real_store(tmp_path: Path) -> 
     async with Desk(tmp_path) as desk:
         place = {"latitude_deg": 41.2867, "longitude_deg": 36.33, "time_zone": "Europe/Istanbul"}
         await desk.ask("PUT", "/api/v1/site/location", json=place | {"confirmed": True})
-        span = {"begin_at": "2027-06-21T12:00:00+03:00", "end_at": "2027-06-21T13:00:00+03:00"}
+        span = {"start": "2027-06-21T12:00:00+03:00", "end": "2027-06-21T13:00:00+03:00"}
         new = {"tracker_id": "T1", "step_s": 60, **span}
         made = await desk.ask("POST", "/api/v1/simulations", json=new)
         assert made.status_code == 201, made.text
-        frames = (await desk.ask("GET", f"{made.headers['location']}/frames")).json()
+        frames = (await desk.ask("GET", f"{made.headers['location']}/samples")).json()
         backup = await desk.ask("POST", "/api/v1/backups")
         download = await desk.ask("GET", backup.headers["location"])
         missing = await desk.ask("GET", "/api/v1/backups/other.backup")
-    assert frames["frame_count"] == made.json()["frame_count"] == 61
+    assert frames["sample_count"] == made.json()["sample_count"] == 61
     assert (tmp_path / "backups" / backup.json()["file"]).stat().st_size == backup.json()["size_bytes"]
     assert backup.json()["recordings"] == 1
     assert backup.json()["audit_head"]

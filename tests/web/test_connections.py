@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import pytest
 
-from app.web import server
-from app.web.server import MOST_TOLD, RESERVED, RESERVED_A_CLIENT, Admission, Connections
+from app.web.http import server
+from app.web.http.server import MOST_TOLD, RESERVED, RESERVED_A_CLIENT, Admission, Connections
 
 FAR, OTHER = "192.0.2.7", "192.0.2.8"
 

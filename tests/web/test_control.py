@@ -6,14 +6,14 @@ from pathlib import Path
 import pytest
 
 from app.link.messages import Order, RequestControl, SiteCommand
-from app.tracker.commands import Command
-from app.tracker.snapshot import ActivityName
+from app.tracker.commands.commands import Command
+from app.tracker.state.snapshot import ActivityName
 from tests.web.desk import Desk
 from tests.web.sockets import connected
 
 API = "/api/v1/trackers/T1"
 JOG = {"press_id": "p", "axis": "azimuth", "direction": 1}
-STEP = {"type": "step", "axis": "azimuth", "degrees": 1.0}
+STEP = {"type": "step", "axis": "azimuth", "delta_deg": 1.0}
 HTMX = {"HX-Request": "true", "Origin": "http://127.0.0.1:8010"}
 
 
@@ -76,7 +76,7 @@ async def test_control_is_asked_for_taken_over_and_kept_over_the_api(desk: Desk)
     kept = await desk.ask("POST", f"{API}/control", json={"action": "keep"})
     assert kept.status_code == 409, "nothing was heard from here since"
     group = await desk.ask("POST", "/api/v1/control", json={"tracker_ids": ["T1"]})
-    assert [one["yours"] for one in group.json()] == [True]
+    assert [one["yours"] for one in group.json()["items"]] == [True]
 
 
 async def test_a_page_shows_who_has_control_and_its_keys(desk: Desk) -> None:

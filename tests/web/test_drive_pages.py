@@ -8,12 +8,12 @@ from typing import Any
 import httpx
 import pytest
 
-from app.drives.faults import Fault, FaultKind
-from app.drives.simulated import SimulatedDrive
 from app.link.messages import CheckConnection, ConfigureTracker
-from app.tracker.axes import Axis
-from app.tracker.config import DriveKind, Parity
-from app.tracker.drive_check import CheckOutcome, DriveCheck, DriveReadings, RegisterReading
+from app.simulation.faults import Fault, FaultKind
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.memory.drive_check import CheckOutcome, DriveCheck, DriveReadings, RegisterReading
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import DriveKind, Parity
 from tests.fake_store import FakeReader
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.web.desk import Desk
@@ -67,7 +67,7 @@ async def test_the_api_proves_a_drive_as_the_page_does(desk: Desk) -> None:
     await rest(desk)
     judged = await desk.ask("POST", f"{API}/drive-tests/direction", json={"right": True})
     assert judged.json()["measured"]["directions"][0]["moved_deg"] == pytest.approx(3.0, abs=0.1)
-    await command(desk, "test_scale", axis="elevation", degrees=10)
+    await command(desk, "test_scale", axis="elevation", delta_deg=10)
     await rest(desk)
     await desk.ask("POST", f"{API}/drive-tests/scale", json={"measured_deg": 10.1})
     started = await command(desk, "test_stop", axis="elevation", speed="jog")
@@ -111,11 +111,11 @@ async def test_what_cannot_be_is_refused_with_every_reason(desk: Desk) -> None:
     assert nothing.status_code == 409
     assert nothing.json()["reasons"][0]["code"] == "nothing_to_judge"
     rated = await command(desk, "test_stop", axis="azimuth", speed="rated")
-    assert rated.json()["reasons"][0]["code"] == "home_not_trusted"
+    assert rated.json()["reasons"][0]["code"] == "tracker_not_homed"
     limit = await desk.ask("POST", f"{API}/drive-tests/limits", json={"axis": "azimuth", "end": "lower"})
     assert limit.status_code == 409
-    assert (await desk.ask("POST", f"{API}/drive/restore")).status_code == 409
-    assert (await command(desk, "test_scale", axis="azimuth", degrees=20)).status_code == 422
+    assert (await desk.ask("POST", f"{API}/drive/undo")).status_code == 409
+    assert (await command(desk, "test_scale", axis="azimuth", delta_deg=20)).status_code == 422
     no_tools = await desk.ask("POST", f"{API}/drive/check", json={"kind": "modbus-tcp", "port": 1})
     assert no_tools.json()["reasons"][0]["code"] == "no_drive_tools"
 

@@ -7,8 +7,8 @@ import pytest
 
 from app.store.migrations import upgrade
 from app.web.openapi import DOCUMENT as KEPT
-from app.web.simulations import BUSY, Busy, Simulations
-from app.web.studies import Studies
+from app.web.services.simulations import BUSY, Busy, Simulations
+from app.web.services.studies import Studies
 from tests.fakes import PORT, fake_app
 from tests.fault_result import FaultResult
 from tests.fuzz import LastingMachine

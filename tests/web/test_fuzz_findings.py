@@ -7,7 +7,7 @@ import httpx
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from app.instants import Instant
+from app.base.instants import Instant
 from tests.fake_data import commissioned
 from tests.fake_tracker import FakeTracker
 from tests.fakes import FakeMachine, fake_app, serving
@@ -33,11 +33,11 @@ def test_an_instant_with_its_offset_is_one(given: str) -> None:
     assert INSTANT.validate_python(given) is not None
 
 
-@pytest.mark.parametrize("path", ["/audit?since=0.0", "/sun?at=-1461807020419.5", "/journal?until=12"])
+@pytest.mark.parametrize("path", ["/audit?start=0.0", "/sun?at=-1461807020419.5", "/journal?end=12"])
 async def test_a_number_in_the_place_of_an_instant_is_refused(api: httpx.AsyncClient, path: str) -> None:
     answer = await api.get(V1 + path)
     assert answer.status_code == 422
-    assert "Write the instant in ISO 8601" in answer.json()["errors"][0]["message"]
+    assert "Write the instant in ISO 8601" in answer.json()["errors"][0]["detail"]
 
 
 async def test_the_place_of_a_show_is_told_whatever_its_tracker_is_called(
@@ -54,7 +54,7 @@ async def test_the_place_of_a_show_is_told_whatever_its_tracker_is_called(
 
 async def test_too_few_points_are_refused(api: httpx.AsyncClient) -> None:
     for points in (1, 18, 21):
-        answer = await api.get(f"{V1}/recordings/show-1/frames", params={"points": points})
+        answer = await api.get(f"{V1}/recordings/show-1/samples", params={"points": points})
         assert answer.status_code == 422, points
 
 
@@ -91,13 +91,13 @@ async def test_a_study_whose_energy_is_beyond_all_numbers_is_not_begun(
     assert answer.status_code == 422
     (told,) = answer.json()["errors"]
     assert next(iter(given)) in str(told)
-    assert (await api.get(f"{V1}/studies")).json() == []
+    assert (await api.get(f"{V1}/studies")).json()["items"] == []
 
 
 async def test_measured_values_are_kept_as_a_file_whatever_their_tracker_is_called(
     api: httpx.AsyncClient,
 ) -> None:
-    asked = {"begin": "2026-06-21T00:00:00Z", "end": "2026-06-22T00:00:00Z", "format": "csv"}
+    asked = {"start": "2026-06-21T00:00:00Z", "end": "2026-06-22T00:00:00Z", "format": "csv"}
     answer = await api.get(f"{V1}/telemetry", params={**asked, "tracker_id": 'Çatı"\r\nX-Forged: 1'})
     assert answer.status_code == 200, answer.text
     assert "x-forged" not in answer.headers

@@ -6,10 +6,10 @@ from datetime import timedelta
 import pytest
 
 from app.access.principal import Via, nobody
-from app.access.roles import Permission, Role
+from app.access.roles import Role
 from app.access.tokens import mint
-from app.web.gate import NOT_SET_UP, OLD_PAGE, TOO_MANY_FIELDS, record_foreign
-from app.web.languages.given_names import GIVEN
+from app.base.permission import Permission
+from app.web.http.gate import NOT_SET_UP, OLD_PAGE, TOO_MANY_FIELDS, record_foreign
 from tests.fake_data import NOON
 from tests.web.gatehouse import (
     FAR,
@@ -56,18 +56,6 @@ async def test_who_gets_through_is_told_to_what_stands_behind(house: Gatehouse) 
     assert scope["state"] == {"of": "the server", "principal": viewer, "session_id": "s"}
 
 
-async def test_the_name_of_a_person_is_known_as_a_name_and_that_of_a_program_is_not(
-    house: Gatehouse,
-) -> None:
-    GIVEN.forget()
-    house.knows("s", person(Role.VIEWER))
-    house.knows("t", program(Permission.READ))
-    assert await house.ask("GET /s/panel.css", cookie=of_session("s"))
-    assert await house.ask("GET /api/v1/site", authorization="Bearer t")
-    assert "viewer-1" in GIVEN
-    assert "scada (token)" not in GIVEN
-
-
 async def test_files_of_the_panel_are_for_everybody_and_what_no_route_takes_is_not(house: Gatehouse) -> None:
     assert await house.ask("GET /s/panel.css")
     assert not await house.ask("GET /nowhere")
@@ -87,7 +75,7 @@ async def test_what_a_role_may_not_do_is_refused_and_recorded(house: Gatehouse) 
 
 
 async def test_a_token_that_is_no_good_is_recorded_with_its_id_if_it_has_one(house: Gatehouse) -> None:
-    for token, known in (("nonsense", ""), (TOKEN, f" Its id is {TOKEN_ID}.")):
+    for token, known in (("nonsense", ""), (TOKEN, f" Its ID is {TOKEN_ID}.")):
         assert not await house.ask("GET /api/v1/site", authorization=f"Bearer {token}")
         assert house.status == 401
         told = ("refused_token", nobody(FAR), "GET /api/v1/site", f"{UNKNOWN_TOKEN}{known}", NOON)

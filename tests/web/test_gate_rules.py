@@ -8,8 +8,8 @@ from starlette.requests import Request
 
 from app.access.authenticator import Credentials
 from app.access.principal import NotAllowed, ProofNeeded, SignInNeeded
-from app.web.errors import Busy, NotAcceptable, NotSetUp
-from app.web.gate import (
+from app.web.http.errors import Busy, NotAcceptable, NotSetUp
+from app.web.http.gate import (
     LONGEST_BACK,
     MOST_ADDRESSES,
     MOST_STOPS,
@@ -83,16 +83,16 @@ def test_a_request_is_recorded_by_method_and_path() -> None:
     ],
 )
 def test_what_is_brought_along_is_found(scope: dict[str, Any], found: Credentials) -> None:
-    assert credentials(scope, "GET /") == found
+    assert credentials(scope) == found
 
 
 def test_a_ticket_counts_where_one_is_taken_and_needs_no_address_field_elsewhere() -> None:
     scope = asked_for("WS /live", "ticket=k")
-    assert credentials(scope, "WS /live") == Credentials(FAR, ticket="k")
-    assert credentials(asked_for("WS /live"), "WS /live") == Credentials(FAR)
+    assert credentials(scope, ticketed=True) == Credentials(FAR, ticket="k")
+    assert credentials(asked_for("WS /live"), ticketed=True) == Credentials(FAR)
     scope = asked_for("GET /")
     del scope["query_string"]
-    assert credentials(scope, "GET /") == Credentials(FAR)
+    assert credentials(scope) == Credentials(FAR)
 
 
 @pytest.mark.parametrize(

@@ -14,11 +14,12 @@ from starlette.types import Message, Receive, Send
 from starlette.types import Scope as Asked
 
 from app.access.accounts import TokenWish
-from app.access.roles import GRANTS, Permission, Role
+from app.access.roles import GRANTS, Role
 from app.access.tokens import SCOPES, Scope
-from app.web.route_permissions import ROUTES
+from app.base.permission import Permission
 from tests.fault_result import FaultResult
 from tests.web.office import COOKIE, HERE, ORIGIN, PORT, Office
+from tests.web.route_table import ROUTES
 
 pytestmark = pytest.mark.asyncio(loop_scope="module")
 
@@ -232,7 +233,7 @@ async def test_a_foreign_page_changes_nothing_whoever_is_signed_in(
     for role in (Role.ENGINEER, Role.ADMINISTRATOR):
         headers = signed_in(doors, keys.sessions[role]) | foreign
         assert await doors.passed(headers, CHANGING) == set()
-    fault.prevented("a request of a foreign page is refused, whoever is signed in")
+    fault.prevented("a request of a foreign page is refused, also of a user who is signed in")
     refused = await doors.ask("POST /api/v1/stop", signed_in(doors, keys.sessions[Role.ENGINEER]) | foreign)
     assert refused.status == 403
     fault.shows(json.loads(refused.body)["detail"])

@@ -14,7 +14,7 @@ from tests.web.desk import Desk
 GUIDE = Path(__file__).resolve().parents[2] / "docs" / "integrate" / "integrators-guide.md"
 ROOT = "http://127.0.0.1:8000"
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
-CAPTURE = re.compile(r"(\w+)=\$\((curl .*) \| jq -r \.(?:\[0\]\.)?(\w+)\)")
+CAPTURE = re.compile(r"(\w+)=\$\((curl .*) \| jq -r \.(?:items\[0\]\.)?(\w+)\)")
 
 
 def commands() -> list[str]:
@@ -56,7 +56,7 @@ async def follow(desk: Desk) -> dict[str, Any]:
         elif captured := CAPTURE.fullmatch(line):
             name, inner, field = captured.groups()
             found = (await curl(desk, inner, known)).json()
-            known[name] = (found[0] if isinstance(found, list) else found)[field]
+            known[name] = (found["items"][0] if "items" in found else found)[field]
         elif line.startswith("curl "):
             answers[line] = (await curl(desk, line, known)).text
         else:
@@ -73,10 +73,10 @@ async def test_the_guide_walks_from_first_power_to_a_recorded_show(tmp_path: Pat
     tracking = json.loads(answers["curl -s $API/trackers/T1/snapshot"])
     assert tracking["activity"] == "tracking"
     assert tracking["off_sun_deg"] < 0.5
-    frames = json.loads(answers['curl -s "$API/recordings/$RECORDING/frames?points=100"'])
-    assert 18 <= frames["frame_count"] <= 100
+    frames = json.loads(answers['curl -s "$API/recordings/$RECORDING/samples?points=100"'])
+    assert 18 <= frames["sample_count"] <= 100
     sun, panel = frames["columns"]["sun_azimuth_deg"], frames["columns"]["measured_azimuth_deg"]
     assert max(abs(a - b) for a, b in zip(sun, panel, strict=True)) < 2.0
-    entries = json.loads(answers['curl -s "$API/journal?limit=20"'])["entries"]
+    entries = json.loads(answers['curl -s "$API/journal?limit=20"'])["items"]
     happened = {entry["event"]["kind"] for entry in entries}
     assert {"show_started", "show_ended", "stopped"} <= happened

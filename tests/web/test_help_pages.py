@@ -12,11 +12,14 @@ from PIL import Image
 
 from app.alarms.catalogue import ENTRIES
 from app.sun.position import SunPosition
-from app.web import guide
-from app.web.help import PAGES, help_for
-from app.web.ui.render import environment
-from app.web.ui.settings_words import SETTINGS
-from app.web.ui.themes import theme_of
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import TrackerConfig
+from app.web.features.guide import guide
+from app.web.features.setup.settings import TRACKING
+from app.web.shell.help import PAGES, help_for
+from app.web.shell.render import environment
+from app.web.shell.setting_forms import below, field_name
+from app.web.shell.themes import theme_of
 from tests.fakes import FakeMachine, fake_app, serving
 
 EXAMPLES = {
@@ -90,7 +93,7 @@ async def test_html_in_a_document_is_text_and_nothing_outside_is_served(client: 
     [
         ("deadband", "Setting", "T1: Deadband"),
         ("drive answer", "Alarm", "Drive does not answer"),
-        ("gust", "Setting", "T1: Wind, gust threshold"),
+        ("gust", "Setting", "T1: Wind: Gust threshold"),
         ("alarms", "Page", "Alarms"),
         ("maintenance lock", "Document", "Operator&#39;s guide: Maintenance inhibit"),
     ],
@@ -111,9 +114,10 @@ async def test_every_number_of_the_settings_has_its_range_and_default_below_it(
     client: httpx.AsyncClient,
 ) -> None:
     page = (await client.get("/trackers/T1/settings")).text
-    for name, words in SETTINGS.items():
-        assert f'id="f-{name}"' in page
-        assert words.hint in page, name
+    for one in (*TRACKING, *(one for axis in Axis for one in below(TrackerConfig, axis))):
+        if one.is_number:
+            assert f'id="f-{field_name(one.path)}"' in page
+            assert one.hint in page, one.path
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 import uvicorn
 
-from app.web.server import (
+from app.web.http.server import (
     FULL,
     HEAD_TOO_LARGE,
     LARGEST_HEAD,

@@ -7,9 +7,9 @@ import httpx
 import pytest
 
 from app.access.roles import Role
-from app.web.route_permissions import ROUTES
-from app.web.server import Connections
+from app.web.http.server import Connections
 from tests.web.office import COOKIE, Office
+from tests.web.route_table import ROUTES
 from tests.web.test_server import serving
 
 

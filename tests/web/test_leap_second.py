@@ -3,7 +3,7 @@
 import httpx
 import pytest
 
-from app.instants import without_leap_second
+from app.base.instants import without_leap_second
 from app.link.messages import SetClock
 from tests.fakes import FakeMachine
 from tests.fault_result import FaultResult

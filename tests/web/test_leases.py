@@ -7,11 +7,11 @@ from fastapi import FastAPI
 
 from app.access.principal import Principal, Via
 from app.access.roles import Role, permissions_of
-from app.clock import VirtualClock
-from app.tracker.commands import JOG_LEASE, EndJog, Jog
-from app.web.deps import Panel
-from app.web.live import Session
-from app.web.viewers import Wanted
+from app.base.clock import VirtualClock
+from app.tracker.commands.commands import JOG_LEASE, EndJog, Jog
+from app.web.live.viewers import Wanted
+from app.web.shell.deps import Panel
+from app.web.sockets import Session
 from tests.fakes import FakeMachine
 from tests.web.test_live import app, clock, forward, machine, settle
 

@@ -14,7 +14,7 @@ from app.access.opening import open_store
 from app.access.passwords import Passwords
 from app.access.roles import Role
 from app.access.tokens import Scope
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from tests.access.fake_hasher import FakeHasher
 from tests.fake_data import NOON
 from tests.fault_result import VIRTUAL, FaultResult

@@ -38,7 +38,7 @@ def sent(office: Office) -> list[str]:
 
 @pytest.mark.fault(24)
 @pytest.mark.parametrize(
-    "change", [{"azimuth_maximum": "350"}, {"elevation_speed": "3"}, {"host": "10.0.0.7"}]
+    "change", [{"azimuth_maximum_deg": "350"}, {"elevation_speed_dps": "3"}, {"host": "10.0.0.7"}]
 )
 async def test_the_form_asks_for_the_password_and_keeps_what_was_typed(
     office: Office, browser: httpx.AsyncClient, change: dict[str, str]
@@ -57,7 +57,7 @@ async def test_the_form_asks_for_the_password_and_keeps_what_was_typed(
 async def test_more_room_is_reviewed_only_after_the_password(
     office: Office, browser: httpx.AsyncClient
 ) -> None:
-    typed = FIELDS | {"azimuth_maximum": "400"}
+    typed = FIELDS | {"azimuth_maximum_deg": "400"}
     assert (await browser.post(PAGE, data=typed, headers=HTMX)).status_code == 403
     await browser.post("/prove", data={"password": PASSWORD})
     assert "Nothing is saved yet" in (await browser.post(PAGE, data=typed, headers=HTMX)).text
@@ -67,7 +67,7 @@ async def test_more_room_is_reviewed_only_after_the_password(
 async def test_a_name_and_what_is_of_no_weight_need_no_password(
     office: Office, browser: httpx.AsyncClient
 ) -> None:
-    typed = FIELDS | {"name": "East 1", "deadband": "1"}
+    typed = FIELDS | {"name": "East 1", "deadband_deg": "1"}
     assert (await browser.post(PAGE, data=typed, headers=HTMX)).status_code == 200
     assert (await browser.patch(API, json={"name": "East 2"})).status_code == 200
     assert sent(office) == ["configure_tracker", "configure_tracker"]
@@ -79,8 +79,8 @@ async def test_the_api_asks_a_session_too_and_undo_and_another_mount_do(
 ) -> None:
     refused = await browser.patch(API, json=WIDER)
     assert refused.status_code == 403
-    assert refused.json()["reasons"][0]["code"] == "proof_needed"
-    assert (await browser.post(f"{API}/undo")).status_code == 403
+    assert refused.json()["reasons"][0]["code"] == "reauthentication_required"
+    assert (await browser.post(f"{API}/settings/undo")).status_code == 403
     assert (await browser.post(f"{PAGE}/undo")).headers["location"].startswith("/prove")
     kind = await browser.post("/trackers/T1/mount/kind", data={"kind": "horizontal-single-axis"})
     assert kind.headers["location"].startswith("/prove")

@@ -14,12 +14,14 @@ API = "/api/v1/trackers/T1"
 PAGE = "/trackers/T1/settings"
 FIELDS = {
     "name": "Tracker 1", "drive": "simulated", "profile": "simulated-plc", "host": "127.0.0.1",
-    "port": "5020", "unit": "1", "azimuth_minimum": "0", "azimuth_maximum": "360", "azimuth_speed": "6",
-    "azimuth_acceleration": "6", "azimuth_slow": "0.5", "azimuth_fast": "3", "elevation_minimum": "0",
-    "elevation_maximum": "90", "elevation_speed": "4", "elevation_acceleration": "6",
-    "elevation_slow": "0.5", "elevation_fast": "2", "algorithm": "psa", "refraction": "yes",
-    "deadband": "0.5", "in_position": "0.05", "following_error": "2", "night": "sunrise",
-    "park_azimuth": "180", "park_elevation": "90",
+    "port": "5020", "unit": "1", "azimuth_minimum_deg": "0",
+    "azimuth_maximum_deg": "360", "azimuth_speed_dps": "6",
+    "azimuth_acceleration_dps2": "6", "azimuth_jog_slow_dps": "0.5", "azimuth_jog_fast_dps": "3",
+    "elevation_minimum_deg": "0",
+    "elevation_maximum_deg": "90", "elevation_speed_dps": "4", "elevation_acceleration_dps2": "6",
+    "elevation_jog_slow_dps": "0.5", "elevation_jog_fast_dps": "2", "algorithm": "psa", "refraction": "yes",
+    "deadband_deg": "0.5", "in_position_deg": "0.05", "following_error_deg": "2", "night": "sunrise",
+    "park_azimuth_deg": "180", "park_elevation_deg": "90",
 }  # fmt: skip
 
 
@@ -43,13 +45,13 @@ async def upper_deg(desk: Desk) -> float:
 async def homed(desk: Desk) -> None:
     await desk.ask("POST", f"{API}/commands", json={"type": "home"})
     await desk.forward(30.0)
-    assert (await desk.ask("GET", f"{API}/snapshot")).json()["home_trusted"]
+    assert (await desk.ask("GET", f"{API}/snapshot")).json()["homed"]
 
 
 @pytest.mark.fault(24)
 async def test_more_room_is_shown_and_saved_only_when_somebody_is_sure_of_it(desk: Desk) -> None:
     await homed(desk)
-    status, text = await save(desk, azimuth_maximum="400")
+    status, text = await save(desk, azimuth_maximum_deg="400")
     assert status == 200
     assert "Nothing is saved yet" in text
     assert "Azimuth, upper soft limit" in text
@@ -61,9 +63,9 @@ async def test_more_room_is_shown_and_saved_only_when_somebody_is_sure_of_it(des
     assert [one["after"] for one in review["differences"]] == ["400 °"]
     assert [one["code"] for one in review["doubts"]] == ["limits_widened"]
     said = "Azimuth, upper soft limit: 360 ° to 400 °"
-    status, text = await save(desk, azimuth_maximum="410", confirmed=said)
+    status, text = await save(desk, azimuth_maximum_deg="410", confirmed=said)
     assert "Nothing is saved yet" in text, "what was confirmed is not what would be saved"
-    status, text = await save(desk, azimuth_maximum="400", confirmed=said)
+    status, text = await save(desk, azimuth_maximum_deg="400", confirmed=said)
     assert "The settings are saved." in text
     assert await upper_deg(desk) == 400.0
 
@@ -78,7 +80,7 @@ async def test_limits_that_shut_out_where_the_axis_stands_are_refused_at_every_d
     refused = await desk.ask("PATCH", API, json=wrong)
     assert refused.status_code == 409
     assert sentence in refused.text
-    status, text = await save(desk, azimuth_minimum="10")
+    status, text = await save(desk, azimuth_minimum_deg="10")
     assert status == 409
     assert sentence in text
     narrower = await desk.ask("PATCH", API, json={"azimuth": {"maximum_deg": 300}})
@@ -86,7 +88,7 @@ async def test_limits_that_shut_out_where_the_axis_stands_are_refused_at_every_d
 
 
 async def test_without_a_zero_nobody_knows_where_the_axes_stand(desk: Desk) -> None:
-    status, text = await save(desk, elevation_speed="5")
+    status, text = await save(desk, elevation_speed_dps="5")
     assert status == 200
     assert "may turn faster than before" in text
     assert "The tracker is not homed: the axis positions" in text

@@ -7,13 +7,14 @@ import httpx
 import pytest
 
 from app.access.accounts import TokenWish
-from app.access.roles import Permission, Role
+from app.access.roles import Role
 from app.access.tokens import SCOPES, Scope
-from app.tracker.commands import Stop
-from app.web.route_permissions import ROUTES
+from app.base.permission import Permission
+from app.tracker.commands.commands import Stop
 from tests.fakes import serving
 from tests.web.asgi import streaming
 from tests.web.office import HERE, Office
+from tests.web.route_table import ROUTES
 from tests.web.sockets import connected
 
 GUIDE = Path(__file__).parents[2] / "docs" / "integrate" / "integrators-guide.md"
@@ -137,7 +138,7 @@ async def test_a_token_that_may_only_stop_is_told_what_it_may(office: Office) ->
 async def test_who_makes_a_token_is_told_its_id_and_can_revoke_it(office: Office) -> None:
     async with office.browser(await office.session("administrator")) as browser:
         made = (await browser.post("/api/v1/tokens", json={"name": "plc", "scopes": ["stop"]})).json()
-        listed = (await browser.get("/api/v1/tokens")).json()
+        listed = (await browser.get("/api/v1/tokens")).json()["items"]
         assert [one["token_id"] for one in listed] == [made["token_id"]]
         gone = await browser.delete(f"/api/v1/tokens/{made['token_id']}")
     assert gone.status_code == 204

@@ -97,8 +97,8 @@ async def test_what_one_person_ordered_is_taken_along_alone(desk: Desk) -> None:
     shown = await desk.ask("GET", "/audit?actor=nobody")
     (file,) = FILE.findall(shown.text.replace("&amp;", "&"))
     assert file.endswith("actor=nobody")
-    assert (await desk.ask("GET", file)).json()["entries"] == []
-    assert (await desk.ask("GET", "/api/v1/audit?limit=1000")).json()["entries"]
+    assert (await desk.ask("GET", file)).json()["items"] == []
+    assert (await desk.ask("GET", "/api/v1/audit?limit=1000")).json()["items"]
 
 
 @pytest.mark.parametrize(
@@ -128,7 +128,8 @@ async def test_users_sessions_and_tokens_are_taken_along_without_secrets(
 async def test_own_sessions_are_those_of_whoever_asks(office: Office) -> None:
     await office.session("administrator")
     async with office.browser(await office.session("operator")) as browser:
-        assert {one["user"] for one in (await browser.get("/api/v1/me/sessions")).json()} == {"operator-1"}
+        own = (await browser.get("/api/v1/me/sessions")).json()["items"]
+    assert {one["user"] for one in own} == {"operator-1"}
 
 
 async def test_only_an_administrator_takes_users_along(office: Office) -> None:

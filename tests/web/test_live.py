@@ -11,12 +11,12 @@ from typing import Any
 import pytest
 from fastapi import FastAPI
 
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from app.link.messages import Order, StopAll
-from app.tracker.commands import EndJog, Jog, Stop
-from app.tracker.reason import Reason
-from app.tracker.snapshot import Event, EventKind, SiteSnapshot
-from app.web.hold_to_run import Dead, Heartbeat, LinkDelay, Presses, Verdict
+from app.tracker.commands.commands import EndJog, Jog, Stop
+from app.tracker.state.snapshot import Event, EventKind, SiteSnapshot
+from app.tracker.values.reason import Reason
+from app.web.live.hold_to_run import Dead, Heartbeat, LinkDelay, Presses, Verdict
 from tests.fake_data import NOON
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.fault_result import REAL, FaultResult
@@ -387,7 +387,7 @@ async def test_reader_that_takes_nothing_is_dropped_and_the_others_go_on(
     assert states[-1]["rev"] == machine.sequence
     fault.noticed(5.0, REAL)
     fault.shows_nothing("nobody reads it")
-    fault.recovers("by itself: a page that comes back connects again")
+    fault.recovers("automatic: a page that comes back connects again")
 
 
 @pytest.mark.fault(66)

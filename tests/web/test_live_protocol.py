@@ -10,9 +10,9 @@ import pytest
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from app.link.messages import Order
-from app.tracker.commands import Stop
+from app.tracker.commands.commands import Stop
 from tests.fake_data import NOON
 from tests.fakes import FakeMachine
 from tests.web.test_server import Connections, serving

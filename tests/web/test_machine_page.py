@@ -7,9 +7,9 @@ from datetime import datetime
 import httpx
 import pytest
 
-from app.tracker.config import MountConfig, MountKind, TrackerConfig
-from app.tracker.memory import Pointing, RejectedSetting, TrackerState
-from app.tracker.protections.machine_config import (
+from app.tracker.memory.memory import Pointing, RejectedSetting, TrackerState
+from app.tracker.settings.config import MountConfig, MountKind, TrackerConfig
+from app.tracker.settings.mechanics import (
     GUARDED,
     Corner,
     MachineProtection,
@@ -17,9 +17,9 @@ from app.tracker.protections.machine_config import (
     RecoveryPolicy,
     Region,
 )
-from app.tracker.snapshot import Snapshot
-from app.web.ui.machine_forms import texts
-from app.web.ui.region_picture import region_picture
+from app.tracker.state.snapshot import Snapshot
+from app.web.charts.region_picture import region_picture
+from app.web.features.setup.machine_forms import texts
 from tests.fake_tracker import FakeTracker
 from tests.fakes import FakeMachine
 
@@ -50,9 +50,9 @@ async def test_what_the_page_shows_is_what_it_saves(client: httpx.AsyncClient, m
         "overtravel_deg": "1,5",
         "supply_low_v": "21",
         "supply_high_v": "28",
-        "link_kind": "limited",
-        "link_times_per_hour": "5",
-        "link_after_s": "30",
+        "recovery_link_kind": "limited",
+        "recovery_link_times_per_hour": "5",
+        "recovery_link_after_s": "30",
         "region0_name": "Wall",
         "region0_corners": "170 0; 190/0; 190,0 30°",
     }
@@ -73,8 +73,8 @@ async def test_what_the_page_shows_is_what_it_saves(client: httpx.AsyncClient, m
     [
         ({"creep_deg": "far"}, "Standstill monitoring limit: type a number"),
         ({"supply_low_v": "30", "supply_high_v": "20"}, "must not exceed the highest"),
-        ({"drive_kind": "pray"}, "choose from the list how the fault is reset"),
-        ({"travel_times_per_hour": "61"}, "Overtravel: resets per hour must be between 1 and 60"),
+        ({"recovery_drive_kind": "pray"}, "Drive: Reset: choose one from the list"),
+        ({"recovery_travel_times_per_hour": "61"}, "Overtravel: Resets per hour must be between 1 and 60"),
         ({"region0_name": "Gate", "region0_corners": "170 0; 190 0"}, "A region has 3 to 20 corners"),
         (
             {"region0_name": "Gate", "region0_corners": "1 2; 3 4; 5 six"},
@@ -118,10 +118,7 @@ def test_the_picture_has_one_scale_for_both_axes() -> None:
     picture = region_picture(TrackerConfig("T1", "North"), (WALL,), Pointing(), ((90.0, 10.0), (180.0, 60.0)))
 
     def place(azimuth_deg: float, elevation_deg: float) -> tuple[float, float]:
-        return (
-            picture.left + (azimuth_deg - picture.azimuth_deg) * picture.scale,
-            picture.bottom - (elevation_deg - picture.elevation_deg) * picture.scale,
-        )
+        return picture.x.at(azimuth_deg), picture.y.at(elevation_deg)
 
     numbers = [float(one) for one in re.findall(r"[\d.]+", picture.regions[0].path)]
     corners = [value for one in WALL.corners for value in place(one.azimuth_deg, one.elevation_deg)]

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from fastapi import FastAPI
 
-from app.web.manual import Manual
+from app.web.http.manual import Manual
 from tests.fakes import FakeMachine, fake_app, serving
 
 

@@ -8,7 +8,7 @@ from prometheus_client.exposition import generate_latest
 from prometheus_client.parser import text_string_to_metric_families
 
 from app.link.metrics import LATENESS_BOUNDS_MS, MachineMetrics, TrackerMetrics
-from app.web.metrics import BOUNDS, LATENESS, TRACKER_COUNTERS, exposition
+from app.web.services.metrics import BOUNDS, LATENESS, TRACKER_COUNTERS, exposition
 
 COUNTS = tuple(range(3, len(LATENESS_BOUNDS_MS) + 4))
 TRACKERS = {

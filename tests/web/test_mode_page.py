@@ -7,8 +7,8 @@ from dataclasses import replace
 import httpx
 import pytest
 
-from app.tracker.config import MountConfig, MountKind, Orientation
-from app.tracker.mode import Mode
+from app.tracker.settings.config import MountConfig, MountKind, Orientation
+from app.tracker.values.mode import Mode
 from tests.fakes import FakeMachine, fake_app, serving
 
 PAGE = "/trackers/T1/commissioning/mode"

@@ -5,8 +5,8 @@ from collections.abc import AsyncIterator
 import httpx
 import pytest
 
-from app.site.validation import check_config
-from app.tracker.config import Orientation
+from app.site.state.validation import check_config
+from app.tracker.settings.config import Orientation
 from tests.fakes import FakeMachine, fake_app, serving
 
 MOUNT = "/trackers/T1/mount"
@@ -131,7 +131,7 @@ async def test_the_wizard_and_the_settings_follow_the_mount(browser: httpx.Async
     assert "Elevation tracking" not in modes
     settings = (await browser.get("/trackers/T1/settings")).text
     assert "Rotation axis" in settings
-    assert "elevation_minimum" not in settings
+    assert "elevation_minimum_deg" not in settings
 
 
 async def test_an_unknown_kind_is_refused(browser: httpx.AsyncClient) -> None:

@@ -6,7 +6,7 @@ import httpx
 import pytest
 
 from app.access.roles import Role
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from tests.fake_data import NOON
 from tests.fault_result import FaultResult
 from tests.web.office import Office

@@ -6,8 +6,8 @@ from collections.abc import AsyncIterator
 import httpx
 import pytest
 
-from app.web.nesting import DEEPEST, is_too_deep
-from app.web.security import LARGEST_BODY
+from app.web.http.nesting import DEEPEST, is_too_deep
+from app.web.http.security import LARGEST_BODY
 from tests.fakes import FakeMachine
 
 JSON = {"content-type": "application/json"}

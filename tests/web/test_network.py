@@ -12,15 +12,15 @@ import pytest
 from pydantic import ValidationError
 from typer.testing import CliRunner
 
-from app.certificates import AUTHORITY, AUTHORITY_KEY, SERVER, SERVER_KEY, init, read
+from app.base.certificates import AUTHORITY, AUTHORITY_KEY, SERVER, SERVER_KEY, init, read
+from app.base.clock import VirtualClock
+from app.base.settings import Settings
 from app.cli import cli
-from app.clock import VirtualClock
-from app.settings import Settings
-from app.web.limits import MOST_STREAMS_A_CLIENT, StreamLimit
+from app.web.http.limits import MOST_STREAMS_A_CLIENT, StreamLimit
+from app.web.http.mdns import addresses
+from app.web.http.security import HSTS, Guard, SecurityHeaders, host_names
+from app.web.live.viewers import Wanted
 from app.web.main import create_app
-from app.web.mdns import addresses
-from app.web.security import HSTS, Guard, SecurityHeaders, host_names
-from app.web.viewers import Wanted
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
 from tests.fault_result import FaultResult
 from tests.web.sockets import connected
@@ -190,7 +190,7 @@ async def test_a_thousand_viewers_are_served_and_one_more_may_only_stop(fault: F
         app.state.panel.hub.leave(viewers.pop())
         async with connected(app) as page:
             await page.next("state")
-    fault.recovers("by itself: once a viewer has left")
+    fault.recovers("automatic: once a viewer has left")
 
 
 @pytest.mark.fault(67)

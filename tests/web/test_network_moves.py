@@ -16,9 +16,9 @@ from typing import Any
 import httpx
 import pytest
 
-from app.network import read_network
-from app.settings import Settings
-from app.web.network import NOT_CONFIRMED, NOT_SERVED
+from app.base.network import read_network
+from app.base.settings import Settings
+from app.web.http.network import NOT_CONFIRMED, NOT_SERVED
 from tests.ports import free_port
 
 ROOT = Path(__file__).resolve().parents[2]

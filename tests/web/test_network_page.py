@@ -12,10 +12,10 @@ import pytest
 
 from app.access.roles import Role
 from app.access.store import AccessStore
-from app.network import Network, read_network
-from app.settings import Settings
+from app.base.network import Network, read_network
+from app.base.settings import Settings
+from app.web.http.network import Stage, Trial, told, ways
 from app.web.main import create_app
-from app.web.network import Stage, Trial, told, ways
 from tests.fakes import FakeMachine, FakeReader, serving
 from tests.web.office import HERE, PORT, Office
 
@@ -78,7 +78,7 @@ async def test_what_cannot_be_is_told_and_what_was_typed_stays(
     assert sentence in answer.text
     assert f'value="{next(iter(wrong.values()))}"' in answer.text
     told_by_api = await here.put("/api/v1/network", json={"host": "nowhere", "port": 8443, "tls": False})
-    assert told_by_api.json()["errors"][0]["location"] == "body.host"
+    assert told_by_api.json()["errors"][0]["pointer"] == "#/host"
     if "proxies" not in next(iter(wrong)):
         assert read_network(tmp_path) == {}
 

@@ -57,8 +57,8 @@ async def test_a_day_outside_the_years_of_the_sun_is_refused_with_a_sentence(
     "path",
     [
         "/api/v1/sun?at={at}",
-        "/api/v1/journal?since={at}",
-        "/api/v1/telemetry?tracker_id=T1&begin={at}&end={at}",
+        "/api/v1/journal?start={at}",
+        "/api/v1/telemetry?tracker_id=T1&start={at}&end={at}",
     ],
 )
 async def test_an_instant_at_the_ends_of_the_calendar_is_refused(

@@ -11,9 +11,9 @@ from pydantic import TypeAdapter, ValidationError
 
 from app.gateway import mqtt_commands
 from app.link.codec import LENGTH_BYTES, Execute, FrameBroken, decode_request, encode_request
-from app.tracker.commands import Move
-from app.tracker.config import Orientation
-from app.web import live
+from app.tracker.commands.commands import Move
+from app.tracker.settings.config import Orientation
+from app.web import sockets
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.web.test_openapi import APP
 
@@ -22,9 +22,9 @@ POSING = (True, "1")
 VARIANTS = 20
 LEFT_OUT: dict[str, tuple[tuple[str, ...], ...]] = {
     "PUT /api/v1/site/clock": (("at",),),
-    "POST /api/v1/trackers/{tracker_id}/shows": (("begin_at", "end_at"), ("date",)),
+    "POST /api/v1/trackers/{tracker_id}/shows": (("start", "end"), ("date",)),
     "POST /api/v1/simulations": (
-        ("begin_at", "end_at", "weather.steps", "weather.csv"),
+        ("start", "end", "weather.steps", "weather.csv"),
         ("date", "weather.scenario", "weather.csv"),
         ("date", "weather.steps", "weather.scenario"),
     ),
@@ -57,7 +57,7 @@ def sample(schema: dict[str, Any], known: dict[str, Any], variant: int = 0) -> A
             return [sample(one, known, variant) for one in inner]
         case "number" | "integer":
             low = schema.get("minimum", schema.get("exclusiveMinimum", 0))
-            return low + 1
+            return min(low + 1, schema.get("maximum", low + 1))
         case "boolean":
             return True
         case _:
@@ -160,7 +160,7 @@ def test_the_live_socket_and_mqtt_take_no_number_for_another(posing: str) -> Non
         '"speed": "slow", "sequence": {}, "tc": {}, "rtt_ms": {}, "epoch": {}}}'
     )
     move = '{{"type": "move", "azimuth_deg": {}, "elevation_deg": {}, "client": "scada"}}'
-    for adapter, text in ((live._incoming, beat), (mqtt_commands.MESSAGES, move)):
+    for adapter, text in ((sockets._incoming, beat), (mqtt_commands.MESSAGES, move)):
         count = text.count("{}")
         adapter.validate_json(text.format(*["1"] * count))
         for place in range(count):

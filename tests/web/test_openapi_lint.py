@@ -1,10 +1,12 @@
 """The API's document through a linter of its standard, without a complaint."""
 
+import re
 from typing import Any
 
 import orjson
 from openapi_spec_validator import OpenAPIV31SpecValidator
 
+from app.web.described.properties import told
 from app.web.documented import DOCUMENT, PARAMETERS
 
 CALLS = ("get", "put", "post", "patch", "delete")
@@ -29,6 +31,92 @@ def test_the_linter_would_complain() -> None:
     del call["responses"]
     call["parameters"] = [{"name": "span", "in": "nowhere"}]
     assert len(complaints(broken)) > 0
+
+
+NO_RANGE = re.compile("(^|_)(since|until|begin|from|to|first|last)(_|$)")
+SINCE_WHEN = {"since", "shelved_until", "confirm_until", "until"}
+"""How long something has been so, or stays so: one instant, of which there is no other end to give."""
+
+
+def test_a_range_goes_from_start_to_end() -> None:
+    told = document()
+    given = [one["name"] for path in told["paths"].values() for call in path.values()
+             for one in call.get("parameters", ())]  # fmt: skip
+    fields = [
+        field for schema in told["components"]["schemas"].values() for field in schema.get("properties", ())
+    ]
+    ranges = {"first", "Last-Event-ID"}
+    assert {one for one in given if NO_RANGE.search(one)} - ranges == set()
+    ends = {one.replace("end", "begin") for one in fields if re.search("(^|_)end(_|$)", one)}
+    assert ends & set(fields) == set()
+    assert {one for one in fields if re.search("(^|_)(since|until)(_|$)", one)} <= SINCE_WHEN
+
+
+def test_every_list_has_items_and_says_where_it_continues() -> None:
+    told = document()
+    schemas = told["components"]["schemas"]
+    lists = 0
+    for path, calls in told["paths"].items():
+        for method, call in calls.items():
+            given = {one["name"] for one in call.get("parameters", ())}
+            for schema in answers(call):
+                assert schema.get("type") != "array" or path == EXPORT, (method, path)
+                fields = (
+                    schemas[schema["$ref"].rpartition("/")[2]].get("properties", {})
+                    if "$ref" in schema
+                    else {}
+                )
+                is_list = {"items", "next"} <= set(fields)
+                lists += is_list
+                assert is_list == ("items" in fields) == ("next" in fields), (method, path)
+                assert is_list or "cursor" not in given, (method, path)
+                assert ("limit" in given) == ("cursor" in given), (method, path)
+    assert lists > 25
+
+
+EXPORT = "/api/v1/journal/export"
+"""Everything as one file."""
+
+
+def answers(call: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the schemas of what a call answers in JSON when it is done."""
+    done = (one for status, one in call["responses"].items() if status.startswith("2"))
+    return [one["content"]["application/json"]["schema"] for one in done
+            if "application/json" in one.get("content", {})]  # fmt: skip
+
+
+def test_every_property_is_described_and_no_description_is_left_over() -> None:
+    schemas = document()["components"]["schemas"]
+    fields = {
+        f"{name}.{key}": field["description"]
+        for name, schema in schemas.items()
+        for key, field in schema.get("properties", {}).items()
+    }
+    assert [place for place, description in fields.items() if not description] == []
+    known = told()
+    used = {text for place, text in fields.items() if text.partition(" When left out:")[0] in known.values()}
+    taken = {text.partition(" When left out:")[0] for text in used}
+    assert [name for name, text in known.items() if text not in taken] == []
+    assert [name for name in known if name.endswith(UNITS) and not UNIT.search(known[name])] == []
+
+
+UNITS = (
+    "_deg",
+    "_s",
+    "_mps",
+    "_wm2",
+    "_mm",
+    "_kg",
+    "_v",
+    "_wh",
+    "_kwh",
+    "_h",
+    "_dps",
+    "_m",
+    "_w",
+    "_percent",
+)
+UNIT = re.compile("degree|second|meter|watt|gram|volt|hour|percent", re.IGNORECASE)
 
 
 def test_every_call_says_what_it_does_and_has_a_name_of_its_own() -> None:

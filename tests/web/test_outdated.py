@@ -6,7 +6,7 @@ from typing import Any
 import httpx
 import pytest
 
-from app.web.build_id import PageOutdated, edition, mark_of
+from app.web.http.build_id import PageOutdated, edition, mark_of
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
 from tests.fault_result import FaultResult
 from tests.web.sockets import connected
@@ -49,7 +49,7 @@ async def test_a_page_from_before_a_restart_orders_nothing_but_stop(
         assert (await client.post("/trackers/T1/park", data={"page": again})).status_code == 303
     assert [order.command.kind for order in machine.orders] == ["park", "stop", "park"]
     fault.prevented("refused at the first request")
-    fault.recovers("by itself: the page is loaded again")
+    fault.recovers("automatic: the page is loaded again")
 
 
 @pytest.mark.fault(61)

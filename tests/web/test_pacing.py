@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from app.clock import SystemClock, VirtualClock
+from app.base.clock import SystemClock, VirtualClock
+from app.base.turnstile import Turnstile
 from app.link.messages import Update
-from app.turnstile import Turnstile
-from app.web.hub import BATCH, SOONEST, Hub
-from app.web.limits import StreamLimit
-from app.web.viewers import Wanted
+from app.web.http.limits import StreamLimit
+from app.web.live.hub import BATCH, SOONEST, Hub
+from app.web.live.viewers import Wanted
 from tests.captured_logs import capture_logs
 from tests.fake_data import NOON
 from tests.fakes import FakeMachine

@@ -4,23 +4,22 @@ import re
 from collections.abc import AsyncIterator
 from dataclasses import fields, replace
 from importlib import import_module
-from pkgutil import iter_modules
+from pkgutil import walk_packages
 
 import httpx
 import pytest
 
 from app import web
 from app.link.messages import ConfigureTracker, SetClock, SetLocation
-from app.tracker.commands import GoToStart, Move, SelectMode, SetHome, Step
-from app.tracker.mode import Mode
-from app.tracker.reason import Reason
-from app.tracker.snapshot import ActivityName
-from app.web import contexts
+from app.tracker.commands.commands import GoToStart, Move, SelectMode, SetHome, Step
+from app.tracker.state.snapshot import ActivityName
+from app.tracker.values.mode import Mode
+from app.tracker.values.reason import Reason
 from app.web.languages import CATALOGUE
 from app.web.languages.catalogue import catalogue_of
-from app.web.ui import forms
-from app.web.ui.formats import compass, duration, shown
-from app.web.ui.render import environment
+from app.web.shell import contexts, forms
+from app.web.shell.formats import compass, duration, shown
+from app.web.shell.render import environment
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
 
 T1 = "/trackers/T1"
@@ -59,7 +58,7 @@ async def test_every_page_is_whole_and_has_stop(path: str, client: httpx.AsyncCl
 async def test_no_page_needs_inline_style_or_script(path: str, client: httpx.AsyncClient) -> None:
     text = (await client.get(path)).text
     assert not re.search(r"\sstyle=|<style|\son[a-z]+=|hx-on|javascript:", text)
-    assert not re.search(r"<script(?![^>]*src=)", text)
+    assert not re.search(r"<script(?![^>]*(?:src=|type=\"application/json\"))", text)
     assert not re.search(r"(?:src|href|action)=\"https?:", text)
 
 
@@ -196,7 +195,7 @@ async def test_zero_and_steps_go_to_the_machine(machine: FakeMachine, client: ht
     await client.post(f"{T1}/zero", data={"key": "press-1", "confirmed": "yes"})
     await client.post(f"{T1}/step", data={"move": "elevation-minus", "size": "0.1"})
     assert sent(machine, SetHome)
-    assert sent(machine, Step)[0].degrees == pytest.approx(-0.1)
+    assert sent(machine, Step)[0].delta_deg == pytest.approx(-0.1)
     assert machine.orders[0].key == "press-1"
 
 
@@ -270,9 +269,9 @@ async def test_settings_are_saved_whole_or_not_at_all(
     machine: FakeMachine, client: httpx.AsyncClient
 ) -> None:
     page = (await client.get(f"{T1}/settings")).text
-    typed = dict(re.findall(r'name="([a-z_]+)"[^>]*?value="([^"]*)"', page))
+    typed = dict(re.findall(r'name="([a-z0-9_]+)"[^>]*?value="([^"]*)"', page))
     typed |= {"drive": "modbus-tcp", "algorithm": "koblick", "night": "park", "host": "10.0.0.5"}
-    wrong = typed | {"azimuth_minimum": "300", "azimuth_maximum": "60"}
+    wrong = typed | {"azimuth_minimum_deg": "300", "azimuth_maximum_deg": "60"}
     assert (await client.post(f"{T1}/settings", data=wrong)).status_code == 422
     assert not machine.orders
     await client.post(f"{T1}/settings", data=typed)
@@ -312,8 +311,8 @@ async def test_step_bar_opens_forward_only_as_far_as_steps_are_done(client: http
 
 def test_every_context_names_a_template_that_exists() -> None:
     env = environment()
-    named = [one.name for one in iter_modules(web.__path__) if one.name.endswith("contexts")]
-    kinds = [kind for name in named for kind in vars(import_module(f"app.web.{name}")).values()]
+    named = [one.name for one in walk_packages(web.__path__, "app.web.") if one.name.endswith("contexts")]
+    kinds = [kind for name in named for kind in vars(import_module(name)).values()]
     templates = {kind.template for kind in kinds if isinstance(getattr(kind, "template", None), str)}
     assert len(templates) >= 50
     for template in templates:

@@ -5,7 +5,7 @@ from collections.abc import AsyncIterator
 import httpx
 import pytest
 
-from app.papers.library import LIBRARY
+from app.research.library import LIBRARY
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
 
 HTMX = {"HX-Request": "true", "HX-Request-Type": "partial"}
@@ -20,7 +20,7 @@ async def client() -> AsyncIterator[httpx.AsyncClient]:
 
 
 async def test_page_and_api_tell_the_same(client: httpx.AsyncClient) -> None:
-    told = (await client.get("/api/v1/papers")).json()
+    told = (await client.get("/api/v1/papers")).json()["items"]
     text = (await client.get("/papers?show=yes", headers=HTMX)).text
     assert [paper["key"] for paper in told] == list(LIBRARY)
     for paper in told:
@@ -48,4 +48,4 @@ async def test_a_sixth_paper_is_not_found(client: httpx.AsyncClient) -> None:
     assert answer.status_code == 404
     assert "choose one of" in answer.json()["detail"]
     one = await client.get("/api/v1/papers", params={"paper": "xia"})
-    assert [paper["key"] for paper in one.json()] == ["xia"]
+    assert [paper["key"] for paper in one.json()["items"]] == ["xia"]

@@ -14,15 +14,15 @@ import pytest
 
 from app.sun.horizon import Horizon
 from app.sun.position import Algorithm
-from app.tracker.axes import AxisConfig
-from app.tracker.config import MountKind, TrackerConfig
+from app.tracker.memory.recording import COLUMNS, RecordingKind
 from app.tracker.mounts.usual import mounted
-from app.tracker.recording import COLUMNS, RecordingKind
-from app.tracker.snapshot import ActivityName, Pair
-from app.web.ui.cartesian import cartesian
-from app.web.ui.glances import bars
-from app.web.ui.scene import scene_on, scene_recorded
-from app.web.ui.sunpath import hours_of, skyline
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import MountKind, TrackerConfig
+from app.tracker.state.snapshot import ActivityName, Pair
+from app.web.charts.cartesian import cartesian
+from app.web.charts.sunpath import hours_of, skyline
+from app.web.shell.glances import bars
+from app.web.shell.scene import scene_on, scene_recorded
 from tests.fake_alarms import alarm
 from tests.fake_data import NOON, SAMSUN, TIME_ZONE, commissioned, recording
 from tests.fake_tracker import FakeTracker
@@ -206,7 +206,7 @@ async def test_the_curves_can_be_taken_as_csv(panel: httpx.AsyncClient, machine:
     machine.store.heads["day-2"] = replace(head, ended_at=NOON + timedelta(days=1))
     asked = {
         "tracker_id": "T1",
-        "begin": (NOON + timedelta(hours=1)).isoformat(),
+        "start": (NOON + timedelta(hours=1)).isoformat(),
         "end": (NOON + timedelta(hours=2)).isoformat(),
         "points": "100",
     }
@@ -217,9 +217,9 @@ async def test_the_curves_can_be_taken_as_csv(panel: httpx.AsyncClient, machine:
     assert tuple(rows[0]) == ("time_utc", *COLUMNS[2:])
     assert rows[0]["time_utc"] == "2026-06-21T10:30:00.000Z"
     assert rows[0]["wind_mean_mps"] == "6.0"
-    assert rows[0]["light_wm2"] == "", "there was no light sensor"
+    assert rows[0]["irradiance_wm2"] == "", "there was no light sensor"
     told = (await panel.get("/api/v1/telemetry", params=asked)).json()
-    assert told["frame_count"] == len(rows)
+    assert told["sample_count"] == len(rows)
     assert told["columns"]["supply_v"][0] == 24.1
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from app.link.messages import SetLocation
 from app.sun.position import Location
-from app.web.place import place_doubts
-from app.web.ui.location import LocationForm, read
+from app.web.features.site.location import LocationForm, read
+from app.web.features.site.place import place_doubts
 from tests.fakes import FakeMachine
 from tests.fault_result import FaultResult
 

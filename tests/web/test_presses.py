@@ -4,8 +4,8 @@ from datetime import datetime, timedelta
 
 import pytest
 
-from app.tracker.commands import JOG_LEASE
-from app.web.hold_to_run import (
+from app.tracker.commands.commands import JOG_LEASE
+from app.web.live.hold_to_run import (
     LATEST_HEARTBEAT,
     MOST_DEAD,
     MOST_LIVE,

@@ -3,11 +3,17 @@
 import httpx
 import pytest
 
-from app.tracker.commands import ReleaseInhibit, Resume, SetInhibit, Stow
-from app.tracker.memory import MetStation
-from app.tracker.protections.config import PROTECTED, ProtectionConfig, StowPlace
-from app.tracker.protections.words import Facing, Reaction, StowName
-from app.web.ui.protection_forms import texts
+from app.tracker.commands.commands import ReleaseInhibit, Resume, SetInhibit, Stow
+from app.tracker.memory.memory import MetStation
+from app.tracker.settings.protections import (
+    PROTECTED,
+    Facing,
+    ProtectionConfig,
+    Reaction,
+    StowName,
+    StowPlace,
+)
+from app.web.shell.setting_forms import texts
 from tests.fakes import FakeMachine
 
 ROOT = "/trackers/T1"
@@ -38,8 +44,8 @@ async def test_what_the_page_shows_is_what_it_saves(client: httpx.AsyncClient, m
         "wind_bad": "hold",
         "wind_facing": "back",
         "snow_enabled": "",
-        "hail_stow_elevation": "20",
-        "hail_stow_azimuth": "270",
+        "stows_hail_elevation_deg": "20",
+        "stows_hail_azimuth_deg": "270",
         "warning_s": "8",
     }
     await client.post(PAGE, data=texts(PROTECTED) | changed)
@@ -55,14 +61,14 @@ async def test_what_the_page_shows_is_what_it_saves(client: httpx.AsyncClient, m
 @pytest.mark.parametrize(
     ("typed", "sentence"),
     [
-        ({"wind_gust_mps": "fast"}, "Wind: gust threshold: type a number"),
+        ({"wind_gust_mps": "fast"}, "Wind: Gust threshold: type a number"),
         ({"wind_gust_mps": "99"}, "must be between 1 and 60"),
         ({"wind_hysteresis_mps": "18"}, "must be smaller than both wind thresholds"),
         ({"snow_hysteresis_kg": "5"}, "must be smaller than the snow-stow threshold"),
-        ({"light_bad": "stow"}, "cannot cause a stow: choose ignore, warn, or hold"),
-        ({"wind_bad": "pray"}, "Choose the sensor-fault reaction from the list"),
-        ({"wind_facing": "nose"}, "Choose the orientation to wind from the list"),
-        ({"snow_stow_azimuth": "400"}, "Snow, azimuth must be between 0 and 360"),
+        ({"light_bad": "stow"}, "Low light: Sensor-fault reaction: choose one from the list"),
+        ({"wind_bad": "pray"}, "Wind: Sensor-fault reaction: choose one from the list"),
+        ({"wind_facing": "nose"}, "Wind: Orientation to wind: choose one from the list"),
+        ({"stows_snow_azimuth_deg": "400"}, "Snow: Azimuth must be between 0 and 360"),
     ],
 )
 async def test_what_cannot_be_is_refused_and_stays_in_the_form(

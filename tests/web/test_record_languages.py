@@ -1,33 +1,44 @@
 """A record is read in the reader's language: page, HTML and PDF; what was signed stays as it is."""
 
+import hashlib
 import io
 import logging
 import re
 import zlib
 from collections.abc import AsyncIterator, Iterator
 from dataclasses import is_dataclass
-from datetime import UTC
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
 import httpx
+import orjson
 import pytest
 from PIL import Image
 
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import HomeTrust, Pointing
-from app.tracker.motion import DriveCapabilities
-from app.tracker.snapshot import ClockState
-from app.web.languages import CATALOGUE
+from app.base.message import N_
+from app.store.store import RecordHead, SignedRecord
+from app.tracker.commissioning.steps import Step, StepStatus
+from app.tracker.memory.memory import HomeTrust, Pointing, StepName
+from app.tracker.settings.config import MountKind, TrackerConfig
+from app.tracker.state.snapshot import ClockState
+from app.tracker.values.motion import DriveCapabilities
+from app.tracker.values.reason import Reason
+from app.web.features.records.record import MISDATED
+from app.web.features.records.record_document import read_document
+from app.web.features.records.record_files import _step
+from app.web.features.records.record_words import PARTS, label, value_of
+from app.web.languages import CATALOGUE, said
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import LANGUAGES, TRANSLATED
-from app.web.record import MISDATED
-from app.web.record_files import _label, _text
-from app.web.record_words import told_name, told_value
 from tests.web.desk import Desk
 
 CHINESE_FONT = b"DroidSansFallback"
 INSTANT = "2027-06-21 09:40:00+03:00"
+AT = datetime.fromisoformat(INSTANT)
+ISTANBUL = AT.tzinfo or UTC
+UNNAMED = {"code", "message", "hint", "corners", "first", "second", "from"}
+"""Fields of what stands in a list, such as the corners of a region: a value of one line."""
 
 
 @pytest.fixture
@@ -56,76 +67,76 @@ async def read(desk: Desk, code: str, form: str) -> httpx.Response:
     return answer
 
 
-def labels(kind: Any, *path: str) -> Iterator[str]:
-    """Return the name of every line that a part of a record can have."""
+def fields_of(kind: Any) -> Iterator[str]:
+    """Return the name of every field that a part of a record can have."""
     for name, hint in get_type_hints(kind).items():
-        options = (hint, *get_args(hint))
-        inner = [one for one in options if is_dataclass(one)]
-        if not any(getattr(one, "__origin__", None) is tuple for one in options):
-            for one in inner:
-                yield from labels(one, *path, name)
-        if not inner or len(inner) < len(get_args(hint)):
-            yield _label(" ".join((*path, name)))
+        yield name
+        for option in (hint, *get_args(hint)):
+            for one in (option, *get_args(option)):
+                if is_dataclass(one):
+                    yield from fields_of(one)
 
 
 @pytest.mark.parametrize("kind", [ClockState, HomeTrust, TrackerConfig, DriveCapabilities, Pointing])
-def test_every_line_of_a_record_has_a_name_in_every_language(kind: Any, turkish: None) -> None:
-    found = list(labels(kind))
+def test_every_field_of_a_record_has_a_name_in_every_language(kind: Any) -> None:
+    found = {str(part) for name in fields_of(kind) for part in label((name,)).values.values()}
     assert len(found) > 3
-    for name in found:
-        words = told_name(name).split(" (")[0].split(" · ")
-        known = {catalogue_of("tr").pgettext("record", " ".join(part)) for part in splits(name)}
-        assert set(words) <= known, name
+    assert found - PARTS == UNNAMED & found
 
 
-def splits(name: str) -> Iterator[list[str]]:
-    """Return every stretch of the words of a line's name."""
-    words = re.sub(r" \(.*| (mm|h|v)$", "", name).split()
-    words = words[:-1] if words[-1] in ("mm", "h", "v") else words
-    for first in range(len(words)):
-        for end in range(first + 1, len(words) + 1):
-            yield words[first:end]
+def test_a_line_is_called_by_the_fields_that_lead_to_it(turkish: None) -> None:
+    name = label(("mount", "first", "joint_x_mm"))
+    assert name == "mount first joint x mm"
+    assert said(name).endswith(" (mm)")
+    assert said(label(("deadband_deg",))) == "ölü bant (°)"
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "told"),
+    ("field", "value", "english", "turkish_text"),
     [
-        ("deadband (°)", "0.5", "0,5"),
-        ("set at", INSTANT, "21.06.2027 09:40:00 UTC+03:00"),
-        ("location", f"done, {INSTANT} by Ayşe.", "yapıldı, 21.06.2027 09:40:00 UTC+03:00, Ayşe."),
-        (
-            "clock",
-            f"done, {INSTANT} by Ayşe. {MISDATED} The clock has not been set.",
-            "yapıldı, 21.06.2027 09:40:00 UTC+03:00, Ayşe. "
-            "Gelecekte: saat o zaman yanlıştı. Adımı yeniden onaylayın. Saat ayarlanmadı.",
-        ),
-        ("clock", "to do. The clock has not been set.", "yapılacak. Saat ayarlanmadı."),
-        ("strategy kind", "encoder-deadband", "kodlayıcı ölü bandı"),
-        ("mount kind", "azimuth-elevation", "Azimut-yükseliş"),
-        ("watchdog", "0.5 s, read back", "0,5 s, geri okundu"),
-        ("name", "Stop", "Stop"),
-        ("remark", "Stop", "Stop"),
-        ("drive host", "Clock", "Clock"),
-        ("watchdog action", "", ""),
+        ("deadband_deg", 0.5, "0.5", "0,5"),
+        ("set_at", AT, INSTANT, "21.06.2027 09:40:00 UTC+03:00"),
+        ("kind", "encoder-deadband", "encoder-deadband", "kodlayıcı ölü bandı"),
+        ("kind", MountKind.AZIMUTH_ELEVATION, "azimuth-elevation", "Azimut-yükseliş"),
+        ("trusted", True, "yes", "evet"),
+        ("set_at", None, "none", "yok"),
+        ("name", "Stop", "Stop", "Stop"),
+        ("remark", "Stop", "Stop", "Stop"),
+        ("host", "Clock", "Clock", "Clock"),
+        ("watchdog_action", "", "", ""),
+        ("by", "Ayşe", "Ayşe", "Ayşe"),
     ],
 )
-def test_values_are_told_and_names_left_alone(name: str, value: str, told: str, turkish: None) -> None:
-    assert told_value(name, value) == told
+def test_values_are_told_and_names_left_alone(
+    field: str, value: object, english: str, turkish_text: str, turkish: None
+) -> None:
+    told = value_of(field, value, ISTANBUL)
+    assert (told, said(told)) == (english, turkish_text)
 
 
-def test_a_run_that_waits_tells_every_step_it_waits_for(turkish: None) -> None:
-    steps = (
-        "Step 1, location, is to be done: The location has not been entered. "
-        "Step 2, clock, is to be done: The clock has not been set."
-    )
-    assert told_value("run", f"to do. {steps}") == (
-        "yapılacak. Adım 1, Konum, yapılacak: Konum girilmedi. Adım 2, Saat, yapılacak: Saat ayarlanmadı."
+def test_how_a_step_stands_is_told_with_who_confirmed_it_and_why_it_waits(turkish: None) -> None:
+    why = (Reason("clock", N_("The clock has not been set.")),)
+    _, told = _step(Step(StepName.CLOCK, StepStatus.DONE, why, AT, "Ayşe"), AT - timedelta(days=1), ISTANBUL)
+    assert told == f"done, {INSTANT} by Ayşe. {MISDATED} The clock has not been set."
+    assert said(told) == (
+        "yapıldı, 21.06.2027 09:40:00 UTC+03:00, Ayşe. "
+        "Tarih gelecekte, çünkü saat yanlıştı. Adımı yeniden onaylayın. Saat ayarlanmadı."
     )
 
 
 def test_a_record_in_english_is_told_as_it_was_signed() -> None:
-    assert told_name("drive azimuth gear ratio") == "drive azimuth gear ratio"
-    assert told_value("set at", INSTANT) == INSTANT
+    assert said(label(("drive", "azimuth", "gear_ratio"))) == "drive azimuth gear ratio"
+    assert said(value_of("set_at", AT, ISTANBUL)) == INSTANT
+
+
+async def test_a_record_that_was_signed_without_its_lines_stays_english(desk: Desk, turkish: None) -> None:
+    await sign(desk)
+    with_lines = orjson.loads((await read(desk, "en", "json")).content)
+    assert with_lines.pop("lines")
+    text = orjson.dumps(with_lines).decode()
+    head = RecordHead(1, "T1", AT, "Ada", hashlib.sha256(text.encode()).hexdigest())
+    former = read_document(SignedRecord(head, text))
+    assert said(former.sections[3][1][0][1]) == former.sections[3][1][0][1]
 
 
 async def test_what_was_signed_is_the_same_in_every_language(desk: Desk) -> None:
@@ -221,4 +232,4 @@ async def test_two_records_are_compared_in_the_language_of_the_reader(desk: Desk
     ("value", "written"), [(18251797.9, "18251797.9"), (-2e-06, "-0.000002"), (0.5, "0.5"), (360.0, "360")]
 )
 def test_numbers_are_written_without_powers_of_ten(value: float, written: str) -> None:
-    assert _text(value, UTC) == written
+    assert value_of("value", value, UTC) == written

@@ -15,11 +15,11 @@ from PIL import Image
 from app.link.messages import SetLocation
 from app.store.engine import open_reader
 from app.sun.position import Location
-from app.tracker.alarm_words import AlarmState
-from app.tracker.commissioning import Step, StepStatus
-from app.tracker.memory import StepName
-from app.web.record import MISDATED, read_record
-from app.web.sign_doubts import sign_doubts
+from app.tracker.commissioning.steps import Step, StepStatus
+from app.tracker.memory.memory import StepName
+from app.tracker.values.alarm_words import AlarmState
+from app.web.features.records.record import MISDATED, read_record
+from app.web.features.records.sign_doubts import sign_doubts
 from tests.fake_alarms import alarm
 from tests.web.desk import Desk
 from tests.web.pdf_words import words_of
@@ -83,7 +83,7 @@ async def test_signing_twice_at_one_instant_keeps_one_record(desk: Desk) -> None
     assert kept
     assert all(one == again for one in kept)
     assert all(one.status_code == 409 and "already signed" in one.text for one in refused)
-    assert len((await desk.ask("GET", "/api/v1/records")).json()) == 1
+    assert len((await desk.ask("GET", "/api/v1/records")).json()["items"]) == 1
 
 
 async def test_a_later_change_leaves_what_was_signed_and_is_shown_beside_it(desk: Desk) -> None:
@@ -92,7 +92,7 @@ async def test_a_later_change_leaves_what_was_signed_and_is_shown_beside_it(desk
     second = await sign(desk)
     before = (await desk.ask("GET", "/api/v1/records/1")).content
     assert hashlib.sha256(before).hexdigest() == first["digest"] != second["digest"]
-    lines = (await desk.ask("GET", "/api/v1/records/comparison?first=1&second=2")).json()
+    lines = (await desk.ask("GET", "/api/v1/records/comparison?first=1&second=2")).json()["items"]
     changed = [line for line in lines if line["differs"]]
     assert [line["name"] for line in changed] == ["deadband (°)"]
     assert changed[0]["second"] == "0.75"
@@ -100,27 +100,27 @@ async def test_a_later_change_leaves_what_was_signed_and_is_shown_beside_it(desk
     assert "One line differs" in page
     assert "≠" in page
     assert "≠" not in (await desk.ask("GET", "/records/compare?pick=1&pick=1")).text
-    assert [one["number"] for one in (await desk.ask("GET", "/api/v1/records")).json()] == [2, 1]
+    assert [one["number"] for one in (await desk.ask("GET", "/api/v1/records")).json()["items"]] == [2, 1]
 
 
 async def test_photos_wait_and_go_with_the_next_record(desk: Desk) -> None:
     files = {"photo": ("plate.jpg", picture(size=(4000, 1000)))}
     added = await desk.ask("POST", f"{T1}/record/photos", files=files, data={"caption": "Type plate"})
     assert added.status_code == 201, added.text
-    waiting = added.json()[0]
+    waiting = added.json()["items"][0]
     assert (waiting["width"], waiting["height"]) == (400, 1600)
     content = (await desk.ask("GET", f"/api/v1/record-photos/{waiting['number']}")).content
     assert b"Secret" not in content
     assert hashlib.sha256(content).hexdigest() == waiting["digest"]
     head = await sign(desk)
-    assert (await desk.ask("GET", f"{T1}/record/photos")).json() == []
+    assert (await desk.ask("GET", f"{T1}/record/photos")).json()["items"] == []
     record = (await desk.ask("GET", f"/api/v1/records/{head['number']}")).json()
     assert record["photos"] == [
         {"caption": "Type plate", "digest": waiting["digest"], "height": 1600, "width": 400}
     ]
     gone = await desk.ask("DELETE", f"{T1}/record/photos/{waiting['number']}")
     assert gone.status_code == 404
-    listed = (await desk.ask("GET", f"/api/v1/records/{head['number']}/photos")).json()
+    listed = (await desk.ask("GET", f"/api/v1/records/{head['number']}/photos")).json()["items"]
     assert listed[0]["caption"] == "Type plate"
     pdf = (await desk.ask("GET", f"/api/v1/records/{head['number']}?format=pdf")).content
     assert b"/Subtype /Image" in pdf
@@ -211,7 +211,7 @@ async def test_open_steps_and_drive_tests_are_asked_about_before_signing(desk: D
     assert "Step 1, Location, is open." in shown.text
     assert 'name="confirmed" value="yes"' in shown.text
     assert "Sign here" in shown.text
-    assert (await desk.ask("GET", "/api/v1/records")).json() == []
+    assert (await desk.ask("GET", "/api/v1/records")).json()["items"] == []
     assert (await desk.ask("POST", f"{T1}/records", json=unasked | {"confirmed": True})).status_code == 201
 
 

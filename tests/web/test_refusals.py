@@ -9,7 +9,7 @@ import pytest
 from app.access.authenticator import Throttled, WrongPassword
 from app.access.roles import Role
 from app.access.tokens import Scope
-from app.clock import Clock
+from app.base.clock import Clock
 from tests.web.office import HERE, Office
 from tests.web.test_gate import made
 
@@ -28,7 +28,7 @@ async def recorded(office: Office, is_there: Callable[[dict[str, str]], bool]) -
     session = await office.session(Role.ADMINISTRATOR)
     async with office.browser(session) as browser:
         for _ in range(60):
-            entries = (await browser.get("/api/v1/audit/access")).json()["entries"]
+            entries = (await browser.get("/api/v1/audit/access")).json()["items"]
             if found := [one for one in entries if is_there(one)]:
                 page = (await browser.get("/audit/access")).text
                 assert found[0]["object"] in page

@@ -8,10 +8,10 @@ import httpx
 import pytest
 from fastapi import FastAPI
 
-from app.store.backup import backup
+from app.store.backup.backup import backup
+from app.store.backup.restore import PENDING_NAME
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
-from app.store.restore import PENDING_NAME
 from tests.fake_alarms import alarm
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.store.samples import NOON, SITE, tracker
@@ -78,7 +78,7 @@ async def test_the_api_lists_the_backups_and_refuses_what_is_none(
     machine: FakeMachine, client: httpx.AsyncClient, data_dir: Path
 ) -> None:
     damaged(machine)
-    listed = (await client.get("/api/v1/backups")).json()
+    listed = (await client.get("/api/v1/backups")).json()["items"]
     assert {one["file"] for one in listed} == {NAME, "rubbish.backup"}
     for name in ("nowhere.backup", f"../backups/{NAME}", f"{data_dir}/backups/{NAME}"):
         assert (await client.post(f"/api/v1/backups/{quote(name, safe='')}/restore")).status_code == 404

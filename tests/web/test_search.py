@@ -8,11 +8,11 @@ import pytest
 from fastapi.routing import APIRoute
 
 from app.alarms.catalogue import ENTRIES
+from app.web.features.guide.field_search import SITE_FORMS, TRACKER_FORMS, fields_of
+from app.web.features.guide.search_index import PARTS, index
+from app.web.features.guide.search_score import nearness, plain, score, words_of
+from app.web.features.guide.search_words import ALSO
 from app.web.languages.catalogue import catalogue_of
-from app.web.ui.field_search import SITE_FORMS, TRACKER_FORMS, fields_of
-from app.web.ui.search_index import PARTS, index
-from app.web.ui.search_score import nearness, plain, score, words_of
-from app.web.ui.search_words import ALSO
 from tests.fakes import FakeMachine, FakeTracker, Pair, commissioned, fake_app, serving
 
 HIT = re.compile(r'<a class="panel hit" href="([^"]+)"')
@@ -29,10 +29,10 @@ WANTED: dict[str, dict[str, tuple[str, ...]]] = {
         "swapped azimuth": (f"{T1}/drive-tests", f"{ALARM}axes_swapped"),
         "wind limit": (f"{T1}/protections#f-wind_gust_mps", f"{T1}/protections#f-wind_mean_mps"),
         "Modbus unit": (f"{T1}/drive#f-unit",),
-        "backlash": (f"{T1}/drive", f"{T1}/drive-tests", f"{T1}/settings#f-deadband"),
-        "soft limits": (f"{T1}/settings#f-azimuth_minimum", f"{T1}/settings#f-azimuth_maximum"),
+        "backlash": (f"{T1}/drive", f"{T1}/drive-tests", f"{T1}/settings#f-deadband_deg"),
+        "soft limits": (f"{T1}/settings#f-azimuth_minimum_deg", f"{T1}/settings#f-azimuth_maximum_deg"),
         "limit switch": (f"{ALARM}limit_switch",),
-        "following_error": (f"{T1}/settings#f-following_error",),
+        "following_error": (f"{T1}/settings#f-following_error_deg",),
         "over_travel": (f"{ALARM}over_travel",),
         "wind_gust_mps": (f"{T1}/protections#f-wind_gust_mps",),
         "IP address": ("/network", f"{T1}/drive#f-host"),
@@ -55,13 +55,13 @@ WANTED: dict[str, dict[str, tuple[str, ...]]] = {
         "Handbetrieb": (f"{T1}/commissioning/homing",),
         "Passwort ändern": ("/account",),
         "Uhrzeit": (f"{T1}/commissioning/clock",),
-        "Getriebespiel": (f"{T1}/drive", f"{T1}/drive-tests", f"{T1}/settings#f-deadband"),
-        "Schleppfehler": (f"{T1}/settings#f-following_error",),
+        "Getriebespiel": (f"{T1}/drive", f"{T1}/drive-tests", f"{T1}/settings#f-deadband_deg"),
+        "Schleppfehler": (f"{T1}/settings#f-following_error_deg",),
         "Sturm": (f"{T1}/protections#f-wind_gust_mps",),
         "Modbus-Adresse": (f"{T1}/drive#f-unit",),
     },
     "zh-Hans": {
-        "限位": (f"{T1}/settings#f-azimuth_minimum",),
+        "限位": (f"{T1}/settings#f-azimuth_minimum_deg",),
         "风速": (f"{T1}/protections#f-wind_gust_mps",),
         "波特率": (f"{T1}/drive#f-baud_rate",),
         "减速比": (f"{T1}/drive#f-azimuth_gear",),

@@ -2,14 +2,17 @@
 
 import functools
 from collections.abc import Iterator
+from pathlib import Path
 
 import httpx
 import pytest
 from fastapi import FastAPI
 from starlette.routing import BaseRoute
 
-from app.web.security import CONTENT_SECURITY_POLICY
+from app.web.http.security import CONTENT_SECURITY_POLICY
 from tests.fakes import FakeMachine, fake_app
+
+STATIC = Path(__file__).resolve().parents[2] / "static"
 
 OWN = {"host": "127.0.0.1:8010"}
 FOREIGN = (
@@ -123,6 +126,22 @@ async def test_static_files_are_kept_for_ever_under_their_hash_only(client: http
     wrong = await client.get("/s/0000/css/frame.css")
     assert wrong.headers["cache-control"] == "no-cache"
     assert (await client.get(f"/s/{assets.digest}/../pyproject.toml")).status_code == 404
+
+
+def source_of(path: str) -> bytes:
+    return (STATIC / path).read_bytes()
+
+
+@pytest.mark.parametrize(("path", "said"), [("js/facts.js", b"//"), ("css/frame.css", b"/*")])
+async def test_comments_stay_with_the_sources(client: httpx.AsyncClient, path: str, said: bytes) -> None:
+    assets = fake_app().state.panel.assets
+    source = source_of(path)
+    answer = await client.get(assets.url(path))
+    assert said in source
+    assert said not in answer.content
+    assert len(answer.content) > len(source) / 3
+    again = await client.get(assets.url(path), headers={"if-none-match": answer.headers["etag"]})
+    assert again.status_code == 304
 
 
 async def test_body_beyond_a_megabyte_is_refused(client: httpx.AsyncClient) -> None:

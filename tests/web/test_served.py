@@ -18,12 +18,12 @@ from zeroconf.asyncio import AsyncServiceInfo, AsyncZeroconf
 
 from app.access.roles import Role
 from app.access.store import AccessStore
+from app.base.settings import Settings
 from app.cli import cli
-from app.settings import Settings
+from app.web.http.mdns import NAME, announced
+from app.web.http.security import HSTS
+from app.web.http.server import PanelServer
 from app.web.main import configured, create_app
-from app.web.mdns import NAME, announced
-from app.web.security import HSTS
-from app.web.server import PanelServer
 from tests.access.fake_hasher import FakeHasher
 from tests.fakes import FakeMachine, FakeReader
 from tests.machine.service import eventually

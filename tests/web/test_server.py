@@ -10,18 +10,18 @@ import pytest
 import uvicorn
 from websockets.asyncio.client import connect
 
-from app.clock import Clock, SystemClock
+from app.base.clock import Clock, SystemClock
+from app.base.turnstile import Turnstile
 from app.link.messages import Order
-from app.tracker.snapshot import SiteSnapshot
-from app.turnstile import Turnstile
-from app.web.live_protocol import cautious_sockets
-from app.web.server import (
+from app.tracker.state.snapshot import SiteSnapshot
+from app.web.http.server import (
     LARGEST_HEAD,
     REQUEST_DEADLINE_S,
     Connections,
     PanelServer,
     cautious,
 )
+from app.web.live.live_protocol import cautious_sockets
 from tests.fakes import FakeMachine, fake_app
 from tests.fault_result import REAL, FaultResult
 
@@ -165,7 +165,7 @@ async def test_a_viewer_that_has_gone_silently_is_noticed_by_the_system(fault: F
         writer.close()
         fault.noticed(10.0, REAL)
         fault.shows_nothing("nobody is there to read it")
-        fault.recovers("by itself: a page that comes back connects again")
+        fault.recovers("automatic: a page that comes back connects again")
 
 
 async def test_live_sockets_do_not_use_up_the_share_of_requests() -> None:
@@ -193,7 +193,7 @@ class SlowToStop(FakeMachine):
 async def test_what_comes_over_live_sockets_waits_for_a_stop_that_is_under_way(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("app.web.server.STOP_FIRST_S", 60.0)
+    monkeypatch.setattr("app.web.http.server.STOP_FIRST_S", 60.0)
     machine, turnstile, clock = SlowToStop(), Turnstile(), SystemClock()
     limits = serving(Connections(100), machine=machine, turnstile=turnstile)
     async with asyncio.timeout(10), limits as (_, port), connect(f"ws://127.0.0.1:{port}/live") as page:

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from app.tracker.interlocks import REQUIRED, homed
-from app.web.ui.zero import NEEDS_ZERO
+from app.tracker.access.interlocks import REQUIRED, homed
+from app.web.shell.without_zero import NEEDS_ZERO
 from tests.web.desk import Desk
 
 HTMX = {"HX-Request": "true", "HX-Request-Type": "partial"}
@@ -83,7 +83,7 @@ async def test_the_zero_says_who_granted_it_and_why_it_was_lost(desk: Desk) -> N
     await desk.ask("POST", f"{API}/commands", json={"type": "set_home", "confirmed": True})
     await desk.forward(3.0)
     granted = await seen(desk)
-    assert granted["home_trusted"]
+    assert granted["homed"]
     assert granted["home"]["by"] == "local user"
     assert granted["home"]["how"] == "set manually"
     assert "local user" in (await desk.ask("GET", "/trackers/T1")).text

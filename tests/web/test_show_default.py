@@ -10,16 +10,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.clock import VirtualClock
+from app.base.clock import VirtualClock
 from app.link.messages import TrackerDetail
 from app.sun.position import Location
-from app.tracker.commands import GoToStart
-from app.tracker.config import MountKind
-from app.tracker.mode import Mode
+from app.tracker.commands.commands import GoToStart
 from app.tracker.mounts.capabilities import abilities
 from app.tracker.mounts.usual import mounted
-from app.web.ui.forms import Typed
-from app.web.ui.show_plan import Place, ShowForm, planned, presets
+from app.tracker.settings.config import MountKind
+from app.tracker.values.mode import Mode
+from app.web.features.shows.show_plan import Place, ShowForm, planned, presets
+from app.web.shell.forms import Typed
 from tests.fake_data import commissioned
 from tests.fakes import FakeMachine, fake_app, serving
 

@@ -12,8 +12,8 @@ from tests.web.desk import Desk
 API = "/api/v1/simulations"
 HOUR = {
     "tracker_id": "T1",
-    "begin_at": "2027-06-21T09:00:00+03:00",
-    "end_at": "2027-06-21T10:00:00+03:00",
+    "start": "2027-06-21T09:00:00+03:00",
+    "end": "2027-06-21T10:00:00+03:00",
     "step_s": 60,
 }
 TYPED = {"tracker": "T1", "date": "2027-06-21", "mode": "dual", "azimuth": "180", "elevation": "45"}
@@ -26,7 +26,7 @@ async def test_a_storm_in_a_simulated_hour_stows_and_is_in_the_frames(tmp_path: 
         steps = [{"time": "09:00", "wind_mps": 3}, {"time": "09:20", "wind_mps": 25}]
         made = await desk.ask("POST", API, json=HOUR | {"weather": {"steps": steps}})
         assert made.status_code == 201, made.text
-        frames = (await desk.ask("GET", f"{made.headers['location']}/frames")).json()
+        frames = (await desk.ask("GET", f"{made.headers['location']}/samples")).json()
         activity = frames["columns"]["activity"]
         assert activity[10] != activity[40], "tracking before, stowed in the storm"
         assert frames["columns"]["measured_elevation_deg"][40] == pytest.approx(90.0, abs=0.1)

@@ -7,13 +7,13 @@ from dataclasses import asdict, replace
 import httpx
 import pytest
 
-from app.build import VERSION
-from app.tracker.config import DriveConfig, DriveKind
-from app.tracker.control import ControlState
-from app.tracker.simulated_weather import Scenario, SimulatedStation
-from app.tracker.snapshot import SiteSnapshot
-from app.tracker.weather import Weather, WeatherNow
-from app.tracker.weather_windows import WeatherWindows
+from app.base.build import VERSION
+from app.tracker.commands.control import ControlState
+from app.tracker.settings.config import DriveConfig, DriveKind
+from app.tracker.state.snapshot import SiteSnapshot
+from app.tracker.weather.simulated_weather import Scenario, SimulatedStation
+from app.tracker.weather.weather import Weather, WeatherNow
+from app.tracker.weather.weather_windows import WeatherWindows
 from tests.fakes import FakeMachine, fake_app, serving
 
 API = "/api/v1/site"
@@ -80,13 +80,13 @@ async def test_weather_that_cannot_be_is_refused(panel: httpx.AsyncClient, wrong
 
 
 async def test_every_integration_tells_its_state(panel: httpx.AsyncClient, machine: FakeMachine) -> None:
-    told = {one["name"]: one for one in (await panel.get(f"{API}/integrations")).json()}
+    told = {one["name"]: one for one in (await panel.get(f"{API}/integrations")).json()["items"]}
     assert told["SunSpec over Modbus TCP"]["status"] == "listening"
     assert told["MQTT"]["waiting"] == 128
     text = (await panel.get("/site")).text
     assert "2 clients connected." in text
     assert "128 events wait to be sent." in text
-    assert "set HELIOPANEL_SUNSPEC_SERIAL to enable it" in text
+    assert "set HELIOPANEL_SUNSPEC_SERIAL_PORT to enable it" in text
     metrics = (await panel.get("/api/v1/metrics")).text
     assert 'heliopanel_gateway_up{gateway="MQTT"} 0.0' in metrics
     assert 'heliopanel_gateway_up{gateway="SunSpec over Modbus TCP"} 1.0' in metrics
@@ -101,7 +101,7 @@ SIMULATED = {
     "wind_mps": "12,5",
     "gustiness_pct": "40",
     "wind_direction_deg": "300",
-    "light_wm2": "",
+    "irradiance_wm2": "",
     "snow_kg": "2",
     "temperature_degc": "-4",
 }
@@ -212,7 +212,7 @@ class HeldMachine(FakeMachine):
 async def test_the_site_says_who_may_write_and_what_a_gateway_has_control_of() -> None:
     async with serving(fake_app(HeldMachine())) as client:
         page = (await client.get("/site")).text
-        told = (await client.get("/api/v1/site/integrations")).json()
+        told = (await client.get("/api/v1/site/integrations")).json()["items"]
         overview = (await client.get("/")).text
     assert "10.0.0.5 may write; all other hosts can only read. This integration has control of T2." in page
     assert told[0]["writes"] == "10.0.0.5 may write; all other hosts can only read."

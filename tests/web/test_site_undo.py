@@ -18,5 +18,5 @@ async def test_the_key_stands_there_orders_it_and_returns(machine: FakeMachine, 
 
 async def test_the_api_orders_it(machine: FakeMachine) -> None:
     async with serving(fake_app(machine)) as panel:
-        assert (await panel.post("/api/v1/site/undo")).status_code == httpx.codes.OK
+        assert (await panel.post("/api/v1/site/settings/undo")).status_code == httpx.codes.OK
     assert machine.orders[-1].command == UndoSiteSettings()

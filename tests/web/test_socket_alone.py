@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 from websockets.frames import Frame, Opcode
 
-from app.clock import VirtualClock
-from app.web.live_protocol import (
+from app.base.clock import VirtualClock
+from app.web.live.live_protocol import (
     FLOOD,
     FLOODED,
     MOST_A_SECOND,

@@ -7,7 +7,7 @@ import pytest
 
 from app.tracker.programs.examples import ALEXANDRU_TABLE_3
 from app.tracker.programs.step_table import to_table
-from app.tracker.strategy import HybridConfig, Interval, Stepped
+from app.tracker.settings.strategy import HybridConfig, Interval, Stepped
 from tests.fakes import FakeMachine, fake_app, serving
 
 TRACKER = "/trackers/T1"
@@ -40,8 +40,8 @@ async def test_a_strategy_and_the_correction_are_set_by_a_patch(
 @pytest.mark.parametrize(
     ("strategy", "word"),
     [
-        ({"kind": "interval", "minutes": 0}, "between 1 and 240 minutes"),
-        ({"kind": "encoder-deadband", "counts": 0}, "between 0.02 and 10 degrees"),
+        ({"kind": "interval", "minutes": 0}, "between 1 and 240"),
+        ({"kind": "encoder-deadband", "counts": 0}, "between 1 and 1000000"),
         ({"kind": "sideways"}, "sideways"),
         ({"kind": "stepped", "program": {"name": "x", "steps": []}}, "1 to 288 steps"),
     ],

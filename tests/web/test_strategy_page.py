@@ -5,8 +5,8 @@ import pytest
 
 from app.tracker.programs.examples import ALEXANDRU_TABLE_3
 from app.tracker.programs.step_table import to_table
-from app.tracker.programs.stepped import ProgramStep, StepFrame
-from app.tracker.strategy import Continuous, Interval, IntervalAim, Stepped
+from app.tracker.settings.stepped import ProgramStep, StepFrame
+from app.tracker.settings.strategy import Continuous, Interval, IntervalAim, Stepped
 from tests.fakes import FakeMachine
 
 PAGE = "/trackers/T1/strategy"

@@ -8,8 +8,8 @@ from datetime import timedelta
 import pytest
 from fastapi import FastAPI
 
-from app.tracker.snapshot import Event, EventKind
-from app.web.hub import EVENTS_KEPT
+from app.tracker.state.snapshot import Event, EventKind
+from app.web.live.hub import EVENTS_KEPT
 from tests.fake_data import NOON
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.web.asgi import streaming

@@ -6,9 +6,9 @@ from typing import Any
 import orjson
 import pytest
 
-from app.clock import SystemClock
-from app.web.limits import MOST_ON_PLAIN_CONNECTIONS, MOST_STREAMS, MOST_STREAMS_A_CLIENT, StreamLimit
-from app.web.server import MOST_A_CLIENT
+from app.base.clock import SystemClock
+from app.web.http.limits import MOST_ON_PLAIN_CONNECTIONS, MOST_STREAMS, MOST_STREAMS_A_CLIENT, StreamLimit
+from app.web.http.server import MOST_A_CLIENT
 
 LIVE, STREAM = "/live", "/api/v1/stream"
 FAR, NEAR = "192.0.2.7", "127.0.0.1"
@@ -68,7 +68,8 @@ async def test_beyond_its_share_a_client_is_refused_with_503_and_a_reason() -> N
     }
     assert body["type"] == "http.response.body"
     assert orjson.loads(body["body"]) == {
-        "type": "about:blank",
+        "type": "/manual/reference/errors.html#too_many_connections",
+        "code": "too_many_connections",
         "title": "Service Unavailable",
         "status": 503,
         "detail": "This device has too many live pages or streams open. Close some, then try again.",

@@ -8,10 +8,10 @@ from typing import Any
 import httpx
 import pytest
 
-from app.settings import Settings
-from app.tracker.strategy import Stepped
+from app.base.settings import Settings
+from app.tracker.settings.strategy import Stepped
 from app.web.main import create_app
-from app.web.studies import Studies
+from app.web.services.studies import Studies
 from tests.fakes import FakeMachine, FakeReader, serving
 from tests.studies.files import epw
 
@@ -52,7 +52,7 @@ async def test_a_study_is_begun_watched_read_and_deleted(client: httpx.AsyncClie
     assert len(table.text.splitlines()) == 4
     curves = await client.get(f"{V1}/studies/{study_id}?format=curves-csv")
     assert len(curves.text.splitlines()) == 1 + 3 * 24
-    assert [one["study_id"] for one in (await client.get(f"{V1}/studies")).json()] == [study_id]
+    assert [one["study_id"] for one in (await client.get(f"{V1}/studies")).json()["items"]] == [study_id]
     assert (await client.delete(f"{V1}/studies/{study_id}")).status_code == 204
     assert (await client.get(f"{V1}/studies/{study_id}")).status_code == 404
 
@@ -104,7 +104,7 @@ async def test_what_cannot_be_studied_is_refused_with_a_sentence(
     answer = await client.post(f"{V1}/studies", json={**DAY, **wrong})
     assert answer.status_code == 422
     assert sentence in answer.json()["detail"]
-    assert (await client.get(f"{V1}/studies")).json() == []
+    assert (await client.get(f"{V1}/studies")).json()["items"] == []
 
 
 async def test_a_tracker_is_studied_as_its_controller_moves_it(client: httpx.AsyncClient) -> None:
@@ -137,7 +137,9 @@ async def test_a_weather_file_is_uploaded_used_and_deleted(client: httpx.AsyncCl
     sent = await client.post(f"{V1}/weather-files", files={"file": ("Samsun.epw", epw())})
     assert sent.status_code == 201, sent.text
     assert sent.json()["seen"]["format"] == "EPW"
-    assert [one["name"] for one in (await client.get(f"{V1}/weather-files")).json()] == ["Samsun.epw"]
+    assert [one["name"] for one in (await client.get(f"{V1}/weather-files")).json()["items"]] == [
+        "Samsun.epw"
+    ]
     asked = {**DAY, "span": "year", "light": "weather-file", "weather_file": "Samsun.epw"}
     begun = await client.post(f"{V1}/studies", json=asked)
     found = await ended(client, begun.json()["study_id"])
@@ -145,7 +147,7 @@ async def test_a_weather_file_is_uploaded_used_and_deleted(client: httpx.AsyncCl
     assert found["result"]["source"] == "weather file, EPW"
     assert found["result"]["location"]["latitude_deg"] == 41.28
     assert (await client.delete(f"{V1}/weather-files/Samsun.epw")).status_code == 204
-    assert (await client.get(f"{V1}/weather-files")).json() == []
+    assert (await client.get(f"{V1}/weather-files")).json()["items"] == []
 
 
 async def test_what_is_no_weather_file_is_refused_and_not_kept(

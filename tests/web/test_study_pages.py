@@ -11,19 +11,19 @@ from pathlib import Path
 import httpx
 import pytest
 
-from app.settings import Settings
+from app.base.settings import Settings
 from app.studies.compute import finished, work_out
 from app.studies.folder import MOST_STUDIES, StudyFolder, StudyState, StudyStatus
 from app.studies.light import clear_days
 from app.studies.request import Span, StudyMode, StudyRequest, StudyStrategy
 from app.studies.result import StudyResult
 from app.sun.position import Location
-from app.tracker.config import Orientation
 from app.tracker.programs.step_table import from_table
-from app.tracker.strategy import Stepped
+from app.tracker.settings.config import Orientation
+from app.tracker.settings.strategy import Stepped
+from app.web.charts.heatmap import heat_map
+from app.web.charts.plot import bar_plot, line_plot
 from app.web.main import create_app
-from app.web.ui.heatmap import heat_map
-from app.web.ui.plot import bar_plot, line_plot, nice_ticks
 from tests.fakes import FakeMachine, FakeReader, serving
 
 # pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.
@@ -219,14 +219,6 @@ async def test_a_weather_file_that_is_none_is_refused_below_its_key(client: http
     assert answer.status_code == 422
     assert "Heliopanel cannot read this weather file" in answer.text
     assert "outcome-refused" in answer.text
-
-
-def test_ticks_are_round_and_enclose_the_values() -> None:
-    for least, most in ((0.0, 1013.0), (1795.0, 1934.0), (-60.0, 97.0), (0.0, 0.4), (5.0, 5.0)):
-        ticks = nice_ticks(least, most)
-        assert ticks[0] <= least + 1e-9
-        assert ticks[-1] >= most - 1e-9
-        assert 2 <= len(ticks) <= 8
 
 
 def test_curves_and_bars_stand_at_their_values() -> None:

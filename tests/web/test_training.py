@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from app.drives.faults import FaultKind
-from app.tracker.fault_scenarios import LESSONS, Subject, lesson
-from app.tracker.simulated_weather import WeatherFault
+from app.simulation.faults import FaultKind
+from app.tracker.programs.fault_scenarios import LESSONS, Subject, lesson
+from app.tracker.weather.simulated_weather import WeatherFault
 from tests.fault_result import FaultResult
 from tests.web.desk import Desk
 
@@ -51,7 +51,7 @@ async def test_a_fault_is_played_seen_and_ended(desk: Desk) -> None:
 
 
 async def test_the_api_plays_and_ends_faults_and_knows_their_names(desk: Desk) -> None:
-    lessons = (await desk.ask("GET", API)).json()
+    lessons = (await desk.ask("GET", API)).json()["items"]
     assert [one["fault"] for one in lessons] == [one.fault for one in LESSONS]
     assert (await desk.ask("POST", API, json={"fault": "drive_fault"})).status_code == 204
     await desk.forward(1.0)

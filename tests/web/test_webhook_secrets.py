@@ -11,8 +11,8 @@ from app.access.accounts import TokenWish
 from app.access.roles import Role
 from app.access.tokens import Scope
 from app.audit.entry import told
-from app.masking import masked
-from app.tracker.notifications import Notifications
+from app.base.masking import masked
+from app.tracker.values.notifications import Notifications
 from tests.fault_result import FaultResult
 from tests.web.desk import Desk
 from tests.web.office import HERE, Office

@@ -3,8 +3,8 @@
 import httpx
 import pytest
 
-from app.tracker.commands import SetHome, UndoHome
-from app.tracker.snapshot import Pair
+from app.tracker.commands.commands import SetHome, UndoHome
+from app.tracker.state.snapshot import Pair
 from tests.fakes import FakeMachine
 
 T1 = "/trackers/T1"

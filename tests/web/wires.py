@@ -7,10 +7,10 @@ from typing import Any
 import uvicorn
 from uvicorn.server import ServerState
 
-from app.clock import Clock, SystemClock
-from app.turnstile import Turnstile
-from app.web.live_protocol import CautiousSocket, cautious_sockets
-from app.web.server import CautiousHttp, Connections, cautious
+from app.base.clock import Clock, SystemClock
+from app.base.turnstile import Turnstile
+from app.web.http.server import CautiousHttp, Connections, cautious
+from app.web.live.live_protocol import CautiousSocket, cautious_sockets
 
 FAR = "192.0.2.7"
 

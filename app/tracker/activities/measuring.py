@@ -3,18 +3,20 @@
 from dataclasses import replace
 from datetime import timedelta
 
+from app.base.message import N_, Message, say, with_format
+from app.tracker.access.interlocks import Action, demand_drive, homed
 from app.tracker.activities.drive_testing import free_way
-from app.tracker.activity import HOLDING, Asked, Measuring
-from app.tracker.axes import Axis, AxisConfig
-from app.tracker.commands import RunCommunicationLossTest, RunStopTest
-from app.tracker.controller_state import HALTED, NOWHERE, ControllerState, Turn
-from app.tracker.drive_tests import LinkLossOutcome, LinkLossProof, ProofKind, StopProof, StopSpeed
-from app.tracker.guards import axis_feedback
-from app.tracker.interlocks import Action, demand_drive, homed
-from app.tracker.motion import AxisFeedback, DriveCommand, Feedback, Position
-from app.tracker.reason import Reason
-from app.tracker.snapshot import EventKind
-from app.tracker.transitions import fail, switch_tracking_off
+from app.tracker.commands.commands import RunCommunicationLossTest, RunStopTest
+from app.tracker.memory.drive_tests import LinkLossOutcome, LinkLossProof, ProofKind, StopProof, StopSpeed
+from app.tracker.motion.guards import axis_feedback
+from app.tracker.settings.axes import Axis, AxisConfig
+from app.tracker.state.activity import Asked, Measuring
+from app.tracker.state.controller_state import HALTED, ControllerState, Turn
+from app.tracker.state.setpoints import forget_setpoint
+from app.tracker.state.snapshot import EventKind
+from app.tracker.state.transitions import begin, fail, hold, switch_tracking_off
+from app.tracker.values.motion import AxisFeedback, DriveCommand, Feedback, Position
+from app.tracker.values.reason import Reason
 
 STEADY_S = 1.0
 SPARE_S = 0.5
@@ -26,48 +28,40 @@ WATCHDOG_SHARE = 1.5
 WATCHDOG_GRACE_S = 1.5
 
 
-def test_stop(mind: ControllerState, command: RunStopTest) -> None:
+def test_stop(state: ControllerState, command: RunStopTest) -> None:
     """Begin the stop test, or raise `CommandRejected`; at the rated speed the zero must be trusted."""
-    settings = mind.config.axis(command.axis)
+    settings = state.config.axis(command.axis)
     rated = command.speed is StopSpeed.RATED
-    needs_zero = homed(mind) if rated else None
-    feedback = demand_drive(mind, Action.TEST_STOP, needs_zero)
+    needs_zero = homed(state) if rated else None
+    feedback = demand_drive(state, Action.TEST_STOP, needs_zero)
     speed_dps = settings.speed_dps if rated else settings.jog_fast_dps
     most_s = _run_up_s(settings, speed_dps) + speed_dps / settings.acceleration_dps2 + STOP_GRACE_S
-    _begin(mind, feedback, command.axis, command.speed, speed_dps, STEADY_S, most_s)
+    _begin(state, feedback, command.axis, command.speed, speed_dps, STEADY_S, most_s)
 
 
-def test_communication_loss(mind: ControllerState, command: RunCommunicationLossTest) -> None:
+def test_communication_loss(state: ControllerState, command: RunCommunicationLossTest) -> None:
     """Begin the link-loss test, or raise `CommandRejected`; a drive without a watchdog is never tested."""
-    feedback = demand_drive(mind, Action.TEST_COMMUNICATION_LOSS)
-    settings = mind.config.axis(command.axis)
-    silence_s = (mind.capabilities.watchdog_s or 0.0) * WATCHDOG_SHARE + WATCHDOG_GRACE_S
+    feedback = demand_drive(state, Action.TEST_COMMUNICATION_LOSS)
+    settings = state.config.axis(command.axis)
+    silence_s = (state.capabilities.watchdog_s or 0.0) * WATCHDOG_SHARE + WATCHDOG_GRACE_S
     speed_dps = settings.jog_slow_dps
     most_s = _run_up_s(settings, speed_dps) + silence_s
-    _begin(mind, feedback, command.axis, None, speed_dps, silence_s, most_s)
+    _begin(state, feedback, command.axis, None, speed_dps, silence_s, most_s)
 
 
-def step(mind: ControllerState, measuring: Measuring, feedback: Feedback) -> Turn:
+def step(state: ControllerState, measuring: Measuring, feedback: Feedback) -> Turn:
     """Run up, then stop (or fall silent) and watch until the axis stands."""
     seen = axis_feedback(feedback, measuring.axis)
     if measuring.asked is None:
-        return _run_up(mind, measuring, seen)
-    asked = _looked(mind, measuring.asked, seen)
+        return _run_up(state, measuring, seen)
+    asked = _looked(state, measuring.asked, seen)
     if not seen.moving:
-        _stood(mind, measuring, asked, feedback, seen)
-        return Turn(mind.activity)
-    if mind.now >= measuring.until:
-        _went_on(mind, measuring, asked, feedback, seen)
-        return Turn(mind.activity)
+        _stood(state, measuring, asked, feedback, seen)
+        return Turn(state.activity)
+    if state.now >= measuring.until:
+        _went_on(state, measuring, asked, feedback, seen)
+        return Turn(state.activity)
     return Turn(replace(measuring, asked=asked))
-
-
-def is_silent(mind: ControllerState) -> bool:
-    """Return whether the drive is told nothing: after the last command of a link-loss test."""
-    activity = mind.activity
-    if not isinstance(activity, Measuring) or activity.speed is not None or activity.asked is None:
-        return False
-    return mind.now > activity.asked.at
 
 
 def _run_up_s(settings: AxisConfig, speed_dps: float) -> float:
@@ -76,7 +70,7 @@ def _run_up_s(settings: AxisConfig, speed_dps: float) -> float:
 
 
 def _begin(
-    mind: ControllerState,
+    state: ControllerState,
     feedback: Feedback,
     axis: Axis,
     speed: StopSpeed | None,
@@ -85,94 +79,106 @@ def _begin(
     most_s: float,
 ) -> None:
     """Let the axis turn towards a place that lies what it travels in `ahead_s` beyond the run-up."""
-    settings, seen = mind.config.axis(axis), axis_feedback(feedback, axis)
+    settings, seen = state.config.axis(axis), axis_feedback(feedback, axis)
     way_deg = speed_dps * (STEADY_S + ahead_s + SPARE_S + speed_dps / settings.acceleration_dps2)
-    target_deg = seen.position_deg + free_way(mind, axis, seen, way_deg) * way_deg
-    switch_tracking_off(mind, "the drive is being tested.")
-    mind.setpoint = NOWHERE
+    target_deg = seen.position_deg + free_way(state, axis, seen, way_deg) * way_deg
+    switch_tracking_off(state, N_("the drive is being tested."))
+    forget_setpoint(state)
     goal = Position(target_deg, speed_dps)
     command = DriveCommand(azimuth=goal) if axis is Axis.AZIMUTH else DriveCommand(elevation=goal)
-    steady_at = mind.now + timedelta(seconds=_run_up_s(settings, speed_dps))
-    until = mind.now + timedelta(seconds=most_s)
-    mind.activity = Measuring(
-        axis, speed, speed_dps, seen.position_deg, command, steady_at, until, mind.actor
-    )
-    mind.say(
+    steady_at = state.now + timedelta(seconds=_run_up_s(settings, speed_dps))
+    until = state.now + timedelta(seconds=most_s)
+    measuring = Measuring(axis, speed, speed_dps, seen.position_deg, command, steady_at, until, state.actor)
+    begin(state, measuring)
+    state.say(
         EventKind.DRIVE_TEST_STARTED,
-        f"{_title(mind.activity)} of the {axis} axis at {speed_dps:g} degrees a second.",
-        proof=_kind(mind.activity),
+        say(
+            "{activity} of the {axis} axis at {speed_dps} degrees a second.",
+            activity=_title(measuring),
+            axis=axis,
+            speed_dps=with_format(speed_dps, "g"),
+        ),
+        proof=_kind(measuring),
         axis=axis,
     )
 
 
-def _run_up(mind: ControllerState, measuring: Measuring, seen: AxisFeedback) -> Turn:
+def _run_up(state: ControllerState, measuring: Measuring, seen: AxisFeedback) -> Turn:
     """Go on until the speed is steady; the last command before the measurement is still one to move."""
-    if mind.now < measuring.steady_at:
+    if state.now < measuring.steady_at:
         return Turn(measuring, measuring.command)
-    asked = Asked(mind.now, seen.position_deg, seen.velocity_dps, mind.now)
+    asked = Asked(state.now, seen.position_deg, seen.velocity_dps, state.now)
     way_deg = abs(seen.position_deg - measuring.from_deg)
     if not seen.moving or way_deg < LEAST_SHARE * STEADY_S * measuring.speed_dps:
-        _end(mind, measuring, "failed", "the axis did not move.")
-        return Turn(mind.activity)
+        _end(state, measuring, "failed", N_("the axis did not move."))
+        return Turn(state.activity)
     begun = replace(measuring, asked=asked)
     return Turn(begun, measuring.command if measuring.speed is None else HALTED)
 
 
-def _looked(mind: ControllerState, asked: Asked, seen: AxisFeedback) -> Asked:
+def _looked(state: ControllerState, asked: Asked, seen: AxisFeedback) -> Asked:
     slowed = abs(seen.velocity_dps) < SLOWED * abs(asked.velocity_dps)
-    reacted_at = mind.now if asked.reacted_at is None and slowed else asked.reacted_at
-    return replace(asked, reacted_at=reacted_at, looked_at=mind.now if seen.moving else asked.looked_at)
+    reacted_at = state.now if asked.reacted_at is None and slowed else asked.reacted_at
+    return replace(asked, reacted_at=reacted_at, looked_at=state.now if seen.moving else asked.looked_at)
 
 
 def _stood(
-    mind: ControllerState, measuring: Measuring, asked: Asked, feedback: Feedback, seen: AxisFeedback
+    state: ControllerState, measuring: Measuring, asked: Asked, feedback: Feedback, seen: AxisFeedback
 ) -> None:
     if measuring.speed is None:
-        _keep_link_loss(mind, measuring, asked, feedback, seen, LinkLossOutcome.STOPPED)
+        _keep_link_loss(state, measuring, asked, feedback, seen, LinkLossOutcome.STOPPED)
         return
     proof = StopProof(
         measuring.axis,
         measuring.speed,
         abs(asked.velocity_dps) or measuring.speed_dps,
-        (mind.now - asked.at).total_seconds(),
+        (state.now - asked.at).total_seconds(),
         abs(seen.position_deg - asked.position_deg),
-        (mind.now - asked.looked_at).total_seconds(),
-        mind.site_time,
+        (state.now - asked.looked_at).total_seconds(),
+        state.site_time,
         measuring.actor,
-        mind.config.drive,
-        mind.config.axis(measuring.axis),
+        state.config.drive,
+        state.config.axis(measuring.axis),
     )
-    mind.remember(proofs=mind.memory.proofs.keep(proof))
+    state.remember(proofs=state.memory.proofs.keep(proof))
     _end(
-        mind,
+        state,
         measuring,
         "measured",
         (
-            f"the axis was at standstill {proof.stopped_after_s:.2f} s and {proof.overrun_deg:.2f} "
-            "degrees after the stop command."
+            say(
+                "the axis was at standstill {stopped_after_s} s and {overrun_deg} degrees after the "
+                "stop command.",
+                stopped_after_s=with_format(proof.stopped_after_s, ".2f"),
+                overrun_deg=with_format(proof.overrun_deg, ".2f"),
+            )
         ),
     )
 
 
 def _went_on(
-    mind: ControllerState, measuring: Measuring, asked: Asked, feedback: Feedback, seen: AxisFeedback
+    state: ControllerState, measuring: Measuring, asked: Asked, feedback: Feedback, seen: AxisFeedback
 ) -> None:
     """The axis did not come to rest in time: a fault after a stop, a result of the link-loss test."""
     if measuring.speed is None:
-        _keep_link_loss(mind, measuring, asked, feedback, seen, LinkLossOutcome.WENT_ON)
+        _keep_link_loss(state, measuring, asked, feedback, seen, LinkLossOutcome.WENT_ON)
         return
     fail(
-        mind,
+        state,
         Reason(
             "stop_overdue",
-            f"The {measuring.axis} axis of {mind.config.name} did not stop after the stop command.",
-            "Use the emergency stop. Check the drive and its deceleration before you continue.",
+            say(
+                "The {axis} axis of {name} did not stop after the stop command.",
+                axis=measuring.axis,
+                name=state.config.name,
+            ),
+            N_("Use the emergency stop. Check the drive and its deceleration before you continue."),
         ),
     )
 
 
 def _keep_link_loss(
-    mind: ControllerState,
+    state: ControllerState,
     measuring: Measuring,
     asked: Asked,
     feedback: Feedback,
@@ -181,37 +187,48 @@ def _keep_link_loss(
 ) -> None:
     """Keep what the drive did by itself; a trusted zero counts as kept if the drive still reports it."""
     stood = outcome is LinkLossOutcome.STOPPED
-    after_s = (mind.now - asked.at).total_seconds()
+    after_s = (state.now - asked.at).total_seconds()
     proof = LinkLossProof(
         axis=measuring.axis,
         outcome=outcome,
         speed_dps=abs(asked.velocity_dps) or measuring.speed_dps,
-        expected_s=mind.capabilities.watchdog_s,
+        expected_s=state.capabilities.watchdog_s,
         reacted_after_s=(asked.reacted_at - asked.at).total_seconds() if asked.reacted_at else None,
         stopped_after_s=after_s if stood else None,
         overrun_deg=abs(seen.position_deg - asked.position_deg),
-        resolution_s=(mind.now - asked.looked_at).total_seconds() if stood else 0.0,
+        resolution_s=(state.now - asked.looked_at).total_seconds() if stood else 0.0,
         reported=feedback.watchdog_tripped,
         fault_code=feedback.fault_code,
         home_kept=feedback.azimuth.homed and feedback.elevation.homed,
-        at=mind.site_time,
+        at=state.site_time,
         by=measuring.actor,
-        drive=mind.config.drive,
+        drive=state.config.drive,
     )
-    mind.remember(proofs=mind.memory.proofs.keep(proof))
+    state.remember(proofs=state.memory.proofs.keep(proof))
     words = (
-        f"the drive stopped automatically; it was at standstill {after_s:.2f} s after the last command."
+        say(
+            "the drive stopped automatically; it was at standstill {after_s} s after the last command.",
+            after_s=with_format(after_s, ".2f"),
+        )
         if stood
-        else f"the drive had not stopped {after_s:.1f} s after the last command; a stop command was sent."
+        else say(
+            "the drive had not stopped {after_s} s after the last command; a stop command was sent.",
+            after_s=with_format(after_s, ".1f"),
+        )
     )
-    _end(mind, measuring, outcome, words)
+    _end(state, measuring, outcome, words)
 
 
-def _end(mind: ControllerState, measuring: Measuring, outcome: str, words: str) -> None:
-    mind.activity = HOLDING
-    mind.say(
+def _end(state: ControllerState, measuring: Measuring, outcome: str, words: str) -> None:
+    hold(state)
+    state.say(
         EventKind.DRIVE_TEST_ENDED,
-        f"{_title(measuring)} of the {measuring.axis} axis: {words}",
+        say(
+            "{measuring} of the {axis} axis: {words}",
+            measuring=_title(measuring),
+            axis=measuring.axis,
+            words=words,
+        ),
         proof=_kind(measuring),
         axis=measuring.axis,
         outcome=outcome,
@@ -222,5 +239,5 @@ def _kind(measuring: Measuring) -> ProofKind:
     return ProofKind.LINK_LOSS if measuring.speed is None else ProofKind.STOP
 
 
-def _title(measuring: Measuring) -> str:
-    return "Communication-loss test" if measuring.speed is None else "Stop test"
+def _title(measuring: Measuring) -> Message:
+    return N_("Communication-loss test") if measuring.speed is None else N_("Stop test")

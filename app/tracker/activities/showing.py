@@ -3,149 +3,150 @@
 from dataclasses import replace
 from datetime import timedelta
 
+from app.base.message import N_, Message, say
+from app.tracker.access.interlocks import Action, demand, demand_drive, unmet
 from app.tracker.activities.moving import not_arrived
-from app.tracker.activity import HOLDING, AxisPair, Run, Showing
-from app.tracker.announce import announce_if_remote, begins_at
-from app.tracker.axis_demand import paced
-from app.tracker.commands import CommandRejected, GoToStart, RunShow
-from app.tracker.controller_state import HALTED, ControllerState, Turn
-from app.tracker.interlocks import Action, demand, demand_drive, unmet
-from app.tracker.motion import DriveCommand, Feedback, Position
-from app.tracker.positioning import arrived, new_run
+from app.tracker.commands.commands import CommandRejected, GoToStart, RunShow
 from app.tracker.programs.show import Course, ShowPlan, check_show, course_of
-from app.tracker.reason import Reason
-from app.tracker.snapshot import EventKind, ShowPhase
-from app.tracker.transitions import end_show, fail, switch_tracking_off
+from app.tracker.state.activity import HOLDING, AxisPair, Run, Showing
+from app.tracker.state.announce import announce_if_remote, begins_at, call_off
+from app.tracker.state.axis_demand import paced
+from app.tracker.state.controller_state import HALTED, ControllerState, Turn
+from app.tracker.state.positioning import arrived, new_run
+from app.tracker.state.snapshot import EventKind, ShowPhase
+from app.tracker.state.transitions import begin, end_show, fail, hold, switch_tracking_off
+from app.tracker.values.motion import DriveCommand, Feedback, Position
+from app.tracker.values.reason import Reason
 
 LONGEST_TICK = timedelta(seconds=2)
 """A show's own clock does not run on through a longer gap between two ticks."""
 
 
-def go_to_start(mind: ControllerState, command: GoToStart) -> None:
+def go_to_start(state: ControllerState, command: GoToStart) -> None:
     """Move to where the panel stands at the start of a show, or raise `CommandRejected`."""
-    feedback = demand_drive(mind, Action.GO_TO_START)
-    course = _course(mind, command.plan)
-    switch_tracking_off(mind, "a show was commanded.")
-    announce_if_remote(mind, "The panel goes to the start of a show.")
-    run = new_run(paced(mind), feedback, _start(course), begins_at(mind))
-    mind.activity = Showing(course, ShowPhase.GOING_TO_START, run, timedelta(0), mind.now, mind.actor)
-    mind.remember(show_moves=True)
-    mind.say(EventKind.MOVE_STARTED, "Going to the start of the show.", show_id=command.plan.show_id)
+    feedback = demand_drive(state, Action.GO_TO_START)
+    course = _course(state, command.plan)
+    switch_tracking_off(state, N_("a show was commanded."))
+    announce_if_remote(state, N_("The panel goes to the start of a show."))
+    run = new_run(paced(state), feedback, _start(course), begins_at(state))
+    begin(state, Showing(course, ShowPhase.GOING_TO_START, run, timedelta(0), state.now, state.actor))
+    state.remember(show_moves=True)
+    state.say(EventKind.MOVE_STARTED, N_("Going to the start of the show."), show_id=command.plan.show_id)
 
 
-def run_show(mind: ControllerState, command: RunShow) -> None:
+def run_show(state: ControllerState, command: RunShow) -> None:
     """Run a show from its start position, or raise `CommandRejected`."""
-    course = _standing_course(mind, command.plan)
+    course = _standing_course(state, command.plan)
     if course is None:
-        reasons = unmet(mind, Action.RUN_SHOW) or (_not_at_start(mind),)
+        reasons = unmet(state, Action.RUN_SHOW) or (_not_at_start(state),)
         raise CommandRejected(*reasons)
-    switch_tracking_off(mind, "a show was commanded.")
-    announce_if_remote(mind, "A show begins.")
-    mind.activity = Showing(course, ShowPhase.RUNNING, None, timedelta(0), begins_at(mind), mind.actor)
-    mind.remember(showing=command.plan.show_id, show_moves=True)
-    mind.say(EventKind.SHOW_STARTED, "The show has begun.", show_id=command.plan.show_id)
+    switch_tracking_off(state, N_("a show was commanded."))
+    announce_if_remote(state, N_("A show begins."))
+    begin(state, Showing(course, ShowPhase.RUNNING, None, timedelta(0), begins_at(state), state.actor))
+    state.remember(showing=command.plan.show_id, show_moves=True)
+    state.say(EventKind.SHOW_STARTED, N_("The show has begun."), show_id=command.plan.show_id)
 
 
-def pause_show(mind: ControllerState) -> None:
+def pause_show(state: ControllerState) -> None:
     """Hold the show where it is, or raise `CommandRejected`."""
-    demand(mind, Action.PAUSE_SHOW)
-    mind.warning = None
-    _change_phase(mind, ShowPhase.PAUSED, EventKind.SHOW_PAUSED, "The show is paused.")
+    demand(state, Action.PAUSE_SHOW)
+    call_off(state)
+    _change_phase(state, ShowPhase.PAUSED, EventKind.SHOW_PAUSED, N_("The show is paused."))
 
 
-def resume_show(mind: ControllerState) -> None:
+def resume_show(state: ControllerState) -> None:
     """Go on with a paused show, or raise `CommandRejected`."""
-    demand(mind, Action.RESUME_SHOW)
-    announce_if_remote(mind, "The show continues.")
-    _change_phase(mind, ShowPhase.RUNNING, EventKind.SHOW_RESUMED, "The show continues.")
+    demand(state, Action.RESUME_SHOW)
+    announce_if_remote(state, N_("The show continues."))
+    _change_phase(state, ShowPhase.RUNNING, EventKind.SHOW_RESUMED, N_("The show continues."))
 
 
-def stop_show(mind: ControllerState) -> None:
+def stop_show(state: ControllerState) -> None:
     """End a show before its time, or raise `CommandRejected`."""
-    demand(mind, Action.STOP_SHOW)
-    if isinstance(mind.activity, Showing):
-        end_show(mind, mind.activity, "The show was stopped by the operator.", "stopped")
-        mind.activity = HOLDING
+    demand(state, Action.STOP_SHOW)
+    if isinstance(state.activity, Showing):
+        end_show(state, state.activity, N_("The show was stopped by the operator."), "stopped")
+        hold(state)
 
 
-def step(mind: ControllerState, showing: Showing, feedback: Feedback) -> Turn:
+def step(state: ControllerState, showing: Showing, feedback: Feedback) -> Turn:
     """Move the panel as the plan says for the time that has run; while it waits, hold."""
     match showing.phase:
         case ShowPhase.GOING_TO_START if showing.run is not None:
-            return _going(mind, showing, showing.run, feedback)
+            return _going(state, showing, showing.run, feedback)
         case ShowPhase.RUNNING:
-            return _running(mind, showing)
+            return _running(state, showing)
         case _:
             seen = showing.course.at(showing.elapsed)
             return Turn(showing, HALTED, seen.target, seen.sun)
 
 
-def _going(mind: ControllerState, showing: Showing, run: Run, feedback: Feedback) -> Turn:
+def _going(state: ControllerState, showing: Showing, run: Run, feedback: Feedback) -> Turn:
     seen = showing.course.at(timedelta(0))
-    if arrived(run.target, feedback, mind.config.in_position_deg):
-        mind.say(
+    if arrived(run.target, feedback, state.config.in_position_deg):
+        state.say(
             EventKind.MOVE_ENDED,
-            "The panel is at the start of the show.",
+            N_("The panel is at the start of the show."),
             outcome="in_position",
             show_id=showing.course.plan.show_id,
         )
-        mind.remember(show_moves=False)
+        state.remember(show_moves=False)
         return Turn(replace(showing, phase=ShowPhase.READY, run=None), HALTED, seen.target, seen.sun)
-    if mind.now >= run.until:
-        fail(mind, not_arrived(mind))
-        return Turn(mind.activity)
+    if state.now >= run.until:
+        fail(state, not_arrived(state))
+        return Turn(state.activity)
     return Turn(showing, run.command, seen.target, seen.sun)
 
 
-def _running(mind: ControllerState, showing: Showing) -> Turn:
-    elapsed = showing.elapsed + min(mind.now - showing.at, LONGEST_TICK)
+def _running(state: ControllerState, showing: Showing) -> Turn:
+    elapsed = showing.elapsed + min(state.now - showing.at, LONGEST_TICK)
     seen = showing.course.at(elapsed)
     if elapsed >= showing.course.plan.duration:
-        end_show(mind, showing, "The show has run to its end.", "completed")
-        mind.activity = HOLDING
+        end_show(state, showing, N_("The show has run to its end."), "completed")
+        hold(state)
         return Turn(HOLDING, HALTED, seen.target, seen.sun)
-    config = mind.config
+    config = state.config
     command = DriveCommand(
         Position(seen.axis_setpoint.azimuth_deg, config.azimuth.speed_dps),
         Position(seen.axis_setpoint.elevation_deg, config.elevation.speed_dps),
     )
-    return Turn(replace(showing, elapsed=elapsed, at=mind.now), command, seen.target, seen.sun)
+    return Turn(replace(showing, elapsed=elapsed, at=state.now), command, seen.target, seen.sun)
 
 
-def _course(mind: ControllerState, plan: ShowPlan) -> Course:
+def _course(state: ControllerState, plan: ShowPlan) -> Course:
     """Return the plan made ready for this tracker, or raise `CommandRejected` if it cannot be shown."""
-    check = check_show(plan, mind.config, mind.memory.pointing)
+    check = check_show(plan, state.config, state.memory.pointing)
     if check.reasons:
         raise CommandRejected(*check.reasons)
-    return course_of(plan, mind.config, mind.memory.pointing)
+    return course_of(plan, state.config, state.memory.pointing)
 
 
-def _standing_course(mind: ControllerState, plan: ShowPlan) -> Course | None:
+def _standing_course(state: ControllerState, plan: ShowPlan) -> Course | None:
     """Return the course of a plan at whose start the panel stands ready; None: it does not."""
-    activity = mind.activity
+    activity = state.activity
     if isinstance(activity, Showing):
         ready = activity.phase is ShowPhase.READY and activity.course.plan == plan
-        return activity.course if ready and not unmet(mind, Action.RUN_SHOW) else None
-    if unmet(mind, Action.GO_TO_START) or activity is not HOLDING or mind.feedback is None:
+        return activity.course if ready and not unmet(state, Action.RUN_SHOW) else None
+    if unmet(state, Action.GO_TO_START) or activity is not HOLDING or state.feedback is None:
         return None
-    course = _course(mind, plan)
-    return course if arrived(_start(course), mind.feedback, mind.config.in_position_deg) else None
+    course = _course(state, plan)
+    return course if arrived(_start(course), state.feedback, state.config.in_position_deg) else None
 
 
-def _change_phase(mind: ControllerState, phase: ShowPhase, kind: EventKind, message: str) -> None:
-    if isinstance(mind.activity, Showing):
-        mind.remember(show_moves=phase is ShowPhase.RUNNING)
-        mind.activity = replace(mind.activity, phase=phase, at=begins_at(mind))
-        mind.say(kind, message, show_id=mind.activity.course.plan.show_id)
+def _change_phase(state: ControllerState, phase: ShowPhase, kind: EventKind, message: Message) -> None:
+    if isinstance(state.activity, Showing):
+        state.remember(show_moves=phase is ShowPhase.RUNNING)
+        begin(state, replace(state.activity, phase=phase, at=begins_at(state)))
+        state.say(kind, message, show_id=state.activity.course.plan.show_id)
 
 
 def _start(course: Course) -> AxisPair:
     return AxisPair(course.start.azimuth_deg, course.start.elevation_deg)
 
 
-def _not_at_start(mind: ControllerState) -> Reason:
+def _not_at_start(state: ControllerState) -> Reason:
     return Reason(
         "not_at_start",
-        f"{mind.config.name} is not at the start of this show.",
-        "Press Go to start position and wait until the panel is there.",
+        say("{name} is not at the start of this show.", name=state.config.name),
+        N_("Press Go to start position and wait until the panel is there."),
     )

@@ -7,25 +7,17 @@ deadband: the sun moves 0.0042 degrees a second, and a run takes a second or two
 from math import cos, radians, sin
 from typing import assert_never
 
+from app.base.message import N_, join, say
 from app.sun.position import Location, SunPosition
+from app.tracker.access.interlocks import Action, demand, unmet
 from app.tracker.activities.moving import not_arrived
-from app.tracker.activity import Stowed, Stowing, Tracking, TrackPhase
-from app.tracker.announce import announce, announce_if_remote
-from app.tracker.axis_demand import paced
-from app.tracker.config import MountConfig, MountKind, NightBehaviour, TrackerConfig
-from app.tracker.controller_state import HALTED, ControllerState, Turn
-from app.tracker.hybrid import correct
-from app.tracker.interlocks import Action, demand, unmet
-from app.tracker.mode import Mode
-from app.tracker.motion import Feedback
+from app.tracker.activities.setpoint_scheduler import due, pursue, widened
+from app.tracker.memory.observation import Observation
+from app.tracker.motion.hybrid import correct
 from app.tracker.mounts.kinematics import FIRST_FOLLOWS
-from app.tracker.observation import Observation
-from app.tracker.positioning import arrived, new_run
 from app.tracker.programs.schedule import Aimed, Followed, Moment, aimed, scheduled, scheduled_dawn
-from app.tracker.reason import Reason
-from app.tracker.setpoint_scheduler import due, pursue, widened
-from app.tracker.snapshot import EventKind
-from app.tracker.strategy import (
+from app.tracker.settings.config import MountConfig, MountKind, NightBehaviour, TrackerConfig
+from app.tracker.settings.strategy import (
     DEADBAND,
     SCHEDULES,
     Continuous,
@@ -35,8 +27,19 @@ from app.tracker.strategy import (
     Stepped,
     Strategy,
 )
-from app.tracker.transitions import end_move, fail, interrupt
-from app.tracker.weather_protection import TWILIGHT_DEG, demanded_stow, guarding, hold_reason
+from app.tracker.state.activity import Stowed, Stowing, Tracking, TrackPhase
+from app.tracker.state.announce import announce, announce_if_remote, call_off
+from app.tracker.state.axis_demand import paced
+from app.tracker.state.controller_state import HALTED, ControllerState, Turn
+from app.tracker.state.positioning import arrived, new_run
+from app.tracker.state.setpoints import note_correction
+from app.tracker.state.snapshot import EventKind
+from app.tracker.state.transitions import begin, end_move, fail, interrupt
+from app.tracker.state.waiting import end_waiting, wait_untouched
+from app.tracker.supervision.weather_protection import TWILIGHT_DEG, demanded_stow, guarding, hold_reason
+from app.tracker.values.mode import Mode
+from app.tracker.values.motion import Feedback
+from app.tracker.values.reason import Reason
 
 SUN_DPS = 15.0 / 3600.0
 
@@ -44,71 +47,81 @@ TRACKING = {phase: Tracking(phase) for phase in TrackPhase}
 RESTED = {phase: Tracking(phase, rested=True) for phase in TrackPhase}
 
 
-def track(mind: ControllerState) -> None:
+def track(state: ControllerState) -> None:
     """Follow the selected mode from now on, or raise `CommandRejected`."""
-    demand(mind, Action.TRACK)
-    mind.wait = None
-    if isinstance(mind.activity, Tracking):
+    demand(state, Action.TRACK)
+    end_waiting(state)
+    if isinstance(state.activity, Tracking):
         return
-    end_move(mind, "tracking was started.")
-    if not (isinstance(mind.activity, Stowing | Stowed) and guarding(mind).stow is mind.activity.stow):
-        mind.activity = TRACKING[TrackPhase.FOLLOWING]
-        mind.warning = None
-        announce_if_remote(mind, f"{mind.config.name} begins to track.")
-    mind.remember(tracking_on=True, stow=None)
-    mind.say(EventKind.TRACKING_STARTED, f"Tracking started, mode {mind.memory.mode}.", mode=mind.memory.mode)
+    end_move(state, N_("tracking was started."))
+    if not (isinstance(state.activity, Stowing | Stowed) and guarding(state).stow is state.activity.stow):
+        begin(state, TRACKING[TrackPhase.FOLLOWING])
+        call_off(state)
+        announce_if_remote(state, say("{name} begins to track.", name=state.config.name))
+    state.remember(tracking_on=True, stow=None)
+    state.say(
+        EventKind.TRACKING_STARTED,
+        say("Tracking started, mode {mode}.", mode=state.memory.mode),
+        mode=state.memory.mode,
+    )
 
 
-def resume(mind: ControllerState, after: str = "the restart") -> None:
+def resume(state: ControllerState, after: str = "the restart") -> None:
     """Go on tracking after a restart if it was on and all is trusted, else wait and say for what."""
-    if not mind.memory.tracking_on:
+    if not state.memory.tracking_on:
         return
-    reasons = unmet(mind, Action.TRACK)
+    reasons = unmet(state, Action.TRACK)
     if not reasons:
-        mind.activity = TRACKING[TrackPhase.FOLLOWING]
-        mind.wait = None
-        if demanded_stow(mind) is not None:
-            mind.say(EventKind.TRACKING_INTERRUPTED, "Tracking is on, but the panel stows first.")
+        begin(state, TRACKING[TrackPhase.FOLLOWING])
+        end_waiting(state)
+        if demanded_stow(state) is not None:
+            state.say(EventKind.TRACKING_INTERRUPTED, N_("Tracking is on, but the panel stows first."))
             return
-        mind.say(EventKind.TRACKING_RESUMED, f"Tracking continues after {after}.", mode=mind.memory.mode)
-        announce(mind, f"{mind.config.name} continues tracking after {after}.")
+        state.say(
+            EventKind.TRACKING_RESUMED,
+            say("Tracking continues after {after}.", after=after),
+            mode=state.memory.mode,
+        )
+        announce(state, say("{name} continues tracking after {after}.", name=state.config.name, after=after))
         return
-    mind.wait = mind.held_back = reasons[0]
-    why = " ".join(reason.message for reason in reasons)
-    mind.say(EventKind.TRACKING_INTERRUPTED, f"Tracking is interrupted and needs the operator: {why}")
+    wait_untouched(state, reasons[0])
+    why = join(" ", (reason.message for reason in reasons))
+    state.say(
+        EventKind.TRACKING_INTERRUPTED, say("Tracking is interrupted and needs the operator: {why}", why=why)
+    )
 
 
-def step(mind: ControllerState, tracking: Tracking, feedback: Feedback, seen: Observation) -> Turn:
+def step(state: ControllerState, tracking: Tracking, feedback: Feedback, seen: Observation) -> Turn:
     """Return a run to the target where the panel is about to leave the deadband, else hold."""
-    sun, mode = seen.sun, mind.memory.mode
+    sun, mode = seen.sun, state.memory.mode
     if not seen.clock_trusted:
-        return Turn(_paused(mind, tracking), HALTED, None, sun)
+        return Turn(_paused(state, tracking), HALTED, None, sun)
     if sun is None or mode is None or seen.location is None:
-        interrupt(mind, _SUN_UNKNOWN)
-        return Turn(mind.activity, HALTED, None, sun)
-    if hold_reason(mind) is not None:
+        interrupt(state, _SUN_UNKNOWN)
+        return Turn(state.activity, HALTED, None, sun)
+    if hold_reason(state) is not None:
         return Turn(TRACKING[TrackPhase.RESTING], HALTED, None, sun)
-    followed = Followed(mind.config, mind.memory.pointing, mode, mind.memory.orientation)
+    followed = Followed(state.config, state.memory.pointing, mode, state.memory.orientation)
     moment = Moment(seen.site_time, sun, seen.location)
-    strategy = DEADBAND if mode is Mode.FIXED else mind.config.strategy
-    night = mode is not Mode.FIXED and sun_height_deg(mind.config, sun) < TWILIGHT_DEG
+    strategy = DEADBAND if mode is Mode.FIXED else state.config.strategy
+    night = mode is not Mode.FIXED and sun_height_deg(state.config, sun) < TWILIGHT_DEG
     if night:
         wanted = _night_place(strategy, followed, moment, seen)
     else:
         wanted = _day_place(strategy, followed, moment, feedback.azimuth.position_deg)
-    if wanted is not None and mind.config.hybrid.enabled:
-        wanted = _corrected(mind, followed, moment, wanted, feedback)
+    if wanted is not None and state.config.hybrid.enabled:
+        wanted = _corrected(state, followed, moment, wanted, feedback)
     run = tracking.run
-    if run is not None and not arrived(run.target, feedback, mind.config.in_position_deg):
-        return _go_on(mind, tracking, strategy, feedback, wanted, sun)
+    if run is not None and not arrived(run.target, feedback, state.config.in_position_deg):
+        return _go_on(state, tracking, strategy, feedback, wanted, sun)
     if wanted is None:
         return Turn(TRACKING[TrackPhase.NIGHT], HALTED, None, sun)
-    phase = TrackPhase.NIGHT if night else _phase(mind.config, mode, wanted)
-    return _begin(mind, tracking, strategy, phase, feedback, wanted, sun)
+    phase = TrackPhase.NIGHT if night else _phase(state.config, mode, wanted)
+    return _begin(state, tracking, strategy, phase, feedback, wanted, sun)
 
 
 def _begin(
-    mind: ControllerState,
+    state: ControllerState,
     tracking: Tracking,
     strategy: Strategy,
     phase: TrackPhase,
@@ -118,16 +131,16 @@ def _begin(
 ) -> Turn:
     """Return the motion that the strategy begins now, or stand."""
     if isinstance(strategy, Continuous) and phase is not TrackPhase.NIGHT:
-        if _must_wait(mind, tracking, phase):
+        if _must_wait(state, tracking, phase):
             return Turn(TRACKING[phase], HALTED, wanted.direction, sun)
-        return Turn(TRACKING[phase], pursue(paced(mind), wanted.target), wanted.direction, sun)
-    place = due(strategy, mind.config, feedback, wanted.target)
+        return Turn(TRACKING[phase], pursue(paced(state), wanted.target), wanted.direction, sun)
+    place = due(strategy, state.config, feedback, wanted.target)
     if place is None:
         stands = RESTED if _has_rested(tracking) else TRACKING
         return Turn(stands[phase], HALTED, wanted.direction, sun)
-    if _must_wait(mind, tracking, phase):
+    if _must_wait(state, tracking, phase):
         return Turn(TRACKING[phase], HALTED, wanted.direction, sun)
-    run = new_run(paced(mind), feedback, place, mind.now)
+    run = new_run(paced(state), feedback, place, state.now)
     return Turn(Tracking(phase, run), run.command, wanted.direction, sun)
 
 
@@ -136,18 +149,20 @@ def _has_rested(tracking: Tracking) -> bool:
     return tracking.rested or tracking.phase in (TrackPhase.NIGHT, TrackPhase.RESTING)
 
 
-def _must_wait(mind: ControllerState, tracking: Tracking, phase: TrackPhase) -> bool:
+def _must_wait(state: ControllerState, tracking: Tracking, phase: TrackPhase) -> bool:
     """Announce the first motion after the night or a rest; return whether it must wait for that."""
     if phase is TrackPhase.NIGHT or not _has_rested(tracking):
         return False
-    announce(mind, f"{mind.config.name} begins to follow the sun.")
-    return mind.warning is not None
+    announce(state, say("{name} begins to follow the sun.", name=state.config.name))
+    return state.countdowns.motion is not None
 
 
-def _paused(mind: ControllerState, tracking: Tracking) -> Tracking:
+def _paused(state: ControllerState, tracking: Tracking) -> Tracking:
     """Return tracking that holds while the clock is doubted; it goes on once the clock is trusted again."""
     if tracking.phase is not TrackPhase.PAUSED:
-        mind.say(EventKind.TRACKING_INTERRUPTED, "Tracking holds until the site's clock is trusted again.")
+        state.say(
+            EventKind.TRACKING_INTERRUPTED, N_("Tracking holds until the site's clock is trusted again.")
+        )
     return TRACKING[TrackPhase.PAUSED]
 
 
@@ -162,14 +177,14 @@ def _day_place(strategy: Strategy, followed: Followed, moment: Moment, near_deg:
 
 
 def _corrected(
-    mind: ControllerState, followed: Followed, moment: Moment, wanted: Aimed, feedback: Feedback
+    state: ControllerState, followed: Followed, moment: Moment, wanted: Aimed, feedback: Feedback
 ) -> Aimed:
     """Return the place with the correction that the light sensors ask for added to its axis angles."""
     sun_target = aimed(followed, followed.direction(moment.sun), feedback.azimuth.position_deg).target
-    mind.corrected = correct(
-        mind.corrected, mind.config, followed.mode, sun_target, wanted.target, feedback, mind.now
-    )
-    return wanted._replace(target=mind.corrected.target)
+    before = state.setpoints.correction
+    corrected = correct(before, state.config, followed.mode, sun_target, wanted.target, feedback, state.now)
+    note_correction(state, corrected)
+    return wanted._replace(target=corrected.target)
 
 
 def _night_place(strategy: Strategy, followed: Followed, moment: Moment, seen: Observation) -> Aimed | None:
@@ -195,7 +210,7 @@ def sun_height_deg(config: TrackerConfig, sun: SunPosition) -> float:
 
 
 def _go_on(
-    mind: ControllerState,
+    state: ControllerState,
     tracking: Tracking,
     strategy: Strategy,
     feedback: Feedback,
@@ -204,12 +219,12 @@ def _go_on(
 ) -> Turn:
     """Go on with the run under way; one that does not arrive in time is a fault."""
     direction = None if wanted is None else wanted.direction
-    if tracking.run is None or mind.now >= tracking.run.until:
-        fail(mind, not_arrived(mind))
-        return Turn(mind.activity, HALTED, direction, sun)
+    if tracking.run is None or state.now >= tracking.run.until:
+        fail(state, not_arrived(state))
+        return Turn(state.activity, HALTED, direction, sun)
     run = tracking.run
     if wanted is not None:
-        run = widened(run, strategy, paced(mind), feedback, wanted.target, mind.now)
+        run = widened(run, strategy, paced(state), feedback, wanted.target, state.now)
     same = run is tracking.run
     return Turn(tracking if same else Tracking(tracking.phase, run), run.command, direction, sun)
 
@@ -254,5 +269,5 @@ def _passes_south(location: Location, dawn: SunPosition) -> bool:
 
 
 _SUN_UNKNOWN = Reason(
-    "sun_unknown", "The position of the sun is not known.", "Set location and clock in steps 1 and 2."
+    "sun_unknown", N_("The position of the sun is not known."), N_("Set location and clock in steps 1 and 2.")
 )

@@ -7,7 +7,7 @@ doi:10.2172/1660126, as pvlib's `tracking.singleaxis` has it.
 from math import cos, radians
 
 from app.sun.trigonometry import PER_DEGREE, PER_RADIAN, T, Trigonometry
-from app.tracker.config import Rows
+from app.tracker.settings.config import Rows
 
 SMALLEST = 1e-300
 

@@ -3,19 +3,20 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from app.tracker.axes import Axis
-from app.tracker.config import MountConfig, MountKind, TrackerConfig
-from app.tracker.mode import Mode
+from app.base.message import N_, Message, Word, join, say
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import MountConfig, MountKind, TrackerConfig
+from app.tracker.values.mode import Mode
 
 
 @dataclass(frozen=True, slots=True)
 class AxisWords:
     """The name of an axis, which way its angle grows and falls, and where it is zero."""
 
-    title: str
-    grows: str
-    falls: str
-    zero: str
+    title: Message
+    grows: Message
+    falls: Message
+    zero: Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,71 +27,80 @@ class MountAbilities:
     `leans`: also for a mast that is not upright.
     """
 
-    title: str
-    summary: str
+    title: Message
+    summary: Message
     first: AxisWords
     second: AxisWords | None
-    modes: Mapping[Mode, str]
+    modes: Mapping[Mode, Message]
     backtracks: bool
     sightings: bool
     leans: bool
 
 
-_AZIMUTH = AxisWords("Azimuth", "east (clockwise)", "west (counterclockwise)", "the panel faces true north")
-_ELEVATION = AxisWords("Elevation", "up", "down", "the panel is vertical and faces the horizon")
-_ROTATION = AxisWords(
-    "Rotation",
-    "to the right of the axis's direction",
-    "to the left of the axis's direction",
-    "the panel is level across the axis",
+_AZIMUTH = AxisWords(
+    N_("Azimuth"), N_("east (clockwise)"), N_("west (counterclockwise)"), N_("the panel faces true north")
 )
-_SINGLE_MODES = {Mode.FIXED: "Fixed", Mode.AZIMUTH: "Single-axis tracking"}
+_ELEVATION = AxisWords(
+    N_("Elevation"), N_("up"), N_("down"), N_("the panel is vertical and faces the horizon")
+)
+_ROTATION = AxisWords(
+    N_("Rotation"),
+    N_("to the right of the axis's direction"),
+    N_("to the left of the axis's direction"),
+    N_("the panel is level across the axis"),
+)
+_SINGLE_MODES = {Mode.FIXED: N_("Fixed"), Mode.AZIMUTH: N_("Single-axis tracking")}
 
 ABILITIES: dict[MountKind, MountAbilities] = {
     MountKind.AZIMUTH_ELEVATION: MountAbilities(
-        title="Azimuth and elevation",
-        summary=(
+        title=N_("Azimuth and elevation"),
+        summary=N_(
             "Two axes: a vertical axis that turns the panel in azimuth, and a horizontal axis "
             "that tilts the panel."
         ),
         first=_AZIMUTH,
         second=_ELEVATION,
         modes={
-            Mode.FIXED: "Fixed",
-            Mode.AZIMUTH: "Azimuth tracking",
-            Mode.ELEVATION: "Elevation tracking",
-            Mode.DUAL: "Dual-axis tracking",
+            Mode.FIXED: N_("Fixed"),
+            Mode.AZIMUTH: N_("Azimuth tracking"),
+            Mode.ELEVATION: N_("Elevation tracking"),
+            Mode.DUAL: N_("Dual-axis tracking"),
         },
         backtracks=False,
         sightings=True,
         leans=True,
     ),
     MountKind.EQUATORIAL: MountAbilities(
-        title="Equatorial",
-        summary="Two axes: one parallel to the earth's axis, which follows the hour angle through "
-        "the day, and one across it, which follows the declination through the year.",
+        title=N_("Equatorial"),
+        summary=N_(
+            "Two axes: one parallel to the earth's axis, which follows the hour angle through "
+            "the day, and one across it, which follows the declination through the year."
+        ),
         first=AxisWords(
-            "Hour angle",
-            "west (afternoon)",
-            "east (morning)",
-            "the panel faces the meridian, as at solar noon",
+            N_("Hour angle"),
+            N_("west (afternoon)"),
+            N_("east (morning)"),
+            N_("the panel faces the meridian, as at solar noon"),
         ),
         second=AxisWords(
-            "Declination", "north", "south", "the panel faces the celestial equator, as at the equinox"
+            N_("Declination"),
+            N_("north"),
+            N_("south"),
+            N_("the panel faces the celestial equator, as at the equinox"),
         ),
         modes={
-            Mode.FIXED: "Fixed",
-            Mode.AZIMUTH: "Diurnal tracking",
-            Mode.ELEVATION: "Seasonal tracking",
-            Mode.DUAL: "Dual-axis tracking",
+            Mode.FIXED: N_("Fixed"),
+            Mode.AZIMUTH: N_("Diurnal tracking"),
+            Mode.ELEVATION: N_("Seasonal tracking"),
+            Mode.DUAL: N_("Dual-axis tracking"),
         },
         backtracks=False,
         sightings=False,
         leans=False,
     ),
     MountKind.HORIZONTAL_SINGLE_AXIS: MountAbilities(
-        title="Horizontal single axis",
-        summary="One horizontal axis, mostly north to south: the panel rolls from east to west.",
+        title=N_("Horizontal single axis"),
+        summary=N_("One horizontal axis, mostly north to south: the panel rolls from east to west."),
         first=_ROTATION,
         second=None,
         modes=_SINGLE_MODES,
@@ -99,8 +109,8 @@ ABILITIES: dict[MountKind, MountAbilities] = {
         leans=False,
     ),
     MountKind.TILTED_SINGLE_AXIS: MountAbilities(
-        title="Tilted single axis",
-        summary="One tilted axis, mostly toward the equator: the panel rolls from east to west.",
+        title=N_("Tilted single axis"),
+        summary=N_("One tilted axis, mostly toward the equator: the panel rolls from east to west."),
         first=_ROTATION,
         second=None,
         modes=_SINGLE_MODES,
@@ -109,13 +119,13 @@ ABILITIES: dict[MountKind, MountAbilities] = {
         leans=False,
     ),
     MountKind.VERTICAL_SINGLE_AXIS: MountAbilities(
-        title="Vertical single axis",
-        summary="One vertical axis: the panel keeps its tilt and turns in azimuth.",
+        title=N_("Vertical single axis"),
+        summary=N_("One vertical axis: the panel keeps its tilt and turns in azimuth."),
         first=AxisWords(
-            "Rotation",
-            "clockwise, seen from above",
-            "counterclockwise, seen from above",
-            "the panel faces the azimuth that is set for the axis",
+            N_("Rotation"),
+            N_("clockwise, seen from above"),
+            N_("counterclockwise, seen from above"),
+            N_("the panel faces the azimuth that is set for the axis"),
         ),
         second=None,
         modes=_SINGLE_MODES,
@@ -142,19 +152,21 @@ def default_mode(mount: MountConfig) -> Mode:
     return Mode.AZIMUTH if mount.single_axis else Mode.DUAL
 
 
-def zero_words(mount: MountConfig) -> str:
+def zero_words(mount: MountConfig) -> Message:
     """Return where the axes of a mount are zero, in one part of a sentence."""
     known = abilities(mount)
     words = [known.first] if known.second is None else [known.first, known.second]
-    return "; ".join(f"{axis.title.lower()}: {axis.zero}" for axis in words)
+    return join(
+        "; ", (say("{title}: {zero}", title=Word(axis.title.lower()), zero=axis.zero) for axis in words)
+    )
 
 
-def axis_of(config: TrackerConfig, axis: Axis) -> str:
+def axis_of(config: TrackerConfig, axis: Axis) -> Message:
     """Return "azimuth axis of T1", for a sentence."""
-    return f"{axis_title(config.mount, axis)} axis of {config.name}"
+    return say("{mount} axis of {name}", mount=axis_title(config.mount, axis), name=config.name)
 
 
-def axis_title(mount: MountConfig, axis: Axis) -> str:
+def axis_title(mount: MountConfig, axis: Axis) -> Word:
     """Return what people call an axis of this mount, in a sentence."""
     words = axis_words(mount, axis)
-    return "second" if words is None else words.title.lower()
+    return Word("second") if words is None else Word(words.title.lower())

@@ -8,7 +8,7 @@ zero in z' and grows towards x'; the second angle is the one above the plane of 
 from math import cos, radians, sin
 
 from app.sun.trigonometry import PER_DEGREE, PER_RADIAN, T, Trigonometry
-from app.tracker.config import MountConfig, MountKind
+from app.tracker.settings.config import MountConfig, MountKind
 
 VERTICAL_TILT_DEG = 90.0
 

@@ -6,10 +6,10 @@ is the same on this sphere as in the sky: azimuth and elevation, hour angle (wes
 """
 
 from app.sun.trigonometry import PER_DEGREE, PER_RADIAN, T, Trigonometry
-from app.tracker.config import MountConfig, MountKind
-from app.tracker.mode import Mode
 from app.tracker.mounts.backtracking import backtracked_deg
 from app.tracker.mounts.frame import into, out_of
+from app.tracker.settings.config import MountConfig, MountKind
+from app.tracker.values.mode import Mode
 
 FIRST_FOLLOWS = frozenset({Mode.AZIMUTH, Mode.DUAL})
 SECOND_FOLLOWS = frozenset({Mode.ELEVATION, Mode.DUAL})

@@ -2,12 +2,13 @@
 
 from dataclasses import replace
 
-from app.tracker.config import TrackerConfig
-from app.tracker.mode import Mode
-from app.tracker.motion import HALT, AxisFeedback, DriveCommand, Feedback, Position
+from app.base.message import Word, join, say
 from app.tracker.mounts.capabilities import abilities
 from app.tracker.mounts.kinematics import fixed_deg
-from app.tracker.reason import Reason
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.values.mode import Mode
+from app.tracker.values.motion import HALT, AxisFeedback, DriveCommand, Feedback, Position
+from app.tracker.values.reason import Reason
 
 
 def as_mounted(config: TrackerConfig, feedback: Feedback | None) -> Feedback | None:
@@ -23,8 +24,12 @@ def absent_axis(config: TrackerConfig) -> Reason:
     known = abilities(config.mount)
     return Reason(
         "no_second_axis",
-        f"{config.name} has a {known.title.lower()} mount and no second axis.",
-        f"Use its first axis, {known.first.title.lower()}.",
+        say(
+            "{name} has a {lower} mount and no second axis.",
+            name=config.name,
+            lower=Word(known.title.lower()),
+        ),
+        say("Use its first axis, {lower}.", lower=Word(known.first.title.lower())),
     )
 
 
@@ -35,8 +40,13 @@ def mode_absent(config: TrackerConfig, mode: Mode) -> Reason | None:
         return None
     return Reason(
         "mode_not_possible",
-        f"{config.name} has a {known.title.lower()} mount and does not support the mode {mode}.",
-        f"Choose one of these: {', '.join(known.modes)}.",
+        say(
+            "{name} has a {lower} mount and does not support the mode {mode}.",
+            name=config.name,
+            lower=Word(known.title.lower()),
+            mode=mode,
+        ),
+        say("Choose one of these: {modes}.", modes=join(", ", known.modes)),
     )
 
 

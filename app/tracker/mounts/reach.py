@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 
 from app.sun.position import Location, SunPath, sun_path
 from app.sun.trigonometry import ARRAY, PER_DEGREE, Array
-from app.tracker.axes import AxisConfig
-from app.tracker.config import TrackerConfig
-from app.tracker.mount import second_axis
 from app.tracker.mounts.capabilities import default_mode
 from app.tracker.mounts.kinematics import direction, followed
+from app.tracker.mounts.mount import second_axis
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import TrackerConfig
 
 STEP_S = 1200
 DAY_S = 86_400

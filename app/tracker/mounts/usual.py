@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from app.tracker.axes import AxisConfig
-from app.tracker.config import MountConfig, MountKind, TrackerConfig
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import MountConfig, MountKind, TrackerConfig
 
 USUAL_TILT_DEG = 25.0
 RANGES: dict[MountKind, tuple[tuple[float, float], tuple[float, float]]] = {

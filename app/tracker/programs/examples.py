@@ -1,9 +1,10 @@
 """Step programs that come with the product."""
 
-from app.tracker.programs.stepped import StepProgram, program_of
+from app.base.message import N_
+from app.tracker.settings.stepped import StepProgram, program_of
 
 ALEXANDRU_TABLE_3 = program_of(
-    "Alexandru 2024, Table 3",
+    N_("Alexandru 2024, Table 3"),
     (7.88, 8.63, 9.42, 10.19, 10.93, 11.56, 12.44, 13.07, 13.81, 14.58, 15.37, 16.12),
     (-60.0, -50.0, -40.0, -30.0, -20.0, -10.0, 0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0),
     second_deg=23.45,

@@ -13,10 +13,10 @@ from math import copysign
 import numpy as np
 
 from app.sun.trigonometry import Array
-from app.tracker.axes import AxisConfig
-from app.tracker.config import TrackerConfig
-from app.tracker.mount import second_axis
+from app.tracker.mounts.mount import second_axis
 from app.tracker.programs.path import Stretch
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import TrackerConfig
 
 SPEED_SHARE = 0.95
 RAMP_SHARE = 0.05

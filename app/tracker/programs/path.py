@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 from app.sun.events import crossings
 from app.sun.position import sun_path, sun_position
 from app.sun.trigonometry import ARRAY, Array
-from app.tracker.axes import AxisConfig
-from app.tracker.config import MountConfig, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mount import second_axis, to_axes
+from app.tracker.memory.memory import Pointing
 from app.tracker.mounts.kinematics import along_deg, direction, followed
+from app.tracker.mounts.mount import second_axis, to_axes
 from app.tracker.programs.plan import ShowPlan
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import MountConfig, TrackerConfig
 
 SAMPLE_S = 10.0
 FEWEST_SAMPLES = 50

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.sun.position import Algorithm, Location
-from app.tracker.config import Orientation
-from app.tracker.mode import Mode
-from app.tracker.reason import Reason
-from app.tracker.strategy import Schedule
+from app.tracker.settings.config import Orientation
+from app.tracker.settings.strategy import Schedule
+from app.tracker.values.mode import Mode
+from app.tracker.values.reason import Reason
 
 
 @dataclass(frozen=True, slots=True)

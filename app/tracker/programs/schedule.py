@@ -4,15 +4,15 @@ from datetime import UTC, datetime, timedelta
 from math import asin, atan2, cos, degrees, hypot, radians, sin
 from typing import NamedTuple, assert_never
 
-from app.angles import wrap360
+from app.base.angles import wrap360
 from app.sun.events import hour_angle_deg
 from app.sun.position import InstantRefused, Location, SunPosition, sun_position
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mode import Mode
-from app.tracker.mount import AxisTarget, aim, mode_direction, second_axis, sky
-from app.tracker.programs.stepped import HOURS_A_DAY, ProgramStep, StepFrame, StepProgram, TimeBase
-from app.tracker.strategy import Interval, IntervalAim, Schedule, Stepped
+from app.tracker.memory.memory import Pointing
+from app.tracker.mounts.mount import AxisTarget, aim, mode_direction, second_axis, sky
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.settings.stepped import HOURS_A_DAY, ProgramStep, StepFrame, StepProgram, TimeBase
+from app.tracker.settings.strategy import Interval, IntervalAim, Schedule, Stepped
+from app.tracker.values.mode import Mode
 
 HOUR_DEG = 15.0
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)

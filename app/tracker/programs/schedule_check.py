@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from datetime import timedelta
 
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import Pointing
+from app.base.message import N_, say
+from app.tracker.memory.memory import Pointing
 from app.tracker.programs.path import sun_up
 from app.tracker.programs.plan import ShowCheck, ShowPlan
 from app.tracker.programs.schedule_course import ScheduleCourse
@@ -19,8 +19,9 @@ from app.tracker.programs.show_check import (
     sun_reasons,
     unchecked,
 )
-from app.tracker.reason import Reason
-from app.tracker.strategy import Schedule
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.settings.strategy import Schedule
+from app.tracker.values.reason import Reason
 
 
 def check_schedule(
@@ -53,13 +54,13 @@ def _late_reasons(needed: timedelta, duration: timedelta, shortest: timedelta | 
     if duration >= needed:
         return
     hint = (
-        f"The shortest simulation time that works is {spell(shortest)}."
+        say("The shortest simulation time that works is {shortest}.", shortest=spell(shortest))
         if shortest
-        else "No simulation time up to 24 hours works: choose another interval."
+        else N_("No simulation time up to 24 hours works: choose another interval.")
     )
     yield Reason(
         "moves_too_long",
-        "The show is too fast: a move would not be done before the next one begins.",
+        N_("The show is too fast: a move would not be done before the next one begins."),
         hint,
     )
 
@@ -68,10 +69,13 @@ def _notices(course: ScheduleCourse) -> Iterator[Reason]:
     moves = len(course.places) - 1
     yield Reason(
         "stepped",
-        f"The panel is at standstill between {moves} moves, as the strategy of this tracker requires.",
+        say(
+            "The panel is at standstill between {moves} moves, as the strategy of this tracker requires.",
+            moves=moves,
+        ),
     )
     if any(place.aimed.target.limited for place in course.places):
         yield Reason(
             "limited",
-            ("Some positions are beyond the soft limits; the panel stays as near as the limits allow."),
+            N_("Some positions are beyond the soft limits; the panel stays as near as the limits allow."),
         )

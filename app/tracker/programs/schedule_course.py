@@ -8,15 +8,15 @@ from itertools import pairwise
 from math import ceil
 
 from app.sun.position import sun_position
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mount import AxisTarget, second_axis
+from app.tracker.memory.memory import Pointing
+from app.tracker.mounts.mount import AxisTarget, second_axis
 from app.tracker.programs.pace import SETTLE_S, travel_s
 from app.tracker.programs.path import sun_up
 from app.tracker.programs.plan import ShowPlan
 from app.tracker.programs.schedule import Aimed, Followed, Moment, scheduled
 from app.tracker.programs.trajectory import ShowAim
-from app.tracker.strategy import Schedule
+from app.tracker.settings.config import Orientation, TrackerConfig
+from app.tracker.settings.strategy import Schedule
 
 SAMPLE = timedelta(seconds=60)
 STILL_DEG = 0.05

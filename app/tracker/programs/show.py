@@ -1,17 +1,18 @@
 """A show: a stretch of any day, run accelerated on the real machine."""
 
-from app.tracker.config import TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mode import Mode
+from app.base.message import N_
+from app.tracker.memory.memory import Pointing
 from app.tracker.programs.plan import ShowCheck, ShowPath, ShowPlan
 from app.tracker.programs.schedule_check import check_schedule
 from app.tracker.programs.schedule_course import ScheduleCourse
 from app.tracker.programs.show_check import check_show as check_smooth
 from app.tracker.programs.trajectory import ShowAim, ShowCourse
-from app.tracker.strategy import Interval, Schedule, Stepped, Strategy
+from app.tracker.settings.config import TrackerConfig
+from app.tracker.settings.strategy import Interval, Schedule, Stepped, Strategy
+from app.tracker.values.mode import Mode
 
 __all__ = [
-    "Course",
+    N_("Course"),
     "ShowAim",
     "ShowCheck",
     "ShowCourse",

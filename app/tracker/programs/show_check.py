@@ -7,14 +7,12 @@ from typing import Protocol
 
 import numpy as np
 
+from app.base.message import N_, Message, say, told_by, with_format
 from app.sun.position import InstantRefused, sun_path, sun_position
-from app.tracker.axes import Axis, AxisConfig
-from app.tracker.config import MountConfig, MountKind, Orientation, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mode import Mode
-from app.tracker.mount import AxisTarget, second_axis, sky
+from app.tracker.memory.memory import Pointing
 from app.tracker.mounts.capabilities import axis_title
 from app.tracker.mounts.missing_axes import mode_absent
+from app.tracker.mounts.mount import AxisTarget, second_axis, sky
 from app.tracker.programs.pace import (
     REPOSITIONING_SHARE,
     Pace,
@@ -25,7 +23,10 @@ from app.tracker.programs.pace import (
 from app.tracker.programs.path import Stretch, sun_up
 from app.tracker.programs.plan import ShowCheck, ShowPath, ShowPlan
 from app.tracker.programs.trajectory import ShowCourse
-from app.tracker.reason import Reason
+from app.tracker.settings.axes import Axis, AxisConfig
+from app.tracker.settings.config import MountConfig, MountKind, Orientation, TrackerConfig
+from app.tracker.values.mode import Mode
+from app.tracker.values.reason import Reason
 
 UPRIGHT_KINDS = (MountKind.AZIMUTH_ELEVATION, MountKind.VERTICAL_SINGLE_AXIS)
 LONGEST_INTERVAL = timedelta(hours=48)
@@ -82,16 +83,20 @@ def impossible_reasons(plan: ShowPlan, tracker: TrackerConfig) -> Iterator[Reaso
 def _interval_reasons(plan: ShowPlan) -> Iterator[Reason]:
     if plan.end_at <= plan.begin_at:
         yield Reason(
-            "end_before_start", "The show ends before it starts.", "Choose an end time after the start time."
+            "end_before_start",
+            N_("The show ends before it starts."),
+            N_("Choose an end time after the start time."),
         )
         return
     if plan.span > LONGEST_INTERVAL:
-        yield Reason("interval_too_long", "The show covers more than 48 hours.", "Choose an earlier end.")
+        yield Reason(
+            "interval_too_long", N_("The show covers more than 48 hours."), N_("Choose an earlier end.")
+        )
     try:
         for at in (plan.begin_at, plan.end_at):
             sun_position(plan.algorithm, plan.location, at)
     except InstantRefused as refused:
-        yield Reason("year_out_of_range", str(refused), "Choose a date in the years 1901 to 2099.")
+        yield Reason("year_out_of_range", told_by(refused), N_("Choose a date in the years 1901 to 2099."))
 
 
 def duration_reasons(plan: ShowPlan) -> Iterator[Reason]:
@@ -99,8 +104,10 @@ def duration_reasons(plan: ShowPlan) -> Iterator[Reason]:
     if plan.duration < SHORTEST_DURATION or plan.duration > LONGEST_DURATION:
         yield Reason(
             "duration_out_of_range",
-            f"A show takes between 10 seconds and 24 hours, not {spell(plan.duration)}.",
-            "Choose another simulation time.",
+            say(
+                "A show takes between 10 seconds and 24 hours, not {duration}.", duration=spell(plan.duration)
+            ),
+            N_("Choose another simulation time."),
         )
 
 
@@ -108,21 +115,21 @@ def sun_reasons(plan: ShowPlan, *, lit: bool) -> Iterator[Reason]:
     """Yield that there is no sun to follow; `lit` says whether it is up at any time."""
     if not lit and plan.mode is not Mode.FIXED:
         if plan.span >= WHOLE_DAY:
-            message = "It is polar night: on this day the sun does not rise here."
-            yield Reason("sun_never_up", message, "Choose a day with a sunrise.")
+            message = N_("It is polar night: on this day the sun does not rise here.")
+            yield Reason("sun_never_up", message, N_("Choose a day with a sunrise."))
             return
         yield Reason(
             "sun_never_up",
-            "The sun is below the horizon for the whole of the show.",
-            "Choose a start and an end between which the sun is up.",
+            N_("The sun is below the horizon for the whole of the show."),
+            N_("Choose a start and an end between which the sun is up."),
         )
 
 
 def _pace_reasons(asked: Pace, tracker: TrackerConfig, shortest: timedelta | None) -> Iterator[Reason]:
     hint = (
-        f"The shortest simulation time that works is {spell(shortest)}."
+        say("The shortest simulation time that works is {shortest}.", shortest=spell(shortest))
         if shortest
-        else "No simulation time up to 24 hours works: choose another interval."
+        else N_("No simulation time up to 24 hours works: choose another interval.")
     )
     for name, axis, peak_dps in (
         (Axis.AZIMUTH, tracker.azimuth, asked.peak_azimuth_dps),
@@ -136,24 +143,32 @@ def _pace_reasons(asked: Pace, tracker: TrackerConfig, shortest: timedelta | Non
             "repositioning_too_long", _too_long(asked, axis_title(tracker.mount, Axis.AZIMUTH)), hint
         )
     if not all(night.long_enough for night in asked.nights):
-        message = "The night is too short for the axes to reach the position of the next sunrise in time."
+        message = N_("The night is too short for the axes to reach the position of the next sunrise in time.")
         yield Reason("night_too_short", message, hint)
 
 
-def _too_fast(name: str, axis: AxisConfig, peak_dps: float, duration_s: float) -> str:
+def _too_fast(name: str, axis: AxisConfig, peak_dps: float, duration_s: float) -> Message:
     usable = usable_dps(axis, duration_s)
-    return (
-        f"The show is too fast: the {name} axis would have to turn at {peak_dps:.2f} degrees a "
-        f"second; it can follow at up to {usable:.2f} (rated {axis.speed_dps:.2f}, less a reserve "
-        "for acceleration)."
+    return say(
+        "The show is too fast: the {name} axis would have to turn at {peak_dps} degrees a "
+        "second; it can follow at up to {usable} (rated {speed_dps}, less a reserve for "
+        "acceleration).",
+        name=name,
+        peak_dps=with_format(peak_dps, ".2f"),
+        usable=with_format(usable, ".2f"),
+        speed_dps=with_format(axis.speed_dps, ".2f"),
     )
 
 
-def _too_long(asked: Pace, title: str) -> str:
-    return (
-        f"The {title} axis needs {asked.repositioning_s:.0f} s to turn where it cannot follow the "
-        f"sun (end stop or zenith). This may take at most {REPOSITIONING_SHARE:.0%} of the show, "
-        f"{REPOSITIONING_SHARE * asked.duration_s:.0f} s, and must finish before the end."
+def _too_long(asked: Pace, title: str) -> Message:
+    return say(
+        "The {title} axis needs {repositioning_s} s to turn where it cannot follow the sun "
+        "(end stop or zenith). This may take at most {repositioning_share} of the show, "
+        "{repositioning_share2} s, and must finish before the end.",
+        title=title,
+        repositioning_s=with_format(asked.repositioning_s, ".0f"),
+        repositioning_share=with_format(REPOSITIONING_SHARE, ".0%"),
+        repositioning_share2=with_format(REPOSITIONING_SHARE * asked.duration_s, ".0f"),
     )
 
 
@@ -177,17 +192,20 @@ def _notices(course: ShowCourse, tracker: TrackerConfig) -> Iterator[Reason]:
         yield _repositioning_notice(course, span, tracker.mount)
     yield from _limit_notices(course.stretches, tracker)
     if course.plan.mode is Mode.FIXED:
-        message = "The mode is Fixed: the panel does not move during the show."
+        message = N_("The mode is Fixed: the panel does not move during the show.")
         yield Reason(
-            "stands_still", message, "Choose another mode in step 4 to see the panel follow the sun."
+            "stands_still", message, N_("Choose another mode in step 4 to see the panel follow the sun.")
         )
     up = sum((end - begin for begin, end in sun_up(course.plan)), timedelta(0))
     down = course.plan.span - up
     if down >= timedelta(seconds=1):
         yield Reason(
             "sun_down",
-            f"The sun is below the horizon for {spell(down)} of the interval: there the panel "
-            "holds, then moves to the position of the next sunrise in time.",
+            say(
+                "The sun is below the horizon for {down} of the interval: there the panel holds, "
+                "then moves to the position of the next sunrise in time.",
+                down=spell(down),
+            ),
         )
 
 
@@ -197,13 +215,42 @@ def _repositioning_notice(course: ShowCourse, span: Repositioning, mount: MountC
     seconds = span.end_s - span.begin_s
     lost = spell(timedelta(seconds=seconds * course.plan.acceleration))
     title = axis_title(mount, Axis.AZIMUTH)
-    turn = f"turns from {span.from_deg:.0f} to {span.to_deg:.0f} degrees"
+    turn = say(
+        "turns from {from_deg} to {to_deg} degrees",
+        from_deg=with_format(span.from_deg, ".0f"),
+        to_deg=with_format(span.to_deg, ".0f"),
+    )
     if span.unwinding:
-        code, why = "unwinding", f"the {title} axis reaches its end stop and {turn} in the opposite direction"
+        code, why = (
+            "unwinding",
+            say(
+                "the {title} axis reaches its end stop and {turn} in the opposite direction",
+                title=title,
+                turn=turn,
+            ),
+        )
     else:
-        where = "zenith" if mount.kind in UPRIGHT_KINDS else "direction of the axis"
-        code, why = "keyhole", f"the sun passes too near the {where} to follow and the {title} axis {turn}"
-    return Reason(code, f"At {at:%H:%M} ({zone}) {why}: {seconds:.1f} s of the show, {lost} of sun time.")
+        where = N_("zenith") if mount.kind in UPRIGHT_KINDS else N_("direction of the axis")
+        code, why = (
+            "keyhole",
+            say(
+                "the sun passes too near the {where} to follow and the {title} axis {turn}",
+                where=where,
+                title=title,
+                turn=turn,
+            ),
+        )
+    return Reason(
+        code,
+        say(
+            "At {at} ({zone}) {why}: {seconds} s of the show, {lost} of sun time.",
+            at=with_format(at, "%H:%M"),
+            zone=zone,
+            why=why,
+            seconds=with_format(seconds, ".1f"),
+            lost=lost,
+        ),
+    )
 
 
 def _limit_notices(stretches: Sequence[Stretch], tracker: TrackerConfig) -> Iterator[Reason]:
@@ -211,8 +258,11 @@ def _limit_notices(stretches: Sequence[Stretch], tracker: TrackerConfig) -> Iter
     if missed_deg > tracker.deadband_deg:
         yield Reason(
             "limited",
-            f"The soft limits keep the panel up to {missed_deg:.1f} degrees away from its target; "
-            "there the panel stays as near as the limits allow.",
+            say(
+                "The soft limits keep the panel up to {missed_deg} degrees away from its target; "
+                "there the panel stays as near as the limits allow.",
+                missed_deg=with_format(missed_deg, ".1f"),
+            ),
         )
 
 
@@ -250,5 +300,7 @@ def spell(length: timedelta) -> str:
     seconds = round(length.total_seconds())
     minutes, hours = seconds // 60 % 60, seconds // 3600
     if hours:
-        return f"{hours} h {minutes} min"
-    return f"{minutes} min {seconds % 60} s" if minutes else f"{seconds} s"
+        return say("{hours} h {minutes} min", hours=hours, minutes=minutes)
+    return (
+        say("{minutes} min {seconds} s", minutes=minutes, seconds=seconds % 60) if minutes else f"{seconds} s"
+    )

@@ -12,7 +12,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from io import StringIO
 
-from app.tracker.programs.stepped import (
+from app.base.message import N_, join, say, told_by
+from app.tracker.settings.stepped import (
     MOST_STEPS,
     ProgramStep,
     StepFrame,
@@ -29,7 +30,7 @@ COLUMNS = {
 CLOCK_TIME = re.compile(r"clock_time(?:_utc([+-])(\d{2}):(\d{2}))?")
 TIME = re.compile(r"(\d{1,2}):(\d{2})(?::(\d{2}(?:\.\d+)?))?")
 LONGEST_TEXT = 100_000
-UNNAMED = "Imported program"
+UNNAMED = N_("Imported program")
 MOST_SENTENCES = 10
 
 
@@ -37,7 +38,7 @@ class TableWrong(ValueError):
     """A table that is no program; `sentences` say where and why."""
 
     def __init__(self, *sentences: str) -> None:
-        super().__init__(" ".join(sentences))
+        super().__init__(join(" ", sentences))
         self.sentences = sentences
 
 
@@ -64,10 +65,17 @@ def to_table(program: StepProgram) -> str:
 def from_table(text: str, *, name: str = "") -> StepProgram:
     """Return the program of a CSV text; `name` counts if the text gives none. Raises `TableWrong`."""
     if len(text) > LONGEST_TEXT:
-        raise TableWrong(f"The file is longer than {LONGEST_TEXT} characters; a program is a short table.")
+        raise TableWrong(
+            say(
+                "The file is longer than {longest_text} characters; a program is a short table.",
+                longest_text=LONGEST_TEXT,
+            )
+        )
     titles, rows = _lines(text)
     if not rows:
-        raise TableWrong("The file is empty: it needs a line with the names of the columns, then the steps.")
+        raise TableWrong(
+            N_("The file is empty: it needs a line with the names of the columns, then the steps.")
+        )
     frame, base, offset_h = _head(rows[0][1])
     reading = _Reading(frame)
     for number, cells in rows[1 : MOST_STEPS + 2]:
@@ -78,7 +86,7 @@ def from_table(text: str, *, name: str = "") -> StepProgram:
         title = titles[0] if titles and titles[0] else name or UNNAMED
         return StepProgram(title, tuple(reading.steps), frame, base, offset_h)
     except ValueError as error:
-        raise TableWrong(str(error)) from error
+        raise TableWrong(told_by(error)) from error
 
 
 def read_time(text: str) -> float:
@@ -88,7 +96,7 @@ def read_time(text: str) -> float:
         return float(text)
     hours, minutes, seconds = int(found[1]), int(found[2]), float(found[3] or 0.0)
     if minutes >= 60 or seconds >= 60.0:
-        raise ValueError(f"{text} is not a time.")
+        raise ValueError(say("{text} is not a time.", text=text))
     return (hours * 3600.0 + minutes * 60.0 + seconds) / 3600.0
 
 
@@ -140,10 +148,14 @@ def _head(cells: list[str]) -> tuple[StepFrame, TimeBase, float]:
     frame = frames.get((cells[1], cells[2])) if len(cells) == 3 else None
     clock = CLOCK_TIME.fullmatch(cells[0])
     if frame is None or (clock is None and cells[0] != "solar_time"):
-        known = "; ".join(",".join(names) for names in COLUMNS.values())
+        known = join("; ", (",".join(names) for names in COLUMNS.values()))
         raise TableWrong(
-            f"The first row must name three columns: solar_time or clock_time, then one of {known}. "
-            f"It says: {','.join(cells)}."
+            say(
+                "The first row must name three columns: solar_time or clock_time, then one of "
+                "{known}. It says: {cells}.",
+                known=known,
+                cells=",".join(cells),
+            )
         )
     if clock is None:
         return frame, TimeBase.SOLAR, 0.0
@@ -154,15 +166,18 @@ def _head(cells: list[str]) -> tuple[StepFrame, TimeBase, float]:
 def _read_row(reading: _Reading, number: int, cells: list[str]) -> None:
     names = COLUMNS[reading.frame]
     if len(cells) != 3:
-        reading.wrong.append(f"Row {number} has {len(cells)} cells, not 3.")
+        reading.wrong.append(say("Row {number} has {cells} cells, not 3.", number=number, cells=len(cells)))
         return
     wrong: list[str] = []
     values = list(_numbers(number, ("time", *names), cells, wrong))
     if values[0] is None and not wrong:
-        wrong.append(f"Row {number}, time: give a time such as 07:52:48.")
+        wrong.append(say("Row {number}, time: give a time such as 07:52:48.", number=number))
     if not wrong and values[0] is not None:
         step = ProgramStep(values[0], values[1], values[2])
-        wrong += [f"Row {number}: {sentence}" for sentence in step_errors(step, reading.frame)]
+        wrong += [
+            say("Row {number}: {sentence}", number=number, sentence=sentence)
+            for sentence in step_errors(step, reading.frame)
+        ]
         wrong += _out_of_order(reading, number, step)
         reading.steps.append(step)
     reading.wrong += wrong
@@ -175,8 +190,16 @@ def _numbers(
         try:
             yield None if not cell else read_time(cell) if place == 0 else float(cell)
         except ValueError:
-            wanted = "a time such as 07:52:48 or 7.88" if place == 0 else "a number"
-            wrong.append(f"Row {number}, {name}: {cell!r} is not {wanted}.")
+            wanted = N_("a time such as 07:52:48 or 7.88") if place == 0 else N_("a number")
+            wrong.append(
+                say(
+                    "Row {number}, {name}: {cell} is not {wanted}.",
+                    number=number,
+                    name=name,
+                    cell=repr(cell),
+                    wanted=wanted,
+                )
+            )
             yield None
 
 
@@ -184,4 +207,11 @@ def _out_of_order(reading: _Reading, number: int, step: ProgramStep) -> list[str
     if not reading.steps or step.from_h > reading.steps[-1].from_h:
         return []
     before = time_text(reading.steps[-1].from_h)
-    return [f"Row {number}, time: {time_text(step.from_h)} does not come after {before} in the row before."]
+    return [
+        say(
+            "Row {number}, time: {from_h} does not come after {before} in the row before.",
+            number=number,
+            from_h=time_text(step.from_h),
+            before=before,
+        )
+    ]

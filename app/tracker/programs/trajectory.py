@@ -5,13 +5,13 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 from app.sun.position import SunPosition, sun_position
-from app.tracker.axes import AxisConfig
-from app.tracker.config import Orientation, TrackerConfig
-from app.tracker.memory import Pointing
-from app.tracker.mount import AxisTarget, aim, mode_direction, second_axis, sky
+from app.tracker.memory.memory import Pointing
+from app.tracker.mounts.mount import AxisTarget, aim, mode_direction, second_axis, sky
 from app.tracker.programs.pace import Night, Pace, Repositioning, pace, travel_s, underway_deg
 from app.tracker.programs.path import EDGE_DEG, Stretch, sampled, stretches
 from app.tracker.programs.plan import ShowPlan
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import Orientation, TrackerConfig
 
 DELAY_S = 0.07
 """Half a period of 0.1 s, for which a set-point waits on average to be renewed, and the way to the drive."""

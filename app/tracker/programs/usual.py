@@ -3,11 +3,12 @@
 from dataclasses import dataclass, replace
 from datetime import timedelta
 
-from app.tracker.config import MountKind, TrackerConfig
-from app.tracker.memory import Pointing
+from app.base.message import Message, say
+from app.tracker.memory.memory import Pointing
 from app.tracker.programs.plan import ShowCheck, ShowPlan
 from app.tracker.programs.show import check_show
-from app.tracker.reason import Reason
+from app.tracker.settings.config import MountKind, TrackerConfig
+from app.tracker.values.reason import Reason
 
 MINUTES = (3, 5, 10, 15, 20, 30, 45, 60, 90, 120, 180, 240, 360, 480, 720, 1440)
 NORTH_DEG, SOUTH_DEG = 0.0, 180.0
@@ -44,26 +45,39 @@ def _lasting(plan: ShowPlan, duration: timedelta) -> ShowPlan:
 def _why_longer(check: ShowCheck, tracker: TrackerConfig) -> Reason:
     """Return in one sentence why the first of the usual lengths does not do, for who only wants to look."""
     code, minutes = check.reasons[0].code, MINUTES[0]
-    text = f"{minutes} minutes are too short here: the axes cannot turn that fast."
+    text = say("{minutes} minutes are too short here: the axes cannot turn that fast.", minutes=minutes)
     if code == "repositioning_too_long":
         text = _turning(check, tracker, minutes)
     elif code == "night_too_short":
-        text = (
-            f"{minutes} minutes are too short here: travel to the next sunrise takes longer than the night."
+        text = say(
+            "{minutes} minutes are too short here: travel to the next sunrise takes longer than the night.",
+            minutes=minutes,
         )
     elif code == "moves_too_long":
-        text = f"{minutes} minutes are too short here: a move must finish before the next one begins."
+        text = say(
+            "{minutes} minutes are too short here: a move must finish before the next one begins.",
+            minutes=minutes,
+        )
     return Reason(code, text)
 
 
-def _turning(check: ShowCheck, tracker: TrackerConfig, minutes: int) -> str:
+def _turning(check: ShowCheck, tracker: TrackerConfig, minutes: int) -> Message:
     """Return where the first axis loses the sun, as one says it who stands before the tracker."""
     axis = tracker.azimuth
     if not any(notice.code == "unwinding" for notice in check.notices):
-        return f"{minutes} minutes are too short here: the panel must swing around where the sun is highest."
+        return say(
+            "{minutes} minutes are too short here: the panel must swing around where the sun is highest.",
+            minutes=minutes,
+        )
     if tracker.mount.kind is MountKind.AZIMUTH_ELEVATION and axis.maximum_deg - axis.minimum_deg == 360.0:
         if axis.minimum_deg % 360.0 == NORTH_DEG:
-            return f"{minutes} minutes are too short here: the panel must turn back at north."
+            return say(
+                "{minutes} minutes are too short here: the panel must turn back at north.", minutes=minutes
+            )
         if axis.minimum_deg % 360.0 == SOUTH_DEG:
-            return f"{minutes} minutes are too short here: the panel must turn back at south."
-    return f"{minutes} minutes are too short here: the panel must turn back at its end stop."
+            return say(
+                "{minutes} minutes are too short here: the panel must turn back at south.", minutes=minutes
+            )
+    return say(
+        "{minutes} minutes are too short here: the panel must turn back at its end stop.", minutes=minutes
+    )

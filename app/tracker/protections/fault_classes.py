@@ -1,6 +1,6 @@
 """Which class every latched fault belongs to; its recovery policy goes by that."""
 
-from app.tracker.protections.machine_config import FaultClass
+from app.tracker.settings.mechanics import FaultClass
 
 CLASSES: dict[str, FaultClass] = {
     "drive_lost": FaultClass.LINK,

@@ -5,19 +5,21 @@ from datetime import datetime, timedelta
 from typing import assert_never
 
 from app.tracker.protections import low_light, sensor_validity, snow, wind_stow
-from app.tracker.protections.config import (
-    LightProtection,
-    ProtectionConfig,
-    SnowProtection,
-    WindProtection,
-)
 from app.tracker.protections.low_light import AWAKE, LowLight
 from app.tracker.protections.priority import classify
 from app.tracker.protections.sensor_validity import WELL, Doubt, demands
 from app.tracker.protections.snow import CLEAR, Snow
 from app.tracker.protections.wind_stow import CALM, Wind, WindStow
-from app.tracker.protections.words import Protection, Reaction, StowName
-from app.tracker.weather import Quality, Quantity, Sensed
+from app.tracker.protections.words import Protection
+from app.tracker.settings.protections import (
+    LightProtection,
+    ProtectionConfig,
+    Reaction,
+    SnowProtection,
+    StowName,
+    WindProtection,
+)
+from app.tracker.weather.weather import Quality, Quantity, Sensed
 
 Limits = WindProtection | SnowProtection | LightProtection
 STOWS = {Protection.WIND_STOW: StowName.WIND, Protection.SNOW: StowName.SNOW}

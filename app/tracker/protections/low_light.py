@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from app.tracker.protections.config import LightProtection
+from app.tracker.settings.protections import LightProtection
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,16 +21,16 @@ class LowLight:
 AWAKE = LowLight()
 
 
-def step(state: LowLight, limits: LightProtection, light_wm2: float | None, now: datetime) -> LowLight:
+def step(state: LowLight, limits: LightProtection, irradiance_wm2: float | None, now: datetime) -> LowLight:
     """Return the state after one look at the light, W/m2; None is not known.
 
     It must be dark for *more* than the delay. Light that exceeds the threshold by the hysteresis ends it at
     once. An unknown light begins the delay anew, and ends nothing.
     """
-    if light_wm2 is None:
+    if irradiance_wm2 is None:
         return state if state.since is not None else LowLight(None, now, state.light_ok)
     needed_wm2 = limits.threshold_wm2 + (0.0 if state.light_ok else limits.hysteresis_wm2)
-    if light_wm2 >= needed_wm2:
+    if irradiance_wm2 >= needed_wm2:
         return LowLight(None, now, True)
     light_at = state.light_at or now
     if state.since is not None:

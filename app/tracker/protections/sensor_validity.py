@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from app.tracker.protections.words import Reaction
+from app.tracker.settings.protections import Reaction
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from app.tracker.protections.config import SnowProtection
+from app.tracker.settings.protections import SnowProtection
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from app.tracker.protections.config import WindProtection
+from app.tracker.settings.protections import WindProtection
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,10 +1,10 @@
-"""The words of the protections: what may hold, where a panel is stowed, what a bad reading does."""
+"""The words of the protections: what may hold, and what a page is told of it."""
 
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
-from app.tracker.reason import Reason
+from app.tracker.values.reason import Reason
 
 
 class Protection(StrEnum):
@@ -21,34 +21,6 @@ class Protection(StrEnum):
     def _missing_(cls, value: object) -> "Protection | None":
         """Return what is stored under a former name, those of Xia et al."""
         return {"typhoon": cls.WIND_STOW, "hibernate": cls.LOW_LIGHT_HOLD}.get(str(value))
-
-
-class StowName(StrEnum):
-    """The places that a panel is stowed in; `park` is the park position."""
-
-    WIND = "wind"
-    SNOW = "snow"
-    HAIL = "hail"
-    CLEANING = "cleaning"
-    MAINTENANCE = "maintenance"
-    PARK = "park"
-
-
-class Reaction(StrEnum):
-    """What a reading that is missing, stale, frozen or impossible does."""
-
-    IGNORE = "ignore"
-    WARN = "warn"
-    HOLD = "hold"
-    STOW = "stow"
-
-
-class Facing(StrEnum):
-    """What the panel turns towards the wind when it is stowed."""
-
-    ANYTHING = "anything"
-    EDGE = "edge"
-    BACK = "back"
 
 
 @dataclass(frozen=True, slots=True)

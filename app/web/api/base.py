@@ -1,16 +1,20 @@
 """What all API schemas and routes share."""
 
+from collections.abc import Iterable, Sequence
 from enum import Enum
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Generic, Self, TypeVar
 
 from fastapi import APIRouter, Path, Query
 from fastapi.routing import APIRoute
 from pydantic import BaseModel, ConfigDict, Field, ModelWrapValidatorHandler, model_validator
 
-from app.instants import Instant
-from app.tracker.reason import Reason
+from app.base.instants import Instant
+from app.link.order_models import Azimuth as Azimuth
+from app.link.order_models import Elevation as Elevation
+from app.tracker.values.reason import Reason
 from app.web.api.numbers import true_to_kind
-from app.web.late_routes import LateRoute
+from app.web.http.late_routes import LateRoute
+from app.web.http.problems import MEDIA_TYPE, Fault, ProblemCode
 
 ROOT = "/api/v1"
 Responses = dict[int | str, dict[str, Any]]
@@ -22,8 +26,6 @@ IssuedAt = Annotated[
     Instant | None,
     Query(description="When this was asked, by the site's clock; refused when more than 2 s old or ahead."),
 ]
-Azimuth = Annotated[float, Field(ge=0, lt=360, description="Degrees clockwise from true north.")]
-Elevation = Annotated[float, Field(ge=-90, le=90, description="Degrees above the horizon.")]
 
 
 class Input(BaseModel):
@@ -47,43 +49,81 @@ class Output(BaseModel):
     model_config = ConfigDict(frozen=True, defer_build=True)
 
 
-class Fault(Output):
-    """One wrong value of a request."""
+T = TypeVar("T")
 
-    location: str = Field(description="Where the value stands, for example `body.latitude_deg`.")
-    message: str = Field(description="What is wrong with it.")
+
+class Page(Output, Generic[T]):
+    """A list, and where it continues."""
+
+    items: tuple[T, ...] = Field(description="What the list has here.")
+    next: str | None = Field(None, description="`cursor` of the next page; null: there is no more.")
+
+    @classmethod
+    def model_parametrized_name(cls, params: tuple[Any, ...]) -> str:
+        """Return what the document and clients call a list of these."""
+        return f"{params[0].__name__}Page"
+
+
+def whole(items: Iterable[T]) -> Page[T]:
+    """Return a list that is one page."""
+    return Page[T](items=tuple(items))
+
+
+CURSOR = "`next` of the page before; left out: the first page."
+Cursor = Annotated[str | None, Query(pattern=r"^[1-9][0-9]{0,17}$", description=CURSOR)]
+Limit = Annotated[int, Query(ge=1, le=1000, description="At most so many items.")]
+
+
+def before(cursor: str | None) -> int | None:
+    """Return the number that a page of numbered items is to end before."""
+    return None if cursor is None else int(cursor)
+
+
+def following(numbers: Sequence[int], limit: int) -> str | None:
+    """Return the cursor of the page after one with these numbers, None where there can be no more."""
+    return str(numbers[-1]) if len(numbers) == limit else None
 
 
 class ProblemDetails(Output):
     """An error as RFC 9457 has it."""
 
-    type: str = Field(description="Kind of problem; `about:blank` says that the status tells all.")
+    type: str = Field(description="URI of the kind of problem: where the manual of this installation is.")
+    code: ProblemCode = Field(description="The kind of problem, for programs.")
     title: str = Field(description="The status in words.")
     status: int = Field(description="The HTTP status.")
     detail: str = Field(description="A sentence that says what happened and what to do.")
     reasons: tuple[Reason, ...] = Field((), description="Every unmet condition, each with what to do.")
-    errors: tuple[Fault, ...] = Field((), description="Every wrong value, with status 422.")
+    errors: tuple[Fault, ...] = Field((), description="Every wrong value, with `invalid_values`.")
 
 
-def _problem(description: str) -> dict[str, Any]:
+def problem(description: str) -> dict[str, Any]:
+    """Return what the document says of an answer that is a problem."""
     schema = {"$ref": "#/components/schemas/ProblemDetails"}
-    return {"description": description, "content": {"application/problem+json": {"schema": schema}}}
+    return {"description": description, "content": {MEDIA_TYPE: {"schema": schema}}}
 
 
-NOT_FOUND: Responses = {404: _problem("There is no such thing.")}
+NOT_FOUND: Responses = {404: problem("There is no such thing.")}
 REFUSED: Responses = {
-    409: _problem("The state forbids it; `reasons` has every unmet condition."),
-    423: _problem("Somebody else has control, or had it since; `reasons` says who, and how to ask."),
+    409: problem("The state forbids it; `reasons` has every unmet condition."),
+    423: problem("Somebody else has control, or had it since; `reasons` says who, and how to ask."),
 }
-TOO_MANY: Responses = {429: _problem("Too much of this is under way; try again later.")}
+CHANGED: Responses = {412: problem("The settings have changed since `If-Match` was read.")}
+TAGGED: Responses = {
+    200: {
+        "headers": {
+            "ETag": {"description": "These settings; send it as `If-Match`.", "schema": {"type": "string"}}
+        }
+    }
+}
+TOO_MANY: Responses = {429: problem("Too much of this is under way; try again later.")}
 COMMON: Responses = {
-    400: _problem("The body cannot be read as text."),
-    401: _problem("Nobody has signed in, or the token is unknown, revoked or has expired."),
-    413: _problem("The body is larger than one megabyte."),
-    403: _problem("Who asks may not do this, or asks from a foreign page or for a foreign host name."),
-    422: _problem("Values are missing or wrong."),
-    500: _problem("The panel made a mistake."),
-    503: _problem("The machine, its drive or the database cannot be reached; nothing was done."),
+    400: problem("The body cannot be read as text."),
+    401: problem("Nobody has signed in, or the token is unknown, revoked or has expired."),
+    413: problem("The body is larger than one megabyte."),
+    403: problem("Who asks may not do this, or asks from a foreign page or for a foreign host name."),
+    422: problem("Values are missing or wrong."),
+    500: problem("The panel made a mistake."),
+    503: problem("The machine, its drive or the database cannot be reached; nothing was done."),
 }
 
 

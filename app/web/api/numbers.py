@@ -9,12 +9,14 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ModelWrapValidatorHandler, ValidationError
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
+from app.base.message import N_
+
 T = TypeVar("T")
 Where = tuple[str | int, ...]
 
 DIGITS = re.compile(r"\s*[-+]?[\d._]+\s*")
-NO_NUMBER = PydanticCustomError("number_type", "This must be a number, without quotation marks.")
-NO_BOOLEAN = PydanticCustomError("bool_type", "This must be true or false.")
+NO_NUMBER = PydanticCustomError("number_type", N_("This must be a number, without quotation marks."))
+NO_BOOLEAN = PydanticCustomError("bool_type", N_("This must be true or false."))
 
 
 def true_to_kind(given: Any, handler: ModelWrapValidatorHandler[T]) -> T:

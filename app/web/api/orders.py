@@ -6,13 +6,14 @@ from typing import Annotated
 
 from fastapi import Depends, Header
 
-from app.instants import Instant
+from app.base.instants import Instant
+from app.base.message import told_by
 from app.link.messages import Machine, SiteCommand, UnknownTracker
-from app.tracker.commands import Command
-from app.tracker.snapshot import SiteSnapshot, Snapshot
+from app.tracker.commands.commands import Command
+from app.tracker.state.snapshot import SiteSnapshot, Snapshot
 from app.web.api.base import IssuedAt
-from app.web.deps import MachineDep, PrincipalDep, order_of
-from app.web.errors import NotAcceptable
+from app.web.http.errors import NotAcceptable
+from app.web.shell.deps import MachineDep, PrincipalDep, order_of
 
 Key = Annotated[
     str | None,
@@ -65,7 +66,7 @@ class Sender:
             order = order_of(self._who, command, tracker_id, self._key, at, self._epoch)
             return await self._machine.execute(order)
         except ValueError as error:
-            raise NotAcceptable(str(error)) from error
+            raise NotAcceptable(told_by(error)) from error
 
     async def command(self, tracker_id: str, command: Command, issued_at: Instant | None = None) -> Snapshot:
         """Carry out a tracker's command and return the tracker after it, with what is allowed then."""

@@ -12,24 +12,27 @@ from fastapi import Query
 from fastapi.responses import Response
 from pydantic import Field
 
-from app.instants import Instant
+from app.base.instants import Instant
+from app.base.message import N_, say
+from app.base.permission import Permission
+from app.base.zones import zone_of
 from app.sun.accuracy import FIRST_YEAR, LAST_YEAR
 from app.sun.algorithms import PUBLISHED
 from app.sun.events import PolarDay, day_events
 from app.sun.position import Algorithm, InstantRefused, Location, sun_path, sun_position
-from app.tracker.commands import CommandRejected
-from app.tracker.reason import Reason
-from app.tracker.snapshot import SiteSnapshot
+from app.tracker.commands.commands import CommandRejected
+from app.tracker.state.snapshot import SiteSnapshot
+from app.tracker.values.reason import Reason
 from app.web.api.base import REFUSED, Output, Responses, api_router
-from app.web.deps import SnapshotDep
-from app.zones import zone_of
+from app.web.http.needs import needs
+from app.web.shell.deps import SnapshotDep
 
 router = api_router(prefix="/sun", tags=["sun"])
 
 NO_LOCATION = Reason(
     "location_not_set",
-    "The site's location is not known.",
-    "Set the location in step 1: PUT /api/v1/site/location.",
+    N_("The site's location is not known."),
+    N_("Set the location in step 1: PUT /api/v1/site/location."),
 )
 AlgorithmQuery = Annotated[
     Algorithm,
@@ -77,7 +80,7 @@ class SunDay(Output):
 
     date: date
     time_zone: str
-    begin: datetime
+    start: datetime
     end: datetime
     algorithm: Algorithm
     rise: datetime | None
@@ -90,6 +93,7 @@ class SunDay(Output):
 
 
 @router.get("", summary="The sun at an instant", responses=REFUSED)
+@needs(Permission.READ)
 async def read_sun(
     site: SnapshotDep,
     at: Annotated[Instant | None, Query(description="With offset; left out: now.")] = None,
@@ -110,6 +114,7 @@ async def read_sun(
 
 
 @router.get("/day", summary="The sun's path over a day", response_model=SunDay, responses=REFUSED | CSV)
+@needs(Permission.READ)
 def read_sun_day(
     site: SnapshotDep,
     date: Annotated[date | None, Query(description="Civil date of the site; left out: today.")] = None,
@@ -134,7 +139,12 @@ def midnights(day: date, time_zone: str) -> tuple[datetime, datetime]:
     """Return the instants at which a civil day begins and ends, or raise `InstantRefused`."""
     if not FIRST_YEAR <= day.year <= LAST_YEAR:
         raise InstantRefused(
-            f"Sun positions are available for the years {FIRST_YEAR} to {LAST_YEAR}, not for {day}."
+            say(
+                "Sun positions are available for the years {first_year} to {last_year}, not for {day}.",
+                first_year=FIRST_YEAR,
+                last_year=LAST_YEAR,
+                day=day,
+            )
         )
     zone = zone_of(time_zone)
     begin, end = (datetime.combine(one, time(), zone) for one in (day, day + timedelta(days=1)))
@@ -149,7 +159,7 @@ def sun_day(site: SiteSnapshot, day: date, step_s: int, algorithm: Algorithm) ->
     return SunDay(
         date=day,
         time_zone=site.time_zone,
-        begin=begin,
+        start=begin,
         end=end,
         algorithm=algorithm,
         rise=events.rise,

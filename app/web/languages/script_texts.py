@@ -7,18 +7,18 @@ from functools import cache
 import orjson
 from markupsafe import Markup
 
-from app.own import own_folder
-from app.tracker.hybrid import HybridPhase
-from app.tracker.mode import Mode
+from app.base.own import own_folder
+from app.tracker.motion.hybrid import HybridPhase
 from app.tracker.protections.words import Protection
-from app.tracker.snapshot import ActivityName, ShowPhase
+from app.tracker.state.snapshot import ActivityName, ShowPhase
+from app.tracker.values.mode import Mode
 from app.web.languages.catalogue import Catalogue, catalogue_of
 from app.web.languages.known import ENGLISH, in_words
 
 SCRIPTS = own_folder("static") / "js"
 SCRIPT_TEXT = re.compile(r"(?<![\w.])_\(\s*\"((?:[^\"\\\n]|\\.)*)\"")
 LIVE_WORDS = (ActivityName, HybridPhase, Mode, Protection, ShowPhase)
-"""What a script shows as words: the same as `words` in app/web/ui/formats.py."""
+"""What a script shows as words: the same as `words` in app/web/shell/formats.py."""
 
 
 def texts_of(source: str) -> Iterator[tuple[int, str]]:
@@ -47,11 +47,5 @@ def for_page(code: str) -> Markup:
 
 
 def _json(catalogue: Catalogue) -> str:
-    language = catalogue.language
-    told = {
-        "point": language.point,
-        "date": language.date,
-        "compass": language.compass,
-        "texts": {text: wanted for text in script_texts() if (wanted := catalogue.gettext(text)) != text},
-    }
+    told = {"texts": {text: wanted for text in script_texts() if (wanted := catalogue.gettext(text)) != text}}
     return orjson.dumps(told).decode().replace("<", "\\u003c")

@@ -1,5 +1,6 @@
 // Everything that is to be drawn at one instant, as plain data for whichever painter there is.
 
+import { facts } from "../facts.js";
 import { hubOf, bare, machine, outlineOf } from "./machines.js";
 import { anglesOf, frameOf, outward } from "./mounts.js";
 import { spoken } from "../i18n.js";
@@ -8,7 +9,6 @@ import { RAD, add, times, towards } from "./space.js";
 export const SKY = 1;
 const LETTERS = [0, 4, 8, 12].map((point) => spoken.compass[point]);
 const LOWEST_SHADOW_DEG = 1.5;
-const SET_DEG = -0.9;
 const GROUND_Z = 0.003;
 const onGround = ([x, y]) => [x, y, GROUND_Z];
 
@@ -84,7 +84,7 @@ function daysPath(view) {
   const lines = [];
   let points = [];
   for (const [azimuth, elevation] of [...view.arc, [0, -90]]) {
-    if (elevation >= SET_DEG) { points.push(inSky(view, azimuth, elevation)); continue; }
+    if (elevation >= facts.sky.set_deg) { points.push(inSky(view, azimuth, elevation)); continue; }
     if (points.length > 1) lines.push({ points, colour: "second", width: 2.4 });
     points = [];
   }
@@ -99,7 +99,7 @@ function daysPath(view) {
 
 function sunlight(view, sun, middle) {
   const at = inSky(view, sun.azimuth, sun.elevation);
-  const up = sun.elevation >= SET_DEG;
+  const up = sun.elevation >= facts.sky.set_deg;
   const marks = [{ kind: up ? "sun" : "sunk", words: "", at, size: 26 }];
   if (!up) return { lines: [], marks };
   const below = onGround([at[0], at[1]]);

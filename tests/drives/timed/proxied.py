@@ -7,16 +7,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from app.drives.buses import Buses
-from app.drives.fault_proxy import FaultProxy
-from app.drives.line import Line, SerialLine, TcpLine
-from app.drives.listening_line import ListeningLine
-from app.drives.modbus_server import Device, ModbusServer
-from app.drives.pty_line import PtyLine
-from app.drives.rtu_server import RtuServer
-from app.drives.wire import Timing
-from app.drives.wire_faults import Framing
-from app.tracker.config import DriveConfig, DriveKind, SerialConfig
+from app.drives.connections.buses import Buses
+from app.modbus.line import Line, SerialLine, TcpLine
+from app.modbus.listening_line import ListeningLine
+from app.modbus.pty_line import PtyLine
+from app.modbus.rtu_server import RtuServer
+from app.modbus.server import Device, ModbusServer
+from app.modbus.wire import Timing
+from app.modbus.wire_faults import Framing
+from app.simulation.servers.fault_proxy import FaultProxy
+from app.tracker.settings.config import DriveConfig, DriveKind, SerialConfig
 from tests.drives.rigs import pending_tasks
 from tests.patient_loop import LoopClock
 

@@ -8,13 +8,14 @@ from dataclasses import replace
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives.drive import Drive, DriveError
-from app.drives.factory import DriveFactory
+from app.base.clock import VirtualClock
+from app.drives.drive import Drive
 from app.drives.profile import load_profile
-from app.drives.sim_plc import SimulatedPlc
-from app.drives.simulated import SimulatedDrive
-from app.tracker.motion import DriveCommand, Feedback, Velocity
+from app.machine.drive_factory import DriveFactory
+from app.modbus.errors import DriveError
+from app.simulation.sim_plc import SimulatedPlc
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.values.motion import DriveCommand, Feedback, Velocity
 from tests.drives.conformance import is_moving
 from tests.drives.rigs import CONFIG, START, TICK
 from tests.drives.timed.proxied import BENCHES

@@ -11,23 +11,23 @@ from pathlib import Path
 
 import pytest
 
-from app.clock import SystemClock, VirtualClock
-from app.drives.factory import DriveFactory
-from app.drives.faults import Fault, FaultKind
-from app.drives.plc import PlcDrive
+from app.base.clock import SystemClock, VirtualClock
+from app.drives.dialects.plc import PlcDrive
 from app.drives.profile import ProfileError
-from app.drives.sim_server import parse_address, parse_fault
-from app.drives.simulated import SimulatedDrive
-from app.tracker.axes import Axis
-from app.tracker.config import DriveConfig, DriveKind
-from app.tracker.motion import DriveCommand, DriveRequest, Feedback, RequestKind, Velocity
+from app.machine.drive_factory import DriveFactory
+from app.simulation.faults import Fault, FaultKind
+from app.simulation.servers.sim_server import parse_address, parse_fault
+from app.simulation.simulated import SimulatedDrive
+from app.tracker.settings.axes import Axis
+from app.tracker.settings.config import DriveConfig, DriveKind
+from app.tracker.values.motion import DriveCommand, DriveRequest, Feedback, RequestKind, Velocity
 from tests.drives.rigs import CONFIG, START
 
 pytestmark = pytest.mark.real_time
 PROGRAM = """
 import sys
 from pathlib import Path
-from app.drives.sim_server import Doors, run_drive_sim
+from app.simulation.servers.sim_server import Doors, run_drive_sim
 run_drive_sim(Doors("127.0.0.1:0"), "simulated-plc", memory=Path(sys.argv[1]), inject=sys.argv[2:])
 """
 

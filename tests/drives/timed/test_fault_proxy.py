@@ -5,14 +5,14 @@ import sys
 
 import pytest
 
-from app.clock import SystemClock
-from app.drives.bus import BusUnit
-from app.drives.buses import Buses
-from app.drives.drive import DriveError, DriveSilent
-from app.drives.modbus_server import ModbusServer
-from app.drives.wire import Timing
-from app.drives.wire_faults import ONLY, Framing, WireFault, parse_script
-from app.tracker.config import DriveConfig, DriveKind, SerialConfig
+from app.base.clock import SystemClock
+from app.drives.connections.buses import Buses
+from app.modbus.bus import BusUnit
+from app.modbus.errors import DriveError, DriveSilent
+from app.modbus.server import ModbusServer
+from app.modbus.wire import Timing
+from app.modbus.wire_faults import ONLY, Framing, WireFault, parse_script
+from app.tracker.settings.config import DriveConfig, DriveKind, SerialConfig
 from tests.drives.timed.proxied import BENCHES, STOP_REGISTER, TIMING, Bench, Registers
 from tests.patient_loop import LoopClock
 from tests.ports import free_port
@@ -20,7 +20,7 @@ from tests.ports import free_port
 RECOVERED_WITHIN_S = {"tcp": 0.3, "rtu": 1.0, "rtu-over-tcp": 1.0}
 STOP_WITHIN_S = 0.05
 """A quarter of the time that a poll without an answer holds the line."""
-COMMAND = "import typer; from app.cli_drives import fault_proxy; typer.run(fault_proxy)"
+COMMAND = "import typer; from app.cli.drives import fault_proxy; typer.run(fault_proxy)"
 LATE = ("delay=250", "delay=450", "delay=700")
 
 

@@ -8,11 +8,11 @@ from datetime import timedelta
 
 import pytest
 
-from app.clock import VirtualClock
-from app.drives.bus import MOST_WAITING, Bus, BusUnit, Priority
-from app.drives.drive import DriveError, DriveRefused, DriveSilent
-from app.drives.modbus_tcp import TcpWire
-from app.drives.wire import Timing
+from app.base.clock import VirtualClock
+from app.modbus.bus import MOST_WAITING, Bus, BusUnit, Priority
+from app.modbus.errors import DriveError, DriveRefused, DriveSilent
+from app.modbus.tcp import TcpWire
+from app.modbus.wire import Timing
 from tests.drives.rigs import START, pending_tasks
 from tests.drives.scripted_server import (
     Answer,
@@ -94,7 +94,7 @@ async def test_a_bad_reply_is_never_believed_and_the_next_read_is_right(
         fault.shows(str(caught.value))
         assert await read(link) == RIGHT
         assert server.connections >= 2, "a bad reply costs the connection"
-        fault.recovers("by itself: with the next good reply, over a new connection")
+        fault.recovers("automatic: with the next good reply, over a new connection")
 
 
 @pytest.mark.parametrize("name", BAD_REPLIES)
@@ -126,7 +126,7 @@ async def test_silence_is_noticed_within_the_time_out_and_costs_the_connection(f
         assert len(server.requests) == 1, "a silent device is not asked twice in one call"
         assert await read(link) == RIGHT
         assert server.connections == 2
-        fault.recovers("by itself: with the next good reply, over a new connection")
+        fault.recovers("automatic: with the next good reply, over a new connection")
 
 
 @pytest.mark.fault(5)
@@ -154,7 +154,7 @@ async def test_a_late_reply_is_not_taken_for_the_next_one(fault: FaultResult) ->
                 continue
         assert all(words == [60, 63, 66, 69] for words in found)
         assert found, "the link works again"
-        fault.recovers("by itself: the late reply is thrown away with its connection")
+        fault.recovers("automatic: the late reply is thrown away with its connection")
 
 
 WRONG_ECHOES: dict[str, tuple[list[int], Answer]] = {
@@ -203,7 +203,7 @@ async def test_a_busy_device_is_asked_again_later(code: int, fault: FaultResult)
         assert not isinstance(caught.value, DriveRefused | DriveSilent)
         assert await read(link) == RIGHT
         assert server.connections == 1, "an exception reply is a good reply"
-        fault.recovers("by itself: it is asked again")
+        fault.recovers("automatic: it is asked again")
 
 
 @pytest.mark.parametrize("code", [10, 11])
@@ -251,8 +251,11 @@ async def test_a_stop_is_sent_even_if_its_caller_gives_up() -> None:
         poll = asyncio.create_task(read(link))
         await asyncio.sleep(0.02)
         for _ in range(3):
-            with pytest.raises(TimeoutError):
-                await asyncio.wait_for(link.stop(33, [1], what="stop"), 0.005)
+            stop = asyncio.create_task(link.stop(33, [1], what="stop"))
+            await asyncio.sleep(0)
+            stop.cancel()
+            with pytest.raises(asyncio.CancelledError):
+                await stop
         with pytest.raises(DriveSilent):
             await poll
         assert await read(link) == RIGHT

@@ -4,17 +4,17 @@ import asyncio
 
 import pytest
 
-from app.clock import SystemClock
-from app.drives.factory import DriveFactory
-from app.drives.modbus_server import ModbusServer
+from app.base.clock import SystemClock
 from app.drives.profile import load_profile
-from app.drives.simulated import SimulatedDrive
 from app.link.messages import Order
+from app.machine.drive_factory import DriveFactory
+from app.modbus.server import ModbusServer
+from app.simulation.simulated import SimulatedDrive
 from app.site.site import Site
-from app.tracker.commands import Home
-from app.tracker.config import DriveConfig, DriveKind, TrackerConfig
-from app.tracker.memory import SiteState, TrackerMemory, TrackerState
-from app.tracker.snapshot import Snapshot
+from app.tracker.commands.commands import Home
+from app.tracker.memory.memory import SiteState, TrackerMemory, TrackerState
+from app.tracker.settings.config import DriveConfig, DriveKind, TrackerConfig
+from app.tracker.state.snapshot import Snapshot
 from tests.drives.test_plc import ECHO, WATCHDOG_MS, Wire
 from tests.fault_result import REAL, FaultResult
 from tests.gateway.rigs import eventually
@@ -67,4 +67,4 @@ async def test_a_sign_of_life_that_ends_stops_the_motion_within_a_second(
     assert noticed_s <= 1.0
     fault.noticed(noticed_s, REAL)
     fault.shows(message)
-    fault.recovers("by itself: when the sign of life is back; the operator commands the next motion")
+    fault.recovers("automatic: when the sign of life is back; the operator commands the next motion")

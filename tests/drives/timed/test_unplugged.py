@@ -10,16 +10,16 @@ from typing import Any
 
 import pytest
 
-from app.clock import SystemClock
-from app.drives.bus import BusUnit
-from app.drives.buses import Buses
-from app.drives.drive import DriveError, DriveSilent
-from app.drives.fault_proxy import FaultProxy
-from app.drives.line import SerialLine
-from app.drives.pty_line import PtyLine, serial_end
-from app.drives.rtu_server import RtuServer
-from app.drives.wire_faults import Framing
-from app.tracker.config import DriveConfig, DriveKind, SerialConfig
+from app.base.clock import SystemClock
+from app.drives.connections.buses import Buses
+from app.modbus.bus import BusUnit
+from app.modbus.errors import DriveError, DriveSilent
+from app.modbus.line import SerialLine
+from app.modbus.pty_line import PtyLine, serial_end
+from app.modbus.rtu_server import RtuServer
+from app.modbus.wire_faults import Framing
+from app.simulation.servers.fault_proxy import FaultProxy
+from app.tracker.settings.config import DriveConfig, DriveKind, SerialConfig
 from tests.drives.timed.proxied import TIMING, Registers
 from tests.peers.processes import cable
 
@@ -28,7 +28,7 @@ FOUND_WITHIN_S = 10.0
 OPENED = """
 import asyncio, sys
 from pathlib import Path
-from app.drives.pty_line import PtyLine
+from app.modbus.pty_line import PtyLine
 
 async def stay() -> None:
     await PtyLine(Path(sys.argv[1])).open(print, print)

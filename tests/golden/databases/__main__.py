@@ -25,8 +25,8 @@ from tests.golden.databases.folders import HERE, NAME, PASSWORD, Folder
 from tests.golden.databases.questions import asked, signed_in
 
 ROOT = HERE.parents[2]
-RAN = {"begin_at": "2027-06-21T10:00:00+03:00", "end_at": "2027-06-21T12:00:00+03:00", "duration_s": 30}
-PLANNED = {"begin_at": "2027-06-21T08:00:00+03:00", "end_at": "2027-06-21T17:00:00+03:00", "duration_s": 240}
+RAN = {"start": "2027-06-21T10:00:00+03:00", "end": "2027-06-21T12:00:00+03:00", "duration_s": 30}
+PLANNED = {"start": "2027-06-21T08:00:00+03:00", "end": "2027-06-21T17:00:00+03:00", "duration_s": 240}
 FIRST = {"deadband_deg": 0.75, "park": {"azimuth_deg": 140.0, "elevation_deg": 30.0}, "name": "North field"}
 SECOND = {"algorithm": "spa", "night": "park", "azimuth": {"maximum_deg": 250.0}, "refraction": False}
 HORIZON = [{"azimuth_deg": 90.0, "elevation_deg": 4.5}, {"azimuth_deg": 270.0, "elevation_deg": 2.0}]
@@ -106,7 +106,7 @@ def commission(one: Integrator) -> None:
     one.call("PATCH", "", json=FIRST)
     one.until_allowed("set_home")
     agreed(one, "POST", "/commands", {"type": "set_home"})
-    one.until(lambda seen: seen["home_trusted"], "the zero is trusted")
+    one.until(lambda seen: seen["homed"], "the zero is trusted")
     one.command("set_mode", mode="dual")
 
 
@@ -121,7 +121,7 @@ def raise_alarm(one: Integrator) -> None:
 def standing(one: Integrator) -> list[dict[str, Any]]:
     """Return the alarms of a tracker that stand now."""
     key = one.tracker.rpartition("/")[2]
-    return [alarm for alarm in one.get("/api/v1/alarms")["alarms"] if alarm["tracker_id"] == key]
+    return [alarm for alarm in one.get("/api/v1/alarms")["items"] if alarm["tracker_id"] == key]
 
 
 def run_show(one: Integrator) -> None:

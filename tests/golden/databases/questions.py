@@ -10,7 +10,7 @@ from tests.golden.databases.folders import NAME, PASSWORD
 
 SITE_SAYS = ("site_name", "location", "time_zone")
 STEP_SAYS = ("name", "confirmed_at", "confirmed_by")
-SHOW_SAYS = ("show_id", "tracker_id", "begin_at", "end_at", "duration_s", "mode", "orientation", "algorithm")
+SHOW_SAYS = ("show_id", "tracker_id", "start", "end", "duration_s", "mode", "orientation", "algorithm")
 PLAIN = (
     "/api/v1/trackers",
     "/api/v1/users",
@@ -39,7 +39,8 @@ def asked(browser: httpx.Client, show: str) -> dict[str, Any]:
     def get(path: str) -> Any:
         answer = browser.get(path)
         assert answer.status_code == 200, f"{path}: {answer.text}"
-        return answer.json()
+        told = answer.json()
+        return told["items"] if isinstance(told, dict) and {"items", "next"} <= set(told) else told
 
     site, plan = get("/api/v1/site"), get(show)
     told = {path: get(path) for path in PLAIN}
@@ -53,7 +54,7 @@ def asked(browser: httpx.Client, show: str) -> dict[str, Any]:
     ended = [one for one in get("/api/v1/recordings") if one["ended_at"]]
     told["/api/v1/recordings"] = ended
     for one in ended:
-        path = f"/api/v1/recordings/{one['recording_id']}/frames?points=50"
+        path = f"/api/v1/recordings/{one['recording_id']}/samples?points=50"
         told[path] = get(path)
     return told
 
@@ -65,7 +66,7 @@ def _of_records(browser: httpx.Client, heads: list[dict[str, Any]]) -> dict[str,
         path = f"/api/v1/records/{head['number']}"
         told[path] = {"sha256": _digest(browser.get(path))}
         assert browser.get(f"{path}?format=html").is_success
-        photos = browser.get(f"{path}/photos").json()
+        photos = browser.get(f"{path}/photos").json()["items"]
         told[f"{path}/photos"] = photos
         for photo in photos:
             place = f"/api/v1/record-photos/{photo['number']}"

@@ -5,7 +5,7 @@ from datetime import timedelta
 from app.alarms.catalogue import ENTRIES, Entry
 from tests.manual.made.markdown import code, page, table, text
 
-INTRODUCTION = """Priority comes from what follows if nobody acts and from the time there is to act
+INTRODUCTION = """Priority comes from the consequence without a response and from the time to respond
 (ISA-18.2): 1 within a minute or two, 2 within 10 minutes, 3 within hours, 4 within days. *On* is how
 long the condition lasts before the alarm is raised, *off* how long it is gone before the alarm has
 returned. An alarm is suppressed by design while one of those in the last column is active at the same

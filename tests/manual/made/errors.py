@@ -1,20 +1,23 @@
 """Every status of an error and every code of a reason, from where they are made."""
 
 import ast
-import inspect
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from http import HTTPStatus
 from pathlib import Path
 
-from app.own import PROGRAM
-from app.web import errors
+from app.base.own import PROGRAM
+from app.web.http.problems import ProblemCode
 from tests.manual.made.markdown import code, page, table, text
 
-INTRODUCTION = """Errors of the API are `application/problem+json` (RFC 9457): `status`, `title`, and
-`detail`, a sentence for the person who reads it. A refused order has `reasons`: every unmet condition
-with `code`, `message`, and `hint`. The same reasons are on the pages, in the journal, and in answers
-over MQTT. Programs go by status and code; sentences may change and are translated."""
+INTRODUCTION = """Errors of the API are `application/problem+json` (RFC 9457). `code` is the kind of problem,
+with one status each, and `type` the address of its section on this page. `title` is the status in words, and
+`detail` a sentence for the user who reads it. `errors` has every wrong value: `pointer` is a JSON Pointer
+(RFC 6901) into the body, `parameter` the name of a query parameter, a header, or a part of the path.
+
+A rejected command has `reasons`: every unmet condition with `code`, `message`, and `hint`. The same reasons
+are on the pages, in the journal, and in answers over MQTT. Programs go by codes; sentences may change and are
+translated."""
 LEAST_LETTERS = 3
 
 
@@ -28,10 +31,6 @@ class Said:
 
 def errors_page() -> str:
     """Return the page."""
-    statuses = [
-        (status, HTTPStatus(status).phrase, "; ".join(sorted(when)))
-        for status, when in sorted(_statuses().items())
-    ]
     reasons = [
         (code(name), _several(said.messages), _several(said.hints))
         for name, said in sorted(_reasons().items())
@@ -39,7 +38,7 @@ def errors_page() -> str:
     return page(
         "Errors",
         INTRODUCTION,
-        "## Statuses\n\n" + table(("status", "title", "when"), statuses),
+        "## Problems\n\n" + "\n\n".join(_kind(code) for code in ProblemCode),
         "## Codes of reasons\n\nAn ellipsis stands for a value.\n\n"
         + table(("code", "message", "hint"), reasons),
     )
@@ -49,38 +48,9 @@ def _several(sentences: set[str]) -> str:
     return "<br>".join(text(one) for one in sorted(sentences))
 
 
-def _statuses() -> dict[int, set[str]]:
-    """Return what leads to each status: the first sentence of every exception that becomes it."""
-    tree = ast.parse(inspect.getsource(errors))
-    functions = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
-    (known,) = (
-        node.value
-        for node in tree.body
-        if isinstance(node, ast.AnnAssign)
-        and isinstance(node.target, ast.Name)
-        and node.target.id == "PROBLEMS"
-    )
-    assert isinstance(known, ast.Dict)
-    found: dict[int, set[str]] = {}
-    for kind, builder in zip(errors.PROBLEMS, known.values, strict=True):
-        if kind.__module__.partition(".")[0] != "app":
-            continue
-        node = functions[builder.id] if isinstance(builder, ast.Name) else builder
-        for status in _numbers(node):
-            found.setdefault(status, set()).add(_first_sentence(kind))
-    return found
-
-
-def _numbers(node: ast.AST) -> Iterator[int]:
-    for call in ast.walk(node):
-        if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "Problem":
-            for number in ast.walk(call.args[0]):
-                if isinstance(number, ast.Constant) and isinstance(number.value, int):
-                    yield number.value
-
-
-def _first_sentence(kind: type[Exception]) -> str:
-    return " ".join((inspect.getdoc(kind) or "").split()).partition(";")[0].partition(". ")[0].rstrip(".")
+def _kind(kind: ProblemCode) -> str:
+    """Return a section that `type` leads to."""
+    return f"### {code(kind.value)}\n\n{kind.status} {HTTPStatus(kind.status).phrase}. {text(kind.when)}"
 
 
 def _reasons() -> dict[str, Said]:

@@ -9,13 +9,13 @@ import orjson
 from app.gateway.mqtt_commands import MESSAGES
 from app.gateway.mqtt_discovery import announcements
 from app.gateway.mqtt_messages import Topics, columns_payload, site_payload, tracker_payload
-from app.tracker.snapshot import SiteSnapshot
+from app.tracker.state.snapshot import SiteSnapshot
 from tests.fakes import FakeMachine
 from tests.manual.made.markdown import code, page, table
 
-INTRODUCTION = """Topics are below `HELIOPANEL_MQTT_TOPIC`, here `heliopanel`; `T1` stands for the id of
-a tracker. Payloads are JSON. Units are in the names, instants are ISO 8601, and what is not known is
-`null`. [MQTT](../integrate/mqtt.md) tells how it is set up, what is retained, and what is never lost."""
+INTRODUCTION = """Topics are below `HELIOPANEL_MQTT_BASE_TOPIC`, here `heliopanel`; `T1` stands for the id of
+a tracker. Payloads are JSON. Units are in the names, instants are ISO 8601, and unknown values are
+`null`. [MQTT](../integrate/mqtt.md) describes the setup, retained messages, and events."""
 ARGUMENTS = {"tracker_id": "T1", "alarm_id": "ALARM"}
 NO_TOPIC = ("commands", "addressed")
 

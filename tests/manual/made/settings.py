@@ -7,7 +7,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import SecretStr
 from pydantic.fields import FieldInfo
 
-from app.settings import FILE_VARIABLE, PREFIX, Settings
+from app.base.settings import FILE_VARIABLE, PREFIX, Settings
 from tests.manual.made.markdown import code, page, table
 
 INTRODUCTION = f"""Settings come from options of the command line, then from the environment, then from

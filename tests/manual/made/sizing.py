@@ -1,28 +1,28 @@
 """How much fits: the bounds that the code keeps, and the defaults that decide how much is kept."""
 
+from app.base.settings import PREFIX, Settings
 from app.gateway.mqtt_lanes import COMMANDS_PER_S
 from app.gateway.mqtt_lanes import MOST_AT_ONCE as COMMANDS_AT_ONCE
 from app.gateway.outbox import MOST_UNSENT
 from app.gateway.sunspec import LIMITS
-from app.settings import PREFIX, Settings
-from app.site.anemometers import MOST_SENSORS
-from app.site.records import MOST_PHOTOS
-from app.site.tracker_setup import MOST_TRACKERS
+from app.site.orders.records import MOST_PHOTOS
+from app.site.orders.tracker_setup import MOST_TRACKERS
+from app.site.weather.anemometers import MOST_SENSORS
 from app.store.chunks import CHUNK_FRAMES
 from app.studies.folder import MOST_STUDIES, MOST_WEATHER_FILES
 from app.studies.request import MOST_CASES
-from app.tracker.recording import COLUMNS
-from app.web.gate import MOST_STOPS
-from app.web.hub import MOST_VIEWERS
-from app.web.limits import MOST_STREAMS, MOST_STREAMS_A_CLIENT
-from app.web.security import LARGEST_BODY, LARGEST_UPLOAD
+from app.tracker.memory.recording import COLUMNS
+from app.web.http.gate import MOST_STOPS
+from app.web.http.limits import MOST_STREAMS, MOST_STREAMS_A_CLIENT
+from app.web.http.security import LARGEST_BODY, LARGEST_UPLOAD
+from app.web.live.hub import MOST_VIEWERS
 from tests.manual.made.markdown import code, page, table
 
 INTRODUCTION = """What one Heliopanel takes and keeps. What it needs for that in time, memory, and disk
 is measured: see [benchmarks](../develop/benchmarks.md)."""
 MIB = 1024 * 1024
 KEPT = (
-    "tick_ms", "memory_limit_mb", "sample_store_s", "telemetry_retention_days", "recordings_keep",
+    "tick_ms", "memory_limit_mb", "sample_store_s", "telemetry_retention_days", "recordings_max",
     "journal_retention_days",
 )  # fmt: skip
 

@@ -4,9 +4,9 @@ from app.gateway.sunspec_map import map_table, sunspec_map
 from tests.manual.made.markdown import page
 
 INTRODUCTION = """The registers of a site of two trackers, `T1` and `T2`, with weather. Every further
-tracker adds as many words as `T2` has, and what lies behind moves. `heliopanel sunspec-map` prints the
-map of the present site; [SunSpec](../integrate/sunspec.md) tells how it is opened and what its values
-mean.
+tracker adds as many words as `T2` has, and the addresses after them move. `heliopanel sunspec-map` prints the
+map of the current site; [SunSpec](../integrate/sunspec.md) describes how to enable it and what its
+values mean.
 
 Addresses are counted from 0. The first register is read with function 3 or 4."""
 

@@ -5,12 +5,12 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from app.tracker.protections import guarding, low_light, wind_stow
-from app.tracker.protections.config import LightProtection, ProtectionConfig, WindProtection
 from app.tracker.protections.guarding import OFF_GUARD
 from app.tracker.protections.low_light import AWAKE, LowLight
 from app.tracker.protections.wind_stow import CALM, Wind, WindStow
 from app.tracker.protections.words import Protection
-from app.tracker.weather import Quality, Reading, Sensed
+from app.tracker.settings.protections import LightProtection, ProtectionConfig, WindProtection
+from app.tracker.weather.weather import Quality, Reading, Sensed
 
 NOW = datetime(2026, 6, 21, 6, 0, tzinfo=UTC)
 LIMITS = WindProtection(gust_mps=17.0, mean_mps=15.0, hysteresis_mps=2.0)

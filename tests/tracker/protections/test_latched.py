@@ -4,12 +4,12 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from app.tracker.protections.config import PROTECTED
 from app.tracker.protections.guarding import OFF_GUARD, Guarding, latched, step
 from app.tracker.protections.snow import Snow
 from app.tracker.protections.wind_stow import CALM, WindStow
-from app.tracker.protections.words import Protection, StowName
-from app.tracker.weather import Quality, Quantity, Reading, Sensed
+from app.tracker.protections.words import Protection
+from app.tracker.settings.protections import PROTECTED, StowName
+from app.tracker.weather.weather import Quality, Quantity, Reading, Sensed
 
 NOW = datetime(2026, 6, 21, 6, 0, tzinfo=UTC)
 CALM_AIR = Sensed(

@@ -7,19 +7,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.tracker.protections import low_light, snow, wind_stow
-from app.tracker.protections.config import (
-    LightProtection,
-    ProtectionConfig,
-    SnowProtection,
-    StowPlace,
-    WindProtection,
-)
 from app.tracker.protections.guarding import OFF_GUARD, Guarding, latched, step
 from app.tracker.protections.low_light import AWAKE
 from app.tracker.protections.snow import CLEAR
 from app.tracker.protections.wind_stow import CALM, Wind, WindStow
-from app.tracker.protections.words import Protection, Reaction, StowName
-from app.tracker.weather import NOTHING_SENSED, Quality, Quantity, Reading, Sensed
+from app.tracker.protections.words import Protection
+from app.tracker.settings.protections import (
+    LightProtection,
+    ProtectionConfig,
+    Reaction,
+    SnowProtection,
+    StowName,
+    StowPlace,
+    WindProtection,
+)
+from app.tracker.weather.weather import NOTHING_SENSED, Quality, Quantity, Reading, Sensed
 from tests.fault_result import FaultResult
 
 BEGIN = datetime(2026, 1, 1, tzinfo=UTC)
@@ -129,13 +131,13 @@ def test_light_flickering_around_its_threshold_switches_once(fault: FaultResult)
     assert low_light.step(state, limits, 60.0, at(12)).since is None
     fault.prevented("hysteresis and delay: it switches once")
     fault.shows_nothing("the tracker stays as it is")
-    fault.recovers("by itself: when the light has left the band of the hysteresis")
+    fault.recovers("automatic: when the light has left the band of the hysteresis")
 
 
 def test_darkness_is_counted_from_the_last_reading_that_was_not_dark() -> None:
     limits, state = LightProtection(hold_s=10.0), AWAKE
-    for second, light_wm2 in enumerate([500.0, *[0.0] * 5, None, *[0.0] * 10]):
-        state = low_light.step(state, limits, light_wm2, at(second))
+    for second, irradiance_wm2 in enumerate([500.0, *[0.0] * 5, None, *[0.0] * 10]):
+        state = low_light.step(state, limits, irradiance_wm2, at(second))
         assert state.since is None
     assert low_light.step(state, limits, 0.0, at(17)).since == at(17)
 
@@ -250,14 +252,14 @@ def test_what_is_switched_off_demands_nothing() -> None:
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: WindProtection(gust_mps=0.5), "gust threshold"),
-        (lambda: WindProtection(mean_mps=float("nan")), "mean wind"),
+        (lambda: WindProtection(gust_mps=0.5), "Gust threshold must be"),
+        (lambda: WindProtection(mean_mps=float("nan")), "Mean-wind threshold must be"),
         (lambda: WindProtection(hysteresis_mps=18.0), "smaller than both"),
         (lambda: SnowProtection(hysteresis_kg=4.0), "smaller than the snow-stow threshold"),
         (lambda: LightProtection(bad=Reaction.STOW), "cannot cause a stow"),
-        (lambda: StowPlace(91.0), "elevation of a stow"),
-        (lambda: StowPlace(10.0, 361.0), "azimuth of a stow"),
-        (lambda: ProtectionConfig(warning_s=-1.0), "warning time"),
+        (lambda: StowPlace(91.0), "Elevation must be"),
+        (lambda: StowPlace(10.0, 361.0), "Azimuth must be"),
+        (lambda: ProtectionConfig(warning_s=-1.0), "Warning time must be"),
     ],
 )
 def test_settings_that_cannot_be_are_refused_with_a_sentence(make: object, words: str) -> None:

@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from app.tracker.protections.config import LightProtection, ProtectionConfig, WindProtection
 from app.tracker.protections.guarding import OFF_GUARD, step
 from app.tracker.protections.words import Protection
-from app.tracker.weather import Quality, Quantity, Reading, Sensed
+from app.tracker.settings.protections import LightProtection, ProtectionConfig, WindProtection
+from app.tracker.weather.weather import Quality, Quantity, Reading, Sensed
 
 TRACE = Path(__file__).parents[2] / "golden" / "protections_trace.csv"
 BEGIN = datetime(2026, 6, 21, 6, 0, tzinfo=UTC)
@@ -46,9 +46,9 @@ def _snow_kg(t: int) -> float:
 
 
 def _sensed(t: int) -> Sensed:
-    light_wm2 = 0.0 if _between(t, 1000, 1899) else 500.0
+    irradiance_wm2 = 0.0 if _between(t, 1000, 1899) else 500.0
     wind, snow, light = (
-        Reading(value, Quality.GOOD, 0.0, "trace") for value in (_wind_mps(t), _snow_kg(t), light_wm2)
+        Reading(value, Quality.GOOD, 0.0, "trace") for value in (_wind_mps(t), _snow_kg(t), irradiance_wm2)
     )
     return Sensed(wind, snow, light)
 

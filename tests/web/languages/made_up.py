@@ -5,8 +5,8 @@ from io import BytesIO
 from babel.messages.catalog import Catalog
 
 from app.web.languages.catalogue import Catalogue
-from app.web.languages.catalogues import mo_bytes
 from app.web.languages.known import LANGUAGES
+from app.web.translation.catalogues import mo_bytes
 
 GERMAN = {
     "The wind at {name} is too strong: {good} m/s.": "Der Wind bei {name} ist zu stark: {good} m/s.",

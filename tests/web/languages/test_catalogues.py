@@ -10,8 +10,8 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
 from app.web.languages.catalogue import DOCUMENTS, catalogue_of
-from app.web.languages.catalogues import faults, identity, mo_bytes, read, renewed, take, template
 from app.web.languages.known import LANGUAGES, TRANSLATED
+from app.web.translation.catalogues import faults, identity, mo_bytes, read, renewed, take, template
 
 GAPS = re.compile(r"\{[a-z][a-z0-9_]*\}|%\([a-z_0-9]+\)[sd]")
 TAGS = re.compile(r"</?[a-z][a-z0-9]*[^>]*>")

@@ -7,12 +7,12 @@ from contextlib import contextmanager
 import httpx
 import pytest
 
-from app.web import guide
+from app.web.features.guide import guide
+from app.web.features.guide.search_index import index
+from app.web.features.guide.search_score import plain, score
 from app.web.languages import CATALOGUE
 from app.web.languages.catalogue import BLOCK, catalogue_of
 from app.web.languages.known import ENGLISH, LANGUAGES, TRANSLATED
-from app.web.ui.search_index import index
-from app.web.ui.search_score import plain, score
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
 
 MOST_BYTES = 40_000

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 import pytest
 
 from app.drives.profile import known_profiles, load_profile
-from app.tracker.drive_check import DriveChoices, ProfileChoice
+from app.tracker.memory.drive_check import DriveChoices, ProfileChoice
+from app.web.features.commissioning.drive_form import profile_options
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import TRANSLATED
-from app.web.ui.drive_form import profile_options
 
 MADE = re.compile(
     r"0x\w+|\b[A-Z]+\d+[\w-]*|\b\d{2,}\b|Kinco|Leadshine|Oriental Motor|Delta|SunSpec|heliopanel"
@@ -28,7 +28,7 @@ def sentences() -> Iterator[str]:
 
 @pytest.mark.parametrize("code", TRANSLATED)
 def test_profiles_speak_the_language_and_keep_names_and_numbers(code: str) -> None:
-    said = {text: catalogue_of(code).said(text) for text in sentences()}
+    said = {text: catalogue_of(code).word(text) for text in sentences()}
     assert len(said) > 100
     assert [text for text, other in said.items() if text == other] == []
     assert {
@@ -44,8 +44,9 @@ def test_the_list_of_profiles_speaks_the_language(code: str) -> None:
     shown = [ProfileChoice(one.name, one.title, one.verified, "", (), "") for one in profiles]
     options = dict(profile_options(DriveChoices(tuple(shown), ()), "simulated-plc"))
     said = catalogue_of(code).said
+    word = catalogue_of(code).word
     for profile in profiles:
-        state = said("verified" if profile.verified else "unverified")
+        state = word("verified" if profile.verified else "unverified")
         words = said(options[profile.name])
-        assert words.startswith(said(profile.title)), words
+        assert words.startswith(word(profile.title)), words
         assert state in words, words

@@ -1,0 +1,1 @@
+"""How drives of one kind are commanded through their registers."""

@@ -1,0 +1,1 @@
+"""The program's own Modbus: bus, lines, framing and servers; it knows no tracker."""

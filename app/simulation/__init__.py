@@ -1,0 +1,1 @@
+"""Simulated drives, their positions, sunlight and faults."""

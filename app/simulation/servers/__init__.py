@@ -1,0 +1,1 @@
+"""Simulated devices as servers on a line, for `heliopanel drive-sim` and `fault-proxy`."""

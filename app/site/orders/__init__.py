@@ -1,0 +1,1 @@
+"""What the site is ordered to do: one handler for each order."""

@@ -1,0 +1,1 @@
+"""What the site tells: pictures, deltas, alarms, its health."""

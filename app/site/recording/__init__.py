@@ -1,0 +1,1 @@
+"""What the site writes down: gathered, queued, one transaction a flush."""

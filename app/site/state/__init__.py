@@ -1,0 +1,1 @@
+"""What the site is made of while it runs, and what may be said of it."""

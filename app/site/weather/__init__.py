@@ -1,0 +1,1 @@
+"""The site's weather: stations and their series, what survives a restart, the sky."""

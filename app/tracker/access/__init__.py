@@ -1,0 +1,1 @@
+"""Who and what keeps a tracker from moving: locks, interlocks, inhibit, authority."""

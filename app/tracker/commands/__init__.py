@@ -1,0 +1,1 @@
+"""The orders as data, and who may give them."""

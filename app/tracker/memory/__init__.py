@@ -1,0 +1,1 @@
+"""What a tracker remembers over a restart, and the records it makes."""

@@ -1,0 +1,1 @@
+"""What a tracker tells of itself, in words and numbers."""

@@ -1,0 +1,1 @@
+"""What watches a tracker at each tick and ends what must not go on."""

@@ -1,0 +1,16 @@
+"""Who did something, where nobody ordered it."""
+
+CONTROLLER = "controller"
+"""The controller itself; no user may have this name."""
+FORMERLY = "machine"
+"""What former versions wrote for it."""
+
+
+def actor_of(stored: str) -> str:
+    """Return who is meant by a stored name."""
+    return CONTROLLER if stored == FORMERLY else stored
+
+
+def names_of(actor: str) -> tuple[str, ...]:
+    """Return every name under which somebody has been stored."""
+    return (CONTROLLER, FORMERLY) if actor == CONTROLLER else (actor,)

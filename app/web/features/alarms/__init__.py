@@ -1,0 +1,1 @@
+"""Alarms, journal and notifications."""

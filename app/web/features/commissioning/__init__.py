@@ -1,0 +1,1 @@
+"""Drives, homing, drive tests and the sun check."""

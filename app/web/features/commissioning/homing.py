@@ -1,0 +1,105 @@
+"""Step 3: the panel is driven to north and horizon by hand, and that is called zero."""
+
+from typing import Annotated
+
+from fastapi import Form
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.base.message import N_
+from app.base.permission import Permission
+from app.link.messages import TrackerDetail
+from app.tracker.commands.commands import EndJog, Home, SetHome, Step, UndoHome
+from app.tracker.memory.memory import StepName
+from app.tracker.settings.axes import Axis
+from app.web.http.errors import NotAcceptable
+from app.web.http.late_routes import page_router
+from app.web.http.needs import needs
+from app.web.shell.contexts import HomingPage
+from app.web.shell.deps import MachineDep
+from app.web.shell.frame import snapshot_of
+from app.web.shell.orders import PressDep
+from app.web.shell.render import page
+from app.web.shell.wizard import tracker_of, wizard_frame
+from app.web.shell.zero import zero_doubts
+
+pages = page_router(prefix="/trackers/{tracker_id}/commissioning/homing")
+router = page_router(prefix="/trackers/{tracker_id}")
+STEP_SIZES = ("0.1", "1", "5")
+MOVES = {
+    "azimuth-minus": (Axis.AZIMUTH, -1),
+    "azimuth-plus": (Axis.AZIMUTH, 1),
+    "elevation-minus": (Axis.ELEVATION, -1),
+    "elevation-plus": (Axis.ELEVATION, 1),
+}
+
+
+@pages.get("")
+@needs(Permission.READ)
+async def show(request: Request, tracker_id: str, machine: MachineDep) -> Response:
+    """Show the hold keys, the live position and "Set as zero"."""
+    return page(request, _page(request, tracker_of(await machine.detail(), tracker_id)))
+
+
+def _page(request: Request, tracker: TrackerDetail, doubts: tuple[str, ...] = ()) -> HomingPage:
+    return HomingPage(
+        frame=wizard_frame(request, tracker, StepName.HOMING),
+        capabilities=tracker.capabilities,
+        config=tracker.state.config,
+        doubts=doubts,
+    )
+
+
+@router.post("/zero")
+@needs(Permission.CONFIGURE)
+async def zero(
+    tracker_id: str, press: PressDep, machine: MachineDep, confirmed: Annotated[str, Form()] = ""
+) -> Response:
+    """Call the present position zero on both axes; ask first where the drive reads another angle."""
+    tracker, now = tracker_of(await machine.detail(), tracker_id), snapshot_of(machine.latest(), tracker_id)
+    doubts = () if now is None else zero_doubts(tracker.state.config.mount, now, tuple(Axis))
+    if doubts and confirmed != "yes":
+        return page(press.request, _page(press.request, tracker, doubts), block="question", status=422)
+    await press.send(SetHome(), tracker_id)
+    return press.answer(N_("The command to set home was sent to the drive."))
+
+
+@router.post("/zero/undo")
+@needs(Permission.CONFIGURE)
+async def undo_home(tracker_id: str, press: PressDep) -> Response:
+    """Bring back the home position as it was before it was set last."""
+    await press.send(UndoHome(), tracker_id)
+    return press.answer(N_("The previous home position is restored."))
+
+
+@router.post("/home")
+@needs(Permission.CONFIGURE)
+async def home(tracker_id: str, press: PressDep) -> Response:
+    """Start the automatic search for the origin switches."""
+    await press.send(Home(), tracker_id)
+    return press.answer(N_("The drive is searching for its home switches."))
+
+
+@router.post("/step")
+@needs(Permission.OPERATE)
+async def step(
+    tracker_id: str, press: PressDep, move: Annotated[str, Form()] = "", size: Annotated[str, Form()] = ""
+) -> Response:
+    """Move one axis by a small step."""
+    if move not in MOVES or size not in STEP_SIZES:
+        raise NotAcceptable(
+            N_("Choose an increment of 0.1, 1, or 5 degrees and press one of the four buttons.")
+        )
+    axis, direction = MOVES[move]
+    await press.send(Step(axis, direction * float(size)), tracker_id)
+    return press.answer(f"{axis.value.capitalize()} {'+' if direction > 0 else '−'}{size}°.")
+
+
+@router.post("/end-jog")
+@needs(Permission.STOP)
+async def end_jog(
+    tracker_id: str, press: PressDep, press_id: Annotated[str, Form(max_length=64)]
+) -> Response:
+    """End a held key by HTTP too, for a page whose socket is gone."""
+    await press.send(EndJog(press_id), tracker_id)
+    return Response(status_code=204)

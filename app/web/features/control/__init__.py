@@ -1,0 +1,1 @@
+"""The tracker under somebody's hands: overview, modes, orders, live values."""

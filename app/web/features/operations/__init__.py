@@ -1,0 +1,1 @@
+"""Backups, diagnostics, metrics and what is installed."""

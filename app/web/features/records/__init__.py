@@ -1,0 +1,1 @@
+"""Signed records, photos and labels."""

@@ -1,0 +1,1 @@
+"""Accuracy of the algorithms, and the five papers."""

@@ -1,0 +1,1 @@
+"""What an engineer sets of a tracker: machine, mount, protections, limits."""

@@ -1,0 +1,1 @@
+"""The site: place, clock, horizon, weather."""

@@ -1,0 +1,139 @@
+"""Step 2: whose clock to trust, and the sun now, to be held against a shadow."""
+
+from datetime import datetime
+from typing import Annotated
+
+from fastapi import Form
+from pydantic import BaseModel
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.base.instants import without_leap_second
+from app.base.message import N_
+from app.base.permission import Permission
+from app.link.messages import SetClock, SiteDetail
+from app.tracker.memory.memory import StepName
+from app.web.features.site.clock_doubt import clock_doubt
+from app.web.features.site.location import zones
+from app.web.http.errors import NotAcceptable
+from app.web.http.late_routes import page_router
+from app.web.http.needs import needs
+from app.web.shell.contexts import ClockPage, ClockQuestion
+from app.web.shell.deps import MachineDep, PanelDep
+from app.web.shell.formats import local
+from app.web.shell.forms import Typed, in_zone
+from app.web.shell.orders import PressDep
+from app.web.shell.render import go, page
+from app.web.shell.wizard import tracker_of, wizard_frame
+
+router = page_router(prefix="/trackers/{tracker_id}/commissioning/clock")
+DeviceAt = Annotated[str, Form(max_length=40)]
+Confirmed = Annotated[str, Form(max_length=10)]
+NAMES = ("date", "time", "time_zone")
+
+
+class ClockForm(BaseModel):
+    """The form as it was typed; all texts."""
+
+    date: str = ""
+    time: str = ""
+    time_zone: str = ""
+    at: str = ""
+    confirmed: str = ""
+
+
+@router.get("")
+@needs(Permission.READ)
+async def show(request: Request, tracker_id: str, built: PanelDep) -> Response:
+    """Show the controller's clock beside this device's."""
+    detail = await built.machine.detail()
+    latest = built.machine.latest()
+    now = latest.at if latest else built.clock.now()
+    zone = detail.site.time_zone
+    typed = Typed(
+        {"date": local(now, zone, "%Y-%m-%d"), "time": local(now, zone, "%H:%M"), "time_zone": zone}
+    )
+    return _answer(request, tracker_id, detail, typed)
+
+
+@router.post("/system")
+@needs(Permission.CONFIGURE)
+async def keep_system(
+    tracker_id: str, press: PressDep, built: PanelDep, at: DeviceAt = "", confirmed: Confirmed = ""
+) -> Response:
+    """Trust the clock of the controller's computer; ask first where it differs from this device's."""
+    doubt = clock_doubt(built.clock.now(), _told(at))
+    if doubt and confirmed != "yes":
+        return page(press.request, ClockQuestion(doubt), status=422)
+    await press.send(SetClock("system"))
+    return go(press.request, _page(tracker_id))
+
+
+@router.post("/device")
+@needs(Permission.CONFIGURE)
+async def copy_device(
+    tracker_id: str, press: PressDep, at: Annotated[str, Form(max_length=40)] = ""
+) -> Response:
+    """Make the controller's clock show what this device's clock shows."""
+    try:
+        instant = datetime.fromisoformat(without_leap_second(at))
+    except ValueError:
+        raise NotAcceptable(
+            N_("The browser of this device did not report its time; enter date and time manually.")
+        ) from None
+    if instant.tzinfo is None:
+        raise NotAcceptable(
+            N_("This device reported its time without a time zone; enter date and time manually.")
+        )
+    await press.send(SetClock("manual", instant))
+    return go(press.request, _page(tracker_id))
+
+
+@router.post("")
+@needs(Permission.CONFIGURE)
+async def set_by_hand(
+    tracker_id: str, press: PressDep, machine: MachineDep, typed: Annotated[ClockForm, Form()]
+) -> Response:
+    """Set the controller's clock to a typed date and time; ask first where this device's differs."""
+    at, confirmed = typed.at, typed.confirmed
+    found = Typed(typed.model_dump(include=set(NAMES)))
+    day, time = found.day("date", N_("Date")), found.clock_time("time", N_("Time"))
+    if typed.time_zone not in zones():
+        found.errors["time_zone"] = N_("Choose a time zone from the list.")
+    if found.errors:
+        return _answer(press.request, tracker_id, await machine.detail(), found, status=422)
+    instant = in_zone(day, time, typed.time_zone)
+    doubt = clock_doubt(instant, _told(at))
+    if doubt and confirmed != "yes":
+        return _answer(press.request, tracker_id, await machine.detail(), found, status=422, doubt=doubt)
+    await press.send(SetClock("manual", instant, typed.time_zone))
+    return go(press.request, _page(tracker_id))
+
+
+def _told(at: str) -> datetime | None:
+    """Return what this device's clock showed, None where its browser did not tell."""
+    try:
+        instant = datetime.fromisoformat(without_leap_second(at))
+    except ValueError:
+        return None
+    return instant if instant.tzinfo else None
+
+
+def _page(tracker_id: str) -> str:
+    return f"/trackers/{tracker_id}/commissioning/clock"
+
+
+def _answer(
+    request: Request,
+    tracker_id: str,
+    detail: SiteDetail,
+    typed: Typed,
+    *,
+    status: int = 200,
+    doubt: str = "",
+) -> Response:
+    frame = wizard_frame(request, tracker_of(detail, tracker_id), StepName.CLOCK)
+    context = ClockPage(
+        frame=frame, form=typed.form(NAMES), zones=zones(), setting=detail.site.clock, doubt=doubt
+    )
+    return page(request, context, block="manual", status=status)

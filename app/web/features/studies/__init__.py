@@ -1,0 +1,1 @@
+"""Energy studies, strategies and simulated days."""

@@ -1,0 +1,1 @@
+"""What stands around each request: server, limits, gate, errors, assets, network."""

@@ -1,0 +1,1 @@
+"""Live values, their viewers, and hold-to-run."""

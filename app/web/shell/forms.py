@@ -1,0 +1,195 @@
+"""Reads what people type: numbers with comma or point, angles in degrees or degrees-minutes-seconds."""
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from datetime import date, datetime, time
+from math import nan
+from typing import TypeVar
+
+from app.base.message import Message, say, told_by, with_format, word
+from app.base.zones import zone_of
+from app.web.languages import pgettext
+from app.web.shell.contexts import Field, Form
+
+T = TypeVar("T")
+NUMBER = r"(\d+(?:[.,]\d+)?)"
+ANGLE = re.compile(
+    rf"([NSEW])?\s*([+-])?\s*{NUMBER}\s*[°d:]?\s*(?:{NUMBER}\s*['′’:m]?\s*(?:{NUMBER}\s*(?:\"|″|”|'')?)?)?\s*([NSEW])?",
+    re.IGNORECASE,
+)
+PAIR = re.compile(r"\s*([+-]?\d+\.\d+)\s*[,;]\s*([+-]?\d+\.\d+)\s*")
+LEAP_SECOND = 60
+TIME = re.compile(r"\s*(\d{1,2})[:.h](\d{2})(?:[:.](\d{2}))?\s*")
+
+
+class Unreadable(ValueError):
+    """What was typed cannot be used; the text says what to type instead."""
+
+
+class Typed:
+    """The texts of one form, and what is wrong with each."""
+
+    def __init__(self, texts: Mapping[str, str]) -> None:
+        self.texts = dict(texts)
+        self.errors: dict[str, Message] = {}
+
+    def read(self, name: str, reader: Callable[[str], T], instead: T) -> T:
+        """Return what a text means; where it means nothing keep the reason and return `instead`."""
+        try:
+            return reader(self.texts.get(name, "").strip())
+        except Unreadable as error:
+            self.errors[name] = told_by(error)
+            return instead
+
+    def number(self, name: str, label: str, least: float, most: float) -> float:
+        """Return a number within its range, NaN where the text is none."""
+        return self.read(name, lambda text: number(text, label, least, most), nan)
+
+    def whole(self, name: str, label: str, least: int, most: int) -> int:
+        """Return a whole number within its range."""
+        return self.read(name, lambda text: whole(text, label, least, most), least)
+
+    def day(self, name: str, label: str) -> date:
+        """Return a date."""
+        return self.read(name, lambda text: day(text, label), date.min)
+
+    def clock_time(self, name: str, label: str) -> time:
+        """Return a time of day."""
+        return self.read(name, lambda text: clock_time(text, label), time.min)
+
+    def form(self, names: Iterable[str]) -> Form:
+        """Return the fields as they were typed, with their errors."""
+        return {name: Field(name, self.texts.get(name, ""), self.errors.get(name)) for name in names}
+
+
+def number(text: str, label: str, least: float, most: float) -> float:
+    """Return the number that a text with a comma or a point means."""
+    plain = text.replace("−", "-").replace(" ", "").replace(",", ".")
+    if not re.fullmatch(r"[+-]?\d+(\.\d*)?|[+-]?\.\d+", plain):
+        raise Unreadable(
+            say(
+                "{label}: type a number, such as {least}.",
+                label=word(label),
+                least=with_format(least, ".10g"),
+            )
+        )
+    value = float(plain)
+    if not least <= value <= most:
+        raise Unreadable(
+            say(
+                "{label} must be between {least} and {most}.",
+                label=word(label),
+                least=with_format(least, ".10g"),
+                most=with_format(most, ".10g"),
+            )
+        )
+    return value
+
+
+def whole(text: str, label: str, least: int, most: int) -> int:
+    """Return the whole number that a text means."""
+    value = number(text, label, least, most)
+    if value != int(value):
+        raise Unreadable(say("{label} must be a whole number.", label=word(label)))
+    return int(value)
+
+
+def angle(text: str, label: str, sides: str, chosen: str, limit: float) -> float:
+    """Return a signed latitude or longitude; `sides` is `NS` or `EW`, `chosen` the key beside the field."""
+    match = ANGLE.fullmatch(_in_english(text.strip().replace("−", "-"), sides))
+    if match is None:
+        raise Unreadable(
+            say(
+                "{label}: type degrees such as 41.2867, or degrees, minutes, and seconds such as 41° "
+                "17' 12\".",
+                label=word(label),
+            )
+        )
+    before, sign, *parts, after = match.groups()
+    letters = {letter.upper() for letter in (before, after) if letter}
+    one, other = (pgettext("compass", side) for side in sides)
+    if not letters <= set(sides) or len(letters) > 1:
+        raise Unreadable(
+            say("{label}: the letter must be {one} or {other}.", label=word(label), one=one, other=other)
+        )
+    value = _degrees(parts, label)
+    if value > limit:
+        raise Unreadable(
+            say(
+                "{label} must be between 0 and {limit} degrees, {one} or {other}.",
+                label=word(label),
+                limit=with_format(limit, "g"),
+                one=one,
+                other=other,
+            )
+        )
+    return value * _sign(sign, letters.pop() if letters else chosen, sides, label)
+
+
+def side(text: str, sides: str) -> str:
+    """Return the letter of `sides` that an angle was typed with, nothing where it has none of them."""
+    match = ANGLE.fullmatch(_in_english(text.strip().replace("−", "-"), sides))
+    letters = {letter.upper() for letter in (match[1], match[match.re.groups]) if letter} if match else set()
+    return letters.pop() if len(letters) == 1 and letters <= set(sides) else ""
+
+
+def _in_english(text: str, sides: str) -> str:
+    """Return an angle whose letter is in the page's language, such as `36° O`, with the English one."""
+    for side in sides:
+        letter = pgettext("compass", side)
+        if text.upper().startswith(letter):
+            return side + text[len(letter) :]
+        if text.upper().endswith(letter):
+            return text[: -len(letter)] + side
+    return text
+
+
+def _degrees(parts: list[str | None], label: str) -> float:
+    degrees, minutes, seconds = (float((part or "0").replace(",", ".")) for part in parts)
+    if minutes >= 60 or seconds >= 60:
+        raise Unreadable(say("{label}: minutes and seconds must be below 60.", label=word(label)))
+    return degrees + minutes / 60 + seconds / 3600
+
+
+def _sign(sign: str | None, side: str, sides: str, label: str) -> int:
+    if sign == "-" and side == sides[1]:
+        letter = pgettext("compass", side)
+        raise Unreadable(
+            say(
+                "{label}: leave out the minus sign; {letter} already gives the direction.",
+                label=word(label),
+                letter=letter,
+            )
+        )
+    return -1 if sign == "-" or side == sides[1] else 1
+
+
+def pair(text: str) -> tuple[str, str] | None:
+    """Return latitude and longitude of a pasted `41.2867, 36.3300`, None for anything else."""
+    match = PAIR.fullmatch(text.replace("−", "-"))
+    return (match[1], match[2]) if match else None
+
+
+def day(text: str, label: str) -> date:
+    """Return the date that a text such as 2026-06-21 means."""
+    try:
+        return date.fromisoformat(text)
+    except ValueError:
+        raise Unreadable(say("{label}: type a date such as 2026-06-21.", label=word(label))) from None
+
+
+def clock_time(text: str, label: str) -> time:
+    """Return the time of day that a text such as 05:12 or 05:12:30 means."""
+    match = TIME.fullmatch(text)
+    if match is None:
+        raise Unreadable(say("{label}: type a time such as 05:12 or 17:45:30.", label=word(label)))
+    hour, minute, second = (int(part or 0) for part in match.groups())
+    second = 59 if second == LEAP_SECOND else second
+    if hour > 23 or minute > 59 or second > 59:
+        raise Unreadable(say("{label} must be between 00:00 and 23:59:59.", label=word(label)))
+    return time(hour, minute, second)
+
+
+def in_zone(on: date, at: time, zone: str) -> datetime:
+    """Return the instant at which the clocks of a zone show this date and time."""
+    return datetime.combine(on, at, zone_of(zone))
