@@ -2,7 +2,7 @@
 
 import gc
 
-from app.base.startup import RELAXED, SELDOM, hurry, late, settle
+from app.base.startup import OF_A_TRACKER, RELAXED, SELDOM, hurry, late, settle
 
 
 def test_the_collector_rests_until_everything_is_loaded() -> None:
@@ -13,6 +13,8 @@ def test_the_collector_rests_until_everything_is_loaded() -> None:
         settle()
         assert gc.get_threshold() == SELDOM
         assert gc.get_freeze_count() > 0
+        settle(trackers=1000)
+        assert gc.get_threshold() == (SELDOM[0] + 1000 * OF_A_TRACKER, *SELDOM[1:])
     finally:
         gc.unfreeze()
         gc.set_threshold(*found)

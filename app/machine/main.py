@@ -121,7 +121,7 @@ async def _serve(settings: Settings, clock: SystemClock, writer: Writer, positio
     server = LinkServer(gateways, settings.link_path)
     stopped = on_signals()
     _note_zones(site)
-    settle()
+    settle(len(beginning.trackers))
     await site.start(*beginning.events)
     await server.start()
     gateways.start()
