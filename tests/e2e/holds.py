@@ -20,6 +20,7 @@ from tests.e2e.held_press import Press
 from tests.e2e.integrator import Integrator
 from tests.e2e.product import Product, end
 from tests.e2e.socket_page import LetGo, Page
+from tests.machine.service import eventually
 
 ONE_BY_ONE = (LetGo.RELEASED, LetGo.CLOSED, LetGo.HIDDEN, LetGo.CUT, LetGo.KILLED)
 """What is done to one button while the others are held on."""
@@ -57,6 +58,16 @@ class Button:
     tally: Tally
     product: Product
     presses: int = 0
+
+    async def take_control(self) -> None:
+        """Press for a moment: the first press of a page waits until its control is on the disk."""
+        press = self._press()
+        await self.page.beat(press.press_id, 1, 0)
+        await eventually(lambda: press.press_id in self.page.answers)
+        await self.page.let_go(LetGo.RELEASED, press.press_id)
+        await asyncio.sleep(PAUSE_S[-1] * 2)
+        self.page.answers.clear()
+        self.page.ends.clear()
 
     async def hold(self, way: LetGo) -> None:
         """Press, hold, let go, and count what came of it."""
@@ -187,10 +198,13 @@ class Rig:
         pages = [Page(self.product.port, f"B{number}") for number in range(len(self.ports))]
         drives = [await Watched.at(port) for port in self.ports]
         await asyncio.gather(*(page.open() for page in pages))
+        buttons = [
+            Button(page, drive, tally, self.product) for page, drive in zip(pages, drives, strict=True)
+        ]
         try:
-            yield [
-                Button(page, drive, tally, self.product) for page, drive in zip(pages, drives, strict=True)
-            ]
+            for button in buttons:
+                await button.take_control()
+            yield buttons
         finally:
             await asyncio.gather(*(page.close() for page in pages), return_exceptions=True)
             await asyncio.gather(*(drive.close() for drive in drives), return_exceptions=True)
