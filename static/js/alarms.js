@@ -19,18 +19,15 @@ const one = (id) => document.getElementById(id);
 // The title of an alarm; one that waits to be seen though its cause is gone does not read as if it stood.
 export const headingOf = (alarm) => (alarm.state === facts.alarms.returned ? _("Returned to normal: {title}", { title: alarm.title }) : alarm.title);
 
-const UNKNOWN = _("Alarm status unavailable");
-
 // Without the machine nothing is known: what was shown last is no longer the truth.
 function paintUnknown() {
-  one("alarm-strip").toggleAttribute("data-unknown", live.link !== "live" && live.link !== "starting");
-  if (!one("alarm-strip").hasAttribute("data-unknown")) return;
-  const last = live.site?.alarms.find((alarm) => calls(alarm) && !alarm.collapsed);
-  setText("alarm-first-title", UNKNOWN);
-  setText("alarm-first-where", last ? _("Last known: {title}, {where}", { title: headingOf(last), where: last.where }) : _("There is no connection to the controller."));
-  for (const shape of document.querySelectorAll("[data-first-shape]")) shape.hidden = true;
+  const unknown = live.link !== "live" && live.link !== "starting";
+  one("alarm-strip").toggleAttribute("data-unknown", unknown);
+  one("alarm-strip").querySelector(".alarm-bell").dataset.number = unknown ? "?" : "0";
+  if (!unknown) return;
+  setText("alarm-words", _("Alarm status unavailable"));
+  one("alarm-new").hidden = true;
   for (const item of document.querySelectorAll("[data-count] b")) item.textContent = "?";
-  one("alarm-ack").querySelector("button").disabled = true;
 }
 
 function setText(id, text) {
@@ -42,19 +39,17 @@ function paintFirst(site) {
   for (const shape of document.querySelectorAll("[data-first-shape]")) {
     shape.hidden = Number(shape.dataset.firstShape) !== first?.priority;
   }
-  const standing = site.alarm_counts.standing.reduce((sum, count) => sum + count, 0);
-  const title = first ? headingOf(first) : (standing ? _("No new alarm") : _("No alarms"));
-  const where = first ? `${first.where} · ${clockTime(first.since, live.zone)}` : "";
-  setText("alarm-first-title", title);
-  setText("alarm-first-where", where);
+  one("alarm-new").hidden = !first;
+  setText("alarm-first-title", first ? headingOf(first) : "");
+  setText("alarm-first-where", first ? `${first.where} · ${clockTime(first.since, live.zone)}` : "");
   const form = one("alarm-ack");
-  form.toggleAttribute("data-idle", !first);
   form.querySelector("[name=alarm_id]").value = first?.alarm_id ?? "";
   const key = form.querySelector("button");
   if (!key.closest("[data-denied]")) key.disabled = !first || live.link !== "live";
 }
 
 function paintCounts(site) {
+  setText("alarm-words", site.alarm_counts.standing.some(Boolean) ? _("Alarms") : _("No alarms"));
   for (const item of document.querySelectorAll("[data-count]")) {
     const count = site.alarm_counts.standing[item.dataset.count - 1];
     item.toggleAttribute("data-none", !count);

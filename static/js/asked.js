@@ -1,4 +1,4 @@
-// A question that an answer brings is read and answered where it stands: it is scrolled to above the footer.
+// A question that an answer brings is read and answered where it stands: it is scrolled into view.
 
 const KEEP_PX = 12;
 const seen = new WeakSet();
@@ -8,7 +8,8 @@ function bring(question) {
   const least = KEEP_PX + (parseFloat(getComputedStyle(document.documentElement).scrollPaddingTop) || 0);
   const above = least - question.getBoundingClientRect().top;
   if (above > 0) scrollBy({ top: -above, behavior: "instant" });
-  const most = document.querySelector(".footer").getBoundingClientRect().top - KEEP_PX;
+  const footer = document.querySelector(".footer").getBoundingClientRect();
+  const most = (footer.left > 0 ? innerHeight : footer.top) - KEEP_PX; // beside the page on a tablet, below it on a phone
   const below = question.getBoundingClientRect().bottom - most;
   if (below > 0) scrollBy({ top: below, behavior: "instant" });
 }

@@ -35,18 +35,20 @@ function keepTyped() {
 document.addEventListener("htmx:after:swap", keepTyped);
 keepTyped();
 
-// On a narrow screen the tabs are one row that scrolls: the page's own stands in sight.
-const tab = document.querySelector(".tabs a[aria-current]");
-if (tab) tab.closest("ul").scrollLeft = tab.offsetLeft - (innerWidth - tab.offsetWidth) / 2;
+// The rail of a page of the whole site leads to the tracker that was looked at last.
+if (dataset.tracker) document.cookie = `tracker=${encodeURIComponent(dataset.tracker)}; path=/; samesite=lax`;
 
-// The list of languages lies on the page: it is closed by whoever leaves it, and by Escape.
-const list = document.querySelector(".language");
-list.addEventListener("focusout", ({ relatedTarget }) => { if (relatedTarget && !list.contains(relatedTarget)) list.open = false; });
-list.addEventListener("keydown", ({ key }) => {
-  if (key !== "Escape") return;
-  list.open = false;
-  list.querySelector("summary").focus();
-});
+// What opens over the page is closed by whoever leaves it, and by Escape.
+for (const list of document.querySelectorAll("details.pop")) {
+  const whole = list.closest(".messages") ?? list;
+  whole.addEventListener("focusout", ({ relatedTarget }) => { if (relatedTarget && !whole.contains(relatedTarget)) list.open = false; });
+  addEventListener("pointerdown", ({ target }) => { if (!whole.contains(target)) list.open = false; });
+  list.addEventListener("keydown", ({ key }) => {
+    if (key !== "Escape") return;
+    list.open = false;
+    list.querySelector("summary").focus();
+  });
+}
 
 const heading = document.getElementById("heading");
 if (document.getElementById("steps") && heading && !document.querySelector("[data-focus]")) heading.focus();

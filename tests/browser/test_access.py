@@ -225,8 +225,8 @@ def test_the_network_page_says_where_to_go_and_counts_down(
 
 
 CUT_IN_STRIP = """() => {
-  const strip = document.getElementById("alarm-strip").getBoundingClientRect();
-  const parts = document.querySelectorAll("#alarm-strip :is(p, button, li, .alarm-first-words)");
+  const strip = document.querySelector(".header").getBoundingClientRect();
+  const parts = document.querySelectorAll("#alarm-strip > *, #alarm-new :is(p, button, .alarm-first-words)");
   return [...parts].filter((one) => {
     const style = getComputedStyle(one);
     const box = one.getBoundingClientRect();

@@ -74,10 +74,16 @@ def test_a_page_is_written_in_letters_of_its_own(shown: Shown) -> None:
 
 
 def displaced(page: Page) -> list[str]:
-    """Return that Stop, where it is, does not stand in the middle of the footer."""
+    """Return that Stop, where it is, is not where the thumb is, or not large enough."""
     box = page.locator("#stop-key").bounding_box() if page.locator("#stop-key").count() else None
-    width = page.evaluate("document.documentElement.clientWidth")
-    return ["Stop is not in the middle"] if box and abs(box["x"] + box["width"] / 2 - width / 2) >= 3 else []
+    width, height = page.evaluate("[document.documentElement.clientWidth, innerHeight]")
+    if box is None:
+        return []
+    if width >= 900:
+        placed = box == {"x": width - 130, "y": height - 168, "width": 120, "height": 120}
+    else:
+        placed = box["x"] == 80 and box["y"] + box["height"] >= height - 8 and box["height"] >= 64
+    return [] if placed and box["width"] >= 120 else [f"Stop is out of its place: {box}"]
 
 
 @cache

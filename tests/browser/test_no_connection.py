@@ -8,6 +8,7 @@ from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import LANGUAGES
 from tests.browser.conftest import SIZES, Opened, Plant
 from tests.browser.hands import LINK_MEASURED, until
+from tests.browser.layout import page_end
 from tests.e2e.chromium import PAGE_READY
 from tests.fake_alarms import alarm
 
@@ -64,9 +65,9 @@ def test_stop_without_a_controller_is_told_in_red_at_the_button(
     expect(told).to_be_visible()
     expect(page.locator("#stop-failed")).to_have_text(NOT_SENT)
     assert told.evaluate(STYLE, "backgroundColor") == RED
-    shown, footer = box(told), box(page.locator(".footer"))
-    assert (shown["x"], shown["width"]) == (0, SIZES[size][0])
-    assert abs(shown["y"] + shown["height"] - footer["y"]) <= 4
+    shown, beside = box(told), 84 + 140 if size == "tablet" else 0
+    assert (shown["x"], shown["width"]) == (84 if size == "tablet" else 0, SIZES[size][0] - beside)
+    assert abs(shown["y"] + shown["height"] - page_end(page)) <= 4
     assert (box(stop), box(page.locator(JOG))) == (before, jog)
     page.locator("#stop-answer-close").click()
     expect(told).to_be_hidden()
@@ -124,14 +125,14 @@ def test_losing_the_connection_moves_nothing_in_any_language(opened: Opened, pla
 def test_no_connection_and_alarms_stay_in_sight_below(size: str, opened: Opened, plant: Plant) -> None:
     page = opened("/trackers/T1/settings", size, allow=LINK_ERRORS)
     plant.machine.alarms = (alarm("store_damaged", plant.machine.clock.now(), None),)
-    page.wait_for_selector("#alarm-ack:not([data-idle])", state="attached")
+    page.wait_for_selector("#alarm-new:not([hidden])")
     page.evaluate("scrollTo(0, 1500)")
     assert box(page.locator("#alarm-strip"))["y"] == 0
+    expect(page.locator("#alarm-new")).to_be_in_viewport(ratio=0.9)
     lose(page, plant)
-    banner = box(page.locator("#link-banner"))
-    assert -1 <= banner["y"] <= 1 + (page.locator("#alarm-strip").bounding_box() or {"height": 0})["height"]
+    assert box(page.locator("#link-banner"))["y"] == 0
     expect(page.locator("#link-banner")).to_be_in_viewport(ratio=0.9)
-    assert box(page.locator(".strips"))["y"] + box(page.locator(".strips"))["height"] <= 180
+    assert box(page.locator(".header"))["height"] <= 48
 
 
 def test_nothing_says_that_the_link_is_good_while_there_is_none(opened: Opened, plant: Plant) -> None:

@@ -135,7 +135,7 @@ def test_on_paper_curves_are_black_and_told_apart_by_their_dashes(shown: tuple[s
     page.emulate_media(media="print")
     pictures = page.evaluate(TOLD)
     seen = page.evaluate(
-        "[...document.querySelectorAll('.footer, .tabs, .key')].filter(e => e.offsetHeight).length"
+        "[...document.querySelectorAll('.footer, .rail, .header, .key')].filter(e => e.offsetHeight).length"
     )
     SCREENS.mkdir(parents=True, exist_ok=True)
     page.pdf(path=SCREENS / f"science-{name}.pdf", format="A4")

@@ -1,16 +1,13 @@
 """The plan of a show is used from the top of its page: a day, the answer, the key; all else comes after."""
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import expect
 
 from tests.browser.conftest import SIZES, Opened
+from tests.browser.layout import page_end
 
 PATH = "/trackers/T1/show?date=2026-06-21"
 GO = '[data-action="go_to_start"]'
-
-
-def footer_top(page: Page) -> float:
-    return float(page.locator(".footer").first.evaluate("one => one.getBoundingClientRect().top"))
 
 
 @pytest.mark.parametrize("size", ["tablet", "phone"])
@@ -21,7 +18,7 @@ def test_answer_and_key_are_seen_without_scrolling(opened: Opened, size: str) ->
         box = page.locator(name).bounding_box()
         assert box is not None
         assert box["y"] >= 0
-        assert box["y"] + box["height"] <= footer_top(page), name
+        assert box["y"] + box["height"] <= page_end(page), name
 
 
 def test_whoever_presses_check_on_a_phone_is_shown_the_answer(opened: Opened) -> None:

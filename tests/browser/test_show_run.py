@@ -10,6 +10,7 @@ from app.store.store import PlannedShow
 from app.tracker.programs.show import ShowPlan
 from app.tracker.state.snapshot import ActivityName, ShowPhase
 from tests.browser.conftest import Opened, Plant
+from tests.browser.layout import page_end
 from tests.e2e.chromium import PAGE_READY
 from tests.fake_data import SAMSUN
 
@@ -81,9 +82,8 @@ def bottom(page: Page, name: str) -> float:
 def test_on_a_tablet_picture_path_and_keys_are_seen_together(under_way: Plant, opened: Opened) -> None:
     page = opened(SHOW, "tablet")
     expect(page.locator("#show-phase")).to_have_text("Running")
-    footer = float(page.locator(".footer").evaluate("one => one.getBoundingClientRect().top"))
     for name in ("#show-keys", "#show-scene", ".show-grid .sunpath"):
-        assert bottom(page, name) <= footer, name
+        assert bottom(page, name) <= page_end(page), name
 
 
 def test_a_show_that_has_run_to_its_end_says_so_to_the_last_second(under_way: Plant, opened: Opened) -> None:

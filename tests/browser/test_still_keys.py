@@ -11,6 +11,7 @@ from app.tracker.state.snapshot import Snapshot
 from app.web.languages.known import LANGUAGES
 from tests.browser.conftest import SIZES, Opened, Plant
 from tests.browser.hands import LINK_MEASURED, until
+from tests.browser.layout import page_end
 from tests.browser.walking import service
 from tests.e2e.chromium import PAGE_READY
 
@@ -103,10 +104,9 @@ SEEN_AT_ONCE = {
     ".jog-state": 1,
     "#link-quality": 1,
 }
-BELOW = """(names) => {
-  const footer = document.querySelector(".footer").getBoundingClientRect().top;
+BELOW = """([names, end]) => {
   return names.flatMap((name) => [...document.querySelectorAll(name)])
-    .filter((one) => one.getBoundingClientRect().bottom > footer).map((one) => one.textContent.trim());
+    .filter((one) => one.getBoundingClientRect().bottom > end).map((one) => one.textContent.trim());
 }"""
 SMALLEST_JOG_KEY = """Math.min(...[...document.querySelectorAll("[data-jog]")]
   .map((one) => one.getBoundingClientRect()).flatMap((box) => [box.width, box.height]))"""
@@ -123,7 +123,7 @@ def test_on_a_tablet_step_three_is_worked_without_scrolling_in_every_language(
         page.goto(service + HOMING)
         page.wait_for_selector(LINK_MEASURED)
         assert {name: page.locator(name).count() for name in SEEN_AT_ONCE} == SEEN_AT_ONCE
-        assert page.evaluate(BELOW, list(SEEN_AT_ONCE)) == [], language
+        assert page.evaluate(BELOW, [list(SEEN_AT_ONCE), page_end(page)]) == [], language
         assert page.evaluate(SMALLEST_JOG_KEY) >= 112, language
     context.close()
 

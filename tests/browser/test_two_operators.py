@@ -145,6 +145,7 @@ def test_nothing_that_the_loser_sent_is_carried_out(
         ada.mouse.up()
         expect(ada.locator("#control")).to_have_attribute("data-state", "mine")
         expect(bo.locator("#control")).to_have_attribute("data-state", "held")
+        bo.locator("#control > summary").click()
         bo.locator(".control-take summary").click()
         bo.fill("#control-reason", "I stand at the machine")
         picture(bo, "control-take")

@@ -32,11 +32,12 @@ class Context(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A place to go to, as a key or a tab; `current` marks where one is."""
+    """A place to go to, as a key or in the rail, with its symbol there; `current` marks where one is."""
 
     label: str
     href: str
     current: bool = False
+    symbol: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +66,7 @@ class StepMark:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """What all pages share: who and where we are, the machine now, tabs or steps, and the footer's keys."""
+    """What all pages share: who and where we are, the machine now, rail and steps, and the page's actions."""
 
     title: str
     where: str

@@ -33,7 +33,18 @@ STATUS_TEXT = {
     StepStatus.TO_DO: Word("to do"),
     StepStatus.TO_BE_CONFIRMED: N_("to be confirmed"),
 }
-SITE_TABS = (
+TRACKER_PAGES = (
+    (N_("Live"), "", "tracker"),
+    (N_("Commissioning"), "/commissioning", "steps"),
+    (N_("Show"), "/show", "play-round"),
+    (N_("Trends"), "/trends", "trend"),
+    (N_("Settings"), "/settings", "sliders"),
+    (N_("Sun path"), "/sun-path", ""),
+    (N_("Sun check"), "/sun-check", ""),
+    (N_("Record"), "/record", ""),
+)
+"""Pages of a tracker; those with a symbol stand in the rail, the others behind More."""
+SITE_PAGES = (
     (N_("Trackers"), "/"),
     (N_("Alarms"), "/alarms"),
     (N_("Recordings"), "/recordings"),
@@ -44,26 +55,14 @@ SITE_TABS = (
     (N_("Site"), "/site"),
     (N_("Guide"), "/guide"),
 )
-TRACKER_TABS = (
-    (N_("Live"), ""),
-    (N_("Commissioning"), "/commissioning"),
-    (N_("Show"), "/show"),
-    (N_("Sun path"), "/sun-path"),
-    (N_("Trends"), "/trends"),
-    (N_("Sun check"), "/sun-check"),
-    (N_("Record"), "/record"),
-    (N_("Settings"), "/settings"),
-)
+"""Pages of the site: the first stands in the rail, the others behind More."""
 
 
 def site_frame(
     request: Request, title: str, *, back: Link | None = None, forward: Forward | None = None
 ) -> Frame:
     """Return the frame of a page about the whole site."""
-    site, here = shown_site(request), request.url.path
-    known = principal(request).is_known
-    tabs = tuple(Link(label, href, _is_current(here, href)) for label, href in SITE_TABS if known)
-    return _frame(request, title, site, tabs=tabs, back=back, forward=forward)
+    return _frame(request, title, shown_site(request), back=back, forward=forward)
 
 
 def tracker_frame(
@@ -75,25 +74,9 @@ def tracker_frame(
     back: Link | None = None,
     forward: Forward | None = None,
 ) -> Frame:
-    """Return the frame of a page about one tracker; with steps there are no tabs."""
+    """Return the frame of a page about one tracker."""
     site = shown_site(request)
-    root, here = f"/trackers/{tracker_id}", request.url.path
-    tabs = (
-        ()
-        if steps
-        else tuple(Link(name, root + end, _is_under(here, root, end)) for name, end in TRACKER_TABS)
-    )
-    overview = Link(N_("Trackers"), "/")
-    return _frame(
-        request,
-        title,
-        site,
-        tracker_id=tracker_id,
-        tabs=tabs,
-        steps=steps,
-        back=back or overview,
-        forward=forward or _elsewhere(root, here),
-    )
+    return _frame(request, title, site, tracker_id=tracker_id, steps=steps, back=back, forward=forward)
 
 
 def shown_site(request: Request) -> SiteSnapshot | None:
@@ -102,8 +85,21 @@ def shown_site(request: Request) -> SiteSnapshot | None:
     return panel(request).machine.latest() if may else None
 
 
-def _elsewhere(root: str, here: str) -> Forward:
-    return Forward(N_("Show"), f"{root}/show") if here == root else Forward(N_("Live"), root)
+def _rail(request: Request, site: SiteSnapshot | None, tracker_id: str | None) -> tuple[Link, ...]:
+    """Return the places of the rail: those of this tracker, else of the one that was looked at last."""
+    here = request.url.path
+    known = [one.tracker_id for one in site.trackers] if site else []
+    last = request.cookies.get("tracker", "")
+    shown = tracker_id or (last if last in known else next(iter(known), None))
+    root = f"/trackers/{shown}"
+    pages = [
+        Link(name, root + end, _is_under(here, root, end), symbol)
+        for name, end, symbol in TRACKER_PAGES
+        if shown
+    ]
+    (overview, root), *others = SITE_PAGES
+    places = [Link(name, href, here.startswith(href)) for name, href in others]
+    return (Link(overview, root, here == root, "tiles"), *pages, *places)
 
 
 def snapshot_of(site: SiteSnapshot | None, tracker_id: str | None) -> Snapshot | None:
@@ -122,7 +118,6 @@ def _frame(
     site: SiteSnapshot | None,
     *,
     tracker_id: str | None = None,
-    tabs: tuple[Link, ...] = (),
     steps: tuple[StepMark, ...] = (),
     back: Link | None = None,
     forward: Forward | None = None,
@@ -143,7 +138,7 @@ def _frame(
         site=site,
         tracker=snapshot_of(site, tracker_id) and (asked(request) or snapshot_of(site, tracker_id)),
         tracker_id=tracker_id,
-        tabs=tabs,
+        tabs=_rail(request, site, tracker_id) if principal(request).is_known else (),
         steps=steps,
         back=back,
         forward=forward,
@@ -179,12 +174,8 @@ def _name(who: Principal) -> str:
     return said(who.name) if who.via is Via.LOOPBACK else who.name
 
 
-def _is_current(here: str, href: str) -> bool:
-    return here == href if href == "/" else here.startswith(href)
-
-
 def _is_under(here: str, root: str, end: str) -> bool:
-    """Return whether a page of a tracker belongs to a tab, as a running show does to Show."""
+    """Return whether a page of a tracker belongs to a place of the rail, as a running show does to Show."""
     return here.startswith(root + end) if end else here == root
 
 

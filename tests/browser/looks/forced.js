@@ -13,7 +13,7 @@
   }
   const same = (one, two) => ['backgroundColor', 'borderTopColor', 'borderBottomColor', 'color', 'textDecorationLine']
     .every((name) => getComputedStyle(one)[name] === getComputedStyle(two)[name]);
-  const groups = [['.tabs', 'a', '[aria-current]'], ['.segments', '.key', ':has(:checked), [aria-pressed="true"]']];
+  const groups = [['.rail-pages', 'a', '[aria-current]'], ['.segments', '.key', ':has(:checked), [aria-pressed="true"]']];
   for (const [group, part, chosen] of groups) {
     for (const one of [...document.querySelectorAll(group)].filter(shown)) {
       const parts = [...one.querySelectorAll(part)];
@@ -27,7 +27,7 @@
     const ground = getComputedStyle(e).backgroundColor;
     return seeThrough(ground) && e.parentElement ? groundOf(e.parentElement) : ground;
   };
-  for (const svg of [...document.querySelectorAll('main svg, header svg, .strips svg')].filter(shown)) {
+  for (const svg of [...document.querySelectorAll('main svg, header svg, .rail svg')].filter(shown)) {
     const inks = [...svg.querySelectorAll('*')].filter((e) => e.getBBox && e.checkVisibility()).flatMap((e) => {
       const style = getComputedStyle(e);
       return [style.fill, style.stroke];

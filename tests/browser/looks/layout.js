@@ -6,7 +6,10 @@
     const text = (e.value && e.tagName === "BUTTON" ? "" : e.textContent).trim().replace(/\s+/g, " ").slice(0, 50);
     return `${e.tagName.toLowerCase()}${e.id ? `#${e.id}` : ""}.${String(e.className.baseVal ?? e.className)} "${text}"`;
   };
-  const forReaders = (e) => getComputedStyle(e).clipPath === "inset(50%)";
+  const forReaders = (e) => {
+    for (let up = e; up; up = up.parentElement) if (getComputedStyle(up).clipPath === "inset(50%)") return true;
+    return false;
+  };
   const shown = (e) => e.checkVisibility({ visibilityProperty: true }) && !e.closest(".skip, .visually-hidden") && !forReaders(e);
   const scroller = (e) => {
     for (let up = e.parentElement; up && up !== document.body; up = up.parentElement) {
@@ -14,23 +17,25 @@
     }
     return null;
   };
-  // What of a box can be seen within the part that scrolls it.
+  const shortened = (e) => {
+    for (let up = e; up && up !== document.body; up = up.parentElement) if (getComputedStyle(up).webkitLineClamp !== "none") return up;
+    return null;
+  };
+  // What of a box can be seen within the part that scrolls it, or that shows its first lines.
   const seen = (box, e) => {
-    const part = scroller(e)?.getBoundingClientRect();
+    const part = (scroller(e) ?? shortened(e))?.getBoundingClientRect();
     if (!part) return box;
     return { left: Math.max(box.left, part.left), right: Math.min(box.right, part.right),
       top: Math.max(box.top, part.top), bottom: Math.min(box.bottom, part.bottom) };
   };
   const across = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left);
   const down = (a, b) => Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
-  // What stays in sight when the page is scrolled lies over it then; what has no box of its own does not stay.
-  const stays = (e) => scrollY > 0 && [".strips", ".alarm-strip"].some((name) => {
-    const strip = e.closest(name);
-    if (strip === null) return false;
-    const { position, display } = getComputedStyle(strip);
-    return position === "sticky" && display !== "contents";
-  });
-  const layer = (e) => (e.closest(".footer") ? "footer" : e.closest(".language .languages") ? "list" : stays(e) ? "strip" : "page");
+  // What stays in sight lies over the page when it is scrolled; what is opened over it lies over the rest.
+  const layer = (e) => {
+    const over = e.closest(".pop[open] > :not(summary), .messages:has(> [open]), .rail:popover-open, .stop-answer, .prove-here");
+    if (over) return `opened ${[...document.querySelectorAll("*")].indexOf(over)}`;
+    return e.closest(".header, .rail, .footer") && scrollY > 0 ? "frame" : e.closest(".footer") && innerWidth < 900 ? "below" : "page";
+  };
 
   const beside = document.documentElement.scrollWidth - innerWidth;
   if (beside > 0) tell("beside the screen", `${beside} px`);

@@ -12,7 +12,9 @@
     if (!e || e === document.body) return;
     const box = (e.closest(".key-choice") ?? e).getBoundingClientRect();
     const footer = document.querySelector(".footer");
-    const top = footer.contains(e) || e.closest(".skip") ? innerHeight : footer.getBoundingClientRect().top;
+    const below = footer.getBoundingClientRect();
+    const inFrame = e.closest(".header, .rail, .footer, .skip");
+    const top = inFrame || below.left > 0 ? innerHeight : below.top;
     const scrolls = e.tagName === "TEXTAREA";  // It shows the line that is written.
     const hidden = box.height <= top && !scrolls ? box.bottom > top + 1 || box.top < -1 : box.top >= top;
     const x = Math.min(Math.max((box.left + box.right) / 2, 1), innerWidth - 1), y = Math.max(Math.min((box.top + box.bottom) / 2, top - 2), 1);

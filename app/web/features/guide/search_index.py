@@ -15,7 +15,7 @@ from app.web.features.guide.search_words import ALSO
 from app.web.languages import CATALOGUE, said
 from app.web.languages.catalogue import Catalogue
 from app.web.languages.known import LANGUAGES
-from app.web.shell.frame import SITE_TABS, TRACKER_TABS
+from app.web.shell.frame import SITE_PAGES, TRACKER_PAGES
 from app.web.shell.help import help_for
 from app.web.shell.setting_forms import field_name
 
@@ -116,11 +116,11 @@ def _words(entry: Entry) -> Words:
 
 
 def _pages() -> Iterator[Entry]:
-    for label, href in SITE_TABS:
+    for label, href in SITE_PAGES:
         yield Entry(PAGE, label, href, _about(href))
     for label, href, text in FURTHER:
         yield Entry(PAGE, label, href, text)
-    for label, end in TRACKER_TABS:
+    for label, end, _ in TRACKER_PAGES:
         yield Entry(PAGE, label, end, _about(ANY_TRACKER + end), of_tracker=True)
     for label, end, text in PARTS:
         yield Entry(PAGE, label, end, text, of_tracker=True)
