@@ -10,7 +10,7 @@ SELDOM = (3_000, 5, 50)
 """Most of what a field makes is replaced, not lost in circles: usual thresholds look for those in vain, and
 through everything there is, every few seconds and for longer than a tick may be late."""
 OF_A_TRACKER = 200
-"""So many more objects may be new before the youngest are looked through: what a storm leaves behind a tracker.
+"""So many more objects may be new before the youngest are looked through: what a storm leaves per tracker.
 
 What is replaced counts as none, so that all that changed since is young: of 1,000 trackers 45 ms of it.
 """
