@@ -226,7 +226,8 @@ def test_the_network_page_says_where_to_go_and_counts_down(
 
 CUT_IN_STRIP = """() => {
   const strip = document.querySelector(".header").getBoundingClientRect();
-  const parts = document.querySelectorAll("#alarm-strip > *, #alarm-new :is(p, button, .alarm-first-words)");
+  const inMessage = "#alarm-new :is(p, button > span, .alarm-first-words)";
+  const parts = document.querySelectorAll(`#alarm-strip > *, ${inMessage}`);
   return [...parts].filter((one) => {
     const style = getComputedStyle(one);
     const box = one.getBoundingClientRect();
