@@ -86,14 +86,16 @@ def displaced(page: Page) -> list[str]:
     return [] if placed and box["width"] >= 120 else [f"Stop is out of its place: {box}"]
 
 
-@cache
-def weight(url: str) -> int:
-    """Return how many bytes an answer has on its way."""
+@pytest.fixture(scope="module")
+def weight() -> Iterator[Callable[[str], int]]:
+    """Return how many bytes the answer of an address has on its way."""
     with httpx.Client(headers={"accept-encoding": "gzip"}, timeout=60) as client:
-        return client.get(url).num_bytes_downloaded
+        yield cache(lambda url: client.get(url).num_bytes_downloaded)
 
 
-def test_no_page_is_heavier_than_150_kilobytes(shown: Shown, panels: Panels) -> None:
+def test_no_page_is_heavier_than_150_kilobytes(
+    shown: Shown, panels: Panels, weight: Callable[[str], int]
+) -> None:
     if shown.leaf.where is not Where.CALM or shown.leaf.sends:
         return
     parts = shown.page.evaluate(PARTS)
