@@ -188,10 +188,19 @@ def opened(visitors: Visitors, plant: Plant) -> Iterator[Opened]:
     visitors.leave(plant.url)
 
     def open_page(
-        path: str, size: str = "desk", *, touch: bool = False, theme: str = "day", allow: tuple[str, ...] = ()
+        path: str,
+        size: str = "desk",
+        *,
+        touch: bool = False,
+        theme: str = "day",
+        language: str = "",
+        allow: tuple[str, ...] = (),
     ) -> Page:
         allowed.extend(allow)
-        page = visitors.at(plant.url, size, touch=touch, theme=theme).new_page()
+        visitor = visitors.at(plant.url, size, touch=touch, theme=theme)
+        if language:
+            visitor.add_cookies([{"name": "language", "value": language, "url": plant.url}])
+        page = visitor.new_page()
         pages.append(page)
         listen(page, complaints)
         page.goto(plant.url + path)

@@ -9,7 +9,6 @@ from playwright.sync_api import Locator, Page, expect
 from app.link.messages import SetClock, SetLocation
 from tests.browser.conftest import Opened, Plant
 from tests.browser.hands import CONFIRM_MS, Mouse
-from tests.e2e.chromium import PAGE_READY
 
 CLOCK = "/trackers/T1/commissioning/clock"
 HOMING = "/trackers/T1/commissioning/homing"
@@ -76,14 +75,10 @@ def reached(page: Page, key: Locator) -> None:
 @pytest.mark.parametrize("language", ["en", "de"])
 @pytest.mark.parametrize("size", ["tablet", "phone"])
 def test_the_key_of_a_question_is_not_covered_when_it_appears(
-    size: str, language: str, opened: Opened, plant: Plant, picture: Callable[[Page, str], None]
+    size: str, language: str, opened: Opened, picture: Callable[[Page, str], None]
 ) -> None:
     def asking(path: str) -> Page:
-        page = opened(path, size, allow=("422", "409"))
-        page.context.add_cookies([{"name": "language", "value": language, "url": plant.url}])
-        page.goto(plant.url + path)
-        page.wait_for_selector(PAGE_READY)
-        return page
+        return opened(path, size, language=language, allow=("422", "409"))
 
     page = asking("/trackers/T1/record")
     page.locator("#f-technician").fill("Ada")

@@ -11,7 +11,6 @@ from app.tracker.programs.show import ShowPlan
 from app.tracker.state.snapshot import ActivityName, ShowPhase
 from tests.browser.conftest import Opened, Plant
 from tests.browser.layout import page_end
-from tests.e2e.chromium import PAGE_READY
 from tests.fake_data import SAMSUN
 
 SHOW = "/trackers/T1/shows/s1"
@@ -64,10 +63,7 @@ def test_no_word_is_wider_than_its_key(
     at(plant, 0.2, phase or ShowPhase.RUNNING)
     if phase is None:
         over(plant)
-    page = opened(SHOW, "tablet")
-    page.context.add_cookies([{"name": "language", "value": language, "url": plant.url}])
-    page.goto(plant.url + SHOW)
-    page.wait_for_selector(PAGE_READY)
+    page = opened(SHOW, "tablet", language=language)
     expect(page.locator("html")).to_have_attribute("lang", language.replace("_", "-"))
     expect(page.locator("#show-keys .key:visible")).to_have_count(3 if phase is None else 2)
     wide = page.locator("#show-keys .key:visible").evaluate_all(WIDE, 24 + 10)

@@ -13,7 +13,6 @@ from tests.browser.conftest import SIZES, Opened, Plant
 from tests.browser.hands import LINK_MEASURED, until
 from tests.browser.layout import page_end
 from tests.browser.walking import service
-from tests.e2e.chromium import PAGE_READY
 
 __all__ = ["service"]
 KEY = '[data-jog="azimuth"][data-direction="1"]'
@@ -169,13 +168,11 @@ SLOW_PING = """(() => {
 
 
 @pytest.mark.parametrize("size", ["tablet", "phone"])
-def test_a_connection_that_becomes_slow_moves_no_key(size: str, opened: Opened, plant: Plant) -> None:
+def test_a_connection_that_becomes_slow_moves_no_key(size: str, opened: Opened) -> None:
     for language in LANGUAGES:
-        page = opened(HOMING, size, allow=("WebSocket is closed before",))
-        page.context.add_cookies([{"name": "language", "value": language, "url": plant.url}])
-        page.add_init_script(SLOW_PING)
-        page.reload()
-        page.wait_for_selector(PAGE_READY)
+        page = opened(HOMING, size, language=language)
+        assert page.evaluate("document.documentElement.lang") == LANGUAGES[language].tag
+        page.evaluate(SLOW_PING)
         page.wait_for_selector(LINK_MEASURED)
         before = page.evaluate(KEYS)
         page.evaluate("window.slowBy = 1300")
@@ -194,10 +191,8 @@ def test_the_last_reading_has_its_room_and_moves_no_key(
 ) -> None:
     pages = {}
     for language in LANGUAGES:
-        page = pages[language] = opened(path, size)
-        page.context.add_cookies([{"name": "language", "value": language, "url": plant.url}])
-        page.reload()
-        page.wait_for_selector(PAGE_READY)
+        page = pages[language] = opened(path, size, language=language)
+        assert page.evaluate("document.documentElement.lang") == LANGUAGES[language].tag
         if path == HOMING:
             page.wait_for_selector(LINK_MEASURED)
     page.context.clear_cookies(name="language")
