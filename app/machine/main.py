@@ -3,6 +3,7 @@
 import asyncio
 import shutil
 import sqlite3
+import threading
 from datetime import datetime, timedelta
 from functools import partial
 from pathlib import Path
@@ -210,6 +211,7 @@ def _site(
             weather_file=settings.data_dir / "weather",
             journal_retention=timedelta(days=settings.journal_retention_days),
             disk_free=lambda: _disk_free(settings.data_dir),
+            pause=threading.Event().wait,
         ),
         tools=DriveProbe(factory.buses, factory.profiles),
         alarms=beginning.alarms,

@@ -32,7 +32,7 @@ from app.site.publishing.details import Details
 from app.site.publishing.health import resident_bytes
 from app.site.publishing.publishing import Publisher, concerned
 from app.site.recording.auditing import Auditor, as_action
-from app.site.recording.gathering import BackgroundWriter
+from app.site.recording.gathering import BackgroundWriter, GiveWay
 from app.site.recording.recorder import Recorder
 from app.site.recording.write_queue import Ledger
 from app.site.state.connection_test import Checks, DriveTools
@@ -64,7 +64,8 @@ log = get_logger()
 class SiteOptions:
     """How a site lives: its tick, what it keeps, and the id of this life of the machine.
 
-    With `safe_mode` everything but stopping is refused for that reason.
+    With `safe_mode` everything but stopping is refused for that reason. `pause` is how the writer's thread
+    waits for a loop that is pressed; without it, it does not.
     """
 
     boot_id: str = "boot"
@@ -78,6 +79,7 @@ class SiteOptions:
     safe_mode: Reason | None = None
     make_station: Callable[[MetStation], StationReader] | None = None
     weather_file: Path | None = None
+    pause: Callable[[float], object] | None = None
 
 
 class Site:
@@ -98,7 +100,9 @@ class Site:
     ) -> None:
         self._options = options or SiteOptions()
         self._clock = clock
-        ledger = Ledger(writer, clock)
+        pause = self._options.pause
+        paced = iter if pause is None else GiveWay(lambda: self.model.scheduler.pressed, pause)
+        ledger = Ledger(writer, clock, paced)
         windows = state.weather_windows or same_age(self._options.weather_stale_after)
         self.model = SiteModel(
             clock,

@@ -9,7 +9,7 @@ import pytest
 from app.base.clock import VirtualClock
 from app.link.messages import StopAll
 from app.link.weather_orders import ReportWeather
-from app.site.recording.gathering import EVERY
+from app.site.recording.gathering import EVERY, LONGEST_WAY_S, LOOKED_EVERY_S, GiveWay, Waiting
 from app.site.recording.write_queue import Ledger
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
@@ -105,6 +105,20 @@ async def test_a_batch_that_finds_the_disk_full_is_behind_as_a_whole(
     assert journal(writer.writer) == []
     assert ledger.behind
     assert isinstance(writer.failures[0], StoreFailed)
+
+
+def test_the_writer_waits_for_a_pressed_loop_before_every_piece_and_not_for_long() -> None:
+    pauses, pressed = [], iter([True, True, False, False, *[True] * 10_000])
+    batch = [Waiting(print, None) for _ in range(4)]
+    given = GiveWay(lambda: next(pressed), pauses.append)(batch)
+    assert next(given) is batch[0]
+    assert pauses == [LOOKED_EVERY_S] * 2, "until it is pressed no more"
+    assert next(given) is batch[1]
+    assert len(pauses) == 2
+    assert list(given) == batch[2:]
+    assert sum(pauses) == pytest.approx(LONGEST_WAY_S), (
+        "a whole batch together, however long the loop is pressed"
+    )
 
 
 @pytest.mark.fault(73)

@@ -271,11 +271,16 @@ async def test_many_ticks_at_once_let_everything_else_have_its_turn(field_: Fiel
     before = sum(len(one.ticks) for one in crowd)
     field_.clock.advance(PERIOD)
     turns: list[int] = []
-    for _ in range(12):
+    pressed: list[bool] = []
+    for _ in range(16):
         await asyncio.sleep(0)
         turns.append(sum(len(one.ticks) for one in crowd) - before)
+        pressed.append(field_.scheduler.pressed)
 
     assert turns[-1] == len(crowd)
+    assert all(now for now, turn in zip(pressed, turns, strict=True) if 0 < turn < len(crowd))
+    assert any(pressed)
+    assert not pressed[-1], "whoever gives way goes on then"
     steps = [after - earlier for earlier, after in zip([0, *turns], turns, strict=False)]
     assert max(steps) == MOST_DUE_AT_ONCE
 

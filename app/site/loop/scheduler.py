@@ -64,13 +64,17 @@ Entry = tuple[datetime, int, Slot]
 
 
 class Scheduler:
-    """One task for all trackers; what an order changes is looked at when the order has been carried out."""
+    """One task for all trackers; what an order changes is looked at when the order has been carried out.
+
+    It is `pressed` while more is to tick than one turn takes.
+    """
 
     def __init__(
         self, clock: Clock, period: timedelta, overloaded: Callable[[Overload], None] = lambda _: None
     ) -> None:
         self.lateness = FineLateness()
         self.overload = Overload(overloaded)
+        self.pressed = False
         self._clock = clock
         self._period = period
         self._origin = clock.now()
@@ -146,7 +150,8 @@ class Scheduler:
     async def _run(self) -> None:
         while True:
             self._awake.clear()
-            if self._turn():
+            self.pressed = self._turn()
+            if self.pressed:
                 await give_way()
             else:
                 await self._wait()

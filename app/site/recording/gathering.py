@@ -1,7 +1,7 @@
 """Gathers what is written behind the loop: a storm over a field is a few transactions, not one a tracker."""
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import timedelta
 from typing import Protocol, TypeVar
@@ -15,6 +15,8 @@ Missed = Callable[[Entry | None], None]
 
 EVERY = timedelta(milliseconds=100)
 """So long what was posted waits for more at most; what comes alone is handed over at once."""
+LONGEST_WAY_S, LOOKED_EVERY_S = 0.5, 0.002
+"""So long a batch waits at most for a loop that is pressed, and how often it looks."""
 MOST_AT_FAULT = 3
 """So many pieces of a batch may fail before it is the disk that does."""
 
@@ -37,6 +39,26 @@ class Waiting:
     entry: Entry | None
 
 
+class GiveWay:
+    """Has the writer's thread wait between two pieces while the loop has ticks and stops to catch up with.
+
+    Both would else have the interpreter by turns, and a burst over a field would take twice as long.
+    """
+
+    def __init__(self, pressed: Callable[[], bool], pause: Callable[[float], object]) -> None:
+        self._pressed = pressed
+        self._pause = pause
+
+    def __call__(self, batch: Sequence[Waiting]) -> Iterator[Waiting]:
+        """Yield the pieces of a batch, each when the loop is not pressed, all of them soon."""
+        waited_s = 0.0
+        for one in batch:
+            while waited_s < LONGEST_WAY_S and self._pressed():
+                self._pause(LOOKED_EVERY_S)
+                waited_s += LOOKED_EVERY_S
+            yield one
+
+
 class Gathering:
     """Hands work to the writer in the order in which it was given, all that gathered as one transaction.
 
@@ -44,7 +66,14 @@ class Gathering:
     there is no room.
     """
 
-    def __init__(self, writer: BackgroundWriter, clock: Clock, missed: Missed) -> None:
+    def __init__(
+        self,
+        writer: BackgroundWriter,
+        clock: Clock,
+        missed: Missed,
+        paced: Callable[[Sequence[Waiting]], Iterable[Waiting]] = iter,
+    ) -> None:
+        self._paced = paced
         self._writer = writer
         self._clock = clock
         self._missed = missed
@@ -83,7 +112,7 @@ class Gathering:
         for _ in range(MOST_AT_FAULT):
             doing: list[Waiting] = []
             try:
-                _do_together(writer, batch, doing)
+                _do_together(writer, self._paced(batch), doing)
                 break
             except Exception as error:  # noqa: BLE001 - what can be stored is stored first, then it is raised
                 failure, at_fault = error, doing[-1:]
@@ -99,7 +128,7 @@ class Gathering:
             self._missed(one.entry)
 
 
-def _do_together(writer: Writer, batch: list[Waiting], doing: list[Waiting]) -> None:
+def _do_together(writer: Writer, batch: Iterable[Waiting], doing: list[Waiting]) -> None:
     """Do it in one transaction; what is being done last is noted, nothing while beginning or ending it."""
     with writer.together():
         for one in batch:

@@ -4,14 +4,14 @@ What is posted gathers for a moment and is stored together; what is waited for i
 """
 
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TypeVar
 
 from app.audit.entry import Entry
 from app.base.clock import Clock
 from app.base.message import N_, told_by
 from app.site.recording.auditing import IN_HAND, log_head
-from app.site.recording.gathering import BackgroundWriter, Gathering
+from app.site.recording.gathering import BackgroundWriter, Gathering, Waiting
 from app.store.store import KeptAlarm, PlannedShow, StoreFailed, Writer
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.memory.memory import SiteState, TrackerState
@@ -27,9 +27,14 @@ MOST_UNRECORDED = 1000
 class Ledger:
     """Keeps settings, events and plans; without a writer everything lives in memory only."""
 
-    def __init__(self, writer: BackgroundWriter | None, clock: Clock) -> None:
+    def __init__(
+        self,
+        writer: BackgroundWriter | None,
+        clock: Clock,
+        paced: Callable[[Sequence[Waiting]], Iterable[Waiting]] = iter,
+    ) -> None:
         self._writer = writer
-        self._gathering = None if writer is None else Gathering(writer, clock, self._fall_behind)
+        self._gathering = None if writer is None else Gathering(writer, clock, self._fall_behind, paced)
         self.event_count = 0
         self._behind = False
         self._unrecorded: deque[Entry] = deque(maxlen=MOST_UNRECORDED)
