@@ -13,6 +13,7 @@ from pathlib import Path
 from app.base.clock import SystemClock
 from app.drives.drive import Drive
 from app.link.client import LinkClient
+from app.link.codec import Answer, Request
 from app.link.messages import ConfigureTracker, MachineUnreachable, Order, SetClock, SetLocation, SiteCommand
 from app.machine.drive_factory import DriveFactory
 from app.sun.position import Location
@@ -86,6 +87,13 @@ async def end(process: asyncio.subprocess.Process) -> int:
         return await process.wait()
 
 
+class PatientLink(LinkClient):
+    """Waits long for an answer: how long a busy disk takes is none of what is judged here."""
+
+    async def _ask(self, request: Request, patience_s: float) -> Answer:
+        return await super()._ask(request, LONGEST_WAIT_S)
+
+
 @dataclass
 class Service:
     """`heliopanel serve` in a data folder of its own."""
@@ -110,7 +118,7 @@ class Service:
             sys.executable, "-m", "app.cli", "serve",
             env=environment, stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE,
         )  # fmt: skip
-        service = cls(data_dir, port, process, LinkClient(data_dir / "machine.sock"))
+        service = cls(data_dir, port, process, PatientLink(data_dir / "machine.sock"))
         service.reading = asyncio.create_task(service._read())
         try:
             await service.link.start()
