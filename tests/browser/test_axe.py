@@ -60,7 +60,8 @@ def test_an_alarm_that_calls_blinks_only_for_who_wants_movement(panels: Panels) 
     leaf = EVERY_PAGE["trouble-live"]
     assert (leaf.path, leaf.where) == (T3, Where.TROUBLED)
     with panels.shown(leaf) as page:
-        page.wait_for_selector("[data-calls]")
+        page.locator(".messages > .pop > summary").click()
+        page.wait_for_selector("[data-calls]:visible")
         assert page.evaluate("document.getAnimations().length") > 0
         page.emulate_media(reduced_motion="reduce")
         assert page.evaluate("document.getAnimations().length") == 0

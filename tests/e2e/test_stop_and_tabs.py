@@ -30,7 +30,7 @@ STALE_WITHIN_S = 2.0
 TOO_OLD_S = 2.5
 """An order that is older than 2 s is refused."""
 JOG_KEY = '[data-jog="azimuth"][data-direction="1"]'
-STRIP = "document.querySelector('.strip-activity').innerText"
+STRIP = "document.querySelector('.strip-activity').textContent"
 WATCH_LINK = """
 window.links = [];
 new MutationObserver(() => links.push([
