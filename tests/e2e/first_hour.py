@@ -17,8 +17,8 @@ you jog it.
 NOTES = {
     "overview": (
         "The overview shows every tracker of the site. A new site has one, with a simulated drive, "
-        "and a link to the first of the five steps. The strip below the header counts alarms by "
-        "priority and is on every page, as is **STOP** in the footer. STOP is not an emergency stop."
+        "and a link to the first of the five steps. The header counts the active alarms and is on every "
+        "page, as is **STOP**. STOP is not an emergency stop."
     ),
     "location": (
         "Everything begins with the location: the sun's position follows from it. Type your own latitude "
