@@ -59,7 +59,9 @@ def test_the_five_steps_are_pictured(walker: Walker, service: str, picture: Pict
     picture(page, "step-mode")
     hands.choose(page.locator('input[value="dual"]'))
     onwards(page, hands, "/run")
+    page.locator(".scene").scroll_into_view_if_needed()
     page.wait_for_selector('.scene[data-painter="webgl2"][data-frames]')
+    page.evaluate("scrollTo(0, 0)")
     picture(page, "step-run")
 
 
