@@ -75,6 +75,10 @@ class Newcomer:
         """Tap the first link with these words."""
         self.tap(self.page.get_by_role("link", name=words).first, words)
 
+    def unfold(self, words: str) -> None:
+        """Tap what opens a list with these words."""
+        self.tap(self.page.locator("summary", has_text=words).first, words)
+
     def choose(self, words: str) -> None:
         """Tap one of several choices."""
         self.page.get_by_role("radio", name=words).check()

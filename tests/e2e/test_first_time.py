@@ -158,6 +158,7 @@ def sign(person: Newcomer) -> None:
     person.link("Trackers")
     person.link("Open")
     person.picture("live", "The tracker's page")
+    person.unfold("More")
     person.link("Record")
     person.sees("Commissioning record")
     person.picture("unsigned", "The record, not signed yet")
