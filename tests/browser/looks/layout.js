@@ -96,6 +96,8 @@
       const box = seen(rect, e);
       const hides = e.closest("[style*=overflow]") || getComputedStyle(block).textOverflow === "ellipsis";
       if (!scroller(e) && !hides && (rect.left < -1 || rect.right > innerWidth + 1)) tell("beside the screen", e);
+      const panel = e.closest(".panel")?.getBoundingClientRect();
+      if (panel && !hides && (box.left < panel.left - 1 || box.right > panel.right + 1)) tell("beside its panel", e);
       if (box.right > box.left && box.bottom > box.top) words.push({ e, block, box });
     }
   }
