@@ -26,7 +26,7 @@ function confirmed() {
 function failed(press, text) {
   if (press !== pending) return;
   clearTimeout(press.timer);
-  tell(text, true);
+  if (!press.closed) tell(text, true);
 }
 
 export function stop(form) {
@@ -61,7 +61,10 @@ export function start() {
   key.addEventListener("pointerdown", press);
   form.addEventListener("submit", press);
   addEventListener("keydown", (event) => { if (event.key === "Escape" && !event.repeat) press(event); });
-  document.getElementById("stop-answer-close").addEventListener("click", () => tell("", false));
+  document.getElementById("stop-answer-close").addEventListener("click", () => {
+    if (pending) pending.closed = true;
+    tell("", false);
+  });
   live.on("stopped", confirmed);
   live.on("problem", (problem) => { if (pending) failed(pending, `${problem.detail} ${NOT_CONFIRMED}`); });
 }

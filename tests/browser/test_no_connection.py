@@ -73,6 +73,23 @@ def test_stop_without_a_controller_is_told_in_red_at_the_button(
     expect(told).to_be_hidden()
 
 
+def test_what_was_closed_is_not_told_again_when_the_other_way_fails_too(opened: Opened, plant: Plant) -> None:
+    page = opened("/trackers/T2", "tablet", allow=LINK_ERRORS)
+    waiting: list[Route] = []
+    page.route("**/stop?*", lambda route: waiting.append(route))
+    lose(page, plant)
+    touch(page.locator("#stop-key"))
+    expect(page.locator("#stop-answer")).to_be_visible()
+    page.locator("#stop-answer-close").click()
+    with page.expect_event("requestfailed"):
+        waiting[0].abort()
+    page.evaluate("new Promise((done) => setTimeout(done))")
+    expect(page.locator("#stop-answer")).to_be_hidden()
+    page.wait_for_selector("#stop-key:not([data-pressed])")
+    touch(page.locator("#stop-key"))
+    expect(page.locator("#stop-answer")).to_be_visible()
+
+
 def test_stop_without_a_network_is_told_at_once(opened: Opened) -> None:
     page = opened("/trackers/T2", "tablet", allow=LINK_ERRORS)
     cut_network(page)
