@@ -11,6 +11,7 @@
 # make release VERSION=x.y.z: raises the version, builds sdist, wheel, bill of materials, image and checksums into
 #   dist/x.y.z, commits and tags; with DRY=1 nothing is committed
 # make docs : builds the site of the documents into manual/, and fails at a broken link or anchor
+# make firmware: builds the firmware of controllers/avr for Arduino Mega and Uno
 # make bench: measures and writes docs/develop/benchmarks.md
 
 PYTHON ?= python3
@@ -31,7 +32,7 @@ ALONE := tests/drives/timed \
 	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost hold_to_run kill many_holds stop_and_tabs))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup docs reference dist fast client run test fresh check translations fuzz bench format lock browser system-packages clean
+.PHONY: help setup firmware docs reference dist fast client run test fresh check translations fuzz bench format lock browser system-packages clean
 
 help: ## Show what each command does
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-10s %s\n", $$1, $$2}'
@@ -98,7 +99,7 @@ fresh: ## Run the README's two commands on pristine Debian machines; DEBIAN=13 W
 
 soak: $(VENV)/.dev system-packages ## Run the long proofs (hours): random operation, kills, power cuts, a day of a field
 	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/store/test_power_cut.py tests/tracker/test_stateful.py tests/site/test_field.py
-	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/machine/test_clock_jump.py tests/machine/test_field_events.py tests/machine/test_storm.py tests/machine/test_viewers.py $(addprefix tests/browser/test_,$(addsuffix .py,axe keyboard languages_fit walk))
+	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/machine/test_clock_jump.py tests/machine/test_field_events.py tests/machine/test_storm.py tests/machine/test_viewers.py tests/e2e/test_many_holds.py $(addprefix tests/browser/test_,$(addsuffix .py,axe keyboard languages_fit walk))
 	@HELIOPANEL_TEST_KILLS=$${HELIOPANEL_TEST_KILLS:-1000} $(BIN)/python -m pytest -s tests/machine/test_kills.py
 	@HELIOPANEL_TEST_KILLS=20 $(BIN)/python -m pytest -s tests/e2e/test_kill.py tests/machine/test_process.py
 	@HELIOPANEL_TEST_KILLS=30 HELIOPANEL_TEST_TRACKERS=100 $(BIN)/python -m pytest -s tests/machine/test_storm_kill.py
@@ -121,6 +122,11 @@ check: $(VENV)/.dev ## Formatting, lint, types, import contracts, migrations, ve
 	@$(BIN)/python -m app.access.migrations
 	@$(BIN)/python -m app.web.translation.catalogues check
 
+firmware: ## Build the firmware of controllers/avr for Arduino Mega and Uno (avr-gcc)
+	@$(MAKE) -s -C controllers/avr BOARD=mega
+	@$(MAKE) -s -C controllers/avr BOARD=uno
+	@ls controllers/avr/build/*.hex
+
 translations: $(VENV)/.dev ## Bring catalogues, and fonts cut for them, up to date with the texts of the sources
 	@$(BIN)/python -m app.web.translation.catalogues update
 	@$(BIN)/python static/vendor/vendor.py letters
@@ -138,10 +144,10 @@ format: $(VENV)/.dev ## Format the code
 # For every Python from 3.11 on: Debian 12 has 3.11.2, where some releases want 3.11.5, and 3.13 needs libraries
 # that 3.11 does not.
 lock: ## Renew the locked dependencies (needs uv)
-	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all pyproject.toml -o requirements.txt
-	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all --extra fast -c requirements.txt pyproject.toml -o requirements-fast.txt
-	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all --extra fast --extra mdns --extra dev -c requirements.txt pyproject.toml -o requirements-dev.txt
-	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --group client -o requirements-client.txt
+	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-strip-extras --no-emit-index-url --no-annotate --no-header -q --extra build --extra all pyproject.toml -o requirements.txt
+	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-strip-extras --no-emit-index-url --no-annotate --no-header -q --extra build --extra all --extra fast -c requirements.txt pyproject.toml -o requirements-fast.txt
+	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-strip-extras --no-emit-index-url --no-annotate --no-header -q --extra build --extra all --extra fast --extra mdns --extra dev -c requirements.txt pyproject.toml -o requirements-dev.txt
+	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-strip-extras --no-emit-index-url --no-annotate --no-header -q --group client -o requirements-client.txt
 
 clean: ## Remove what was built (not the data)
 	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
