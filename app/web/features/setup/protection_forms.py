@@ -1,16 +1,16 @@
 """The form of the protections page: its groups, as their settings are declared."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 from app.base.message import join, word
 from app.tracker.settings.declared import declared
-from app.tracker.settings.protections import ProtectionConfig
+from app.tracker.settings.protections import ProtectionConfig, Stows
 from app.web.features.setup.protection_contexts import Group
 from app.web.shell.contexts import SettingRow
 from app.web.shell.setting_forms import below, field_name, rows
 
-GROUPS = ("wind", "snow", "light")
-STOWS = ("wind", "snow", "hail", "cleaning", "maintenance")
+GROUPS = tuple(field.name for field in fields(ProtectionConfig) if field.name not in ("stows", "warning_s"))
+STOWS = tuple(field.name for field in fields(Stows))
 
 
 def names() -> tuple[str, ...]:
@@ -19,7 +19,7 @@ def names() -> tuple[str, ...]:
 
 
 def groups() -> tuple[Group, ...]:
-    """Return the three protections with their settings."""
+    """Return the protections with their settings."""
     return tuple(group_of(ProtectionConfig, name) for name in GROUPS)
 
 

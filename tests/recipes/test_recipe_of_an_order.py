@@ -1,11 +1,9 @@
 """The recipe of an order in docs/develop/contributing.md, followed in a copy: four files, and it is there."""
 
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
+from tests.recipes.program_copy import followed
+
 ORDER = '''
 @dataclass(frozen=True, slots=True)
 class Hold:
@@ -47,11 +45,10 @@ EDITS = {
         ),
     ),
 }
-NEW = "app/tracker/activities/holding_still.py"
+NEW = {"app/tracker/activities/holding_still.py": HANDLER}
 PROOF = """
 from datetime import UTC, datetime
 
-import app
 from app.gateway.mqtt_commands import MESSAGES
 from app.link.codec import Execute, decode_request, encode_request
 from app.tracker.commands.commands import CommandRejected, Hold
@@ -76,23 +73,10 @@ assert decode_request(encode_request(sent)[4:]) == sent, "link"
 try:
     Controller(TrackerConfig("T1", "T1"), TrackerMemory(), CAPABILITIES).handle(Hold(), datetime.now(UTC))
 except CommandRejected as rejected:
-    print(app.__path__[0], *(reason.code for reason in rejected.reasons))
+    print(*(reason.code for reason in rejected.reasons))
 """
 
 
 def test_an_order_is_added_in_four_files(tmp_path: Path) -> None:
-    shutil.copytree(ROOT / "app", tmp_path / "app", ignore=shutil.ignore_patterns("__pycache__", "locale"))
-    for folder in ("docs", "static", "templates", "tests", "alembic"):
-        (tmp_path / folder).symlink_to(ROOT / folder)
-    (tmp_path / NEW).write_text(HANDLER)
-    for name, edits in EDITS.items():
-        text = (tmp_path / name).read_text()
-        for before, after in edits:
-            assert before in text, f"{name} has no {before!r}: change the recipe too"
-            text = text.replace(before, after, 1)
-        (tmp_path / name).write_text(text)
-    assert len({*EDITS, NEW}) <= 4
-    told = subprocess.run(
-        (sys.executable, "-c", PROOF), cwd=tmp_path, capture_output=True, text=True, check=False
-    )
-    assert told.stdout.split() == [str(tmp_path / "app"), "drive_unreachable"], told.stderr
+    assert len({*EDITS, *NEW}) <= 4
+    assert followed(tmp_path, EDITS, NEW, PROOF) == ["drive_unreachable"]

@@ -1,0 +1,61 @@
+"""The recipe of a language in docs/develop/contributing.md, followed in a copy: three files are enough."""
+
+from pathlib import Path
+
+from tests.recipes.program_copy import followed
+
+ITALIAN = """        Language(
+            "it",
+            "it",
+            "Italiano",
+            ",",
+            "%d/%m/%Y",
+            _points("N", "E", "S", "O"),
+            {" and ": " e ", " or ": " o "},
+        ),
+        Language("zh_Hans","""
+CATALOGUE = r"""msgid ""
+msgstr ""
+"Language: it\n"
+"MIME-Version: 1.0\n"
+"Content-Type: text/plain; charset=utf-8\n"
+"Content-Transfer-Encoding: 8bit\n"
+
+msgid "Save protections"
+msgstr "Salva le protezioni"
+"""
+EDITS = {
+    "app/web/languages/known.py": (('        Language("zh_Hans",', ITALIAN),),
+    "tests/web/languages/test_catalogues.py": (('"ro": 3,', '"ro": 3, "it": 2,'),),
+}
+NEW = {"app/web/locale/it/LC_MESSAGES/heliopanel.po": CATALOGUE}
+PROOF = """
+import asyncio
+
+from app.web.languages.known import LANGUAGES, TRANSLATED
+from app.web.translation.catalogues import mo_bytes, path_of, read
+from tests.fakes import FakeMachine, FakeReader, fake_app, serving
+from tests.web.languages.test_catalogues import PLURAL_FORMS
+
+path_of("it", "mo").write_bytes(mo_bytes(read("it")))
+assert set(PLURAL_FORMS) == set(TRANSLATED), PLURAL_FORMS
+assert read("it").num_plurals == PLURAL_FORMS["it"], read("it").num_plurals
+assert len(set(LANGUAGES["it"].compass)) == 16
+
+
+async def seen():
+    async with serving(fake_app(FakeMachine(), FakeReader())) as client:
+        path = "/trackers/T1/protections"
+        page = (await client.get(path, headers={"accept-language": "it"})).text
+        assert "Salva le protezioni" in page and 'lang="it"' in page, page
+        english = (await client.get(path)).text
+        assert "Save protections" in english and "Italiano" in english, "the list of languages"
+
+
+asyncio.run(seen())
+"""
+
+
+def test_a_language_is_added_in_three_files(tmp_path: Path) -> None:
+    assert len({*EDITS, *NEW}) == 3
+    followed(tmp_path, EDITS, NEW, PROOF)
