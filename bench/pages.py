@@ -45,6 +45,8 @@ new MutationObserver((_, seen) => {
 Painted = tuple[float, float]
 """Pictures a second, and the longest time between two in milliseconds."""
 LEAST_RATE = 60.0
+LONGEST_MS = 20_000
+"""So long at most two pictures are waited for; a gap needs two."""
 PLAY = """(() => {
   document.querySelector('input[name="player-speed"][value="3600"]').click();
   document.getElementById('player-play').click();
@@ -55,7 +57,8 @@ WATCH = """(async () => {
   const note = () => times.push(performance.now());
   new MutationObserver(note).observe(scene, {attributeFilter: ['data-frames']});
   const [before, begin] = [Number(scene.dataset.frames), performance.now()];
-  await new Promise((done) => setTimeout(done, WATCH_MS));
+  do await new Promise((done) => setTimeout(done, WATCH_MS));
+  while (times.length < 2 && performance.now() - begin < LONGEST_MS);
   const gaps = times.slice(1).map((at, index) => at - times[index]);
   return [(Number(scene.dataset.frames) - before) / (performance.now() - begin) * 1000, Math.max(...gaps)];
 })()"""
@@ -168,7 +171,9 @@ def _shown(browser: Chromium, url: str, size: Size) -> list[Painted]:
 
 def _watched(tab: Tab, size: Size) -> Painted:
     """Return how many pictures a second were on the screen, and the longest time without a new one."""
-    rate, longest_ms = tab.evaluate(WATCH.replace("WATCH_MS", f"{1000 * size.watch_s:.0f}"))
+    rate, longest_ms = tab.evaluate(
+        WATCH.replace("WATCH_MS", f"{1000 * size.watch_s:.0f}").replace("LONGEST_MS", str(LONGEST_MS))
+    )
     return float(rate), float(longest_ms)
 
 

@@ -76,6 +76,7 @@ from app.tracker.state.snapshot import (
 from app.tracker.values.alarm_words import AlarmNow
 from app.tracker.values.reason import Reason
 from app.tracker.weather.weather import WeatherNow
+from app.web.documented import DocumentedApp
 from app.web.main import create_app
 from tests.fake_alarms import after, counted
 from tests.fake_data import commissioned, made_up_sun, site_state
@@ -330,7 +331,7 @@ def _check_zone(name: str) -> None:
         raise ValueError(f"{name} is not a time zone; give an IANA name such as Europe/Istanbul.")
 
 
-def fake_app(machine: FakeMachine | None = None, reader: FakeReader | None = None) -> FastAPI:
+def fake_app(machine: FakeMachine | None = None, reader: FakeReader | None = None) -> DocumentedApp:
     """Return the whole panel on the fakes, with a data folder of its own that goes with it."""
     folder = Path(tempfile.mkdtemp(prefix="heliopanel-fakes-"))
     machine = machine or FakeMachine()

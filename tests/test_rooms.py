@@ -4,9 +4,12 @@ import ast
 from functools import cache
 from pathlib import Path
 
-from app.base.own import PROGRAM
+from app.base.own import PROGRAM, own_folder
 
 MOST = 24
+LONGEST_LINE = 140
+MOST_LINES = 400
+LONGEST_BODY = 50
 
 
 @cache
@@ -46,3 +49,27 @@ def test_no_folder_imports_one_that_imports_it() -> None:
             reached[one] |= reached[two]
     circles = {(one, two) for one in reached for two in reached[one] - {one} if one in reached[two]}
     assert circles == set()
+
+
+def test_a_line_of_a_template_is_read_at_a_glance() -> None:
+    lines = [
+        (path.name, number, len(line))
+        for path in sorted(own_folder("templates").rglob("*.html"))
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
+    ]
+    assert len(lines) > 2000
+    assert [found for found in lines if found[2] > LONGEST_LINE] == []
+
+
+def test_files_and_functions_are_read_at_a_sitting() -> None:
+    long_files, long_functions = {}, {}
+    for module, path in _modules().items():
+        text = path.read_text(encoding="utf-8")
+        if (count := len(text.splitlines())) > MOST_LINES:
+            long_files[module] = count
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and node.end_lineno is not None:
+                length = node.end_lineno - node.lineno
+                if length > LONGEST_BODY:
+                    long_functions[module, node.name] = length
+    assert (long_files, long_functions) == ({}, {})

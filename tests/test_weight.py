@@ -9,6 +9,7 @@ import pytest
 SELDOM = {"PIL", "alembic", "babel", "cryptography", "fpdf", "mako", "pandas", "pvlib", "pyarrow", "segno"}
 COMMAND_LINE = {"pygments", "rich", "shellingham", "structlog", "typer"}
 OF_THE_PANEL = {"argon2", "fastapi", "jinja2", "markdown_it", "starlette", "tzfpy", "uvicorn", "websockets"}
+FOR_A_REQUEST = {"markdown_it", "prometheus_client"}
 OF_THE_CONTROLLER = {"aiomqtt", "paho", "pymodbus", "serial", "app.drives", "app.gateway", "app.site"}
 WORKED_OUT_ELSEWHERE = {
     "app.research.gezegin",
@@ -39,11 +40,28 @@ def ran(code: str) -> list[str]:
             {*SELDOM, *COMMAND_LINE, *OF_THE_PANEL, "numpy", "pydantic", "sqlalchemy"},
         ),
         ("app.machine.main", {*SELDOM, *COMMAND_LINE, *OF_THE_PANEL, *WORKED_OUT_ELSEWHERE, "app.web"}),
-        ("app.panel, app.web.main", {*SELDOM, *COMMAND_LINE, *OF_THE_CONTROLLER, *WORKED_OUT_ELSEWHERE}),
+        (
+            "app.panel, app.web.main",
+            {*SELDOM, *COMMAND_LINE, *FOR_A_REQUEST, *OF_THE_CONTROLLER, *WORKED_OUT_ELSEWHERE},
+        ),
     ],
 )
 def test_a_process_loads_only_what_it_needs_all_the_time(module: str, not_needed: set[str]) -> None:
     assert loaded(module) & not_needed == set()
+
+
+def test_pages_are_built_without_the_former_pydantic(tmp_path: Path) -> None:
+    code = f"""if True:
+        import sys
+        from pathlib import Path
+        from app.base.startup import hurry
+        hurry()
+        from app.base.settings import Settings
+        from app.web.main import create_app
+        create_app(Settings(data_dir=Path({str(tmp_path)!r})))
+        print(*(name for name, module in sys.modules.items() if name.startswith("pydantic.v1") and module))
+    """
+    assert ran(code) == []
 
 
 def test_only_the_routes_that_stop_are_worked_out_at_the_start(tmp_path: Path) -> None:

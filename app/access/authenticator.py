@@ -19,6 +19,7 @@ from app.access.refusals import Allowance, Refusals
 from app.access.roles import NOBODY, Role
 from app.access.sessions import Session, digest_of, new_id
 from app.access.setup import Setup
+from app.access.sign_in_errors import Throttled, TooManyAtOnce, WrongPassword
 from app.access.store import AccessStore, Change
 from app.access.throttle import Failures, one_more, wait_left
 from app.access.tickets import OneShots, csrf_token, read_stop_ticket, stop_ticket
@@ -41,25 +42,6 @@ WRONG_AT_ONCE, WRONG_EVERY = 200, timedelta(minutes=1)
 """How many wrong passwords are recorded one by one: at most 1,440 a day after the first 200."""
 
 WRONG = N_("The name or the password is wrong.")
-
-
-class WrongPassword(Exception):
-    """Name and password do not belong together; the text does not say which is wrong."""
-
-
-class Throttled(Exception):
-    """Too many wrong passwords; `wait` is how long the next try is not looked at."""
-
-    def __init__(self, wait: timedelta) -> None:
-        self.wait = wait
-        seconds = max(1, round(wait.total_seconds() + 0.499))
-        super().__init__(
-            say("There were too many wrong passwords. Wait {seconds} s, then try again.", seconds=seconds)
-        )
-
-
-class TooManyAtOnce(Exception):
-    """More people sign in at the same time than this computer can check."""
 
 
 @dataclass(frozen=True, slots=True)

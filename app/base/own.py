@@ -18,5 +18,8 @@ def own_folder(name: str) -> Path:
 
 
 def own_process(module: str) -> tuple[str, ...]:
-    """Return the command that runs one of our modules, also where the present folder has an `app` too."""
-    return (sys.executable, "-P", "-m", module)
+    """Return the command that runs one of our modules, also where the present folder has an `app` too.
+
+    Python keeps no columns of source lines for it: carets in a log are not worth their memory.
+    """
+    return (sys.executable, "-P", "-X", "no_debug_ranges", "-m", module)

@@ -24,6 +24,8 @@ from app.link.codec import (
 from app.link.messages import MachineUnreachable
 
 RECONNECT_AFTER = timedelta(milliseconds=300)
+LAST_LOOK_S = 0.1
+"""The end of a silence, left to what has come already: a loop that was busy judges only after it has read."""
 
 DOWN = N_(
     "The controller service does not answer; nothing was done. Wait until the page shows live "
@@ -140,15 +142,27 @@ class Connection:
         try:
             self._begin()
             while True:
-                async with asyncio.timeout(self._silence_s):
-                    body = await read_body(reader)
-                telling = decode_telling(body)
+                telling = decode_telling(await self._read(reader))
                 if isinstance(telling, Unasked):
                     self._hear(telling)
                 else:
                     self._take(telling)
         finally:
             await let_go(writer)
+
+    async def _read(self, reader: asyncio.StreamReader) -> bytes:
+        """Return the next body; raise `TimeoutError` when nothing was heard for too long."""
+        if self._silence_s is None:
+            return await read_body(reader)
+        loop = asyncio.get_running_loop()
+        async with asyncio.timeout(None) as patience:
+            last_look = loop.call_later(
+                self._silence_s - LAST_LOOK_S, lambda: patience.reschedule(loop.time() + LAST_LOOK_S)
+            )
+            try:
+                return await read_body(reader)
+            finally:
+                last_look.cancel()
 
     def _take(self, answer: Answer) -> None:
         answered = self._waiting.get(answer.number)

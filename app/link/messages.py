@@ -9,7 +9,7 @@ from app.base.permission import Permission
 from app.link.alarm_orders import AlarmOrder, NotificationOrder
 from app.link.place_orders import SetHorizon
 from app.link.record_orders import RecordOrder
-from app.link.settings_orders import UndoSettings, UndoSiteSettings
+from app.link.settings_orders import LockOrder, UndoSettings, UndoSiteSettings
 from app.link.weather_orders import ReportWeather, SetMetStation, SetWeatherWindows, SimulateWeather
 from app.sun.position import Location
 from app.tracker.commands.commands import Command
@@ -224,29 +224,6 @@ class RenewControl:
 
 ControlOrder = RequestControl | AnswerControl | ReleaseControl | RenewControl
 """What somebody says about control."""
-
-
-@dataclass(frozen=True, slots=True)
-class LockSettings:
-    """Keep what was commissioned as it is: settings, drive, mount, strategy, zero and location."""
-
-    tracker_id: str
-    kind: Literal["lock_settings"] = "lock_settings"
-    spec: ClassVar = setting()
-
-
-@dataclass(frozen=True, slots=True)
-class UnlockSettings:
-    """Let what was commissioned be changed again, for a reason."""
-
-    tracker_id: str
-    reason: str
-    kind: Literal["unlock_settings"] = "unlock_settings"
-    spec: ClassVar = setting()
-
-
-LockOrder = LockSettings | UnlockSettings
-"""What concerns the lock on a tracker's settings."""
 
 
 @dataclass(frozen=True, slots=True)

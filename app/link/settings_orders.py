@@ -1,4 +1,4 @@
-"""Orders about settings that go back to what was."""
+"""Orders about settings as they are: to lock them, and to go back to what was."""
 
 from dataclasses import dataclass
 from typing import ClassVar, Literal
@@ -21,3 +21,26 @@ class UndoSiteSettings:
 
     kind: Literal["undo_site_settings"] = "undo_site_settings"
     spec: ClassVar = setting()
+
+
+@dataclass(frozen=True, slots=True)
+class LockSettings:
+    """Keep what was commissioned as it is: settings, drive, mount, strategy, zero and location."""
+
+    tracker_id: str
+    kind: Literal["lock_settings"] = "lock_settings"
+    spec: ClassVar = setting()
+
+
+@dataclass(frozen=True, slots=True)
+class UnlockSettings:
+    """Let what was commissioned be changed again, for a reason."""
+
+    tracker_id: str
+    reason: str
+    kind: Literal["unlock_settings"] = "unlock_settings"
+    spec: ClassVar = setting()
+
+
+LockOrder = LockSettings | UnlockSettings
+"""What concerns the lock on a tracker's settings."""

@@ -10,7 +10,8 @@ from heapq import heapify, heappop, heappush
 from app.base.clock import Clock
 from app.base.logs import get_logger
 from app.base.message import N_, Message, join, say, told_by, with_format
-from app.modbus.errors import DriveError, DriveRefused, DriveSilent
+from app.modbus.device_exceptions import UNREACHABLE, refusal
+from app.modbus.errors import DriveError, DriveSilent
 from app.modbus.line_turn import LineTurn, Part
 from app.modbus.silences import Silences
 from app.modbus.wire import Ask, Broken, GivenUp, Refused, Timing, Unanswered, Wire
@@ -41,19 +42,6 @@ class _Job:
     answer: "asyncio.Future[list[int]]" = field(compare=False)
 
 
-EXCEPTIONS = {
-    1: N_("does not support this function"),
-    2: N_("has no such register"),
-    3: N_("does not accept this value"),
-    4: N_("reports an internal failure"),
-    5: N_("needs more time"),
-    6: N_("is busy"),
-    10: N_("cannot be reached through its gateway"),
-    11: N_("does not answer its gateway"),
-}
-PERMANENT = (1, 2, 3)
-UNREACHABLE = (10, 11)
-FITS, AGAIN = N_("Check that the profile fits the device."), N_("The request is repeated in the next cycle.")
 NOT_AGAIN = N_("The request is not repeated.")
 
 log = get_logger()
@@ -329,7 +317,7 @@ class Bus:
                 self._note_silence(job.unit)
             else:
                 self._silences.heard(job.unit)
-            raise _refusal(refused.code, job) from refused
+            raise refusal(refused.code, job.unit, job.what) from refused
         except GivenUp as given_up:
             raise DriveSilent(
                 say("A stop ended the wait for the drive at {unit} ({what}).", unit=job.unit, what=job.what)
@@ -401,22 +389,6 @@ def _unanswered(job: _Job) -> Message:
         unit=job.unit.unit,
     )
     return join(" ", (missing, check))
-
-
-def _refusal(code: int, job: _Job) -> DriveError:
-    text = EXCEPTIONS.get(code, N_("answered with an unknown exception"))
-    sentence = say(
-        "The drive at {unit} {text} (Modbus exception {code}): {what}.",
-        unit=job.unit,
-        text=text,
-        code=code,
-        what=job.what,
-    )
-    if code in PERMANENT:
-        return DriveRefused(join(" ", (sentence, FITS)))
-    if code in UNREACHABLE:
-        return DriveSilent(sentence)
-    return DriveError(join(" ", (sentence, AGAIN)))
 
 
 def _fail(job: _Job, error: DriveError) -> None:

@@ -50,10 +50,16 @@ class DocumentedApp(FastAPI):
                 needs(Permission.READ)(route.endpoint)
 
     def openapi(self) -> dict[str, Any]:
-        """Return the document with what FastAPI does not say by itself."""
+        """Return the document that comes with the program: making one would hold up every page."""
+        if self.openapi_schema is None:
+            self.openapi_schema = json.loads(DOCUMENT.read_bytes())
+        return self.openapi_schema
+
+    def make_document(self) -> dict[str, Any]:
+        """Return the document of these routes, with what FastAPI does not say by itself."""
+        self.openapi_schema = None
         document = super().openapi()
-        if "securitySchemes" not in document["components"]:
-            _complete(document, table(self.state.routes))
+        _complete(document, table(self.state.routes))
         return document
 
 
@@ -94,6 +100,6 @@ def _tell_parameters(call: dict[str, Any]) -> None:
         parameter.setdefault("description", PARAMETERS.get(parameter["name"], ""))
 
 
-def written(app: FastAPI) -> str:
+def written(app: DocumentedApp) -> str:
     """Return the document as it is committed."""
-    return json.dumps(app.openapi(), indent=1, sort_keys=True, ensure_ascii=False) + "\n"
+    return json.dumps(app.make_document(), indent=1, sort_keys=True, ensure_ascii=False) + "\n"

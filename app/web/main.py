@@ -77,7 +77,7 @@ def create_app(
     clock: Clock | None = None,
     hasher: Hasher | None = None,
     stage: Stage | None = None,
-) -> FastAPI:
+) -> DocumentedApp:
     """Build the whole panel; without a machine it connects to the one that the settings name.
 
     `stage` says whether these settings are on trial; without one they are for good.

@@ -20,6 +20,7 @@ from app.web.features.commissioning import (
 )
 from app.web.features.control import (
     control,
+    mast,
     mode,
     overview,
     run,
@@ -76,6 +77,7 @@ ROUTERS = (
     token_page.router,
     tracker.router,
     control.router,
+    mast.router,
     location.router,
     clock.router,
     homing.pages,

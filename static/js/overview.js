@@ -51,8 +51,8 @@ function paintCount(item, isMeant) {
 }
 
 function paintDoing() {
-  for (const item of document.querySelectorAll("[data-doing]")) paintCount(item, (one) => !one.approaching && one.activity === item.dataset.doing);
-  for (const item of document.querySelectorAll("[data-approaching]")) paintCount(item, (one) => one.approaching);
+  for (const item of document.querySelectorAll("[data-doing]")) paintCount(item, (one) => !one.approaching && !one.not_stowed && one.activity === item.dataset.doing);
+  for (const item of document.querySelectorAll("[data-approaching]")) paintCount(item, (one) => one.approaching && !one.not_stowed);
   for (const item of document.querySelectorAll("[data-unstowed]")) paintCount(item, (one) => Boolean(one.not_stowed));
 }
 

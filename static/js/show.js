@@ -2,7 +2,7 @@
 
 import { facts } from "./facts.js";
 import { chart } from "./chart.js";
-import { clockTime, duration, words } from "./format.js";
+import { clockTime, duration, shown, words } from "./format.js";
 import { live } from "./live.js";
 import { PanelScene, turnKeys } from "./panel3d.js";
 import { targetOf } from "./scene.js";
@@ -20,6 +20,7 @@ turnKeys(scene);
 let table = null;
 let plots = null;
 let last = null;
+let ended = null;
 
 function mine() {
   const show = live.tracker?.show;
@@ -97,9 +98,20 @@ function finish() {
   const { show, sun } = last;
   picture(sun, null);
   document.getElementById("show-phase").textContent = _("Ended");
-  if (show.phase !== facts.show.running || show.duration_s - show.elapsed_s > MESSAGE_S) return;
-  last.show = { ...show, elapsed_s: show.duration_s, sun_time: showEnd };
-  progress(last.show);
+  if (show.phase === facts.show.running && show.duration_s - show.elapsed_s <= MESSAGE_S) {
+    last.show = { ...show, elapsed_s: show.duration_s, sun_time: showEnd };
+    progress(last.show);
+  } else if (ended) {
+    const [at, who] = [clockTime(ended.at, live.zone), shown(ended.actor, "who", live.zone)];
+    document.getElementById("show-elapsed").textContent = `${at} · ${who} · ${ended.message}`;
+  }
+}
+
+// Why a show is over, when, and by whom; the journal's line may come before or after the tracker's state.
+function told(event) {
+  if (event.kind !== "show_ended" || event.data?.show_id !== showId) return;
+  ended = event;
+  if (last && !mine()) finish();
 }
 
 function progress(show) {
@@ -125,5 +137,6 @@ function paint() {
 }
 
 live.on("state", paint);
+live.on("event", told);
 addEventListener("theme", draw);
 load();

@@ -11,12 +11,13 @@ from click.testing import Result
 from typer.testing import CliRunner
 
 from app.access.accounts import TokenWish
-from app.access.authenticator import Credentials, Throttled, WrongPassword
+from app.access.authenticator import Credentials
 from app.access.events import chained
 from app.access.opening import open_store
 from app.access.principal import Via
 from app.access.roles import Role
 from app.access.setup import CODE_FILE, RESET_FILE
+from app.access.sign_in_errors import Throttled, WrongPassword
 from app.access.users import AccessRefused
 from app.audit.chain import FIRST
 from app.base.permission import Permission

@@ -10,19 +10,12 @@ import pytest
 
 from app.access.access_cache import RESTING
 from app.access.accounts import TokenWish
-from app.access.authenticator import (
-    LOOK_EVERY,
-    MOST_WAITING,
-    WRONG_AT_ONCE,
-    Credentials,
-    Throttled,
-    TooManyAtOnce,
-    WrongPassword,
-)
+from app.access.authenticator import LOOK_EVERY, MOST_WAITING, WRONG_AT_ONCE, Credentials
 from app.access.principal import SignInNeeded, Via, nobody
 from app.access.roles import NOBODY, Role
 from app.access.sessions import PROOF, digest_of, is_proven
 from app.access.setup import CODE_FILE
+from app.access.sign_in_errors import Throttled, TooManyAtOnce, WrongPassword
 from app.access.tokens import Scope
 from app.access.users import AccessRefused
 from app.base.permission import Permission

@@ -4,7 +4,7 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from app.access.authenticator import Throttled, new_key
+from app.access.authenticator import new_key
 from app.access.passwords import Argon, Passwords, weakness
 from app.access.principal import (
     NotAllowed,
@@ -17,6 +17,7 @@ from app.access.principal import (
 )
 from app.access.roles import GRANTS, Role, permissions_of
 from app.access.sessions import Session, SessionState, is_proven, new_id, state
+from app.access.sign_in_errors import Throttled
 from app.access.throttle import Failures, delay, one_more, wait_left
 from app.access.tickets import OneShots, read_stop_ticket, stop_ticket
 from app.access.tokens import SCOPES, mint, token_id_of

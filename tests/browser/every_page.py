@@ -107,6 +107,8 @@ PAGES = _calm(
         "restore": "/restore",
         "audit": "/audit",
         "audit-access": "/audit/access",
+        "mast": f"{T1}/mast",
+        "overview-tiles": "/?layout=tiles",
     }
 )
 STATES = {

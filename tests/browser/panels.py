@@ -232,7 +232,9 @@ class Panels:
             listen(page, complaints)
             if leaf.where is Where.LOST:
                 panel.do(panel.served.machine.mend)
-            page.goto(panel.url + leaf.path)
+            answer = page.goto(panel.url + leaf.path)
+            assert answer is not None
+            assert answer.status != 500, f"{leaf.path} cannot be shown"
             settle(page, leaf)
             if leaf.where is Where.LOST:
                 panel.do(panel.served.machine.cut)

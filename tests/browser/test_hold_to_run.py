@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import CDPSession, Page
 
+from app.tracker.settings.axes import Axis, JogSpeed
 from app.tracker.state.snapshot import ActivityName
 from tests.browser.conftest import Opened, Plant, running
 from tests.browser.hands import LINK_MEASURED
@@ -84,6 +85,16 @@ def test_mouse_holds_and_lets_go(size: str, opened: Opened, plant: Plant) -> Non
     page.mouse.up()
     assert is_at_rest(plant, page)
     assert plant.orders("jog")[-1].press_id in {order.press_id for order in plant.orders("end_jog")}
+
+
+def test_the_page_behind_the_label_holds_and_lets_go(opened: Opened, plant: Plant) -> None:
+    page = opened("/trackers/T1/mast", "phone")
+    session, _ = hold_with_finger(page, plant)
+    touch(session, "touchEnd")
+    assert is_at_rest(plant, page)
+    assert {(order.axis, order.direction, order.speed) for order in plant.orders("jog")} == {
+        (Axis.AZIMUTH, 1, JogSpeed.SLOW)
+    }
 
 
 def test_sequence_grows_with_every_heartbeat(opened: Opened, plant: Plant) -> None:

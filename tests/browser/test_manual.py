@@ -28,13 +28,15 @@ def test_it_is_read_and_searched(manual: Plant, browser: Browser) -> None:
     listen(page, complaints)
     asked: list[str] = []
     page.on("request", lambda request: asked.append(request.url))
-    page.goto(f"{manual.url}/manual/")
+    with page.expect_event("worker"):
+        page.goto(f"{manual.url}/manual/")
     expect(page.locator("h1#heliopanel")).to_be_visible()
     sections = page.locator(".md-tabs__link").all_inner_texts()
     assert [one.strip() for one in sections][1:] == [
         "Start", "Operate", "Install", "Connect a drive", "Integrate", "Reference", "Explain", "Develop",
     ]  # fmt: skip
     page.keyboard.press("/")
+    expect(page.get_by_role("combobox", name="Search")).to_be_focused()
     page.keyboard.type("keyhole", delay=20)
     expect(page.get_by_text("results")).to_be_visible()
     page.goto(f"{manual.url}/manual/explain/strategies.html")

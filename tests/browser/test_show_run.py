@@ -8,7 +8,7 @@ from playwright.sync_api import Page, expect
 
 from app.store.store import PlannedShow
 from app.tracker.programs.show import ShowPlan
-from app.tracker.state.snapshot import ActivityName, ShowPhase
+from app.tracker.state.snapshot import ActivityName, Event, EventKind, ShowPhase
 from tests.browser.conftest import Opened, Plant
 from tests.browser.layout import page_end
 from tests.fake_data import SAMSUN
@@ -99,6 +99,21 @@ def test_a_show_that_was_ended_before_stays_where_it_was(under_way: Plant, opene
     under_way.do(partial(over, under_way))
     expect(page.locator("#show-phase")).to_have_text("Ended")
     expect(page.locator("#show-clock")).to_have_text("11:36:00")
+
+
+@pytest.mark.parametrize("journal_first", [True, False])
+def test_a_show_that_was_stopped_says_when_why_and_by_whom(
+    journal_first: bool, under_way: Plant, opened: Opened
+) -> None:
+    page = opened(SHOW, "desk")
+    why, noon = "The show was stopped by the operator.", datetime(2026, 6, 21, 9, 36, 5, tzinfo=UTC)
+    line = Event(noon, EventKind.SHOW_ENDED, "T1", why, "anna", {"show_id": "s1", "outcome": "stopped"})
+    happens = [lambda: under_way.machine.emit(line), partial(over, under_way)]
+    for one in happens if journal_first else reversed(happens):
+        under_way.do(one)
+        expect(page.locator("#show-clock")).to_have_text("11:36:00")
+    expect(page.locator("#show-phase")).to_have_text("Ended")
+    expect(page.locator("#show-elapsed")).to_have_text(f"12:36:05 · anna · {why}")
 
 
 def test_the_sun_outside_is_not_drawn_into_a_show_that_is_over(under_way: Plant, opened: Opened) -> None:

@@ -6,18 +6,20 @@ import random
 
 from tests.e2e.holds import ONE_BY_ONE, Tally, busy, rig
 from tests.e2e.socket_page import LetGo
+from tests.soak import SOAK
 
-TRACKERS = 16
+TRACKERS = 8
 CUTS, OTHERS = 1000, 25
-BUSY = 10
+BUSY = 10 if SOAK else 4
 LONGEST_MS = 300.0
-P999_MS = 280.0
+P999_MS = 280.0 if SOAK else LONGEST_MS
+"""What depends on the computer is measured by `make soak`; what is promised holds in every run."""
 
 
 def test_a_thousand_cut_networks_and_every_other_way_of_letting_go() -> None:
     """One late end in two hundred, as there was, is seen here with a probability of 99.3 %.
 
-    Ten other programs keep the processors busy: where the panel has to wait as they do, one press in 150 ends
+    Other programs keep the processors busy: where the panel has to wait as they do, one press in 150 ends
     while it is held, and as many are refused for a slow link.
     """
     ways = [way for way in ONE_BY_ONE for _ in range(CUTS if way is LetGo.CUT else OTHERS)]

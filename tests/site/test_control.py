@@ -8,15 +8,14 @@ import pytest
 from app.link.messages import (
     AnswerControl,
     ConfigureTracker,
-    LockSettings,
     Order,
     ReleaseControl,
     RenewControl,
     RequestControl,
     SetLocation,
     SiteCommand,
-    UnlockSettings,
 )
+from app.link.settings_orders import LockSettings, UnlockSettings
 from app.sun.position import Location
 from app.tracker.commands.commands import (
     Command,

@@ -4,8 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from app.link.messages import ConfigureTracker, LockSettings, RemoveTracker
-from app.link.settings_orders import UndoSettings
+from app.link.messages import (
+    ConfigureTracker,
+    RemoveTracker,
+)
+from app.link.settings_orders import LockSettings, UndoSettings
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.settings.config import Orientation, TrackerConfig
 from tests.site.plant import Plant, make_plant

@@ -283,3 +283,20 @@ async def test_pages_show_a_viewer_what_a_role_may_not_do(office: Office) -> Non
     async with office.browser(await office.session(Role.ENGINEER)) as browser:
         homing = (await browser.get("/trackers/T1/commissioning/homing")).text
     assert "data-jog=" in homing
+
+
+@pytest.mark.parametrize("page", ["commissioning/homing", "mast", "service"])
+async def test_who_may_not_move_a_tracker_reads_which_role_may_and_who_gives_it(
+    page: str, office: Office
+) -> None:
+    said = {}
+    for role in (Role.ADMINISTRATOR, Role.VIEWER, Role.OPERATOR):
+        async with office.browser(await office.session(role)) as browser:
+            said[role] = (await browser.get(f"/trackers/T1/{page}")).text
+    why = "Your role cannot move the tracker. An administrator can add the role operator or engineer"
+    assert why in said[Role.ADMINISTRATOR]
+    assert why in said[Role.VIEWER]
+    assert why not in said[Role.OPERATOR]
+    assert '<a href="/users">' in said[Role.ADMINISTRATOR].split(why)[1].split("</p>")[0]
+    assert '<a href="/users">' not in said[Role.VIEWER].split(why)[1].split("</p>")[0]
+    assert [said[role].count("data-jog=") for role in said] == [0, 0, 4]

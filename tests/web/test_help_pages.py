@@ -14,7 +14,7 @@ from app.alarms.catalogue import ENTRIES
 from app.sun.position import SunPosition
 from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import TrackerConfig
-from app.web.features.guide import guide
+from app.web.features.guide import guide, rendering
 from app.web.features.setup.settings import TRACKING
 from app.web.shell.help import PAGES, help_for
 from app.web.shell.render import environment
@@ -80,7 +80,7 @@ async def test_the_guide_names_every_alarm_where_links_expect_it(client: httpx.A
 
 
 async def test_html_in_a_document_is_text_and_nothing_outside_is_served(client: httpx.AsyncClient) -> None:
-    rendered = guide.rendered("# A\n\n<b onclick=x>bold</b>\n\n<script>1</script>\n\n[x](../SECURITY.md)")
+    rendered = rendering.rendered("# A\n\n<b onclick=x>bold</b>\n\n<script>1</script>\n\n[x](../SECURITY.md)")
     assert "<script" not in rendered
     assert "<b " not in rendered
     assert "SECURITY" not in rendered

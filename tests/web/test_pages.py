@@ -12,6 +12,7 @@ import pytest
 from app import web
 from app.link.messages import ConfigureTracker, SetClock, SetLocation
 from app.tracker.commands.commands import GoToStart, Move, SelectMode, SetHome, Step
+from app.tracker.settings.config import MountConfig, MountKind
 from app.tracker.state.snapshot import ActivityName
 from app.tracker.values.mode import Mode
 from app.tracker.values.reason import Reason
@@ -354,3 +355,20 @@ async def test_the_speeds_by_hand_are_those_of_each_axis(
     shown = (await client.get(page)).text
     assert "Fast 3°/s" in shown
     assert "Slow 0.5°/s" in shown
+
+
+async def test_the_mast_page_tells_the_speed_and_the_angles_of_each_axis(
+    client: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    tracker = machine.trackers["T1"]
+    config = tracker.config
+    tracker.config = replace(config, elevation=replace(config.elevation, jog_slow_dps=0.25))
+    machine.emit()
+    page = (await client.get("/trackers/T1/mast")).text
+    assert "Slow 0.5 / 0.25°/s" in page
+    assert "Axes:" not in page
+    assert "keep everyone clear of the tracker" in page
+    tracker.config = replace(config, mount=MountConfig(MountKind.EQUATORIAL))
+    machine.emit()
+    page = (await client.get("/trackers/T1/mast")).text
+    assert "Axes:" in page

@@ -234,7 +234,7 @@ def test_a_bar_shows_the_angle_on_its_range_also_a_turn_away() -> None:
     assert bars(replace(one, measured=None), CONFIG)[0].measured is None
 
 
-async def test_many_trackers_stand_in_rows_and_few_as_cards(
+async def test_a_field_stands_as_tiles_many_in_rows_and_few_as_cards(
     panel: httpx.AsyncClient, machine: FakeMachine
 ) -> None:
     assert "glances-cards" in (await panel.get("/")).text
@@ -247,6 +247,14 @@ async def test_many_trackers_stand_in_rows_and_few_as_cards(
     assert "glances-rows" in page
     assert page.count('class="glance-open"') == 6
     assert "glances-cards" in (await panel.get("/?layout=cards")).text
+    for number in range(7, 10):
+        name = f"T{number}"
+        machine.trackers[name] = FakeTracker(commissioned(name, "Row", tracking=False), Pair(180.0, 45.0))
+    machine.emit()
+    page = (await panel.get("/")).text
+    assert page.count("data-tile=") == 9
+    assert "rotate(-45)" in page
+    assert hidden_of(page, 'id="tile-urgent"') == [True]
 
 
 def hidden_of(page: str, mark: str) -> list[bool]:

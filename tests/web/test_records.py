@@ -184,9 +184,9 @@ async def test_a_record_needs_the_technician(desk: Desk) -> None:
     assert "technician" in answer.json()["detail"]
 
 
-async def test_the_label_opens_the_trackers_page(desk: Desk) -> None:
+async def test_the_label_opens_the_buttons_that_move_the_tracker(desk: Desk) -> None:
     page = (await desk.ask("GET", "/trackers/T1/label?address=https://heliopanel.local:8443/x")).text
-    assert "https://heliopanel.local:8443/trackers/T1" in page
+    assert "https://heliopanel.local:8443/trackers/T1/mast" in page
     assert "the controller's computer only" in (await desk.ask("GET", "/trackers/T1/label")).text
     wrong = await desk.ask("GET", "/trackers/T1/label?address=javascript:alert(1)")
     assert wrong.status_code == 422

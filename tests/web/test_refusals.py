@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from app.access.authenticator import Throttled, WrongPassword
 from app.access.roles import Role
+from app.access.sign_in_errors import Throttled, WrongPassword
 from app.access.tokens import Scope
 from app.base.clock import Clock
 from tests.web.office import HERE, Office

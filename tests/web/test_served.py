@@ -64,7 +64,8 @@ def test_the_address_is_told_when_a_browser_can_open_it_and_not_before(tmp_path:
             told.append(settings.port)
 
     with served(settings, tell):
-        assert told == [settings.port]
+        asyncio.run(eventually(lambda: told))
+    assert told == [settings.port]
 
 
 def test_one_command_later_the_panel_is_served_over_https(folder: Path) -> None:

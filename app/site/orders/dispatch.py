@@ -23,7 +23,6 @@ from app.link.messages import (
     DeleteRecording,
     EndInjectedFaults,
     InjectFault,
-    LockSettings,
     Order,
     ReleaseControl,
     RemoveTracker,
@@ -39,11 +38,10 @@ from app.link.messages import (
     SiteCommand,
     StopAll,
     TakeSighting,
-    UnlockSettings,
 )
 from app.link.place_orders import SetHorizon
 from app.link.record_orders import AddRecordPhoto, RemoveRecordPhoto, SignRecord
-from app.link.settings_orders import UndoSettings, UndoSiteSettings
+from app.link.settings_orders import LockSettings, UndoSettings, UndoSiteSettings, UnlockSettings
 from app.link.weather_orders import ReportWeather, SetMetStation, SetWeatherWindows, SimulateWeather
 from app.site.orders import (
     control,

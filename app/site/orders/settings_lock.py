@@ -5,7 +5,11 @@ from dataclasses import replace
 from typing import Any
 
 from app.base.message import N_, say
-from app.link.messages import LockSettings, SetLocation, SiteCommand, UnlockSettings
+from app.link.messages import (
+    SetLocation,
+    SiteCommand,
+)
+from app.link.settings_orders import LockSettings, UnlockSettings
 from app.site.loop.loop import TrackerLoop
 from app.site.state.model import SiteModel
 from app.tracker.access.local_locks import locked_settings

@@ -73,9 +73,7 @@ def snapshot(state: ControllerState, at: datetime, now: datetime, *, asked: bool
         in_position=_in_position(state, fresh),
         homed=state.memory.home is not None,
         azimuth=_axis_state(state, fresh.azimuth) if fresh else None,
-        elevation=_axis_state(state, fresh.elevation)
-        if fresh and not state.config.mount.single_axis
-        else None,
+        elevation=_elevation_state(state, fresh),
         fault=state.activity.reason if isinstance(state.activity, Faulted) else None,
         waiting=waiting_reasons(state),
         notices=notices(state),
@@ -285,6 +283,12 @@ def _axis_state(state: ControllerState, axis: AxisFeedback) -> AxisState:
         at_origin=axis.at_origin,
         position_deg=axis.position_deg,
     )
+
+
+def _elevation_state(state: ControllerState, fresh: Feedback | None) -> AxisState | None:
+    """Return the elevation axis as it is shown, None without a reading or on a mount that lacks it."""
+    has_axis = not state.config.mount.single_axis
+    return _axis_state(state, fresh.elevation) if fresh and has_axis else None
 
 
 def _show(showing: Showing) -> ShowProgress:

@@ -11,8 +11,8 @@ from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
-from app.access.authenticator import Throttled, TooManyAtOnce, WrongPassword
 from app.access.principal import NotAllowed, ProofNeeded, SignInNeeded
+from app.access.sign_in_errors import Throttled, TooManyAtOnce, WrongPassword
 from app.access.users import AccessRefused
 from app.alarms.lifecycle import UnknownAlarm
 from app.base.extras import ExtraMissing

@@ -1,14 +1,12 @@
 """What the machine and the panel count, as Prometheus reads it."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Protocol, runtime_checkable
 
 from prometheus_client import CollectorRegistry
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
 from prometheus_client.exposition import generate_latest
 from prometheus_client.utils import floatToGoString
 
-from app.link.messages import MachineUnreachable
 from app.link.metrics import (
     LATENESS_BOUNDS_MS,
     GatewayMetrics,
@@ -42,14 +40,6 @@ LATENESS = "heliopanel_tick_lateness_seconds"
 BOUNDS = (*(f"{bound / 1000:g}" for bound in LATENESS_BOUNDS_MS), "+Inf")
 
 
-@runtime_checkable
-class Counting(Protocol):
-    """A machine that counts what it does."""
-
-    async def metrics(self) -> MachineMetrics:
-        """Return what was counted."""
-
-
 class _Given:
     """Metrics that are already there."""
 
@@ -59,16 +49,6 @@ class _Given:
     def collect(self) -> Iterator[Metric]:
         """Yield them."""
         yield from self._metrics
-
-
-async def counted(machine: object) -> MachineMetrics | None:
-    """Return what a machine counts, None if it does not answer or does not count."""
-    if not isinstance(machine, Counting):
-        return None
-    try:
-        return await machine.metrics()
-    except MachineUnreachable:
-        return None
 
 
 def exposition(machine: MachineMetrics | None, viewers: int) -> bytes:

@@ -29,7 +29,7 @@ from app.store.store import (
 from app.tracker.memory.memory import SiteState, TrackerState
 from app.tracker.memory.recording import Frames, RecordingInfo, RecordingKind
 from app.tracker.state.snapshot import SiteSnapshot, Snapshot
-from app.web.services.metrics import Counting
+from app.web.services.counting import Counting
 from app.web.services.studies import Studies
 
 T = TypeVar("T")

@@ -157,7 +157,7 @@ class SettingRow:
 
 @dataclass(frozen=True, slots=True)
 class OverviewPage:
-    """All trackers of the site, as cards or in rows, and how many do what."""
+    """All trackers of the site, as cards, in rows or as tiles, and how many do what."""
 
     template: ClassVar[str] = "overview.html"
 

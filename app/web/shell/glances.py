@@ -15,6 +15,16 @@ from app.tracker.weather.weather import Quantity
 BAR = 200.0
 WHOLE_TURN_DEG, ZENITH_DEG = (0.0, 360.0), (0.0, 90.0)
 NOT_STOWED = CATALOGUE["not_stowed"]
+LOOKS = {
+    ActivityName.JOGGING: "manual",
+    ActivityName.MOVING: "manual",
+    ActivityName.MEASURING: "manual",
+    ActivityName.HOMING: "manual",
+    ActivityName.SETTING_HOME: "manual",
+    ActivityName.STOWING: "under-way",
+    ActivityName.FAULTED: "fault",
+}
+"""How the tile of a tracker looks that does what is not its normal day; tiles.js is told the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +49,7 @@ class Glance:
 
     `trouble` names the most urgent of its alarms, of which `priority` is 0 without any. That it does not stow
     in a storm is its own state: it is told although the list of alarms, which is cut off, does not name it.
+    `look` is how its tile looks, `tilt_deg` how far its panel is turned from level, seen from the side.
     """
 
     one: Snapshot
@@ -49,6 +60,8 @@ class Glance:
     trouble: str
     done: int
     next_step: str
+    look: str
+    tilt_deg: int
 
 
 def glance(
@@ -70,12 +83,25 @@ def glance(
         trouble=trouble,
         done=progress[0],
         next_step=progress[1],
+        look=look(one),
+        tilt_deg=round(one.measured.elevation_deg - ZENITH_DEG[1]) if one.measured else 0,
     )
 
 
+def look(one: Snapshot) -> str:
+    """Return how a tracker's tile looks, empty for a normal day: an alarm's color comes on top."""
+    if one.measured is None:
+        return "unknown"
+    return "under-way" if one.approaching else LOOKS.get(one.activity, "")
+
+
 def doing(trackers: Iterable[Snapshot]) -> tuple[tuple[ActivityName, int], ...]:
-    """Return of everything that a tracker may do how many do it, those on the way to the sun aside."""
-    counted = Counter(one.activity for one in trackers if not one.approaching)
+    """Return of everything that a tracker may do how many do it.
+
+    Those on the way to the sun, and those that do not stow in a storm, are counted as that: the sum is
+    all trackers.
+    """
+    counted = Counter(one.activity for one in trackers if not one.approaching and not one.not_stowed)
     return tuple((name, counted[name]) for name in ActivityName)
 
 

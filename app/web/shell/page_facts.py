@@ -13,7 +13,7 @@ from app.web.languages.catalogue import catalogue_of
 from app.web.live.hold_to_run import LATEST_HEARTBEAT
 from app.web.live.live_protocol import FLOODED
 from app.web.shell.formats import MEASURES, NAMELESS
-from app.web.shell.glances import BAR
+from app.web.shell.glances import BAR, LOOKS
 from app.web.shell.theme import A_YEAR_S
 from app.web.shell.themes import CHOICES, GLARE_ABOVE_DEG, NIGHT_BELOW_DEG
 
@@ -52,6 +52,7 @@ def page_facts(code: str) -> Markup:
         "slow_link_ms": round(LATEST_HEARTBEAT.total_seconds() * 1000),
         "flooded": FLOODED,
         "bar": BAR,
+        "looks": {name.value: one for name, one in LOOKS.items()},
         "sky": {"radius": HORIZON, "set_deg": SET_DEG},
     }
     return Markup(orjson.dumps(told).decode().replace("<", "\\u003c"))  # noqa: S704 - our own numbers and words

@@ -24,6 +24,7 @@ from app.web.shell.allowed import shut
 from app.web.shell.contexts import Context
 from app.web.shell.deps import panel, principal
 from app.web.shell.help import help_for
+from app.web.shell.one_space import OneSpace
 from app.web.shell.page_facts import page_facts
 
 
@@ -64,7 +65,7 @@ def environment() -> Environment:
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,
-        extensions=["jinja2.ext.i18n"],
+        extensions=["jinja2.ext.i18n", OneSpace],
     )
     env.policies["ext.i18n.trimmed"] = True
     env.install_gettext_callables(  # type: ignore[attr-defined] # the extension adds it

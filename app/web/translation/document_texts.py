@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
-from app.web.features.guide import guide
+from app.web.features.guide import guide, rendering
 from app.web.languages.catalogue import DOCUMENTS
 
 
@@ -15,5 +15,5 @@ def extract(
     path = Path(file.name)
     for name in guide.SPOKEN:
         if path.match(f"docs/{guide.PLACES[name]}.md"):
-            for line, markdown in guide.blocks(name):
+            for line, markdown in rendering.blocks(name):
                 yield line, "pgettext", (DOCUMENTS, markdown), []

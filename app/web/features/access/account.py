@@ -6,8 +6,8 @@ from fastapi import Form
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
-from app.access.authenticator import Throttled, TooManyAtOnce, WrongPassword
 from app.access.principal import NotAllowed, Via
+from app.access.sign_in_errors import Throttled, TooManyAtOnce, WrongPassword
 from app.access.users import AccessRefused
 from app.base.message import N_
 from app.base.permission import Permission

@@ -9,12 +9,11 @@ from app.base.message import N_
 from app.base.permission import Permission
 from app.link.messages import (
     AnswerControl,
-    LockSettings,
     ReleaseControl,
     RequestControl,
     SiteCommand,
-    UnlockSettings,
 )
+from app.link.settings_orders import LockSettings, UnlockSettings
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.shell.orders import PressDep

@@ -24,8 +24,8 @@ from app.web.shell.orders import PressDep
 from app.web.shell.render import go, page
 
 router = page_router()
-MANY = 5
-"""From so many trackers on they are shown in rows."""
+MANY, FIELD = 5, 9
+"""From so many trackers on they are shown in rows, and as tiles."""
 
 
 class Layout(StrEnum):
@@ -33,12 +33,13 @@ class Layout(StrEnum):
 
     CARDS = "cards"
     ROWS = "rows"
+    TILES = "tiles"
 
 
 @router.get("/")
 @needs(Permission.READ)
 async def overview(request: Request, machine: MachineDep, layout: Layout | None = None) -> Response:
-    """Show every tracker of the site; many of them in rows."""
+    """Show every tracker of the site; many of them in rows, a field as tiles."""
     return _answer(request, await machine.detail(), layout=layout)
 
 
@@ -100,10 +101,16 @@ def _answer(
         frame=frame,
         glances=(glances := _glances(frame.site, detail)),
         doing=doing(one.one for one in glances),
-        layout=layout or (Layout.ROWS if len(glances) >= MANY else Layout.CARDS),
+        layout=layout or _layout(len(glances)),
         form=form,
     )
     return page(request, context, block="add", status=status)
+
+
+def _layout(trackers: int) -> Layout:
+    if trackers >= FIELD:
+        return Layout.TILES
+    return Layout.ROWS if trackers >= MANY else Layout.CARDS
 
 
 def _free_id(detail: SiteDetail) -> str:

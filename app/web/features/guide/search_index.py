@@ -65,6 +65,11 @@ PARTS = (
     ),
     (N_("Service mode"), "/service", N_("Who may move the tracker now, home reference")),
     (N_("Training"), "/fault-injection", N_("Inject faults on a simulated tracker")),
+    (
+        N_("Hold to move"),
+        "/mast",
+        N_("Four jog buttons and two angles, for a phone at the tracker"),
+    ),
     (N_("Label"), "/label", N_("Print a label with a QR code")),
     (N_("Location"), "/commissioning/location", N_("Step 1: latitude, longitude, time zone")),
     (N_("Clock"), "/commissioning/clock", N_("Step 2: date, time, NTP")),

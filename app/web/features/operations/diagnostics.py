@@ -17,7 +17,7 @@ from app.base.masking import without_secrets
 from app.base.settings import Settings
 from app.link.messages import Machine
 from app.store.store import JournalFilter, Reader
-from app.web.services.metrics import counted
+from app.web.services.counting import counted
 
 NEWEST = 1000
 Parts = dict[str, Any]

@@ -5,7 +5,7 @@ from app.link.messages import MachineUnreachable
 from app.link.metrics import GatewayMetrics
 from app.web.api.base import Page, api_router, whole
 from app.web.http.needs import needs
-from app.web.services.metrics import counted
+from app.web.services.counting import counted
 from app.web.shell.deps import MachineDep
 
 router = api_router(prefix="/site/integrations", tags=["site"])

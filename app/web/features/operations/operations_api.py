@@ -10,12 +10,13 @@ from starlette.concurrency import run_in_threadpool
 from app.base.build import VERSION
 from app.base.logs import get_logger
 from app.base.permission import Permission
+from app.base.startup import late
 from app.link.messages import MachineUnreachable
 from app.store.store import JournalFilter
 from app.web.api.base import Output, Responses, operation_id
 from app.web.features.operations.diagnostics import about, live, stored, zipped
 from app.web.http.needs import needs
-from app.web.services.metrics import counted, exposition
+from app.web.services.counting import counted
 from app.web.shell.deps import PanelDep
 
 log = get_logger()
@@ -67,7 +68,8 @@ def read_ready(panel: PanelDep) -> Readiness:
 @needs(Permission.READ)
 async def read_metrics(panel: PanelDep) -> Response:
     """Return counters of machine and panel in the text format."""
-    text = exposition(await counted(panel.machine), len(panel.hub))
+    machine = await counted(panel.machine)
+    text: bytes = late("app.web.services.metrics").exposition(machine, len(panel.hub))
     return Response(text, media_type="text/plain; version=0.0.4")
 
 

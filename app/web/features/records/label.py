@@ -1,4 +1,4 @@
-"""A label for the cabinet: the tracker's name and a QR code that opens its page."""
+"""A label for the cabinet: the tracker's name and a QR code that opens the buttons that move it."""
 
 import ipaddress
 from typing import Annotated
@@ -41,7 +41,7 @@ async def label(
     typed = Typed({"address": address or here})
     if base is None:
         typed.errors["address"] = WRONG
-    url = f"{base or here}/trackers/{quote(tracker_id)}"
+    url = f"{base or here}/trackers/{quote(tracker_id)}/mast"
     path, size = qr_path(url)
     frame = tracker_frame(
         request, tracker_id, N_("Label"), back=Link(N_("Record"), f"/trackers/{tracker_id}/record")

@@ -3,8 +3,7 @@
 from pydantic import Field
 
 from app.base.permission import Permission
-from app.link.messages import LockSettings, UnlockSettings
-from app.link.settings_orders import UndoSettings
+from app.link.settings_orders import LockSettings, UndoSettings, UnlockSettings
 from app.tracker.memory.memory import CommissioningLock
 from app.tracker.settings.config import TrackerConfig
 from app.web.api.base import CHANGED, NOT_FOUND, REFUSED, TAGGED, Input, Output, TrackerId, api_router

@@ -19,7 +19,7 @@ from app.web.features.site import weather_forms as forms
 from app.web.features.site.site_contexts import SitePage
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
-from app.web.services.metrics import counted
+from app.web.services.counting import counted
 from app.web.shell.deps import MachineDep
 from app.web.shell.forms import Typed
 from app.web.shell.frame import site_frame

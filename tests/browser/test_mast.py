@@ -1,0 +1,61 @@
+"""The page behind the label: all of it on one screen of a phone, in every language, large for gloves."""
+
+import pytest
+from playwright.sync_api import Page
+
+from app.web.languages.known import LANGUAGES
+from tests.browser.conftest import Opened, Plant
+from tests.browser.test_frame import BOXES, in_language
+from tests.browser.troubles import trouble
+
+MAST = "/trackers/T1/mast"
+LEAST_PX = 112
+BETWEEN_BARS = """(names) => {
+  const top = document.querySelector(".header").getBoundingClientRect().bottom;
+  const below = document.querySelector(".footer").getBoundingClientRect().top;
+  const bottom = innerWidth < 900 ? below : innerHeight;
+  return [...document.querySelectorAll(names)].map((one) => one.getBoundingClientRect())
+    .map((box) => [box.width, box.height, box.top >= top && box.bottom <= bottom]);
+}"""
+
+
+def boxes(page: Page, names: str) -> list[tuple[float, float, bool]]:
+    return [tuple(one) for one in page.evaluate(BETWEEN_BARS, names)]
+
+
+@pytest.mark.parametrize("size", ["phone", "tablet"])
+def test_four_buttons_and_two_angles_are_on_one_screen(size: str, plant: Plant, opened: Opened) -> None:
+    page = opened(MAST, size)
+    for language in LANGUAGES:
+        in_language(page, plant, language, MAST)
+        buttons, angles = boxes(page, "[data-jog]"), boxes(page, ".mast .value-main")
+        assert len(buttons) == 4
+        assert len(angles) == 2
+        assert all(width >= LEAST_PX and height >= LEAST_PX for width, height, _ in buttons), language
+        assert all(inside for _, _, inside in (*buttons, *angles)), language
+
+
+def test_a_phone_of_320_px_has_the_buttons_too(plant: Plant, opened: Opened) -> None:
+    page = opened(MAST, "phone")
+    page.set_viewport_size({"width": 320, "height": 640})
+    assert all(width >= LEAST_PX and height >= LEAST_PX for width, height, _ in boxes(page, "[data-jog]"))
+
+
+def test_a_button_that_may_not_move_says_why_and_where_it_is_read(plant: Plant, opened: Opened) -> None:
+    plant.do(lambda: trouble(plant.machine))
+    page = opened("/trackers/T3/mast", "phone")
+    page.wait_for_selector("[data-jog]:disabled")
+    reasons = page.locator('[data-reasons="jog"]')
+    assert reasons.inner_text().strip()
+    assert reasons.bounding_box()["y"] < page.locator("[data-jog]").first.bounding_box()["y"]  # type: ignore[index]
+
+
+def test_what_is_said_when_a_button_is_let_go_moves_none(plant: Plant, opened: Opened) -> None:
+    page = opened(MAST, "phone")
+    before = page.evaluate(BOXES, "[data-jog]")
+    said = """() => {
+      document.getElementById("jog-words").textContent = "The finger slid off the button.";
+      document.getElementById("lost-beats").textContent = ", 0 of 41 heartbeats lost";
+    }"""
+    page.evaluate(said)
+    assert page.evaluate(BOXES, "[data-jog]") == before

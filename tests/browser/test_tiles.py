@@ -1,0 +1,84 @@
+"""A field on the overview: 48 trackers on a tablet, gray when normal, the one in danger first."""
+
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from app.tracker.state.snapshot import ActivityName, Pair
+from app.tracker.values.reason import Reason
+from tests.browser.conftest import Opened, Plant
+from tests.fake_alarms import alarm
+from tests.fake_data import commissioned
+from tests.fake_tracker import FakeTracker
+
+WHY = Reason("not_stowed", "South field does not stow.", "Stow it by hand.")
+IN_SIGHT = """() => {
+  const below = document.querySelector(".footer").getBoundingClientRect().top;
+  const end = innerWidth < 900 ? below : innerHeight;
+  const ends = [...document.querySelectorAll(".tile")].map((one) => one.getBoundingClientRect().bottom);
+  return ends.filter((one) => one <= end).length;
+}"""
+
+
+@pytest.fixture
+def field(plant: Plant) -> Plant:
+    """A field of 48 in a storm: 45 are stowed, 2 stow, 1 does not."""
+
+    def grow() -> None:
+        for number in range(1, 49):
+            name = f"T{number:02}"
+            tracker = FakeTracker(commissioned(name, "Row", tracking=False), Pair(180.0, 90.0))
+            tracker.activity = ActivityName.STOWED
+            plant.machine.trackers[name] = tracker
+        for name in [name for name in plant.machine.trackers if len(name) == 2]:
+            del plant.machine.trackers[name]
+        plant.machine.trackers["T12"].activity = ActivityName.STOWING
+        plant.machine.trackers["T44"].activity = ActivityName.STOWING
+        plant.machine.trackers["T31"].activity = ActivityName.STOWING
+        plant.machine.trackers["T31"].not_stowed = WHY
+        plant.machine.emit()
+
+    plant.do(grow)
+    return plant
+
+
+@pytest.mark.parametrize(("size", "least"), [("tablet", 48), ("phone", 16)])
+def test_a_field_is_seen_on_one_screen_and_the_one_in_danger_first(
+    size: str, least: int, field: Plant, opened: Opened, picture: Callable[[Page, str], None]
+) -> None:
+    page = opened("/", size)
+    urgent = page.locator("#tile-urgent")
+    expect(urgent).to_contain_text("T31 Row")
+    assert page.locator('.tile[data-priority="1"]').count() == 1
+    assert page.locator('.tile[data-look="under-way"]').count() == 3
+    assert page.evaluate(IN_SIGHT) >= least
+    picture(page, f"tiles-storm-{size}")
+    urgent.click()
+    expect(page).to_have_url(f"{field.url}/trackers/T31")
+
+
+def test_tiles_and_counts_follow_what_happens(field: Plant, opened: Opened) -> None:
+    page = opened("/", "tablet")
+    doing = page.locator(".site-doing")
+    expect(doing.locator("[data-unstowed] b")).to_have_text("1")
+    expect(doing.locator('[data-doing="stowed"] b')).to_have_text("45")
+    expect(doing.locator('[data-doing="stowing"] b')).to_have_text("2")
+
+    def arrive() -> None:
+        for name in ("T12", "T31"):
+            field.machine.trackers[name].activity = ActivityName.STOWED
+        field.machine.trackers["T31"].not_stowed = None
+        field.machine.alarms = (alarm("drive_lost", field.machine.clock.now(), "T07"),)
+        field.machine.trackers["T08"].position = Pair(90.0, 30.0)
+
+    field.do(arrive)
+    expect(doing.locator('[data-doing="stowed"] b')).to_have_text("47")
+    expect(doing.locator("[data-unstowed]")).to_be_hidden()
+    expect(page.locator("#tile-urgent")).to_be_hidden()
+    tile = page.locator('[data-tile="T07"]')
+    expect(tile).to_have_attribute("data-priority", "2")
+    expect(tile.locator("i")).to_have_text("2")
+    expect(page.get_by_role("link", name="T07 Stowed Drive does not answer")).to_be_visible()
+    panel = page.locator('[data-tile="T08"] .tile-panel')
+    expect(panel).to_have_attribute("transform", "translate(16 12) rotate(-60)")
