@@ -2,7 +2,9 @@
 # make test : sets up what tests need and runs them all, browser tests included
 # make check: formatting, lint, types, import contracts, migrations, vendored files, catalogues of languages
 # make fuzz : 10,000 cases against the API and hostile values for every form, in a network of its own; minutes
-# make soak : the long proofs: millions of random ticks, 1,000 kills, 300 power cuts, a day of 20 trackers
+# make soak : what make test leaves out: PART=timing judges how punctual things are, on a computer without other work;
+#   PART=built builds, releases and installs the product; PART=long are the long proofs: millions of random ticks,
+#   1,000 kills, 300 power cuts, a day of 20 trackers
 # make mutants: changes guards, access, limits, drives and control in a copy, one place at a time, and counts
 #   what their tests notice; ONLY=access does one area
 # make fresh: the two commands of the README on pristine Debian machines in folders, as a user and as root (needs root);
@@ -17,22 +19,29 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-# Tests that judge how punctual things are, each with the computer to itself; the others share the cores, more of
-# them at a time than there are cores, since most of a test is waiting. ORDER=random runs all in an order by chance,
-# ORDER=7 in that which the seed 7 makes.
-WORKERS ?= 4
+# A lock is whole (tests/test_locks.py): nothing is resolved, and each file has the checksum that stands there.
+INSTALL := -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes
+CHECKED = said=$$($(1)/python -m pip --disable-pip-version-check check) || { echo "$$said" >&2; \
+	echo "These libraries do not fit together. Remove $(VENV) and run the command again." >&2; exit 1; }
+# The tests share the cores, more of them at a time than there are cores, since most of a test is waiting.
+# ORDER=random runs them in an order by chance, ORDER=7 in that which the seed 7 makes.
+WORKERS ?= 3
 ORDER ?=
 SEED := $(if $(filter random,$(ORDER)),$(shell od -An -N3 -tu4 /dev/urandom | tr -d ' '),$(ORDER))
 IN_ORDER := $(SEED:%=--random-order=%)
 # Tests start hundreds of processes: what is compiled is kept, even where the environment says otherwise.
-test soak browser: export PYTHONDONTWRITEBYTECODE :=
-ALONE := tests/drives/timed \
+test soak soak-timing soak-built soak-long browser: export PYTHONDONTWRITEBYTECODE :=
+# What judges time, one at a time on a computer without other work, and what builds and installs the product: neither
+# is part of make test.
+TIMING := tests/drives/timed tests/test_benches.py \
 	$(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk field_events process storm storm_kill)) \
 	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop)) \
 	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost hold_to_run kill many_holds stop_and_tabs))
+BUILT := tests/test_release.py tests/deploy/test_install.py tests/e2e/test_wheel.py
+PARTS := long timing built
 
 .DEFAULT_GOAL := help
-.PHONY: help setup firmware docs reference dist fast client run test fresh check translations fuzz bench format lock browser system-packages clean
+.PHONY: help setup firmware docs reference dist fast client run test fresh check translations fuzz soak soak-timing soak-built soak-long mutants release bench format lock browser system-packages clean
 
 help: ## Show what each command does
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-10s %s\n", $$1, $$2}'
@@ -40,19 +49,22 @@ help: ## Show what each command does
 $(VENV)/.runtime: requirements.txt pyproject.toml
 	@echo "Setting up $(VENV) with what Heliopanel needs to run ..."
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.txt
+	@$(BIN)/python $(INSTALL) -r requirements.txt
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	@$(call CHECKED,$(BIN))
 	@touch $@
 
 $(VENV)/.dev: requirements-dev.txt $(VENV)/.runtime
 	@echo "Adding what tests and checks need ..."
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.txt
+	@$(BIN)/python $(INSTALL) -r requirements-dev.txt
+	@$(call CHECKED,$(BIN))
 	@touch $@
 
 $(VENV)/.client: requirements-client.txt $(VENV)/.runtime
 	@echo "Setting up $(VENV)/client, an integrator's own environment ..."
 	@test -x $(VENV)/client/bin/python || $(PYTHON) -m venv $(VENV)/client
-	@$(VENV)/client/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-client.txt
+	@$(VENV)/client/bin/python $(INSTALL) -r requirements-client.txt
+	@$(call CHECKED,$(VENV)/client/bin)
 	@touch $@
 
 client: $(VENV)/.client ## Add the generator of clients that a test of the API's document needs
@@ -78,7 +90,8 @@ reference: $(VENV)/.dev ## Renew the pages of Reference that are made of the cod
 	@$(BIN)/python -m tests.manual.made
 
 fast: $(VENV)/.runtime ## Add the compiled loops (numba) that make studies and comparisons quick
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-fast.txt
+	@$(BIN)/python $(INSTALL) -r requirements-fast.txt
+	@$(call CHECKED,$(BIN))
 	@echo "Ready: studies and comparisons use compiled loops."
 
 run: setup ## Serve the panel with a simulated tracker at http://127.0.0.1:8000
@@ -88,16 +101,24 @@ system-packages:
 	@sh tests/system-packages.sh
 
 test: system-packages $(VENV)/.dev $(VENV)/.client ## Set up what tests need and run them all, browser tests included
-	@echo "Running the tests that share the computer's cores ..."
-	@$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-reorder $(IN_ORDER) $(ALONE:%=--ignore=%)
-	@echo "Running the tests that judge how punctual things are, one at a time ..."
-	@$(BIN)/python -m pytest $(IN_ORDER) $(ALONE)
+	@$(BIN)/python -m tests.gate -n $(WORKERS) --dist loadfile --no-loadscope-reorder $(IN_ORDER) \
+		$(addprefix --ignore=,$(TIMING) $(BUILT))
 
 fresh: ## Run the README's two commands on pristine Debian machines; DEBIAN=13 WHO=user ONLY=run does a part
 	@python3 -m tests.fresh $(DEBIAN:%=--debian %) $(WHO:%=--who %) $(ONLY:%=--only %) \
 		$(if $(filter file,$(origin PYTHON)),,--python $(PYTHON))
 
-soak: $(VENV)/.dev system-packages ## Run the long proofs (hours): random operation, kills, power cuts, a day of a field
+soak: $(VENV)/.dev $(VENV)/.client system-packages ## Run what make test leaves out; PART=timing, built or long (hours) does a part
+	@$(if $(filter-out $(PARTS),$(PART)),echo "PART is one of: $(PARTS)." >&2; exit 2)
+	@set -e; for part in $(or $(PART),$(PARTS)); do $(MAKE) --no-print-directory soak-$$part; done
+
+soak-timing:
+	@$(BIN)/python -m pytest $(IN_ORDER) $(TIMING)
+
+soak-built:
+	@$(BIN)/python -m pytest $(IN_ORDER) $(BUILT)
+
+soak-long:
 	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/store/test_power_cut.py tests/tracker/test_stateful.py tests/site/test_field.py
 	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/machine/test_clock_jump.py tests/machine/test_field_events.py tests/machine/test_storm.py tests/machine/test_viewers.py tests/e2e/test_many_holds.py $(addprefix tests/browser/test_,$(addsuffix .py,axe keyboard languages_fit walk))
 	@HELIOPANEL_TEST_KILLS=$${HELIOPANEL_TEST_KILLS:-1000} $(BIN)/python -m pytest -s tests/machine/test_kills.py
@@ -144,10 +165,10 @@ format: $(VENV)/.dev ## Format the code
 # For every Python from 3.11 on: Debian 12 has 3.11.2, where some releases want 3.11.5, and 3.13 needs libraries
 # that 3.11 does not.
 lock: ## Renew the locked dependencies (needs uv)
-	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-strip-extras --no-emit-index-url --no-annotate --no-header -q --extra build --extra all pyproject.toml -o requirements.txt
-	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-strip-extras --no-emit-index-url --no-annotate --no-header -q --extra build --extra all --extra fast -c requirements.txt pyproject.toml -o requirements-fast.txt
-	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-strip-extras --no-emit-index-url --no-annotate --no-header -q --extra build --extra all --extra fast --extra mdns --extra dev -c requirements.txt pyproject.toml -o requirements-dev.txt
-	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-strip-extras --no-emit-index-url --no-annotate --no-header -q --group client -o requirements-client.txt
+	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all pyproject.toml -o requirements.txt
+	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all --extra fast -c requirements.txt pyproject.toml -o requirements-fast.txt
+	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all --extra fast --extra mdns --extra dev -c requirements.txt pyproject.toml -o requirements-dev.txt
+	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --group client -o requirements-client.txt
 
 clean: ## Remove what was built (not the data)
 	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache

@@ -327,8 +327,10 @@ def test_a_lost_context_is_bridged_and_taken_back(panel: Panel) -> None:
     page.wait_for_selector('.scene[data-painter="drawn"]')
     settled(page)
     assert share(page, CELL) > 0.02
+    drawn = frames(page)
     painting.evaluate("self.loser.restoreContext()")
     page.wait_for_selector('.scene[data-painter="webgl2"]')
+    until(page, lambda: frames(page) > drawn)
     settled(page)
     assert share(page, CELL) > 0.02
 
