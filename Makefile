@@ -1,5 +1,5 @@
 # make run  : sets everything up and serves the panel with a simulated tracker at http://127.0.0.1:8000
-# make test : sets up what tests need and runs them all, browser tests included
+# make test : sets up what tests need and runs them, browser tests included; what judges time is in make soak
 # make check: formatting, lint, types, import contracts, migrations, vendored files, catalogues of languages
 # make fuzz : 10,000 cases against the API and hostile values for every form, in a network of its own; minutes
 # make soak : what make test leaves out: PART=timing judges how punctual things are, on a computer without other work;
@@ -100,7 +100,7 @@ run: setup ## Serve the panel with a simulated tracker at http://127.0.0.1:8000
 system-packages:
 	@sh tests/system-packages.sh
 
-test: system-packages $(VENV)/.dev $(VENV)/.client ## Set up what tests need and run them all, browser tests included
+test: system-packages $(VENV)/.dev $(VENV)/.client ## Set up what tests need and run them, browser tests included
 	@$(BIN)/python -m tests.gate -n $(WORKERS) --dist loadfile --no-loadscope-reorder $(IN_ORDER) \
 		$(addprefix --ignore=,$(TIMING) $(BUILT))
 

@@ -153,6 +153,10 @@ make_environment() {
         ! pip_in "$made" install --no-deps "$wheel"; then
         code=1 fail "The libraries could not be installed; nothing was changed."
     fi
+    "$made/bin/python" -m pip --disable-pip-version-check check >"$scratch/check" || {
+        cat "$scratch/check" >&2
+        fail "This lock does not belong to this wheel; nothing was changed."
+    }
 }
 
 make_user() {
