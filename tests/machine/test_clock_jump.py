@@ -22,12 +22,16 @@ LIBRARIES = sorted(Path("/usr/lib").glob("*/faketime/libfaketime.so.1"))
 
 @pytest.fixture
 def shift(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A file that says by how much the clock of what is started now is off."""
+    """A file that says by how much the clock of what is started now is off.
+
+    It is read once a second, and not at every look at a clock: Python's threads look at one whenever they
+    wait for the interpreter, and a controller that reads a file for each is too late for its own watchdog.
+    """
     path = tmp_path / "shift"
     tell(path, "+0")
     monkeypatch.setenv("LD_PRELOAD", str(LIBRARIES[0]))
     monkeypatch.setenv("FAKETIME_TIMESTAMP_FILE", str(path))
-    monkeypatch.setenv("FAKETIME_NO_CACHE", "1")
+    monkeypatch.setenv("FAKETIME_CACHE_DURATION", "1")
     monkeypatch.setenv("FAKETIME_DONT_FAKE_MONOTONIC", "1")
     return path
 
