@@ -38,7 +38,7 @@ def test_it_is_read_and_searched(manual: Plant, browser: Browser) -> None:
     page.keyboard.press("/")
     expect(page.get_by_role("combobox", name="Search")).to_be_focused()
     page.keyboard.type("keyhole", delay=20)
-    expect(page.get_by_text("results")).to_be_visible()
+    expect(page.get_by_role("status").filter(has_text="results")).to_be_visible()
     page.goto(f"{manual.url}/manual/explain/strategies.html")
     assert page.locator("td.number").first.evaluate("cell => getComputedStyle(cell).textAlign") == "right"
     page.goto(f"{manual.url}/manual/operate/operators-guide.html")

@@ -4,6 +4,7 @@ import asyncio
 import base64
 import threading
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from datetime import datetime
 from itertools import product
@@ -189,6 +190,15 @@ def settled(page: Page) -> int:
     return before
 
 
+@contextmanager
+def painted(page: Page) -> Iterator[None]:
+    """Go on once what the block did is on the screen, and stands still."""
+    before = frames(page)
+    yield
+    until(page, lambda: frames(page) > before)
+    settled(page)
+
+
 def until(page: Page, reached: Callable[[], bool]) -> None:
     """Wait for what is true soon; a page under this policy lets nobody evaluate a string."""
     for _ in range(200):
@@ -267,21 +277,23 @@ def test_it_turns_by_mouse_keyboard_and_keys(panel: Panel) -> None:
     assert box is not None
     page.mouse.move(box["x"] + 150, box["y"] + 200)
     page.mouse.down()
-    page.mouse.move(box["x"] + 250, box["y"] + 170, steps=5)
-    page.mouse.up()
-    settled(page)
+    with painted(page):
+        page.mouse.move(box["x"] + 250, box["y"] + 170, steps=5)
+        page.mouse.up()
     shots.append(scene.screenshot())
     page.mouse.move(box["x"] + 300, box["y"] + 200, steps=3)
     assert scene.screenshot() == shots[-1], "let go: it turns no further"
     scene.focus()
-    page.keyboard.press("ArrowLeft")
+    with painted(page):
+        page.keyboard.press("ArrowLeft")
     shots.append(scene.screenshot())
-    page.get_by_role("button", name="Raise the viewpoint").click()
+    with painted(page):
+        page.get_by_role("button", name="Raise the viewpoint").click()
     page.mouse.move(2, 2)
     scene.focus()
     shots.append(scene.screenshot())
-    page.keyboard.press("Home")
-    page.mouse.move(2, 2)
+    with painted(page):
+        page.keyboard.press("Home")
     assert len({bytes(one) for one in shots}) == len(shots)
 
 
@@ -327,11 +339,9 @@ def test_a_lost_context_is_bridged_and_taken_back(panel: Panel) -> None:
     page.wait_for_selector('.scene[data-painter="drawn"]')
     settled(page)
     assert share(page, CELL) > 0.02
-    drawn = frames(page)
-    painting.evaluate("self.loser.restoreContext()")
-    page.wait_for_selector('.scene[data-painter="webgl2"]')
-    until(page, lambda: frames(page) > drawn)
-    settled(page)
+    with painted(page):
+        painting.evaluate("self.loser.restoreContext()")
+        page.wait_for_selector('.scene[data-painter="webgl2"]')
     assert share(page, CELL) > 0.02
 
 

@@ -23,6 +23,7 @@ from app.tracker.memory.memory import SiteState
 from app.tracker.state.snapshot import ActivityName, Event, EventKind
 from app.web.main import create_app
 from tests.access.fake_hasher import FakeHasher
+from tests.browser.conftest import PassingServer
 from tests.browser.hands import LINK_MEASURED, LOOK_EVERY_MS, middle, until
 from tests.e2e.chromium import PAGE_READY
 from tests.e2e.proxy import network
@@ -56,7 +57,7 @@ class Panel:
         config = uvicorn.Config(
             self.app, host="127.0.0.1", port=0, log_level="error", timeout_graceful_shutdown=1
         )
-        self.server = uvicorn.Server(config)
+        self.server = PassingServer(config)
         await self.site.start()
         listening = asyncio.create_task(self._listen())
         waiting = asyncio.create_task(self._wait(clock))
