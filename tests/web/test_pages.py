@@ -372,3 +372,11 @@ async def test_the_mast_page_tells_the_speed_and_the_angles_of_each_axis(
     machine.emit()
     page = (await client.get("/trackers/T1/mast")).text
     assert "Axes:" in page
+
+
+async def test_a_new_tracker_may_have_a_name_as_long_as_the_page_says(client: httpx.AsyncClient) -> None:
+    told = re.search(r"At most (\d+) characters; can be changed\.", (await client.get("/")).text)
+    assert told is not None
+    for longer, status in ((1, 422), (0, 201)):
+        new = {"tracker_id": "T7", "name": "x" * (int(told[1]) + longer)}
+        assert (await client.post("/api/v1/trackers", json=new)).status_code == status

@@ -166,6 +166,7 @@ class OverviewPage:
     doing: tuple[tuple[ActivityName, int], ...]
     layout: str
     form: Form
+    longest_name: int
 
 
 @dataclass(frozen=True, slots=True)

@@ -103,6 +103,7 @@ def _answer(
         doing=doing(one.one for one in glances),
         layout=layout or _layout(len(glances)),
         form=form,
+        longest_name=LONGEST_NAME,
     )
     return page(request, context, block="add", status=status)
 
