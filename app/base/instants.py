@@ -1,14 +1,19 @@
 """Instants as programs and people write them, leap seconds included."""
 
 import re
-from datetime import datetime
-from typing import Annotated
+from datetime import date, datetime
+from typing import Annotated, TypeVar
 
 from pydantic import AfterValidator, AwareDatetime, BeforeValidator, Strict
 
-FIRST_YEAR, LAST_YEAR = 1000, 8999
+from app.base.message import say
+
+When = TypeVar("When", date, datetime)
+FIRST_YEAR, LAST_YEAR = 1970, 2099
+"""The years in which the sun is known and a clock can be right; a day more or less stays in the calendar."""
 NUMBER = re.compile(r"\s*[-+]?[\d._]+(?:[eE][-+]?\d+)?\s*")
 NOT_A_NUMBER = "Write the instant in ISO 8601 with its offset, such as 2026-06-21T12:00:00+03:00."
+NOT_OF_THESE_TIMES = say("Enter a year from {first} to {last}.", first=FIRST_YEAR, last=LAST_YEAR)
 LEAP_SECOND = re.compile(r"([T ]\d{2}:\d{2}):60(?:[.,]\d+)?(?=$|[Zz+-])")
 
 
@@ -28,15 +33,23 @@ def _clamped(given: object) -> object:
     return without_leap_second(given) if isinstance(given, str) else given
 
 
-def _countable(instant: datetime) -> datetime:
-    """Refuse what no arithmetic with instants can take: a day more or less leaves the calendar."""
-    if not FIRST_YEAR <= instant.year <= LAST_YEAR:
-        raise ValueError(f"Give an instant of the years {FIRST_YEAR} to {LAST_YEAR}.")
+def is_of_these_times(instant: date) -> bool:
+    """Return whether an instant, or a date, lies in the years that this software deals with."""
+    return FIRST_YEAR <= instant.year <= LAST_YEAR
+
+
+def of_these_times(instant: When) -> When:
+    """Return an instant, or a date, of the years that this software deals with; raise `ValueError` for others."""
+    if not is_of_these_times(instant):
+        raise ValueError(NOT_OF_THESE_TIMES)
     return instant
 
 
-Instant = Annotated[AwareDatetime, Strict(False), BeforeValidator(_clamped), AfterValidator(_countable)]
+Instant = Annotated[AwareDatetime, Strict(False), BeforeValidator(_clamped), AfterValidator(of_these_times)]
 """An instant with its offset in what comes in; 23:59:60 is taken as 23:59:59, and a number is refused.
 
 It is text in JSON: where a model is strict, the text would be refused behind a validator of ours.
 """
+
+Day = Annotated[date, AfterValidator(of_these_times)]
+"""A date in what comes in."""

@@ -10,7 +10,7 @@ from app.modbus.errors import DriveError, DriveRefused
 from app.modbus.wire import Timing
 from app.tracker.memory.memory import MetStation
 from app.tracker.settings.config import DriveConfig, DriveKind
-from app.tracker.weather.weather import RANGES, Weather
+from app.tracker.weather.weather import Weather, is_possible
 
 BASES = (40000, 50000, 0)
 MARK = [0x5375, 0x6E53]
@@ -84,8 +84,7 @@ def weather_of(words: list[int]) -> tuple[Weather | None, tuple[str, ...]]:
         if word == UNKNOWN:
             continue
         value = (word - 2 * SIGN if word & SIGN else word) * scale
-        _, low, high, _ = RANGES[name]
-        if low <= value <= high:
+        if is_possible(name, value):
             found[name] = value
         else:
             impossible.append(name)

@@ -45,27 +45,30 @@ class Anemometers:
         """Return when a sensor last showed another value than before."""
         return max(filter(None, (one.changed_at for one in self._sensors.values())), default=None)
 
-    def take(self, sample: Sample, *, impossible: bool = False) -> None:
-        """Take a sample of one sensor; what has been silent for an hour is no sensor of the site any more."""
-        series = self._sensors.pop(sample.source, None) or Series(NAME, self._windows)
-        series.take(sample, impossible=impossible)
+    def take(self, at: datetime, value: float, source: str) -> None:
+        """Take a sample of one sensor."""
+        self._sensor(source, at).take(at, value, source)
+
+    def take_impossible(self, at: datetime, source: str) -> None:
+        """Take that what one sensor sent is out of range or no number."""
+        self._sensor(source, at).take_impossible(at, source)
+
+    def _sensor(self, source: str, at: datetime) -> Series:
+        """Return one sensor; what has been silent for an hour is no sensor of the site any more."""
+        series = self._sensors.pop(source, None) or Series(NAME, self._windows)
         fresh = {
-            source: one
-            for source, one in self._sensors.items()
-            if one.newest is not None and sample.at - one.newest.at < FORGOTTEN_AFTER
+            name: one
+            for name, one in self._sensors.items()
+            if one.newest is not None and at - one.newest.at < FORGOTTEN_AFTER
         }
         kept = list(fresh.items())[-(MOST_SENSORS - 1) :]
-        self._sensors = dict(kept) | {sample.source: series}
+        self._sensors = dict(kept) | {source: series}
+        return series
 
     def recall(self, sample: Sample) -> None:
         """Know the newest sample of one sensor from before the restart."""
         self._sensors[sample.source] = Series(NAME, self._windows)
         self._sensors[sample.source].recall(sample)
-
-    def last_of(self, source: str) -> Sample | None:
-        """Return the newest sample of one sensor."""
-        series = self._sensors.get(source)
-        return None if series is None else series.newest
 
     def last_of_all(self) -> tuple[Sample, ...]:
         """Return the newest sample of every sensor."""

@@ -8,12 +8,13 @@ from pathlib import Path
 
 from pydantic import TypeAdapter, ValidationError
 
+from app.base.instants import Instant
 from app.base.logs import get_logger
 from app.base.twins import Twins
 from app.tracker.protections.guarding import wind_of
 from app.tracker.protections.wind_stow import is_high
 from app.tracker.settings.protections import WindProtection
-from app.tracker.weather.weather import Quality, Reading, Sensed
+from app.tracker.weather.weather import RANGES, Quality, Reading, Sensed, is_possible
 
 CALM_EVERY = timedelta(minutes=10)
 """How often weather is written that demands nothing which the weather on disk does not."""
@@ -21,6 +22,7 @@ SOON_ENOUGH, ALONG = timedelta(minutes=4), timedelta(seconds=3)
 """From this age on it goes along with samples, within so long of them: a file system writes more about
 a change than the change itself, and about both at once."""
 ROOM = 16_000
+WIND = "wind_mps"
 
 log = get_logger()
 
@@ -30,7 +32,7 @@ class KeptValue:
     """One value, when it was measured by the site's clock, and who sent it."""
 
     value: float
-    at: datetime
+    at: Instant
     source: str
 
 
@@ -42,13 +44,13 @@ class KeptWeather:
     when lives of the controller have heard nothing, None: this one has.
     """
 
-    reported_at: datetime
+    reported_at: Instant
     source: str
     quantities: dict[str, KeptValue] = field(default_factory=dict)
     winds: tuple[KeptValue, ...] = ()
     gust_mps: float | None = None
     mean_mps: float | None = None
-    unheard_since: datetime | None = None
+    unheard_since: Instant | None = None
 
 
 FORM = TypeAdapter(KeptWeather)
@@ -66,7 +68,7 @@ class WeatherFile:
     def recall(self, site_time: datetime) -> KeptWeather | None:
         """Return what was kept, None if nothing was; that nothing is heard counts from now on."""
         contents = [] if self._twins is None else self._twins.read()
-        found = next((_decoded(one) for one in contents if one), None)
+        found = next((_judged(one) for one in contents if one), None)
         if found is not None and found.unheard_since is None:
             found = replace(found, unheard_since=site_time)
         return found
@@ -133,11 +135,26 @@ def _is_high(limits: WindProtection, kept: KeptWeather) -> bool:
     return limits.enabled and is_high(limits, wind_of(Sensed(wind, wind_mean_mps=kept.mean_mps), limits))
 
 
-def _decoded(content: bytes) -> KeptWeather | None:
+def _judged(content: bytes) -> KeptWeather | None:
+    """Return what was kept without what is impossible, which is told in the log; None: nothing can be used."""
     try:
-        return FORM.validate_json(content)
-    except ValidationError:
+        kept = FORM.validate_json(content)
+    except ValidationError as error:
+        log.warning("kept_weather_set_aside", reason=str(error.errors(include_url=False)[0]["msg"]))
         return None
+    possible = {name: one for name, one in kept.quantities.items() if _is_possible(name, one.value)}
+    winds = tuple(one for one in kept.winds if _is_possible(WIND, one.value))
+    gust_mps, mean_mps = (
+        None if one is None or not _is_possible(WIND, one) else one for one in (kept.gust_mps, kept.mean_mps)
+    )
+    judged = replace(kept, quantities=possible, winds=winds, gust_mps=gust_mps, mean_mps=mean_mps)
+    if judged != kept:
+        log.warning("kept_weather_set_aside", reason="impossible values")
+    return judged
+
+
+def _is_possible(name: str, value: float) -> bool:
+    return name in RANGES and is_possible(name, value)
 
 
 def _sync(twins: Twins) -> None:

@@ -3,7 +3,7 @@
 from dataclasses import fields
 from datetime import datetime, timedelta
 
-from app.base.message import say, with_format
+from app.base.message import N_, say, with_format
 from app.site.weather.anemometers import Anemometers
 from app.site.weather.kept_weather import KeptValue, KeptWeather
 from app.site.weather.weather_series import FROZEN_AFTER, Sample, Series
@@ -56,21 +56,21 @@ class WeatherStation:
         now: datetime,
         impossible: tuple[str, ...] = (),
     ) -> None:
-        """Take a report, or raise `ValueError` if it is of the future or already stale.
+        """Take a report, or raise `ValueError` if it holds nothing, is of the future or already stale.
 
         `impossible` names what the station sent that was no number or out of range.
         """
+        if readings == Weather():
+            raise ValueError(N_("Give at least one value of the weather."))
         measured_at = measured_at or site_time
         age = self._checked_age(measured_at, site_time)
         at = now - age
         for name in NAMES:
             value = None if readings is None else getattr(readings, name)
             if value is not None:
-                self._series[name].take(Sample(at, value, source))
+                self._series[name].take(at, value, source)
         for name in impossible:
-            last = self._winds.last_of(source) if name == WIND else self._series[name].newest
-            value = 0.0 if last is None else last.value
-            self._series[name].take(Sample(at, value, source), impossible=True)
+            self._series[name].take_impossible(at, source)
         self._reported_at, self._measured_at, self._source = at, measured_at, source
         self._unheard_at = self._sensed = None
 
@@ -95,16 +95,18 @@ class WeatherStation:
         if self._reported_at is None:
             return None
 
-        def value(sample: Sample) -> KeptValue:
+        def value(sample: Sample | None) -> KeptValue | None:
+            if sample is None or sample.value is None:
+                return None
             return KeptValue(sample.value, site_time - (now - sample.at), sample.source)
 
-        newest = {name: series.newest for name, series in self._series.items() if name != WIND}
+        newest = {name: value(series.newest) for name, series in self._series.items() if name != WIND}
         told = self.sensed(now)
         return KeptWeather(
             site_time - (now - self._reported_at),
             self._source,
-            {name: value(one) for name, one in newest.items() if one is not None},
-            tuple(value(one) for one in self._winds.last_of_all()),
+            {name: one for name, one in newest.items() if one is not None},
+            tuple(filter(None, map(value, self._winds.last_of_all()))),
             told.wind.value,
             told.wind_mean_mps,
             None if self._unheard_at is None else site_time - (now - self._unheard_at),

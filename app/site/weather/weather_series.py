@@ -19,10 +19,10 @@ ALIVE_ABOVE = {"wind_mps": 0.0, "irradiance_wm2": 20.0}
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """One value: when it was measured by the steady time, and who sent it."""
+    """One value: when it was measured by the steady time, and who sent it; None: none that is possible yet."""
 
     at: datetime
-    value: float
+    value: float | None
     source: str
 
 
@@ -32,7 +32,7 @@ class Series:
     def __init__(self, name: str, windows: WeatherWindows) -> None:
         self._name = name
         self.windows = windows
-        self._samples: deque[Sample] = deque()
+        self._believed: deque[tuple[datetime, float]] = deque()
         self._total = 0.0
         self._newest: Sample | None = None
         self._impossible = self._recalled = False
@@ -48,20 +48,26 @@ class Series:
         """Know the newest sample from before the restart; nothing counts on it."""
         self._newest, self._recalled = sample, True
 
-    def take(self, sample: Sample, *, impossible: bool = False) -> None:
-        """Take a sample; `impossible` says that it is out of range or no number."""
-        before, self._recalled = self._newest, False
-        self._impossible = impossible or self._jumped(before, sample)
+    def take_impossible(self, at: datetime, source: str) -> None:
+        """Take that what was sent is out of range or no number: the last value stands, and is not believed."""
+        self._take(Sample(at, None if self._newest is None else self._newest.value, source), impossible=True)
+
+    def take(self, at: datetime, value: float, source: str) -> None:
+        """Take a value; one that has jumped is not believed before the next confirms it."""
+        self._take(Sample(at, value, source), impossible=self._jumped(self._newest, at, value))
+
+    def _take(self, sample: Sample, *, impossible: bool) -> None:
+        before, self._recalled, self._impossible = self._newest, False, impossible
         if before is None or sample.value != before.value:
             self.changed_at, self._equal = sample.at, 1
         else:
             self._equal += 1
         self._newest = sample
-        if not self._impossible:
-            self._samples.append(sample)
+        if not impossible and sample.value is not None:
+            self._believed.append((sample.at, sample.value))
             self._total += sample.value
         while self._is_over(sample.at):
-            self._total -= self._samples.popleft().value
+            self._total -= self._believed.popleft()[1]
 
     def reading(self, now: datetime, *, others_vary: bool) -> Reading:
         """Return the newest value with its age and quality."""
@@ -73,27 +79,28 @@ class Series:
 
     def gust(self, now: datetime) -> float | None:
         """Return the highest believable value of the gust's window, None if the newest is stale."""
-        newest = self._samples[-1] if self._samples else None
-        if newest is None or now - newest.at > self._stale_after:
+        if not self._believed:
             return None
-        highest = newest.value
-        for sample in reversed(self._samples):
-            if newest.at - sample.at > self.windows.gust_over:
+        newest_at, highest = self._believed[-1]
+        if now - newest_at > self._stale_after:
+            return None
+        for at, value in reversed(self._believed):
+            if newest_at - at > self.windows.gust_over:
                 break
-            highest = max(highest, sample.value)
+            highest = max(highest, value)
         return highest
 
     def mean(self) -> float | None:
         """Return the mean of the believable values of the mean's window up to the newest one."""
-        return self._total / len(self._samples) if self._samples else None
+        return self._total / len(self._believed) if self._believed else None
 
     def mean_of_last(self, span: timedelta) -> float | None:
         """Return the mean of the believable values of this span up to the newest one."""
         found: list[float] = []
-        for sample in reversed(self._samples):
-            if self._samples[-1].at - sample.at > span:
+        for at, value in reversed(self._believed):
+            if self._believed[-1][0] - at > span:
                 break
-            found.append(sample.value)
+            found.append(value)
         return sum(found) / len(found) if found else None
 
     def is_stale(self, now: datetime) -> bool:
@@ -106,15 +113,15 @@ class Series:
 
     def _is_over(self, now: datetime) -> bool:
         """Return whether the oldest sample has had its time."""
-        samples = self._samples
-        return bool(samples) and (now - samples[0].at > self.windows.mean_over or len(samples) > MOST_SAMPLES)
+        samples = self._believed
+        return bool(samples) and (now - samples[0][0] > self.windows.mean_over or len(samples) > MOST_SAMPLES)
 
-    def _jumped(self, before: Sample | None, sample: Sample) -> bool:
+    def _jumped(self, before: Sample | None, at: datetime, value: float) -> bool:
         steepest = STEEPEST.get(self._name)
-        if before is None or steepest is None:
+        if before is None or before.value is None or steepest is None:
             return False
-        elapsed_s = max(1.0, (sample.at - before.at).total_seconds())
-        return abs(sample.value - before.value) > steepest * elapsed_s
+        elapsed_s = max(1.0, (at - before.at).total_seconds())
+        return abs(value - before.value) > steepest * elapsed_s
 
     def _quality(self, newest: Sample, now: datetime, *, others_vary: bool) -> Quality:
         if self._recalled:
@@ -127,7 +134,7 @@ class Series:
 
     def _is_frozen(self, newest: Sample, *, others_vary: bool) -> bool:
         above = ALIVE_ABOVE.get(self._name)
-        if above is None or self.changed_at is None or self._equal < FROZEN_SAMPLES:
+        if above is None or newest.value is None or self.changed_at is None or self._equal < FROZEN_SAMPLES:
             return False
         lasts = newest.at - self.changed_at >= FROZEN_AFTER
         return lasts and (newest.value > above or others_vary)

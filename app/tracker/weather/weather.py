@@ -25,6 +25,12 @@ RANGES = {
 }
 
 
+def is_possible(name: str, value: float) -> bool:
+    """Return whether a station on Earth can have measured this value of a quantity."""
+    _, low, high, _ = RANGES[name]
+    return isfinite(value) and low <= value <= high
+
+
 @dataclass(frozen=True, slots=True)
 class Weather:
     """What one report of a station holds; None is what it does not measure.
@@ -32,7 +38,7 @@ class Weather:
     `wind_direction_deg` is where the wind comes from, clockwise from north; `snow_kg` the load on one panel,
     `snow_mm` the depth on the ground; `pressure_hpa` as the station reads it, not reduced to sea level;
     `rain_mm` what the station has counted. Raises `ValueError` with a sentence for every value that is no
-    number or that no station on Earth can have measured, and if there is no value at all.
+    number or that no station on Earth can have measured.
     """
 
     wind_mps: float | None = None
@@ -52,11 +58,9 @@ class Weather:
 
     def _wrong(self) -> Iterator[str]:
         values = {field.name: getattr(self, field.name) for field in fields(self)}
-        if all(value is None for value in values.values()):
-            yield N_("Give at least one value of the weather.")
         for name, value in values.items():
             title, low, high, unit = RANGES[name]
-            if value is not None and not (isfinite(value) and low <= value <= high):
+            if value is not None and not is_possible(name, value):
                 yield say(
                     "{title} must be a number from {low} to {high} {unit}, not {value}.",
                     title=title,
