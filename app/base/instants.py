@@ -39,7 +39,7 @@ def is_of_these_times(instant: date) -> bool:
 
 
 def of_these_times(instant: When) -> When:
-    """Return an instant, or a date, of the years that this software deals with; raise `ValueError` for others."""
+    """Return an instant or a date of the years that this software deals with, or raise `ValueError`."""
     if not is_of_these_times(instant):
         raise ValueError(NOT_OF_THESE_TIMES)
     return instant

@@ -14,7 +14,7 @@ from app.audit.entry import Entry, told
 from app.base.build import BUILT_AT, VERSION
 from app.base.clock import SystemClock
 from app.base.logs import get_logger, set_up_logs
-from app.base.message import N_, Message
+from app.base.message import N_, Message, say, told_by
 from app.base.outliving import memory_beside
 from app.base.settings import Settings
 from app.base.startup import settle
@@ -37,6 +37,7 @@ from app.machine.watchdog import LoopWatchdog
 from app.simulation.kept_positions import KeptPositions
 from app.site.clock.ntp import kernel_clock
 from app.site.clock.timekeeping import Timekeeper
+from app.site.recording.retention import Limits
 from app.site.site import Site, SiteOptions
 from app.site.startup import Beginning, begin
 from app.site.state.validation import NO_ZONES
@@ -45,10 +46,14 @@ from app.store.engine import open_writer
 from app.store.files import keep_all_private
 from app.store.integrity import sqlite_notice
 from app.store.migrations import make_apart, upgrade
-from app.store.store import JournalFilter, StoreDamaged, StoreFailed, Writer
+from app.store.store import JournalFilter, StoreDamaged, StoreFailed, StoreUnreadable, Writer
 from app.store.writer_thread import WriterThread
 from app.tracker.state.snapshot import Event, EventKind
 from app.tracker.values.actors import CONTROLLER
+
+DOES_NOT_FIT = (StoreUnreadable, ValueError, TypeError, ArithmeticError, LookupError, AttributeError)
+"""What a start with stored data that nobody foresaw ends in; everything else is tried again."""
+CANNOT_START = N_("The controller cannot start with what is stored ({error}).")
 
 log = get_logger()
 
@@ -56,8 +61,9 @@ log = get_logger()
 def run(settings: Settings) -> None:
     """Run the controller service until it is told to stop.
 
-    With a damaged database it runs in safe mode. Raises `SettingsWrong` if the data folder cannot be
-    written, `AlreadyRunning` if another holds it, `StoreFailed` if the store cannot be opened otherwise.
+    With a database that is damaged or that it cannot start with it runs in safe mode. Raises `SettingsWrong`
+    if the data folder cannot be written, `AlreadyRunning` if another holds it, `StoreFailed` if the store
+    cannot be opened otherwise.
     """
     set_up_logs("controller", log_format=settings.log_format, log_level=settings.log_level)
     check_data_dir(settings.data_dir)
@@ -66,20 +72,19 @@ def run(settings: Settings) -> None:
         keep_all_private(settings.data_dir)
         _restore_if_asked(settings, clock.now())
         positions = KeptPositions(settings.data_dir / "drives", memory_beside(settings.data_dir))
+        writer = None
         try:
             make_apart(settings.url)
             upgrade(settings.url)
             writer = open_writer(settings.url)
-        except StoreDamaged as damage:
-            run_loop(serve_safely(settings, clock, damage, positions))
-            positions.close()
-            return
-        try:
             audit_version(settings.data_dir, writer, VERSION, clock.now())
             run_loop(_serve(settings, clock, writer, positions))
+        except StoreDamaged as damage:
+            run_loop(serve_safely(settings, clock, damage, positions))
         finally:
             positions.close()
-            writer.close()
+            if writer is not None:
+                writer.close()
 
 
 def _note_zones(site: Site) -> None:
@@ -116,14 +121,14 @@ def _restore_if_asked(settings: Settings, now: datetime) -> None:
 async def _serve(settings: Settings, clock: SystemClock, writer: Writer, positions: KeptPositions) -> None:
     raise_priority()
     background = WriterThread(writer, _on_store_failure)
-    beginning = begin(writer, clock.now(), unclean_since=mark_running(settings.data_dir, clock.now()))
-    site = _site(settings, clock, background, writer, beginning, positions)
-    gateways = Gateways(site, clock, settings, writer)
+    try:
+        site, gateways = await _begun(settings, clock, background, writer, positions)
+    except DOES_NOT_FIT as error:
+        log.exception("not_started_with_what_is_stored")
+        background.close()
+        raise StoreDamaged(say(CANNOT_START, error=told_by(error))) from error
     server = LinkServer(gateways, settings.link_path)
     stopped = on_signals()
-    _note_zones(site)
-    settle(len(beginning.trackers))
-    await site.start(*beginning.events)
     await server.start()
     gateways.start()
     watching = asyncio.create_task(
@@ -141,6 +146,27 @@ async def _serve(settings: Settings, clock: SystemClock, writer: Writer, positio
     guarding.cancel()
     await asyncio.gather(guarding, return_exceptions=True)
     await _take_down(settings, site, gateways, server, watching, background)
+
+
+async def _begun(
+    settings: Settings,
+    clock: SystemClock,
+    background: WriterThread,
+    writer: Writer,
+    positions: KeptPositions,
+) -> tuple[Site, Gateways]:
+    """Return the site with what is stored, which ticks, and its gateways, which do not run yet."""
+    beginning = begin(writer, clock.now(), unclean_since=mark_running(settings.data_dir, clock.now()))
+    site = _site(settings, clock, background, writer, beginning, positions)
+    gateways = Gateways(site, clock, settings, writer)
+    _note_zones(site)
+    settle(len(beginning.trackers))
+    try:
+        await site.start(*beginning.events)
+    except Exception:
+        await site.stop_drives()
+        raise
+    return site, gateways
 
 
 async def _take_down(
@@ -203,13 +229,15 @@ def _site(
         options=SiteOptions(
             boot_id=uuid4().hex,
             period=period,
-            retention=timedelta(days=settings.telemetry_retention_days),
-            recordings_max=settings.recordings_max,
+            retention=Limits(
+                timedelta(days=settings.telemetry_retention_days),
+                timedelta(days=settings.journal_retention_days),
+                settings.recordings_max,
+            ),
             samples_every=timedelta(seconds=settings.sample_store_s),
             weather_stale_after=timedelta(seconds=settings.weather_max_age_s),
             make_station=partial(met_reader, factory.buses),
             weather_file=settings.data_dir / "weather",
-            journal_retention=timedelta(days=settings.journal_retention_days),
             disk_free=lambda: _disk_free(settings.data_dir),
             pause=threading.Event().wait,
         ),

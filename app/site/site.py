@@ -2,9 +2,8 @@
 
 import asyncio
 from collections.abc import AsyncIterator, Callable, Sequence
-from dataclasses import dataclass, replace
-from datetime import datetime, timedelta
-from functools import partial
+from dataclasses import dataclass, field, replace
+from datetime import timedelta
 from pathlib import Path
 
 from app.alarms.alarm import Alarm
@@ -34,6 +33,7 @@ from app.site.publishing.publishing import Publisher, concerned
 from app.site.recording.auditing import Auditor, as_action
 from app.site.recording.gathering import BackgroundWriter, GiveWay
 from app.site.recording.recorder import Recorder
+from app.site.recording.retention import Limits, Retention
 from app.site.recording.write_queue import Ledger
 from app.site.state.connection_test import Checks, DriveTools
 from app.site.state.model import SiteModel
@@ -55,7 +55,6 @@ PULSE = timedelta(milliseconds=500)
 CONTROL_EVERY = timedelta(milliseconds=250)
 CATCH_UP_EVERY = timedelta(seconds=2)
 SAMPLES_EVERY = timedelta(seconds=300)
-PRUNE_EVERY = timedelta(days=1)
 
 log = get_logger()
 
@@ -70,11 +69,9 @@ class SiteOptions:
 
     boot_id: str = "boot"
     period: timedelta = timedelta(milliseconds=100)
-    retention: timedelta = timedelta(days=400)
-    recordings_max: int = 500
+    retention: Limits = field(default_factory=Limits)
     samples_every: timedelta = SAMPLES_EVERY
     weather_stale_after: timedelta = timedelta(seconds=USUAL_OLD_S)
-    journal_retention: timedelta = timedelta(days=1825)
     disk_free: Callable[[], int | None] = lambda: None
     safe_mode: Reason | None = None
     make_station: Callable[[MetStation], StationReader] | None = None
@@ -129,15 +126,15 @@ class Site:
         self._repeats = Repeats()
         self._overtaken = Overtaken()
         self._details = Details(self.model)
+        self._retention = Retention(self.model, self._options.retention)
         self.publisher = Publisher(self.model, self._alarms, self._outlet, self._options.boot_id)
-        self._started_at = self._caught_up_at = self._pruned_at = clock.now()
+        self._started_at = self._caught_up_at = clock.now()
         self._orders = self._refused = 0
         self._tasks: tuple[asyncio.Task[None], ...] = ()
 
     async def start(self, *events: Event) -> None:
         """Begin to tick, and journal how this life began."""
         self.model.ledger.post_events(events)
-        self._prune()
         self.model.recall_weather()
         sightings.ask_the_sun(self.model)
         self.model.scheduler.start()
@@ -316,8 +313,7 @@ class Site:
             if now - self._caught_up_at >= CATCH_UP_EVERY:
                 self._caught_up_at = now
                 self._catch_up()
-            if now - self._pruned_at >= PRUNE_EVERY:
-                self._prune()
+            self._retention.beat()
             self.publisher.beat()
             due = max(due + PULSE, now)
             await self._clock.sleep_until(due)
@@ -371,22 +367,3 @@ class Site:
         self.model.state = replace(self.model.state, clock=self.model.timekeeper.setting)
         self.model.ledger.post_site(self.model.state, (event,))
         self.publisher.publish((), (event,))
-
-    def _prune(self) -> None:
-        self._pruned_at = self._clock.now()
-        writer, before = self.model.ledger.writer, self.model.now() - self._options.retention
-        keep = self._options.recordings_max
-        if writer is not None:
-            self.model.ledger.hand_over()
-            writer.post(lambda store: store.prune(days_before=before, keep=keep))
-            oldest = self.model.now() - self._options.journal_retention
-            writer.post(lambda store: store.prune_history(oldest, partial(self._pruned, oldest)))
-
-    def _pruned(self, oldest: datetime, entries: int) -> Event:
-        """Return the event that says what retention removed."""
-        text = say(
-            "Retention removed {entries} journal entries from before {oldest}.",
-            entries=entries,
-            oldest=with_format(oldest, "%Y-%m-%d"),
-        )
-        return self.model.event(EventKind.JOURNAL_PRUNED, text, CONTROLLER, entries=entries)

@@ -5,11 +5,20 @@ from datetime import datetime, timedelta
 
 from app.alarms.alarm import Alarm
 from app.base.build import VERSION
-from app.base.message import N_, NOTHING, Message, join, say, told_by, with_format
+from app.base.instants import NOT_OF_THESE_TIMES
+from app.base.message import N_, NOTHING, Message, join, plain, say, told_by, with_format
+from app.site.clock.timekeeping import can_be
 from app.site.state.validation import check_config
 from app.store.config_repair import fallen_back
-from app.store.store import StoreFailed, Writer
-from app.tracker.memory.memory import RejectedSetting, SiteState, TrackerMemory, TrackerState
+from app.store.store import JournalFilter, StoreFailed, Writer
+from app.tracker.memory.memory import (
+    AgesFrom,
+    ClockSetting,
+    RejectedSetting,
+    SiteState,
+    TrackerMemory,
+    TrackerState,
+)
 from app.tracker.memory.recording import RecordingInfo, RecordingKind
 from app.tracker.settings.config import TrackerConfig
 from app.tracker.state.snapshot import Event, EventKind
@@ -30,11 +39,7 @@ class Beginning:
 
 def begin(store: Writer, now: datetime, *, unclean_since: datetime | None) -> Beginning:
     """Read what is stored, making the first tracker in an empty store, and close what a crash left open."""
-    site = store.site()
-    if site is None:
-        site = SiteState()
-        store.save_site(site)
-        store.save_tracker(FIRST_TRACKER)
+    site = _site(store, now)
     cut = store.close_open_recordings(now, CUT_OFF)
     event = Event(
         now + timedelta(seconds=site.clock.offset_s),
@@ -48,6 +53,41 @@ def begin(store: Writer, now: datetime, *, unclean_since: datetime | None) -> Be
         },
     )
     return Beginning(site, _trackers(store, event.at), (event,), tuple(store.standing_alarms()))
+
+
+def _site(store: Writer, now: datetime) -> SiteState:
+    """Return the site and what of it did not fit, which is told and stored no more."""
+    rejected: tuple[RejectedSetting, ...] = ()
+    try:
+        site = store.site()
+    except StoreFailed:
+        site, rejected = store.mended_site()
+    if site is None:
+        site = SiteState()
+        store.save_tracker(FIRST_TRACKER)
+        store.save_site(site)
+    if not can_be(site.clock, now):
+        offset = plain(f"{site.clock.offset_s:+g} s")
+        rejected += (RejectedSetting(N_("clock"), offset, N_("none"), NOT_OF_THESE_TIMES),)
+        site = replace(site, clock=ClockSetting())
+    if site.ages_from is None:
+        newest = store.journal(JournalFilter(limit=1))
+        site = replace(site, ages_from=AgesFrom(newest[0].event.at if newest else now))
+    if rejected:
+        at = now + timedelta(seconds=site.clock.offset_s)
+        store.save_site(site, tuple(_set_aside(one, at) for one in rejected))
+    return site
+
+
+def _set_aside(one: RejectedSetting, at: datetime) -> Event:
+    text = say(
+        "A stored setting of the site was rejected at startup: {what}: stored {stored}, used {used} ({why})",
+        what=one.what,
+        stored=one.stored,
+        used=one.used,
+        why=one.why,
+    )
+    return Event(at, EventKind.CONFIG_REJECTED, None, text)
 
 
 def _trackers(store: Writer, at: datetime) -> tuple[TrackerState, ...]:

@@ -1,15 +1,15 @@
-"""A stored tracker with values that do not fit: it gets the settings accepted last, else usual values."""
+"""A stored tracker or site with values that do not fit: others are used, those accepted last or the usual."""
 
 import json
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
 from app.audit.difference import difference
 from app.base.adapter import adapter
 from app.base.message import N_, Message, plain, told_of_value
-from app.tracker.memory.memory import RejectedSetting, TrackerMemory, TrackerState
+from app.tracker.memory.memory import RejectedSetting, SiteState, TrackerMemory, TrackerState
 from app.tracker.settings.config import TrackerConfig
 
 MOST_MENDED = 50
@@ -17,9 +17,11 @@ LONGEST_TOLD = 60
 OF_THE_CONFIG = ("config",)
 BESIDE = N_("The last accepted settings form one set; this setting is not in it.")
 NO_TRACKER = N_("The stored data is not a tracker.")
+NO_SITE = N_("The stored data is not a site.")
 MEMORY = "memory "
 Place = tuple[str | int, ...]
 Rejected = tuple[RejectedSetting, ...]
+T = TypeVar("T")
 
 
 def mended(text: str, tracker_id: str, accepted: TrackerConfig | None = None) -> TrackerState | None:
@@ -39,6 +41,17 @@ def mended(text: str, tracker_id: str, accepted: TrackerConfig | None = None) ->
         return _halted(TrackerState(accepted, TrackerMemory()), (why,))
     state, rejected = found
     return fallen_back(state, accepted, stored, rejected) if rejected else state
+
+
+def mended_site(text: str) -> tuple[SiteState, Rejected]:
+    """Return the site with usual values where the stored ones do not fit, and which; all are, if need be."""
+    usual = adapter(SiteState).dump_python(SiteState(), mode="json")
+    document = _object(text)
+    if document is not None:
+        found, rejected = _fitting(SiteState, document, usual, least=1)
+        if found is not None:
+            return found, rejected
+    return SiteState(), (RejectedSetting(N_("all settings"), _told(text), N_("none"), NO_SITE),)
 
 
 def fallen_back(
@@ -65,12 +78,16 @@ def fallen_back(
 
 
 def _document(text: str) -> dict[str, Any] | None:
+    document = _object(text)
+    return document if document is not None and isinstance(document.get("config"), dict) else None
+
+
+def _object(text: str) -> dict[str, Any] | None:
     try:
         document = json.loads(text)
     except ValueError:
         return None
-    is_tracker = isinstance(document, dict) and isinstance(document.get("config"), dict)
-    return document if is_tracker else None
+    return document if isinstance(document, dict) else None
 
 
 def _piecewise(document: dict[str, Any], tracker_id: str) -> tuple[TrackerState, Rejected] | None:
@@ -78,19 +95,28 @@ def _piecewise(document: dict[str, Any], tracker_id: str) -> tuple[TrackerState,
     usual = adapter(TrackerState).dump_python(
         TrackerState(TrackerConfig(tracker_id, tracker_id), TrackerMemory()), mode="json"
     )
+    found, rejected = _fitting(TrackerState, document, usual, least=2)
+    return None if found is None or found.config.tracker_id != tracker_id else (found, rejected)
+
+
+def _fitting(
+    shape: type[T], document: dict[str, Any], usual: Any, *, least: int
+) -> tuple[T | None, Rejected]:
+    """Return what a document holds with usual values where its own do not fit, and which; None: it cannot be.
+
+    A value gives way that lies at least so deep in the document.
+    """
     rejected: list[RejectedSetting] = []
     for _ in range(MOST_MENDED):
         try:
-            found = adapter(TrackerState).validate_json(json.dumps(document))
+            return adapter(shape).validate_json(json.dumps(document)), tuple(rejected)
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
-            change = _give_way(document, usual, first["loc"], told_of_value(first))
+            change = _give_way(document, usual, first["loc"], told_of_value(first), least)
             if change is None:
-                return None
+                break
             rejected.append(change)
-        else:
-            return (found, tuple(rejected)) if found.config.tracker_id == tracker_id else None
-    return None
+    return None, ()
 
 
 def _halted(found: TrackerState, rejected: Rejected) -> TrackerState:
@@ -106,10 +132,12 @@ def _halted(found: TrackerState, rejected: Rejected) -> TrackerState:
     return replace(found, memory=memory)
 
 
-def _give_way(document: dict[str, Any], usual: Any, where: Place, why: str) -> RejectedSetting | None:
+def _give_way(
+    document: dict[str, Any], usual: Any, where: Place, why: str, least: int
+) -> RejectedSetting | None:
     """Put the usual value where one does not fit; return what changed, None where there is no usual one."""
     place = _known(document, usual, where)
-    if len(place) < 2 or place == OF_THE_CONFIG:
+    if len(place) < least or place == OF_THE_CONFIG:
         return None
     *path, last = place
     holder, usual_holder = _at(document, path), _at(usual, path)

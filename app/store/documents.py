@@ -8,7 +8,7 @@ from pydantic_core import PydanticSerializationError
 from app.alarms.alarm import Alarm
 from app.base.adapter import adapter
 from app.base.message import N_, WHOLE, say, told_by
-from app.store.store import StoreFailed
+from app.store.store import StoreFailed, StoreUnreadable
 from app.tracker.memory.memory import SiteState, TrackerState
 from app.tracker.memory.recording import RecordingInfo
 from app.tracker.programs.show import ShowPlan
@@ -35,13 +35,13 @@ class Documents(Generic[T]):
             ) from error
 
     def read(self, text: str, key: str = "") -> T:
-        """Return the value of a stored document, or raise `StoreFailed` that names the record."""
+        """Return the value of a stored document, or raise `StoreUnreadable` that names the record."""
         try:
             return adapter(self._shape).validate_json(self._today(text))
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
             place = ".".join(str(part) for part in first["loc"]) or N_("the document")
-            raise StoreFailed(
+            raise StoreUnreadable(
                 say(
                     "The stored {name} {key} cannot be read ({place}: {first}). Restore a backup, or "
                     "install the version that wrote it.",

@@ -13,7 +13,7 @@ from app.audit.entry import Sealed
 from app.base.message import say
 from app.store import alarming, auditing, recording, signed_records, tables
 from app.store.chunks import ChunkDamaged, decode_all
-from app.store.config_repair import mended
+from app.store.config_repair import mended, mended_site
 from app.store.connections import require_revision, transaction
 from app.store.documents import CONFIG, EVENT_DATA, PLAN, RECORDING, SITE, TRACKER
 from app.store.event_message import kept_message
@@ -30,7 +30,7 @@ from app.store.store import (
     SignedRecord,
     StoreFailed,
 )
-from app.tracker.memory.memory import SiteState, TrackerState
+from app.tracker.memory.memory import RejectedSetting, SiteState, TrackerState
 from app.tracker.memory.recording import Frames, RecordingInfo, RecordingKind
 from app.tracker.settings.config import TrackerConfig
 from app.tracker.state.snapshot import Event
@@ -57,6 +57,12 @@ class DatabaseReader:
         with self._read() as connection:
             document = connection.execute(select(tables.site.c.document)).scalar_one_or_none()
         return None if document is None else SITE.read(document)
+
+    def mended_site(self) -> tuple[SiteState, tuple[RejectedSetting, ...]]:
+        """Return the stored site; settings that do not fit give way to the usual ones, and are returned."""
+        with self._read() as connection:
+            document = connection.execute(select(tables.site.c.document)).scalar_one()
+        return mended_site(document)
 
     def trackers(self) -> list[TrackerState]:
         """Return the stored trackers in the order they were added."""

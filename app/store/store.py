@@ -9,7 +9,7 @@ from typing import Protocol
 from app.alarms.alarm import Alarm
 from app.audit.entry import Entry, Sealed
 from app.base.errors import WRONG, Foreseen
-from app.tracker.memory.memory import SiteState, TrackerState
+from app.tracker.memory.memory import RejectedSetting, SiteState, TrackerState
 from app.tracker.memory.recording import Frames, RecordingInfo, RecordingKind
 from app.tracker.programs.show import ShowPlan
 from app.tracker.settings.config import TrackerConfig
@@ -24,6 +24,10 @@ class StoreUnfit(StoreFailed):
     """It is the wrong database for this software: trying again does not help."""
 
     exit_code = WRONG
+
+
+class StoreUnreadable(StoreFailed):
+    """What is stored does not fit this software: trying again does not help."""
 
 
 class StoreDamaged(StoreFailed):
@@ -227,6 +231,9 @@ class Writer(Reader, Protocol):
 
     def accepted_settings(self, tracker_id: str) -> TrackerConfig | None:
         """Return the settings with which a tracker ran last; None: not known, or they do not fit any more."""
+
+    def mended_site(self) -> tuple[SiteState, tuple[RejectedSetting, ...]]:
+        """Return the stored site with usual settings where stored ones do not fit, and those."""
 
     def mended_trackers(self) -> list[TrackerState]:
         """Return the stored trackers with other settings where stored ones do not fit; each tells which."""

@@ -6,6 +6,7 @@ from datetime import UTC, datetime, timedelta
 
 from app.base.build import BUILT_AT
 from app.base.clock import Clock
+from app.base.instants import is_of_these_times, of_these_times
 from app.base.message import N_, say, with_format
 from app.site.clock.clock_offset import ClockOffset
 from app.site.clock.ntp import KernelClock
@@ -31,6 +32,14 @@ class Jump:
     by: timedelta
 
 
+def can_be(setting: ClockSetting, now: datetime) -> bool:
+    """Return whether a setting that was kept shows an instant of these times where the system shows `now`."""
+    try:
+        return setting.offset_s == 0.0 or is_of_these_times(now + timedelta(seconds=setting.offset_s))
+    except (OverflowError, ValueError):
+        return False
+
+
 class Timekeeper:
     """Shows the site's time, watches the system clock for jumps and tells whether to trust it."""
 
@@ -47,7 +56,7 @@ class Timekeeper:
         self._drift = drift
         self._kernel = kernel
         self._not_before = not_before
-        self._setting = setting
+        self._setting = setting if can_be(setting, clock.now()) else ClockSetting()
         self._followed = drift()
         self.offset = ClockOffset(kernel())
         self._jumped_at: datetime | None = None
@@ -70,7 +79,8 @@ class Timekeeper:
         if source == "manual" and at is None:
             raise ValueError(N_("Enter the date and time to set on the controller's clock."))
         shown = self._clock.now() + self._followed
-        wanted = shown if source == "system" or at is None else at.astimezone(UTC)
+        wanted = shown if source == "system" or at is None else of_these_times(at).astimezone(UTC)
+        of_these_times(wanted)
         if wanted < BUILT_AT:
             raise ValueError(
                 say(
@@ -114,7 +124,15 @@ class Timekeeper:
             return (UNSET,)
         found = []
         shown = self.now()
-        if shown < self._not_before:
+        if not is_of_these_times(shown):
+            found.append(
+                Reason(
+                    "clock_implausible",
+                    say("The clock shows the year {year}, which cannot be right.", year=shown.year),
+                    N_("Set the clock in step 2."),
+                )
+            )
+        elif shown < self._not_before:
             found.append(
                 Reason(
                     "clock_implausible",

@@ -136,7 +136,7 @@ def _is_high(limits: WindProtection, kept: KeptWeather) -> bool:
 
 
 def _judged(content: bytes) -> KeptWeather | None:
-    """Return what was kept without what is impossible, which is told in the log; None: nothing can be used."""
+    """Return what was kept without what is impossible, which the log tells; None: nothing can be used."""
     try:
         kept = FORM.validate_json(content)
     except ValidationError as error:

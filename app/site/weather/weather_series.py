@@ -19,7 +19,7 @@ ALIVE_ABOVE = {"wind_mps": 0.0, "irradiance_wm2": 20.0}
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """One value: when it was measured by the steady time, and who sent it; None: none that is possible yet."""
+    """One value, None while none was possible: when it was measured by the steady time, and who sent it."""
 
     at: datetime
     value: float | None
@@ -49,7 +49,7 @@ class Series:
         self._newest, self._recalled = sample, True
 
     def take_impossible(self, at: datetime, source: str) -> None:
-        """Take that what was sent is out of range or no number: the last value stands, and is not believed."""
+        """Take that what was sent is no number or out of range: the last value stays, and is not believed."""
         self._take(Sample(at, None if self._newest is None else self._newest.value, source), impossible=True)
 
     def take(self, at: datetime, value: float, source: str) -> None:

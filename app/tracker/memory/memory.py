@@ -182,6 +182,17 @@ class ClockSetting:
 
 
 @dataclass(frozen=True, slots=True)
+class AgesFrom:
+    """The instant from which the age of what is kept counts, and how long the machine has run since, s.
+
+    It follows the site's clock only as far as the machine runs: a clock that was ahead makes nothing old.
+    """
+
+    at: datetime
+    ran_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class MetStation:
     """A weather station that is read over Modbus TCP: SunSpec model 307."""
 
@@ -221,7 +232,7 @@ class SiteState:
 
     `weather_windows` None are the usual ones, with the age that the machine was set up with. `former` are the
     settings of trackers before their last change, their drives aside, so that it can be undone; `former_site`
-    are those of the site.
+    are those of the site. `ages_from` None is the newest entry of the journal.
     """
 
     name: str = N_("Solar site")
@@ -229,6 +240,7 @@ class SiteState:
     location_revision: int = 0
     time_zone: str = "UTC"
     clock: ClockSetting = ClockSetting()
+    ages_from: AgesFrom | None = None
     confirmations: dict[StepName, Confirmation] = field(default_factory=dict)
     met_station: MetStation | None = None
     notifications: Notifications = field(default_factory=Notifications)
