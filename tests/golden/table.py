@@ -34,3 +34,9 @@ def numbers(name: str) -> list[dict[str, float]]:
     """Return the rows of a table that holds nothing but numbers."""
     with (Path(__file__).parent / name).open(newline="") as file:
         return [{key: float(text) for key, text in row.items()} for row in csv.DictReader(file)]
+
+
+def rows(name: str) -> list[dict[str, str]]:
+    """Return the rows of a table as they are written."""
+    with (Path(__file__).parent / name).open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))

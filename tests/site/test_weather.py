@@ -70,6 +70,6 @@ def test_what_no_station_can_measure_is_refused_with_a_sentence(name: str) -> No
     assert getattr(Weather(**{name: high}), name) == high
 
 
-def test_a_report_without_a_value_is_refused() -> None:
+async def test_a_report_without_a_value_is_refused(plant: Plant) -> None:
     with pytest.raises(ValueError, match="at least one value"):
-        Weather()
+        await plant.ask(ReportWeather(Weather()))
