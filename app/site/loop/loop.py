@@ -254,6 +254,8 @@ class TrackerLoop:
         try:
             async with self._in_time():
                 feedback = await self.drive.read()
+            if not feedback.is_possible:
+                raise DriveError(N_("The drive reports a number that is impossible."))
         except (DriveError, TimeoutError) as error:
             self.counter.read_failures += 1
             self._trouble = _trouble(error)

@@ -7,6 +7,9 @@ clockwise (towards east), elevation grows upwards. An axis angle does not wrap.
 from dataclasses import dataclass
 from enum import StrEnum
 
+LARGEST = 1e6
+"""No angle, speed, light or voltage of a tracker is larger, in the units used here."""
+
 
 @dataclass(frozen=True, slots=True)
 class Halt:
@@ -115,6 +118,18 @@ class Feedback:
     light: LightReading | None = None
     local: bool = False
     supply_v: float | None = None
+
+    @property
+    def is_possible(self) -> bool:
+        """Return whether every number is one that a machine can have, none infinite and none missing."""
+        axes = (self.azimuth, self.elevation)
+        numbers = [number for axis in axes for number in (axis.position_deg, axis.velocity_dps)]
+        if self.light is not None:
+            pairs = (self.light.azimuth, self.light.elevation)
+            numbers += [number for pair in pairs for number in (pair.lower_wm2, pair.higher_wm2)]
+        if self.supply_v is not None:
+            numbers.append(self.supply_v)
+        return all(abs(number) <= LARGEST for number in numbers)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,95 @@
+"""A drive that reports numbers which no machine can have: its tracker holds, and nothing else follows."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import inf, nan
+from typing import Any
+
+import pytest
+
+from app.drives.drive import Drive
+from app.tracker.commands.commands import SelectMode, Stop, Track
+from app.tracker.values.mode import Mode
+from app.tracker.values.motion import Feedback, LightPair, LightReading
+from tests.fault_result import BY_ITSELF, FaultResult
+from tests.site.plant import make_plant
+from tests.site.wrapped_drive import WrappedDrive
+
+NUMBERS = (nan, inf, -inf, 1e308, -1e308, 1e20, -1e7)
+COUNTS = (-1, 2**31, 2**63, 2**70)
+REFUSED = "The drive reports a number that is impossible."
+Change = Callable[[Feedback], Feedback]
+
+
+@dataclass
+class LyingDrive(WrappedDrive):
+    """A drive whose report is changed on the way."""
+
+    change: Change | None = None
+
+    async def read(self) -> Feedback:
+        seen = await self.inner.read()
+        return seen if self.change is None else self.change(seen)
+
+
+def of_axis(axis: str, name: str, number: float) -> Change:
+    return lambda seen: replace(seen, **{axis: replace(getattr(seen, axis), **{name: number})})
+
+
+def of_all(**values: Any) -> Change:
+    return lambda seen: replace(seen, **values)
+
+
+IMPOSSIBLE = {
+    f"{axis} {name} {number}": of_axis(axis, name, number)
+    for axis in ("azimuth", "elevation")
+    for name in ("position_deg", "velocity_dps")
+    for number in NUMBERS
+} | {
+    f"{name} {number}": of_all(**{name: value})
+    for number in NUMBERS
+    for name, value in (
+        ("supply_v", number),
+        ("light", LightReading(LightPair(number, 1.0), LightPair(1.0, 2.0))),
+    )
+}
+ODD = {
+    f"{name} {count}": of_all(**{name: count})
+    for name in ("boot_count", "fault_code", "request_done")
+    for count in COUNTS
+}
+
+
+def lying(drive: Drive) -> LyingDrive:
+    return LyingDrive(drive)
+
+
+@pytest.mark.fault(98)
+@pytest.mark.parametrize("tracks", [False, True], ids=["at rest", "tracking"])
+@pytest.mark.parametrize("change", [*IMPOSSIBLE.values(), *ODD.values()], ids=[*IMPOSSIBLE, *ODD])
+async def test_no_number_of_a_drive_ends_the_controller(
+    change: Change, tracks: bool, fault: FaultResult
+) -> None:
+    plant = make_plant(wrap=lying)
+    await plant.start()
+    await plant.commission()
+    if tracks:
+        await plant.ask(SelectMode(Mode.DUAL))
+        await plant.ask(Track())
+    await plant.forward(seconds=1)
+    drive = plant.drives["T1"]
+    assert isinstance(drive, LyingDrive)
+    drive.change = change
+    await plant.forward(seconds=2)
+    assert plant.site.alive
+    assert plant.site.model.tracker("T1").broken is None
+    told = [one.message for one in plant.tracker().notices]
+    assert (REFUSED in told) is (change in IMPOSSIBLE.values())
+    fault.shows(REFUSED)
+    await plant.ask(Stop())
+    drive.change = None
+    await plant.forward(seconds=2)
+    assert plant.site.alive
+    assert REFUSED not in [one.message for one in plant.tracker().notices]
+    await plant.close()
+    fault.recovers(BY_ITSELF)
