@@ -37,7 +37,7 @@ from app.machine.watchdog import LoopWatchdog
 from app.simulation.kept_positions import KeptPositions
 from app.site.clock.ntp import kernel_clock
 from app.site.clock.timekeeping import Timekeeper
-from app.site.recording.retention import Limits
+from app.site.retention import Limits
 from app.site.site import Site, SiteOptions
 from app.site.startup import Beginning, begin
 from app.site.state.validation import NO_ZONES

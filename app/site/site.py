@@ -33,8 +33,8 @@ from app.site.publishing.publishing import Publisher, concerned
 from app.site.recording.auditing import Auditor, as_action
 from app.site.recording.gathering import BackgroundWriter, GiveWay
 from app.site.recording.recorder import Recorder
-from app.site.recording.retention import Limits, Retention
 from app.site.recording.write_queue import Ledger
+from app.site.retention import Limits, Retention
 from app.site.state.connection_test import Checks, DriveTools
 from app.site.state.model import SiteModel
 from app.site.weather.kept_weather import WeatherFile

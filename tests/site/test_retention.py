@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from app.base.clock import VirtualClock
 from app.link.messages import SetClock
-from app.site.recording.retention import MOST_A_DAY, Limits, counted, moved
+from app.site.retention import MOST_A_DAY, Limits, counted, moved
 from app.site.site import SiteOptions
 from app.site.startup import begin
 from app.store.engine import open_writer

@@ -15,7 +15,7 @@ from pydantic import Field
 from app.base.instants import Instant
 from app.base.message import N_, say
 from app.base.permission import Permission
-from app.base.zones import zone_of
+from app.base.zones import day_in, zone_of
 from app.sun.accuracy import FIRST_YEAR, LAST_YEAR
 from app.sun.algorithms import PUBLISHED
 from app.sun.events import PolarDay, day_events
@@ -123,8 +123,7 @@ def read_sun_day(
     format: TextFormat = TextFormat.JSON,
 ) -> SunDay | Response:
     """Return rise, transit, set and the path, as JSON or as CSV."""
-    zone = zone_of(site.time_zone)
-    day = sun_day(site, date or site.at.astimezone(zone).date(), step_s, algorithm)
+    day = sun_day(site, date or day_in(site.time_zone, site.at), step_s, algorithm)
     return day if format is TextFormat.JSON else Response(_csv(day.path), media_type="text/csv")
 
 

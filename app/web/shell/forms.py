@@ -8,6 +8,7 @@ from typing import TypeVar
 
 from app.base.message import Message, say, told_by, with_format, word
 from app.base.zones import zone_of
+from app.sun.accuracy import FIRST_YEAR, LAST_YEAR
 from app.web.languages import pgettext
 from app.web.shell.contexts import Field, Form
 
@@ -173,9 +174,19 @@ def pair(text: str) -> tuple[str, str] | None:
 def day(text: str, label: str) -> date:
     """Return the date that a text such as 2026-06-21 means."""
     try:
-        return date.fromisoformat(text)
+        found = date.fromisoformat(text)
     except ValueError:
         raise Unreadable(say("{label}: type a date such as 2026-06-21.", label=word(label))) from None
+    if not FIRST_YEAR <= found.year <= LAST_YEAR:
+        raise Unreadable(
+            say(
+                "{label}: choose a day in the years {first_year} to {last_year}.",
+                label=word(label),
+                first_year=FIRST_YEAR,
+                last_year=LAST_YEAR,
+            )
+        )
+    return found
 
 
 def clock_time(text: str, label: str) -> time:

@@ -2,7 +2,7 @@
 
 from datetime import date
 
-from app.base.zones import zone_of
+from app.base.zones import day_in
 from app.sun.horizon import Horizon
 from app.sun.position import Algorithm, Location
 from app.tracker.memory.recording import RecordingInfo
@@ -18,7 +18,7 @@ def scene_now(site: SiteSnapshot | None, config: TrackerConfig, horizon: Horizon
     """Return the picture of a tracker today; without a sun's path while the location is not known."""
     if site is None or site.location is None:
         return Scene(config.mount, *config.turning_deg)
-    today = site.at.astimezone(zone_of(site.time_zone)).date()
+    today = day_in(site.time_zone, site.at)
     return scene_on(config, site.location, site.time_zone, today, config.algorithm, horizon)
 
 

@@ -7,7 +7,7 @@ from starlette.responses import Response
 
 from app.base.message import N_
 from app.base.permission import Permission
-from app.base.zones import zone_of
+from app.base.zones import day_in
 from app.link.messages import ConfigureTracker, TrackerDetail
 from app.tracker.settings.config import TrackerConfig
 from app.tracker.state.snapshot import SiteSnapshot
@@ -65,7 +65,7 @@ async def save(request: Request, tracker_id: str, press: PressDep, machine: Mach
 def _todays_arc(site: SiteSnapshot | None, config: TrackerConfig) -> Arc:
     if site is None or site.location is None:
         return ()
-    return arc(config.algorithm, site.location, site.at.astimezone(zone_of(site.time_zone)).date())
+    return arc(config.algorithm, site.location, day_in(site.time_zone, site.at))
 
 
 async def _typed(request: Request) -> Typed:

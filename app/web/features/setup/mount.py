@@ -9,6 +9,7 @@ from starlette.responses import Response
 
 from app.base.message import N_, told_by
 from app.base.permission import Permission
+from app.base.zones import day_in
 from app.link.messages import ConfigureTracker, SiteDetail, TrackerDetail
 from app.tracker.mounts.capabilities import ABILITIES, abilities, axis_words
 from app.tracker.mounts.reach import Reach, reach
@@ -114,7 +115,7 @@ def _year(frame: Frame, config: TrackerConfig) -> tuple[YearDiagram | None, Reac
     site = frame.site
     if site is None or site.location is None:
         return None, None
-    year = site.at.year
+    year = day_in(site.time_zone, site.at).year
     return year_diagram(config, site.location, year), reach(config, site.location, year)
 
 

@@ -3,6 +3,7 @@
 from starlette.concurrency import run_in_threadpool
 
 from app.base.permission import Permission
+from app.base.zones import day_in
 from app.tracker.mounts.capabilities import ABILITIES, MountAbilities, abilities
 from app.tracker.mounts.reach import Reach, reach
 from app.tracker.settings.config import MountKind
@@ -45,5 +46,5 @@ async def read_mount(tracker_id: TrackerId, machine: MachineDep) -> MountState:
     site = machine.latest()
     if site is None or site.location is None:
         return MountState(abilities=abilities(config.mount), reach=None)
-    found = await run_in_threadpool(reach, config, site.location, site.at.year)
+    found = await run_in_threadpool(reach, config, site.location, day_in(site.time_zone, site.at).year)
     return MountState(abilities=abilities(config.mount), reach=found)

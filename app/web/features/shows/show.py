@@ -10,7 +10,7 @@ from starlette.responses import RedirectResponse, Response
 
 from app.base.message import N_, say
 from app.base.permission import Permission
-from app.base.zones import zone_of
+from app.base.zones import day_in, zone_of
 from app.link.messages import SavePlan, SiteDetail
 from app.tracker.commands.commands import CommandRejected, GoToStart, PauseShow, ResumeShow, RunShow, StopShow
 from app.tracker.programs.show import ShowPlan
@@ -131,7 +131,7 @@ def _place(detail: SiteDetail, tracker_id: str, built: Panel) -> Place:
     if detail.site.location is None:
         raise CommandRejected(NO_LOCATION)
     latest, zone = built.machine.latest(), detail.site.time_zone
-    today = (latest.at if latest else built.clock.now()).astimezone(zone_of(zone)).date()
+    today = day_in(zone, latest.at if latest else built.clock.now())
     return Place(tracker_of(detail, tracker_id), detail.site.location, zone, today)
 
 

@@ -12,6 +12,7 @@ from pydantic import BaseModel
 from app.base.message import N_, Message, Word, join, say, with_format
 from app.base.zones import zone_of
 from app.link.messages import TrackerDetail
+from app.sun.accuracy import FIRST_YEAR, LAST_YEAR
 from app.sun.daylight import daylight, next_daylight
 from app.sun.position import InstantRefused, Location
 from app.tracker.mounts.capabilities import axis_title, default_mode
@@ -28,7 +29,6 @@ from app.web.shell.formats import ISO_DATE, duration, local, read_local
 from app.web.shell.forms import Typed
 
 NAMES = ("date", "start", "end", "minutes")
-FIRST_YEAR, LAST_YEAR = 1901, 2099
 SHORTEST_LIGHT = timedelta(minutes=10)
 """A day with less sun than this between two sunsets is shown whole."""
 
@@ -90,8 +90,6 @@ def read(typed: Typed, place: Place) -> ShowPlan | None:
     day = typed.day("date", N_("Date"))
     start, end = typed.clock_time("start", N_("Start")), typed.clock_time("end", N_("End session"))
     minutes = typed.number("minutes", N_("Minutes"), 0.1, 1440)
-    if "date" not in typed.errors and not FIRST_YEAR <= day.year <= LAST_YEAR:
-        typed.errors["date"] = N_("Date: choose a day in the years 1901 to 2099.")
     if typed.errors:
         return None
     last_day = day if end > start else day + timedelta(days=1)

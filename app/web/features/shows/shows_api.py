@@ -13,6 +13,7 @@ from starlette.concurrency import run_in_threadpool
 from app.base.instants import Instant
 from app.base.message import N_, say
 from app.base.permission import Permission
+from app.base.zones import day_in
 from app.link.messages import SavePlan, TrackerDetail
 from app.store.store import Reader
 from app.sun.daylight import daylight
@@ -233,7 +234,7 @@ def _plan(new: NewShow, detail: TrackerDetail, site: SiteSnapshot) -> ShowPlan:
 def _interval(new: NewShow, site: SiteSnapshot, algorithm: Algorithm) -> tuple[datetime, datetime]:
     if new.start is not None and new.end is not None:
         return new.start, new.end
-    begin, end = midnights(new.date or site.at.date(), site.time_zone)
+    begin, end = midnights(new.date or day_in(site.time_zone, site.at), site.time_zone)
     lit = daylight(algorithm, location_of(site), begin, end)
     if lit is None:
         raise NotAcceptable(N_("On this date the sun does not rise and set here; give start and end."))

@@ -9,7 +9,7 @@ from starlette.responses import Response
 
 from app.base.message import N_, say, told_by
 from app.base.permission import Permission
-from app.base.zones import zone_of
+from app.base.zones import day_in
 from app.link.messages import SiteDetail
 from app.link.place_orders import SetHorizon
 from app.sun.horizon import FLAT, Horizon
@@ -83,7 +83,7 @@ def _answer(request: Request, detail: SiteDetail, typed: Typed, *, status: int =
     frame = site_frame(request, N_("Horizon"), back=Link(N_("Site"), "/site"))
     drawn = None
     if site.location is not None and frame.site is not None:
-        today = frame.site.at.astimezone(zone_of(site.time_zone)).date()
+        today = day_in(site.time_zone, frame.site.at)
         drawn = cartesian(WHOLE_SKY, site.location, site.time_zone, today, horizon)
     context = HorizonPage(
         frame=frame, form=typed.form(("points",)), count=len(horizon.points), cartesian=drawn

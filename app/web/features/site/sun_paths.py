@@ -6,7 +6,7 @@ from starlette.responses import Response
 
 from app.base.message import N_
 from app.base.permission import Permission
-from app.base.zones import zone_of
+from app.base.zones import day_in
 from app.link.messages import SiteDetail
 from app.web.charts.cartesian import cartesian
 from app.web.charts.sunpath import diagram
@@ -34,7 +34,7 @@ def _answer(request: Request, tracker_id: str, detail: SiteDetail) -> Response:
     drawn = None
     if frame.site is not None and frame.site.location is not None:
         zone = frame.site.time_zone
-        today = frame.site.at.astimezone(zone_of(zone)).date()
+        today = day_in(zone, frame.site.at)
         drawn = cartesian(config, frame.site.location, zone, today, detail.site.horizon)
     polar = diagram(frame.site, config, detail.site.horizon)
     context = SunPathPage(frame=frame, config=config, polar=polar, cartesian=drawn)

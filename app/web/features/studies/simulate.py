@@ -10,7 +10,7 @@ from starlette.responses import Response
 
 from app.base.message import N_, told_by
 from app.base.permission import Permission
-from app.base.zones import zone_of
+from app.base.zones import day_in, zone_of
 from app.link.messages import SaveRecording, SiteDetail
 from app.tracker.settings.config import Orientation
 from app.tracker.values.mode import Mode
@@ -63,8 +63,7 @@ async def simulate(request: Request, machine: MachineDep, built: PanelDep) -> Re
     """Show the form for a day's simulation."""
     detail = await machine.detail()
     latest = machine.latest()
-    zone = zone_of(detail.site.time_zone)
-    today = (latest.at if latest else built.clock.now()).astimezone(zone).date()
+    today = day_in(detail.site.time_zone, latest.at if latest else built.clock.now())
     first = next(iter(detail.trackers), "")
     form = SimulationForm(tracker=first, date=today.isoformat(), mode=Mode.DUAL)
     return _answer(request, detail, Typed(form.model_dump()))

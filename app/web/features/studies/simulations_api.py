@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from app.base.instants import Instant
 from app.base.message import N_, told_by
 from app.base.permission import Permission
-from app.base.zones import zone_of
+from app.base.zones import day_in, zone_of
 from app.link.messages import SaveRecording
 from app.sun.algorithms import Algorithm
 from app.tracker.memory.recording import RecordingInfo
@@ -111,7 +111,7 @@ class NewSimulation(Input):
         """Return begin and end."""
         if self.start is not None and self.end is not None:
             return self.start, self.end
-        return midnights(self.date or site.at.date(), site.time_zone)
+        return midnights(self.date or day_in(site.time_zone, site.at), site.time_zone)
 
 
 @router.post(

@@ -11,6 +11,7 @@ from starlette.responses import Response
 
 from app.base.message import N_, Word, join, say, told_by
 from app.base.permission import Permission
+from app.base.zones import day_in
 from app.energy.equatorial import DEGREES_AN_HOUR, NOON_H
 from app.link.messages import ConfigureTracker, SiteDetail
 from app.studies.jobs import ProgramAnswer, ProgramLight, ProgramRow
@@ -97,7 +98,7 @@ async def ask(
     detail = await machine.detail()
     asked = {name: text for name, text in request.query_params.items() if name in NAMES}
     latest = machine.latest()
-    today = (latest.at if latest else built.clock.now()).date()
+    today = day_in("UTC", latest.at if latest else built.clock.now())
     form = ProgramForm(**{"date": today.isoformat(), **_site_values(detail), **asked})
     typed = Typed(form.model_dump())
     wanted = _read(typed)

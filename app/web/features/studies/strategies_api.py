@@ -13,6 +13,7 @@ from starlette.requests import Request
 from app.base.adapter import adapter
 from app.base.message import N_, told_by
 from app.base.permission import Permission
+from app.base.zones import day_in
 from app.link.messages import ConfigureTracker
 from app.show.strategy_told import StrategyDay
 from app.tracker.programs.examples import EXAMPLES
@@ -134,7 +135,7 @@ async def plan_strategy_day(
 ) -> StrategyDay:
     """Simulate the day with the real controller, and return moves, errors, travel and curves."""
     tracker = await detail_of(machine, tracker_id)
-    begin, end = midnights(question.date or site.at.date(), site.time_zone)
+    begin, end = midnights(question.date or day_in(site.time_zone, site.at), site.time_zone)
     strategy = question.strategy or tracker.state.config.strategy
     asked = asked_day(tracker, strategy, location_of(site), begin, end)
     try:

@@ -1,7 +1,7 @@
 """The strategy page: when the tracker moves, its step program, and the correction by light sensors."""
 
 from dataclasses import replace
-from datetime import datetime, timedelta
+from datetime import datetime, time, timedelta
 from typing import Annotated
 
 from fastapi import Form
@@ -11,7 +11,7 @@ from starlette.responses import Response
 
 from app.base.message import N_, NOTHING, Message, Word, join, say, told_by, with_format
 from app.base.permission import Permission
-from app.base.zones import zone_of
+from app.base.zones import day_in, zone_of
 from app.link.messages import ConfigureTracker, TrackerDetail
 from app.show.strategy_told import StrategyDay
 from app.tracker.programs.examples import EXAMPLES
@@ -215,7 +215,7 @@ def _answer(
 
 
 def _today(at: datetime, zone: str) -> tuple[datetime, datetime]:
-    begin = at.astimezone(zone_of(zone)).replace(hour=0, minute=0, second=0, microsecond=0)
+    begin = datetime.combine(day_in(zone, at), time(), zone_of(zone))
     return begin, begin + timedelta(days=1)
 
 

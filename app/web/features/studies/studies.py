@@ -10,6 +10,7 @@ from starlette.responses import Response
 
 from app.base.message import N_, join, say, told_by, with_format, word
 from app.base.permission import Permission
+from app.base.zones import day_in
 from app.energy.plane import Transposition
 from app.link.messages import SiteDetail
 from app.studies.folder import WeatherFile
@@ -154,7 +155,7 @@ async def studies(request: Request, machine: MachineDep, built: PanelDep) -> Res
     """Show the form for a study and the studies so far."""
     detail = await machine.detail()
     latest = machine.latest()
-    today = (latest.at if latest else built.clock.now()).date()
+    today = day_in("UTC", latest.at if latest else built.clock.now())
     form = BEGUN.model_copy(update={"date": today.isoformat(), **_site_values(detail)})
     return await _answer(request, detail, built, form, Typed(_texts(form)))
 

@@ -14,6 +14,8 @@ from app.fast.comparison import ClearSky
 from app.link.messages import SiteDetail, UnknownTracker
 from app.studies.jobs import CompareSite, ProgramAnswer, ProgramLight, ProgramQuestion
 from app.studies.request import (
+    FIRST_YEAR,
+    LAST_YEAR,
     Fidelity,
     LightModel,
     Module,
@@ -183,7 +185,11 @@ class NewProgram(Place):
 
 
 def glance_question(detail: SiteDetail, location: Location, year: int) -> CompareSite:
-    """Return the comparison of a site: its first tracker's axes, a panel tilted by the latitude."""
+    """Return the comparison of a site: its first tracker's axes, a panel tilted by the latitude.
+
+    Where the year is not one of those that are compared, it is the nearest of them.
+    """
+    year = min(max(year, FIRST_YEAR), LAST_YEAR)
     trackers = tuple(detail.trackers.values())
     config = trackers[0].state.config if trackers else TrackerConfig("T1", "T1")
     towards_deg = 180.0 if location.latitude_deg >= 0.0 else 0.0
