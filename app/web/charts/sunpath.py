@@ -7,7 +7,7 @@ from math import cos, radians, sin
 import numpy as np
 
 from app.base.message import say
-from app.base.zones import zone_of
+from app.base.zones import day_in, zone_of
 from app.sun.horizon import FLAT, Horizon
 from app.sun.position import Algorithm, Location, SunPath, sun_path
 from app.sun.trigonometry import ARRAY
@@ -39,7 +39,7 @@ def diagram(site: SiteSnapshot | None, config: TrackerConfig, horizon: Horizon) 
     """Return the diagram of the site for today, None while the location is not known."""
     if site is None or site.location is None:
         return None
-    today = site.at.astimezone(zone_of(site.time_zone)).date()
+    today = day_in(site.time_zone, site.at)
     return diagram_of(site.location, site.time_zone, today, config.algorithm, outline(config), horizon)
 
 

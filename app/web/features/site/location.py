@@ -1,7 +1,7 @@
 """Step 1: where the tracker stands, checked against today's sun and a map before it is saved."""
 
 from dataclasses import dataclass, replace
-from datetime import datetime, timedelta
+from datetime import datetime, time, timedelta
 from functools import cache
 from typing import Annotated
 from zoneinfo import available_timezones
@@ -13,10 +13,10 @@ from starlette.responses import Response
 
 from app.base.message import N_, NOTHING, Message, say, with_format
 from app.base.permission import Permission
-from app.base.zones import zone_of
+from app.base.zones import day_in, zone_of
 from app.link.messages import SetLocation, SiteDetail
 from app.sun.events import PolarDay, SunEvents, day_events
-from app.sun.position import Location, sun_position
+from app.sun.position import InstantRefused, Location, sun_position
 from app.tracker.memory.memory import SiteState, StepName
 from app.tracker.settings.config import TrackerConfig
 from app.web.features.site.place import place_doubts, swapped, zone_at
@@ -215,7 +215,7 @@ def _preview(found: Read, config: TrackerConfig, now: datetime) -> LocationPrevi
     place = found.location
     if place is None:
         return None
-    midnight = now.astimezone(zone_of(found.zone)).replace(hour=0, minute=0, second=0, microsecond=0)
+    midnight = datetime.combine(day_in(found.zone, now), time(), zone_of(found.zone))
     events = day_events(config.algorithm, place, midnight, midnight + timedelta(days=1))
     noon_deg = events.transit_elevation_deg
     return LocationPreview(
@@ -236,8 +236,11 @@ def _preview(found: Read, config: TrackerConfig, now: datetime) -> LocationPrevi
 
 
 def _sun_now(place: Location, config: TrackerConfig, now: datetime) -> Message:
-    """Return where somebody at a place sees the sun."""
-    sun = sun_position(config.algorithm, place, now)
+    """Return where somebody at a place sees the sun, nothing while the clock shows years of no known sun."""
+    try:
+        sun = sun_position(config.algorithm, place, now)
+    except InstantRefused:
+        return NOTHING
     height_deg = sun.apparent_elevation_deg
     if height_deg <= 0.0:
         return say("{height_deg}° below the horizon", height_deg=with_format(abs(height_deg), ".0f"))

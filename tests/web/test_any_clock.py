@@ -1,0 +1,52 @@
+"""Every page and every call answers alike whatever the site's clock shows: no page needs the sun."""
+
+import asyncio
+import re
+from datetime import UTC, datetime
+
+import pytest
+
+from app.base.clock import VirtualClock
+from tests.fakes import FakeMachine, fake_app, serving
+from tests.fault_result import BY_ITSELF, FaultResult
+from tests.web.route_table import ROUTES
+
+TODAY = datetime(2027, 6, 21, 9, 40, tzinfo=UTC)
+CLOCKS = [
+    datetime(2099, 12, 31, 23, 59, 59, tzinfo=UTC),
+    datetime(2206, 6, 1, tzinfo=UTC),
+]
+NOW = "/api/v1/sun"
+"""Tells where the sun stands now, and is refused with a sentence while that is not known."""
+LEFT_OUT = {"/api/v1/stream", "/api/v1/papers", "/api/v1/sun/accuracy"}
+"""What never ends, and what takes long and does not look at the clock."""
+NAMES = {"tracker_id": "T1"}
+PATHS = sorted(
+    re.sub(r"\{(\w+)(?::\w+)?\}", lambda found: NAMES.get(found[1], "1"), key.removeprefix("GET "))
+    for key in ROUTES
+    if key.startswith("GET ")
+)
+
+
+async def answers(at: datetime) -> dict[str, int]:
+    """Return the status of every page and call while the site's clock shows this."""
+    found = {}
+    async with serving(fake_app(FakeMachine(VirtualClock(at)))) as browser:
+        for path in PATHS:
+            if path not in LEFT_OUT:
+                found[path] = (await asyncio.wait_for(browser.get(path), 60)).status_code
+    return found
+
+
+@pytest.mark.fault(102)
+async def test_no_page_is_lost_to_a_clock_that_is_wrong(fault: FaultResult) -> None:
+    expected = await answers(TODAY)
+    assert set(expected.values()) <= {200, 303, 307, 404, 422}
+    assert expected.pop(NOW) == 200
+    for at in CLOCKS:
+        found = await answers(at)
+        assert found.pop(NOW) == (200 if 1901 <= at.year <= 2099 else 422)
+        assert found == expected, at
+    fault.prevented("a page that shows today's sun shows the nearest year with a known sun")
+    fault.shows("The clock shows the year 2206, which cannot be right.")
+    fault.recovers(BY_ITSELF)
