@@ -33,6 +33,14 @@ def _clamped(given: object) -> object:
     return without_leap_second(given) if isinstance(given, str) else given
 
 
+def read_instant(text: str) -> datetime:
+    """Return the instant that an ISO 8601 text means; raise `ValueError` for all but one of these times.
+
+    It has no time zone where the text has none.
+    """
+    return of_these_times(datetime.fromisoformat(without_leap_second(text)))
+
+
 def is_of_these_times(instant: date) -> bool:
     """Return whether an instant, or a date, lies in the years that this software deals with."""
     return FIRST_YEAR <= instant.year <= LAST_YEAR
@@ -50,6 +58,3 @@ Instant = Annotated[AwareDatetime, Strict(False), BeforeValidator(_clamped), Aft
 
 It is text in JSON: where a model is strict, the text would be refused behind a validator of ours.
 """
-
-Day = Annotated[date, AfterValidator(of_these_times)]
-"""A date in what comes in."""

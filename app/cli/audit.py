@@ -15,7 +15,7 @@ from app.access.events import AccessEvent, covered
 from app.access.opening import open_store
 from app.audit.chain import Break, Link, first_break
 from app.audit.entry import Entry, Sealed
-from app.base.instants import without_leap_second
+from app.base.instants import read_instant
 from app.base.settings import Settings, read_settings
 from app.store.engine import open_reader
 from app.store.files import private_opener
@@ -213,5 +213,5 @@ def _harmless(value: object) -> object:
 def _instant(text: str) -> datetime | None:
     if not text:
         return None
-    found = datetime.fromisoformat(without_leap_second(text))
+    found = read_instant(text)
     return found if found.tzinfo is not None else found.replace(tzinfo=UTC)

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from app.base.clock import SystemClock
-from app.base.instants import without_leap_second
+from app.base.instants import read_instant
 from app.show.simulate import simulate_date, simulate_show_of_date
 from app.store.exports import to_csv, to_parquet
 from app.sun.position import Algorithm, Location, sun_position
@@ -88,7 +88,7 @@ def _write(out: Path, info: RecordingInfo, frames: Frames) -> None:
 def _instant(text: str) -> datetime:
     if not text:
         return SystemClock().now()
-    found = datetime.fromisoformat(without_leap_second(text))
+    found = read_instant(text)
     if found.tzinfo is None:
         raise ValueError(f"{text} has no time zone: add an offset, such as {text}+03:00 or {text}Z.")
     return found

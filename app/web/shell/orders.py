@@ -7,7 +7,7 @@ from fastapi import Depends, Form, Header
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
-from app.base.instants import without_leap_second
+from app.base.instants import read_instant
 from app.base.message import told_by
 from app.base.permission import Permission
 from app.link.messages import SiteCommand
@@ -63,7 +63,7 @@ PressDep = Annotated[Press, Depends()]
 
 def _instant(text: str) -> datetime | None:
     try:
-        at = datetime.fromisoformat(without_leap_second(text))
+        at = read_instant(text)
     except ValueError:
         return None
     return at if at.tzinfo else None

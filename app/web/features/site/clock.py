@@ -8,7 +8,7 @@ from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
 
-from app.base.instants import without_leap_second
+from app.base.instants import read_instant
 from app.base.message import N_
 from app.base.permission import Permission
 from app.link.messages import SetClock, SiteDetail
@@ -76,7 +76,7 @@ async def copy_device(
 ) -> Response:
     """Make the controller's clock show what this device's clock shows."""
     try:
-        instant = datetime.fromisoformat(without_leap_second(at))
+        instant = read_instant(at)
     except ValueError:
         raise NotAcceptable(
             N_("The browser of this device did not report its time; enter date and time manually.")
@@ -113,7 +113,7 @@ async def set_by_hand(
 def _told(at: str) -> datetime | None:
     """Return what this device's clock showed, None where its browser did not tell."""
     try:
-        instant = datetime.fromisoformat(without_leap_second(at))
+        instant = read_instant(at)
     except ValueError:
         return None
     return instant if instant.tzinfo else None
