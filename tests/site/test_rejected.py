@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from sqlalchemy import update
+from sqlalchemy import Table, update
 
 from app.base.settings import Settings
 from app.link.messages import ConfigureTracker
@@ -16,24 +16,25 @@ from app.site.startup import begin
 from app.store import tables
 from app.store.config_repair import BESIDE
 from app.store.connections import transaction, writing_engine
-from app.store.documents import TRACKER
+from app.store.documents import SITE, TRACKER
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.store import JournalFilter, StoreFailed
 from app.store.writer import DatabaseWriter
 from app.tracker.commands.commands import CommandRejected, Jog, Stop, Track
-from app.tracker.memory.memory import HomeTrust, TrackerMemory, TrackerState
+from app.tracker.memory.memory import HomeTrust, MetStation, SiteState, TrackerMemory, TrackerState
 from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import Orientation, TrackerConfig
 from app.tracker.state.snapshot import EventKind
 from tests.fault_result import FaultResult
-from tests.site.plant import Plant, make_plant
+from tests.site.plant import SAMSUN, Plant, make_plant
 
 NOW = datetime(2027, 6, 21, 9, 0, tzinfo=UTC)
 KEPT = TrackerState(
     TrackerConfig("T1", "North", deadband_deg=0.7),
     TrackerMemory(tracking_on=True, home=HomeTrust(NOW, "Ada", "set manually", 3)),
 )
+SITE_KEPT = SiteState("Samsun", SAMSUN, 1, "Europe/Istanbul", met_station=MetStation("mast"))
 
 
 def stored(
@@ -51,11 +52,11 @@ def stored(
     return writer
 
 
-def rewrite(url: str, **columns: str | None) -> None:
+def rewrite(url: str, table: Table = tables.trackers, **columns: str | None) -> None:
     """Do what a person could do to the file with an editor."""
     engine = writing_engine(url)
     with transaction(engine) as connection:
-        connection.execute(update(tables.trackers).values(columns))
+        connection.execute(update(table).values(columns))
     engine.dispose()
 
 
@@ -201,3 +202,46 @@ async def test_nothing_moves_until_the_settings_were_saved(tmp_path: Path, fault
     fault.prevented("noticed at the start, before anything moves")
     fault.recovers("the engineer saves the settings again")
     await plant.close()
+
+
+BAD_SITES: dict[str, tuple[Callable[[dict[str, Any]], object], str]] = {
+    "a latitude of 95": (spoil("location.latitude_deg", 95.0), "location"),
+    "a port of 0": (spoil("met_station", {"host": "mast", "port": 0, "unit": 1}), "met station"),
+    "a clock of words": (spoil("clock.offset_s", "soon"), "clock offset s"),
+    "a zone of numbers": (spoil("time_zone", 3), "time zone"),
+    "windows that cannot be": (spoil("weather_windows", {"gust_s": -1}), "weather windows"),
+}
+
+
+@pytest.mark.fault(52)
+@pytest.mark.parametrize(("change", "what"), BAD_SITES.values(), ids=BAD_SITES)
+async def test_a_site_with_a_value_that_does_not_fit_starts_without_it_and_says_so(
+    change: Callable[[dict[str, Any]], object], what: str, tmp_path: Path
+) -> None:
+    writer = stored(tmp_path)
+    document = json.loads(SITE.write(SITE_KEPT))
+    change(document)
+    rewrite(Settings(data_dir=tmp_path).url, tables.site, document=json.dumps(document))
+    found = begin(writer, NOW, unclean_since=None)
+    assert found.site.name == "Samsun", "what fits stays"
+    said = [one.event for one in writer.journal(JournalFilter()) if one.event.tracker_id is None]
+    told = [one.message for one in said if one.kind is EventKind.CONFIG_REJECTED]
+    assert len(told) == 1
+    assert told[0].startswith(f"A stored setting of the site was rejected at startup: {what}: stored ")
+    assert begin(writer, NOW, unclean_since=None).site == found.site
+    plant = make_plant(state=found.site, trackers=found.trackers)
+    await plant.start()
+    await plant.forward(seconds=1)
+    assert plant.site.alive
+    await plant.close()
+    writer.close()
+
+
+@pytest.mark.parametrize("document", ["[]", "{", "", "null", '{"name": 5, "location": 5}'])
+def test_a_site_that_nobody_can_read_starts_anew(document: str, tmp_path: Path) -> None:
+    writer = stored(tmp_path)
+    rewrite(Settings(data_dir=tmp_path).url, tables.site, document=document)
+    found = begin(writer, NOW, unclean_since=None)
+    assert found.site.location is None
+    assert [one.config.tracker_id for one in found.trackers] == ["T1"]
+    writer.close()
