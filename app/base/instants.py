@@ -1,14 +1,13 @@
 """Instants as programs and people write them, leap seconds included."""
 
 import re
-from datetime import date, datetime
-from typing import Annotated, TypeVar
+from datetime import UTC, datetime
+from typing import Annotated
 
 from pydantic import AfterValidator, AwareDatetime, BeforeValidator, Strict
 
 from app.base.message import say
 
-When = TypeVar("When", date, datetime)
 FIRST_YEAR, LAST_YEAR = 1970, 2099
 """The years in which the sun is known and a clock can be right; a day more or less stays in the calendar."""
 NUMBER = re.compile(r"\s*[-+]?[\d._]+(?:[eE][-+]?\d+)?\s*")
@@ -41,13 +40,15 @@ def read_instant(text: str) -> datetime:
     return of_these_times(datetime.fromisoformat(without_leap_second(text)))
 
 
-def is_of_these_times(instant: date) -> bool:
-    """Return whether an instant, or a date, lies in the years that this software deals with."""
+def is_of_these_times(instant: datetime) -> bool:
+    """Return whether an instant lies, in UTC, in the years that this software deals with."""
+    if instant.tzinfo is not None and instant.year + 1 >= FIRST_YEAR and instant.year - 1 <= LAST_YEAR:
+        instant = instant.astimezone(UTC)
     return FIRST_YEAR <= instant.year <= LAST_YEAR
 
 
-def of_these_times(instant: When) -> When:
-    """Return an instant or a date of the years that this software deals with, or raise `ValueError`."""
+def of_these_times(instant: datetime) -> datetime:
+    """Return an instant of the years that this software deals with, or raise `ValueError`."""
     if not is_of_these_times(instant):
         raise ValueError(NOT_OF_THESE_TIMES)
     return instant

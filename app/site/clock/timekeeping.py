@@ -80,7 +80,6 @@ class Timekeeper:
             raise ValueError(N_("Enter the date and time to set on the controller's clock."))
         shown = self._clock.now() + self._followed
         wanted = shown if source == "system" or at is None else of_these_times(at).astimezone(UTC)
-        of_these_times(wanted)
         if wanted < BUILT_AT:
             raise ValueError(
                 say(
@@ -90,7 +89,7 @@ class Timekeeper:
                     built_at=with_format(BUILT_AT, "%Y-%m-%d"),
                 )
             )
-        return ClockSetting(source, (wanted - shown).total_seconds(), wanted, by)
+        return ClockSetting(source, (wanted - shown).total_seconds(), of_these_times(wanted), by)
 
     def adopt(self, setting: ClockSetting) -> None:
         """Take over a setting that is stored: the operator vouches for the time, jumps are forgotten."""
