@@ -81,9 +81,16 @@ class Settings(BaseSettings):
         "info", description="Least severe messages that the log has."
     )
     tick_ms: int = Field(100, ge=20, le=1000, description="Period of the control loop.")
-    telemetry_retention_days: int = Field(400, ge=1, description="Recorded days older than this are removed.")
+    telemetry_retention_days: int = Field(
+        400,
+        ge=1,
+        description="Recorded days older than this are removed; age counts while the controller runs.",
+    )
     journal_retention_days: int = Field(
-        1825, ge=30, description="Journal entries and ended alarms older than this are removed."
+        1825,
+        ge=30,
+        description="Journal entries and ended alarms older than this are removed; age counts while the "
+        "controller runs.",
     )
     memory_limit_mb: int = Field(
         500,
