@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import ClassVar, Literal
 
+from app.base.message import N_
 from app.base.permission import Permission
 from app.link.settings_orders import UndoSiteSettings
 from app.tracker.memory.memory import MetStation
@@ -21,6 +22,10 @@ class ReportWeather:
     measured_at: datetime | None = None
     kind: Literal["report_weather"] = "report_weather"
     spec: ClassVar = OrderSpec(needs=Permission.REPORT, by=Interface.API, within_s=STORED_S, audited=False)
+
+    def __post_init__(self) -> None:
+        if self.readings == Weather():
+            raise ValueError(N_("Give at least one value of the weather."))
 
 
 @dataclass(frozen=True, slots=True)

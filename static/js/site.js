@@ -1,20 +1,25 @@
-// The weather card is read again when other quantities are known than those that it shows, or when they are made up.
+// The weather card is read again when other quantities are known or implausible than those that it shows, or made up.
 
 import { live } from "./live.js";
 
 const LEAST_MS = 2000;
 const READINGS = "site.weather.readings.";
+const IMPLAUSIBLE = "!";
+const NOTHING = { readings: {}, quantities: {}, simulated: false, before_restart: false };
 let askedAt = -Infinity;
 
 const card = () => document.getElementById("weather");
 
 function shown() {
-  const names = [...card().querySelectorAll(`[data-live^="${READINGS}"]`)].map((element) => element.dataset.live.slice(READINGS.length));
+  const names = [...card().querySelectorAll(`[data-live^="${READINGS}"]`)].map((element) =>
+    element.dataset.live.slice(READINGS.length) + (element.closest("[data-implausible]") ? IMPLAUSIBLE : ""));
   return keyOf(names, card().hasAttribute("data-simulated"), card().hasAttribute("data-before-restart"));
 }
 
-function known({ readings, simulated, before_restart: old } = { readings: {}, simulated: false, before_restart: false }) {
-  return keyOf(Object.keys(readings).filter((name) => readings[name] !== null), simulated, old);
+function known({ readings, quantities, simulated, before_restart: old } = NOTHING) {
+  const implausible = (name) => quantities[name]?.quality === "impossible";
+  const names = Object.keys(readings).filter((name) => readings[name] !== null || implausible(name));
+  return keyOf(names.map((name) => name + (implausible(name) ? IMPLAUSIBLE : "")), simulated, old);
 }
 
 const keyOf = (names, simulated, old) => [...names.sort(), simulated, old].join(" ");

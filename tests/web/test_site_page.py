@@ -12,7 +12,7 @@ from app.tracker.commands.control import ControlState
 from app.tracker.settings.config import DriveConfig, DriveKind
 from app.tracker.state.snapshot import SiteSnapshot
 from app.tracker.weather.simulated_weather import Scenario, SimulatedStation
-from app.tracker.weather.weather import Weather, WeatherNow
+from app.tracker.weather.weather import Quality, Reading, Weather, WeatherNow
 from app.tracker.weather.weather_windows import WeatherWindows
 from tests.fakes import FakeMachine, fake_app, serving
 
@@ -219,3 +219,23 @@ async def test_the_site_says_who_may_write_and_what_a_gateway_has_control_of() -
     assert re.search(r'data-live="control.holder"[^>]*>SunSpec<', overview)
     async with serving(fake_app(FakeMachine())) as client:
         assert "This integration has control of no tracker" in (await client.get("/site")).text
+
+
+async def test_an_implausible_value_is_shown_without_a_number_also_of_a_second_mast(
+    machine: FakeMachine, panel: httpx.AsyncClient
+) -> None:
+    reading, nothing = Reading(4.0, Quality.GOOD, 0.0, "west"), Reading(None, Quality.IMPOSSIBLE, 0.0, "east")
+    machine.weather = WeatherNow(
+        Weather(wind_mps=4.0),
+        machine.clock.now(),
+        0.0,
+        stale=False,
+        source="west",
+        quantities={"wind_mps": reading, "pressure_hpa": nothing},
+        winds={"west": reading, "east": nothing},
+    )
+    machine.emit()
+    page = (await panel.get("/site")).text
+    assert page.count("reports an implausible value") == 1
+    assert "east: – m/s (impossible)" in " ".join(page.split())
+    assert "Humidity" not in page.partition("</section>")[0]

@@ -3,7 +3,7 @@
 from dataclasses import fields
 from datetime import datetime, timedelta
 
-from app.base.message import N_, say, with_format
+from app.base.message import say, with_format
 from app.site.weather.anemometers import Anemometers
 from app.site.weather.kept_weather import KeptValue, KeptWeather
 from app.site.weather.weather_series import FROZEN_AFTER, Sample, Series
@@ -56,12 +56,10 @@ class WeatherStation:
         now: datetime,
         impossible: tuple[str, ...] = (),
     ) -> None:
-        """Take a report, or raise `ValueError` if it holds nothing, is of the future or already stale.
+        """Take a report, or raise `ValueError` if it is of the future or already stale.
 
         `impossible` names what the station sent that was no number or out of range.
         """
-        if readings == Weather():
-            raise ValueError(N_("Give at least one value of the weather."))
         measured_at = measured_at or site_time
         age = self._checked_age(measured_at, site_time)
         at = now - age

@@ -103,7 +103,8 @@ async def report_weather(report: WeatherReport, sender: SenderDep) -> WeatherNow
     """Take the values in the place of those before; wind, snow and light act on trackers as set."""
     try:
         readings = Weather(**report.model_dump(exclude={"measured_at"}))
+        order = ReportWeather(readings, report.measured_at)
     except ValueError as error:
         raise NotAcceptable(told_by(error)) from error
-    after = await sender.send(ReportWeather(readings, report.measured_at))
+    after = await sender.send(order)
     return await read_weather(after)
