@@ -46,7 +46,7 @@ from app.store.engine import open_writer
 from app.store.files import keep_all_private
 from app.store.integrity import sqlite_notice
 from app.store.migrations import make_apart, upgrade
-from app.store.store import JournalFilter, StoreDamaged, StoreFailed, StoreUnreadable, Writer
+from app.store.store import StoreDamaged, StoreFailed, StoreUnreadable, Writer
 from app.store.writer_thread import WriterThread
 from app.tracker.state.snapshot import Event, EventKind
 from app.tracker.values.actors import CONTROLLER
@@ -213,7 +213,7 @@ def _site(
         beginning.site.clock,
         drift=clock.drift,
         kernel=kernel_clock,
-        not_before=_newest_event(writer),
+        not_before=max(BUILT_AT, writer.newest_entry_at() or BUILT_AT),
     )
     period = timedelta(milliseconds=settings.tick_ms)
     factory = DriveFactory(
@@ -256,12 +256,6 @@ def _disk_free(folder: Path) -> int | None:
         return shutil.disk_usage(folder).free
     except OSError:
         return None
-
-
-def _newest_event(writer: Writer) -> datetime:
-    """Return the last instant that was journalled: a clock that shows an earlier one is wrong."""
-    newest = writer.journal(JournalFilter(limit=1))
-    return max(BUILT_AT, newest[0].event.at) if newest else BUILT_AT
 
 
 def _on_store_failure(error: Exception) -> None:

@@ -10,7 +10,7 @@ from app.base.message import N_, NOTHING, Message, join, plain, say, told_by, wi
 from app.site.clock.timekeeping import can_be
 from app.site.state.validation import check_config
 from app.store.config_repair import fallen_back
-from app.store.store import JournalFilter, StoreFailed, Writer
+from app.store.store import StoreFailed, Writer
 from app.tracker.memory.memory import (
     AgesFrom,
     ClockSetting,
@@ -71,8 +71,7 @@ def _site(store: Writer, now: datetime) -> SiteState:
         rejected += (RejectedSetting(N_("clock"), offset, N_("none"), NOT_OF_THESE_TIMES),)
         site = replace(site, clock=ClockSetting())
     if site.ages_from is None:
-        newest = store.journal(JournalFilter(limit=1))
-        site = replace(site, ages_from=AgesFrom(newest[0].event.at if newest else now))
+        site = replace(site, ages_from=AgesFrom(store.newest_entry_at() or now))
     if rejected:
         at = now + timedelta(seconds=site.clock.offset_s)
         store.save_site(site, tuple(_set_aside(one, at) for one in rejected))

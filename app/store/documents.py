@@ -1,5 +1,6 @@
 """Aggregates of the domain as JSON documents and back; a document that does not fit is refused by name."""
 
+from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
 from pydantic import ValidationError
@@ -7,6 +8,7 @@ from pydantic_core import PydanticSerializationError
 
 from app.alarms.alarm import Alarm
 from app.base.adapter import adapter
+from app.base.logs import get_logger
 from app.base.message import N_, WHOLE, say, told_by
 from app.store.store import StoreFailed, StoreUnreadable
 from app.tracker.memory.memory import SiteState, TrackerState
@@ -15,6 +17,8 @@ from app.tracker.programs.show import ShowPlan
 from app.tracker.settings.config import TrackerConfig
 
 T = TypeVar("T")
+
+log = get_logger()
 
 
 class Documents(Generic[T]):
@@ -77,6 +81,15 @@ PLAN = Documents(ShowPlan, "show")
 RECORDING = Documents(RecordingInfo, "recording", FORMER_RECORDING)
 ALARM = Documents(Alarm, "alarm")
 EVENT_DATA: Documents[dict[str, Any]] = Documents(dict[str, Any], N_("event data"))
+
+
+def or_none(read: Callable[[Any], T], row: Any) -> T | None:
+    """Return what a row holds; one that does not fit is told in the log, and keeps nothing from starting."""
+    try:
+        return read(row)
+    except StoreUnreadable as error:
+        log.warning("not_read", reason=str(error))
+        return None
 
 
 def plain(text: str) -> str:

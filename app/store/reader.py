@@ -15,7 +15,7 @@ from app.store import alarming, auditing, recording, signed_records, tables
 from app.store.chunks import ChunkDamaged, decode_all
 from app.store.config_repair import mended, mended_site
 from app.store.connections import require_revision, transaction
-from app.store.documents import CONFIG, EVENT_DATA, PLAN, RECORDING, SITE, TRACKER
+from app.store.documents import CONFIG, EVENT_DATA, PLAN, RECORDING, SITE, TRACKER, or_none
 from app.store.event_message import kept_message
 from app.store.former import kind_of, stored_as
 from app.store.store import (
@@ -102,6 +102,14 @@ class DatabaseReader:
             rows = connection.execute(_journal_query(wanted)).all()
         return [_entry(row) for row in rows]
 
+    def newest_entry_at(self) -> datetime | None:
+        """Return when the newest entry of the journal was written, None of an empty one."""
+        columns = tables.events.c
+        with self._read() as connection:
+            return connection.execute(
+                select(columns.at).order_by(columns.number.desc()).limit(1)
+            ).scalar_one_or_none()
+
     def audit(self, wanted: AuditFilter) -> list[Sealed]:
         """Return audit entries, newest first; with `after` oldest first."""
         with self._read() as connection:
@@ -109,10 +117,10 @@ class DatabaseReader:
         return [auditing.sealed(row) for row in rows]
 
     def standing_alarms(self) -> list[Alarm]:
-        """Return the alarms that stood when they were last stored."""
+        """Return the alarms that stood when they were last stored, but for those that cannot be read."""
         with self._read() as connection:
             rows = connection.execute(alarming.standing()).all()
-        return [alarming.kept(row).alarm for row in rows]
+        return [one.alarm for one in (or_none(alarming.kept, row) for row in rows) if one is not None]
 
     def alarm_history(self, wanted: AlarmFilter) -> list[KeptAlarm]:
         """Return alarms, those that stand and those that ended, newest first."""

@@ -232,6 +232,9 @@ class Writer(Reader, Protocol):
     def accepted_settings(self, tracker_id: str) -> TrackerConfig | None:
         """Return the settings with which a tracker ran last; None: not known, or they do not fit any more."""
 
+    def newest_entry_at(self) -> datetime | None:
+        """Return when the newest entry of the journal was written, None of an empty one."""
+
     def mended_site(self) -> tuple[SiteState, tuple[RejectedSetting, ...]]:
         """Return the stored site with usual settings where stored ones do not fit, and those."""
 

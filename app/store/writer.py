@@ -12,7 +12,7 @@ from app.base.message import say, told_by
 from app.store import alarming, auditing, recording, signed_records, tables
 from app.store.chunks import ChunkDamaged
 from app.store.connections import require_revision
-from app.store.documents import CONFIG, EVENT_DATA, PLAN, SITE, TRACKER, plain
+from app.store.documents import CONFIG, EVENT_DATA, PLAN, SITE, TRACKER, or_none, plain
 from app.store.event_message import with_message
 from app.store.failures import explained, is_lasting
 from app.store.putting import adding, put
@@ -240,11 +240,12 @@ class DatabaseWriter(DatabaseReader):
             left = connection.execute(recording.heads().where(columns.ended_at.is_(None))).all()
             for row in left:
                 recording.pack(connection, row.recording_id, everything=True)
-                at = recording.last_frame_at(connection, head(row)) or ended_at
-                recording.close(connection, row.recording_id, at, outcome)
+                info = or_none(head, row)
+                at = None if info is None else recording.last_frame_at(connection, info)
+                recording.close(connection, row.recording_id, at or ended_at, outcome)
             ids = [row.recording_id for row in left]
             closed = connection.execute(recording.heads().where(columns.recording_id.in_(ids))).all()
-        return [head(row) for row in closed]
+        return [info for info in (or_none(head, row) for row in closed) if info is not None]
 
     def prune(self, *, days_before: datetime, keep: int) -> int:
         """Delete day recordings that began before an instant and all but `keep` others; return how many."""

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from sqlalchemy import Table, update
 
+from app.alarms.alarm import Alarm
 from app.base.settings import Settings
 from app.link.messages import ConfigureTracker
 from app.site.startup import begin
@@ -19,7 +20,7 @@ from app.store.connections import transaction, writing_engine
 from app.store.documents import SITE, TRACKER
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
-from app.store.store import JournalFilter, StoreFailed
+from app.store.store import JournalFilter, KeptAlarm, StoreFailed
 from app.store.writer import DatabaseWriter
 from app.tracker.commands.commands import CommandRejected, Jog, Stop, Track
 from app.tracker.memory.memory import HomeTrust, MetStation, SiteState, TrackerMemory, TrackerState
@@ -28,6 +29,7 @@ from app.tracker.settings.config import Orientation, TrackerConfig
 from app.tracker.state.snapshot import EventKind
 from tests.fault_result import FaultResult
 from tests.site.plant import SAMSUN, Plant, make_plant
+from tests.store.tracked_day import day_info
 
 NOW = datetime(2027, 6, 21, 9, 0, tzinfo=UTC)
 KEPT = TrackerState(
@@ -244,4 +246,27 @@ def test_a_site_that_nobody_can_read_starts_anew(document: str, tmp_path: Path) 
     found = begin(writer, NOW, unclean_since=None)
     assert found.site.location is None
     assert [one.config.tracker_id for one in found.trackers] == ["T1"]
+    writer.close()
+
+
+async def test_an_alarm_and_a_recording_that_nobody_can_read_keep_no_controller_from_starting(
+    tmp_path: Path,
+) -> None:
+    writer = stored(tmp_path)
+    writer.save_alarms(
+        [
+            KeptAlarm(
+                Alarm("drive_lost", "T1", "North", "It is silent.", active=True, told=True, raised_at=NOW),
+                None,
+            )
+        ]
+    )
+    writer.begin_recording(day_info("a day"))
+    url = Settings(data_dir=tmp_path).url
+    rewrite(url, tables.alarms, document="{}")
+    rewrite(url, tables.recordings, document="[]")
+    rewrite(url, tables.events, kind="unheard of", data="{")
+    found = begin(writer, NOW, unclean_since=None)
+    assert found.alarms == ()
+    assert begin(writer, NOW, unclean_since=None).events[0].data["cut_off"] == []
     writer.close()
