@@ -1,6 +1,7 @@
 """Reads the golden tables that lie beside it."""
 
 import csv
+import re
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -40,3 +41,8 @@ def rows(name: str) -> list[dict[str, str]]:
     """Return the rows of a table as they are written."""
     with (Path(__file__).parent / name).open(newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
+
+
+def seen(text: str) -> str:
+    """Return a text of a table with the characters that it writes as `\\u00a0`, since nobody sees them."""
+    return re.sub(r"\\u([0-9a-f]{4})", lambda found: chr(int(found[1], 16)), text)

@@ -4,8 +4,11 @@ import random
 import re
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
+from pathlib import Path
 
 import httpx
+
+from tests.golden.table import rows, seen
 
 SCRIPT = "<script>alert('hostile')</script>"
 HOSTILE = (
@@ -32,6 +35,13 @@ HOSTILE = (
     "[]",
     "true",
 )
+WORLD = tuple(
+    seen(row["text"])
+    for table in sorted((Path(__file__).parents[1] / "golden" / "world").glob("*.csv"))
+    for row in rows(f"world/{table.name}")
+    if "text" in row
+)
+"""What people, maps, phones, and spreadsheets write: every text of the tables of the world."""
 START = (
     "/",
     "/journal",
@@ -102,16 +112,21 @@ async def every_form(client: httpx.AsyncClient) -> list[PageForm]:
     return list(found.values())
 
 
+def bad_value(chance: random.Random) -> str:
+    """Return one text that is hostile, or that the world writes."""
+    return chance.choice(chance.choice((HOSTILE, WORLD)))
+
+
 def bad_values(form: PageForm, number: int, chance: random.Random) -> dict[str, str]:
     """Return what to send, in turn: every field hostile, one among right ones, or fields left out."""
     names = list(form.values) or ["unknown"]
     match number % 3:
         case 0:
-            return {name: chance.choice(HOSTILE) for name in names}
+            return {name: bad_value(chance) for name in names}
         case 1:
-            return form.values | {chance.choice(names): chance.choice(HOSTILE)}
+            return form.values | {chance.choice(names): bad_value(chance)}
         case _:
-            return {name: chance.choice(HOSTILE) for name in names if chance.random() < 0.5}
+            return {name: bad_value(chance) for name in names if chance.random() < 0.5}
 
 
 def hostile_in(text: str) -> str:

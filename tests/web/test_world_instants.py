@@ -20,11 +20,11 @@ def of_clock(machine: FakeMachine) -> list[SetClock]:
 
 
 @pytest.mark.fault(102)
-@pytest.mark.parametrize("row", ROWS, ids=[row["at"] for row in ROWS])
+@pytest.mark.parametrize("row", ROWS, ids=[row["text"] for row in ROWS])
 async def test_an_instant_is_taken_or_refused_with_a_sentence(
     row: dict[str, str], machine: FakeMachine, client: httpx.AsyncClient, fault: FaultResult
 ) -> None:
-    at, taken = row["at"], row["taken"] == "yes"
+    at, taken = row["text"], row["taken"] == "yes"
     asked = {"source": "manual", "at": at, "confirmed": True}
     by_api = await client.put("/api/v1/site/clock", json=asked)
     by_device = await client.post(f"{CLOCK}/device", data={"at": at})
