@@ -4,6 +4,7 @@ import { _ } from "./i18n.js";
 
 const cross = document.getElementById("map-cross");
 const preview = document.getElementById("preview");
+let typing = null;
 
 function moveCross() {
   const found = preview.querySelector("[data-x]");
@@ -12,8 +13,16 @@ function moveCross() {
   cross.setAttribute("transform", `translate(${found.dataset.x} ${found.dataset.y})`);
   press("latitude", found.dataset.latitudeSide);
   press("longitude", found.dataset.longitudeSide);
+  divide(found.dataset);
   const byPlace = document.querySelector('#f-time_zone option[value=""]');
   if (byPlace && document.getElementById("f-time_zone").value === "") byPlace.textContent = found.dataset.zone;
+}
+
+// A pair in one field goes to both, unless that field is still being typed in.
+function divide({ latitude, longitude }) {
+  if (!latitude || (typing && typing === document.activeElement)) return;
+  for (const [name, text] of Object.entries({ latitude, longitude })) document.getElementById(`f-${name}`).value = text;
+  document.getElementById("f-latitude").dispatchEvent(new Event("input", { bubbles: true }));
 }
 
 function put(name, value, sides) {
@@ -63,6 +72,9 @@ function tellDeviceZone() {
   if (field) field.value = Intl.DateTimeFormat().resolvedOptions().timeZone ?? "";
 }
 
+document.getElementById("place").addEventListener("input", (event) => {
+  typing = event.inputType?.startsWith("insertFromPaste") ? null : event.target;
+});
 document.addEventListener("htmx:after:swap", () => { moveCross(); offerDevicePlace(); tellDeviceZone(); });
 tellDeviceZone();
 offerDevicePlace();

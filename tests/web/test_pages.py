@@ -18,7 +18,7 @@ from app.tracker.values.mode import Mode
 from app.tracker.values.reason import Reason
 from app.web.languages import CATALOGUE
 from app.web.languages.catalogue import catalogue_of
-from app.web.shell import contexts, forms
+from app.web.shell import contexts, coordinates, forms
 from app.web.shell.formats import compass, duration, shown
 from app.web.shell.render import environment
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
@@ -142,13 +142,13 @@ async def test_a_place_and_the_size_of_a_step_have_the_point_or_comma_of_the_lan
     ],
 )
 def test_angles_as_people_write_them(text: str, side: str, degrees: float) -> None:
-    assert forms.angle(text, "Latitude", "NS", side, 90.0) == pytest.approx(degrees, abs=1e-6)
+    assert coordinates.angle(text, "latitude", side) == pytest.approx(degrees, abs=1e-6)
 
 
 @pytest.mark.parametrize("text", ["", "abc", "91", "41 60", "41 E", "N 41 S", "-41 S", "1e3"])
 def test_angles_that_mean_nothing_are_refused_with_a_sentence(text: str) -> None:
     with pytest.raises(forms.Unreadable, match=r"^Latitude.*\.$"):
-        forms.angle(text, "Latitude", "NS", "N", 90.0)
+        coordinates.angle(text, "latitude", "N")
 
 
 @pytest.mark.parametrize(
@@ -166,7 +166,7 @@ def test_the_letter_of_a_side_is_that_of_the_page_or_english(
 ) -> None:
     before = CATALOGUE.set(catalogue_of(language))
     try:
-        assert forms.angle(text, "Longitude", "EW", "E", 180.0) == degrees
+        assert coordinates.angle(text, "longitude", "E") == degrees
     finally:
         CATALOGUE.reset(before)
 

@@ -180,8 +180,12 @@ class ProgressPart:
 
 @dataclass(frozen=True, slots=True)
 class LocationPreview:
-    """What a location means: its point on the map and today's sun, all texts in local time."""
+    """What a location means: its point on the map and today's sun, all texts in local time.
 
+    `is_pair` tells that one field had both coordinates: the form has each in its own.
+    """
+
+    is_pair: bool
     x: float
     y: float
     normal: str

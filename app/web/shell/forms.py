@@ -1,4 +1,4 @@
-"""Reads what people type: numbers with comma or point, angles in degrees or degrees-minutes-seconds."""
+"""Reads what people type: numbers with comma or point, dates, and times of day."""
 
 import re
 from collections.abc import Callable, Iterable, Mapping
@@ -9,16 +9,9 @@ from typing import TypeVar
 from app.base.message import Message, say, told_by, with_format, word
 from app.base.zones import zone_of
 from app.sun.accuracy import FIRST_YEAR, LAST_YEAR
-from app.web.languages import pgettext
 from app.web.shell.contexts import Field, Form
 
 T = TypeVar("T")
-NUMBER = r"(\d+(?:[.,]\d+)?)"
-ANGLE = re.compile(
-    rf"([NSEW])?\s*([+-])?\s*{NUMBER}\s*[°d:]?\s*(?:{NUMBER}\s*['′’:m]?\s*(?:{NUMBER}\s*(?:\"|″|”|'')?)?)?\s*([NSEW])?",
-    re.IGNORECASE,
-)
-PAIR = re.compile(r"\s*([+-]?\d+\.\d+)\s*[,;]\s*([+-]?\d+\.\d+)\s*")
 LEAP_SECOND = 60
 TIME = re.compile(r"\s*(\d{1,2})[:.h](\d{2})(?:[:.](\d{2}))?\s*")
 
@@ -93,82 +86,6 @@ def whole(text: str, label: str, least: int, most: int) -> int:
     if value != int(value):
         raise Unreadable(say("{label} must be a whole number.", label=word(label)))
     return int(value)
-
-
-def angle(text: str, label: str, sides: str, chosen: str, limit: float) -> float:
-    """Return a signed latitude or longitude; `sides` is `NS` or `EW`, `chosen` the key beside the field."""
-    match = ANGLE.fullmatch(_in_english(text.strip().replace("−", "-"), sides))
-    if match is None:
-        raise Unreadable(
-            say(
-                "{label}: type degrees such as 41.2867, or degrees, minutes, and seconds such as 41° "
-                "17' 12\".",
-                label=word(label),
-            )
-        )
-    before, sign, *parts, after = match.groups()
-    letters = {letter.upper() for letter in (before, after) if letter}
-    one, other = (pgettext("compass", side) for side in sides)
-    if not letters <= set(sides) or len(letters) > 1:
-        raise Unreadable(
-            say("{label}: the letter must be {one} or {other}.", label=word(label), one=one, other=other)
-        )
-    value = _degrees(parts, label)
-    if value > limit:
-        raise Unreadable(
-            say(
-                "{label} must be between 0 and {limit} degrees, {one} or {other}.",
-                label=word(label),
-                limit=with_format(limit, "g"),
-                one=one,
-                other=other,
-            )
-        )
-    return value * _sign(sign, letters.pop() if letters else chosen, sides, label)
-
-
-def side(text: str, sides: str) -> str:
-    """Return the letter of `sides` that an angle was typed with, nothing where it has none of them."""
-    match = ANGLE.fullmatch(_in_english(text.strip().replace("−", "-"), sides))
-    letters = {letter.upper() for letter in (match[1], match[match.re.groups]) if letter} if match else set()
-    return letters.pop() if len(letters) == 1 and letters <= set(sides) else ""
-
-
-def _in_english(text: str, sides: str) -> str:
-    """Return an angle whose letter is in the page's language, such as `36° O`, with the English one."""
-    for side in sides:
-        letter = pgettext("compass", side)
-        if text.upper().startswith(letter):
-            return side + text[len(letter) :]
-        if text.upper().endswith(letter):
-            return text[: -len(letter)] + side
-    return text
-
-
-def _degrees(parts: list[str | None], label: str) -> float:
-    degrees, minutes, seconds = (float((part or "0").replace(",", ".")) for part in parts)
-    if minutes >= 60 or seconds >= 60:
-        raise Unreadable(say("{label}: minutes and seconds must be below 60.", label=word(label)))
-    return degrees + minutes / 60 + seconds / 3600
-
-
-def _sign(sign: str | None, side: str, sides: str, label: str) -> int:
-    if sign == "-" and side == sides[1]:
-        letter = pgettext("compass", side)
-        raise Unreadable(
-            say(
-                "{label}: leave out the minus sign; {letter} already gives the direction.",
-                label=word(label),
-                letter=letter,
-            )
-        )
-    return -1 if sign == "-" or side == sides[1] else 1
-
-
-def pair(text: str) -> tuple[str, str] | None:
-    """Return latitude and longitude of a pasted `41.2867, 36.3300`, None for anything else."""
-    match = PAIR.fullmatch(text.replace("−", "-"))
-    return (match[1], match[2]) if match else None
 
 
 def day(text: str, label: str) -> date:

@@ -23,7 +23,7 @@ from app.web.features.site.place import place_doubts, swapped, zone_at
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.languages import pgettext
-from app.web.shell import forms
+from app.web.shell import coordinates
 from app.web.shell.contexts import LocationPage, LocationPreview
 from app.web.shell.deps import Panel, PanelDep
 from app.web.shell.formats import compass, decimals, formatted, local
@@ -35,7 +35,6 @@ from app.web.shell.wizard import tracker_of, wizard_frame
 router = page_router(prefix="/trackers/{tracker_id}/commissioning/location")
 NAMES = ("latitude", "longitude", "altitude", "latitude_side", "longitude_side", "time_zone", "device_zone")
 BY_PLACE = ""
-SIDES = {"latitude": "NS", "longitude": "EW"}
 SHOWN_DEG = 1e-4
 
 
@@ -60,6 +59,7 @@ class Read:
     location: Location | None
     zone: str
     doubts: tuple[str, ...] = ()
+    is_pair: bool = False
 
     @property
     def is_asked(self) -> bool:
@@ -102,27 +102,28 @@ async def save(
 def read(form: LocationForm) -> Read:
     """Return what was typed and what it means."""
     texts = form.model_dump()
-    if pasted := forms.pair(form.latitude):
-        for (name, sides), text in zip(SIDES.items(), pasted, strict=True):
-            texts |= {name: text.lstrip("+-"), f"{name}_side": sides[text.startswith("-")]}
+    pair = coordinates.spread(texts)
+    for name, text in pair.items():
+        texts |= {name: text.lstrip("-"), f"{name}_side": coordinates.AXES[name][text.startswith("-")]}
     texts |= _sides(texts)
     typed = Typed(texts)
-    latitude = typed.read("latitude", lambda text: _angle(text, texts, "latitude", "NS", 90.0), 0.0)
-    longitude = typed.read("longitude", lambda text: _angle(text, texts, "longitude", "EW", 180.0), 0.0)
+    latitude, longitude = (coordinates.read(typed, name, texts[f"{name}_side"]) for name in coordinates.AXES)
     altitude = typed.number("altitude", N_("Altitude"), -500, 9000) if form.altitude.strip() else 0.0
     if form.time_zone and form.time_zone not in zones():
         typed.errors["time_zone"] = N_("Choose a time zone from the list.")
     if typed.errors:
         return Read(typed, None, "UTC")
-    return Read(
-        typed, Location(latitude, longitude, altitude), form.time_zone or proposed(latitude, longitude)
-    )
+    place = Location(latitude, longitude, altitude)
+    return Read(typed, place, form.time_zone or proposed(latitude, longitude), is_pair=bool(pair))
 
 
 def _sides(texts: dict[str, str]) -> dict[str, str]:
-    """Return which keys beside the fields the letters in them press; a letter counts more than a key."""
-    letters = {name: forms.side(texts[name], sides) for name, sides in SIDES.items()}
-    return {f"{name}_side": letter for name, letter in letters.items() if letter}
+    """Return the side of each field: that of a letter in its text, otherwise that of the pressed button."""
+    counting = {}
+    for name, sides in coordinates.AXES.items():
+        pressed = texts[f"{name}_side"] if texts[f"{name}_side"] in tuple(sides) else sides[0]
+        counting[f"{name}_side"] = coordinates.side(texts[name], name) or pressed
+    return counting
 
 
 def _doubted(found: Read, site: SiteState, built: Panel) -> Read:
@@ -149,11 +150,6 @@ def _is_stored(found: Read, site: SiteState) -> bool:
     )
 
 
-def _angle(text: str, texts: dict[str, str], name: str, sides: str, limit: float) -> float:
-    side = texts[f"{name}_side"] if texts[f"{name}_side"] in tuple(sides) else sides[0]
-    return forms.angle(text, name.capitalize(), sides, side, limit)
-
-
 def proposed(latitude_deg: float, longitude_deg: float) -> str:
     """Return the IANA time zone of a place; UTC where none is known, as on the high sea."""
     name = zone_at(latitude_deg, longitude_deg)
@@ -174,8 +170,8 @@ def _saved(site: SiteState) -> LocationForm:
         return LocationForm()
     by_place = site.time_zone == proposed(place.latitude_deg, place.longitude_deg)
     return LocationForm(
-        latitude=f"{abs(place.latitude_deg):.7g}",
-        longitude=f"{abs(place.longitude_deg):.7g}",
+        latitude=coordinates.degrees_text(abs(place.latitude_deg)),
+        longitude=coordinates.degrees_text(abs(place.longitude_deg)),
         altitude=f"{place.altitude_m:g}",
         latitude_side="S" if place.latitude_deg < 0 else "N",
         longitude_side="W" if place.longitude_deg < 0 else "E",
@@ -219,6 +215,7 @@ def _preview(found: Read, config: TrackerConfig, now: datetime) -> LocationPrevi
     events = day_events(config.algorithm, place, midnight, midnight + timedelta(days=1))
     noon_deg = events.transit_elevation_deg
     return LocationPreview(
+        is_pair=found.is_pair,
         x=10 * (place.longitude_deg + 180),
         y=10 * (90 - place.latitude_deg),
         normal=normal_form(place),

@@ -27,6 +27,7 @@ from app.web.http.attachments import kept_as
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
+from app.web.shell import coordinates
 from app.web.shell.contexts import Link
 from app.web.shell.deps import MachineDep, PanelDep
 from app.web.shell.formats import angle
@@ -191,8 +192,10 @@ def _site_values(detail: SiteDetail) -> dict[str, str]:
 
 
 def _read(typed: Typed) -> NewProgram | None:
+    typed.texts |= coordinates.spread(typed.texts)
     values: dict[str, object] = {
-        target: typed.number(name, label, least, most) for name, target, label, least, most in NUMBERS
+        target: coordinates.number(typed, name, label, least, most)
+        for name, target, label, least, most in NUMBERS
     }
     values["date"] = typed.day("date", N_("Date"))
     values["most_steps"] = typed.whole("most", N_("Number of steps"), 1, 48)

@@ -29,6 +29,7 @@ from app.web.features.studies.study_orders import NewStudy
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
+from app.web.shell import coordinates
 from app.web.shell.deps import MachineDep, PanelDep
 from app.web.shell.forms import Typed
 from app.web.shell.frame import site_frame
@@ -223,9 +224,11 @@ def _site_values(detail: SiteDetail) -> dict[str, str]:
 
 def _read(typed: Typed, form: StudyForm, detail: SiteDetail) -> StudyRequest | None:
     """Return the study; None where something typed is wrong, with the reasons kept."""
+    typed.texts |= coordinates.spread(typed.texts)
     day = typed.day("date", N_("Date"))
     values: dict[str, object] = {
-        target: typed.number(name, label, least, most) for name, target, label, least, most in NUMBERS
+        target: coordinates.number(typed, name, label, least, most)
+        for name, target, label, least, most in NUMBERS
     }
     values |= {target: typed.whole(name, label, least, most) for name, target, label, least, most in WHOLE}
     if typed.errors:
