@@ -7,6 +7,7 @@ from datetime import datetime, timedelta
 import pytest
 from playwright.sync_api import Page, expect
 
+from app.link.messages import SetLocation
 from app.tracker.memory.recording import RecordingKind
 from app.tracker.weather.weather import Weather, WeatherNow
 from tests.browser.conftest import Opened, Plant
@@ -68,3 +69,44 @@ def test_the_letter_that_is_typed_presses_its_key(opened: Opened, typed: str, *,
     page.locator("#f-latitude").fill(typed)
     expect(keys.nth(1 if south else 0)).to_be_checked()
     expect(page.locator("#preview")).to_contain_text("southern" if south else "northern")
+
+
+@pytest.mark.parametrize("field", ["latitude", "longitude"])
+def test_a_pasted_pair_fills_both_fields_and_is_saved_as_it_is_shown(
+    plant: Plant, opened: Opened, field: str
+) -> None:
+    page = opened("/trackers/T1/commissioning/location", allow=("422",))
+    page.locator("input[name=latitude_side]").nth(1).check(force=True)
+    pasted = page.locator(f"#f-{field}")
+    pasted.fill("41°17'12.12\"N 36°19'48.0\"W")
+    pasted.press("Control+A")
+    pasted.press("Control+X")
+    pasted.press("Control+V")
+    expect(page.locator("#f-latitude")).to_have_value("41.2867")
+    expect(page.locator("#f-longitude")).to_have_value("36.33")
+    expect(page.locator("input[name=latitude_side]").nth(0)).to_be_checked()
+    expect(page.locator("input[name=longitude_side]").nth(1)).to_be_checked()
+    expect(page.locator("#preview")).to_contain_text("41° 17′ 12.1″ N  36° 19′ 48.0″ W")
+    pasted.press("Enter")
+    page.get_by_label("The location is correct").check(force=True)
+    pasted.press("Enter")
+    page.wait_for_url("**/commissioning/clock")
+    (saved,) = [order.command for order in plant.machine.orders if isinstance(order.command, SetLocation)]
+    assert (saved.location.latitude_deg, saved.location.longitude_deg) == pytest.approx((41.2867, -36.33))
+
+
+def test_a_pair_that_is_typed_is_divided_once_its_field_is_left(opened: Opened) -> None:
+    page = opened("/trackers/T1/commissioning/location")
+    latitude = page.locator("#f-latitude")
+    latitude.fill("39.9208 32.8541")
+    expect(page.locator("#preview")).to_contain_text("39° 55′ 14.9″ N  32° 51′ 14.8″ E")
+    expect(latitude).to_have_value("39.9208 32.8541")
+    latitude.blur()
+    expect(latitude).to_have_value("39.9208")
+    expect(page.locator("#f-longitude")).to_have_value("32.8541")
+
+
+def test_the_page_tells_before_it_is_saved_why_a_text_is_not_read(opened: Opened) -> None:
+    page = opened("/trackers/T1/commissioning/location")
+    page.locator("#f-latitude").fill("41.5° 30'")
+    expect(page.locator("#preview")).to_contain_text("only the last number may have decimals")
