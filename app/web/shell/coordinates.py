@@ -52,7 +52,7 @@ WORDS = (
     (r"(?<=\d)\s*sec(?:onds?)?(?![^\W\d_])", '"'),
 )
 DMS_LETTERS = re.compile(rf"({DEGREES})\s*d\s*({PART})\s*(?:'|m(?:\s*({PART})\s*(s))?)", re.IGNORECASE)
-ISO_6709 = re.compile(r"([+-]\d{2,6}(?:\.\d+)?)([+-]\d{3,7}(?:\.\d+)?)(?:[+-]\d+(?:\.\d+)?)?(?:CRSWGS_84)?;?")
+ISO_6709 = re.compile(r"([+-]\d{2,6}(?:\.\d+)?)([+-]\d{3,7}(?:\.\d+)?)(?:[+-]\d+(?:\.\d+)?)?(?:CRSWGS_84)?")
 NMEA = re.compile(r"(\d\d)(\d\d\.\d+),([NS]),(\d{3})(\d\d\.\d+),([EW])", re.IGNORECASE)
 WHOLE_NUMBERS = re.compile(r"[+-]?\d+(?:,\s+|\s+,\s*)[+-]?\d+")
 CODE = re.compile(
@@ -88,7 +88,10 @@ class Refused(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Angle:
-    """One coordinate as it is written: degrees without a sign, its sign, and its letter in English."""
+    """One coordinate as it is written: degrees without a sign, its sign, and its letter in English.
+
+    `axis` is what a letter or a label tells; `style` is the number of parts, and whether it has a degree sign.
+    """
 
     degrees: float
     sign: str = ""
@@ -168,6 +171,7 @@ def _one(text: str) -> Angle:
 
 
 def _within(found: Angle, axis: str, chosen: str = "") -> float:
+    """Return the signed degrees of a latitude or longitude within its range."""
     value_deg = found.signed(chosen)
     if found.degrees > LIMITS_DEG[axis]:
         raise Refused(Refusal.RANGE, replace(found, axis=axis))
