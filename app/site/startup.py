@@ -68,25 +68,14 @@ def _site(store: Writer, now: datetime) -> SiteState:
         store.save_site(site)
     if not can_be(site.clock, now):
         offset = plain(f"{site.clock.offset_s:+g} s")
-        rejected += (RejectedSetting(N_("clock"), offset, N_("none"), NOT_OF_THESE_TIMES),)
+        rejected += (RejectedSetting(N_("Clock"), offset, N_("none"), NOT_OF_THESE_TIMES),)
         site = replace(site, clock=ClockSetting())
     if site.ages_from is None:
         site = replace(site, ages_from=AgesFrom(store.newest_entry_at() or now))
     if rejected:
         at = now + timedelta(seconds=site.clock.offset_s)
-        store.save_site(site, tuple(_set_aside(one, at) for one in rejected))
+        store.save_site(site, (_told(site.name, rejected, at, None),))
     return site
-
-
-def _set_aside(one: RejectedSetting, at: datetime) -> Event:
-    text = say(
-        "A stored setting of the site was rejected at startup: {what}: stored {stored}, used {used} ({why})",
-        what=one.what,
-        stored=one.stored,
-        used=one.used,
-        why=one.why,
-    )
-    return Event(at, EventKind.CONFIG_REJECTED, None, text)
 
 
 def _trackers(store: Writer, at: datetime) -> tuple[TrackerState, ...]:
@@ -98,7 +87,8 @@ def _trackers(store: Writer, at: datetime) -> tuple[TrackerState, ...]:
     judged = tuple(_judged(one, store) for one in found)
     for one in judged:
         if one.memory.rejected:
-            store.save_tracker(one, (_rejected(one, at),))
+            told = _told(one.config.name, one.memory.rejected, at, one.config.tracker_id)
+            store.save_tracker(one, (told,))
     return judged
 
 
@@ -129,7 +119,8 @@ def _wrong(config: TrackerConfig) -> Message:
     return NOTHING
 
 
-def _rejected(state: TrackerState, at: datetime) -> Event:
+def _told(name: str, rejected: tuple[RejectedSetting, ...], at: datetime, tracker_id: str | None) -> Event:
+    """Return the event that says which stored settings of a tracker, or of the site, were rejected."""
     values = join(
         "; ",
         (
@@ -140,15 +131,11 @@ def _rejected(state: TrackerState, at: datetime) -> Event:
                 used=one.used,
                 why=one.why,
             )
-            for one in state.memory.rejected
+            for one in rejected
         ),
     )
-    text = say(
-        "Stored settings of {name} were rejected at startup: {values}", name=state.config.name, values=values
-    )
-    return Event(
-        at, EventKind.CONFIG_REJECTED, state.config.tracker_id, text, data={"code": "config_rejected"}
-    )
+    text = say("Stored settings of {name} were rejected at startup: {values}", name=name, values=values)
+    return Event(at, EventKind.CONFIG_REJECTED, tracker_id, text, data={"code": "config_rejected"})
 
 
 def _message(unclean_since: datetime | None, cut: list[RecordingInfo]) -> Message:

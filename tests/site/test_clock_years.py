@@ -112,7 +112,7 @@ async def test_a_site_with_the_year_9999_starts_and_says_so(tmp_path: Path) -> N
         if one.event.kind is EventKind.CONFIG_REJECTED
     ]
     assert said == [
-        "A stored setting of the site was rejected at startup: clock: stored +2.516e+11 s, used none "
+        "Stored settings of Samsun were rejected at startup: Clock: stored +2.516e+11 s, used none "
         "(Enter a year from 1970 to 2099.)"
     ]
     assert store.site() == found.site, "the next start finds what is used"

@@ -229,7 +229,7 @@ async def test_a_site_with_a_value_that_does_not_fit_starts_without_it_and_says_
     said = [one.event for one in writer.journal(JournalFilter()) if one.event.tracker_id is None]
     told = [one.message for one in said if one.kind is EventKind.CONFIG_REJECTED]
     assert len(told) == 1
-    assert told[0].startswith(f"A stored setting of the site was rejected at startup: {what}: stored ")
+    assert told[0].startswith(f"Stored settings of Samsun were rejected at startup: {what}: stored ")
     assert begin(writer, NOW, unclean_since=None).site == found.site
     plant = make_plant(state=found.site, trackers=found.trackers)
     await plant.start()

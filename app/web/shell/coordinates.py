@@ -90,7 +90,8 @@ class Refused(Exception):
 class Angle:
     """One coordinate as it is written: degrees without a sign, its sign, and its letter in English.
 
-    `axis` is what a letter or a label tells; `style` is the number of parts, and whether it has a degree sign.
+    `axis` is what a letter or a label tells; `style` is the number of parts, and whether it has a degree
+    sign.
     """
 
     degrees: float
