@@ -5,14 +5,15 @@ from dataclasses import dataclass, field
 from datetime import datetime
 
 from app.access.principal import Principal, Via
-from app.access.roles import Role, permissions_of
-from app.access.sessions import Session, SessionState, state
+from app.access.roles import NOBODY, Role, permissions_of
+from app.access.sessions import Session, SessionState, is_stepped_up, state
 from app.access.tokens import Token, is_valid, token_id_of
 from app.access.tokens import permissions_of as permissions_of_scopes
 from app.access.users import User
 from app.base.permission import Permission
 
 RESTING = frozenset({Permission.OPEN, Permission.KNOWN, Permission.READ, Permission.STOP, Permission.OWN})
+MISDATED = NOBODY | {Permission.STOP}
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,11 +42,14 @@ class Book:
         return None if user is None else _person(user, session, now, address)
 
     def by_token(self, text: str, now: datetime, address: str) -> Principal | None:
-        """Return the program that a token stands for; a cabinet's token is good for its own page only."""
+        """Return the program that a token stands for; a cabinet's token is good for its own page only.
+
+        One made in the future does no more than stop: how long it may still be used cannot be known.
+        """
         token = self.tokens.get(token_id_of(text) or "")
         if token is None or token.is_kiosk or not is_valid(token, text, now):
             return None
-        return self._program(token, address)
+        return self._program(token, now, address)
 
     def still(self, principal: Principal, now: datetime) -> bool:
         """Return whether somebody who was let in may stay; what they may do is judged anew each time."""
@@ -60,23 +64,24 @@ class Book:
             case _:
                 return True
 
-    def _program(self, token: Token, address: str) -> Principal:
+    def _program(self, token: Token, now: datetime, address: str) -> Principal:
+        allowed, misdated = permissions_of_scopes(token.scopes), token.is_misdated(now)
         return Principal(
             token.name,
             frozenset(),
-            permissions_of_scopes(token.scopes),
+            allowed & MISDATED if misdated else allowed,
             Via.TOKEN,
             address,
             token.token_id,
             token.trackers,
+            misdated=misdated,
         )
 
     def _kiosk(self, session: Session, now: datetime, address: str) -> Principal | None:
         token = self.tokens.get(session.token_id)
-        if token is None or now >= token.expires_at:
+        if token is None or now >= token.expires_at or token.is_misdated(now):
             return None
-        stepped = session.stepped_until is not None and now < session.stepped_until
-        roles = frozenset({Role.OPERATOR if stepped else Role.VIEWER})
+        roles = frozenset({Role.OPERATOR if is_stepped_up(session, now) else Role.VIEWER})
         allowed = permissions_of(roles)
         return Principal(token.name, roles, allowed, Via.KIOSK, address, session.digest, token.trackers)
 

@@ -68,12 +68,16 @@ class Accounts:
             note(change, by, "roles_changed", f"{user.name}: {before} -> {_words(wanted)}", now)
 
     def set_password(self, by: Principal, name: str, password: str, now: datetime, *, keep: str = "") -> None:
-        """Give a user another password and end all sessions, except the one whose digest is `keep`."""
+        """Give a user another password and end all sessions, except the one whose digest is `keep`.
+
+        Whoever made mistakes with the former one does not wait.
+        """
         hashed = self._passwords.hash(password, name.lower())
         with self._store.writing() as change:
             user = _known(change.users(), name)
             change.put_user(replace(user, password_hash=hashed, changed_at=now))
             change.end_sessions(user.name, but=keep)
+            change.forgive_user(user.name)
             note(change, by, "password_changed", user.name, now)
 
     def remove(self, by: Principal, name: str, now: datetime, *, last: bool = False) -> None:

@@ -26,7 +26,7 @@ from app.access.tickets import OneShots, csrf_token, read_stop_ticket, stop_tick
 from app.access.tokens import digest_of as token_digest
 from app.access.tokens import token_id_of
 from app.access.users import AccessRefused
-from app.base.clock import Clock
+from app.base.clock import Clock, is_within
 from app.base.logs import get_logger
 from app.base.message import N_, say
 from app.base.permission import Permission
@@ -178,7 +178,7 @@ class Keeper:
             now, token_id = self._clock.now(), token_id_of(token_text.strip()) or ""
             token = self.book.tokens.get(token_id)
             right = token is not None and token.is_kiosk and _fits(token_text.strip(), token.digest)
-            if token is None or not right or now >= token.expires_at:
+            if token is None or not right or now >= token.expires_at or token.is_misdated(now):
                 self._fail(f"token@{address}", (f"token@{address}",), address)
             return self._begin("", token_id, address, agent)
 
@@ -267,7 +267,7 @@ class Keeper:
         if session is None or principal.rests or principal.via is not Via.SESSION:
             return
         now = self._clock.now()
-        if now - session.used_at < sessions.USE_WRITTEN_EVERY:
+        if is_within(session.used_at, now, sessions.USE_WRITTEN_EVERY):
             return
 
         def work() -> None:

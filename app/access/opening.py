@@ -2,6 +2,8 @@
 
 import sys
 
+from sqlalchemy.exc import SQLAlchemyError
+
 from app.access.accounts import Accounts
 from app.access.authenticator import Keeper, new_key
 from app.access.passwords import Argon, Hasher, Passwords
@@ -12,6 +14,7 @@ from app.base.clock import Clock
 from app.base.logs import get_logger
 from app.base.message import N_
 from app.base.settings import Settings
+from app.store.store import StoreFailed
 
 log = get_logger()
 
@@ -28,10 +31,18 @@ def open_keeper(settings: Settings, clock: Clock, hasher: Hasher | None = None) 
     if setup.reset_wanted():
         Accounts(store, passwords).factory_reset(nobody(N_("data folder")), clock.now())
         log.warning("access was reset: all users, sessions and tokens are removed")
+    _end_future(store, clock)
     keeper = Keeper(store, passwords, clock, setup)
     if keeper.is_closed:
         _announce(setup.offer(), settings)
     return keeper
+
+
+def _end_future(store: AccessStore, clock: Clock) -> None:
+    try:
+        store.end_future(clock.now())
+    except (StoreFailed, SQLAlchemyError) as error:
+        log.warning("what is dated in the future could not be ended in the store", reason=str(error))
 
 
 def _announce(code: str, settings: Settings) -> None:

@@ -38,7 +38,8 @@ class Principal:
     """Who asks, with what right, and from where.
 
     `trackers` limits a token to some trackers (None: all). `credential` names the session (its digest) or the
-    token (its id) so that it can be seen to end. `proven_at` is when the password was typed last.
+    token (its id) so that it can be seen to end. `proven_at` is when the password was typed last. `misdated`
+    says that the token was made in the future.
     """
 
     name: str
@@ -50,6 +51,7 @@ class Principal:
     trackers: frozenset[str] | None = None
     proven_at: datetime | None = None
     rests: bool = False
+    misdated: bool = False
 
     @property
     def actor(self) -> str:
@@ -100,6 +102,10 @@ class Principal:
             raise SignInNeeded(N_("Sign in first: Heliopanel shows and moves nothing for unknown users."))
         if self.rests and permission in permissions_of(self.roles):
             raise ProofNeeded(N_("There was no activity for 30 minutes. Enter your password to continue."))
+        if self.misdated:
+            raise SignInNeeded(
+                N_("This token is dated in the future. Set the controller's clock, or create a new token.")
+            )
         raise NotAllowed(self.refusal(permission, tracker_id))
 
     def require_order(self, kind: str, order: OrderSpec, tracker_id: str | None = None) -> None:

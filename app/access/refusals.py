@@ -7,6 +7,7 @@ from threading import Lock
 
 from app.access.events import AccessEvent
 from app.access.principal import Principal
+from app.base.clock import is_within
 from app.base.message import say
 
 BURST = 60
@@ -65,7 +66,8 @@ class Refusals:
         """Return what is to be written now, with how many refusals were left out before."""
         with self._lock:
             due, self._waiting = self._waiting, []
-            if self._left_out and (self._told_at is None or now - self._told_at >= TELL_EVERY):
+            told = self._told_at is not None and is_within(self._told_at, now, TELL_EVERY)
+            if self._left_out and not told:
                 self._told_at = now
                 result = say("{left_out} refusals were not recorded individually.", left_out=self._left_out)
                 due.append(AccessEvent(now, "nobody", "nobody", "", LEFT_OUT, "panel", result))
@@ -75,7 +77,7 @@ class Refusals:
     def _repeats(self, key: tuple[str, ...], now: datetime) -> int | None:
         """Return how often this came unrecorded before, None if it is only to be counted now."""
         seen = self._seen.get(key)
-        if seen is not None and timedelta() <= now - seen.at < SAME_WITHIN:
+        if seen is not None and is_within(seen.at, now, SAME_WITHIN):
             seen.count += 1
             return None
         self._seen[key] = Repeated(now)

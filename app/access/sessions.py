@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from enum import StrEnum
 
+from app.base.clock import SMALL_CORRECTION, is_within, lasts
+
 IDLE = timedelta(minutes=30)
 ABSOLUTE = timedelta(hours=12)
 PROOF = timedelta(minutes=5)
@@ -45,18 +47,25 @@ class Session:
 def state(session: Session, now: datetime) -> SessionState:
     """Return what a session is good for: after 30 idle minutes it only views, after 12 h it has ended.
 
-    A cabinet's panel lasts as long as its token, which is judged elsewhere.
+    One from the future has ended, too: it was begun or used under a clock that was ahead. A cabinet's panel
+    lasts as long as its token, which is judged elsewhere.
     """
     if session.is_kiosk:
         return SessionState.LIVE
-    if now - session.began_at >= ABSOLUTE:
+    is_future = session.used_at - now > SMALL_CORRECTION
+    if is_future or not is_within(session.began_at, now, ABSOLUTE, ahead=SMALL_CORRECTION):
         return SessionState.ENDED
     return SessionState.IDLE if now - session.used_at >= IDLE else SessionState.LIVE
 
 
 def is_proven(proven_at: datetime | None, now: datetime) -> bool:
     """Return whether the password was typed within the last 5 minutes."""
-    return proven_at is not None and now - proven_at < PROOF
+    return proven_at is not None and is_within(proven_at, now, PROOF)
+
+
+def is_stepped_up(session: Session, now: datetime) -> bool:
+    """Return whether the PIN of a cabinet's panel was typed within the last 5 minutes."""
+    return session.stepped_until is not None and lasts(session.stepped_until, now, STEP_UP)
 
 
 def new_id() -> str:

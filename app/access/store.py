@@ -13,11 +13,12 @@ from app.access.access_cache import Book
 from app.access.events import AccessEvent, Recorded, chained, covered
 from app.access.migrations import upgrade
 from app.access.roles import Role
-from app.access.sessions import Session
+from app.access.sessions import STEP_UP, Session
 from app.access.throttle import FORGOTTEN_AFTER, Failures
 from app.access.tokens import Scope, Token
 from app.access.users import User
 from app.audit.chain import FIRST, Link
+from app.base.clock import SMALL_CORRECTION
 from app.base.message import parts_of, with_parts
 from app.store.connections import sharing_engine, sqlite_path, transaction
 from app.store.files import keep_private, make_folder
@@ -67,6 +68,12 @@ class AccessStore:
                 tokens={row["token_id"]: _token(row) for row in _rows(connection, tables.tokens)},
                 changes=int(_meta(connection, CHANGES)),
             )
+
+    def end_future(self, now: datetime) -> None:
+        """End what was stored under a clock that was ahead; call it as a process begins, with its clock."""
+        if self.exists():
+            with self.writing() as change:
+                change.end_future(now)
 
     def changes(self) -> int:
         """Return a number that grows with everything written."""
@@ -172,6 +179,17 @@ class Change:
         old = (tables.sessions.c.began_at < began_before) & (tables.sessions.c.token_id == "")
         self._connection.execute(delete(tables.sessions).where(old))
 
+    def end_future(self, now: datetime) -> None:
+        """End the sessions and proofs of the future, and count every span that begins there from now."""
+        sessions, failures = tables.sessions.c, tables.failures.c
+        for begun in (sessions.began_at, sessions.used_at, sessions.proven_at):
+            ends = (begun > now + SMALL_CORRECTION) & (sessions.token_id == "")
+            self._connection.execute(delete(tables.sessions).where(ends))
+            self._connection.execute(update(tables.sessions).where(begun > now).values({begun: now}))
+        stepped = update(tables.sessions).where(sessions.stepped_until > now + STEP_UP)
+        self._connection.execute(stepped.values(stepped_until=None))
+        self._connection.execute(update(tables.failures).where(failures.last_at > now).values(last_at=now))
+
     def put_token(self, token: Token) -> None:
         """Add a token, or replace the one of that id."""
         trackers = None if token.trackers is None else _listed(token.trackers)
@@ -197,6 +215,13 @@ class Change:
     def forgive(self, subjects: Iterable[str]) -> None:
         """Forget what was wrong."""
         self._connection.execute(delete(tables.failures).where(tables.failures.c.subject.in_(list(subjects))))
+
+    def forgive_user(self, name: str) -> None:
+        """Forget what was wrong for a user, and for the addresses at which it was."""
+        subject, begin = tables.failures.c.subject, f"{name}@"
+        here = select(subject).where(subject.startswith(begin, autoescape=True))
+        found = self._connection.execute(here).scalars().all()
+        self.forgive([f"account:{name}", *found, *(f"address:{one.removeprefix(begin)}" for one in found)])
 
     def empty(self) -> None:
         """Remove all users, sessions, tokens and wrong passwords; events stay."""

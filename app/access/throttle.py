@@ -4,6 +4,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
+from app.base.clock import is_within
+
 LONGEST = timedelta(seconds=30)
 FORGOTTEN_AFTER = timedelta(hours=24)
 FREE = 2
@@ -25,7 +27,7 @@ def delay(failures: Failures) -> timedelta:
 
 
 def one_more(failures: Failures | None, now: datetime) -> Failures:
-    """Return the failures after one more; those of yesterday are forgotten."""
+    """Return the failures after one more; those of yesterday are forgotten, those of the future count."""
     fresh = failures is None or now - failures.last_at > FORGOTTEN_AFTER
     return Failures(1 if fresh or failures is None else failures.count + 1, now)
 
@@ -33,7 +35,7 @@ def one_more(failures: Failures | None, now: datetime) -> Failures:
 def wait_left(failures: Iterable[Failures], now: datetime) -> timedelta:
     """Return how long to wait before another try is looked at, zero where none is needed.
 
-    A clock that was set back does not prolong the wait beyond 30 s.
+    A failure that lies in the future, because the clock was ahead, makes nobody wait.
     """
-    waits = [min(one.last_at + delay(one) - now, LONGEST) for one in failures]
+    waits = [one.last_at + delay(one) - now for one in failures if is_within(one.last_at, now, LONGEST)]
     return max([wait for wait in waits if wait > timedelta()], default=timedelta())

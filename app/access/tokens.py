@@ -10,6 +10,7 @@ from datetime import datetime, timedelta
 from enum import StrEnum
 
 from app.access.roles import KNOWN
+from app.base.clock import SMALL_CORRECTION
 from app.base.permission import Permission
 
 ALPHABET = string.digits + string.ascii_uppercase + string.ascii_lowercase
@@ -58,6 +59,10 @@ class Token:
     def is_kiosk(self) -> bool:
         """Return whether this token belongs to a cabinet's panel."""
         return self.pin_hash != ""
+
+    def is_misdated(self, now: datetime) -> bool:
+        """Return whether it was made in the future: a clock was ahead then, or is behind now."""
+        return self.created_at - now > SMALL_CORRECTION
 
 
 def mint() -> tuple[str, str]:

@@ -5,6 +5,10 @@ import time
 from datetime import UTC, datetime, timedelta
 from typing import Protocol
 
+NOTHING = timedelta()
+SMALL_CORRECTION = timedelta(minutes=5)
+"""So far a clock may be put back while that ends nothing: by NTP, or a computer that kept the time itself."""
+
 
 class Clock(Protocol):
     """A source of aware UTC instants that never go backwards."""
@@ -91,3 +95,17 @@ async def set_or_at(event: asyncio.Event, clock: Clock, until: datetime) -> None
         for wait in waits:
             wait.cancel()
         await asyncio.gather(*waits, return_exceptions=True)
+
+
+def is_within(at: datetime, now: datetime, span: timedelta, *, ahead: timedelta = NOTHING) -> bool:
+    """Return whether this was less than `span` ago; what lies further in the future than `ahead` was not.
+
+    What was stored, or noted by a clock that is set, may lie there because that clock was ahead: no span that
+    guards something lasts until then.
+    """
+    return -ahead <= now - at < span
+
+
+def lasts(until: datetime, now: datetime, longest: timedelta) -> bool:
+    """Return whether what ends at `until` goes on; what would go on for more than `longest` has ended."""
+    return NOTHING < until - now <= longest

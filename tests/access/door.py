@@ -22,8 +22,15 @@ ADDRESS = "10.0.0.9"
 class Door:
     """A keeper with quick hashes on a clock that stands until it is moved."""
 
-    def __init__(self, folder: Path, database: str | None = None, *, host: str = "127.0.0.1") -> None:
-        self.clock = VirtualClock(START)
+    def __init__(
+        self,
+        folder: Path,
+        database: str | None = None,
+        *,
+        host: str = "127.0.0.1",
+        begins_at: datetime = START,
+    ) -> None:
+        self.clock = VirtualClock(begins_at)
         self.hasher = FakeHasher()
         self.settings = Settings(data_dir=folder, database_url=database).model_copy(update={"host": host})
         self.keeper: Keeper = open_keeper(self.settings, self.clock, self.hasher)

@@ -22,7 +22,7 @@ from app.access.users import AccessRefused
 from app.audit.chain import FIRST
 from app.base.permission import Permission
 from app.cli.users import users
-from tests.access.door import HERE, PASSWORD, Door
+from tests.access.door import ADDRESS, HERE, PASSWORD, Door
 from tests.fault_result import FaultResult
 
 
@@ -106,8 +106,7 @@ async def test_the_wait_survives_a_restart_and_is_told_in_seconds(
         door.clock.advance(timedelta(seconds=31))
     with pytest.raises(WrongPassword):
         await door.tries("ada", "wrong wrong wrong")
-    again = Door(tmp_path, database)
-    again.clock.move_to(door.clock.now())
+    again = Door(tmp_path, database, begins_at=door.clock.now())
     with pytest.raises(Throttled, match=r"Wait 16 s"):
         await again.tries("ada", PASSWORD)
     again.clock.advance(timedelta(seconds=30))
@@ -227,3 +226,28 @@ def test_the_command_line_adds_lists_and_removes(tmp_path: Path) -> None:
     assert PASSWORD not in asked.output
     assert run("remove", "ada").exit_code == 0
     assert "no users" in run("list").output
+
+
+async def test_a_new_password_from_the_console_lets_its_user_in_at_once(tmp_path: Path) -> None:
+    door = Door(tmp_path)
+    await door.add("ada", Role.ADMINISTRATOR)
+    await door.add("a_a", Role.VIEWER)
+    for name in ("a_a", *["ada"] * 3, "ada_1"):
+        for _ in range(3):
+            with pytest.raises((WrongPassword, Throttled)):
+                await door.tries(name, "wrong wrong wrong")
+            door.clock.advance(timedelta(seconds=10))
+    with pytest.raises((WrongPassword, Throttled)):
+        await door.tries("ada", "wrong wrong wrong")
+    with pytest.raises(Throttled):
+        await door.tries("ada", PASSWORD)
+    typed, environment = PASSWORD + "\n", {"HELIOPANEL_DATA_DIR": str(tmp_path)}
+    reset = CliRunner().invoke(users, ("reset", "ADA", "--password-stdin"), input=typed, env=environment)
+    assert reset.exit_code == 0, reset.output
+    assert door.via(await door.tries("ada", PASSWORD)) is Via.SESSION
+    here = {name: f"{name}@{ADDRESS}" for name in ("ada", "a_a", "ada_1")}
+    store = open_store(door.settings)
+    left = store.failures([*here.values(), f"address:{ADDRESS}", "account:ada", "account:a_a"])
+    assert set(left) == {here["a_a"], here["ada_1"], "account:a_a"}
+    store.close()
+    door.keeper.close()

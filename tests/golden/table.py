@@ -3,7 +3,7 @@
 import csv
 import re
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import datetime, timedelta
 from pathlib import Path
 
 
@@ -46,3 +46,30 @@ def rows(name: str) -> list[dict[str, str]]:
 def seen(text: str) -> str:
     """Return a text of a table with the characters that it writes as `\\u00a0`, since nobody sees them."""
     return re.sub(r"\\u([0-9a-f]{4})", lambda found: chr(int(found[1], 16)), text)
+
+
+UNITS = {"s": "seconds", "min": "minutes", "h": "hours", "d": "days"}
+
+
+@dataclass(frozen=True, slots=True)
+class ClockRow:
+    """How far the clock was ahead when something was noted, how far when it is asked, and how long later."""
+
+    stored: timedelta
+    asked: timedelta
+    later: timedelta
+    expected: str
+
+
+def clocks(guard: str) -> list[ClockRow]:
+    """Return the rows of the clocks under which one guard is asked."""
+    return [
+        ClockRow(_span(row["stored"]), _span(row["asked"]), _span(row["later"]), row["expected"])
+        for row in rows("world/clocks.csv")
+        if row["guard"] == guard
+    ]
+
+
+def _span(text: str) -> timedelta:
+    number, unit = text.split()
+    return timedelta(**{UNITS[unit]: float(number)})

@@ -41,6 +41,13 @@ def test_stops_of_an_address_are_counted_for_a_second() -> None:
     assert not limit.admit(FAR, NOON + 2 * STOPS_WINDOW)
 
 
+def test_a_clock_that_is_set_back_keeps_nobody_from_stopping() -> None:
+    limit = StopLimit()
+    assert all(limit.admit(FAR, NOON + timedelta(days=400)) for _ in range(MOST_STOPS))
+    assert all(limit.admit(FAR, NOON) for _ in range(MOST_STOPS))
+    assert not limit.admit(FAR, NOON)
+
+
 def test_the_address_that_stopped_longest_ago_is_forgotten_first() -> None:
     limit = StopLimit()
     for _ in range(MOST_STOPS):

@@ -16,7 +16,7 @@ from app.access.authenticator import Credentials, Keeper
 from app.access.principal import NotAllowed, Principal, ProofNeeded, SignInNeeded, Via, nobody
 from app.access.sessions import is_proven
 from app.access.tokens import token_id_of
-from app.base.clock import Clock
+from app.base.clock import Clock, is_within
 from app.base.message import N_, say, told_by
 from app.base.permission import Permission
 from app.web.http.errors import FOR_PROGRAMS, Busy, NotAcceptable, NotSetUp, answer_to
@@ -170,7 +170,7 @@ class StopLimit:
         self._recent.move_to_end(address)
         if len(self._recent) > MOST_ADDRESSES:
             self._recent.popitem(last=False)
-        while recent and now - recent[0] >= STOPS_WINDOW:
+        while recent and not is_within(recent[0], now, STOPS_WINDOW):
             recent.popleft()
         if len(recent) >= MOST_STOPS:
             return False
