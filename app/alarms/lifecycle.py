@@ -213,11 +213,14 @@ def _advance(alarm: Alarm, condition: Condition | None, at: datetime, now: datet
 
 
 def _end_shelves(alarms: dict[str, Alarm], now: datetime) -> tuple[dict[str, Alarm], list[Change]]:
-    """Return the alarms without the shelves whose time is over."""
+    """Return the alarms without the shelves whose time is over.
+
+    So is that of a shelf which would last for more than 24 h: it is of a life whose clock was ahead.
+    """
     ended = [
         replace(alarm, shelf=None)
         for alarm in alarms.values()
-        if alarm.shelf is not None and alarm.shelf.until <= now
+        if alarm.shelf is not None and not timedelta() < alarm.shelf.until - now <= LONGEST_SHELF
     ]
     back = {alarm.alarm_id: alarm for alarm in ended}
     return alarms | back, [Change(Happened.UNSHELVED, alarm) for alarm in ended]

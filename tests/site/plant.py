@@ -6,6 +6,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 
+from app.alarms.alarm import Alarm
 from app.base.clock import VirtualClock
 from app.drives.drive import Drive
 from app.link.messages import Order, ReleaseControl, SetClock, SetLocation, SiteCommand
@@ -106,6 +107,7 @@ def make_plant(
     wrap: Callable[[Drive], Drive] = lambda drive: drive,
     options: SiteOptions | None = None,
     memory: Memory | None = None,
+    alarms: tuple[Alarm, ...] = (),
 ) -> Plant:
     """Return a site on a virtual clock; with a memory every drive begins as that says."""
     clock = VirtualClock(start)
@@ -115,5 +117,7 @@ def make_plant(
         drives[config.tracker_id] = wrap(SimulatedDrive(config, clock, memory=memory))
         return drives[config.tracker_id]
 
-    site = Site(clock, make_drive, state or SiteState(), trackers, writer=writer, options=options)
+    site = Site(
+        clock, make_drive, state or SiteState(), trackers, writer=writer, options=options, alarms=alarms
+    )
     return Plant(clock, site, drives)
