@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator
 from datetime import datetime, timedelta
 
 from app.alarms.conditions import Condition
+from app.base.clock import is_within
 from app.gateway.ports import Door
 from app.link.messages import Order, SiteDetail, Update
 from app.tracker.state.snapshot import Event, EventKind, SiteSnapshot, Snapshot
@@ -68,4 +69,4 @@ class QuietDoor:
         self._refused[key] = event.at
         if len(self._refused) > MOST_REMEMBERED:
             self._refused.popitem(last=False)
-        return last is None or event.at - last >= TELL_AGAIN
+        return last is None or not is_within(last, event.at, TELL_AGAIN)

@@ -3,9 +3,12 @@
 from datetime import datetime, timedelta
 from typing import Any
 
+import pytest
+
 from app.alarms.conditions import SITE, Condition
 from app.gateway.quiet_door import MOST_REMEMBERED, TELL_AGAIN, QuietDoor
 from app.tracker.state.snapshot import Event, EventKind
+from tests.golden.table import ClockRow, clocks
 from tests.site.plant import SUMMER_NOON
 
 
@@ -85,3 +88,11 @@ async def test_troubles_and_what_is_watched_are_passed_on() -> None:
     asked.trouble("SunSpec", None)
     await asked.watch(frozenset({"T1"}))
     assert door.passed == [("SunSpec", condition), ("SunSpec", None), (frozenset({"T1"}),)]
+
+
+@pytest.mark.parametrize("row", clocks("told_again"))
+def test_a_refusal_is_told_although_the_site_clock_was_set(row: ClockRow) -> None:
+    asked, door = quiet()
+    asked.note(refused(SUMMER_NOON + row.stored))
+    asked.note(refused(SUMMER_NOON + row.asked + row.later))
+    assert {1: "quiet", 2: "told"}[len(door.noted)] == row.expected

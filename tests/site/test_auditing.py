@@ -4,6 +4,7 @@ import json
 from collections.abc import AsyncIterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from datetime import timedelta
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import pytest
 
 from app.audit.chain import first_break
 from app.audit.entry import Entry
-from app.link.messages import ConfigureTracker, RenameSite, SetLocation, StopAll
+from app.link.messages import ConfigureTracker, RenameSite, SetClock, SetLocation, StopAll
 from app.link.weather_orders import ReportWeather
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
@@ -27,7 +28,7 @@ from app.tracker.weather.weather import Weather
 from tests.captured_logs import capture_logs
 from tests.fault_result import FaultResult
 from tests.site.direct_writer import DirectWriter
-from tests.site.plant import SAMSUN, Plant, make_plant, settle
+from tests.site.plant import SAMSUN, SUMMER_NOON, Plant, make_plant, settle
 
 
 @dataclass
@@ -218,3 +219,15 @@ async def test_the_thread_that_writes_records_too(tmp_path: Path) -> None:
     assert thread.close()
     assert [one.entry.action for one in store.audit(AuditFilter(after=0))] == ["rename_site", "stop"]
     store.close()
+
+
+async def test_a_refusal_is_recorded_anew_once_the_site_clock_was_set_back(audited: Audited) -> None:
+    plant = audited.plant
+    for shown in (SUMMER_NOON + timedelta(days=400), SUMMER_NOON):
+        await plant.ask(SetClock("manual", shown))
+        for _ in range(3):
+            with pytest.raises(CommandRejected):
+                await plant.ask(Track(), via="sunspec")
+            await plant.forward(seconds=1)
+    told = [action for action, _, _ in audited.told() if action in ("set_clock", "track")]
+    assert told[-2:] == ["set_clock", "track"]

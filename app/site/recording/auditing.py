@@ -12,6 +12,7 @@ from typing import Any
 from pydantic_core import to_jsonable_python
 
 from app.audit.entry import Entry, told
+from app.base.clock import is_within
 from app.base.logs import get_logger
 from app.base.message import say, told_by
 from app.link.messages import Order
@@ -138,7 +139,7 @@ class Auditor:
         self._refused.move_to_end(key)
         if len(self._refused) > MOST_REMEMBERED:
             self._refused.popitem(last=False)
-        return last is not None and refused.utc - last < within
+        return last is not None and is_within(last, refused.utc, within)
 
 
 def given(order: Order) -> dict[str, Any]:
