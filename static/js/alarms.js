@@ -70,7 +70,12 @@ function store(name, value) {
 }
 
 export const soundIsOn = () => stored(SOUND) === "on";
-export const mutedUntil = () => Number(stored(MUTED) ?? 0);
+
+// A device whose clock was ahead is not muted until then.
+export function mutedUntil() {
+  const until = Number(stored(MUTED) ?? 0);
+  return until - Date.now() > MUTE_MS ? 0 : until;
+}
 
 export function switchSound(on) {
   store(SOUND, on ? "on" : "off");

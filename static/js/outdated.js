@@ -16,7 +16,8 @@ function tell({ ordered }) {
   if (told && !ordered) return;
   told = true;
   banner.hidden = false;
-  const justLoaded = Date.now() - Number(sessionStorage.getItem(LAST) ?? 0) < LOOP_MS;
+  const since = Date.now() - Number(sessionStorage.getItem(LAST) ?? 0);
+  const justLoaded = since >= 0 && since < LOOP_MS;
   if ((ordered || !touched) && !justLoaded) setTimeout(again, SHOW_MS);
 }
 

@@ -144,6 +144,9 @@ def test_the_sound_is_switched_on_here_heard_and_muted(plant: Plant, opened: Ope
     page.wait_for_selector("html[data-sounded]")
     page.locator("#mute-key").click()
     expect(page.locator("#mute-key")).to_contain_text("Muted until")
+    page.evaluate("localStorage.setItem('heliopanel-muted-until', Date.now() + 400 * 24 * 3600 * 1000)")
+    page.reload()
+    expect(page.locator("#mute-key")).to_have_text("Mute 10 min")
 
 
 CUT_TITLES = """([titles, where]) => {
