@@ -21,7 +21,7 @@ from fastapi import FastAPI
 from app.base.clock import Clock, SystemClock
 from app.base.message import say
 from app.base.settings import Settings
-from app.link.alarm_orders import AcknowledgeAlarm, ShelveAlarm, UnshelveAlarm
+from app.link.alarm_orders import AcknowledgeAlarm, SetNotifications, ShelveAlarm, UnshelveAlarm
 from app.link.messages import (
     AddTracker,
     ApplySightings,
@@ -193,6 +193,8 @@ class FakeMachine:
                 self.site = replace(self.site, met_station=station, simulated_weather=made_up)
             case SimulateWeather(station=station):
                 self.site = replace(self.site, simulated_weather=station, met_station=None)
+            case SetNotifications(notifications=notifications):
+                self.site = replace(self.site, notifications=notifications)
             case SetWeatherWindows(windows=windows):
                 self.site = replace(self.site, weather_windows=windows)
             case RenameSite(name=name):

@@ -8,6 +8,7 @@ import pytest
 
 from app.alarms.conditions import Condition
 from tests.web.desk import Desk
+from tests.web.filled import values_of
 
 BEHIND = Condition("store_behind", None, "Site", "The last changes were not stored.")
 UNSENT = Condition("notification_failed", None, "Site", "The webhook answered 500.")
@@ -115,11 +116,13 @@ async def test_the_journal_page_keeps_what_was_typed(desk: Desk) -> None:
 
 
 async def test_where_alarms_are_sent_is_set_on_a_page_and_over_the_api(desk: Desk) -> None:
-    wrong = await desk.ask("POST", "/site/notifications", data={"mail_to": "ayse", "mail_priority": ["1"]})
+    page = "/site/notifications"
+    form = values_of((await desk.ask("GET", page)).text, page)
+    wrong = await desk.ask("POST", page, data=form | {"mail_to": "ayse", "mail_priority": ["", "1"]})
     assert wrong.status_code == 422
     assert 'value="ayse"' in wrong.text
-    form = {"mail_to": "ayse@example.org", "mail_priority": ["1", "3"]}
-    assert (await desk.ask("POST", "/site/notifications", data=form)).status_code == 303
+    form |= {"mail_to": ["ayse@example.org"], "mail_priority": ["", "1", "3"]}
+    assert (await desk.ask("POST", page, data=form)).status_code == 303
     kept = (await desk.ask("GET", "/api/v1/site/notifications")).json()
     assert (kept["mail_to"], kept["mail_priorities"]) == (["ayse@example.org"], [1, 3])
     body = {"webhook_url": "gopher://example.org"}

@@ -105,7 +105,8 @@ async def test_what_cannot_be_is_refused_and_stays_in_the_form(
 async def test_regions_are_drawn_before_anything_is_saved(
     client: httpx.AsyncClient, machine: FakeMachine
 ) -> None:
-    typed = {"region0_name": "Wall", "region0_corners": "170 0; 190 0; 190 30", "region1_name": "half"}
+    typed = {"region0_name": "Wall", "region0_corners": "170 0; 190 0; 190 30"}
+    typed |= {"region1_name": "half", "region1_corners": ""}
     asked = {"HX-Request": "true", "HX-Request-Type": "partial"}
     drawn = await client.post(f"{PAGE}/picture", data=texts(GUARDED) | typed, headers=asked)
     assert drawn.status_code == 200
@@ -142,7 +143,11 @@ async def test_a_single_axis_keeps_its_regions_and_draws_none(
     page = (await client.get(PAGE)).text
     assert "This mount has one axis" in page
     assert "regions-picture" not in page
-    without = {name: text for name, text in texts(GUARDED).items() if not name.startswith("region")}
+    without = {
+        name: text
+        for name, text in texts(GUARDED).items()
+        if not name.startswith("region") or name == "regions"
+    }
     await client.post(PAGE, data=without | {"creep_deg": "3"})
     assert kept(machine).creep_deg == 3.0
     assert kept(machine).regions == (WALL,)

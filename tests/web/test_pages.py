@@ -22,6 +22,7 @@ from app.web.shell import contexts, coordinates, forms
 from app.web.shell.formats import compass, duration, shown
 from app.web.shell.render import environment
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
+from tests.web.filled import filled
 
 T1 = "/trackers/T1"
 HTMX = {"HX-Request": "true", "HX-Request-Type": "partial"}
@@ -87,7 +88,9 @@ async def test_location_is_saved_and_leads_on(machine: FakeMachine, client: http
         "longitude_side": "E",
         "sun_there": "yes",
     }
-    answer = await client.post(f"{T1}/commissioning/location", data=typed)
+    answer = await client.post(
+        f"{T1}/commissioning/location", data=await filled(client, f"{T1}/commissioning/location", typed)
+    )
     assert answer.status_code == 303
     assert answer.headers["location"] == f"{T1}/commissioning/clock"
     (order,) = sent(machine, SetLocation)
@@ -98,7 +101,11 @@ async def test_location_is_saved_and_leads_on(machine: FakeMachine, client: http
 
 async def test_wrong_location_keeps_what_was_typed(machine: FakeMachine, client: httpx.AsyncClient) -> None:
     typed = {"latitude": "91,5", "longitude": "abc", "altitude": "12"}
-    answer = await client.post(f"{T1}/commissioning/location", data=typed, headers=HTMX)
+    answer = await client.post(
+        f"{T1}/commissioning/location",
+        data=await filled(client, f"{T1}/commissioning/location", typed),
+        headers=HTMX,
+    )
     assert answer.status_code == 422
     assert "<html" not in answer.text
     assert 'value="91,5"' in answer.text

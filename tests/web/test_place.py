@@ -29,7 +29,8 @@ def stored(machine: FakeMachine) -> Location:
 
 
 def form(latitude_deg: float, longitude_deg: float, **others: str) -> dict[str, str]:
-    return {"latitude": f"{latitude_deg:.7g}", "longitude": f"{longitude_deg:.7g}", **others}
+    typed = {"latitude": f"{latitude_deg:.7g}", "longitude": f"{longitude_deg:.7g}", **others}
+    return LocationForm().model_dump(exclude={"sun_there"}) | typed
 
 
 @pytest.mark.parametrize(

@@ -19,12 +19,14 @@ from app.tracker.commissioning.steps import Step, StepStatus
 from app.tracker.memory.memory import StepName
 from app.tracker.values.alarm_words import AlarmState
 from app.web.features.records.record import MISDATED, read_record
+from app.web.features.records.record_page import SignForm
 from app.web.features.records.sign_doubts import sign_doubts
 from tests.fake_alarms import alarm
 from tests.web.desk import Desk
 from tests.web.pdf_words import words_of
 
 T1 = "/api/v1/trackers/T1"
+UNSIGNED = SignForm().model_dump()
 STROKES = [[[10, 20], [400, 250], [900, 30]], [[5, 5], [6, 9]]]
 SIGNED = {
     "signatures": [{"role": "technician", "name": "Ayşe Yılmaz", "strokes": STROKES}],
@@ -139,7 +141,9 @@ async def test_what_is_no_photo_is_refused(upload: bytes, words: str, desk: Desk
     answer = await desk.ask("POST", f"{T1}/record/photos", files={"photo": ("a.jpg", upload)})
     assert answer.status_code == 422
     assert words in answer.json()["detail"]
-    page = await desk.ask("POST", "/trackers/T1/record/photos", files={"photo": ("a.jpg", upload)})
+    page = await desk.ask(
+        "POST", "/trackers/T1/record/photos", files={"photo": ("a.jpg", upload)}, data={"caption": ""}
+    )
     assert page.status_code == 422
     assert words in page.text
 
@@ -153,7 +157,7 @@ async def test_a_picture_too_large_to_open_is_refused_before_it_is_opened(desk: 
 
 
 async def test_the_form_signs_and_keeps_what_was_typed_where_it_cannot(desk: Desk) -> None:
-    form = {"remark": "Sign here", "technician": "", "technician_drawn": json.dumps(STROKES)}
+    form = UNSIGNED | {"remark": "Sign here", "technician_drawn": json.dumps(STROKES)}
     answer = await desk.ask("POST", "/trackers/T1/record", data=form)
     assert answer.status_code == 422
     assert "type the name of the person who signed" in answer.text
@@ -171,7 +175,7 @@ async def test_the_form_signs_and_keeps_what_was_typed_where_it_cannot(desk: Des
     "drawn", ["[[", "[[[1,2,3],[1,2]]]", "[[[0,0],[1001,0]]]", "[[1]]", '{"a": 1}', f"[{'[],' * 300}[]]"]
 )
 async def test_a_drawing_that_is_none_is_refused(drawn: str, desk: Desk) -> None:
-    form = {"technician": "Ion", "technician_drawn": drawn}
+    form = UNSIGNED | {"technician": "Ion", "technician_drawn": drawn}
     answer = await desk.ask("POST", "/trackers/T1/record", data=form)
     assert answer.status_code == 422
     assert "sign again" in answer.text
@@ -205,7 +209,7 @@ async def test_open_steps_and_drive_tests_are_asked_about_before_signing(desk: D
     assert answer.status_code == 422
     for words in ("Step 1, Location, is open.", "Drive tests that are open: ", "with `confirmed`"):
         assert words in answer.json()["detail"]
-    form = {"technician": "Ion", "remark": "Sign here"}
+    form = UNSIGNED | {"technician": "Ion", "remark": "Sign here"}
     shown = await desk.ask("POST", "/trackers/T1/record", data=form)
     assert shown.status_code == 422
     assert "Step 1, Location, is open." in shown.text

@@ -8,6 +8,7 @@ import pytest
 
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.web.desk import Desk
+from tests.web.filled import filled
 
 API = "/api/v1/simulations"
 HOUR = {
@@ -64,7 +65,9 @@ async def test_the_page_keeps_what_was_typed_beside_what_is_wrong(
     async with serving(fake_app(FakeMachine())) as client:
         page = await client.get("/simulate")
         assert "A storm that comes and goes" in page.text
-        answer: httpx.Response = await client.post("/simulate", data=TYPED | typed)
+        answer: httpx.Response = await client.post(
+            "/simulate", data=await filled(client, "/simulate", TYPED | typed)
+        )
         assert answer.status_code == 422
         assert sentence in answer.text
         assert all(text.split("\n")[-1] in answer.text for text in typed.values() if text != "hail")

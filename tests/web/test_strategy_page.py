@@ -8,6 +8,7 @@ from app.tracker.programs.step_table import to_table
 from app.tracker.settings.stepped import ProgramStep, StepFrame
 from app.tracker.settings.strategy import Continuous, Interval, IntervalAim, Stepped
 from tests.fakes import FakeMachine
+from tests.web.filled import filled
 
 PAGE = "/trackers/T1/strategy"
 HYBRID = {"threshold": "200", "gain": "1", "bound": "1.5", "decay": "0"}
@@ -27,10 +28,12 @@ async def test_the_page_is_reached_from_the_settings_and_explains_each_strategy(
 
 
 async def test_a_strategy_is_saved_and_shown_again(client: httpx.AsyncClient, machine: FakeMachine) -> None:
-    await client.post(PAGE, data={"kind": "interval", "minutes": "20", "aim": "now"})
+    await client.post(
+        PAGE, data=await filled(client, PAGE, {"kind": "interval", "minutes": "20", "aim": "now"})
+    )
     assert kept(machine) == Interval(20, IntervalAim.NOW)
     assert 'value="interval" required checked' in (await client.get(PAGE)).text
-    await client.post(PAGE, data={"kind": "continuous"})
+    await client.post(PAGE, data=await filled(client, PAGE, {"kind": "continuous"}))
     assert kept(machine) == Continuous()
 
 
@@ -51,7 +54,7 @@ async def test_what_cannot_be_comes_back_as_it_was_typed(
     client: httpx.AsyncClient, machine: FakeMachine, typed: dict[str, str], sentence: str
 ) -> None:
     before = len(machine.orders)
-    answer = await client.post(PAGE, data=typed)
+    answer = await client.post(PAGE, data=await filled(client, PAGE, typed))
     assert answer.status_code == 422
     assert sentence in answer.text
     assert len(machine.orders) == before
@@ -81,7 +84,10 @@ async def test_a_wrong_row_is_named_and_what_was_typed_stays(
 ) -> None:
     before = len(machine.orders)
     rows = {"at": ["08:00", "07:00"], "first": ["110", "north"], "second": ["30", "30"]}
-    answer = await client.post(f"{PAGE}/program", data={"program_name": "P"} | rows)
+    answer = await client.post(
+        f"{PAGE}/program",
+        data=await filled(client, PAGE, action=f"{PAGE}/program", typed={"program_name": "P"} | rows),
+    )
     assert answer.status_code == 422
     assert "Row 2, azimuth_deg: &#39;north&#39; is not a number." in answer.text
     assert 'value="north"' in answer.text
@@ -103,7 +109,9 @@ async def test_what_the_machine_refuses_comes_back_in_the_form(
     typed: dict[str, str],
 ) -> None:
     machine.refusal = "The tolerance must not exceed the deadband."
-    answer = await client.post(path, data=typed, headers={"HX-Request": "true"})
+    answer = await client.post(
+        path, data=await filled(client, PAGE, typed, action=path), headers={"HX-Request": "true"}
+    )
     assert answer.status_code == 422
     assert answer.text.lstrip().startswith("<form")
     assert "The tolerance must not exceed the deadband." in answer.text
@@ -112,26 +120,50 @@ async def test_what_the_machine_refuses_comes_back_in_the_form(
 
 async def test_the_table_is_filled_from_csv_an_example_or_with_rows(client: httpx.AsyncClient) -> None:
     table = to_table(ALEXANDRU_TABLE_3)
-    imported = (await client.post(f"{PAGE}/program", data={"do": "import", "table": table})).text
+    imported = (
+        await client.post(
+            f"{PAGE}/program",
+            data=await filled(client, PAGE, action=f"{PAGE}/program", typed={"do": "import", "table": table}),
+        )
+    ).text
     assert 'value="07:52:48"' in imported
     example = (
-        await client.post(f"{PAGE}/program", data={"do": "example", "example": "alexandru-table-3"})
+        await client.post(
+            f"{PAGE}/program",
+            data=await filled(
+                client,
+                PAGE,
+                action=f"{PAGE}/program",
+                typed={"do": "example", "example": "alexandru-table-3"},
+            ),
+        )
     ).text
     assert 'value="07:52:48"' in example
     assert (await client.get(PAGE)).text.count('name="at"') == 3
     more = (
         await client.post(
-            f"{PAGE}/program", data={"do": "rows", "at": ["06:00"], "first": ["1"], "second": [""]}
+            f"{PAGE}/program",
+            data=await filled(
+                client,
+                PAGE,
+                action=f"{PAGE}/program",
+                typed={"do": "rows", "at": ["06:00"], "first": ["1"], "second": [""]},
+            ),
         )
     ).text
     assert more.count('name="at"') == 4
-    wrong = await client.post(f"{PAGE}/program", data={"do": "import", "table": "when,where"})
+    wrong = await client.post(
+        f"{PAGE}/program",
+        data=await filled(
+            client, PAGE, action=f"{PAGE}/program", typed={"do": "import", "table": "when,where"}
+        ),
+    )
     assert wrong.status_code == 422
     assert "The first row must name three columns" in wrong.text
 
 
 async def test_the_correction_is_set(client: httpx.AsyncClient, machine: FakeMachine) -> None:
-    typed = {"enabled": "yes", "cloud": "25"} | HYBRID
+    typed = await filled(client, PAGE, {"enabled": "yes", "cloud": "25"} | HYBRID, action=f"{PAGE}/hybrid")
     await client.post(f"{PAGE}/hybrid", data=typed)
     hybrid = machine.orders[-1].command.config.hybrid
     assert (hybrid.enabled, hybrid.threshold_wm2, hybrid.bound_deg) == (True, 200.0, 1.5)
@@ -145,9 +177,14 @@ async def test_the_live_page_shows_program_and_correction_of_the_tracker_that_ha
     plain = (await client.get("/trackers/T1")).text
     assert "hybrid.computed" not in plain
     assert "program.step" not in plain
-    await client.post(f"{PAGE}/hybrid", data={"enabled": "yes"} | HYBRID)
+    await client.post(
+        f"{PAGE}/hybrid",
+        data=await filled(client, PAGE, {"enabled": "yes"} | HYBRID, action=f"{PAGE}/hybrid"),
+    )
     rows = {"program_name": "Noon", "at": ["06:00", "12:00"], "first": ["120", "180"], "second": ["30", "60"]}
-    await client.post(f"{PAGE}/program", data=rows)
+    await client.post(
+        f"{PAGE}/program", data=await filled(client, PAGE, action=f"{PAGE}/program", typed=rows)
+    )
     live = (await client.get("/trackers/T1")).text
     for part in ("computed", "correction", "sum"):
         assert f'data-live="hybrid.{part}.azimuth_deg"' in live

@@ -25,6 +25,7 @@ from app.web.charts.heatmap import heat_map
 from app.web.charts.plot import bar_plot, line_plot
 from app.web.main import create_app
 from tests.fakes import FakeMachine, FakeReader, serving
+from tests.web.filled import filled, values_of
 
 # pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.
 pytestmark = pytest.mark.filterwarnings("ignore:DatetimeIndex.dayofyear is deprecated")
@@ -77,7 +78,7 @@ def kept(tmp_path: Path, found: StudyResult) -> StudyFolder:
 
 async def test_what_was_typed_stays_and_every_fault_is_named(client: httpx.AsyncClient) -> None:
     sent = {**TYPED, **PLACE, "deadband": "wide", "step": "61"}
-    answer = await client.post("/studies", data=sent, headers=HTMX)
+    answer = await client.post("/studies", data=await filled(client, "/studies", sent), headers=HTMX)
     assert answer.status_code == 422
     assert "Deadband: type a number" in answer.text
     assert "Step must be between 1 and 60" in answer.text
@@ -89,18 +90,19 @@ async def test_what_was_typed_stays_and_every_fault_is_named(client: httpx.Async
 
 async def test_what_cannot_be_studied_is_said_in_the_form(client: httpx.AsyncClient) -> None:
     sent = {**TYPED, **PLACE, "fidelity": "controller", "step": "7"}
-    answer = await client.post("/studies", data=sent, headers=HTMX)
+    answer = await client.post("/studies", data=await filled(client, "/studies", sent), headers=HTMX)
     assert answer.status_code == 422
     assert "needs a tracker: choose one" in answer.text
     assert "one of 1, 2, 3" in answer.text
-    step = await client.post("/studies", data={**TYPED, **PLACE, "step": "7"}, headers=HTMX)
+    sent = await filled(client, "/studies", {**TYPED, **PLACE, "step": "7"})
+    step = await client.post("/studies", data=sent, headers=HTMX)
     field = step.text[step.text.index('id="step-error"') :]
     assert "The step is one of 1, 2, 3" in field[: field.index("</p>")]
 
 
 async def test_a_begun_study_opens_its_page_and_can_be_cancelled(client: httpx.AsyncClient) -> None:
     sent = {**TYPED, **PLACE, "span": "year", "step": "2"}
-    begun = await client.post("/studies", data=sent, headers=HTMX)
+    begun = await client.post("/studies", data=await filled(client, "/studies", sent), headers=HTMX)
     address = begun.headers["hx-redirect"]
     page = (await client.get(address)).text
     assert "<progress" in page
@@ -188,9 +190,8 @@ async def test_step_programs_are_shown_and_used(client: httpx.AsyncClient, machi
     assert "Best net energy: 10 steps" in answer.text
     assert "−0.00" not in answer.text
     await check_files(client, answer.text)
-    used = await client.post(
-        "/studies/program/use", data={**asked, "chosen": "8", "tracker": "T1"}, headers=HTMX
-    )
+    use = values_of(answer.text, "/studies/program/use")
+    used = await client.post("/studies/program/use", data=use, headers=HTMX)
     assert "T1 now follows the program of 8 steps." in used.text
     strategy = machine.trackers["T1"].config.strategy
     assert isinstance(strategy, Stepped)

@@ -33,6 +33,7 @@ from app.web.http.network_check import NetworkRefused
 from app.web.http.problems import MEDIA_TYPE, Fault, Problem, ProblemCode, SettingsChanged, code_of_status
 from app.web.http.routes import methods_of
 from app.web.http.security import add_headers
+from app.web.http.whole_forms import FormIncomplete
 
 log = get_logger()
 
@@ -188,6 +189,7 @@ PROBLEMS: dict[type[Exception], Callable[[Any], Problem]] = {
     UnknownPaper: _of(ProblemCode.UNKNOWN_PAPER),
     AlgorithmMissing: _of(ProblemCode.ALGORITHM_MISSING),
     NotAcceptable: _of(ProblemCode.NOT_ACCEPTABLE),
+    FormIncomplete: _of(ProblemCode.NOT_ACCEPTABLE),
     SettingsChanged: _of(ProblemCode.PRECONDITION_FAILED),
     PageOutdated: _of(ProblemCode.PAGE_OUTDATED, {"Page-Outdated": "1"}),
     NetworkRefused: _wrong_fields,

@@ -1,11 +1,17 @@
 """Routes that are worked out with their first request: most of the 300 are never called in one run."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from typing import Any
 
 from fastapi import APIRouter
 from fastapi.routing import APIRoute
+from starlette.requests import Request
+from starlette.responses import Response
 from starlette.routing import compile_path, get_name
+
+from app.web.http.whole_forms import field_names, refuse_incomplete
+
+Handler = Callable[[Request], Coroutine[Any, Any, Response]]
 
 
 class LateRoute(APIRoute):
@@ -33,6 +39,22 @@ class LateRoute(APIRoute):
         super().__init__(self.path, self.endpoint, **self.__dict__.pop("_told"))
 
 
+class PageRoute(LateRoute):
+    """A route of a page: a form that lacks one of its fields is refused before anything is read of it."""
+
+    def get_route_handler(self) -> Handler:
+        """Return what answers a request."""
+        handle, names = super().get_route_handler(), field_names(self.endpoint)
+        if not names:
+            return handle
+
+        async def handle_whole(request: Request) -> Response:
+            refuse_incomplete(await request.form(), names)
+            return await handle(request)
+
+        return handle_whole
+
+
 def page_router(prefix: str = "") -> APIRouter:
     """Return a router of pages; the document tells of the API alone."""
-    return APIRouter(prefix=prefix, route_class=LateRoute, include_in_schema=False)
+    return APIRouter(prefix=prefix, route_class=PageRoute, include_in_schema=False)

@@ -6,9 +6,13 @@ from datetime import date, datetime, time
 from math import nan
 from typing import TypeVar
 
+from starlette.requests import Request
+
 from app.base.message import Message, say, told_by, with_format, word
+from app.base.minus import with_minus
 from app.base.zones import zone_of
 from app.sun.accuracy import FIRST_YEAR, LAST_YEAR
+from app.web.http.whole_forms import FormIncomplete
 from app.web.shell.contexts import Field, Form
 
 T = TypeVar("T")
@@ -27,10 +31,16 @@ class Typed:
         self.texts = dict(texts)
         self.errors: dict[str, Message] = {}
 
+    def text(self, name: str) -> str:
+        """Return a text as it was typed, or raise `FormIncomplete`: what the form lacks is not empty."""
+        if name not in self.texts:
+            raise FormIncomplete
+        return self.texts[name].strip()
+
     def read(self, name: str, reader: Callable[[str], T], instead: T) -> T:
         """Return what a text means; where it means nothing keep the reason and return `instead`."""
         try:
-            return reader(self.texts.get(name, "").strip())
+            return reader(self.text(name))
         except Unreadable as error:
             self.errors[name] = told_by(error)
             return instead
@@ -56,9 +66,14 @@ class Typed:
         return {name: Field(name, self.texts.get(name, ""), self.errors.get(name)) for name in names}
 
 
+async def sent(request: Request) -> Typed:
+    """Return the texts of the form that a request brings."""
+    return Typed({name: text for name, text in (await request.form()).items() if isinstance(text, str)})
+
+
 def number(text: str, label: str, least: float, most: float) -> float:
     """Return the number that a text with a comma or a point means."""
-    plain = text.replace("−", "-").replace(" ", "").replace(",", ".")
+    plain = with_minus(text).replace(" ", "").replace(",", ".")
     if not re.fullmatch(r"[+-]?\d+(\.\d*)?|[+-]?\.\d+", plain):
         raise Unreadable(
             say(

@@ -62,7 +62,7 @@ def text(value: Any) -> str:
 def typed_value(typed: Typed, one: Declared, title: str = "") -> Any:
     """Return what was typed for one setting; what is wrong is noted in `typed`."""
     name, label = field_name(one.path), title or one.title
-    given = typed.texts.get(name, "").strip()
+    given = typed.text(name)
     if one.kind is bool:
         return bool(given)
     if issubclass(one.kind, Enum):

@@ -17,6 +17,7 @@ from app.web.features.access.sign_ins import remember_first
 from app.web.http.errors import problem_of
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
+from app.web.http.whole_forms import CHECKED_ONLY
 from app.web.shell.contexts import Field
 from app.web.shell.deps import PanelDep, PrincipalDep, panel, principal
 from app.web.shell.frame import site_frame
@@ -25,7 +26,7 @@ from app.web.shell.render import go, whole_page
 router = page_router(prefix="/users")
 
 Text = Annotated[str, Form(max_length=300)]
-Roles = Annotated[list[Role] | None, Form()]
+Roles = Annotated[list[Role] | None, Form(), CHECKED_ONLY]
 
 
 @router.get("")

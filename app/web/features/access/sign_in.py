@@ -25,6 +25,7 @@ from app.web.http.errors import problem_of
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.http.paths import own_path
+from app.web.http.whole_forms import MAY_BE_ABSENT
 from app.web.shell.contexts import Field
 from app.web.shell.deps import PanelDep, PrincipalDep, panel
 from app.web.shell.frame import site_frame
@@ -42,8 +43,8 @@ BEFORE = ("login", "kiosk")
 """Forms before which nobody is known: these show the notice of use."""
 
 REFUSALS = (WrongPassword, Throttled, TooManyAtOnce, AccessRefused)
-Secret = Annotated[str, Form(max_length=300)]
-Text = Annotated[str, Form(max_length=300)]
+Secret = Annotated[str, Form(max_length=300), MAY_BE_ABSENT]
+Text = Annotated[str, Form(max_length=300), MAY_BE_ABSENT]
 Back = Annotated[str, Query(max_length=300)]
 
 

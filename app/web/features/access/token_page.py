@@ -17,6 +17,7 @@ from app.web.features.access.access_contexts import TokensPage
 from app.web.http.errors import problem_of
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
+from app.web.http.whole_forms import CHECKED_ONLY
 from app.web.shell.deps import PanelDep, PrincipalDep, panel
 from app.web.shell.forms import Typed
 from app.web.shell.frame import site_frame
@@ -34,7 +35,7 @@ class TokenForm(BaseModel):
     trackers: str = ""
     days: str = "90"
     pin: str = ""
-    scope: list[Scope] = []
+    scope: Annotated[list[Scope], CHECKED_ONLY] = []
 
 
 @router.get("")

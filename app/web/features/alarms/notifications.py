@@ -15,6 +15,7 @@ from app.web.features.alarms.alarm_contexts import NotificationsPage
 from app.web.features.alarms.notifications_api import shown_to
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
+from app.web.http.whole_forms import CHECKED_ONLY
 from app.web.shell.contexts import Link
 from app.web.shell.deps import MachineDep, PrincipalDep
 from app.web.shell.frame import site_frame
@@ -39,8 +40,8 @@ async def save(
     press: PressDep,
     webhook_url: Annotated[str, Form(max_length=600)] = "",
     mail_to: Annotated[str, Form(max_length=2000)] = "",
-    webhook_priority: Annotated[tuple[int, ...], Form()] = (),
-    mail_priority: Annotated[tuple[int, ...], Form()] = (),
+    webhook_priority: Annotated[tuple[int, ...], Form(), CHECKED_ONLY] = (),
+    mail_priority: Annotated[tuple[int, ...], Form(), CHECKED_ONLY] = (),
 ) -> Response:
     """Keep them, or show the same form with what is wrong."""
     priorities = tuple(one for one in PRIORITIES if one in webhook_priority)

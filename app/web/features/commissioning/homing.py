@@ -15,6 +15,7 @@ from app.tracker.settings.axes import Axis
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
+from app.web.http.whole_forms import MAY_BE_ABSENT
 from app.web.shell.contexts import HomingPage
 from app.web.shell.deps import MachineDep
 from app.web.shell.frame import snapshot_of
@@ -53,7 +54,10 @@ def _page(request: Request, tracker: TrackerDetail, doubts: tuple[str, ...] = ()
 @router.post("/zero")
 @needs(Permission.CONFIGURE)
 async def zero(
-    tracker_id: str, press: PressDep, machine: MachineDep, confirmed: Annotated[str, Form()] = ""
+    tracker_id: str,
+    press: PressDep,
+    machine: MachineDep,
+    confirmed: Annotated[str, Form(), MAY_BE_ABSENT] = "",
 ) -> Response:
     """Call the present position zero on both axes; ask first where the drive reads another angle."""
     tracker, now = tracker_of(await machine.detail(), tracker_id), snapshot_of(machine.latest(), tracker_id)

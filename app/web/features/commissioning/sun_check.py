@@ -15,6 +15,7 @@ from app.tracker.memory.memory import Sighting
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
+from app.web.http.whole_forms import MAY_BE_ABSENT
 from app.web.shell.contexts import SunCheckPage
 from app.web.shell.deps import MachineDep
 from app.web.shell.frame import tracker_frame
@@ -53,7 +54,7 @@ async def take(tracker_id: str, press: PressDep) -> Response:
 @router.post("/apply")
 @needs(Permission.CONFIGURE)
 async def apply(
-    tracker_id: str, press: PressDep, machine: MachineDep, keep: Annotated[list[int], Form()]
+    tracker_id: str, press: PressDep, machine: MachineDep, keep: Annotated[list[int], Form(), MAY_BE_ABSENT]
 ) -> Response:
     """Correct the pointing with the chosen sightings; the others are forgotten."""
     stored = tracker_of(await machine.detail(), tracker_id).state.memory.sightings

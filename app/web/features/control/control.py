@@ -16,12 +16,13 @@ from app.link.messages import (
 from app.link.settings_orders import LockSettings, UnlockSettings
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
+from app.web.http.whole_forms import MAY_BE_ABSENT
 from app.web.shell.orders import PressDep
 
 router = page_router(prefix="/trackers/{tracker_id}")
 
 Wanted = Literal["request", "take_over", "hand_over", "keep", "release"]
-Reason = Annotated[str, Form(max_length=200)]
+Reason = Annotated[str, Form(max_length=200), MAY_BE_ABSENT]
 DONE = {
     "request": N_("Control was requested."),
     "take_over": N_("Control transfers when the countdown ends, unless the request is declined."),

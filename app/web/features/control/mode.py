@@ -18,6 +18,7 @@ from app.tracker.values.mode import Mode
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
+from app.web.http.whole_forms import MAY_BE_ABSENT
 from app.web.shell.contexts import ModeChoice, ModePage, OrientationPage
 from app.web.shell.deps import MachineDep
 from app.web.shell.forms import Typed
@@ -58,8 +59,8 @@ HELD = {
 class OrientationForm(BaseModel):
     """The form as it was typed; an axis that follows the sun is not asked for."""
 
-    azimuth: str = ""
-    elevation: str = ""
+    azimuth: Annotated[str, MAY_BE_ABSENT] = ""
+    elevation: Annotated[str, MAY_BE_ABSENT] = ""
 
 
 @router.get("")
@@ -78,7 +79,7 @@ async def show(request: Request, tracker_id: str, machine: MachineDep) -> Respon
 @router.post("")
 @needs(Permission.OPERATE)
 async def choose(
-    tracker_id: str, press: PressDep, machine: MachineDep, mode: Annotated[str, Form()] = ""
+    tracker_id: str, press: PressDep, machine: MachineDep, mode: Annotated[str, Form(), MAY_BE_ABSENT] = ""
 ) -> Response:
     """Save the mode; go on to its orientation, or to the last step."""
     if mode not in list(Mode):

@@ -27,6 +27,7 @@ from app.web.features.records.record_orders import (
 from app.web.features.records.signatures import Signature, SignatureRefused, SignatureRole, signature
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
+from app.web.http.whole_forms import MAY_BE_ABSENT
 from app.web.shell.deps import Panel, PanelDep, principal
 from app.web.shell.forms import Typed
 from app.web.shell.frame import STATUS_TEXT, STEP_LABELS, tracker_frame
@@ -46,7 +47,7 @@ class SignForm(BaseModel):
     technician_drawn: str = ""
     customer: str = ""
     customer_drawn: str = ""
-    confirmed: str = ""
+    confirmed: Annotated[str, MAY_BE_ABSENT] = ""
 
 
 @router.get("")

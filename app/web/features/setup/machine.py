@@ -19,7 +19,7 @@ from app.web.features.setup.protection_contexts import MachinePage
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.shell.deps import MachineDep
-from app.web.shell.forms import Typed
+from app.web.shell.forms import Typed, sent
 from app.web.shell.frame import tracker_frame
 from app.web.shell.orders import PressDep
 from app.web.shell.render import go, page
@@ -41,7 +41,7 @@ async def machine_protections(request: Request, tracker_id: str, machine: Machin
 async def picture(request: Request, tracker_id: str, machine: MachineDep) -> Response:
     """Draw the regions as they are typed; nothing is saved."""
     tracker = tracker_of(await machine.detail(), tracker_id)
-    typed = await _typed(request)
+    typed = await sent(request)
     forms.regions(typed)
     return _answer(request, tracker, typed, block="regions")
 
@@ -51,7 +51,7 @@ async def picture(request: Request, tracker_id: str, machine: MachineDep) -> Res
 async def save(request: Request, tracker_id: str, press: PressDep, machine: MachineDep) -> Response:
     """Save all settings, or none of them."""
     tracker = tracker_of(await machine.detail(), tracker_id)
-    typed = await _typed(request)
+    typed = await sent(request)
     wanted = forms.read(typed)
     if wanted is None:
         return _answer(press.request, tracker, typed, status=422)
@@ -66,11 +66,6 @@ def _todays_arc(site: SiteSnapshot | None, config: TrackerConfig) -> Arc:
     if site is None or site.location is None:
         return ()
     return arc(config.algorithm, site.location, day_in(site.time_zone, site.at))
-
-
-async def _typed(request: Request) -> Typed:
-    form = await request.form()
-    return Typed({name: str(form.get(name, "")) for name in forms.names()})
 
 
 def _answer(

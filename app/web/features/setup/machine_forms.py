@@ -6,6 +6,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from app.base.message import N_, say
+from app.base.minus import with_minus
 from app.tracker.protections.fault_classes import CLASSES
 from app.tracker.settings.declared import declared, refusal
 from app.tracker.settings.mechanics import (
@@ -25,7 +26,8 @@ from app.web.shell.setting_forms import below, field_name, rows
 
 REGIONS = "regions"
 SPARE = 1
-CORNER = re.compile(r"\s*([+-−]?\d+(?:[.,]\d+)?)\s*°?\s*[/ ]\s*([+-−]?\d+(?:[.,]\d+)?)\s*°?\s*")
+ANGLE = r"([+-]?\d+(?:[.,]\d+)?)"
+CORNER = re.compile(rf"\s*{ANGLE}\s*°?\s*[/ ]\s*{ANGLE}\s*°?\s*")
 HOW = N_("Corners: type each as azimuth and elevation, such as 170 0; 190 0; 190 30; 170 30.")
 
 
@@ -76,6 +78,7 @@ def read(typed: Typed) -> MachineProtection | None:
 
 def regions(typed: Typed) -> list[dict[str, Any]]:
     """Return the regions that can be read; what is wrong with the others stands in the form."""
+    typed.text(REGIONS)  # says that their part of the page was there
     found = []
     for place in range(MOST_REGIONS):
         if not _holds(typed, place):
@@ -108,7 +111,7 @@ def _name(text: str) -> str:
 
 def _corners(text: str) -> list[dict[str, float]]:
     """Return the corners of a text such as `170 0; 190 0; 190 30`."""
-    pairs = [part for part in re.split(r"[;\n]", text) if part.strip()]
+    pairs = [part for part in re.split(r"[;\n]", with_minus(text)) if part.strip()]
     matches = [match for pair in pairs if (match := CORNER.fullmatch(pair))]
     if not 3 <= len(pairs) <= MOST_CORNERS or len(matches) < len(pairs):
         raise Unreadable(
@@ -116,7 +119,7 @@ def _corners(text: str) -> list[dict[str, float]]:
         )
     found = []
     for match in matches:
-        azimuth, elevation = (float(one.replace("−", "-").replace(",", ".")) for one in match.groups())
+        azimuth, elevation = (float(one.replace(",", ".")) for one in match.groups())
         if abs(azimuth) > FARTHEST_DEG or abs(elevation) > FARTHEST_DEG:
             raise Unreadable(refusal(N_("Corners"), -FARTHEST_DEG, FARTHEST_DEG))
         found.append({"azimuth_deg": azimuth, "elevation_deg": elevation})

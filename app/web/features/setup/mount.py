@@ -24,7 +24,7 @@ from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.shell.contexts import Frame
 from app.web.shell.deps import MachineDep
-from app.web.shell.forms import Typed
+from app.web.shell.forms import Typed, sent
 from app.web.shell.frame import tracker_frame
 from app.web.shell.orders import PressDep
 from app.web.shell.render import go, page
@@ -70,8 +70,7 @@ async def choose(
 async def save(tracker_id: str, press: PressDep, machine: MachineDep) -> Response:
     """Save angles, rows and actuators, or none of them."""
     tracker = tracker_of(await machine.detail(), tracker_id)
-    sent = await press.request.form()
-    typed = Typed({name: str(sent.get(name, "")) for name in mount_form.FIELDS})
+    typed = await sent(press.request)
     wanted = mount_form.read(typed, tracker.state.config)
     if wanted is None:
         return await run_in_threadpool(_answer, press.request, tracker, typed, "", status=422)

@@ -52,7 +52,10 @@ def texts(config: TrackerConfig) -> dict[str, str]:
 def read(typed: Typed, config: TrackerConfig) -> TrackerConfig | None:
     """Return the typed configuration, None while anything in it is wrong."""
     mount = _mount(typed, config.mount)
-    axes = {axis: _axis(typed, prefix, config.axis(axis)) for prefix, axis in AXES.items()}
+    axes = {
+        axis: _axis(typed, prefix, config.axis(axis)) if axis in config.mount.axes else config.axis(axis)
+        for prefix, axis in AXES.items()
+    }
     if typed.errors or mount is None:
         return None
     wanted = replace(config, mount=mount, azimuth=axes[Axis.AZIMUTH], elevation=axes[Axis.ELEVATION])
@@ -83,12 +86,15 @@ def _mount(typed: Typed, mount: MountConfig) -> MountConfig | None:
     rows = _rows(typed, mount)
     if typed.errors:
         return None
-    return replace(wanted, rows=rows, least_incidence=bool(typed.texts.get("least_incidence")))
+    if mount.kind is MountKind.AZIMUTH_ELEVATION:
+        wanted = replace(wanted, least_incidence=bool(typed.text("least_incidence")))
+    return replace(wanted, rows=rows)
 
 
 def _rows(typed: Typed, mount: MountConfig) -> Rows | None:
-    alone = mount.kind not in (MountKind.HORIZONTAL_SINGLE_AXIS, MountKind.TILTED_SINGLE_AXIS)
-    if alone or not typed.texts.get("rows"):
+    if mount.kind not in (MountKind.HORIZONTAL_SINGLE_AXIS, MountKind.TILTED_SINGLE_AXIS):
+        return mount.rows
+    if not typed.text("rows"):
         return None
     ratio = typed.number("ratio", N_("Ground coverage ratio"), 0.01, 1)
     slope_deg = typed.number("slope", N_("Slope across the rows"), -60, 60)
@@ -98,7 +104,7 @@ def _rows(typed: Typed, mount: MountConfig) -> Rows | None:
 def _axis(typed: Typed, prefix: str, axis: AxisConfig) -> AxisConfig:
     """Return an axis with the actuator that was chosen, its limits and speed narrowed to what that allows."""
     name = f"{prefix}_actuator"
-    chosen = typed.texts.get(name, "") or NO_ACTUATOR
+    chosen = typed.text(name) or NO_ACTUATOR
     if chosen == NO_ACTUATOR:
         return replace(axis, actuator=None)
     if chosen == OWN_POINTS:

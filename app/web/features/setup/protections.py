@@ -18,7 +18,7 @@ from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.shell.deps import MachineDep
-from app.web.shell.forms import Typed
+from app.web.shell.forms import Typed, sent
 from app.web.shell.frame import tracker_frame
 from app.web.shell.orders import PressDep
 from app.web.shell.render import page
@@ -41,8 +41,7 @@ async def protections(request: Request, tracker_id: str, machine: MachineDep) ->
 async def save(request: Request, tracker_id: str, press: PressDep, machine: MachineDep) -> Response:
     """Save all settings, or none of them."""
     tracker = tracker_of(await machine.detail(), tracker_id)
-    form = await request.form()
-    typed = Typed({name: str(form.get(name, "")) for name in forms.names()})
+    typed = await sent(request)
     wanted = typed_settings(typed, ProtectionConfig)
     if wanted is None:
         return _answer(press.request, tracker, typed, status=422)

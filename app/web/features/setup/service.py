@@ -13,6 +13,7 @@ from app.web.features.setup.protection_contexts import ServicePage
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
+from app.web.http.whole_forms import MAY_BE_ABSENT
 from app.web.shell.deps import MachineDep
 from app.web.shell.frame import tracker_frame
 from app.web.shell.orders import PressDep
@@ -48,7 +49,7 @@ async def begin(tracker_id: str, press: PressDep, name: Annotated[str, Form(max_
 @router.post("/clear")
 @needs(Permission.OPERATE)
 async def clear(
-    tracker_id: str, press: PressDep, looked: Annotated[str, Form(max_length=10)] = ""
+    tracker_id: str, press: PressDep, looked: Annotated[str, Form(max_length=10), MAY_BE_ABSENT] = ""
 ) -> Response:
     """Take the word that nobody stands where the panel moves; it must be given, not just sent."""
     if looked != "yes":

@@ -24,7 +24,7 @@ from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.shell.contexts import ALGORITHMS, SettingRow, SettingsPage
 from app.web.shell.deps import MachineDep, panel
-from app.web.shell.forms import Typed, Unreadable
+from app.web.shell.forms import Typed, Unreadable, sent
 from app.web.shell.frame import tracker_frame
 from app.web.shell.orders import PressDep
 from app.web.shell.render import go, page
@@ -57,8 +57,7 @@ async def settings(request: Request, tracker_id: str, machine: MachineDep) -> Re
 async def save(request: Request, tracker_id: str, press: PressDep, machine: MachineDep) -> Response:
     """Save all settings, or none of them."""
     tracker = tracker_of(await machine.detail(), tracker_id)
-    form = await request.form()
-    found = Typed({name: str(form.get(name, "")) for name in _texts(tracker.state.config)})
+    found = await sent(request)
     wanted = _read(found, tracker.state.config)
     if wanted is None:
         return _answer(press.request, tracker, found, status=422)
@@ -126,7 +125,7 @@ def _read(typed: Typed, config: TrackerConfig) -> TrackerConfig | None:
 def _drive(typed: Typed, stored: DriveConfig) -> DriveConfig:
     kind = typed.read("drive", _drive_kind, DriveKind.SIMULATED)
     port, unit = typed_value(typed, ON_DRIVE["port"]), typed_value(typed, ON_DRIVE["unit"])
-    host, profile = typed.texts["host"].strip(), typed.texts["profile"].strip()
+    host, profile = typed.text("host"), typed.text("profile")
     if not host:
         typed.errors["host"] = N_("Host: give the address of the drive, such as 192.168.1.20.")
     if not profile:

@@ -18,6 +18,7 @@ from app.web.features.site.location import zones
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
+from app.web.http.whole_forms import MAY_BE_ABSENT
 from app.web.shell.contexts import ClockPage, ClockQuestion
 from app.web.shell.deps import MachineDep, PanelDep
 from app.web.shell.formats import local
@@ -27,8 +28,8 @@ from app.web.shell.render import go, page
 from app.web.shell.wizard import tracker_of, wizard_frame
 
 router = page_router(prefix="/trackers/{tracker_id}/commissioning/clock")
-DeviceAt = Annotated[str, Form(max_length=40)]
-Confirmed = Annotated[str, Form(max_length=10)]
+DeviceAt = Annotated[str, Form(max_length=40), MAY_BE_ABSENT]
+Confirmed = Annotated[str, Form(max_length=10), MAY_BE_ABSENT]
 NAMES = ("date", "time", "time_zone")
 
 
@@ -38,8 +39,8 @@ class ClockForm(BaseModel):
     date: str = ""
     time: str = ""
     time_zone: str = ""
-    at: str = ""
-    confirmed: str = ""
+    at: Annotated[str, MAY_BE_ABSENT] = ""
+    confirmed: Annotated[str, MAY_BE_ABSENT] = ""
 
 
 @router.get("")
@@ -71,9 +72,7 @@ async def keep_system(
 
 @router.post("/device")
 @needs(Permission.CONFIGURE)
-async def copy_device(
-    tracker_id: str, press: PressDep, at: Annotated[str, Form(max_length=40)] = ""
-) -> Response:
+async def copy_device(tracker_id: str, press: PressDep, at: DeviceAt = "") -> Response:
     """Make the controller's clock show what this device's clock shows."""
     try:
         instant = read_instant(at)

@@ -22,6 +22,7 @@ from app.tracker.settings.config import TrackerConfig
 from app.web.features.site.place import place_doubts, swapped, zone_at
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
+from app.web.http.whole_forms import MAY_BE_ABSENT
 from app.web.languages import pgettext
 from app.web.shell import coordinates
 from app.web.shell.contexts import LocationPage, LocationPreview
@@ -47,8 +48,8 @@ class LocationForm(BaseModel):
     latitude_side: str = "N"
     longitude_side: str = "E"
     time_zone: str = BY_PLACE
-    device_zone: str = ""
-    sun_there: str = ""
+    device_zone: Annotated[str, MAY_BE_ABSENT] = ""
+    sun_there: Annotated[str, MAY_BE_ABSENT] = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,7 @@
 """What is typed on the strategy page, read into the domain's words and back."""
 
 from collections.abc import Sequence
+from typing import Annotated
 
 from pydantic import BaseModel
 
@@ -26,7 +27,8 @@ from app.tracker.settings.strategy import (
     Strategy,
 )
 from app.web.features.studies.strategy_contexts import ProgramRow, ProgramTable, StrategyChoice
-from app.web.shell.forms import Typed, Unreadable
+from app.web.http.whole_forms import MAY_BE_ABSENT
+from app.web.shell.forms import Typed, Unreadable, number
 
 CHOICES = (
     StrategyChoice(
@@ -118,9 +120,9 @@ class ProgramForm(BaseModel):
     at: list[str] = []
     first: list[str] = []
     second: list[str] = []
-    table: str = ""
-    example: str = ""
-    do: str = "save"
+    table: Annotated[str, MAY_BE_ABSENT] = ""
+    example: Annotated[str, MAY_BE_ABSENT] = ""
+    do: Annotated[str, MAY_BE_ABSENT] = "save"
 
 
 HEAD = ("program_name", "base", "offset", "angles")
@@ -247,8 +249,8 @@ def _row_of_table(sentence: str) -> str:
 
 def _offset(text: str) -> str:
     try:
-        hours = float(text.replace(",", ".") or 0.0)
-    except ValueError as error:
+        hours = number(text.strip() or "0", N_("UTC offset"), -99, 99)
+    except Unreadable as error:
         raise TableWrong(N_("UTC offset: type hours, such as 3 or -3.5.")) from error
     minutes = round(abs(hours) * 60.0)
     return f"_utc{'-' if hours < 0 else '+'}{minutes // 60:02d}:{minutes % 60:02d}"

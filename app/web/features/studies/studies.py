@@ -29,6 +29,7 @@ from app.web.features.studies.study_orders import NewStudy
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
+from app.web.http.whole_forms import CHECKED_ONLY
 from app.web.shell import coordinates
 from app.web.shell.deps import MachineDep, PanelDep
 from app.web.shell.forms import Typed
@@ -99,8 +100,8 @@ class StudyForm(BaseModel):
     date: str = ""
     span: str = Span.TWELVE_DAYS
     step: str = "10"
-    modes: list[str] = []
-    strategies: list[str] = []
+    modes: Annotated[list[str], CHECKED_ONLY] = []
+    strategies: Annotated[list[str], CHECKED_ONLY] = []
     fidelity: str = Fidelity.IDEAL
     tracker: str = ""
     light: str = LightModel.INEICHEN
