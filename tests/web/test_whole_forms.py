@@ -149,3 +149,20 @@ async def test_every_checkbox_may_be_left_unchecked(client: httpx.AsyncClient, m
         await client.post(f"{T1}/settings", data=await filled(client, f"{T1}/settings", typed))
     ).status_code == 303
     assert not machine.trackers["T1"].config.refraction
+
+
+async def test_an_emptied_number_is_not_the_usual_one(
+    client: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    before = stored(machine)
+    page = f"{T1}/strategy"
+    for action, typed in (
+        (page, {"kind": "interval", "minutes": ""}),
+        (f"{page}/hybrid", {"cloud": ""}),
+        ("/site/weather-station", {"host": "10.0.0.5", "port": ""}),
+    ):
+        where = page if action.startswith(page) else "/site"
+        answer = await client.post(action, data=await filled(client, where, typed, action=action))
+        assert answer.status_code == 422
+        assert "type a number" in answer.text
+    assert stored(machine) == before

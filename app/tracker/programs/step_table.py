@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from io import StringIO
 
 from app.base.message import N_, join, say, told_by
+from app.base.minus import with_minus
 from app.tracker.settings.stepped import (
     MOST_STEPS,
     ProgramStep,
@@ -188,7 +189,7 @@ def _numbers(
 ) -> Iterator[float | None]:
     for place, (name, cell) in enumerate(zip(names, cells, strict=True)):
         try:
-            yield None if not cell else read_time(cell) if place == 0 else float(cell)
+            yield None if not cell else read_time(cell) if place == 0 else float(with_minus(cell))
         except ValueError:
             wanted = N_("a time such as 07:52:48 or 7.88") if place == 0 else N_("a number")
             wrong.append(

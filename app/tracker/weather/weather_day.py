@@ -10,6 +10,7 @@ from itertools import pairwise
 from typing import Any
 
 from app.base.message import N_, join, say
+from app.base.minus import with_minus
 from app.sun.position import SunPosition
 from app.tracker.weather.simulated_weather import SPANS, Scenario, SimulatedStation, weather_at
 from app.tracker.weather.weather import Weather
@@ -126,7 +127,7 @@ def _values(fields: Mapping[str, str], number: int) -> Iterator[tuple[str, float
         if not text:
             continue
         try:
-            yield name, float(text)
+            yield name, float(with_minus(text))
         except ValueError as error:
             raise ValueError(
                 say(

@@ -33,7 +33,7 @@ class TokenForm(BaseModel):
 
     name: str = ""
     trackers: str = ""
-    days: str = "90"
+    days: str = ""
     pin: str = ""
     scope: Annotated[list[Scope], CHECKED_ONLY] = []
 

@@ -36,8 +36,8 @@ class StationForm(BaseModel):
     """The address of a weather station as it was typed."""
 
     host: str = ""
-    port: str = "502"
-    unit: str = "1"
+    port: str = ""
+    unit: str = ""
 
 
 class SimulationForm(BaseModel):

@@ -57,10 +57,11 @@ def window_hints() -> dict[str, str]:
 
 def read_station(typed: Typed) -> MetStation | None:
     """Return the typed station, None for no host."""
-    host = typed.texts["host"].strip()
+    if not (host := typed.text("host")):
+        return None
     port = typed.whole("port", N_("Port"), 1, 65535)
     unit = typed.whole("unit", N_("Unit"), 0, 255)
-    return MetStation(host, port, unit) if host and not typed.errors else None
+    return None if typed.errors else MetStation(host, port, unit)
 
 
 def read_simulation(typed: Typed) -> SimulatedStation | None:

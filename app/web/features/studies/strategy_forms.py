@@ -89,12 +89,16 @@ EMPTY_ROWS = 3
 class StrategyForm(BaseModel):
     """The choice as it was typed; all texts."""
 
-    kind: str = "deadband"
-    deadband: str = "0.5"
-    counts: str = "10"
-    counts_per_turn: str = "3600"
-    minutes: str = "10"
-    aim: str = "middle"
+    kind: str = ""
+    deadband: str = ""
+    counts: str = ""
+    counts_per_turn: str = ""
+    minutes: str = ""
+    aim: str = ""
+
+
+USUAL = {"counts": "10", "counts_per_turn": "3600", "minutes": "10", "aim": IntervalAim.MIDDLE.value}
+"""What the fields of the other strategies show; a field that is emptied means none of them."""
 
 
 class HybridForm(BaseModel):
@@ -105,9 +109,9 @@ class HybridForm(BaseModel):
     gain: str = ""
     bound: str = ""
     decay: str = ""
-    azimuth_off: str = "0"
-    elevation_off: str = "0"
-    cloud: str = "0"
+    azimuth_off: str = ""
+    elevation_off: str = ""
+    cloud: str = ""
 
 
 class ProgramForm(BaseModel):
@@ -130,7 +134,7 @@ HEAD = ("program_name", "base", "offset", "angles")
 
 def strategy_texts(config: TrackerConfig) -> dict[str, str]:
     """Return a tracker's strategy as the form shows it."""
-    texts = StrategyForm().model_dump() | {"deadband": f"{config.deadband_deg:g}"}
+    texts = USUAL | {"deadband": f"{config.deadband_deg:g}"}
     strategy = config.strategy
     texts["kind"] = strategy.kind
     match strategy:
