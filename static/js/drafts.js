@@ -3,7 +3,7 @@
 
 import { loadAgain } from "./reload.js";
 import { _ } from "./i18n.js";
-import { linesOf, start as startSaying, tell as tellSaved, tellAfterReload } from "./saved.js";
+import { heldBy, linesOf, start as startSaying, tell as tellSaved, tellAfterReload } from "./saved.js";
 
 const WORTH_IT = "main form:is(.form, [data-keep])[method=post]:not(.action)";
 const SENT = "typed-and-sent";
@@ -19,7 +19,7 @@ const isSecret = (field) => field.type === "password" || "secret" in field.datas
 const kept = (field) => field.name && !SKIPPED.has(field.type) && !ORDER_FIELDS.has(field.name)
   && (field.type !== "hidden" || DRAWN.test(field.name));
 
-function standsAt(field) {
+function servedAt(field) {
   if (field.type === "checkbox" || field.type === "radio") return field.defaultChecked;
   if (field.tagName === "SELECT") return [...field.options].find((one) => one.defaultSelected)?.value ?? field.options[0]?.value ?? "";
   return field.type === "hidden" ? field.dataset.served ?? "" : field.defaultValue;
@@ -28,14 +28,15 @@ function standsAt(field) {
 const nowOf = (field) => (field.type === "checkbox" || field.type === "radio" ? field.checked : field.value);
 const nameOf = (field) => (field.type === "radio" ? `${field.name}=${field.value}` : field.name);
 
-const changed = (form) => [...form.elements].filter((field) => kept(field) && nowOf(field) !== standsAt(field))
-  .map((field) => [field, { from: standsAt(field), to: nowOf(field), secret: isSecret(field) }]);
+const heldIn = (form, valueOf) => heldBy([...form.elements].filter((field) => kept(field) && field.type !== "hidden"), valueOf, isSecret);
+const storedIn = (form) => heldIn(form, servedAt);
 
 function changes(form) {
   const found = {};
-  for (const [field, { from, to, secret }] of changed(form)) {
-    if (secret) found[SECRET_TYPED] = true;
-    else found[nameOf(field)] = { from, to };
+  for (const field of form.elements) {
+    if (!kept(field) || nowOf(field) === servedAt(field)) continue;
+    if (isSecret(field)) found[SECRET_TYPED] = true;
+    else found[nameOf(field)] = { from: servedAt(field), to: nowOf(field) };
   }
   return found;
 }
@@ -62,7 +63,7 @@ function put(field, value) {
 // A field whose stored value has changed meanwhile keeps the new one: what was typed belonged to the old.
 function bringBack(form) {
   const stored = JSON.parse(sessionStorage.getItem(placeOf(form)) ?? "{}");
-  const back = [...form.elements].filter((field) => kept(field) && !isSecret(field) && stored[nameOf(field)]?.from === standsAt(field));
+  const back = [...form.elements].filter((field) => kept(field) && !isSecret(field) && stored[nameOf(field)]?.from === servedAt(field));
   for (const field of back) put(field, stored[nameOf(field)].to);
   return { typed: back.length > 0, secret: Boolean(stored[SECRET_TYPED]) };
 }
@@ -89,11 +90,13 @@ function tell(form, { typed, secret }) {
 }
 
 const watched = new WeakSet();
+const stored = new Map(); // by form, what was stored when it was last served or saved; what a preview brings back is only typed
 
 function watch(form) {
   if (watched.has(form)) return;
   watched.add(form);
   for (const field of form.elements) if (field.type === "hidden") field.dataset.served = field.value;
+  if (!stored.has(placeOf(form))) stored.set(placeOf(form), storedIn(form));
   const back = bringBack(form);
   if (!back.typed && !back.secret) return;
   form.closest("details")?.setAttribute("open", "");
@@ -111,37 +114,49 @@ function forgetSent() {
   if (place && !refused) sessionStorage.removeItem(place);
 }
 
-const sent = new WeakMap();
-
-function remember({ detail: { ctx } }) {
-  const form = ctx.sourceElement?.closest?.("form");
-  if (form?.matches(WORTH_IT)) sent.set(form, changed(form));
-}
+const saved = new WeakSet();
 
 function answered({ detail }) {
   const { sourceElement, response, request, hx, text } = detail?.ctx ?? {};
   const form = sourceElement?.closest?.("form");
-  if (!form || !response || (response.status ?? 500) >= 400 || ASKS_FIRST.test(hx?.redirect)) return;
+  if (!form?.matches(WORTH_IT) || !response || (response.status ?? 500) >= 400 || ASKS_FIRST.test(hx?.redirect)) return;
   if (text?.includes("data-question")) return;
   if (new URL(request.action, location).pathname !== new URL(form.action).pathname) return;
-  sessionStorage.removeItem(placeOf(form));
-  if (hx?.redirect && new URL(hx.redirect, location).pathname === location.pathname) tellAfterReload(linesOf(form, sent.get(form) ?? []));
+  const place = placeOf(form);
+  sessionStorage.removeItem(place);
+  if (hx?.redirect && new URL(hx.redirect, location).pathname === location.pathname) tellAfterReload(place, stored.get(place) ?? {});
+  else if (hx?.retarget) stored.delete(place);
+  else saved.add(form);
+}
+
+// What the page has now, asked again: a number may be stored in another way than it was typed.
+async function storedNow(form) {
+  try {
+    const answer = await fetch(location.href);
+    const page = new DOMParser().parseFromString(await answer.text(), "text/html");
+    const there = page.getElementById(form.id);
+    return there ? storedIn(there) : null;
+  } catch {
+    return null;
+  }
 }
 
 // The answer of a form that stays says below its key that it is saved.
-function swapped({ detail }) {
+async function swapped({ detail }) {
   const form = detail?.ctx?.sourceElement?.closest?.("form");
-  if (!form?.isConnected || !sent.has(form) || !form.querySelector(".outcome .outcome-ok")) return;
-  const saved = sent.get(form);
-  tellSaved(form, linesOf(form, saved));
-  for (const [field, { to, secret }] of saved) if (!secret) settle(field, to);
-  sent.delete(form);
+  if (!form?.isConnected || !saved.has(form) || !form.querySelector(".outcome .outcome-ok")) return;
+  saved.delete(form);
+  const before = stored.get(placeOf(form)) ?? {};
+  for (const field of form.elements) if (kept(field) && !isSecret(field)) settle(field, nowOf(field));
+  const now = await storedNow(form) ?? heldIn(form, nowOf);
+  stored.set(placeOf(form), now);
+  tellSaved(form, linesOf(before, now));
 }
 
 export function start() {
   forgetSent();
-  startSaying();
   watchAll();
+  startSaying((place) => stored.get(place));
   document.addEventListener("htmx:after:swap", watchAll);
   for (const kind of ["input", "change"]) {
     document.addEventListener(kind, (event) => {
@@ -149,7 +164,6 @@ export function start() {
       if (form) keep(form);
     });
   }
-  document.addEventListener("htmx:config:request", remember);
   document.addEventListener("htmx:after:request", answered);
   document.addEventListener("htmx:after:swap", swapped);
   // A form that goes as a page: what was typed is forgotten once the page that comes back refuses nothing.

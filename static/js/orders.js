@@ -10,10 +10,12 @@ export function randomId() {
 
 let leftAt = -1;
 
+export const hasLeft = ({ askedAt }) => askedAt <= leftAt;
+
 // Whoever has gone on to another page is not brought back by the answer to an order that was given before.
 function stayAway(event) {
   const { ctx } = event.detail;
-  if (ctx.hx?.redirect && ctx.askedAt < leftAt) delete ctx.hx.redirect;
+  if (ctx.hx?.redirect && hasLeft(ctx)) delete ctx.hx.redirect;
 }
 
 function prepare(event) {
@@ -33,24 +35,6 @@ function prepare(event) {
   if (body?.has?.("epoch")) body.set("epoch", live.tracker?.control?.epoch ?? "");
 }
 
-// Says that no answer came, where the answer would have stood; what was typed stays.
-function tellSilence(event) {
-  const { ctx } = event.detail;
-  const form = ctx.sourceElement?.closest("form");
-  if (ctx.response?.status || ctx.request.method?.toUpperCase() !== "POST" || !form || leftAt >= ctx.askedAt) return;
-  let outcome = form.querySelector(".outcome");
-  if (!outcome) {
-    outcome = document.createElement("div");
-    outcome.className = "outcome";
-    outcome.role = "status";
-    form.append(outcome);
-  }
-  const told = document.createElement("p");
-  told.className = "outcome-refused";
-  told.textContent = _("No answer was received; the command may or may not have been executed. Check the live values, then try again.");
-  outcome.replaceChildren(told);
-}
-
 // After a swap that reports wrong input, the summary of errors has the focus.
 function focusSummary() {
   document.querySelector("[data-focus]")?.focus();
@@ -59,7 +43,6 @@ function focusSummary() {
 export function start() {
   document.addEventListener("htmx:config:request", prepare);
   document.addEventListener("htmx:before:response", stayAway);
-  document.addEventListener("htmx:finally:request", tellSilence);
   addEventListener("beforeunload", () => { leftAt = performance.now(); });
   document.addEventListener("htmx:after:swap", focusSummary);
   focusSummary();

@@ -3,6 +3,7 @@
 import { start as startControl } from "./control.js";
 import { start as startAlarms } from "./alarms.js";
 import { start as startAsking } from "./asked.js";
+import { start as startErrors } from "./errors.js";
 import { start as startLive } from "./live.js";
 import { start as startOrders } from "./orders.js";
 import { start as startOutdated } from "./outdated.js";
@@ -15,6 +16,7 @@ import { start as stayAwake } from "./wake.js";
 startStop();
 startTheme();
 startOrders();
+startErrors();
 startAsking();
 startProving();
 startSteps();

@@ -1,9 +1,10 @@
-// Says what was saved: each field that was changed, as it was and as it is, below the word that it is saved.
+// Says what was saved: what is stored now against what was stored before, below the word that it is saved.
 
 import { _ } from "./i18n.js";
 
 const MOST = 8;
 const AFTER_RELOAD = "saved-before-reload";
+const NOTHING = "–";
 
 const textOf = (element) => element?.textContent.trim().replace(/\s+/g, " ") ?? "";
 
@@ -16,26 +17,45 @@ function labelOf(field) {
 
 const groupOf = (field) => textOf(field.closest("fieldset")?.querySelector("legend") ?? field.closest("section")?.querySelector("h2"));
 
-function valueOf(field, value) {
+function shownOf(field, value) {
+  if (field.type === "radio") return textOf(field.labels?.[0]);
   if (field.type === "checkbox") return value ? _("yes") : _("no");
   if (field.tagName === "SELECT") return textOf([...field.options].find((one) => one.value === value));
   const unit = textOf(field.parentElement?.querySelector(":scope > span"));
-  return value === "" ? "–" : `${value}${unit ? ` ${unit}` : ""}`;
+  return value === "" ? NOTHING : `${value}${unit ? ` ${unit}` : ""}`;
 }
 
-function lineOf(field, { from, to, secret }, named) {
-  const label = labelOf(field);
-  const group = groupOf(field);
-  const what = group && named.filter((one) => one === label).length > 1 ? `${group}, ${label}` : label;
-  if (secret) return what;
-  if (field.type === "radio") return to ? `${what}: ${textOf(field.labels?.[0])}` : "";
-  return `${what}: ${valueOf(field, from)} → ${valueOf(field, to)}`;
+// Returns what fields hold, by name and place among those of that name: each with its label, and as it is shown.
+export function heldBy(fields, valueOf, isSecret) {
+  const named = fields.map(labelOf);
+  const held = {};
+  const seen = {};
+  for (const [at, field] of fields.entries()) {
+    const place = `${field.name} ${seen[field.name] = (seen[field.name] ?? -1) + 1}`;
+    const value = valueOf(field);
+    if (field.type === "radio" && !value) continue;
+    const label = named[at];
+    const group = groupOf(field);
+    const isOne = field.type === "radio" || named.filter((one) => one === label).length === 1;
+    const secret = isSecret(field);
+    held[field.type === "radio" ? field.name : place] = {
+      label: isOne || !group ? label : `${group}, ${label}`, secret, shown: secret ? "" : shownOf(field, value), value,
+    };
+  }
+  return held;
 }
 
-// What differs in a form from what was stored, in lines; `changed` are its fields with what they were and are.
-export function linesOf(form, changed) {
-  const named = [...form.elements].map(labelOf);
-  return [...new Set([...changed].map(([field, change]) => lineOf(field, change, named)).filter(Boolean))];
+// What differs between what was held and what is held, in lines; what is not there any more is shown as nothing.
+export function linesOf(before, now) {
+  const lines = [];
+  for (const place of new Set([...Object.keys(before), ...Object.keys(now)])) {
+    const [old, one] = [before[place], now[place]];
+    const { label, secret } = one ?? old;
+    const [was, is] = [old?.shown ?? NOTHING, one?.shown ?? NOTHING];
+    const differs = secret ? old?.value !== one?.value : was !== is;
+    if (label && differs) lines.push(secret ? label : `${label}: ${was} → ${is}`);
+  }
+  return [...new Set(lines)];
 }
 
 function list(lines) {
@@ -52,9 +72,10 @@ function list(lines) {
   return shown;
 }
 
-// Where the answer is the page itself, it says so when it is there.
-export function tellAfterReload(lines) {
-  sessionStorage.setItem(AFTER_RELOAD, JSON.stringify({ path: location.pathname, lines }));
+// Where the answer is the page itself, it says so when it is there. Secrets are not stored meanwhile.
+export function tellAfterReload(form, before) {
+  const known = Object.entries(before).filter(([, { secret }]) => !secret);
+  sessionStorage.setItem(AFTER_RELOAD, JSON.stringify({ path: location.pathname, form, before: Object.fromEntries(known) }));
 }
 
 export function tell(form, lines) {
@@ -62,10 +83,12 @@ export function tell(form, lines) {
   if (done) done.append(list(lines));
 }
 
-export function start() {
-  const { path, lines } = JSON.parse(sessionStorage.getItem(AFTER_RELOAD) ?? "{}");
+// `storedBy` returns what the form of a name holds as it was served.
+export function start(storedBy) {
+  const { path, form, before } = JSON.parse(sessionStorage.getItem(AFTER_RELOAD) ?? "{}");
   sessionStorage.removeItem(AFTER_RELOAD);
-  if (path !== location.pathname) return;
+  const now = path === location.pathname && storedBy(form);
+  if (!now) return;
   const said = document.querySelector("main [role=status].lead, main .outcome-ok");
   const place = said ?? document.querySelector("#heading").parentElement.appendChild(document.createElement("p"));
   if (!said) {
@@ -73,5 +96,5 @@ export function start() {
     place.setAttribute("role", "status");
     place.textContent = _("Saved.");
   }
-  place.append(list(lines));
+  place.append(list(linesOf(before, now)));
 }

@@ -1,0 +1,283 @@
+"""An error stands beside a form, never in its place: on every page, whatever it is and whoever sends it."""
+
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+
+import pytest
+from playwright.sync_api import Browser, Page, Route, expect
+
+from app.tracker.settings.mechanics import Corner, Region
+from app.web.http.problems import MEDIA_TYPE, Problem, ProblemCode
+from app.web.http.security import TOO_LARGE
+from tests.browser.conftest import Opened, Plant
+from tests.browser.every_page import EVERY_PAGE, Leaf, Where
+from tests.browser.panels import Panels
+
+# pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.
+pytestmark = pytest.mark.filterwarnings("ignore:DatetimeIndex.dayofyear is deprecated")
+
+T1 = "/trackers/T1"
+PARTS = 4
+FRAGMENT = '<div class="outcome-refused"><b>Not done.</b><p>The controller service does not answer.</p></div>'
+PAGE = """<!doctype html><html><head><title>503</title></head><body><main id="content"><section data-problem>
+<p class="lead">The controller service does not answer.</p></section></main></body></html>"""
+PROXY = "<html><head><title>502</title></head><body><center><h1>502 Bad Gateway</h1></center></body></html>"
+JSON = Problem(ProblemCode.TOO_LARGE, TOO_LARGE).body().decode()
+PLAIN_JSON = Problem(ProblemCode.STORE_FAILED, TOO_LARGE).body().decode()
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """What comes instead of an answer, and what the page says of it."""
+
+    status: int
+    kind: str
+    body: str
+    said: str
+
+
+SILENT = "The controller service does not answer."
+REPLIES = {
+    "outcome": Reply(503, "text/html; charset=utf-8", FRAGMENT, SILENT),
+    "refused": Reply(422, "text/html; charset=utf-8", FRAGMENT, SILENT),
+    "page": Reply(409, "text/html; charset=utf-8", PAGE, SILENT),
+    "problem": Reply(500, MEDIA_TYPE, PLAIN_JSON, TOO_LARGE),
+    "too large": Reply(413, MEDIA_TYPE, JSON, TOO_LARGE),
+    "proxy": Reply(502, "text/html", PROXY, "The answer was error 502. Try again in a moment."),
+    "nothing": Reply(504, "text/plain", "", "The answer was error 504. Try again in a moment."),
+}
+NO_ANSWER = "No answer was received"
+BY_HTMX = "[hx-get], [hx-post]"
+ASK = """async ([at, said]) => {
+  const source = document.querySelectorAll('[hx-get], [hx-post]')[at];
+  const all = (selector) => [...document.querySelectorAll(selector)];
+  const fields = () => all('main :is(input, select, textarea)').map((one) => one.name).join();
+  const before = fields();
+  const told = () => all('.outcome, [role=status]').some((one) => one.textContent.includes(said));
+  const what = source.outerHTML.slice(0, 90);
+  const heard = (name) => new Promise((done) => document.addEventListener(name, function hear({ detail }) {
+    if (detail.ctx.sourceElement !== source) return;
+    document.removeEventListener(name, hear);
+    setTimeout(done, 0, true);
+  }));
+  const [isAsked, ended] = [heard('htmx:before:request'), heard('htmx:finally:request')];
+  const isForm = source.matches('form');
+  const trigger = isForm ? 'submit' : (source.getAttribute('hx-trigger') ?? 'click').split(/[ ,]/)[0];
+  if (trigger === 'load' || trigger === 'every') return '';
+  if (isForm) source.noValidate = true;
+  const typed = new Event('input', { bubbles: true });
+  if (trigger === 'input') document.querySelector('#place input').dispatchEvent(typed);
+  else window.htmx.trigger(source, trigger);
+  await isAsked;
+  await ended;
+  if (!source.isConnected) return `${what}: is gone`;
+  if (fields() !== before) return `${what}: fields are gone`;
+  if (!told()) return `${what}: does not say ${said}`;
+  for (const one of all('.outcome')) one.replaceChildren();
+  return '';
+}"""
+"""Has one element ask, and returns what is wrong with the page after the error."""
+
+
+def answer(page: Page, replies: list[Reply | None]) -> None:
+    """Answer what htmx asks for with the first of these errors, or not at all."""
+
+    def fulfil(route: Route) -> None:
+        reply = replies[0]
+        if "hx-request" not in route.request.headers:
+            route.fallback()
+        elif reply is None:
+            route.abort()
+        else:
+            route.fulfill(status=reply.status, content_type=reply.kind, body=reply.body)
+
+    page.route("**/*", fulfil)
+
+
+def trouble_of(page: Page, name: str, number: int) -> list[str]:
+    """Return what is wrong with a page after each of its forms and keys got an error, of all in turn."""
+    every, now = [*REPLIES.values(), None], [None]
+    answer(page, now)
+    found = []
+    for at in range(page.locator(BY_HTMX).count()):
+        now[0] = reply = every[(number + at) % len(every)]
+        if trouble := page.evaluate(ASK, [at, reply.said if reply else NO_ANSWER]):
+            found.append(f"{name}: {trouble}")
+    return found
+
+
+@pytest.fixture(scope="module")
+def panels(browser: Browser) -> Iterator[Panels]:
+    with ExitStack() as stack:
+        yield Panels(browser, stack)
+
+
+def leaves() -> list[tuple[str, Leaf]]:
+    calm = (Where.CALM, Where.ADMINISTRATOR)
+    return [(name, leaf) for name, leaf in EVERY_PAGE.items() if leaf.where in calm and not leaf.sends]
+
+
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize("part", range(PARTS))
+def test_no_error_takes_the_place_of_anything_on_any_page(part: int, panels: Panels) -> None:
+    found, asked = [], 0
+    for number, (name, leaf) in list(enumerate(leaves()))[part::PARTS]:
+        with panels.shown(leaf) as page:
+            asked += page.locator(BY_HTMX).count()
+            found += trouble_of(page, name, number)
+    assert not found, "\n".join(found)
+    assert asked > 20
+
+
+WALL = Region("Wall", (Corner(170.0, 0.0), Corner(190.0, 0.0), Corner(190.0, 30.0)))
+NOISE = ("Failed to load resource", "htmx:error")
+
+
+def walled(plant: Plant) -> None:
+    tracker = plant.machine.trackers["T1"]
+    tracker.config = replace(tracker.config, machine=replace(tracker.config.machine, regions=(WALL,)))
+
+
+def regions(plant: Plant) -> tuple[Region, ...]:
+    found = plant.machine.trackers["T1"].config.machine.regions
+    assert isinstance(found, tuple)
+    return found
+
+
+@pytest.mark.parametrize("name", REPLIES)
+def test_a_preview_that_fails_keeps_the_regions(name: str, opened: Opened, plant: Plant) -> None:
+    walled(plant)
+    page, reply = opened(f"{T1}/machine", allow=NOISE), REPLIES[name]
+    page.route(
+        "**/machine/picture",
+        lambda route: route.fulfill(status=reply.status, content_type=reply.kind, body=reply.body),
+    )
+    page.locator("#f-region1_name").fill("Gate")
+    page.get_by_role("button", name="Preview regions").click()
+    expect(page.locator("#machine-outcome")).to_contain_text(reply.said)
+    expect(page.locator("#f-region0_name")).to_have_value("Wall")
+    expect(page.locator("#f-region1_name")).to_have_value("Gate")
+    page.locator("#f-region1_name").fill("")
+    page.get_by_role("button", name="Save mechanics").click()
+    expect(page.locator(".saved-what")).to_have_text("No values were changed.")
+    assert regions(plant) == (WALL,)
+
+
+def test_mechanics_without_the_block_of_the_regions_are_not_saved(opened: Opened, plant: Plant) -> None:
+    walled(plant)
+    page = opened(f"{T1}/machine", allow=NOISE)
+    page.evaluate("document.getElementById('regions').remove()")
+    page.get_by_role("button", name="Save mechanics").click()
+    expect(page.locator("#machine-outcome")).to_contain_text("Reload the page, then try again.")
+    assert regions(plant) == (WALL,)
+
+
+KEPT: dict[str, tuple[str, str, str, dict[str, str]]] = {
+    "location": (
+        f"{T1}/commissioning/location", "#step-form", "#forward .key",
+        {"#f-latitude": "41.2867", "#f-longitude": "36.33", "#f-altitude": "4"},
+    ),
+    "simulate": (
+        "/simulate", "#simulate-form", "#simulate-form button",
+        {"#f-azimuth": "170", "#f-date": "2027-06-21"},
+    ),
+    "add tracker": ("/", "#add-form", "#add-form button", {"#f-tracker_id": "T7", "#f-name": "East"}),
+    "clock": (
+        f"{T1}/commissioning/clock", "#manual-form", "#manual-form button",
+        {"#f-date": "2027-06-21", "#f-time": "12:34"},
+    ),
+    "study": ("/studies", "#study-form", "#study-form .key-primary", {"#f-title": "Noon"}),
+}  # fmt: skip
+"""Forms that a good answer replaces: their page, form, key, and what is typed."""
+
+
+@pytest.mark.parametrize("reply", [*REPLIES.values(), None], ids=[*REPLIES, "no answer"])
+@pytest.mark.parametrize("name", KEPT)
+def test_a_form_keeps_what_was_typed_beside_an_error(name: str, reply: Reply | None, opened: Opened) -> None:
+    path, form, key, typed = KEPT[name]
+    page = opened(path, allow=NOISE)
+    for details in page.locator("main details").all():
+        details.evaluate("one => { one.open = true; }")
+    for field, text in typed.items():
+        page.locator(field).fill(text)
+    answer(page, [reply])
+    page.locator(key).first.click()
+    expect(page.locator(f"{form} .outcome").last).to_contain_text(reply.said if reply else NO_ANSWER)
+    for field, text in typed.items():
+        expect(page.locator(field)).to_have_value(text)
+
+
+def test_a_signature_stays_beside_an_error(opened: Opened, plant: Plant) -> None:
+    page = opened(f"{T1}/record", allow=NOISE)
+    pad = page.locator('[data-sign-pad="technician"]')
+    pad.scroll_into_view_if_needed()
+    box = pad.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 20, box["y"] + 20)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 120, box["y"] + 60, steps=5)
+    page.mouse.up()
+    drawn = page.locator('[name="technician_drawn"]').input_value()
+    page.locator("#f-technician").fill("Ada")
+    now: list[Reply | None] = [None]
+    answer(page, now)
+    for now[0] in [*REPLIES.values(), None]:
+        page.get_by_role("button", name="Sign record").click()
+        expect(page.locator("#sign-form .outcome")).to_contain_text(now[0].said if now[0] else NO_ANSWER)
+        expect(page.locator("#f-technician")).to_have_value("Ada")
+        expect(page.locator('[name="technician_drawn"]')).to_have_value(drawn)
+    page.unroute_all()
+    page.get_by_role("button", name="Sign record").click()
+    page.get_by_role("button", name="Sign anyway").click()
+    expect(page.get_by_role("img", name="Signature of Ada")).to_be_visible()
+    assert len(plant.orders("sign_record")) == 1
+
+
+def test_a_photo_that_is_too_large_is_told_in_one_sentence(opened: Opened) -> None:
+    page = opened(f"{T1}/record", allow=NOISE)
+    form = page.locator('#photos form[action$="/photos"]')
+    form.locator('[name="caption"]').fill("Type plate")
+    form.locator('[type="file"]').set_input_files(
+        {"name": "a.jpg", "mimeType": "image/jpeg", "buffer": b"large"}
+    )
+    answer(page, [REPLIES["too large"]])
+    form.get_by_role("button", name="Add the photo").click()
+    expect(form.locator(".outcome")).to_have_text(f"Not done.{TOO_LARGE}")
+    expect(form.locator('[name="caption"]')).to_have_value("Type plate")
+    assert form.locator('[type="file"]').evaluate("one => one.files.length") == 1
+
+
+def test_what_was_told_of_an_error_is_gone_with_the_next_good_answer(opened: Opened) -> None:
+    page = opened(f"{T1}/commissioning/location", allow=NOISE)
+    answer(page, [REPLIES["proxy"]])
+    page.locator("#f-latitude").fill("41.2867")
+    told = page.get_by_text("The answer was error 502.")
+    expect(told).to_be_visible()
+    page.unroute_all()
+    page.locator("#f-longitude").fill("36.33")
+    expect(page.locator("#preview [data-x]")).to_be_attached()
+    expect(told).to_have_count(0)
+
+
+LOADED = ("/accuracy", "/papers", "/studies/glance", "/studies/program", f"{T1}/strategy")
+
+
+@pytest.mark.parametrize("path", LOADED)
+def test_what_a_page_loads_later_says_why_it_does_not_come(path: str, opened: Opened, plant: Plant) -> None:
+    page = opened("/account", allow=NOISE)
+    answer(page, [REPLIES["outcome"]])
+    page.goto(plant.url + path)
+    expect(page.locator("main").get_by_text(SILENT)).to_be_visible()
+    expect(page.get_by_text("Measuring;").or_(page.get_by_text("Simulating the day;"))).to_have_count(0)
+
+
+def test_until_the_script_is_there_htmx_swaps_no_error(opened: Opened, plant: Plant) -> None:
+    page = opened("/account", allow=NOISE)
+    page.route("**/errors.js*", lambda route: route.abort())
+    page.goto(f"{plant.url}{T1}/machine")
+    page.wait_for_function("window.htmx && document.querySelector('#machine-form[data-htmx-powered]')")
+    answer(page, [REPLIES["refused"]])
+    with page.expect_response("**/machine/picture"):
+        page.get_by_role("button", name="Preview regions").click()
+    expect(page.locator("#f-region0_name")).to_be_visible()
