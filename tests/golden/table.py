@@ -38,13 +38,12 @@ def numbers(name: str) -> list[dict[str, float]]:
 
 
 def rows(name: str) -> list[dict[str, str]]:
-    """Return the rows of a table as they are written."""
+    """Return the rows of a table; a character that nobody would see is written in it as `\\u00a0`."""
     with (Path(__file__).parent / name).open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+        return [{key: _seen(text) for key, text in row.items()} for row in csv.DictReader(file)]
 
 
-def seen(text: str) -> str:
-    """Return a text of a table with the characters that it writes as `\\u00a0`, since nobody sees them."""
+def _seen(text: str) -> str:
     return re.sub(r"\\u([0-9a-f]{4})", lambda found: chr(int(found[1], 16)), text)
 
 

@@ -1,12 +1,10 @@
 """Coordinates as maps, phones, receivers, and people write them: read right, or refused with a sentence."""
 
-import csv
 import re
 from collections.abc import AsyncIterator, Iterator
 from contextlib import contextmanager
 from html import unescape
 from itertools import product
-from pathlib import Path
 from unicodedata import decimal
 from urllib.parse import quote
 
@@ -24,10 +22,10 @@ from app.web.shell import coordinates
 from app.web.shell.coordinates import Refusal, Refused
 from app.web.shell.forms import Unreadable
 from tests.fakes import FakeMachine, fake_app, serving
+from tests.golden.table import rows
 
 PAGE = "/trackers/T1/commissioning/location"
 HTMX = {"HX-Request": "true"}
-HIDDEN = re.compile(r"\\u([0-9a-f]{4})")
 ERROR = re.compile(r'-error">([^<]*)')
 NEAR_DEG = 1e-6
 OTHER = {"latitude": "41.2867", "longitude": "36.33"}
@@ -43,16 +41,7 @@ SENTENCES = {
 }
 
 
-def rows() -> list[dict[str, str]]:
-    path = Path(__file__).parents[1] / "golden" / "world" / "coordinates.csv"
-    with path.open(encoding="utf-8", newline="") as file:
-        return [
-            row | {"text": HIDDEN.sub(lambda code: chr(int(code[1], 16)), row["text"])}
-            for row in csv.DictReader(file)
-        ]
-
-
-ROWS = rows()
+ROWS = rows("world/coordinates.csv")
 LANGUAGES = sorted({row["language"] for row in ROWS})
 
 

@@ -53,12 +53,12 @@ async def test_a_number_is_taken_or_refused_in_its_field(
         wide = replace(config(machine).azimuth, minimum_deg=-100.0)
         machine.trackers["T1"].config = replace(config(machine), azimuth=wide)
     before = config(machine)
-    typed = {name: row["typed"]} | ({"rows": "yes"} if name == "slope" else {})
+    typed = {name: row["text"]} | ({"rows": "yes"} if name == "slope" else {})
     answer = await client.post(action, data=await filled(client, page, typed, action=action))
     if row["stored"] == "refused":
         assert answer.status_code == 422
         assert f'id="{name}-error"' in answer.text, "beside the field"
-        assert f'value="{row["typed"]}"' in unescape(answer.text), "what was typed stays"
+        assert f'value="{row["text"]}"' in unescape(answer.text), "what was typed stays"
         assert config(machine) == before
     else:
         assert answer.status_code < 400, answer.text
@@ -70,7 +70,7 @@ async def test_corners_are_taken_or_refused_in_their_field(
     row: dict[str, str], machine: FakeMachine, client: httpx.AsyncClient
 ) -> None:
     page = f"{T1}/machine"
-    form = await filled(client, page, {"region0_name": "Wall", "region0_corners": row["typed"]})
+    form = await filled(client, page, {"region0_name": "Wall", "region0_corners": row["text"]})
     preview = await client.post(f"{page}/picture", data=form)
     answer = await client.post(page, data=form)
     assert preview.status_code == 200, "the picture shows the regions that can be read"
@@ -89,8 +89,8 @@ async def test_a_step_program_reads_the_same_signs(
     row: dict[str, str], machine: FakeMachine, client: httpx.AsyncClient
 ) -> None:
     action = f"{STRATEGY}/program"
-    head = {"base": "clock", "offset": row["typed"], "angles": "equator"}
-    steps = {"at": ["06:00", "12:00"], "first": [row["typed"], "2"], "second": ["1", row["typed"]]}
+    head = {"base": "clock", "offset": row["text"], "angles": "equator"}
+    steps = {"at": ["06:00", "12:00"], "first": [row["text"], "2"], "second": ["1", row["text"]]}
     answer = await client.post(action, data=await filled(client, STRATEGY, head | steps, action=action))
     if row["stored"] == "refused":
         assert answer.status_code == 422

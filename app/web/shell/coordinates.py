@@ -13,6 +13,7 @@ from math import nan
 from unicodedata import decimal
 
 from app.base.message import Message, say, with_format, word
+from app.base.minus import DASHES
 from app.web.languages import pgettext
 from app.web.shell.forms import Typed, Unreadable
 from app.web.shell.map_links import is_link, linked
@@ -23,7 +24,7 @@ LONGEST = 120
 LONGEST_LINK = 2000
 
 SIGNS = {
-    "-": "\u2010\u2011\u2012\u2013\u2014\u2015\u2212\u02d7\u207b\u2796\ufe58\ufe63",
+    "-": DASHES + "\u2014\u2015\u02d7\u207b\u2796\ufe58",
     "°": "\u00ba\u02da\u2070\u2218\u1d52度",
     "'": "\u2018\u2019\u201b\u2032\u2035\u00b4\u0060\u02b9\u02bc\u05f3分",
     '"': "\u201c\u201d\u201e\u201f\u2033\u2036\u02ba\u02dd\u05f4秒",
