@@ -23,6 +23,7 @@ from app.web.shell.coordinates import Refusal, Refused
 from app.web.shell.forms import Unreadable
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.golden.table import rows
+from tests.web.filled import filled
 
 PAGE = "/trackers/T1/commissioning/location"
 HTMX = {"HX-Request": "true"}
@@ -72,13 +73,15 @@ async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
         yield browser
 
 
-async def wrong(client: httpx.AsyncClient, machine: FakeMachine, row: dict[str, str]) -> str:
+async def wrong(
+    client: httpx.AsyncClient, machine: FakeMachine, row: dict[str, str], form: dict[str, str | list[str]]
+) -> str:
     """Return what is wrong with preview and saving of a row, nothing if both are right."""
     machine.orders.clear()
     headers = {**HTMX, "Accept-Language": row["language"].replace("_", "-")}
     typed = OTHER | {row["field"]: row["text"], "sun_there": "yes"}
     shown = unescape((await client.get(f"{PAGE}/preview", params=typed, headers=headers)).text)
-    answer = await client.post(PAGE, data=typed, headers=headers)
+    answer = await client.post(PAGE, data=form | typed, headers=headers)
     orders = [order.command for order in machine.orders if isinstance(order.command, SetLocation)]
     if row["refusal"]:
         sentence = SENTENCES[Refusal(row["refusal"])] if row["language"] == "en" else ""
@@ -107,10 +110,11 @@ def test_the_table_has_every_refusal_and_a_source_for_each_form() -> None:
 async def test_every_form_is_shown_and_saved_right_or_refused(
     client: httpx.AsyncClient, machine: FakeMachine, language: str
 ) -> None:
+    form = await filled(client, PAGE)
     found = {
         (row["field"], row["text"]): words
         for row in ROWS
-        if row["language"] == language and (words := await wrong(client, machine, row))
+        if row["language"] == language and (words := await wrong(client, machine, row, form))
     }
     assert found == {}
 
@@ -158,7 +162,7 @@ async def test_the_studies_read_coordinates_by_the_same_rules(
     client: httpx.AsyncClient, typed: dict[str, str], said: str
 ) -> None:
     sent = {"date": "2026-06-21", "modes": "dual", "strategies": "deadband", **OTHER, **typed, "range": "999"}
-    answer = await client.post("/studies", data=sent, headers=HTMX)
+    answer = await client.post("/studies", data=await filled(client, "/studies", sent), headers=HTMX)
     assert answer.status_code == 422
     assert said in unescape(answer.text)
     question = {"date": "2026-06-21", **OTHER, **typed, "range": "999"}

@@ -7,6 +7,7 @@ from app.link.messages import SetClock
 from tests.fakes import FakeMachine
 from tests.fault_result import FaultResult
 from tests.golden.table import rows
+from tests.web.filled import filled
 
 ROWS = rows("world/instants.csv")
 CLOCK = "/trackers/T1/commissioning/clock"
@@ -55,14 +56,8 @@ async def test_a_typed_day_outside_the_years_of_the_sun_is_refused_at_its_field(
 async def test_a_day_outside_the_years_of_the_sun_is_not_simulated(
     day: str, weather: str, client: httpx.AsyncClient
 ) -> None:
-    form = {
-        "tracker": "T1",
-        "mode": "dual",
-        "date": day,
-        "weather": weather,
-        "begins": "12:00",
-        "steps": "08:00 4",
-    }
+    typed = {"tracker": "T1", "date": day, "weather": weather, "steps": "08:00 4"}
+    form = await filled(client, "/simulate", typed)
     answer = await client.post("/simulate", data=form)
     assert answer.status_code == 422
     assert REFUSED in answer.text
