@@ -21,6 +21,7 @@ from app.web.languages.catalogue import catalogue_of
 from app.web.shell import coordinates
 from app.web.shell.coordinates import Refusal, Refused
 from app.web.shell.forms import Unreadable
+from app.web.shell.map_links import is_link
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.golden.table import rows
 from tests.web.filled import filled
@@ -179,6 +180,17 @@ GLUE = (
 )  # fmt: skip
 PIECES = st.tuples(st.sampled_from(GLUE), st.sampled_from(PARTS), st.sampled_from(GLUE)).map("".join)
 SOUP = st.lists(PIECES, max_size=6).map("".join)
+BEFORE = st.sampled_from(("", "", "", "-", "−", "+", "N", "S ", "E ", "W", "Lat: ", "Lon "))
+MARKS = st.sampled_from((" ", "°", "° ", "' ", "d", "m", ":", "-"))
+AFTER = st.sampled_from(("", "", "", "°", "'", '"', "s", "N", " S", " E", "W"))
+NUMBER = st.sampled_from(PARTS)
+ANGLES = st.tuples(
+    BEFORE, NUMBER, st.lists(st.tuples(MARKS, NUMBER).map("".join), max_size=2).map("".join), AFTER
+)
+PAIRS = st.tuples(ANGLES.map("".join), st.sampled_from((" ", ", ", "; ", ",")), ANGLES.map("".join)).map(
+    "".join
+)
+TEXTS = SOUP | st.text(max_size=40) | ANGLES.map("".join) | PAIRS
 NUMBERS = re.compile(r"\d+(?:[.,]\d+)?")
 
 
@@ -202,7 +214,7 @@ def strict_readings(text: str) -> set[tuple[float, ...]]:
     return {tuple(round(one, 9) for one in each if one is not None) for each in found if None not in each}
 
 
-@given(SOUP | st.text(max_size=40), st.sampled_from(LANGUAGES), st.sampled_from(list(OTHER)))
+@given(TEXTS, st.sampled_from(LANGUAGES), st.sampled_from(list(OTHER)))
 @example("41\u212a", "en", "latitude")
 @example("41 1\u017f", "en", "latitude")
 @example("http://[", "en", "latitude")
@@ -214,10 +226,10 @@ def test_any_text_is_a_coordinate_or_is_refused_with_a_sentence(text: str, langu
     assert abs(found) <= coordinates.LIMITS_DEG[axis] or str(typed.errors[axis]).endswith(".")
 
 
-@given(SOUP | st.text(max_size=40), st.sampled_from(LANGUAGES))
+@given(TEXTS, st.sampled_from(LANGUAGES))
 def test_what_is_read_is_what_the_numbers_of_the_text_say(text: str, language: str) -> None:
     plain = "".join(str(decimal(letter, letter)) for letter in text)
-    assume(not coordinates.is_link(text.strip()) and not re.search(r"\d{4}", plain.partition(".")[0]))
+    assume(not is_link(text.strip()) and not re.search(r"\d{4}", plain.partition(".")[0]))
     with speaking(language):
         try:
             found = coordinates.angles(text)
