@@ -276,7 +276,7 @@ def test_until_the_script_is_there_htmx_swaps_no_error(opened: Opened, plant: Pl
     page = opened("/account", allow=NOISE)
     page.route("**/errors.js*", lambda route: route.abort())
     page.goto(f"{plant.url}{T1}/machine")
-    page.wait_for_function("window.htmx && document.querySelector('#machine-form[data-htmx-powered]')")
+    expect(page.locator("#machine-form[data-htmx-powered]")).to_be_attached()
     answer(page, [REPLIES["refused"]])
     with page.expect_response("**/machine/picture"):
         page.get_by_role("button", name="Preview regions").click()

@@ -48,10 +48,9 @@ def test_a_drive_that_was_tested_before_it_was_saved_is_told(opened: Opened, pla
     other = "modbus-rtu-over-tcp" if "TCP" in stored else "modbus-tcp"
     page.locator("#f-kind").select_option(other)
     chosen = page.locator("#f-kind option:checked").inner_text()
-    page.get_by_role("button", name="Test the connection").click()
-    page.wait_for_function(
-        "document.querySelector('#drive-work') && !document.querySelector('.htmx-request')"
-    )
+    with page.expect_response("**/drive/test"):
+        page.get_by_role("button", name="Test the connection").click()
+    expect(page.locator(".htmx-request")).to_have_count(0)
     page.get_by_role("button", name="Save the drive settings").click()
     expect(page.locator(LIST)).to_contain_text(f"{stored} → {chosen}")
 
