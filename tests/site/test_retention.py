@@ -96,7 +96,7 @@ async def test_a_start_with_the_clock_ahead_removes_nothing(
         await run(plant, 2 * DAY)
     assert "1825 days ago" not in kept(store)[0], "what is too old goes on the right clock"
     assert "1775 days ago" in kept(store)[0]
-    fault.prevented("age counts by the time that the machine runs")
+    fault.prevented("age counts while the controller runs")
     fault.shows_nothing("nothing is removed")
     fault.recovers(BY_ITSELF)
 

@@ -17,6 +17,7 @@ from app.access.accounts import TokenWish
 from app.access.roles import Role
 from app.access.tokens import Scope
 from app.base.clock import VirtualClock
+from tests.fault_result import BY_ITSELF, FaultResult
 from tests.golden.table import ClockRow, clocks
 from tests.web.office import HERE, PASSWORD, Office
 
@@ -56,8 +57,11 @@ async def sign_in(browser: httpx.AsyncClient, name: str, password: str = PASSWOR
     return await browser.post("/api/v1/session", json={"name": name, "password": password})
 
 
+@pytest.mark.fault(100)
 @rows("sign_in")
-async def test_nobody_waits_for_more_than_thirty_seconds(tmp_path: Path, row: ClockRow) -> None:
+async def test_nobody_waits_for_more_than_thirty_seconds(
+    tmp_path: Path, row: ClockRow, fault: FaultResult
+) -> None:
     async with life(tmp_path, row.stored) as office, office.browser() as browser:
         await office.hire(Role.VIEWER)
         for _ in range(WRONG_TRIES):
@@ -68,6 +72,9 @@ async def test_nobody_waits_for_more_than_thirty_seconds(tmp_path: Path, row: Cl
         waits = [answer.status_code == 429 for answer in answers]
         assert waits == [row.expected == "waits"] * 3
         assert all(0 < int(answer.headers["retry-after"]) <= 30 for answer in answers if answer.is_error)
+        fault.prevented("a failure that lies in the future adds no wait")
+        fault.shows_nothing("with the right password the user signs in")
+        fault.recovers(BY_ITSELF)
         office.clock.advance(timedelta(seconds=30))  # type: ignore[attr-defined]
         assert [(await sign_in(browser, name)).status_code for name in ("viewer-1", "administrator-1")] == [
             204,
@@ -75,8 +82,9 @@ async def test_nobody_waits_for_more_than_thirty_seconds(tmp_path: Path, row: Cl
         ]
 
 
+@pytest.mark.fault(103)
 @rows("session")
-async def test_a_session_of_the_future_has_ended(tmp_path: Path, row: ClockRow) -> None:
+async def test_a_session_of_the_future_has_ended(tmp_path: Path, row: ClockRow, fault: FaultResult) -> None:
     async with life(tmp_path, row.stored) as office:
         await office.hire(Role.OPERATOR)
         session = await office.session(Role.OPERATOR)
@@ -84,6 +92,10 @@ async def test_a_session_of_the_future_has_ended(tmp_path: Path, row: ClockRow) 
         me, page = await browser.get("/api/v1/me"), await browser.get("/trackers/T1")
         assert {200: "in", 401: "out"}[me.status_code] == row.expected
         assert {200: "in", 303: "out"}[page.status_code] == row.expected
+        if row.expected == "out":
+            fault.prevented("what lies in the future has ended")
+            fault.shows(me.json()["detail"])
+            fault.recovers("the user signs in")
 
 
 @rows("proof")

@@ -23,6 +23,7 @@ from app.web.shell.coordinates import Refusal, Refused
 from app.web.shell.forms import Unreadable
 from app.web.shell.map_links import is_link
 from tests.fakes import FakeMachine, fake_app, serving
+from tests.fault_result import FaultResult
 from tests.golden.table import rows
 from tests.web.filled import filled
 
@@ -107,9 +108,10 @@ def test_the_table_has_every_refusal_and_a_source_for_each_form() -> None:
     assert len(set(forms)) == len(forms)
 
 
+@pytest.mark.fault(104)
 @pytest.mark.parametrize("language", LANGUAGES)
 async def test_every_form_is_shown_and_saved_right_or_refused(
-    client: httpx.AsyncClient, machine: FakeMachine, language: str
+    client: httpx.AsyncClient, machine: FakeMachine, language: str, fault: FaultResult
 ) -> None:
     form = await filled(client, PAGE)
     found = {
@@ -118,6 +120,12 @@ async def test_every_form_is_shown_and_saved_right_or_refused(
         if row["language"] == language and (words := await wrong(client, machine, row, form))
     }
     assert found == {}
+    fault.prevented("refused unless there is one reading only")
+    fault.shows(
+        "Latitude: enter one coordinate per field, or both with a semicolon, latitude first, such as "
+        "41.2867; 36.33."
+    )
+    fault.recovers("the coordinates are typed so that they mean one place")
 
 
 async def test_a_pair_fills_both_fields_and_presses_both_sides(client: httpx.AsyncClient) -> None:

@@ -15,6 +15,7 @@ from app.web.features.setup.machine_forms import texts
 from app.web.http.whole_forms import INCOMPLETE
 from tests.fake_store import FakeReader
 from tests.fakes import FakeMachine, fake_app, serving
+from tests.fault_result import FaultResult
 from tests.web.filled import filled, values_of
 
 T1 = "/trackers/T1"
@@ -120,9 +121,10 @@ async def test_what_a_mount_does_not_show_stays_as_it_is_stored(
     assert stored(machine) == before
 
 
+@pytest.mark.fault(99)
 @pytest.mark.parametrize("htmx", [{}, {"HX-Request": "true", "HX-Request-Type": "partial"}])
 async def test_mechanics_without_the_part_of_the_regions_keep_them(
-    client: httpx.AsyncClient, machine: FakeMachine, htmx: Mapping[str, str]
+    client: httpx.AsyncClient, machine: FakeMachine, htmx: Mapping[str, str], fault: FaultResult
 ) -> None:
     tracker = machine.trackers["T1"]
     tracker.config = replace(tracker.config, machine=replace(tracker.config.machine, regions=(WALL,)))
@@ -133,6 +135,9 @@ async def test_mechanics_without_the_part_of_the_regions_keep_them(
     assert is_incomplete(await client.post(f"{T1}/machine/picture", data=form, headers=htmx))
     assert tracker.config.machine.regions == (WALL,)
     assert not machine.orders
+    fault.prevented("refused unless every field came")
+    fault.shows("The form arrived incomplete, and nothing was saved. Reload the page, then try again.")
+    fault.recovers("the page is loaded again")
 
 
 async def test_a_token_is_not_made_for_every_tracker_because_their_field_is_missing(
