@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 from io import StringIO
 
 from app.base.message import N_, join, say, told_by
-from app.base.minus import with_minus
 from app.tracker.settings.stepped import (
     MOST_STEPS,
     ProgramStep,
@@ -22,6 +21,7 @@ from app.tracker.settings.stepped import (
     TimeBase,
     step_errors,
 )
+from app.tracker.values.minus import with_minus
 
 COLUMNS = {
     StepFrame.HORIZON: ("azimuth_deg", "elevation_deg"),

@@ -10,8 +10,8 @@ from itertools import pairwise
 from typing import Any
 
 from app.base.message import N_, join, say
-from app.base.minus import with_minus
 from app.sun.position import SunPosition
+from app.tracker.values.minus import with_minus
 from app.tracker.weather.simulated_weather import SPANS, Scenario, SimulatedStation, weather_at
 from app.tracker.weather.weather import Weather
 

@@ -13,7 +13,7 @@ from math import nan
 from unicodedata import decimal
 
 from app.base.message import Message, say, with_format, word
-from app.base.minus import DASHES
+from app.tracker.values.minus import DASHES
 from app.web.languages import pgettext
 from app.web.shell.forms import Typed, Unreadable
 from app.web.shell.map_links import is_link, linked

@@ -9,9 +9,9 @@ from typing import TypeVar
 from starlette.requests import Request
 
 from app.base.message import Message, say, told_by, with_format, word
-from app.base.minus import with_minus
 from app.base.zones import zone_of
 from app.sun.accuracy import FIRST_YEAR, LAST_YEAR
+from app.tracker.values.minus import with_minus
 from app.web.http.whole_forms import FormIncomplete
 from app.web.shell.contexts import Field, Form
 

@@ -6,7 +6,6 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from app.base.message import N_, say
-from app.base.minus import with_minus
 from app.tracker.protections.fault_classes import CLASSES
 from app.tracker.settings.declared import declared, refusal
 from app.tracker.settings.mechanics import (
@@ -17,6 +16,7 @@ from app.tracker.settings.mechanics import (
     MachineProtection,
     Region,
 )
+from app.tracker.values.minus import with_minus
 from app.web.features.setup.protection_contexts import FaultRow
 from app.web.features.setup.protection_forms import group_of
 from app.web.shell import setting_forms
