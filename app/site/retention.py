@@ -48,11 +48,14 @@ class Retention:
         self._since = model.clock.now()
 
     def beat(self) -> None:
-        """Count on; with a clock that is not trusted nothing gets older."""
+        """Count on; with a clock that is not trusted nothing gets older.
+
+        What an order changes of the site is not to be overtaken by what the site was before: it waits.
+        """
         model, now = self._model, self._model.clock.now()
         if model.timekeeper.reasons():
             self._since = now
-        if now - self._since < COUNTED_EVERY:
+        if now - self._since < COUNTED_EVERY or model.changing.locked():
             return
         ages = counted(model.state.ages_from or AgesFrom(model.now()), now - self._since)
         self._since = now

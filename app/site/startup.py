@@ -10,7 +10,7 @@ from app.base.message import N_, NOTHING, Message, join, plain, say, told_by, wi
 from app.site.clock.timekeeping import can_be
 from app.site.state.validation import check_config
 from app.store.config_repair import fallen_back
-from app.store.store import StoreFailed, Writer
+from app.store.store import StoreFailed, StoreUnreadable, Writer
 from app.tracker.memory.memory import (
     AgesFrom,
     ClockSetting,
@@ -56,25 +56,24 @@ def begin(store: Writer, now: datetime, *, unclean_since: datetime | None) -> Be
 
 
 def _site(store: Writer, now: datetime) -> SiteState:
-    """Return the site and what of it did not fit, which is told and stored no more."""
+    """Return the site, stored without what of it does not fit, which is told."""
     rejected: tuple[RejectedSetting, ...] = ()
     try:
-        site = store.site()
-    except StoreFailed:
-        site, rejected = store.mended_site()
-    if site is None:
-        site = SiteState()
+        stored = store.site()
+    except StoreUnreadable:
+        stored, rejected = store.mended_site()
+    if stored is None:
         store.save_tracker(FIRST_TRACKER)
-        store.save_site(site)
+    site = stored or SiteState()
     if not can_be(site.clock, now):
         offset = plain(f"{site.clock.offset_s:+g} s")
         rejected += (RejectedSetting(N_("Clock"), offset, N_("none"), NOT_OF_THESE_TIMES),)
         site = replace(site, clock=ClockSetting())
     if site.ages_from is None:
         site = replace(site, ages_from=AgesFrom(store.newest_entry_at() or now))
-    if rejected:
+    if site != stored or rejected:
         at = now + timedelta(seconds=site.clock.offset_s)
-        store.save_site(site, (_told(site.name, rejected, at, None),))
+        store.save_site(site, (_told(site.name, rejected, at, None),) if rejected else ())
     return site
 
 

@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from app.audit.difference import difference
 from app.base.adapter import adapter
+from app.base.masking import SECRET_NAMES, masked, without_secrets
 from app.base.message import N_, Message, plain, told_of_value
 from app.tracker.memory.memory import RejectedSetting, SiteState, TrackerMemory, TrackerState
 from app.tracker.settings.config import TrackerConfig
@@ -17,7 +18,6 @@ LONGEST_TOLD = 60
 OF_THE_CONFIG = ("config",)
 BESIDE = N_("The last accepted settings form one set; this setting is not in it.")
 NO_TRACKER = N_("The stored data is not a tracker.")
-NO_SITE = N_("The stored data is not a site.")
 MEMORY = "memory "
 Place = tuple[str | int, ...]
 Rejected = tuple[RejectedSetting, ...]
@@ -43,15 +43,12 @@ def mended(text: str, tracker_id: str, accepted: TrackerConfig | None = None) ->
     return fallen_back(state, accepted, stored, rejected) if rejected else state
 
 
-def mended_site(text: str) -> tuple[SiteState, Rejected]:
-    """Return the site with usual values where the stored ones do not fit, and which; all are, if need be."""
+def mended_site(text: str) -> tuple[SiteState, Rejected] | None:
+    """Return the site with usual values where the stored ones do not fit, and which; None: it cannot be."""
     usual = adapter(SiteState).dump_python(SiteState(), mode="json")
     document = _object(text)
-    if document is not None:
-        found, rejected = _fitting(SiteState, document, usual, least=1)
-        if found is not None:
-            return found, rejected
-    return SiteState(), (RejectedSetting(N_("all settings"), _told(text), N_("none"), NO_SITE),)
+    found, rejected = (None, ()) if document is None else _fitting(SiteState, document, usual, least=1)
+    return None if found is None else (found, rejected)
 
 
 def fallen_back(
@@ -146,7 +143,17 @@ def _give_way(
     stored = holder.get(str(last), "missing")
     holder[str(last)] = usual_holder[last]
     name = _name([str(part) for part in place if part != "config"])
-    return RejectedSetting(name, _told(stored), _told(usual_holder[last]), plain(why))
+    shown, why = without_secrets({str(last): stored})[str(last)], _without_secrets_of(stored, why)
+    return RejectedSetting(name, _told(shown), _told(usual_holder[last]), plain(why))
+
+
+def _without_secrets_of(stored: object, why: str) -> str:
+    """Return why a value does not fit without the addresses in it that may hold a secret."""
+    for name in SECRET_NAMES:
+        address = stored.get(name) if isinstance(stored, dict) else None
+        if address and isinstance(address, str):
+            why = why.replace(address, masked(address))
+    return why
 
 
 def _name(path: list[str]) -> Message:

@@ -59,10 +59,13 @@ class DatabaseReader:
         return None if document is None else SITE.read(document)
 
     def mended_site(self) -> tuple[SiteState, tuple[RejectedSetting, ...]]:
-        """Return the stored site; settings that do not fit give way to the usual ones, and are returned."""
+        """Return the stored site; settings that do not fit give way to the usual ones, and are returned.
+
+        Raises `StoreUnreadable` where that cannot be.
+        """
         with self._read() as connection:
             document = connection.execute(select(tables.site.c.document)).scalar_one()
-        return mended_site(document)
+        return mended_site(document) or (SITE.read(document), ())
 
     def trackers(self) -> list[TrackerState]:
         """Return the stored trackers in the order they were added."""

@@ -147,3 +147,16 @@ class Keyboard:
         self.page.keyboard.down(" ")
         self.page.wait_for_timeout(for_ms)
         self.page.keyboard.up(" ")
+
+
+def signed(page: Page) -> str:
+    """Draw a line as the technician's signature and return what the form keeps of it."""
+    pad = page.locator('[data-sign-pad="technician"]')
+    pad.scroll_into_view_if_needed()
+    box = pad.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 20, box["y"] + 20)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 120, box["y"] + 60, steps=5)
+    page.mouse.up()
+    return page.locator('[name="technician_drawn"]').input_value()

@@ -12,6 +12,7 @@ from app.web.http.problems import MEDIA_TYPE, Problem, ProblemCode
 from app.web.http.security import TOO_LARGE
 from tests.browser.conftest import Opened, Plant
 from tests.browser.every_page import EVERY_PAGE, Leaf, Where
+from tests.browser.hands import signed
 from tests.browser.panels import Panels
 
 # pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.
@@ -210,15 +211,7 @@ def test_a_form_keeps_what_was_typed_beside_an_error(name: str, reply: Reply | N
 
 def test_a_signature_stays_beside_an_error(opened: Opened, plant: Plant) -> None:
     page = opened(f"{T1}/record", allow=NOISE)
-    pad = page.locator('[data-sign-pad="technician"]')
-    pad.scroll_into_view_if_needed()
-    box = pad.bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + 20, box["y"] + 20)
-    page.mouse.down()
-    page.mouse.move(box["x"] + 120, box["y"] + 60, steps=5)
-    page.mouse.up()
-    drawn = page.locator('[name="technician_drawn"]').input_value()
+    drawn = signed(page)
     page.locator("#f-technician").fill("Ada")
     now: list[Reply | None] = [None]
     answer(page, now)

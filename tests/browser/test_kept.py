@@ -8,6 +8,7 @@ from functools import partial
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Opened, Plant
+from tests.browser.hands import signed
 from tests.e2e.chromium import PAGE_READY
 from tests.fakes import FakeMachine
 
@@ -65,21 +66,13 @@ def test_an_order_without_an_answer_says_so_and_keeps_what_was_typed(plant: Plan
 
 def test_a_drawn_signature_outlives_a_reload(plant: Plant, opened: Opened) -> None:
     page = opened("/trackers/T1/record", allow=("Failed to load resource", "htmx:error"))
-    pad = page.locator('[data-sign-pad="technician"]')
-    pad.scroll_into_view_if_needed()
-    box = pad.bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + 20, box["y"] + 20)
-    page.mouse.down()
-    page.mouse.move(box["x"] + 120, box["y"] + 60, steps=5)
-    page.mouse.up()
-    drawn = page.locator('[name="technician_drawn"]').input_value()
+    drawn = signed(page)
     assert drawn.startswith("[[[")
     page.locator("#f-technician").fill("Ada")
     reloaded(page)
     expect(page.locator('[name="technician_drawn"]')).to_have_value(drawn)
     inked = "pad => pad.getContext('2d').getImageData(0, 0, 1000, 300).data.some(value => value > 0)"
-    assert pad.evaluate(inked)
+    assert page.locator('[data-sign-pad="technician"]').evaluate(inked)
     page.get_by_role("button", name="Sign record").click()
     page.get_by_role("button", name="Sign anyway").click()
     expect(page.get_by_role("img", name="Signature of Ada")).to_be_visible()

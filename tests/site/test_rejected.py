@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from sqlalchemy import Table, update
+from sqlalchemy import Table, select, update
 
 from app.alarms.alarm import Alarm
 from app.base.settings import Settings
@@ -20,7 +20,7 @@ from app.store.connections import transaction, writing_engine
 from app.store.documents import SITE, TRACKER
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
-from app.store.store import JournalFilter, KeptAlarm, StoreFailed
+from app.store.store import JournalFilter, KeptAlarm, StoreFailed, StoreUnreadable
 from app.store.writer import DatabaseWriter
 from app.tracker.commands.commands import CommandRejected, Jog, Stop, Track
 from app.tracker.memory.memory import HomeTrust, MetStation, SiteState, TrackerMemory, TrackerState
@@ -239,13 +239,31 @@ async def test_a_site_with_a_value_that_does_not_fit_starts_without_it_and_says_
     writer.close()
 
 
-@pytest.mark.parametrize("document", ["[]", "{", "", "null", '{"name": 5, "location": 5}'])
-def test_a_site_that_nobody_can_read_starts_anew(document: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("document", ["[]", "{", "", "null"])
+def test_a_site_that_nobody_can_read_stays_as_it_is_stored(document: str, tmp_path: Path) -> None:
+    """The controller runs in safe mode then, and a backup can be restored: nothing is stored in its place."""
+    writer, url = stored(tmp_path), Settings(data_dir=tmp_path).url
+    rewrite(url, tables.site, document=document)
+    with pytest.raises(StoreUnreadable, match="The stored site cannot be read"):
+        begin(writer, NOW, unclean_since=None)
+    engine = writing_engine(url)
+    with transaction(engine) as connection:
+        assert connection.execute(select(tables.site.c.document)).scalar_one() == document
+    engine.dispose()
+    writer.close()
+
+
+def test_an_address_that_does_not_fit_is_told_without_its_secret(tmp_path: Path) -> None:
     writer = stored(tmp_path)
-    rewrite(Settings(data_dir=tmp_path).url, tables.site, document=document)
-    found = begin(writer, NOW, unclean_since=None)
-    assert found.site.location is None
-    assert [one.config.tracker_id for one in found.trackers] == ["T1"]
+    document = json.loads(SITE.write(SITE_KEPT))
+    document["notifications"]["webhook_url"] = "ftp://hooks.example/services/hush"
+    rewrite(Settings(data_dir=tmp_path).url, tables.site, document=json.dumps(document))
+    begin(writer, NOW, unclean_since=None)
+    (told,) = (
+        one.event for one in writer.journal(JournalFilter()) if one.event.kind is EventKind.CONFIG_REJECTED
+    )
+    assert "ftp://hooks.example/***" in told.message
+    assert "hush" not in told.message + json.dumps(told.data)
     writer.close()
 
 

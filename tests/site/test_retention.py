@@ -132,6 +132,33 @@ async def test_what_is_too_old_goes_after_a_day_of_running_in_several_lives(stor
     )
 
 
+async def test_what_an_order_changes_meanwhile_is_not_stored_over(store: DatabaseWriter) -> None:
+    async with life(store, SUMMER_NOON) as plant:
+        async with plant.site.model.changing:
+            before = plant.site.model.state
+            await run(plant, timedelta(hours=3))
+            assert plant.site.model.state is before
+        await run(plant, timedelta(minutes=20))
+        ages = plant.site.model.state.ages_from
+    assert ages is not None
+    assert ages.ran_s == timedelta(hours=3, minutes=20).total_seconds(), (
+        "what ran meanwhile counts all the same"
+    )
+
+
+async def test_the_first_start_notes_from_when_age_counts(store: DatabaseWriter) -> None:
+    """A start with the clock ahead that ends within the hour leaves an entry of that time behind."""
+    site, before, ahead = store.site(), kept(store), SUMMER_NOON + 3650 * DAY
+    assert site is not None
+    store.save_site(replace(site, ages_from=None))
+    async with life(store, ahead) as plant:
+        await run(plant, timedelta(minutes=40))
+    store.append_events((Event(ahead, EventKind.STOPPED, None, "ahead"),))
+    async with life(store, ahead) as plant:
+        await run(plant, timedelta(hours=25))
+    assert before[0] - kept(store)[0] == {"1825 days ago"}
+
+
 async def test_on_a_clock_that_is_not_trusted_nothing_gets_older(store: DatabaseWriter) -> None:
     at = datetime(1971, 1, 1, tzinfo=SUMMER_NOON.tzinfo)
     before = kept(store)

@@ -120,11 +120,10 @@ async def test_every_form_is_shown_and_saved_right_or_refused(
         if row["language"] == language and (words := await wrong(client, machine, row, form))
     }
     assert found == {}
+    with pytest.raises(Unreadable) as refused:
+        coordinates.angle("41.2867 36", "latitude")
     fault.prevented("refused unless there is one reading only")
-    fault.shows(
-        "Latitude: enter one coordinate per field, or both with a semicolon, latitude first, such as "
-        "41.2867; 36.33."
-    )
+    fault.shows(str(refused.value))
     fault.recovers("the coordinates are typed so that they mean one place")
 
 

@@ -1,5 +1,7 @@
 """The strategy page: choose one, try it, make a program by hand or import it, set the correction."""
 
+from collections.abc import Mapping
+
 import httpx
 import pytest
 
@@ -16,6 +18,12 @@ HYBRID = {"threshold": "200", "gain": "1", "bound": "1.5", "decay": "0"}
 
 def kept(machine: FakeMachine) -> object:
     return machine.orders[-1].command.config.strategy
+
+
+async def sent_program(client: httpx.AsyncClient, typed: Mapping[str, str | list[str]]) -> httpx.Response:
+    """Send the form of the step program with this typed."""
+    path = f"{PAGE}/program"
+    return await client.post(path, data=await filled(client, PAGE, typed, action=path))
 
 
 async def test_the_page_is_reached_from_the_settings_and_explains_each_strategy(
@@ -84,10 +92,7 @@ async def test_a_wrong_row_is_named_and_what_was_typed_stays(
 ) -> None:
     before = len(machine.orders)
     rows = {"at": ["08:00", "07:00"], "first": ["110", "north"], "second": ["30", "30"]}
-    answer = await client.post(
-        f"{PAGE}/program",
-        data=await filled(client, PAGE, action=f"{PAGE}/program", typed={"program_name": "P"} | rows),
-    )
+    answer = await sent_program(client, {"program_name": "P"} | rows)
     assert answer.status_code == 422
     assert "Row 2, azimuth_deg: &#39;north&#39; is not a number." in answer.text
     assert 'value="north"' in answer.text
@@ -120,44 +125,14 @@ async def test_what_the_machine_refuses_comes_back_in_the_form(
 
 async def test_the_table_is_filled_from_csv_an_example_or_with_rows(client: httpx.AsyncClient) -> None:
     table = to_table(ALEXANDRU_TABLE_3)
-    imported = (
-        await client.post(
-            f"{PAGE}/program",
-            data=await filled(client, PAGE, action=f"{PAGE}/program", typed={"do": "import", "table": table}),
-        )
-    ).text
-    assert 'value="07:52:48"' in imported
-    example = (
-        await client.post(
-            f"{PAGE}/program",
-            data=await filled(
-                client,
-                PAGE,
-                action=f"{PAGE}/program",
-                typed={"do": "example", "example": "alexandru-table-3"},
-            ),
-        )
-    ).text
-    assert 'value="07:52:48"' in example
+    imported = await sent_program(client, {"do": "import", "table": table})
+    assert 'value="07:52:48"' in imported.text
+    example = await sent_program(client, {"do": "example", "example": "alexandru-table-3"})
+    assert 'value="07:52:48"' in example.text
     assert (await client.get(PAGE)).text.count('name="at"') == 3
-    more = (
-        await client.post(
-            f"{PAGE}/program",
-            data=await filled(
-                client,
-                PAGE,
-                action=f"{PAGE}/program",
-                typed={"do": "rows", "at": ["06:00"], "first": ["1"], "second": [""]},
-            ),
-        )
-    ).text
-    assert more.count('name="at"') == 4
-    wrong = await client.post(
-        f"{PAGE}/program",
-        data=await filled(
-            client, PAGE, action=f"{PAGE}/program", typed={"do": "import", "table": "when,where"}
-        ),
-    )
+    more = await sent_program(client, {"do": "rows", "at": ["06:00"], "first": ["1"], "second": [""]})
+    assert more.text.count('name="at"') == 4
+    wrong = await sent_program(client, {"do": "import", "table": "when,where"})
     assert wrong.status_code == 422
     assert "The first row must name three columns" in wrong.text
 

@@ -136,7 +136,7 @@ async def test_mechanics_without_the_part_of_the_regions_keep_them(
     assert tracker.config.machine.regions == (WALL,)
     assert not machine.orders
     fault.prevented("refused unless every field came")
-    fault.shows("The form arrived incomplete, and nothing was saved. Reload the page, then try again.")
+    fault.shows(INCOMPLETE)
     fault.recovers("the page is loaded again")
 
 
