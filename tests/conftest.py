@@ -12,9 +12,11 @@ from hypothesis import settings
 from app.base import outliving
 from tests.fault_result import FaultResult
 from tests.loopback import sitecustomize as guard
+from tests.patience import TEST_S
 
 pytest_plugins = ["tests.order"]
 guard.stay_here()
+os.environ.setdefault("PYTEST_TIMEOUT", str(TEST_S))
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.register_profile("new", deadline=None)
 settings.load_profile("new" if "HELIOPANEL_SOAK" in os.environ else "same")

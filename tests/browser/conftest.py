@@ -21,6 +21,7 @@ from tests.e2e.chromium import PROGRAM as CHROMIUM
 from tests.e2e.chromium import QUIET as FLAGS
 from tests.e2e.letters import environment
 from tests.fakes import FakeMachine, fake_app
+from tests.patience import PATIENCE_MS, PATIENCE_S
 
 SCREENS = Path(__file__).resolve().parents[2] / "build" / "screens"
 TAKES_PICTURES = "HELIOPANEL_SCREENS" in os.environ
@@ -48,8 +49,6 @@ SOFTWARE_NOTE = "GPU stall due to ReadPixels"
 BEAT = timedelta(milliseconds=100)
 CYCLES_OF_AN_ACCEPT = 5
 """So often a loop turns, at the most, between accepting a connection and closing it."""
-PATIENCE_MS = 30_000
-"""How long a busy computer may take; tests that judge how quick something is say so themselves."""
 
 
 @dataclass
@@ -119,13 +118,13 @@ def running(served: Served | None = None) -> Iterator[Plant]:
     served = served or Served(FakeMachine())
     thread = threading.Thread(target=lambda: asyncio.run(served.run()), daemon=True)
     thread.start()
-    assert served.ready.wait(20), "the panel did not start"
+    assert served.ready.wait(PATIENCE_S), "the panel did not start"
     assert served.server is not None
     assert served.loop is not None
     port = served.server.servers[0].sockets[0].getsockname()[1]
     yield Plant(f"http://127.0.0.1:{port}", served.machine, served.server, served.loop)
     served.server.should_exit = True
-    thread.join(20)
+    thread.join(PATIENCE_S)
     assert not thread.is_alive(), "the panel did not stop"
 
 

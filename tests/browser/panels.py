@@ -30,13 +30,14 @@ from app.tracker.settings.config import Orientation
 from app.web.http.network import Stage, Trial
 from app.web.main import create_app
 from tests.access.fake_hasher import FakeHasher
-from tests.browser.conftest import PATIENCE_MS, Served, listen
+from tests.browser.conftest import Served, listen
 from tests.browser.every_page import SHOW_ID, STUDY_ID, Leaf, Where
 from tests.browser.troubles import trouble
 from tests.e2e.chromium import PAGE_READY
 from tests.fake_alarms import alarm
 from tests.fake_data import SAMSUN, TIME_ZONE
 from tests.fakes import FakeMachine
+from tests.patience import PATIENCE_MS, PATIENCE_S
 
 PASSWORD = "violet-anvil-harbour-9"  # noqa: S105 - of people who do not exist
 HERE = this_computer("127.0.0.1")
@@ -91,7 +92,7 @@ class Panel:
         done = threading.Event()
         assert self.served.loop is not None
         self.served.loop.call_soon_threadsafe(lambda: (work(), done.set()))
-        assert done.wait(20)
+        assert done.wait(PATIENCE_S)
 
 
 @contextmanager
@@ -102,13 +103,13 @@ def serving(where: Where) -> Iterator[Panel]:
         served = Served(machine, built(where, Path(folder), machine))
         thread = threading.Thread(target=lambda: asyncio.run(served.run()), daemon=True)
         thread.start()
-        assert served.ready.wait(30), "the panel did not start"
+        assert served.ready.wait(PATIENCE_S), "the panel did not start"
         panel = Panel(served, Path(folder))
         furnish(where, panel)
         yield panel
         assert served.server is not None
         served.server.should_exit = True
-        thread.join(20)
+        thread.join(PATIENCE_S)
         assert not thread.is_alive(), "the panel did not stop"
 
 
@@ -172,7 +173,7 @@ def hire(panel: Panel) -> None:
 def wait(panel: Panel, work: Callable[[], Coroutine[Any, Any, Any]]) -> Any:
     """Return what a coroutine of the panel comes to."""
     assert panel.served.loop is not None
-    return asyncio.run_coroutine_threadsafe(work(), panel.served.loop).result(20)
+    return asyncio.run_coroutine_threadsafe(work(), panel.served.loop).result(PATIENCE_S)
 
 
 def session(panel: Panel, where: Where) -> str:
@@ -252,7 +253,7 @@ def settle(page: Page, leaf: Leaf) -> None:
             page.evaluate(SEND, leaf.sends)
     if leaf.where in LIVE:
         page.wait_for_selector(PAGE_READY)
-    expect(page.locator('[hx-trigger="load"]:not(:has(dl))')).to_have_count(0, timeout=60_000)
+    expect(page.locator('[hx-trigger="load"]:not(:has(dl))')).to_have_count(0, timeout=PATIENCE_MS)
     if leaf.unfolds:
         page.locator(leaf.unfolds).evaluate("list => { list.open = true; }")
 

@@ -23,10 +23,11 @@ from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import LANGUAGES
 from app.web.main import create_app
 from tests.access.fake_hasher import FakeHasher
-from tests.browser.conftest import PATIENCE_MS, SIZES, Opened, Served
+from tests.browser.conftest import SIZES, Opened, Served
 from tests.e2e.chromium import PAGE_READY
 from tests.fake_alarms import alarm
 from tests.fakes import FakeMachine, FakeReader
+from tests.patience import PATIENCE_MS
 from tests.web.office import HERE, PASSWORD
 
 PIN = "471108"

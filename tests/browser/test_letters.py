@@ -14,11 +14,12 @@ from playwright.sync_api import Browser, Locator, Page
 
 from app.web.languages.known import LANGUAGES
 from app.web.translation.catalogues import read, template
-from tests.browser.conftest import CHROMIUM, FLAGS, PATIENCE_MS
+from tests.browser.conftest import CHROMIUM, FLAGS
 from tests.browser.every_page import EVERY_PAGE
 from tests.browser.letters import undrawn
 from tests.browser.panels import Panels
 from tests.e2e.letters import environment
+from tests.patience import PATIENCE_MS
 
 # pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.
 pytestmark = pytest.mark.filterwarnings("ignore:DatetimeIndex.dayofyear is deprecated")

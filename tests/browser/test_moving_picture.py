@@ -22,10 +22,11 @@ from app.tracker.mounts.kinematics import direction
 from app.tracker.mounts.usual import mounted
 from app.tracker.settings.config import MountKind, TrackerConfig
 from app.tracker.state.snapshot import Pair
-from tests.browser.conftest import PATIENCE_MS, SCREENS, SOFTWARE_NOTE, Served
+from tests.browser.conftest import SCREENS, SOFTWARE_NOTE, Served
 from tests.e2e.chromium import PAGE_READY
 from tests.fake_data import NOON
 from tests.fakes import FakeMachine
+from tests.patience import PATIENCE_MS
 
 T1 = "/trackers/T1"
 SIZES = ((1920, 1080), (1280, 800), (1024, 768), (390, 844))

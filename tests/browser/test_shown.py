@@ -5,11 +5,11 @@ import re
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.browser.conftest import PATIENCE_MS
 from tests.browser.hands import Mouse, arrive, until
 from tests.browser.walking import Picture, Walker, rooms, say_where, service, walker
 from tests.e2e.chromium import PAGE_READY
 from tests.e2e.integrator import Integrator
+from tests.patience import PATIENCE_MS
 
 __all__ = ["rooms", "service", "walker"]
 

@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Locator, Page, expect
 
-from tests.browser.conftest import PATIENCE_MS, SIZES, TAKES_PICTURES, WRITES_DOCS
+from tests.browser.conftest import SIZES, TAKES_PICTURES, WRITES_DOCS
 from tests.browser.hands import CONFIRM_MS, Hands, arrive
 from tests.e2e.chromium import PAGE_READY
 from tests.e2e.product import Product
+from tests.patience import PATIENCE_MS
 
 PRESSES = 5
 TURN_MS = 60_000

@@ -13,12 +13,13 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect, sync_playwright
 
-from tests.browser.conftest import CHROMIUM, FLAGS, PATIENCE_MS
+from tests.browser.conftest import CHROMIUM, FLAGS
 from tests.e2e.chromium import PAGE_READY
 from tests.e2e.first_hour import ABOUT, NEXT
 from tests.e2e.letters import environment
 from tests.e2e.newcomer import DOCS, WRITES_DOCS, Newcomer
 from tests.e2e.product import Product
+from tests.patience import PATIENCE_MS
 
 
 @dataclass(frozen=True)
