@@ -19,10 +19,8 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-# A lock is whole (tests/test_locks.py): nothing is resolved, and each file has the checksum that stands there.
-INSTALL := -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes
-CHECKED = said=$$($(1)/python -m pip --disable-pip-version-check check) || { echo "$$said" >&2; \
-	echo "These libraries do not fit together. Remove $(VENV) and run the command again." >&2; exit 1; }
+# Installs a lock, in seconds: every file has the checksum that stands there (deploy/locked.py).
+LOCKED := deploy/locked.py
 # The tests share the cores, more of them at a time than there are cores, since most of a test is waiting.
 # ORDER=random runs them in an order by chance, ORDER=7 in that which the seed 7 makes.
 WORKERS ?= 3
@@ -37,7 +35,7 @@ TIMING := tests/drives/timed tests/test_benches.py \
 	$(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk field_events process storm storm_kill)) \
 	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop)) \
 	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost hold_to_run kill many_holds stop_and_tabs))
-BUILT := tests/test_release.py tests/deploy/test_install.py tests/e2e/test_wheel.py
+BUILT := tests/test_locks_of_tools.py tests/test_release.py tests/test_release_refusals.py tests/deploy/test_install.py tests/e2e/test_wheel.py
 PARTS := long timing built
 
 .DEFAULT_GOAL := help
@@ -46,25 +44,26 @@ PARTS := long timing built
 help: ## Show what each command does
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-10s %s\n", $$1, $$2}'
 
-$(VENV)/.runtime: requirements.txt pyproject.toml
+$(VENV)/.runtime: requirements.txt requirements-uv.txt pyproject.toml
 	@echo "Setting up $(VENV) with what Heliopanel needs to run ..."
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	@$(BIN)/python $(INSTALL) -r requirements.txt
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
-	@$(call CHECKED,$(BIN))
+	@$(BIN)/python $(LOCKED) requirements.txt .
 	@touch $@
 
-$(VENV)/.dev: requirements-dev.txt $(VENV)/.runtime
+$(VENV)/.test: requirements-test.txt $(VENV)/.runtime
 	@echo "Adding what tests and checks need ..."
-	@$(BIN)/python $(INSTALL) -r requirements-dev.txt
-	@$(call CHECKED,$(BIN))
+	@$(BIN)/python $(LOCKED) requirements-test.txt
+	@touch $@
+
+$(VENV)/.dev: requirements-dev.txt $(VENV)/.test
+	@echo "Adding what builds releases and documents ..."
+	@$(BIN)/python $(LOCKED) requirements-dev.txt
 	@touch $@
 
 $(VENV)/.client: requirements-client.txt $(VENV)/.runtime
 	@echo "Setting up $(VENV)/client, an integrator's own environment ..."
 	@test -x $(VENV)/client/bin/python || $(PYTHON) -m venv $(VENV)/client
-	@$(VENV)/client/bin/python $(INSTALL) -r requirements-client.txt
-	@$(call CHECKED,$(VENV)/client/bin)
+	@$(VENV)/client/bin/python $(LOCKED) requirements-client.txt
 	@touch $@
 
 client: $(VENV)/.client ## Add the generator of clients that a test of the API's document needs
@@ -86,12 +85,11 @@ release: $(VENV)/.dev ## Release VERSION=x.y.z: raise it, build all into dist/, 
 docs: $(VENV)/.dev ## Build the site of the documents into manual/; a broken link or anchor fails
 	@$(BIN)/python -m tests.manual
 
-reference: $(VENV)/.dev ## Renew the pages of Reference that are made of the code
+reference: $(VENV)/.test ## Renew the pages of Reference that are made of the code
 	@$(BIN)/python -m tests.manual.made
 
 fast: $(VENV)/.runtime ## Add the compiled loops (numba) that make studies and comparisons quick
-	@$(BIN)/python $(INSTALL) -r requirements-fast.txt
-	@$(call CHECKED,$(BIN))
+	@$(BIN)/python $(LOCKED) requirements-fast.txt
 	@echo "Ready: studies and comparisons use compiled loops."
 
 run: setup ## Serve the panel with a simulated tracker at http://127.0.0.1:8000
@@ -100,7 +98,8 @@ run: setup ## Serve the panel with a simulated tracker at http://127.0.0.1:8000
 system-packages:
 	@sh tests/system-packages.sh
 
-test: system-packages $(VENV)/.dev $(VENV)/.client ## Set up what tests need and run them, browser tests included
+test: ## Set up what tests need and run them, browser tests included
+	@$(MAKE) --no-print-directory --jobs=2 system-packages $(VENV)/.test
 	@$(BIN)/python -m tests.gate -n $(WORKERS) --dist loadfile --no-loadscope-reorder $(IN_ORDER) \
 		$(addprefix --ignore=,$(TIMING) $(BUILT))
 
@@ -128,10 +127,10 @@ soak-long:
 mutants: $(VENV)/.dev ## Change what guards and limits place by place, in a copy, and count what tests notice
 	@$(BIN)/python -m tests.mutants $(ONLY)
 
-browser: $(VENV)/.dev system-packages ## Run the browser tests alone; screenshots go to build/screens
+browser: $(VENV)/.test system-packages ## Run the browser tests alone; screenshots go to build/screens
 	@HELIOPANEL_SCREENS=1 $(BIN)/python -m pytest tests/browser
 
-check: $(VENV)/.dev ## Formatting, lint, types, import contracts, migrations, vendored files
+check: $(VENV)/.test ## Formatting, lint, types, import contracts, migrations, vendored files
 	@$(BIN)/ruff format --check .
 	@$(BIN)/ruff check .
 	@$(BIN)/mypy
@@ -148,27 +147,31 @@ firmware: ## Build the firmware of controllers/avr for Arduino Mega and Uno (avr
 	@$(MAKE) -s -C controllers/avr BOARD=uno
 	@ls controllers/avr/build/*.hex
 
-translations: $(VENV)/.dev ## Bring catalogues, and fonts cut for them, up to date with the texts of the sources
+translations: $(VENV)/.test ## Bring catalogues, and fonts cut for them, up to date with the texts of the sources
 	@$(BIN)/python -m app.web.translation.catalogues update
 	@$(BIN)/python static/vendor/vendor.py letters
 
-fuzz: $(VENV)/.dev ## Send 10,000 bad requests to the API, and hostile values into every form
+fuzz: $(VENV)/.test ## Send 10,000 bad requests to the API, and hostile values into every form
 	@$(BIN)/python -m tests.fuzz
 
 bench: $(VENV)/.dev system-packages ## Measure, as ratios against peers in the same run, and write docs/develop/benchmarks.md
 	@$(BIN)/python -m bench
 
-format: $(VENV)/.dev ## Format the code
+format: $(VENV)/.test ## Format the code
 	@$(BIN)/ruff format .
 	@$(BIN)/ruff check --fix .
 
 # For every Python from 3.11 on: Debian 12 has 3.11.2, where some releases want 3.11.5, and 3.13 needs libraries
 # that 3.11 does not.
-lock: ## Renew the locked dependencies (needs uv)
-	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all pyproject.toml -o requirements.txt
-	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all --extra fast -c requirements.txt pyproject.toml -o requirements-fast.txt
-	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --extra build --extra all --extra fast --extra mdns --extra dev -c requirements.txt pyproject.toml -o requirements-dev.txt
-	uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url --no-annotate --no-header -q --group client -o requirements-client.txt
+COMPILE = $(BIN)/uv pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url \
+	--no-annotate --no-header -q
+lock: $(VENV)/.runtime ## Renew the locked dependencies
+	$(COMPILE) --extra build --extra all pyproject.toml -o requirements.txt
+	$(COMPILE) --extra build --extra all --extra dev -c requirements.txt pyproject.toml -o requirements-dev.txt
+	$(COMPILE) --extra build --extra all --extra mdns --extra test -c requirements-dev.txt pyproject.toml -o requirements-test.txt
+	$(COMPILE) --extra build --extra all --extra fast -c requirements-dev.txt pyproject.toml -o requirements-fast.txt
+	$(COMPILE) --group client -o requirements-client.txt
+	$(COMPILE) --group uv -o requirements-uv.txt
 
 clean: ## Remove what was built (not the data)
 	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
