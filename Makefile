@@ -7,6 +7,7 @@
 #   1,000 kills, 300 power cuts, a day of 20 trackers
 # make mutants: changes guards, access, limits, drives and control in a copy, one place at a time, and counts
 #   what their tests notice; ONLY=access does one area
+# make gate : make check and make test as CI runs them, in a clone of the last commit; writes build/green
 # make fresh: the two commands of the README on pristine Debian machines in folders, as a user and as root (needs root);
 #   DEBIAN="12 13", WHO="user root", ONLY="run test", PYTHON=python3.14 do a part
 # make dist : builds the sdist and the wheel into dist/, with the manual where zensical is installed
@@ -39,7 +40,7 @@ BUILT := tests/test_locks_of_tools.py tests/test_release.py tests/test_release_r
 PARTS := long timing built
 
 .DEFAULT_GOAL := help
-.PHONY: help setup firmware docs reference dist fast client run test fresh check translations fuzz soak soak-timing soak-built soak-long mutants release bench format lock browser system-packages clean
+.PHONY: help setup firmware docs reference dist fast client run test gate fresh check translations fuzz soak soak-timing soak-built soak-long mutants release bench format lock browser system-packages clean
 
 help: ## Show what each command does
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-10s %s\n", $$1, $$2}'
@@ -102,6 +103,9 @@ test: ## Set up what tests need and run them, browser tests included
 	@$(MAKE) --no-print-directory --jobs=2 system-packages $(VENV)/.test
 	@$(BIN)/python -m tests.gate -n $(WORKERS) --dist loadfile --no-loadscope-reorder $(IN_ORDER) \
 		$(addprefix --ignore=,$(TIMING) $(BUILT))
+
+gate: ## Run .ci/run in a clone of the last commit; build/green says which commit passed, and how long it took
+	@$(PYTHON) -m tests.clean_gate
 
 fresh: ## Run the README's two commands on pristine Debian machines; DEBIAN=13 WHO=user ONLY=run does a part
 	@python3 -m tests.fresh $(DEBIAN:%=--debian %) $(WHO:%=--who %) $(ONLY:%=--only %) \

@@ -1,9 +1,10 @@
-"""Install locked libraries into the environment whose Python runs this.
+"""Install locked libraries into the environment whose Python runs this: `python deploy/locked.py LOCK`.
 
-`python deploy/locked.py LOCK [PROJECT ...]` needs the standard library alone. uv installs in seconds, where pip
-finds it for this computer (`requirements-uv.txt`); else pip does, in a minute. Both use the index, certificates,
-and proxy that pip is set up with. A lock is whole, so that nothing is resolved, and each file must have the
-checksum that stands in it. A PROJECT is a folder that is installed as it is, without what it depends on.
+uv installs them in seconds, where pip finds it for this computer (`requirements-uv.txt`); else pip does, in
+a minute. Both use the index, certificates, and proxy that pip is set up with. A lock is whole, so that
+nothing is resolved, and each file must have the checksum that stands in it. Folders that are named after the
+lock, such as the project's own, are installed as they are, without what they depend on. It needs the standard
+library alone.
 """
 
 import os

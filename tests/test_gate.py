@@ -1,5 +1,6 @@
 """What decides `make test`: a test that fails is run once more, alone, and judged by that."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -51,15 +52,18 @@ def test_many(number):
 
 def gate(folder: Path, tests: str, *more: str) -> subprocess.CompletedProcess[str]:
     """Run the gate on a file of tests in a folder of its own."""
-    (folder / "pytest.ini").write_text("[pytest]\n")
+    (folder / "pytest.ini").write_text("[pytest]\njunit_family = xunit1\n")
     (folder / "test_small.py").write_text(TESTS + tests)
     command = [sys.executable, "-m", "tests.gate", *more]
     environment = {"PYTHONPATH": str(ROOT)}
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
 
-def last_line(done: subprocess.CompletedProcess[str]) -> str:
-    return done.stdout.strip().splitlines()[-1]
+def said(done: subprocess.CompletedProcess[str]) -> list[str]:
+    """Return what the gate says at the end, before how long it took."""
+    *lines, took = done.stdout.strip().splitlines()
+    assert re.fullmatch(r"Tests: \d+ s, of which the processor worked \d+ s\.", took)
+    return lines
 
 
 @pytest.mark.parametrize("workers", [(), ("-n", "2")])
@@ -67,7 +71,7 @@ def test_what_passes_alone_is_green_and_named(workers: tuple[str, ...], tmp_path
     done = gate(tmp_path, ONCE, *workers)
     names = ["test_small.py::test_once[two words, [in] brackets]", "test_small.py::test_with_what_is_unready"]
     assert done.returncode == 0, done.stdout
-    assert last_line(done) == f"2 passed only alone: {', '.join(names)}"
+    assert said(done)[-1] == f"2 passed only alone: {', '.join(names)}"
     assert (tmp_path / FLAKY).read_text().splitlines() == names
     again = gate(tmp_path, ONCE)
     assert (again.returncode, "only alone" in again.stdout) == (0, False)
@@ -77,13 +81,14 @@ def test_what_passes_alone_is_green_and_named(workers: tuple[str, ...], tmp_path
 def test_a_worker_that_crashed_is_a_failure_of_its_test(tmp_path: Path) -> None:
     done = gate(tmp_path, CRASHES, "-n", "2")
     assert done.returncode == 0, done.stdout
-    assert last_line(done) == "1 passed only alone: test_small.py::test_crashes"
+    assert said(done)[-1] == "1 passed only alone: test_small.py::test_crashes"
 
 
 def test_what_fails_twice_is_red(tmp_path: Path) -> None:
     done = gate(tmp_path, ONCE + TWICE)
     assert done.returncode == pytest.ExitCode.TESTS_FAILED
-    assert "1 failed, 2 passed" in last_line(done)
+    why = "test_small.py::test_twice: AssertionError: again"
+    assert said(done)[-2:] == ["Failed, together with the others and alone:", why]
     assert not (tmp_path / FLAKY).exists()
 
 
@@ -102,3 +107,5 @@ def test_what_chance_does_not_explain_is_not_repeated(
     done = gate(tmp_path, tests, *arguments)
     assert done.returncode == code
     assert "Running alone" not in done.stdout
+    named = f"{MOST + 1} tests failed, too many to repeat alone:" in said(done)
+    assert named == (tests == MANY)
