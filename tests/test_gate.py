@@ -109,3 +109,13 @@ def test_what_chance_does_not_explain_is_not_repeated(
     assert "Running alone" not in done.stdout
     named = f"{MOST + 1} tests failed, too many to repeat alone:" in said(done)
     assert named == (tests == MANY)
+
+
+def test_one_process_compiles_the_tests_of_a_new_clone(tmp_path: Path) -> None:
+    (tmp_path / "tests").mkdir()
+    log = tmp_path / "loaded"
+    (tmp_path / "tests" / "test_loaded.py").write_text(f"print('loaded', file=open({str(log)!r}, 'a'))\n")
+    assert gate(tmp_path, "", "-n", "2").returncode == 0
+    assert len(log.read_text().splitlines()) == 3, "one that compiles, then two that test"
+    assert gate(tmp_path, "", "-n", "2").returncode == 0
+    assert len(log.read_text().splitlines()) == 5, "two that test what is compiled"
