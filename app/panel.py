@@ -20,7 +20,7 @@ def serve(settings: Settings) -> None:
 
 def _answers(settings: Settings) -> None:
     """Be punctual from now on, and say where a browser finds the panel."""
-    raise_priority_of_panel()
+    raise_priority_of_panel(settings)
     tell_ready()
     host = f"[{settings.host}]" if ":" in settings.host else settings.host
     sys.stdout.write(f"Heliopanel answers: open {settings.scheme}://{host}:{settings.port}\n")

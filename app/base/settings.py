@@ -81,6 +81,7 @@ class Settings(BaseSettings):
         "info", description="Least severe messages that the log has."
     )
     tick_ms: int = Field(100, ge=20, le=1000, description="Period of the control loop.")
+    real_time: bool = Field(True, description="Ask the system for real-time scheduling, where it is allowed.")
     telemetry_retention_days: int = Field(
         400,
         ge=1,

@@ -119,7 +119,7 @@ def _restore_if_asked(settings: Settings, now: datetime) -> None:
 
 
 async def _serve(settings: Settings, clock: SystemClock, writer: Writer, positions: KeptPositions) -> None:
-    raise_priority()
+    raise_priority(settings)
     background = WriterThread(writer, _on_store_failure)
     try:
         site, gateways = await _begun(settings, clock, background, writer, positions)

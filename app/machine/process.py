@@ -6,6 +6,7 @@ import signal
 import sys
 
 from app.base.logs import get_logger
+from app.base.settings import Settings
 
 FIFO_PRIORITY = 10
 PANEL_PRIORITY = 3
@@ -24,25 +25,27 @@ def on_signals() -> asyncio.Event:
     return stopped
 
 
-def raise_priority() -> None:
+def raise_priority(settings: Settings) -> None:
     """Have the loop wait for no other thread for long, and ask for real-time scheduling of all of them.
 
     The thread that writes needs it too: while it holds the interpreter the loop waits, and other programs
     must not make both wait. Without real-time scheduling the machine still runs.
     """
     sys.setswitchinterval(SWITCH_EVERY_S)
-    _ask(os.SCHED_FIFO, FIFO_PRIORITY)
+    _ask(settings, os.SCHED_FIFO, FIFO_PRIORITY)
 
 
-def raise_priority_of_panel() -> None:
+def raise_priority_of_panel(settings: Settings) -> None:
     """Ask for real-time scheduling of the panel's loop alone: it passes heartbeats and stops on.
 
     What it starts (hashes of passwords, studies, documents) shares the processors as any other program.
     """
-    _ask(os.SCHED_RR | os.SCHED_RESET_ON_FORK, PANEL_PRIORITY)
+    _ask(settings, os.SCHED_RR | os.SCHED_RESET_ON_FORK, PANEL_PRIORITY)
 
 
-def _ask(policy: int, priority: int) -> None:
+def _ask(settings: Settings, policy: int, priority: int) -> None:
+    if not settings.real_time:
+        return
     try:
         os.sched_setscheduler(0, policy, os.sched_param(priority))
     except OSError as error:

@@ -76,7 +76,7 @@ async def serve_safely(
     settings: Settings, clock: SystemClock, damage: StoreDamaged, positions: KeptPositions
 ) -> None:
     """Serve what is left until told to end, or until a backup was handed over: the next start restores it."""
-    raise_priority()
+    raise_priority(settings)
     why = safe_mode(damage)
     log.critical("safe_mode", reason=str(damage))
     site = _site(settings, clock, why, positions)

@@ -12,13 +12,14 @@ from app.machine.process import FIFO_PRIORITY, PANEL_PRIORITY
 
 ASKED = """
 import json, os, threading
+from app.base.settings import Settings
 from app.machine.process import {ask}
 
 def seen():
     policy = os.sched_getscheduler(0) & ~os.SCHED_RESET_ON_FORK
     return policy, os.sched_getparam(0).sched_priority
 
-{ask}()
+{ask}(Settings(real_time={real_time}))
 found = {{"loop": seen()}}
 thread = threading.Thread(target=lambda: found.update(thread=seen()))
 thread.start()
@@ -50,16 +51,25 @@ def test_the_controller_is_in_real_time_and_of_the_panel_its_loop_alone(
     assert _seen(ask) == wanted
 
 
+@pytest.mark.parametrize("ask", ["raise_priority", "raise_priority_of_panel"])
+def test_where_it_is_switched_off_all_goes_on_as_it_was(ask: str) -> None:
+    assert set(_seen(ask, real_time=False).values()) == {_as_it_was()}
+
+
 def test_without_permission_it_goes_on() -> None:
     refused = "import resource; resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))\n"
     if os.geteuid() == 0:
         refused += "import os; os.setuid(65534)\n"
-    as_it_was = os.sched_getscheduler(0), os.sched_getparam(0).sched_priority
-    assert set(_seen("raise_priority_of_panel", refused).values()) == {as_it_was}
+    assert set(_seen("raise_priority_of_panel", refused).values()) == {_as_it_was()}
 
 
-def _seen(ask: str, first: str = "") -> dict[str, tuple[int, int]]:
+def _as_it_was() -> tuple[int, int]:
+    return os.sched_getscheduler(0), os.sched_getparam(0).sched_priority
+
+
+def _seen(ask: str, first: str = "", *, real_time: bool = True) -> dict[str, tuple[int, int]]:
     """Return policy and priority of a process that asked, of its thread and of its child."""
-    script = "import app.machine.process\n" + first + ASKED.format(ask=ask)
+    asked = ASKED.format(ask=ask, real_time=real_time)
+    script = "import app.machine.process\n" + first + asked
     told = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     return {name: tuple(seen) for name, seen in json.loads(told.stdout.splitlines()[-1]).items()}
