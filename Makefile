@@ -30,13 +30,7 @@ SEED := $(if $(filter random,$(ORDER)),$(shell od -An -N3 -tu4 /dev/urandom | tr
 IN_ORDER := $(SEED:%=--random-order=%)
 # Tests start hundreds of processes: what is compiled is kept, even where the environment says otherwise.
 test soak soak-timing soak-built soak-long browser: export PYTHONDONTWRITEBYTECODE :=
-# What judges time, one at a time on a computer without other work, and what builds and installs the product: neither
-# is part of make test.
-TIMING := tests/drives/timed tests/test_benches.py \
-	$(addprefix tests/machine/test_,$(addsuffix .py,clock_jump disk field_events process storm storm_kill)) \
-	$(addprefix tests/browser/test_,$(addsuffix .py,drive_setup hold_to_run link_and_stop)) \
-	$(addprefix tests/e2e/test_,$(addsuffix .py,api_walk drive_lost hold_to_run kill many_holds stop_and_tabs))
-BUILT := tests/test_locks_of_tools.py tests/test_release.py tests/test_release_refusals.py tests/deploy/test_install.py tests/e2e/test_wheel.py
+# tests/soak is what judges time, builds and installs, or takes hours: no part of make test, as tests/looks.
 PARTS := long timing built
 
 .DEFAULT_GOAL := help
@@ -102,7 +96,7 @@ system-packages:
 test: ## Set up what tests need and run them, browser tests included
 	@$(MAKE) --no-print-directory --jobs=2 system-packages $(VENV)/.test
 	@$(BIN)/python -m tests.gate -n $(WORKERS) --dist loadfile --no-loadscope-reorder $(IN_ORDER) \
-		$(addprefix --ignore=,$(TIMING) $(BUILT))
+		--ignore=tests/soak --ignore=tests/looks
 
 gate: ## Run .ci/run in a clone of the last commit; build/green says which commit passed, and how long it took
 	@$(PYTHON) -m tests.clean_gate
@@ -116,17 +110,17 @@ soak: $(VENV)/.dev $(VENV)/.client system-packages ## Run what make test leaves 
 	@set -e; for part in $(or $(PART),$(PARTS)); do $(MAKE) --no-print-directory soak-$$part; done
 
 soak-timing:
-	@$(BIN)/python -m pytest $(IN_ORDER) $(TIMING)
+	@$(BIN)/python -m pytest $(IN_ORDER) tests/soak/timing
 
 soak-built:
-	@$(BIN)/python -m pytest $(IN_ORDER) $(BUILT)
+	@$(BIN)/python -m pytest $(IN_ORDER) tests/soak/built
 
 soak-long:
 	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/store/test_power_cut.py tests/tracker/test_stateful.py tests/site/test_field.py
-	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/machine/test_clock_jump.py tests/machine/test_field_events.py tests/machine/test_storm.py tests/machine/test_viewers.py tests/e2e/test_many_holds.py $(addprefix tests/browser/test_,$(addsuffix .py,axe keyboard languages_fit walk))
-	@HELIOPANEL_TEST_KILLS=$${HELIOPANEL_TEST_KILLS:-1000} $(BIN)/python -m pytest -s tests/machine/test_kills.py
-	@HELIOPANEL_TEST_KILLS=20 $(BIN)/python -m pytest -s tests/e2e/test_kill.py tests/machine/test_process.py
-	@HELIOPANEL_TEST_KILLS=30 HELIOPANEL_TEST_TRACKERS=100 $(BIN)/python -m pytest -s tests/machine/test_storm_kill.py
+	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/soak/timing/test_clock_jump.py tests/soak/timing/test_field_events.py tests/soak/timing/test_storm.py $(addprefix tests/browser/test_,$(addsuffix .py,axe keyboard languages_fit walk))
+	@HELIOPANEL_SOAK=1 HELIOPANEL_TEST_KILLS=$${HELIOPANEL_TEST_KILLS:-1000} $(BIN)/python -m pytest -s tests/soak/long
+	@HELIOPANEL_TEST_KILLS=20 $(BIN)/python -m pytest -s tests/soak/timing/test_kill.py tests/soak/timing/test_process.py
+	@HELIOPANEL_TEST_KILLS=30 HELIOPANEL_TEST_TRACKERS=100 $(BIN)/python -m pytest -s tests/soak/timing/test_storm_kill.py
 
 mutants: $(VENV)/.dev ## Change what guards and limits place by place, in a copy, and count what tests notice
 	@$(BIN)/python -m tests.mutants $(ONLY)

@@ -23,7 +23,8 @@ from app.sun.position import Location
 from app.tracker.memory.memory import ClockSetting, SiteState, TrackerMemory, TrackerState
 from app.tracker.settings.config import TrackerConfig
 from bench.table import NotMeasured, Row, at_most
-from tests.e2e.product import Product, eventually
+from tests.e2e.product import Product
+from tests.patience import until as eventually
 
 COMMAND = "python -m bench disk"
 MOST_KIB = {1: 20.0, 100: 600.0}

@@ -2,7 +2,7 @@
 
 from bench.__main__ import names, renewed, section
 from bench.table import Row, at_least, at_most, beside, must_hold, spread, worst
-from tests.test_benches import NOT_SMALL, has_small
+from tests.soak.timing.test_benches import NOT_SMALL, has_small
 
 
 def test_every_benchmark_can_be_run_small() -> None:

@@ -1,4 +1,4 @@
-"""What cannot be released is refused, with the reason; `tests/test_release.py` makes one."""
+"""What cannot be released is refused, with the reason; `tests/soak/built/test_release.py` makes one."""
 
 import os
 import subprocess

@@ -23,7 +23,7 @@ from app.modbus.server import ModbusServer
 from app.tracker.settings.config import Parity, SerialConfig
 from tests.captured_logs import capture_logs
 from tests.fault_result import REAL, FaultResult
-from tests.gateway.rigs import eventually
+from tests.patience import eventually
 
 pytestmark = pytest.mark.real_time
 READ = pack(">HHHBBHH", 7, 0, 6, 1, 3, 0, 125)

@@ -15,8 +15,9 @@ from typing import Any
 from websockets.sync.client import ClientConnection, connect
 
 from tests.e2e.letters import environment
-from tests.e2e.product import eventually
 from tests.loopback.sitecustomize import CHROMIUM_FLAGS
+from tests.patience import PATIENCE_S
+from tests.patience import until as eventually
 
 PROGRAM = os.environ.get("HELIOPANEL_TEST_BROWSER", "/usr/bin/chromium-headless-shell")
 """Chromium without its windows: the same engine, at two thirds of the processor time for each page."""
@@ -29,7 +30,6 @@ QUIET = [
 FLAGS = ["--headless", "--remote-debugging-port=0", "--window-size=1280,800", *QUIET]
 PAGE_READY = 'html[data-link="live"]:not([data-keeping])'
 """A page whose values are live, and whose scripts have all come."""
-ANSWERS_WITHIN_S = 15.0
 LARGEST_ANSWER = 64 * 1024 * 1024
 
 
@@ -69,7 +69,7 @@ class Chromium:
         number = self.asked
         order: dict[str, Any] = {"id": number, "method": method, "params": params}
         self.socket.send(json.dumps(order | ({"sessionId": session} if session else {})))
-        while (message := json.loads(self.socket.recv(ANSWERS_WITHIN_S))).get("id") != number:
+        while (message := json.loads(self.socket.recv(PATIENCE_S))).get("id") != number:
             self.events.append(message)
         assert "error" not in message, message
         return dict(message["result"])
@@ -91,7 +91,7 @@ class Chromium:
         """End it, whatever state it is in."""
         with suppress(ProcessLookupError):
             os.killpg(self.process.pid, signal.SIGKILL)
-        self.process.wait(10)
+        self.process.wait()
         self.closing.close()
         self.folder.cleanup()
 
@@ -119,7 +119,7 @@ class Tab:
         assert "exceptionDetails" not in answer, answer
         return answer["result"].get("value")
 
-    def until(self, expression: str, what: str, *, within_s: float = 15.0) -> None:
+    def until(self, expression: str, what: str, *, within_s: float = PATIENCE_S) -> None:
         """Return once an expression is true on the page, or fail."""
         eventually(lambda: self.evaluate(expression), what, within_s=within_s)
 

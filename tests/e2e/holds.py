@@ -20,7 +20,7 @@ from tests.e2e.held_press import Press
 from tests.e2e.integrator import Integrator
 from tests.e2e.product import Product, end
 from tests.e2e.socket_page import LetGo, Page
-from tests.machine.service import eventually
+from tests.patience import eventually
 
 ONE_BY_ONE = (LetGo.RELEASED, LetGo.CLOSED, LetGo.HIDDEN, LetGo.CUT, LetGo.KILLED)
 """What is done to one button while the others are held on."""

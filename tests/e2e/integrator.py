@@ -7,7 +7,8 @@ from uuid import uuid4
 
 import httpx
 
-from tests.e2e.product import eventually
+from tests.patience import PATIENCE_S
+from tests.patience import until as eventually
 
 SAMSUN = {
     "latitude_deg": 41.2867,
@@ -37,7 +38,7 @@ class Integrator:
     """Calls to one tracker of one panel."""
 
     def __init__(self, url: str, tracker_id: str = "T1") -> None:
-        self.http = httpx.Client(base_url=url, timeout=20.0)
+        self.http = httpx.Client(base_url=url, timeout=PATIENCE_S)
         self.tracker = f"/api/v1/trackers/{tracker_id}"
 
     def close(self) -> None:
@@ -69,7 +70,7 @@ class Integrator:
         return found
 
     def until(
-        self, reached: Callable[[dict[str, Any]], object], what: str, *, within_s: float = 60.0
+        self, reached: Callable[[dict[str, Any]], object], what: str, *, within_s: float = PATIENCE_S
     ) -> dict[str, Any]:
         """Return the first snapshot that is so, or fail."""
         last: dict[str, Any] = {}

@@ -13,7 +13,8 @@ from PIL import Image
 from playwright.sync_api import Page, sync_playwright
 
 from tests.e2e.chromium import PROGRAM, QUIET
-from tests.e2e.product import Product, eventually
+from tests.e2e.product import Product
+from tests.patience import until as eventually
 
 PICTURE = Path(__file__).resolve().parents[2] / "docs" / "pictures" / "show.gif"
 SITE = {"latitude_deg": 41.2867, "longitude_deg": 36.33, "altitude_m": 4, "time_zone": "Europe/Istanbul"}

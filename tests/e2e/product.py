@@ -7,30 +7,22 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import closing, suppress
 from dataclasses import dataclass, field
 from http.client import HTTPConnection, HTTPException
 from pathlib import Path
 
 from app.machine.process import FIFO_PRIORITY
+from tests.patience import PATIENCE_S
+from tests.patience import until as eventually
 from tests.ports import free_port
+
+__all__ = ["COMMAND", "DRIVE_SIM", "DriveSim", "Product", "end"]
 
 DRIVE_SIM = (sys.executable, "-c", "import typer; from app.cli.drives import drive_sim; typer.run(drive_sim)")
 """The command `heliopanel drive-sim` alone, without the panel and machine that `heliopanel` imports."""
 COMMAND = str(Path(sys.executable).with_name("heliopanel"))
-LONGEST_WAIT_S = 40.0
-LONGEST_START_S = 240.0
-LOOK_EVERY_S = 0.02
-
-
-def eventually(found: Callable[[], object], what: str, *, within_s: float = LONGEST_WAIT_S) -> None:
-    """Return once something is so, or fail and say what was waited for."""
-    give_up = time.monotonic() + within_s
-    while not found():
-        if time.monotonic() > give_up:
-            raise TimeoutError(f"Not so within {within_s} s: {what}.")
-        time.sleep(LOOK_EVERY_S)
 
 
 def end(process: subprocess.Popen[bytes]) -> int:
@@ -38,10 +30,10 @@ def end(process: subprocess.Popen[bytes]) -> int:
     if process.poll() is None:
         process.terminate()
     try:
-        return process.wait(15)
+        return process.wait(PATIENCE_S)
     except subprocess.TimeoutExpired:
         process.kill()
-        return process.wait(5)
+        return process.wait()
 
 
 @dataclass
@@ -61,8 +53,9 @@ class DriveSim:
         kept = [] if memory is None else ["--memory", str(memory)]
         kept += [f"--unit={unit}" for unit in range(1, units + 1)]
         process = subprocess.Popen([*DRIVE_SIM, "--tcp", f"127.0.0.1:{port}", *kept], stdout=subprocess.PIPE)
-        with suppress(PermissionError):
-            os.sched_setscheduler(process.pid, os.SCHED_FIFO, os.sched_param(FIFO_PRIORITY + 1))
+        if os.environ.get("HELIOPANEL_REAL_TIME") != "off":
+            with suppress(PermissionError):
+                os.sched_setscheduler(process.pid, os.SCHED_FIFO, os.sched_param(FIFO_PRIORITY + 1))
         assert process.stdout is not None
         assert process.stdout.readline(), "drive-sim did not start"
         return cls(port, process)
@@ -121,7 +114,7 @@ class Product:
 
     def until_ready(self) -> None:
         """Return once panel, machine and database answer, or fail."""
-        eventually(self.is_ready, "panel, machine and database answer", within_s=LONGEST_START_S)
+        eventually(self.is_ready, "panel, machine and database answer")
 
     def is_ready(self) -> bool:
         """Return whether panel, machine and database answer now.
@@ -129,7 +122,7 @@ class Product:
         This is asked all the time while the product starts: httpx would read every authority of the computer
         each time, and take the processor from what is waited for.
         """
-        asking = HTTPConnection("127.0.0.1", self.port, timeout=2.0)
+        asking = HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE_S)
         with closing(asking), suppress(OSError, HTTPException):
             asking.request("GET", "/ready")
             return asking.getresponse().status == 200
@@ -165,7 +158,7 @@ class Product:
                     os.kill(process_id, signal.SIGCONT)
         code = end(self.process)
         if self.reading is not None:
-            self.reading.join(10)
+            self.reading.join()
         assert self.process.stderr is not None
         self.process.stderr.close()
         return code

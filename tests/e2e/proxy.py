@@ -23,7 +23,12 @@ class Network:
     @property
     def url(self) -> str:
         """Return where a browser finds the panel behind this network."""
-        return f"http://127.0.0.1:{self._listener.getsockname()[1]}"
+        return f"http://127.0.0.1:{self.port}"
+
+    @property
+    def port(self) -> int:
+        """Return where it listens."""
+        return int(self._listener.getsockname()[1])
 
     def freeze(self) -> float:
         """Let nothing pass from now on, and return when."""

@@ -11,7 +11,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 from websockets.typing import Origin
 
-GIVE_UP_S = 2.0
+from tests.patience import PATIENCE_S
 
 
 class LetGo(StrEnum):
@@ -54,7 +54,7 @@ class Page:
         self._socket = await connect(self._address, origin=Origin(self._url))
         self._listening = asyncio.create_task(self._listen(self._socket))
         await self._send(type="ping", tc=_now_s() * 1000.0)
-        async with asyncio.timeout(GIVE_UP_S):
+        async with asyncio.timeout(PATIENCE_S):
             await self._measured.wait()
 
     async def beat(self, press_id: str, direction: int, sequence: int) -> float:

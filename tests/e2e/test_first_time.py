@@ -131,7 +131,7 @@ def show(person: Newcomer) -> None:
     person.picture("plan", "The plan of a show that works")
     person.key("Go to start position")
     person.sees("2026-06-21")
-    expect(page.get_by_text("Ready at the start", exact=True)).to_be_visible(timeout=45_000)
+    expect(page.get_by_text("Ready at the start", exact=True)).to_be_visible()
     person.picture("ready", "At the start")
     person.key("Show tracking movement")
     expect(page.get_by_text("Running", exact=True).first).to_be_visible()
@@ -179,7 +179,6 @@ def sign(person: Newcomer) -> None:
     assert Path(download.value.path()).read_bytes().startswith(b"%PDF-")
 
 
-@pytest.mark.timeout(180)
 def test_a_newcomer_gets_from_an_empty_database_to_a_signed_record(page: Page, town: Town) -> None:
     person = Newcomer(page)
     commission(person, town)

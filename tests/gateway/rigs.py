@@ -1,7 +1,7 @@
 """A site with its other doors: the site on a virtual clock, the doors on real sockets and in a hurry."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -17,9 +17,6 @@ from app.tracker.memory.memory import TrackerMemory, TrackerState
 from app.tracker.settings.config import TrackerConfig
 from tests.site.plant import Plant, make_plant
 
-LOOK_EVERY_S = 0.01
-LONGEST_WAIT_S = 15.0
-
 
 class HurriedClock:
     """Real time, ten times as fast: gateways pace themselves by it."""
@@ -34,15 +31,6 @@ class HurriedClock:
 
     async def sleep_until(self, at: datetime) -> None:
         await asyncio.sleep(max(0.0, (at - self.now()).total_seconds() / 10.0))
-
-
-async def eventually(found: Callable[[], object], *, within_s: float = LONGEST_WAIT_S) -> None:
-    """Return once something is so, or fail."""
-    for _ in range(int(within_s / LOOK_EVERY_S)):
-        if found():
-            return
-        await asyncio.sleep(LOOK_EVERY_S)
-    raise TimeoutError(f"It did not become so within {within_s} s.")
 
 
 def tracker(tracker_id: str, name: str = "Tracker") -> TrackerState:

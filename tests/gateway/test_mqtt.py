@@ -28,7 +28,8 @@ from app.tracker.commands.commands import Move
 from app.tracker.settings.config import Orientation
 from app.tracker.state.snapshot import ActivityName, EventKind
 from tests.fault_result import FaultResult
-from tests.gateway.rigs import eventually, gateway, kept_plant, opened
+from tests.gateway.rigs import gateway, kept_plant, opened
+from tests.patience import eventually
 from tests.ports import free_port
 from tests.site.plant import SAMSUN
 

@@ -14,7 +14,7 @@ from app.gateway.mqtt import SAY_AGAIN, quiet_logger
 from app.gateway.mqtt_lanes import MOST_AT_ONCE, MOST_WAITING, CommandLanes
 from app.link.messages import Order
 from app.tracker.commands.commands import Stop
-from tests.gateway.rigs import eventually
+from tests.patience import eventually
 from tests.site.plant import SUMMER_NOON
 
 

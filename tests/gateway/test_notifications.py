@@ -22,7 +22,8 @@ from app.store.store import JournalFilter
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.values.alarm_words import AlarmState
 from app.tracker.values.notifications import Channel, Notifications
-from tests.gateway.rigs import eventually, gateway, kept_plant, opened
+from tests.gateway.rigs import gateway, kept_plant, opened
+from tests.patience import eventually
 from tests.site.plant import Plant
 
 ALL = JournalFilter()

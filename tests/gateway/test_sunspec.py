@@ -41,7 +41,8 @@ from app.tracker.values.motion import DriveCommand, Position
 from app.tracker.weather.weather import Weather
 from tests.captured_logs import capture_logs
 from tests.fault_result import REAL, FaultResult
-from tests.gateway.rigs import HurriedClock, eventually, tracker
+from tests.gateway.rigs import HurriedClock, tracker
+from tests.patience import eventually
 from tests.site.plant import Plant, make_plant, settle
 
 NOTHING = 0x8000_0000

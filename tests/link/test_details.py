@@ -14,8 +14,8 @@ from app.link.messages import MachineUnreachable, SiteDetail, TrackerDetail
 from app.link.server import LinkServer
 from app.tracker.memory.memory import SiteState, TrackerMemory, TrackerState
 from app.tracker.settings.config import TrackerConfig
-from tests.gateway.rigs import eventually
 from tests.link.test_link import Link, ScriptedMachine, snapshot
+from tests.patience import eventually
 
 
 def tracker(name: str, title: str = "Tracker") -> TrackerDetail:

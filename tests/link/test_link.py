@@ -49,7 +49,7 @@ from app.tracker.settings.axes import Axis
 from app.tracker.state.snapshot import ClockState, Event, EventKind, SiteSnapshot, Snapshot
 from app.tracker.values.reason import Reason
 from tests.captured_logs import capture_logs
-from tests.gateway.rigs import eventually
+from tests.patience import eventually
 
 NOON = datetime(2026, 6, 21, 12, tzinfo=UTC)
 MOST_AHEAD = 20

@@ -32,7 +32,8 @@ from tests.machine.field import (
     prepare,
     sheltered,
 )
-from tests.machine.service import LONGEST_WAIT_S, Service, end, eventually
+from tests.machine.service import Service, end
+from tests.patience import PATIENCE_S, eventually
 from tests.ports import free_port
 
 LIMIT_S = 120.0
@@ -290,7 +291,7 @@ async def _on_a_line(size: Size, line: Line) -> AsyncIterator[tuple[Fieldwork, a
     simulator = await asyncio.create_subprocess_exec(*DRIVE_SIM, *line.doors, stdout=asyncio.subprocess.PIPE)
     try:
         assert simulator.stdout is not None
-        async with asyncio.timeout(LONGEST_WAIT_S):
+        async with asyncio.timeout(PATIENCE_S):
             await simulator.stdout.readline()
         async with field(size, location, line, settled=False) as (work, _):
             await work.tracking()

@@ -38,7 +38,8 @@ from app.tracker.values.mode import Mode
 from tests.e2e.eyes import Eyes
 from tests.e2e.killing import LATEST_FEED_S, RAMP_S, WATCHDOG_S
 from tests.machine.lives import Machine
-from tests.machine.service import SAMSUN, config_for, eventually
+from tests.machine.service import SAMSUN, config_for
+from tests.patience import eventually
 
 MORNING = datetime(2027, 6, 21, 3, 0, tzinfo=UTC)
 SHOW = ShowPlan("morning", MORNING, MORNING + timedelta(minutes=90), timedelta(seconds=20), SAMSUN)

@@ -14,7 +14,7 @@ from app.machine.main import run
 from app.machine.supervised import end_with_parent
 from app.tracker.commands.commands import Command
 from app.tracker.state.snapshot import SiteSnapshot, Snapshot
-from tests.machine.service import eventually
+from tests.patience import eventually
 
 FORKING = multiprocessing.get_context("forkserver")
 FORKING.set_forkserver_preload([__name__])

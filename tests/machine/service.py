@@ -22,20 +22,12 @@ from app.tracker.settings.config import DriveConfig, DriveKind, TrackerConfig
 from app.tracker.state.snapshot import ActivityName, SiteSnapshot, Snapshot
 from app.tracker.values.motion import Feedback
 from tests.e2e.product import DRIVE_SIM
+from tests.patience import LOOK_EVERY_S, PATIENCE_S, eventually
 from tests.ports import free_port
 
+__all__ = ["SAMSUN", "DriveSimulator", "Service", "config_for", "end"]
+
 SAMSUN = Location(41.2867, 36.33, 4.0)
-LONGEST_WAIT_S = 40.0
-LOOK_EVERY_S = 0.02
-
-
-async def eventually(found: Callable[[], bool], *, within_s: float = LONGEST_WAIT_S) -> None:
-    """Return once something is so, or fail."""
-    for _ in range(int(within_s / LOOK_EVERY_S)):
-        if found():
-            return
-        await asyncio.sleep(LOOK_EVERY_S)
-    raise TimeoutError(f"It did not become so within {within_s} s.")
 
 
 @dataclass
@@ -53,14 +45,14 @@ class DriveSimulator:
             *DRIVE_SIM, "--tcp", f"127.0.0.1:{port}", stdout=asyncio.subprocess.PIPE
         )
         assert process.stdout is not None
-        async with asyncio.timeout(LONGEST_WAIT_S):
+        async with asyncio.timeout(PATIENCE_S):
             await process.stdout.readline()
         return cls(port, process, DriveFactory(SystemClock()).make(config_for(port)))
 
     async def look(self) -> Feedback:
         return await self.eyes.read()
 
-    async def rests(self, *, within_s: float) -> float:
+    async def rests(self, *, within_s: float = PATIENCE_S) -> float:
         """Return after how many seconds both axes stood still, or fail."""
         loop = asyncio.get_running_loop()
         begun = loop.time()
@@ -83,7 +75,7 @@ def config_for(port: int) -> TrackerConfig:
 async def end(process: asyncio.subprocess.Process) -> int:
     if process.returncode is None:
         process.terminate()
-    async with asyncio.timeout(LONGEST_WAIT_S):
+    async with asyncio.timeout(PATIENCE_S):
         return await process.wait()
 
 
@@ -91,7 +83,7 @@ class PatientLink(LinkClient):
     """Waits long for an answer: how long a busy disk takes is none of what is judged here."""
 
     async def _ask(self, request: Request, patience_s: float) -> Answer:
-        return await super()._ask(request, LONGEST_WAIT_S)
+        return await super()._ask(request, PATIENCE_S)
 
 
 @dataclass
@@ -156,7 +148,7 @@ class Service:
         return await self.link.execute(Order(command, "technician", addressed))
 
     async def ask_until_taken(self, command: Command | SiteCommand) -> SiteSnapshot:
-        async with asyncio.timeout(LONGEST_WAIT_S):
+        async with asyncio.timeout(PATIENCE_S):
             while True:
                 try:
                     return await self.ask(command)
@@ -167,16 +159,16 @@ class Service:
         latest = self.link.latest()
         return None if latest is None else latest.trackers[0]
 
-    async def until(self, reached: Callable[[Snapshot], bool], *, within_s: float = LONGEST_WAIT_S) -> None:
+    async def until(self, reached: Callable[[Snapshot], bool], *, within_s: float = PATIENCE_S) -> None:
         def is_so() -> bool:
             seen = self.tracker()
             return seen is not None and bool(seen.actions) and reached(seen)
 
         await eventually(is_so, within_s=within_s)
 
-    async def commission(self, drive: DriveSimulator) -> None:
+    async def commission(self, drive: DriveSimulator, *, port: int | None = None) -> None:
         """Point T1 at a drive, give it a place and a clock, and call where its axes stand zero."""
-        await self.ask(ConfigureTracker(config_for(drive.port)))
+        await self.ask(ConfigureTracker(config_for(port or drive.port)))
         await self.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
         await self.ask(SetClock("system"))
         await self.until(lambda seen: not seen.actions["set_home"])

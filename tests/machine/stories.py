@@ -16,9 +16,9 @@ from app.tracker.commands.commands import GoToStart, RunShow
 from app.tracker.memory.recording import RecordingInfo, RecordingKind
 from app.tracker.programs.show import ShowPlan
 from app.tracker.state.snapshot import ActivityName, Event, EventKind, ShowPhase
-from tests.machine.service import SAMSUN, DriveSimulator, Service, eventually
+from tests.machine.service import SAMSUN, DriveSimulator, Service
+from tests.patience import PATIENCE_S, eventually, pause
 
-LONGEST_START_S = 60
 WATCHDOG_AND_RAMP_S = 0.5 + 1.2
 PLAN = ShowPlan(
     "solstice",
@@ -59,12 +59,12 @@ async def kill_panel(service: Service) -> None:
 
 async def until_served(port: int) -> None:
     """Return once the panel answers."""
-    async with httpx.AsyncClient() as client, asyncio.timeout(LONGEST_START_S):
+    async with httpx.AsyncClient() as client, asyncio.timeout(PATIENCE_S):
         while True:
             with suppress(httpx.TransportError):
                 if (await client.get(f"http://127.0.0.1:{port}/health")).status_code == 200:
                     return
-            await asyncio.sleep(0.05)
+            await pause()
 
 
 async def _show_running(service: Service) -> str:

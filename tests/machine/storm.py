@@ -38,7 +38,8 @@ from app.tracker.state.snapshot import ActivityName, ShowPhase, SiteSnapshot, Sn
 from app.tracker.values.mode import Mode
 from app.tracker.weather.weather import Weather
 from tests.machine.lives import Machine
-from tests.machine.service import SAMSUN, eventually
+from tests.machine.service import SAMSUN
+from tests.patience import eventually
 
 NOON = datetime(2027, 6, 21, 9, 40, tzinfo=UTC)
 SHOW = ShowPlan("morning", NOON, NOON + timedelta(minutes=90), timedelta(seconds=20), SAMSUN)

@@ -9,7 +9,9 @@ import signal
 import socket
 import stat
 import threading
-from collections.abc import Iterator
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from functools import partial
 from pathlib import Path
@@ -26,12 +28,12 @@ from app.machine.main import audit_version
 from app.machine.marker import VERSION_NAME, mark_running, mark_stopped
 from app.machine.supervisor import Child, Supervisor
 from app.machine.systemd import notify
-from app.machine.watchdog import EXIT_CODE, LoopWatchdog
+from app.machine.watchdog import BEAT_EVERY, DEAD_AFTER_LOOKS, EXIT_CODE, LoopWatchdog
 from app.site.clock.ntp import kernel_clock
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.store import AuditFilter
-from tests.machine.service import eventually
+from tests.patience import PATIENCE_S, eventually
 
 NOW = datetime(2026, 11, 21, 9, 0, tzinfo=UTC)
 
@@ -92,72 +94,106 @@ class Ending:
         self.ended.set()
 
 
-async def test_a_ticker_that_died_ends_the_machine_with_its_drives_stopped() -> None:
-    ending, stopped = Ending(), []
+class Looks:
+    """Takes the place of what the watchdog's thread waits for: it looks when a test says so."""
 
-    async def stop_drives() -> None:
-        stopped.append(True)
+    def __init__(self) -> None:
+        self._turn, self._waits = threading.Semaphore(0), threading.Semaphore(0)
+        self._over = False
 
-    watching = asyncio.create_task(
-        LoopWatchdog(SystemClock(), alive=lambda: False, stop_drives=stop_drives, end=ending).run()
+    def wait(self, _: float) -> bool:
+        self._waits.release()
+        self._turn.acquire()
+        return self._over
+
+    def set(self) -> None:
+        self._over = True
+        self._turn.release()
+
+    def pass_by(self, looks: int) -> None:
+        """Have it look so often; the last look is over when this returns, unless it ended the process."""
+        for _ in range(looks):
+            assert self._waits.acquire(timeout=PATIENCE_S), "its thread has ended"
+            self._turn.release()
+
+    def seen(self) -> None:
+        """Return once it has judged what it saw last."""
+        assert self._waits.acquire(timeout=PATIENCE_S), "its thread has ended"
+        self._waits.release()
+
+
+@dataclass
+class Watched:
+    """A watchdog on a virtual clock, and what has become of the process that it watches."""
+
+    alive: bool = True
+    broken: bool = False
+    clock: VirtualClock = field(default_factory=lambda: VirtualClock(NOW))
+    looks: Looks = field(default_factory=Looks)
+    ending: Ending = field(default_factory=Ending)
+    stopped: int = 0
+
+    async def stop_drives(self) -> None:
+        self.stopped += 1
+        if self.broken:
+            raise RuntimeError("a programming error")
+
+    async def beats(self, times: int) -> None:
+        """Let the loop turn so often."""
+        for _ in range(times):
+            await eventually(lambda: self.clock._sleepers)
+            self.clock.advance(BEAT_EVERY)
+            await eventually(lambda: self.clock._sleepers)
+
+    async def ended(self) -> int | None:
+        await asyncio.to_thread(self.ending.ended.wait, PATIENCE_S)
+        return self.ending.code
+
+
+@asynccontextmanager
+async def watched(**how: bool) -> AsyncIterator[Watched]:
+    found = Watched(**how)
+    watchdog = LoopWatchdog(
+        found.clock, alive=lambda: found.alive, stop_drives=found.stop_drives, end=found.ending
     )
-    await asyncio.to_thread(ending.ended.wait, 10)
-
-    assert (ending.code, stopped) == (EXIT_CODE, [True])
+    watchdog._over = found.looks  # type: ignore[assignment]
+    watching = asyncio.create_task(watchdog.run())
+    yield found
     watching.cancel()
     await asyncio.gather(watching, return_exceptions=True)
+
+
+async def test_a_ticker_that_died_ends_the_machine_with_its_drives_stopped() -> None:
+    async with watched(alive=False) as found:
+        await asyncio.to_thread(found.looks.pass_by, DEAD_AFTER_LOOKS + 1)
+        assert (await found.ended(), found.stopped) == (EXIT_CODE, 1)
 
 
 async def test_drives_that_cannot_be_stopped_do_not_keep_a_dead_machine_alive() -> None:
-    ending = Ending()
-
-    async def stop_drives() -> None:
-        raise RuntimeError("a programming error")
-
-    watching = asyncio.create_task(
-        LoopWatchdog(SystemClock(), alive=lambda: False, stop_drives=stop_drives, end=ending).run()
-    )
-    await asyncio.to_thread(ending.ended.wait, 5)
-
-    assert ending.code == EXIT_CODE
-    watching.cancel()
-    await asyncio.gather(watching, return_exceptions=True)
+    async with watched(alive=False, broken=True) as found:
+        await asyncio.to_thread(found.looks.pass_by, DEAD_AFTER_LOOKS + 1)
+        assert (await found.ended(), found.stopped) == (EXIT_CODE, 1)
 
 
 async def test_a_loop_that_hangs_ends_the_machine() -> None:
-    ending = Ending()
-
-    async def stop_drives() -> None:
-        return
-
-    watching = asyncio.create_task(
-        LoopWatchdog(SystemClock(), alive=lambda: True, stop_drives=stop_drives, end=ending).run()
-    )
-    await asyncio.sleep(0.3)
-    assert ending.code is None
-
-    hung_for = ending.ended.wait(10)
-
-    assert hung_for
-    assert ending.code == EXIT_CODE
-    watching.cancel()
-    await asyncio.gather(watching, return_exceptions=True)
+    """Here it hangs: nothing is awaited while the thread looks."""
+    async with watched() as found:
+        await found.beats(3)
+        found.looks.pass_by(DEAD_AFTER_LOOKS)
+        found.looks.seen()
+        assert found.ending.code is None
+        found.looks.pass_by(1)
+        found.ending.ended.wait(PATIENCE_S)
+        assert (found.ending.code, found.stopped) == (EXIT_CODE, 0)
 
 
 async def test_a_loop_that_lives_is_left_alone() -> None:
-    ending = Ending()
-
-    async def stop_drives() -> None:
-        return
-
-    watching = asyncio.create_task(
-        LoopWatchdog(SystemClock(), alive=lambda: True, stop_drives=stop_drives, end=ending).run()
-    )
-    await asyncio.sleep(1.6)
-    watching.cancel()
-    await asyncio.gather(watching, return_exceptions=True)
-
-    assert ending.code is None
+    async with watched() as found:
+        for _ in range(3):
+            await asyncio.to_thread(found.looks.pass_by, DEAD_AFTER_LOOKS - 1)
+            await found.beats(1)
+        await asyncio.to_thread(found.looks.seen)
+        assert found.ending.code is None
 
 
 @pytest.fixture

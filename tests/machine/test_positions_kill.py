@@ -12,7 +12,7 @@ from app.tracker.commands.commands import Move, Stop
 from app.tracker.settings.config import Orientation
 from tests.machine.field import noon_place, prepare
 from tests.machine.lives import Machine
-from tests.machine.service import eventually
+from tests.patience import eventually
 
 AWAY_DEG = 8.0
 RESOLUTION_DEG = 0.05

@@ -1,35 +1,29 @@
-"""The service as processes: either may die or freeze at any instant; nothing that was promised is lost."""
+"""That the real processes are wired: a button, a kill, a freeze, a cut cable. How soon: tests/soak."""
 
 import asyncio
 import os
 import signal
 import sys
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterator
 from contextlib import suppress
 from pathlib import Path
-from struct import pack
+from uuid import uuid4
 
-import httpx
 import pytest
 import pytest_asyncio
 
-from app.drives.profile import load_profile
-from app.link.messages import MachineUnreachable, RenameSite
+from app.link.messages import ReleaseControl, RenameSite
 from app.machine.marker import MARKER_NAME
 from app.store.engine import open_reader
 from app.store.store import JournalFilter
-from app.tracker.commands.commands import Jog, Move, SelectMode, Stop, Track
-from app.tracker.settings.axes import Axis, JogSpeed
-from app.tracker.settings.config import Orientation
-from app.tracker.state.snapshot import ActivityName, EventKind
-from app.tracker.values.mode import Mode
-from tests.fault_result import REAL, FaultResult
-from tests.machine.service import DriveSimulator, Service, eventually
-from tests.machine.stories import WATCHDOG_AND_RAMP_S, kill_mid_show, kill_panel, until_served
-
-KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "2"))
-PANEL_KILLS = 2
-SETPOINT = load_profile("simulated-plc").registers["azimuth_setpoint"].address
+from app.tracker.commands.commands import Stop
+from app.tracker.state.snapshot import ActivityName, Event, EventKind, Snapshot
+from tests.e2e.proxy import Network, network
+from tests.e2e.socket_page import LetGo, Page
+from tests.fault_result import FaultResult
+from tests.machine.service import DriveSimulator, Service
+from tests.machine.stories import until_served
+from tests.patience import PATIENCE_S, eventually, pause
 
 pytestmark = pytest.mark.asyncio(loop_scope="module")
 
@@ -41,15 +35,29 @@ async def drive() -> AsyncIterator[DriveSimulator]:
     await simulator.stop()
 
 
+@pytest.fixture(scope="module")
+def cable(drive: DriveSimulator) -> Iterator[Network]:
+    with network(drive.port) as laid:
+        yield laid
+
+
 @pytest_asyncio.fixture(scope="module", loop_scope="module")
-async def running(tmp_path_factory: pytest.TempPathFactory, drive: DriveSimulator) -> AsyncIterator[Service]:
-    """A service in front of the drive, for all stories of this module that do not end it."""
+async def running(
+    tmp_path_factory: pytest.TempPathFactory, drive: DriveSimulator, cable: Network
+) -> AsyncIterator[Service]:
+    """A service in front of the drive, behind a cable: what it leaves behind is judged when it has ended."""
     started = await Service.start(tmp_path_factory.mktemp("service") / "data")
     try:
-        await started.commission(drive)
+        await started.commission(drive, port=cable.port)
+        await started.ask(ReleaseControl("T1"))
+        assert (started.data_dir / MARKER_NAME).exists()
         yield started
     finally:
-        await started.stop()
+        code = await started.stop()
+    assert code == 0
+    assert not (started.data_dir / MARKER_NAME).exists()
+    assert not still_there([*started.starts("controller"), *started.starts("web")])
+    assert journal(started)[0].kind is EventKind.CONTROLLER_STOPPED
 
 
 @pytest_asyncio.fixture(loop_scope="module")
@@ -61,137 +69,151 @@ async def service(running: Service) -> AsyncIterator[Service]:
     await running.until(lambda seen: seen.activity is ActivityName.HOLDING)
 
 
-@pytest.mark.fault(44)
-async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service, fault: FaultResult) -> None:
-    await service.until(lambda seen: not seen.actions["set_home"])
-    await service.ask(SelectMode(Mode.DUAL))
-    await service.ask(Track())
-    before = await service.link.metrics()
-    for _ in range(PANEL_KILLS):
-        await kill_panel(service)
-    after = await service.link.metrics()
+class Button:
+    """A button on a page without a browser, held by heartbeats until it is let go."""
 
-    ticks = after.trackers["T1"].ticks - before.trackers["T1"].ticks
-    assert after.boot_id == before.boot_id
-    assert ticks >= int((after.uptime_s - before.uptime_s) * 10) - 1
-    seen = service.tracker()
-    assert seen is not None
-    assert seen.tracking_on
+    def __init__(self, page: Page, drive: DriveSimulator) -> None:
+        self.page = page
+        self._drive = drive
+        self.press_id = ""
+        self._sequence = 0
+
+    async def turns(self) -> None:
+        """Hold until the axis turns; press anew where a busy computer was too late for one press."""
+        async with asyncio.timeout(PATIENCE_S):
+            while not (await self._drive.look()).azimuth.moving:
+                if not self.press_id or self.page.ends or self._is_refused():
+                    self.press_id, self._sequence = uuid4().hex, 0
+                    self.page.ends.clear()
+                await self.beat()
+                await pause()
+
+    def _is_refused(self) -> bool:
+        return any(answer.text != "ok" for answer in self.page.answers.get(self.press_id, ()))
+
+    async def beat(self) -> None:
+        """Say once more that it is held."""
+        await self.page.beat(self.press_id, 1, self._sequence)
+        self._sequence += 1
+
+    async def held_on(self) -> None:
+        """Go on holding, as somebody does who knows nothing."""
+        while True:
+            await self.beat()
+            await pause()
+
+
+@pytest_asyncio.fixture(loop_scope="module")
+async def button(service: Service, drive: DriveSimulator) -> AsyncIterator[Button]:
+    await service.until(lambda seen: not seen.actions["jog"])
+    page = Page(service.port, "T1")
+    await page.open()
+    yield Button(page, drive)
+    await page.close()
+
+
+async def test_a_held_button_turns_the_axis_and_its_release_stops_it(
+    button: Button, drive: DriveSimulator
+) -> None:
+    async with asyncio.timeout(PATIENCE_S):
+        while not any("the button was released" in end.text for end in button.page.ends):
+            await button.turns()
+            await button.page.let_go(LetGo.RELEASED, button.press_id)
+            await eventually(lambda: button.page.ends)
+            await drive.rests()
+
+
+@pytest.mark.fault(43)
+async def test_a_killed_controller_stops_by_the_drive_and_nothing_is_lost_or_moves_on(
+    service: Service, drive: DriveSimulator, button: Button, fault: FaultResult
+) -> None:
+    name = f"Run {uuid4().hex}"
+    await service.ask(RenameSite(name))
+    await button.turns()
+    holding = asyncio.create_task(button.held_on())
+    before = _boot_id(service)
+    service.signal("controller", signal.SIGKILL)
+    await drive.rests()
+    await service.until(lambda _: _boot_id(service) not in {"", before})
+    await service.until(_is_at_rest)
+    holding.cancel()
+    await eventually(lambda: not journal(service, EventKind.CONTROLLER_STARTED)[0].data["clean"])
+    assert "unexpectedly" in journal(service, EventKind.CONTROLLER_STARTED)[0].message
+    assert (await service.link.detail()).site.name == name
+    await drive.rests()
+    assert service.deaths()[-1] == f"controller {-signal.SIGKILL}"
+    fault.recovers("automatic: the controller starts again; tracking that was on resumes, nothing else moves")
+
+
+@pytest.mark.fault(44)
+async def test_a_killed_panel_ends_the_press_and_comes_back_and_the_controller_lives(
+    service: Service, drive: DriveSimulator, button: Button, fault: FaultResult
+) -> None:
+    before, panels = _boot_id(service), len(service.starts("web"))
+    await button.turns()
+    service.signal("web", signal.SIGKILL)
+    await drive.rests()
+    await service.until(_is_at_rest)
+    await eventually(lambda: len(service.starts("web")) > panels)
+    await until_served(service.port)
+    assert _boot_id(service) == before
     fault.recovers("automatic: the web process is started again; tracking went on")
 
 
-async def test_the_panel_moves_and_the_machine_misses_no_tick(service: Service) -> None:
-    async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{service.port}") as browser:
-        before, processes = await service.link.metrics(), started(service)
-        change = {
-            "host": "127.0.0.1",
-            "port": service.port,
-            "tls": False,
-            "allowed_hosts": ["tracker.example"],
-        }
-        tried = await browser.put("/api/v1/network", json=change)
-        assert tried.status_code == 202, tried.text
-        kept = 0
-        while kept != 200:
-            await asyncio.sleep(0.1)
-            with suppress(httpx.TransportError):
-                ticket = {"ticket": tried.json()["ticket"]}
-                kept = (await browser.post("/api/v1/network/confirmation", json=ticket)).status_code
-        foreign = {"host": "tracker.example"}
-        assert (await browser.get("/health", headers=foreign)).status_code == 200
-    after = await service.link.metrics()
-    assert after.boot_id == before.boot_id
-    ticks = after.trackers["T1"].ticks - before.trackers["T1"].ticks
-    assert ticks >= int((after.uptime_s - before.uptime_s) * 10) - 1
-    assert started(service) == processes
-
-
-def started(service: Service) -> tuple[int, int]:
-    """Return how often panel and machine have been started."""
-    return len(service.starts("web")), len(service.starts("controller"))
-
-
-@pytest.mark.timeout(60 + 15 * KILLS)
-@pytest.mark.fault(43)
-async def test_killed_at_any_instant_of_a_show_nothing_is_lost_and_the_axes_stop(
-    service: Service, drive: DriveSimulator
-) -> None:
-    for number in range(KILLS):
-        assert await kill_mid_show(service, drive, number) <= WATCHDOG_AND_RAMP_S + 1.0
-
-
 @pytest.mark.fault(45)
-async def test_a_frozen_machine_moves_nothing_and_does_not_catch_up(
-    service: Service, drive: DriveSimulator, fault: FaultResult
+async def test_a_frozen_controller_catches_up_with_nothing(
+    service: Service, drive: DriveSimulator, button: Button, fault: FaultResult
 ) -> None:
-    processes = started(service)
-    await service.until(lambda seen: not seen.actions["jog"])
-    jogging = asyncio.create_task(_hold(service))
-    await service.until(lambda seen: seen.activity is ActivityName.JOGGING)
+    await button.turns()
     service.signal("controller", signal.SIGSTOP)
-
-    fault.noticed(await drive.rests(within_s=WATCHDOG_AND_RAMP_S + 1.0), REAL)
-    stood_at = (await drive.look()).azimuth.position_deg
-    await asyncio.sleep(1.5)
-    assert service.link.latest() is None
-    jogging.cancel()
+    holding = asyncio.create_task(button.held_on())
+    await drive.rests()
+    stood_deg = (await drive.look()).azimuth.position_deg
+    await eventually(lambda: service.link.latest() is None)
     service.signal("controller", signal.SIGCONT)
-    await service.until(lambda seen: seen.activity is not ActivityName.JOGGING)
-    await asyncio.sleep(1.0)
-
-    assert (await drive.look()).azimuth.position_deg == pytest.approx(stood_at, abs=0.1)
-    assert started(service) == processes
+    await eventually(lambda: service.link.latest() is not None)
+    await service.until(_is_at_rest)
+    holding.cancel()
+    await service.ask_until_taken(Stop())
+    assert (await drive.look()).azimuth.position_deg == pytest.approx(stood_deg, abs=0.1)
     fault.recovers("automatic: the jog is over; nothing is caught up")
 
 
-async def _hold(service: Service) -> None:
-    sequence = 0
-    while True:
-        with suppress(MachineUnreachable):
-            await service.ask(Jog("held", Axis.AZIMUTH, 1, JogSpeed.FAST, sequence))
-        sequence += 1
-        await asyncio.sleep(0.05)
-
-
-@pytest.mark.fault(8)
-async def test_another_master_stops_the_move_and_is_named(
-    service: Service, drive: DriveSimulator, fault: FaultResult
+@pytest.mark.fault(1)
+async def test_a_cut_cable_leaves_a_drive_that_stops_itself_and_nothing_resumes(
+    service: Service, drive: DriveSimulator, cable: Network, button: Button, fault: FaultResult
 ) -> None:
-    await service.until(lambda seen: not seen.actions["move"])
-    await service.ask(Move(Orientation(300.0 if (await azimuth_deg(drive)) < 150.0 else 20.0, 20.0)))
-    await service.until(lambda seen: seen.azimuth is not None and seen.azimuth.moving)
-    loop = asyncio.get_running_loop()
-    reader, writer = await asyncio.open_connection("127.0.0.1", drive.port)
-    began, told = loop.time(), ""
-    while not told or is_moving(service):
-        writer.write(pack(">HHHBBHHBHH", 1, 0, 11, 1, 16, SETPOINT, 2, 4, 0, 5000))
-        await reader.readexactly(12)
-        assert loop.time() - began < 2.0
-        if not told and (told := named(service)):
-            fault.noticed(loop.time() - began, REAL)
-    fault.shows(told)
-    writer.close()
-    await drive.rests(within_s=WATCHDOG_AND_RAMP_S + 1.0)
-    await service.until(lambda seen: not seen.tracking_on and seen.activity is ActivityName.HOLDING)
-    await service.until(lambda seen: not seen.actions["move"])
-    fault.recovers("automatic: once the other master is silent; the operator commands the next motion")
+    await button.turns()
+    holding = asyncio.create_task(button.held_on())
+    cable.freeze()
+    await drive.rests()
+    await service.until(lambda seen: "No communication" in seen.activity_text)
+    fault.shows(tracker(service).activity_text)
+    cable.thaw()
+    await service.until(lambda seen: seen.measured is not None and _is_at_rest(seen))
+    await eventually(lambda: journal(service, EventKind.DRIVE_FOUND))
+    holding.cancel()
+    assert tracker(service).homed
+    assert not (await drive.look()).azimuth.moving
+    fault.recovers("automatic: the drive is found again; the operator commands the next motion")
 
 
-async def azimuth_deg(drive: DriveSimulator) -> float:
-    return (await drive.look()).azimuth.position_deg
-
-
-def is_moving(service: Service) -> bool:
-    """Return whether the tracker is still on its way."""
+def tracker(service: Service) -> Snapshot:
     seen = service.tracker()
-    return seen is not None and seen.activity is ActivityName.MOVING
+    assert seen is not None
+    return seen
 
 
-def named(service: Service) -> str:
-    """Return the sentence that names another master, empty while there is none."""
-    seen = service.tracker()
-    told = () if seen is None else (*seen.notices, *seen.waiting)
-    return next((one.message for one in told if "Another master commands" in one.message), "")
+def _is_at_rest(seen: Snapshot) -> bool:
+    return seen.activity is ActivityName.HOLDING
+
+
+def journal(service: Service, *kinds: EventKind) -> list[Event]:
+    """Return what the database tells of such events, newest first."""
+    reader = open_reader(f"sqlite:///{service.data_dir / 'heliopanel.db'}")
+    found = [entry.event for entry in reader.journal(JournalFilter(limit=100, kinds=kinds))]
+    reader.close()
+    return found
 
 
 @pytest.mark.fault(47)
@@ -212,20 +234,6 @@ async def test_a_second_machine_refuses_to_start_and_says_who_runs(
     fault.prevented("it does not start")
     fault.shows(sentence.replace(str(service.data_dir), "DIR"))
     fault.recovers("nothing was lost: the first one runs on")
-
-
-async def test_serve_ends_both_processes_and_leaves_no_mark(tmp_path: Path) -> None:
-    service = await Service.start(tmp_path / "data")
-    processes = [service.starts(child)[0] for child in ("controller", "web")]
-    assert (service.data_dir / MARKER_NAME).exists()
-
-    assert await service.stop() == 0
-
-    assert not (service.data_dir / MARKER_NAME).exists()
-    assert not still_there(processes)
-    journal = open_reader(f"sqlite:///{service.data_dir / 'heliopanel.db'}")
-    assert journal.journal(JournalFilter(limit=1))[0].event.kind is EventKind.CONTROLLER_STOPPED
-    journal.close()
 
 
 def still_there(processes: list[int]) -> list[int]:
@@ -249,54 +257,6 @@ async def test_when_the_supervisor_is_killed_its_children_end_properly(tmp_path:
     assert not (service.data_dir / MARKER_NAME).exists()
 
 
-async def test_a_backup_is_restored_while_the_service_runs(service: Service, tmp_path: Path) -> None:
-    kept = tmp_path / "kept.db"
-    first = await service.ask(RenameSite("Samsun"))
-    assert await _command(service, "backup", str(kept)) == 0
-    await service.ask(RenameSite("Bafra"))
-
-    assert await _command(service, "restore", str(kept)) == 0
-    await service.until(lambda _: _boot_id(service) != first.boot_id)
-
-    assert (await service.link.detail()).site.name == "Samsun"
-
-
 def _boot_id(service: Service) -> str:
     latest = service.link.latest()
     return "" if latest is None else latest.boot_id
-
-
-async def _command(service: Service, *words: str) -> int:
-    process = await asyncio.create_subprocess_exec(
-        sys.executable,
-        "-m",
-        "app.cli",
-        *words,
-        env=os.environ | {"HELIOPANEL_DATA_DIR": str(service.data_dir)},
-        stdout=asyncio.subprocess.DEVNULL,
-    )
-    return await process.wait()
-
-
-@pytest.mark.parametrize(
-    ("variable", "value", "sentence"),
-    [
-        ("HELIOPANEL_HOST", "0.0.0.0", "does not listen on 0.0.0.0"),
-        ("HELIOPANEL_PORT", "many", "HELIOPANEL_PORT is wrong"),
-        ("HELIOPANEL_CONFIG", "/nowhere/settings.toml", "cannot be read"),
-    ],
-)
-async def test_wrong_settings_are_one_sentence(variable: str, value: str, sentence: str) -> None:
-    process = await asyncio.create_subprocess_exec(
-        sys.executable,
-        "-m",
-        "app.cli",
-        "serve",
-        env=os.environ | {variable: value},
-        stderr=asyncio.subprocess.PIPE,
-    )
-    _, told = await process.communicate()
-
-    assert process.returncode == 2
-    assert sentence in told.decode()
-    assert "Traceback" not in told.decode()

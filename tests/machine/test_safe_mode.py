@@ -13,8 +13,9 @@ from app.tracker.settings.axes import Axis
 from app.tracker.state.snapshot import ActivityName
 from app.tracker.values.mode import Mode
 from tests.fault_result import FaultResult
-from tests.machine.service import SAMSUN, Service, eventually
+from tests.machine.service import SAMSUN, Service
 from tests.machine.stories import until_served
+from tests.patience import eventually
 
 PAGE_BYTES = 4096
 

@@ -11,7 +11,7 @@ from app.store.connections import transaction, writing_engine
 from app.tracker.commands.commands import CommandRejected, Park
 from tests.fault_result import FaultResult
 from tests.machine.lives import Machine
-from tests.machine.service import eventually
+from tests.patience import eventually
 
 UNFIT = {"no tracker": "[]", "no JSON": "{"}
 

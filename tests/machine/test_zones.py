@@ -9,8 +9,9 @@ from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.tracker.memory.memory import SiteState
 from tests.fault_result import FaultResult
-from tests.machine.service import SAMSUN, Service, eventually
+from tests.machine.service import SAMSUN, Service
 from tests.machine.stories import until_served
+from tests.patience import eventually
 
 WITHOUT_TZDATA = "import sys\nsys.modules['tzdata'] = None\n"
 

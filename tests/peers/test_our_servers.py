@@ -23,7 +23,8 @@ from app.simulation.simulated import SimulatedDrive
 from app.tracker.settings.config import Parity, SerialConfig, TrackerConfig
 from app.tracker.state.snapshot import ActivityName, EventKind
 from app.tracker.values.motion import Velocity
-from tests.gateway.rigs import HurriedClock, eventually
+from tests.gateway.rigs import HurriedClock
+from tests.patience import eventually
 from tests.peers.processes import cable, mbpoll, modbus_serial
 from tests.site.plant import SUMMER_NOON, Plant, make_plant
 

@@ -11,9 +11,9 @@ from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.tracker.memory.recording import RecordingKind
 from app.tracker.state.snapshot import ActivityName
+from tests.amount import amount
 from tests.site.direct_writer import DirectWriter
 from tests.site.field import Field
-from tests.soak import amount
 
 TRACKERS = amount(3, 20)
 MINUTES = int(os.environ.get("HELIOPANEL_TEST_MINUTES", amount(20, 24 * 60)))

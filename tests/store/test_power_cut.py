@@ -9,8 +9,8 @@ import pytest
 
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
+from tests.amount import amount
 from tests.fault_result import FaultResult
-from tests.soak import amount
 from tests.store.committing import ACKNOWLEDGED, RECORDINGS, check
 from tests.store.power_cut import Call, Disk, Recording, record
 from tests.store.tracked_day import day_info

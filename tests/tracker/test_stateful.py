@@ -60,7 +60,7 @@ from app.tracker.settings.protections import (
 )
 from app.tracker.state.snapshot import ActivityName
 from app.tracker.values.mode import Mode
-from tests.soak import SOAK, amount
+from tests.amount import SOAK, amount
 from tests.tracker.plant import CONFIG, READY, Plant
 from tests.tracker.test_controller_show import PLAN
 from tests.tracker.witness import Witness, moves

@@ -26,7 +26,7 @@ from app.web.http.server import PanelServer
 from app.web.main import configured, create_app
 from tests.access.fake_hasher import FakeHasher
 from tests.fakes import FakeMachine, FakeReader
-from tests.machine.service import eventually
+from tests.patience import eventually
 from tests.ports import free_port
 from tests.web.office import HERE, PASSWORD
 

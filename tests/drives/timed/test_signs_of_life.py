@@ -17,7 +17,7 @@ from app.tracker.settings.config import DriveConfig, DriveKind, TrackerConfig
 from app.tracker.state.snapshot import Snapshot
 from tests.drives.test_plc import ECHO, WATCHDOG_MS, Wire
 from tests.fault_result import REAL, FaultResult
-from tests.gateway.rigs import eventually
+from tests.patience import eventually
 
 pytestmark = pytest.mark.real_time
 READINGS_A_SECOND = 10

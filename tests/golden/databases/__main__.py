@@ -20,9 +20,10 @@ import httpx
 from PIL import Image
 
 from tests.e2e.integrator import SAMSUN, Integrator, Refused
-from tests.e2e.product import Product, eventually
+from tests.e2e.product import Product
 from tests.golden.databases.folders import HERE, NAME, PASSWORD, Folder
 from tests.golden.databases.questions import asked, signed_in
+from tests.patience import until as eventually
 
 ROOT = HERE.parents[2]
 RAN = {"start": "2027-06-21T10:00:00+03:00", "end": "2027-06-21T12:00:00+03:00", "duration_s": 30}

@@ -25,7 +25,7 @@ from release.__main__ import git, make, present_version
 from tests.e2e.product import Product
 from tests.ports import free_port
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[3]
 VERSION, DAY = "9.9.0", date(2030, 5, 17)
 pytestmark = pytest.mark.timeout(400)
 MADE_AT = datetime.combine(DAY, time(), UTC)

@@ -21,7 +21,7 @@ from bench.installed import BOUND_MB, MEGABYTE, OWN, installation
 from tests.e2e import product
 from tests.e2e.product import Product
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 SOURCES = (
     *("CHANGELOG.md", "LICENSE", "MANIFEST.in", "README.md", "SECURITY.md", "alembic", "alembic.ini", "app"),
     *("docs", "pyproject.toml", "setup.py", "static", "templates"),

@@ -17,10 +17,11 @@ from app.link.messages import StopAll
 from app.link.weather_orders import ReportWeather
 from app.tracker.state.snapshot import ActivityName, EventKind
 from app.tracker.weather.weather import Weather
+from tests.amount import SOAK
 from tests.fault_result import BY_ITSELF, REAL, FaultResult
 from tests.machine.field import Punctuality, doing, last_of, noon_place, prepare, sheltered
-from tests.machine.service import Service, eventually
-from tests.soak import SOAK
+from tests.machine.service import Service
+from tests.patience import eventually
 
 TICKS = 10_000
 MARGIN = 1.05

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-SCRIPT = Path(__file__).resolve().parents[2] / "deploy" / "install.sh"
+SCRIPT = Path(__file__).resolve().parents[3] / "deploy" / "install.sh"
 PROGRAM = """
 import os, pathlib, sys
 

@@ -10,7 +10,7 @@ import pytest
 from app.web.documented import DOCUMENT
 from tests.e2e.product import DriveSim, Product
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 WALK = Path(__file__).with_name("client_walk.py")
 ENVIRONMENT = ROOT / ".venv" / "client" / "bin"
 CONFIG = ROOT / "docs" / "openapi-python-client.yml"

@@ -15,7 +15,8 @@ from app.tracker.commands.commands import SelectMode, SetHome, Track
 from app.tracker.state.snapshot import ActivityName, EventKind
 from app.tracker.values.mode import Mode
 from tests.fault_result import FaultResult
-from tests.machine.service import SAMSUN, Service, eventually
+from tests.machine.service import SAMSUN, Service
+from tests.patience import eventually
 
 LIBRARIES = sorted(Path("/usr/lib").glob("*/faketime/libfaketime.so.1"))
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.tracker.settings.config import DriveKind
+from tests.amount import SOAK, amount
 from tests.fault_result import BY_ITSELF, REAL, FaultResult
 from tests.machine.fieldwork import (
     Size,
@@ -19,7 +20,6 @@ from tests.machine.fieldwork import (
     sunrise,
     web_restart,
 )
-from tests.soak import SOAK, amount
 
 FIELD = Size(amount(12, 100), 100, amount(240, 12_000))
 LARGEST = Size(amount(40, 1000), 1000, amount(80, 12_000))

@@ -18,10 +18,11 @@ from app.tracker.commands.commands import CommandRejected, SelectMode, SetHome, 
 from app.tracker.state.snapshot import ActivityName
 from app.tracker.values.alarm_words import AlarmState
 from app.tracker.values.mode import Mode
+from tests.amount import amount
 from tests.fault_result import REAL, FaultResult
 from tests.machine.failing_disk import DiskFault, failing, filled, small_disk
-from tests.machine.service import SAMSUN, Service, eventually
-from tests.soak import amount
+from tests.machine.service import SAMSUN, Service
+from tests.patience import eventually
 
 LATEST_TICK_S = 1.0
 WATCHED_S = 1.5

@@ -17,9 +17,10 @@ from app.site.startup import CUT_OFF
 from app.store.engine import open_reader
 from app.store.migrations import upgrade
 from app.tracker.memory.recording import RecordingInfo, RecordingKind
+from tests.amount import amount
 from tests.fault_result import REAL, FaultResult
-from tests.machine.service import SAMSUN, Service, eventually
-from tests.soak import amount
+from tests.machine.service import SAMSUN, Service
+from tests.patience import eventually
 
 STORE_S = 2
 KILLS = amount(2, 30)
