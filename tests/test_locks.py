@@ -27,7 +27,7 @@ LOCKS = {
     "requirements-uv.txt": PROJECT["dependency-groups"]["uv"],
 }
 HERE = ("requirements.txt", "requirements-test.txt", "requirements-uv.txt")
-"""What the gate installs; `make soak PART=built` asks of the others (tests/test_locks_of_tools.py)."""
+"""What the gate installs; `make soak PART=built` asks of the others (tests/soak/built/)."""
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 PROCESSORS = ("x86_64", "aarch64")
 

@@ -13,7 +13,7 @@ from release.bom import bill
 from release.changelog import released
 from release.refused import Refused
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[3]
 DAY = datetime(2030, 5, 17, tzinfo=UTC)
 NEWS = "- The panel whistles."
 
