@@ -1,12 +1,13 @@
 """One tracker that lives in memory."""
 
 from dataclasses import replace
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 from math import copysign
 
 from app.base.angles import separation_deg
 from app.base.message import N_, Word, join
 from app.tracker.commands.commands import (
+    JOG_LEASE,
     Command,
     CommandRejected,
     EndJog,
@@ -38,6 +39,8 @@ from app.tracker.settings.config import Orientation
 from app.tracker.state.snapshot import (
     ActivityName,
     AxisState,
+    Event,
+    EventKind,
     Pair,
     SensorState,
     ShowPhase,
@@ -58,6 +61,7 @@ NO_SWITCHES = Reason("no_origin_switches", "This drive has no origin switches.",
 NO_FORMER_HOME = Reason("nothing_to_undo", "There is no former home position.", "")
 NO_SHOW = Reason("no_show", "No show is under way.", "Plan a show and go to its start.")
 BUSY = Reason("busy", "Somebody else is moving this axis.", "Wait until it stands.")
+NOT_RENEWED = "The jog ended: the jog command was not renewed in time."
 CAPABILITIES = DriveCapabilities(False, 0.5, False, True, "Simulated drive", verified=True)
 
 
@@ -74,6 +78,7 @@ class FakeTracker:
         self.show: tuple[ShowPlan, ShowPhase] | None = None
         self.shown = 0.4
         self.press: str | None = None
+        self.held_until = datetime.max.replace(tzinfo=UTC)
         self.dead: set[str] = set()
         self.sequence = -1
         self.not_stowed: Reason | None = None
@@ -84,7 +89,7 @@ class FakeTracker:
         """Do what was asked, at once."""
         match command:
             case Jog():
-                self._jog(command)
+                self._jog(command, now)
             case EndJog(press_id=press):
                 self._end_press(press)
             case Step(axis=axis, delta_deg=degrees):
@@ -121,7 +126,7 @@ class FakeTracker:
             case Stop() | StopShow() | ResetFault():
                 self._stop()
 
-    def _jog(self, jog: Jog) -> None:
+    def _jog(self, jog: Jog, now: datetime) -> None:
         if jog.press_id in self.dead:
             raise CommandRejected(Reason("press_dead", "This jog command has ended.", "Press the key again."))
         if self.press not in (None, jog.press_id):
@@ -131,9 +136,18 @@ class FakeTracker:
         if self.activity not in (ActivityName.HOLDING, ActivityName.JOGGING):
             raise CommandRejected(STOP_FIRST)
         self.press, self.activity = jog.press_id, ActivityName.JOGGING
+        self.held_until = now + min(jog.lease, JOG_LEASE)
         axis = self.config.axis(jog.axis)
         speed = axis.jog_fast_dps if jog.speed is JogSpeed.FAST else axis.jog_slow_dps
         self._turn(jog.axis, copysign(speed * 0.05, jog.direction))
+
+    def overdue(self, now: datetime) -> list[Event]:
+        """End a jog that was not renewed in time, and return what the journal says of it."""
+        if self.press is None or now < self.held_until:
+            return []
+        self._end_press(self.press)
+        data = {"outcome": "expired"}
+        return [Event(now, EventKind.JOG_ENDED, self.config.tracker_id, NOT_RENEWED, data=data)]
 
     def _end_press(self, press_id: str) -> None:
         self.dead.add(press_id)

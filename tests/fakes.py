@@ -250,6 +250,11 @@ class FakeMachine:
         self._outlet.publish(snapshot, events)
         return snapshot
 
+    def tick(self) -> SiteSnapshot:
+        """End the jogs that were not renewed in time, and tell every reader."""
+        now = self.clock.now()
+        return self.emit(*(event for one in self.trackers.values() for event in one.overdue(now)))
+
     def cut(self) -> None:
         """Lose the link: readers end, orders fail."""
         self.reachable = False

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from datetime import timedelta
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 import uvicorn
@@ -22,6 +22,9 @@ from tests.e2e.chromium import QUIET as FLAGS
 from tests.e2e.letters import environment
 from tests.fakes import FakeMachine, fake_app
 from tests.patience import PATIENCE_MS, PATIENCE_S
+
+if TYPE_CHECKING:
+    from tests.browser.page_clock import Stage
 
 SCREENS = Path(__file__).resolve().parents[2] / "build" / "screens"
 TAKES_PICTURES = "HELIOPANEL_SCREENS" in os.environ
@@ -74,6 +77,15 @@ class PassingServer(uvicorn.Server):
     A browser connects in advance, and what connects while the server shuts down is no longer closed.
     """
 
+    def __init__(self, config: uvicorn.Config, ready: threading.Event | None = None) -> None:
+        super().__init__(config)
+        self._ready = ready or threading.Event()
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        if self.started:
+            self._ready.set()
+
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         await super().shutdown(sockets)
         for _ in range(CYCLES_OF_AN_ACCEPT):
@@ -89,12 +101,16 @@ class Served:
     ready: threading.Event = field(default_factory=threading.Event)
     server: uvicorn.Server | None = None
     loop: asyncio.AbstractEventLoop | None = None
+    around: Callable[[Any], Any] = lambda app: app
+    """What a test puts between the server and the panel."""
 
     async def run(self) -> None:
         self.loop = asyncio.get_running_loop()
-        app = self.app or fake_app(self.machine)
-        config = uvicorn.Config(app, host="127.0.0.1", port=0, log_level="error", timeout_graceful_shutdown=1)
-        self.server = PassingServer(config)
+        self.app = self.app or fake_app(self.machine)
+        config = uvicorn.Config(
+            self.around(self.app), host="127.0.0.1", port=0, log_level="error", timeout_graceful_shutdown=1
+        )
+        self.server = PassingServer(config, self.ready)
         moving = asyncio.create_task(self._move())
         try:
             await self.server.serve()
@@ -105,10 +121,8 @@ class Served:
 
     async def _move(self) -> None:
         while True:
-            if self.server is not None and self.server.started:
-                self.ready.set()
             if self.machine.reachable:
-                self.machine.emit()
+                self.machine.tick()
             await self.machine.clock.sleep_until(self.machine.clock.now() + BEAT)
 
 
@@ -227,6 +241,15 @@ def opened(visitors: Visitors, plant: Plant) -> Iterator[Opened]:
     for page in pages:
         page.close()
     assert [one for one in complaints if not any(words in one for words in allowed)] == []
+
+
+@pytest.fixture
+def stage(browser: Browser) -> "Iterator[Stage]":
+    """A panel with a machine in memory, and pages before it, on a clock that only the test moves."""
+    from tests.browser.page_clock import staged  # noqa: PLC0415 - it is built on what is here
+
+    with staged(browser) as found:
+        yield found
 
 
 @pytest.fixture

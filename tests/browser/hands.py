@@ -21,6 +21,10 @@ TOLD = '[role="alert"], .reasons, .field-error, .outcome, .kept-note, #link-word
 """Where a page says how things stand, and why something is refused."""
 
 
+Passes = Callable[[int], object]
+"""Lets so many milliseconds pass while a key is held: `Stage.advance`; without one the computer's does."""
+
+
 class Hands(Protocol):
     """What a technician does with a page."""
 
@@ -67,6 +71,7 @@ def middle(thing: Locator) -> tuple[float, float]:
 @dataclass
 class Mouse:
     page: Page
+    passes: Passes | None = None
 
     def press(self, key: Locator) -> None:
         key.click()
@@ -82,13 +87,14 @@ class Mouse:
         self.page.wait_for_selector(LINK_MEASURED)
         self.page.mouse.move(*middle(key))
         self.page.mouse.down()
-        self.page.wait_for_timeout(for_ms)
+        (self.passes or self.page.wait_for_timeout)(for_ms)
         self.page.mouse.up()
 
 
 @dataclass
 class Finger:
     page: Page
+    passes: Passes | None = None
 
     def press(self, key: Locator) -> None:
         key.tap()
@@ -107,7 +113,7 @@ class Finger:
         x, y = middle(key)
         point = {"x": x, "y": y, "id": 0}
         session.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": [point]})
-        self.page.wait_for_timeout(for_ms)
+        (self.passes or self.page.wait_for_timeout)(for_ms)
         session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
 
     def _swipe_to(self, key: Locator, session: CDPSession) -> None:
@@ -127,6 +133,7 @@ class Finger:
 @dataclass
 class Keyboard:
     page: Page
+    passes: Passes | None = None
 
     def press(self, key: Locator) -> None:
         key.focus()
@@ -145,7 +152,7 @@ class Keyboard:
         self.page.wait_for_selector(LINK_MEASURED)
         key.focus()
         self.page.keyboard.down(" ")
-        self.page.wait_for_timeout(for_ms)
+        (self.passes or self.page.wait_for_timeout)(for_ms)
         self.page.keyboard.up(" ")
 
 
