@@ -46,7 +46,7 @@ class Lines:
 
     def __init__(self) -> None:
         self.known: dict[str, Line] = {}
-        self._heard = asyncio.Event()
+        self._moved = asyncio.Event()
 
     def around(self, app: ASGIApp) -> ASGIApp:
         """Return an application that counts what goes over its live sockets."""
@@ -61,7 +61,7 @@ class Lines:
                 await app(scope, self._hearing(line, receive), self._telling(line, send))
             finally:
                 line.over = True
-                self._heard.set()
+                self._moved.set()
 
         return counted
 
@@ -70,7 +70,7 @@ class Lines:
             message = await receive()
             line.heard += message["type"] == "websocket.receive"
             line.over = line.over or message["type"] == "websocket.disconnect"
-            self._heard.set()
+            self._moved.set()
             return message
 
         return hear
@@ -92,8 +92,14 @@ class Lines:
         for name, number in sent.items():
             line = self.known[name]
             while line.heard < number and not line.over:
-                self._heard.clear()
-                await self._heard.wait()
+                self._moved.clear()
+                await self._moved.wait()
+
+    async def until_over(self, names: list[str]) -> None:
+        """Return once the panel has done with these sockets."""
+        while not all(self.known[name].over for name in names):
+            self._moved.clear()
+            await self._moved.wait()
 
 
 def _name(scope: Scope) -> str | None:
@@ -129,6 +135,12 @@ class Stage:
     complaints: list[str] = field(default_factory=list)
     allowed: list[str] = field(default_factory=list)
     threads: CountedThreads = field(default_factory=CountedThreads)
+    blocked: Page | None = None
+
+    def begin(self) -> None:
+        """Know from now on of the panel's threads."""
+        self.plant.loop.call_soon_threadsafe(self.plant.loop.set_default_executor, self.threads)
+        self.settle()
 
     def visitor(
         self, size: str = "desk", *, touch: bool = False, theme: str = "day", language: str = ""
@@ -191,6 +203,26 @@ class Stage:
             self.advance(BEAT_MS)
         raise AssertionError(f"It did not become so within {within_ms} ms of the page's time.")
 
+    def block(self, page: Page, ms: int) -> None:
+        """Let time pass while the scripts of a page, alone in its browser, run on the spot and hear nothing.
+
+        Afterwards all that was due is done once, as a browser does it.
+        """
+        self.settle()
+        page.evaluate("tap.hold()")
+        self.blocked = page
+        self.advance(ms)
+        self.blocked = None
+        page.clock.fast_forward(ms)
+        self.settle()
+
+    def leave(self, page: Page) -> None:
+        """Close a page, and return once the panel knows that it has gone."""
+        sockets = [one["id"] for one in page.evaluate("tap.places()")]
+        page.close()
+        self.ask(self.lines.until_over(sockets))
+        self.settle()
+
     def do(self, work: Callable[[], object]) -> None:
         """Do something in the panel's thread, and have the pages hear what it tells of it."""
 
@@ -216,7 +248,8 @@ class Stage:
         self._each("tap.hold()")
         self.ask(self._step(timedelta(milliseconds=ms)))
         for context in self.contexts:
-            context.clock.run_for(ms)
+            if self.blocked is None or context is not self.blocked.context:
+                context.clock.run_for(ms)
         self.settle()
 
     async def _step(self, by: timedelta) -> None:
@@ -240,7 +273,7 @@ class Stage:
 
     def _each(self, work: str, *given: object) -> list[Any]:
         """Return what every page that is open says to this."""
-        pages = [page for context in self.contexts for page in context.pages]
+        pages = [one for context in self.contexts for one in context.pages if one is not self.blocked]
         return [_said(page, work, *given) for page in pages]
 
     def close(self) -> None:
@@ -275,6 +308,6 @@ def staged(browser: Browser, served: Served | None = None) -> Iterator[Stage]:
     served.around = lines.around
     with running(served) as plant:
         stage = Stage(browser, plant, served.machine.clock, lines)
-        plant.loop.call_soon_threadsafe(plant.loop.set_default_executor, stage.threads)
+        stage.begin()
         yield stage
         stage.close()

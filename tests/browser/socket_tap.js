@@ -11,6 +11,7 @@
   let frozen = false;
   let lateMs = 0;
   let asked = 0;
+  let swallowed = null;
 
   const look = () => watchers.forEach((watch) => watch());
   const until = (reached) => new Promise((done) => {
@@ -46,7 +47,7 @@
     get place() { return { id: this.#id, sent: this.#sent, heard: this.#heard, over: this.#over }; }
 
     send(data) {
-      if (silent) return;
+      if (silent || (swallowed && data.includes(swallowed))) return;
       if (frozen) this.#kept.push(data);
       else if (lateMs) setTimeout(() => this.#forward(data), lateMs);
       else this.#forward(data);
@@ -94,16 +95,19 @@
     freeze() { frozen = true; },
     thaw() { frozen = false; open.forEach((socket) => socket.thaw()); },
     delay(ms) { lateMs = ms; }, // each way, in whole beats of the stage
+    swallow(part) { swallowed = part; }, // what says this does not arrive
+    // A request to such an address is not waited for.
     excuse(part) { excused.push(part); },
+    places() { return [...open.values()].map((socket) => socket.place).filter((place) => !place.over); },
     // Once all that the panel has told is here, hand it on; then say how much was sent.
     async settle(told) {
-      for (const socket of open.values()) {
+      for (const socket of silent ? [] : open.values()) {
         await until(() => socket.place.over || (!socket.isUnderWay && socket.place.heard >= (told[socket.place.id] ?? 0)));
       }
       holding = false;
       open.forEach((socket) => socket.release());
       await until(() => asked === 0);
-      return [...open.values()].map((socket) => socket.place).filter((place) => !place.over);
+      return this.places();
     },
   };
 })();

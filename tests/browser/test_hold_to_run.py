@@ -1,226 +1,224 @@
-"""Hold-to-run: the axis moves while the key is held, and every way of letting go ends it."""
+"""Hold-to-run: the axis moves while the key is held, and every way of letting go ends it.
+
+The pages are before the controller itself, all on one clock: a heartbeat every 50 ms, rest after the ramp.
+"""
 
 from collections.abc import Callable, Iterator
+from functools import partial
+from math import ceil
 
 import pytest
-from playwright.sync_api import CDPSession, Page
+from playwright.sync_api import Browser, CDPSession, Page, expect
 
+from app.tracker.commands.commands import JOG_LEASE
 from app.tracker.settings.axes import Axis, JogSpeed
-from app.tracker.state.snapshot import ActivityName
-from tests.browser.conftest import Opened, Plant, running
-from tests.browser.hands import LINK_MEASURED
-from tests.fault_result import FaultResult
+from app.tracker.state.snapshot import ActivityName, EventKind
+from tests.browser.hands import LINK_MEASURED, middle
+from tests.browser.page_clock import BEAT_MS, Stage
+from tests.browser.site_stage import SiteStage, staged_site
+from tests.fault_result import VIRTUAL, FaultResult
+from tests.site.plant import FIRST
 
 HOMING = "/trackers/T1/commissioning/homing"
 KEY = '[data-jog="azimuth"][data-direction="1"]'
-JOGGING = ActivityName.JOGGING
-HOLD_MS = 1500
-TRIES = 4
-SETTLE_MS = 400
-
-
-@pytest.fixture(scope="module")
-def panel() -> Iterator[Plant]:
-    """One panel for all: after each test its axes rest."""
-    with running() as served:
-        yield served
+OTHER_KEY = '[data-jog="elevation"][data-direction="1"]'
+HELD_MS = 400
+LEASE_MS = 240
+RAMP_MS = 1000 * FIRST.config.azimuth.jog_slow_dps / FIRST.config.azimuth.acceleration_dps2
+RAMP_IN_BEATS_MS = BEAT_MS * ceil(RAMP_MS / BEAT_MS)
+STILL_MS = 500
 
 
 @pytest.fixture
-def plant(panel: Plant) -> Plant:
-    """The panel as if nothing had been asked of it yet."""
-    panel.machine.orders.clear()
-    return panel
+def site(browser: Browser) -> Iterator[SiteStage]:
+    with staged_site(browser) as found:
+        yield found
 
 
-def middle(page: Page, selector: str = KEY) -> tuple[float, float]:
-    page.locator(selector).scroll_into_view_if_needed()
-    box = page.locator(selector).bounding_box()
-    assert box is not None
-    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+def opened(site: SiteStage, path: str = HOMING, size: str = "desk", *, touch: bool = False) -> Page:
+    """Open a page whose keys may be held: it knows its link, and what the controller allows."""
+    page = site.open(path, size, touch=touch)
+    site.until(lambda: page.locator(LINK_MEASURED).count() and page.locator(KEY).is_enabled())
+    return page
 
 
-def is_at_rest(plant: Plant, page: Page) -> bool:
-    page.wait_for_timeout(SETTLE_MS)
-    sent = len(plant.orders("jog"))
-    page.wait_for_timeout(SETTLE_MS)
-    return len(plant.orders("jog")) == sent and plant.machine.trackers["T1"].activity is ActivityName.HOLDING
+def held(site: SiteStage, page: Page, begin: Callable[[], object]) -> str:
+    """Hold a key: a heartbeat every 50 ms, and the axis turns. Return the name of the press."""
+    before = len(site.plant.orders("jog"))
+    begin()
+    page.wait_for_selector(f"{KEY}[data-held]")
+    site.advance(HELD_MS)
+    beats = site.plant.orders("jog")[before:]
+    assert [one.sequence for one in beats] == list(range(1 + HELD_MS // BEAT_MS))
+    assert len({one.press_id for one in beats}) == 1
+    assert site.tracker.activity is ActivityName.JOGGING
+    assert site.speed_dps == pytest.approx(FIRST.config.azimuth.jog_slow_dps)
+    return str(beats[-1].press_id)
 
 
-def hold(page: Page, plant: Plant, begin: Callable[[], None], release: Callable[[], None]) -> None:
-    """Press until the axis moves; a busy computer ends a hold, as it must, and one presses again."""
-    page.wait_for_selector(LINK_MEASURED)
-    for _ in range(TRIES):
-        sent = len(plant.orders("jog"))
-        begin()
-        for _ in range(HOLD_MS // 50):
-            page.wait_for_timeout(50)
-            if len(plant.orders("jog")) >= sent + 4 and plant.machine.trackers["T1"].activity is JOGGING:
-                return
-        release()
-        page.wait_for_timeout(SETTLE_MS)
-    pytest.fail("The axis never moved while the key was held.")
+def let_go(page: Page, way: Callable[[], object]) -> None:
+    """Do something that ends a press, and return once the page knows it."""
+    way()
+    page.wait_for_selector(f"{KEY}:not([data-held])")
 
 
-def hold_with_mouse(page: Page, plant: Plant) -> None:
-    page.mouse.move(*middle(page))
-    hold(page, plant, page.mouse.down, page.mouse.up)
+def rests(site: SiteStage, press: str, way: str, outcome: str = "released") -> None:
+    """The press ended at this instant: not one heartbeat more, the axis ramps down, and stands."""
+    site.settle()
+    assert site.happened(EventKind.JOG_ENDED)[-1].data["outcome"] == outcome, way
+    assert site.happened(EventKind.JOG_ENDED)[-1].at == site.clock.now(), way
+    assert press in {order.press_id for order in site.plant.orders("end_jog")}, way
+    sent = len(site.plant.orders("jog"))
+    assert site.until(lambda: site.speed_dps == 0.0) == RAMP_IN_BEATS_MS, way
+    site.advance(STILL_MS)
+    assert site.tracker.activity is ActivityName.HOLDING, way
+    assert (site.speed_dps, len(site.plant.orders("jog"))) == (0.0, sent), way
 
 
-def hold_with_key(page: Page, plant: Plant, key: str) -> None:
-    page.locator(KEY).focus()
-    hold(page, plant, lambda: page.keyboard.down(key), lambda: page.keyboard.up(key))
-
-
-def hold_with_finger(page: Page, plant: Plant) -> tuple[CDPSession, tuple[float, float]]:
-    at, session = middle(page), page.context.new_cdp_session(page)
-    hold(page, plant, lambda: touch(session, "touchStart", at), lambda: touch(session, "touchEnd"))
-    return session, at
-
-
-@pytest.mark.parametrize("size", ["desk", "tablet", "phone"])
-def test_mouse_holds_and_lets_go(size: str, opened: Opened, plant: Plant) -> None:
-    page = opened(HOMING, size)
-    hold_with_mouse(page, plant)
-    page.mouse.up()
-    assert is_at_rest(plant, page)
-    assert plant.orders("jog")[-1].press_id in {order.press_id for order in plant.orders("end_jog")}
-
-
-def test_the_page_behind_the_label_holds_and_lets_go(opened: Opened, plant: Plant) -> None:
-    page = opened("/trackers/T1/mast", "phone")
-    session, _ = hold_with_finger(page, plant)
-    touch(session, "touchEnd")
-    assert is_at_rest(plant, page)
-    assert {(order.axis, order.direction, order.speed) for order in plant.orders("jog")} == {
-        (Axis.AZIMUTH, 1, JogSpeed.SLOW)
-    }
-
-
-def test_sequence_grows_with_every_heartbeat(opened: Opened, plant: Plant) -> None:
-    page = opened(HOMING)
-    hold_with_mouse(page, plant)
-    page.mouse.up()
-    last = plant.orders("jog")[-1].press_id
-    sequences = [order.sequence for order in plant.orders("jog") if order.press_id == last]
-    assert sequences == sorted(set(sequences))
-
-
-def touch(session: CDPSession, kind: str, *points: tuple[float, float]) -> None:
-    session.send(
-        "Input.dispatchTouchEvent",
-        {
-            "type": kind,
-            "touchPoints": [{"x": x, "y": y, "id": number} for number, (x, y) in enumerate(points)],
-        },
-    )
-
-
-@pytest.mark.parametrize("size", ["tablet", "phone"])
-@pytest.mark.parametrize("release", ["touchEnd", "touchCancel"])
-def test_finger_holds_and_lets_go(size: str, release: str, opened: Opened, plant: Plant) -> None:
-    page = opened(HOMING, size, touch=True)
-    session, _ = hold_with_finger(page, plant)
-    touch(session, release)
-    assert is_at_rest(plant, page)
-
-
-@pytest.mark.fault(58)
-def test_small_drift_keeps_the_hold_and_sliding_off_ends_it(
-    opened: Opened, plant: Plant, fault: FaultResult
-) -> None:
-    page = opened(HOMING, "tablet", touch=True)
-    session, (x, y) = hold_with_finger(page, plant)
-    touch(session, "touchMove", (x + 20, y + 20))
-    before = len(plant.orders("jog"))
-    page.wait_for_timeout(300)
-    assert len(plant.orders("jog")) > before
-    touch(session, "touchMove", (x, y - 220))
-    assert is_at_rest(plant, page)
-    touch(session, "touchEnd")
-    hold_with_finger(page, plant)
-    fault.recovers("the button is pressed again")
-
-
-def test_second_finger_ends_it(opened: Opened, plant: Plant) -> None:
-    page = opened(HOMING, "tablet", touch=True)
-    session, at = hold_with_finger(page, plant)
-    touch(session, "touchStart", at, middle(page, '[data-jog="elevation"][data-direction="1"]'))
-    assert is_at_rest(plant, page)
-
-
-@pytest.mark.parametrize("key", [" ", "Enter"])
-def test_keyboard_holds_and_lets_go(key: str, opened: Opened, plant: Plant) -> None:
-    page = opened(HOMING)
-    hold_with_key(page, plant, key)
-    page.keyboard.up(key)
-    assert is_at_rest(plant, page)
-
-
-def test_leaving_the_key_by_keyboard_ends_it(opened: Opened, plant: Plant) -> None:
-    page = opened(HOMING)
-    hold_with_key(page, plant, " ")
-    page.keyboard.press("Tab")
-    assert is_at_rest(plant, page)
+def press_mouse(page: Page) -> None:
+    page.mouse.move(*middle(page.locator(KEY)))
+    page.mouse.down()
 
 
 HIDE = (
     "Object.defineProperty(document, 'hidden', {value: true}); "
     "document.dispatchEvent(new Event('visibilitychange'))"
 )
-
-
-@pytest.mark.parametrize(
-    "event",
-    [
-        "dispatchEvent(new Event('blur'))",
-        "dispatchEvent(new Event('pagehide'))",
-        "dispatchEvent(new Event('orientationchange'))",
-        HIDE,
-    ],
+GOES_AWAY = (
+    "dispatchEvent(new Event('blur'))",
+    "dispatchEvent(new Event('orientationchange'))",
+    HIDE,
+    "dispatchEvent(new Event('pagehide'))",
 )
+
+
 @pytest.mark.fault(58)
-def test_window_that_goes_away_ends_it(event: str, opened: Opened, plant: Plant, fault: FaultResult) -> None:
-    page = opened(HOMING)
-    hold_with_mouse(page, plant)
-    page.evaluate(f"() => {{ {event} }}")
-    assert is_at_rest(plant, page)
+def test_window_that_goes_away_ends_it(site: SiteStage, fault: FaultResult) -> None:
+    page = opened(site)
+    press = held(site, page, lambda: press_mouse(page))
+    let_go(page, page.mouse.up)
+    rests(site, press, "mouse up")
+    for event in GOES_AWAY:
+        press = held(site, page, lambda: press_mouse(page))
+        let_go(page, lambda event=event: page.evaluate(f"() => {{ {event} }}"))
+        rests(site, press, event)
+        page.mouse.up()
     fault.prevented("the page ends the jog; without a word of it the lease does")
     fault.shows_nothing("the button is not held any more")
 
 
-@pytest.mark.fault(57)
-def test_closed_tab_ends_it(opened: Opened, plant: Plant) -> None:
-    watching = opened(HOMING)
-    page = opened(HOMING)
-    hold_with_mouse(page, plant)
-    page.close()
-    assert is_at_rest(plant, watching)
+def test_keyboard_holds_and_lets_go(site: SiteStage) -> None:
+    page = opened(site)
+    keys = page.keyboard
+    for key, way in ((" ", keys.up), ("Enter", keys.up), (" ", lambda _: keys.press("Tab"))):
+        page.locator(KEY).focus()
+        press = held(site, page, partial(keys.down, key))
+        let_go(page, partial(way, key))
+        rests(site, press, f"{key!r} {way}")
+        keys.up(key)
+    page.locator(KEY).focus()
+    press = held(site, page, partial(keys.down, " "))
+    let_go(page, partial(keys.press, "Escape"))
+    rests(site, press, "STOP", "interrupted")
+    assert site.plant.orders("stop")
 
 
-@pytest.mark.fault(57)
-def test_blocked_page_sends_nothing_late(opened: Opened, plant: Plant, fault: FaultResult) -> None:
-    page = opened(HOMING)
-    hold_with_mouse(page, plant)
-    page.evaluate("() => { const until = performance.now() + 800; while (performance.now() < until); }")
-    page.mouse.up()
-    assert is_at_rest(plant, page)
-    fault.prevented("the lease ends without a renewal; benchmarks say when the axis was told")
-    hold_with_mouse(page, plant)
+def touch(session: CDPSession, kind: str, *points: tuple[float, float]) -> None:
+    fingers = [{"x": x, "y": y, "id": number} for number, (x, y) in enumerate(points)]
+    session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": fingers})
+
+
+@pytest.mark.fault(58)
+def test_small_drift_keeps_the_hold_and_sliding_off_ends_it(site: SiteStage, fault: FaultResult) -> None:
+    page = opened(site, size="tablet", touch=True)
+    session, (x, y) = page.context.new_cdp_session(page), middle(page.locator(KEY))
+
+    def put_down() -> None:
+        touch(session, "touchStart", (x, y))
+
+    press = held(site, page, put_down)
+    touch(session, "touchMove", (x + 20, y + 20))
+    before = len(site.plant.orders("jog"))
+    site.advance(300)
+    assert len(site.plant.orders("jog")) == before + 300 // BEAT_MS
+    let_go(page, partial(touch, session, "touchMove", (x, y - 220)))
+    rests(site, press, "slid off")
+    expect(page.locator("#jog-words")).to_have_text("The finger slid off the button.")
+    touch(session, "touchEnd")
+    press = held(site, page, put_down)
     fault.recovers("the button is pressed again")
+    let_go(page, partial(touch, session, "touchStart", (x, y), middle(page.locator(OTHER_KEY))))
+    rests(site, press, "second finger")
+    expect(page.locator("#jog-words")).to_have_text("A second finger touched the screen.")
+    touch(session, "touchEnd")
+    for way in ("touchEnd", "touchCancel"):
+        press = held(site, page, put_down)
+        let_go(page, partial(touch, session, way))
+        rests(site, press, way)
+
+
+def test_the_page_behind_the_label_holds_and_lets_go(site: SiteStage) -> None:
+    page = opened(site, "/trackers/T1/mast", "phone", touch=True)
+    session, at = page.context.new_cdp_session(page), middle(page.locator(KEY))
+    press = held(site, page, lambda: touch(session, "touchStart", at))
+    let_go(page, partial(touch, session, "touchEnd"))
+    rests(site, press, "touchEnd")
+    orders = site.plant.orders("jog")
+    assert {(one.axis, one.direction, one.speed) for one in orders} == {(Axis.AZIMUTH, 1, JogSpeed.SLOW)}
+
+
+@pytest.mark.fault(57)
+def test_closed_tab_ends_it(site: SiteStage) -> None:
+    page = opened(site)
+    press = held(site, page, lambda: press_mouse(page))
+    site.leave(page)
+    rests(site, press, "closed")
+
+
+@pytest.mark.fault(57)
+@pytest.mark.parametrize("why", ["blocked", "silent"])
+def test_blocked_page_sends_nothing_late(why: str, site: SiteStage, fault: FaultResult) -> None:
+    """A page whose scripts stand, or whose network is gone: the lease ends, and nothing counts afterwards."""
+    page = opened(site)
+    held(site, page, lambda: press_mouse(page))
+    begun, sent = site.clock.now(), len(site.plant.orders("jog"))
+    if why == "blocked":
+        site.block(page, 800)
+    else:
+        page.evaluate("tap.freeze()")
+        site.advance(800)
+        page.evaluate("tap.thaw()")
+        site.settle()
+    (ended,) = site.happened(EventKind.JOG_ENDED)
+    assert (ended.at - begun, ended.data["outcome"]) == (JOG_LEASE, "expired")
+    fault.noticed((ended.at - begun).total_seconds(), VIRTUAL)
+    fault.prevented("the lease ends without a renewal; benchmarks say when the axis was told")
+    page.mouse.up()
+    site.advance(STILL_MS)
+    expect(page.locator("#jog-words")).to_contain_text("was not renewed in time")
+    assert (site.speed_dps, len(site.plant.orders("jog"))) == (0.0, sent)
+    assert len(site.happened(EventKind.JOG_STARTED)) == 1
+    site.until(lambda: page.locator(LINK_MEASURED).count())
+    press = held(site, page, lambda: press_mouse(page))
+    fault.recovers("the button is pressed again")
+    let_go(page, page.mouse.up)
+    rests(site, press, "pressed again")
+
+
+def test_a_link_that_is_too_slow_begins_nothing(site: SiteStage) -> None:
+    page = opened(site)
+    page.evaluate("tap.delay(150)")
+    site.until(lambda: page.locator('#link-quality[data-level="3"]').count())
+    expect(page.locator("#round-trip")).to_have_text("300 ms round trip")
+    expect(page.locator("#link-verdict")).to_contain_text("Connection too slow for hold-to-run")
+    press_mouse(page)
+    site.advance(HELD_MS)
+    assert site.plant.orders("jog") == []
+    expect(page.locator("#jog-words")).to_contain_text("The connection is too slow for hold-to-run.")
     page.mouse.up()
 
 
-def test_stop_ends_the_press_of_a_held_key(opened: Opened, plant: Plant) -> None:
-    page = opened(HOMING)
-    hold_with_key(page, plant, " ")
-    page.keyboard.press("Escape")
-    assert is_at_rest(plant, page)
-    assert plant.orders("stop")
-    page.keyboard.up(" ")
-
-
-def test_key_that_may_not_move_says_why(opened: Opened) -> None:
-    page = opened("/trackers/T2/commissioning/homing")
+def test_key_that_may_not_move_says_why(stage: Stage) -> None:
+    page = stage.open("/trackers/T2/commissioning/homing")
     assert page.locator(KEY).is_disabled()
     assert "Stop it first" in page.locator('[data-reasons="jog"]').inner_text()
