@@ -136,6 +136,8 @@ class Stage:
     allowed: list[str] = field(default_factory=list)
     threads: CountedThreads = field(default_factory=CountedThreads)
     blocked: Page | None = None
+    beat_ms: int = BEAT_MS
+    """In such steps time goes on. Longer ones are quicker, but what is sent within one comes at its end."""
 
     def begin(self) -> None:
         """Know from now on of the panel's threads."""
@@ -187,20 +189,21 @@ class Stage:
     def live(self, page: Page) -> None:
         """Return once a page that was loaded is live, and its scripts have begun."""
         page.wait_for_selector(PAGE_READY)
-        self.advance(BEAT_MS)
+        self.advance(self.beat_ms)
 
     def advance(self, ms: int) -> None:
         """Let time pass for the panel and all pages, once what was done before has come to its end."""
-        self.settle()
-        for begin_ms in range(0, ms, BEAT_MS):
-            self._beat(min(BEAT_MS, ms - begin_ms))
+        self.settle(hold=ms > 0)
+        for begin_ms in range(0, ms, self.beat_ms):
+            left_ms = ms - begin_ms
+            self._beat(min(self.beat_ms, left_ms), more=left_ms > self.beat_ms)
 
     def until(self, reached: Callable[[], object], *, within_ms: int = LONG_MS) -> int:
         """Let time pass until something is so, and return how long that took in ms; or fail."""
-        for passed_ms in range(0, within_ms + 1, BEAT_MS):
+        for passed_ms in range(0, within_ms + 1, self.beat_ms):
             if reached():
                 return passed_ms
-            self.advance(BEAT_MS)
+            self.advance(self.beat_ms)
         raise AssertionError(f"It did not become so within {within_ms} ms of the page's time.")
 
     def block(self, page: Page, ms: int) -> None:
@@ -208,8 +211,7 @@ class Stage:
 
         Afterwards all that was due is done once, as a browser does it.
         """
-        self.settle()
-        page.evaluate("tap.hold()")
+        self.settle(hold=True)
         self.blocked = page
         self.advance(ms)
         self.blocked = None
@@ -236,21 +238,24 @@ class Stage:
         """Return what a coroutine of the panel comes to."""
         return asyncio.run_coroutine_threadsafe(work, self.plant.loop).result(PATIENCE_S)
 
-    def settle(self) -> None:
-        """Return once nothing is under way: all that was sent has come, and what it led to as well."""
+    def settle(self, *, hold: bool = False) -> None:
+        """Return once nothing is under way: all that was sent has come, and what it led to as well.
+
+        With `hold`, what comes afterwards waits until it is settled again.
+        """
         told = self.ask(self._quiet())
         while True:
-            sent = {one["id"]: one["sent"] for some in self._each("tap.settle", told) for one in some}
+            said = self._each("tap.settle", {"told": told, "hold": hold})
+            sent = {one["id"]: one["sent"] for some in said for one in some}
             if told == (told := self.ask(self._answers(sent))):
                 return
 
-    def _beat(self, ms: int) -> None:
-        self._each("tap.hold()")
+    def _beat(self, ms: int, *, more: bool) -> None:
         self.ask(self._step(timedelta(milliseconds=ms)))
         for context in self.contexts:
             if self.blocked is None or context is not self.blocked.context:
                 context.clock.run_for(ms)
-        self.settle()
+        self.settle(hold=more)
 
     async def _step(self, by: timedelta) -> None:
         end = self.clock.now() + by
@@ -271,10 +276,10 @@ class Stage:
             idle = 0 if loop._ready or self.threads.at_work else idle + 1
         return self.lines.told
 
-    def _each(self, work: str, *given: object) -> list[Any]:
+    def _each(self, work: str, given: object) -> list[Any]:
         """Return what every page that is open says to this."""
         pages = [one for context in self.contexts for one in context.pages if one is not self.blocked]
-        return [_said(page, work, *given) for page in pages]
+        return [_said(page, work, given) for page in pages]
 
     def close(self) -> None:
         """Close every browser; nothing may have been complained of in a console."""
@@ -284,19 +289,15 @@ class Stage:
         assert said == []
 
 
-def _said(page: Page, work: str, *given: object) -> Any:
+def _said(page: Page, work: str, given: object) -> Any:
     """Return what a page says; one that is just being loaded again says it afterwards."""
     while True:
         try:
-            return page.evaluate(f"(given) => globalThis.tap ? {_call(work)} : []", *given)
+            return page.evaluate(f"(given) => globalThis.tap ? {work}(given) : []", given)
         except Error as error:
             if LEFT not in str(error):
                 raise
             page.wait_for_load_state()
-
-
-def _call(work: str) -> str:
-    return work if work.endswith(")") else f"{work}(given)"
 
 
 @contextlib.contextmanager

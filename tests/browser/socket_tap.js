@@ -90,7 +90,6 @@
   globalThis.WebSocket = TappedSocket;
 
   globalThis.tap = {
-    hold() { holding = true; },
     silence(is) { silent = is; },
     freeze() { frozen = true; },
     thaw() { frozen = false; open.forEach((socket) => socket.thaw()); },
@@ -99,14 +98,15 @@
     // A request to such an address is not waited for.
     excuse(part) { excused.push(part); },
     places() { return [...open.values()].map((socket) => socket.place).filter((place) => !place.over); },
-    // Once all that the panel has told is here, hand it on; then say how much was sent.
-    async settle(told) {
+    // Once all that the panel has told is here, hand it on; then say how much was sent. `hold` what comes next?
+    async settle({ told, hold }) {
       for (const socket of silent ? [] : open.values()) {
         await until(() => socket.place.over || (!socket.isUnderWay && socket.place.heard >= (told[socket.place.id] ?? 0)));
       }
       holding = false;
       open.forEach((socket) => socket.release());
       await until(() => asked === 0);
+      holding = hold;
       return this.places();
     },
   };

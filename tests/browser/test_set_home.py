@@ -3,86 +3,91 @@
 from dataclasses import replace
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page
 
-from app.tracker.commands.commands import SetHome, UndoHome
-from tests.browser.conftest import Opened, Plant
-from tests.browser.hands import CONFIRM_MS, LINK_MEASURED, Finger, Hands, Keyboard, Mouse
+from app.tracker.commands.commands import UndoHome
+from tests.browser.hands import Finger, Hands, Keyboard, Mouse
+from tests.browser.page_clock import BEAT_MS, Stage
 
 HOMING = "/trackers/T1/commissioning/homing"
 SET = '[data-action="set_home"][data-after-jog]'
 SURE = '[name="confirmed"]'
+UNDO = 'form[action$="/zero/undo"] button'
+LAMPS_ON = '[data-lamp$=".homed"][data-on="true"]'
+TOLD = "The command to set home was sent to the drive."
 HANDS: dict[str, type[Hands]] = {"mouse": Mouse, "finger": Finger, "keyboard": Keyboard}
+COUNTS_MS = 2000
+COARSE_MS = 250
+"""A beat of those to whom the very instant does not matter: a page's pings are a multiple of it."""
 
 
-def zeros(plant: Plant) -> int:
-    return len([order for order in plant.machine.orders if isinstance(order.command, SetHome)])
+def shows(stage: Stage, page: Page, selector: str) -> None:
+    """Return once an answer has put something on the page."""
+    stage.until(page.locator(selector).count)
+
+
+def zeros(stage: Stage) -> int:
+    return len(stage.plant.orders("set_home"))
+
+
+def set_home(stage: Stage, page: Page, hands: Hands) -> None:
+    hands.hold(page.locator(SET), COUNTS_MS + COARSE_MS)
+    shows(stage, page, SURE)
+    hands.hold(page.locator(SURE), COUNTS_MS + COARSE_MS)
+    shows(stage, page, 'form[action$="/zero"] .outcome-ok')
 
 
 @pytest.mark.parametrize("hand", list(HANDS))
-def test_it_is_held_asked_about_and_undone(hand: str, opened: Opened, plant: Plant) -> None:
-    page = opened(HOMING, "phone" if hand == "finger" else "tablet", touch=hand == "finger", allow=("422",))
-    hands = HANDS[hand](page)  # type: ignore[call-arg]
-    page.wait_for_selector(LINK_MEASURED)
-    hands.hold(page.locator(SET), 800)
-    expect(page.locator(SURE)).to_have_count(0)
-    hands.hold(page.locator(SET), CONFIRM_MS)
-    expect(page.locator(".ask-zero")).to_contain_text("The measured azimuth is 180.0°")
-    assert zeros(plant) == 0
-    hands.hold(page.locator(SURE), 800)
-    page.wait_for_timeout(300)
-    assert zeros(plant) == 0
-    hands.hold(page.locator(SURE), CONFIRM_MS)
-    expect(page.locator('form[action$="/zero"] .outcome-ok')).to_be_visible()
-    assert zeros(plant) == 1
-    undo = page.locator('form[action$="/zero/undo"] button')
-    expect(undo).to_be_visible()
-    page.wait_for_timeout(300)
-    assert plant.orders("undo_home") == [], "letting go pressed the key that came under the finger"
-    Keyboard(page).press(undo)
-    expect(page.locator('[data-live="measured.azimuth_deg"]').first).to_have_text("180.00°")
+def test_it_is_held_asked_about_and_undone(hand: str, stage: Stage) -> None:
+    is_finger = hand == "finger"
+    stage.beat_ms = BEAT_MS if hand == "mouse" else COARSE_MS
+    too_short_ms, long_enough_ms = COUNTS_MS - stage.beat_ms, COUNTS_MS + stage.beat_ms
+    page = stage.open(HOMING, "phone" if is_finger else "tablet", touch=is_finger, allow=("422",))
+    hands = HANDS[hand](page, stage.advance)  # type: ignore[call-arg]
+    hands.hold(page.locator(SET), too_short_ms)
+    stage.advance(500)
+    assert page.locator(SURE).count() == 0
+    hands.hold(page.locator(SET), long_enough_ms)
+    shows(stage, page, ".ask-zero")
+    assert "The measured azimuth is 180.0°" in page.locator(".ask-zero").inner_text()
+    hands.hold(page.locator(SURE), too_short_ms)
+    stage.advance(500)
+    assert zeros(stage) == 0
+    hands.hold(page.locator(SURE), long_enough_ms)
+    shows(stage, page, 'form[action$="/zero"] .outcome-ok')
+    assert zeros(stage) == 1
+    stage.until(page.locator(UNDO).is_visible)
+    stage.advance(500)
+    assert stage.plant.orders("undo_home") == [], "letting go pressed the key that came under the finger"
+    Keyboard(page).press(page.locator(UNDO))
+    reading = page.locator('[data-live="measured.azimuth_deg"]').first
+    stage.until(lambda: reading.inner_text() == "180.00°")
 
 
-LAMPS = '[data-lamp$=".homed"]'
-TOLD = "The command to set home was sent to the drive."
-
-
-@pytest.mark.parametrize("size", ["tablet", "phone"])
-@pytest.mark.parametrize("elsewhere", [False, True], ids=["here", "elsewhere"])
-def test_message_and_lamps_follow_when_it_is_undone(
-    size: str, elsewhere: bool, opened: Opened, plant: Plant
-) -> None:
-    tracker = plant.machine.trackers["T1"]
-    plant.do(lambda: setattr(tracker, "memory", replace(tracker.memory, home=None)))
-    page = opened(HOMING, size, allow=("422",))
-    hands = Mouse(page)
-    expect(page.locator(f'{LAMPS}[data-on="true"]')).to_have_count(0)
-    hands.hold(page.locator(SET), CONFIRM_MS)
-    hands.hold(page.locator(SURE), CONFIRM_MS)
-    expect(page.locator("#zero-outcome")).to_have_text(TOLD)
-    expect(page.locator(f'{LAMPS}[data-on="true"]')).to_have_count(2)
-    undo = page.locator('form[action$="/zero/undo"] button')
-    expect(undo).to_be_visible()
-    if elsewhere:
-        now = plant.machine.clock.now()
-        plant.do(lambda: tracker.handle(UndoHome(), now, "somebody else"))
-        expect(page.locator("#zero-outcome")).to_have_text("")
-    else:
-        undo.click()
-        expect(page.locator("#zero-outcome")).to_have_text("The previous home position is restored.")
-        expect(page.locator("#zero-outcome")).to_be_visible()
-    expect(page.get_by_text(TOLD)).to_have_count(0)
-    expect(page.locator(f'{LAMPS}[data-on="true"]')).to_have_count(0)
-    expect(undo).to_be_hidden()
-
-
-def test_it_is_blue_only_after_a_movement_by_hand(opened: Opened) -> None:
-    page = opened(HOMING, "tablet")
-    page.wait_for_selector(LINK_MEASURED)
+def test_message_and_lamps_follow_when_it_is_undone(stage: Stage) -> None:
+    tracker = stage.plant.machine.trackers["T1"]
+    stage.do(lambda: setattr(tracker, "memory", replace(tracker.memory, home=None)))
+    stage.beat_ms = COARSE_MS
+    page = stage.open(HOMING, "tablet", allow=("422",))
+    hands, outcome = Mouse(page, stage.advance), page.locator("#zero-outcome")
+    stage.until(lambda: page.locator(LAMPS_ON).count() == 0)
     assert not is_blue(page)
-    Mouse(page).hold(page.locator('[data-jog="azimuth"][data-direction="1"]'))
-    expect(page.locator(f"{SET}.key-primary")).to_be_visible()
-    assert is_blue(page)
+    stage.beat_ms = BEAT_MS
+    hands.hold(page.locator('[data-jog="azimuth"][data-direction="1"]'), 3 * COARSE_MS)
+    assert is_blue(page), "setting it is what this page is for once an axis was moved by hand"
+    stage.beat_ms = COARSE_MS
+    for says, undone in (
+        ("", lambda: stage.do(lambda: tracker.handle(UndoHome(), stage.clock.now(), "somebody else"))),
+        ("The previous home position is restored.", lambda: page.locator(UNDO).click()),
+    ):
+        set_home(stage, page, hands)
+        stage.until(lambda: page.locator(LAMPS_ON).count() == 2)
+        assert outcome.inner_text() == TOLD
+        undone()
+        stage.until(lambda says=says: outcome.inner_text() == says)  # type: ignore[misc]
+        stage.until(page.locator(UNDO).is_hidden)
+        assert page.get_by_text(TOLD).count() == 0
+        assert page.locator(LAMPS_ON).count() == 0
 
 
 def is_blue(page: Page) -> bool:
