@@ -1,25 +1,36 @@
 """A key that is held stays under the finger, whatever appears or goes above it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from datetime import datetime
 
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Page
 
 from app.tracker.state.snapshot import Snapshot
+from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import LANGUAGES
-from tests.browser.conftest import SIZES, Opened, Plant
-from tests.browser.hands import LINK_MEASURED, until
+from tests.browser.hands import LINK_MEASURED, middle
 from tests.browser.layout import page_end
-from tests.browser.walking import service
+from tests.browser.page_clock import Stage
+from tests.browser.site_stage import SiteStage, staged_site
 
-__all__ = ["service"]
 KEY = '[data-jog="azimuth"][data-direction="1"]'
 HELD = f"{KEY}[data-held]"
 HOMING = "/trackers/T1/commissioning/homing"
 PROOFS = "/trackers/T1/drive-tests"
 NOTICE = "#step-reasons"
+FRAMES_MS = 100
+SIZES = ["tablet", "phone"]
+TOO_SLOW = "Connection too slow for hold-to-run: use incremental jog."
+LAST_READING = "Last reading {age} ago: azimuth {azimuth}, elevation {elevation}."
+
+
+def longest(text: str) -> str:
+    """Return the language that needs the most room to say this."""
+    return max(LANGUAGES, key=lambda code: len(catalogue_of(code).gettext(text)))
+
+
 WATCH = """(key) => {
   const [button, content] = [document.querySelector(key), document.getElementById("content")];
   const above = () => button.closest(".columns").getBoundingClientRect().top + scrollY
@@ -36,62 +47,53 @@ WATCH = """(key) => {
 ADD_NOTICE = """document.getElementById("steps").insertAdjacentHTML(
   "beforeend", '<div class="step-open" id="step-reasons"><p>A doubt that the movement settles.</p></div>')"""
 """The steps are asked for again as soon as the axis moves, and this is not among what comes."""
-Meanwhile = Callable[[Page], None]
 
 
-def held_still(page: Page, meanwhile: Meanwhile, after: Meanwhile) -> tuple[float, float]:
-    """Hold a key and return how far it moved on the screen and how far on the page, pixels."""
-    page.wait_for_selector(LINK_MEASURED)
-    key = page.locator(KEY)
-    key.scroll_into_view_if_needed()
-    box = key.bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+@pytest.fixture
+def site(browser: Browser) -> Iterator[SiteStage]:
+    with staged_site(browser) as found:
+        yield found
+
+
+def held_still(stage: Stage, page: Page, moving: Callable[[], object], resting: Callable[[], object]) -> None:
+    """Hold a key until something is so, and let it go: it moves on the page, and not on the screen."""
+    stage.until(lambda: page.locator(LINK_MEASURED).count() and page.locator(KEY).is_enabled())
+    at = middle(page.locator(KEY))
+    before = page.locator(KEY).bounding_box()
+    assert before is not None
+    page.mouse.move(*at)
     page.evaluate(WATCH, KEY)
     page.mouse.down()
     page.wait_for_selector(HELD)
-    meanwhile(page)
+    stage.until(moving)
+    stage.advance(FRAMES_MS)
     page.mouse.up()
-    after(page)
+    stage.until(resting)
+    stage.advance(FRAMES_MS)
     seen = page.evaluate("seen")
-    on_screen = max(abs(top - box["y"]) for top in seen["tops"])
-    return on_screen, max(seen["above"]) - min(seen["above"])
+    assert max(seen["above"]) - min(seen["above"]) > 20
+    assert max(abs(top - before["y"]) for top in seen["tops"]) < 1
 
 
-@pytest.mark.parametrize("size", ["tablet", "phone"])
-def test_a_notice_that_goes_does_not_move_the_key(size: str, opened: Opened) -> None:
-    page = opened(HOMING, size)
+@pytest.mark.parametrize("size", SIZES)
+def test_a_notice_that_goes_does_not_move_the_key(size: str, stage: Stage) -> None:
+    page = stage.open(HOMING, size)
     page.evaluate(ADD_NOTICE)
-
-    def gone(page: Page) -> None:
-        page.wait_for_selector(NOTICE, state="detached")
-
-    def rest(page: Page) -> None:
-        page.wait_for_selector(HELD, state="detached")
-
-    on_screen, on_page = held_still(page, gone, rest)
-    assert on_page > 20
-    assert on_screen < 1
+    held_still(
+        stage, page, lambda: page.locator(NOTICE).count() == 0, lambda: page.locator(HELD).count() == 0
+    )
 
 
-@pytest.mark.parametrize("size", ["tablet", "phone"])
-def test_reasons_that_come_above_the_keys_do_not_move_them(size: str, browser: Browser, service: str) -> None:
-    width, height = SIZES[size]
-    page = browser.new_page(viewport={"width": width, "height": height})
-    page.goto(service + PROOFS)
-    reasons = page.locator('[data-reasons="test_stop"] li')
-
-    def moving(page: Page) -> None:
-        until(page, lambda: page.locator(".strip-activity", has_text="Jogging").count())
-        until(page, lambda: reasons.count() > 0)
-
-    def resting(page: Page) -> None:
-        until(page, lambda: page.locator(".strip-activity", has_text="Holding").count())
-
-    on_screen, on_page = held_still(page, moving, resting)
-    page.close()
-    assert on_page > 20
-    assert on_screen < 1
+@pytest.mark.parametrize("size", SIZES)
+def test_reasons_that_come_above_the_keys_do_not_move_them(size: str, site: SiteStage) -> None:
+    page = site.open(PROOFS, size)
+    reasons, activity = page.locator('[data-reasons="test_stop"] li'), page.locator(".strip-activity")
+    held_still(
+        site,
+        page,
+        lambda: "Jogging" in activity.inner_text() and reasons.count() > 0,
+        lambda: "Holding" in activity.inner_text(),
+    )
 
 
 SEEN_AT_ONCE = {
@@ -111,34 +113,23 @@ SMALLEST_JOG_KEY = """Math.min(...[...document.querySelectorAll("[data-jog]")]
   .map((one) => one.getBoundingClientRect()).flatMap((box) => [box.width, box.height]))"""
 
 
-def test_on_a_tablet_step_three_is_worked_without_scrolling_in_every_language(
-    browser: Browser, service: str
-) -> None:
-    width, height = SIZES["tablet"]
-    context = browser.new_context(viewport={"width": width, "height": height})
-    page = context.new_page()
+def test_on_a_tablet_step_three_is_worked_without_scrolling_in_every_language(site: SiteStage) -> None:
+    page = site.open(HOMING, "tablet")
     for language in LANGUAGES:
-        context.add_cookies([{"name": "language", "value": language, "url": service}])
-        page.goto(service + HOMING)
+        page.context.add_cookies([{"name": "language", "value": language, "url": site.plant.url}])
+        page.reload()
         page.wait_for_selector(LINK_MEASURED)
         assert {name: page.locator(name).count() for name in SEEN_AT_ONCE} == SEEN_AT_ONCE
         assert page.evaluate(BELOW, [list(SEEN_AT_ONCE), page_end(page)]) == [], language
         assert page.evaluate(SMALLEST_JOG_KEY) >= 112, language
-    context.close()
 
 
-KEYS = """async () => {
-  const keys = () => [...document.querySelectorAll("main :is([data-jog], [data-action], .speed .key)")]
+KEYS = """() => document.fonts.ready.then(() =>
+  [...document.querySelectorAll("main :is([data-jog], [data-action], .speed .key)")]
     .filter((one) => one.checkVisibility())
     .map((one) => one.getBoundingClientRect())
-    .map((box) => [box.x, box.y + scrollY, box.width, box.height]);
-  await document.fonts.ready;
-  for (let seen = "", at = 0; ; await new Promise(requestAnimationFrame)) {
-    if (seen === JSON.stringify(keys())) { if (performance.now() - at > 300) return keys(); }
-    else { seen = JSON.stringify(keys()); at = performance.now(); }
-  }
-}"""
-"""Where the keys of a page are once it is laid out: its letters come after its text."""
+    .flatMap((box) => [box.x, box.y + scrollY, box.width, box.height]))"""
+"""Where the keys of a page are once its letters have come."""
 SPILLED = """() => {
   const note = document.querySelector("[data-stale-note]");
   const [box, place] = [note.getBoundingClientRect(), note.parentElement.getBoundingClientRect()];
@@ -146,65 +137,42 @@ SPILLED = """() => {
 }"""
 
 
-def lost(plant: Plant) -> None:
+def lose(stage: Stage) -> None:
     """Have T1 read no position from now on."""
-    tracker = plant.machine.trackers["T1"]
+    tracker = stage.plant.machine.trackers["T1"]
     heard = tracker.snapshot
 
     def unheard(at: datetime, tick: int) -> Snapshot:
         return replace(heard(at, tick), measured=None, position_age_s=75.4)
 
-    plant.do(lambda: setattr(tracker, "snapshot", unheard))
+    stage.do(lambda: setattr(tracker, "snapshot", unheard))
 
 
-SLOW_PING = """(() => {
-  const send = WebSocket.prototype.send;
-  WebSocket.prototype.send = function (data) {
-    const late = window.slowBy && String(data).includes('"ping"');
-    if (late) setTimeout(() => send.call(this, data), window.slowBy);
-    else send.call(this, data);
-  };
-})()"""
+def moved(page: Page, before: list[float]) -> float:
+    return max(abs(one - other) for one, other in zip(before, page.evaluate(KEYS), strict=True))
 
 
-@pytest.mark.parametrize("size", ["tablet", "phone"])
-def test_a_connection_that_becomes_slow_moves_no_key(size: str, opened: Opened) -> None:
-    for language in LANGUAGES:
-        page = opened(HOMING, size, language=language)
-        assert page.evaluate("document.documentElement.lang") == LANGUAGES[language].tag
-        page.evaluate(SLOW_PING)
-        page.wait_for_selector(LINK_MEASURED)
-        before = page.evaluate(KEYS)
-        page.evaluate("window.slowBy = 1300")
-        page.wait_for_selector('#link-quality[data-level="3"]')
-        expect(page.locator("#link-verdict")).not_to_be_empty()
-        after = page.evaluate(KEYS)
-        moved = max(abs(x - y) for a, b in zip(before, after, strict=True) for x, y in zip(a, b, strict=True))
-        assert moved <= 1, language
-        page.close()
+@pytest.mark.parametrize("language", ["en", longest(TOO_SLOW)])
+@pytest.mark.parametrize("size", SIZES)
+def test_a_connection_that_becomes_slow_moves_no_key(size: str, language: str, stage: Stage) -> None:
+    page = stage.open(HOMING, size, language=language)
+    assert page.evaluate("document.documentElement.lang") == LANGUAGES[language].tag
+    page.wait_for_selector(LINK_MEASURED)
+    before = page.evaluate(KEYS)
+    page.evaluate("tap.delay(150)")
+    stage.until(page.locator('#link-quality[data-level="3"]').count)
+    assert page.locator("#link-verdict").inner_text() == catalogue_of(language).gettext(TOO_SLOW)
+    assert moved(page, before) <= 1
 
 
 @pytest.mark.parametrize("path", [HOMING, "/trackers/T1"])
-@pytest.mark.parametrize("size", ["tablet", "phone"])
-def test_the_last_reading_has_its_room_and_moves_no_key(
-    size: str, path: str, opened: Opened, plant: Plant
-) -> None:
-    pages = {}
-    for language in LANGUAGES:
-        page = pages[language] = opened(path, size, language=language)
-        assert page.evaluate("document.documentElement.lang") == LANGUAGES[language].tag
-        if path == HOMING:
-            page.wait_for_selector(LINK_MEASURED)
-    page.context.clear_cookies(name="language")
-    before = {language: page.evaluate(KEYS) for language, page in pages.items()}
-    lost(plant)
-    for language, page in pages.items():
-        expect(page.locator("[data-stale-note]")).to_contain_text("180")
-        after = page.evaluate(KEYS)
-        moved = [
-            abs(x - y)
-            for a, b in zip(before[language], after, strict=True)
-            for x, y in zip(a, b, strict=True)
-        ]
-        assert max(moved) <= 1, language
-        assert not page.evaluate(SPILLED), language
+@pytest.mark.parametrize("size", SIZES)
+def test_the_last_reading_has_its_room_and_moves_no_key(size: str, path: str, stage: Stage) -> None:
+    page = stage.open(path, size, language=longest(LAST_READING))
+    stage.until(lambda: page.locator("[data-action]:not([disabled])").count())
+    before = page.evaluate(KEYS)
+    lose(stage)
+    note = page.locator("[data-stale-note]")
+    stage.until(lambda: "180" in note.inner_text())
+    assert moved(page, before) <= 1
+    assert not page.evaluate(SPILLED)
