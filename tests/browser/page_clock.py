@@ -293,7 +293,7 @@ def _said(page: Page, work: str, given: object) -> Any:
     """Return what a page says; one that is just being loaded again says it afterwards."""
     while True:
         try:
-            return page.evaluate(f"(given) => globalThis.tap ? {work}(given) : []", given)
+            return page.evaluate(f"(given) => location.href === 'about:blank' ? [] : {work}(given)", given)
         except Error as error:
             if LEFT not in str(error):
                 raise

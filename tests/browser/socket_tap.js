@@ -25,7 +25,7 @@
   });
 
   class TappedSocket extends Native {
-    #id; #sent = 0; #heard = 0; #over = false; #deaf = silent; #waiting = []; #kept = [];
+    #id; #sent = 0; #heard = 0; #over = false; #deaf = silent; #opened = false; #waiting = []; #kept = [];
     onopen = null; onmessage = null; onclose = null;
 
     constructor(address) {
@@ -36,24 +36,29 @@
       this.#id = id;
       open.set(id, this);
       // The native events reach this class alone: a page sets `onmessage` and its like, which are fields here.
-      this.addEventListener("open", (event) => this.#take(() => this.onopen?.(event)));
+      this.addEventListener("open", (event) => this.#take(() => { this.#opened = true; this.onopen?.(event); }));
       this.addEventListener("message", (event) => { this.#heard += 1; this.#take(() => this.onmessage?.(event)); });
       this.addEventListener("close", (event) => { this.#over = true; this.#take(() => this.onclose?.(event)); });
     }
 
-    get readyState() { return this.#deaf ? Native.CONNECTING : super.readyState; }
+    get readyState() { return this.#deaf || (frozen && !this.#opened) ? Native.CONNECTING : super.readyState; }
     get bufferedAmount() { return 0; } // What the computer has not yet sent is no matter of the test's time.
     get isUnderWay() { return super.readyState === Native.CONNECTING; }
     get place() { return { id: this.#id, sent: this.#sent, heard: this.#heard, over: this.#over }; }
 
     send(data) {
       if (silent || (swallowed && data.includes(swallowed))) return;
-      if (frozen) this.#kept.push(data);
+      if (frozen) this.#kept.push(() => this.#forward(data));
       else if (lateMs) setTimeout(() => this.#forward(data), lateMs);
       else this.#forward(data);
     }
 
-    thaw() { this.#kept.splice(0).forEach((data) => this.#forward(data)); }
+    close(...why) {
+      if (frozen) this.#kept.push(() => super.close(...why));
+      else super.close(...why);
+    }
+
+    thaw() { this.#kept.splice(0).forEach((leave) => leave()); }
 
     release() { this.#waiting.splice(0).forEach((deliver) => this.#take(deliver)); }
 
@@ -64,7 +69,7 @@
     }
 
     #take(deliver) {
-      if (holding) this.#waiting.push(deliver);
+      if (holding || frozen) this.#waiting.push(deliver);
       else if (lateMs && !this.#over) setTimeout(deliver, lateMs);
       else if (!silent) deliver();
       look();
@@ -91,8 +96,12 @@
 
   globalThis.tap = {
     silence(is) { silent = is; },
+    // What goes and comes from now on is on its way until it is thawed.
     freeze() { frozen = true; },
-    thaw() { frozen = false; open.forEach((socket) => socket.thaw()); },
+    thaw() {
+      frozen = false;
+      open.forEach((socket) => { socket.thaw(); socket.release(); });
+    },
     delay(ms) { lateMs = ms; }, // each way, in whole beats of the stage
     swallow(part) { swallowed = part; }, // what says this does not arrive
     // A request to such an address is not waited for.
