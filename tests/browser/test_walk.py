@@ -1,4 +1,4 @@
-"""A technician walks the five steps with a finger alone, and with a keyboard alone; the mouse walks in e2e."""
+"""A technician walks the five steps with a finger alone, and with a keyboard alone; e2e walks by mouse."""
 
 import re
 

@@ -8,13 +8,10 @@ from playwright.sync_api import Browser, BrowserContext, Locator, Page, expect
 
 from tests.browser.conftest import SIZES, TAKES_PICTURES, WRITES_DOCS
 from tests.browser.hands import CONFIRM_MS, Hands, arrive
-from tests.e2e.chromium import PAGE_READY
 from tests.e2e.product import Product
 from tests.patience import PATIENCE_MS
 
 PRESSES = 5
-TURN_MS = 60_000
-"""A turn of the azimuth axis at 6 degrees a second: the afternoon sun is far from the home position."""
 PHOTOGRAPHED = "Applying inline style violates"
 """The browser's remark on the style that Playwright adds while it photographs a page."""
 Picture = Callable[[Page, str], None]
@@ -110,34 +107,3 @@ def set_home(page: Page, hands: Hands) -> None:
     expect(sure.or_(page.locator(".outcome-ok")).first).to_be_visible()
     if sure.count():
         hands.hold(sure, CONFIRM_MS)
-
-
-def home(page: Page, hands: Hands) -> None:
-    reading = page.locator('[data-live="measured.azimuth_deg"]').first
-    move_by_hand(hands, page.locator('[data-jog="azimuth"][data-direction="1"]'), reading)
-    set_home(page, hands)
-    page.wait_for_selector("#forward a.key")
-    expect(reading).to_have_text("0.00°")
-    onwards(page, hands, "/mode")
-
-
-def choose_dual(page: Page, hands: Hands) -> None:
-    hands.choose(page.locator('input[value="dual"]'))
-    onwards(page, hands, "/run")
-
-
-def track(page: Page, hands: Hands) -> None:
-    hands.press(page.locator('[data-action="track"]'))
-    expect(page.locator(".strip-activity")).to_contain_text("Tracking", timeout=PATIENCE_MS + TURN_MS)
-    expect(page.locator('.step[data-current][data-status="done"]')).to_be_visible()
-
-
-def commission(page: Page, hands: Hands, url: str, tracker_id: str) -> None:
-    add_tracker(page, hands, url, tracker_id)
-    page.goto(f"{url}/trackers/{tracker_id}/commissioning/location")
-    page.wait_for_selector(PAGE_READY)
-    say_where(page, hands)
-    trust_the_clock(page, hands)
-    home(page, hands)
-    choose_dual(page, hands)
-    track(page, hands)

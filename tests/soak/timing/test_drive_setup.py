@@ -7,12 +7,13 @@ import httpx
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
+from tests.browser.conftest import browser, picture
 from tests.browser.hands import Finger, Hands, Mouse
 from tests.browser.walking import Picture, Walker, add_tracker, move_by_hand, rooms, service, walker
 from tests.e2e.chromium import PAGE_READY
 from tests.e2e.product import DriveSim
 
-__all__ = ["rooms", "service", "walker"]
+__all__ = ["browser", "picture", "rooms", "service", "walker"]
 
 
 @pytest.fixture
@@ -113,7 +114,6 @@ def arrive(page: Page, hands: Hands, service: str, tracker_id: str) -> str:
     return f"{service}/trackers/{tracker_id}"
 
 
-@pytest.mark.timeout(180)
 def test_a_drive_is_connected_and_proven_with_a_mouse(
     walker: Walker, service: str, sim_port: int, picture: Picture
 ) -> None:
@@ -134,7 +134,6 @@ def test_a_drive_is_connected_and_proven_with_a_mouse(
     assert record["tracker"]["drive"]["elevation"]["gear_ratio"] == pytest.approx(0.8, rel=0.02)
 
 
-@pytest.mark.timeout(180)
 def test_a_drive_is_connected_and_its_watchdog_tested_with_a_finger(
     walker: Walker, service: str, sim_port: int, picture: Picture
 ) -> None:
