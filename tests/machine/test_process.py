@@ -9,6 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from uuid import uuid4
 
+import httpx
 import pytest
 import pytest_asyncio
 
@@ -96,12 +97,6 @@ class Button:
         await self.page.beat(self.press_id, 1, self._sequence)
         self._sequence += 1
 
-    async def held_on(self) -> None:
-        """Go on holding, as somebody does who knows nothing."""
-        while True:
-            await self.beat()
-            await pause()
-
 
 @pytest_asyncio.fixture(loop_scope="module")
 async def button(service: Service, drive: DriveSimulator) -> AsyncIterator[Button]:
@@ -110,6 +105,21 @@ async def button(service: Service, drive: DriveSimulator) -> AsyncIterator[Butto
     await page.open()
     yield Button(page, drive)
     await page.close()
+
+
+async def move_far(service: Service, drive: DriveSimulator) -> None:
+    """Begin a long move as the user of the panel does, and return once the axis turns."""
+    await service.until(lambda seen: not seen.actions["move"])
+    there = 300.0 if (await drive.look()).azimuth.position_deg < 150.0 else 20.0
+    order = {"type": "move", "azimuth_deg": there, "elevation_deg": 20.0}
+    async with (
+        httpx.AsyncClient(base_url=f"http://127.0.0.1:{service.port}", timeout=PATIENCE_S) as panel,
+        asyncio.timeout(PATIENCE_S),
+    ):
+        answer = await panel.post("/api/v1/trackers/T1/commands", json=order)
+        assert answer.is_success, answer.text
+        while not (await drive.look()).azimuth.moving:
+            await pause()
 
 
 async def test_a_held_button_turns_the_axis_and_its_release_stops_it(
@@ -125,18 +135,16 @@ async def test_a_held_button_turns_the_axis_and_its_release_stops_it(
 
 @pytest.mark.fault(43)
 async def test_a_killed_controller_stops_by_the_drive_and_nothing_is_lost_or_moves_on(
-    service: Service, drive: DriveSimulator, button: Button, fault: FaultResult
+    service: Service, drive: DriveSimulator, fault: FaultResult
 ) -> None:
     name = f"Run {uuid4().hex}"
     await service.ask(RenameSite(name))
-    await button.turns()
-    holding = asyncio.create_task(button.held_on())
+    await move_far(service, drive)
     before = _boot_id(service)
     service.signal("controller", signal.SIGKILL)
     await drive.rests()
     await service.until(lambda _: _boot_id(service) not in {"", before})
     await service.until(_is_at_rest)
-    holding.cancel()
     await eventually(lambda: not journal(service, EventKind.CONTROLLER_STARTED)[0].data["clean"])
     assert "unexpectedly" in journal(service, EventKind.CONTROLLER_STARTED)[0].message
     assert (await service.link.detail()).site.name == name
@@ -162,29 +170,26 @@ async def test_a_killed_panel_ends_the_press_and_comes_back_and_the_controller_l
 
 @pytest.mark.fault(45)
 async def test_a_frozen_controller_catches_up_with_nothing(
-    service: Service, drive: DriveSimulator, button: Button, fault: FaultResult
+    service: Service, drive: DriveSimulator, fault: FaultResult
 ) -> None:
-    await button.turns()
+    await move_far(service, drive)
     service.signal("controller", signal.SIGSTOP)
-    holding = asyncio.create_task(button.held_on())
     await drive.rests()
     stood_deg = (await drive.look()).azimuth.position_deg
     await eventually(lambda: service.link.latest() is None)
     service.signal("controller", signal.SIGCONT)
     await eventually(lambda: service.link.latest() is not None)
     await service.until(_is_at_rest)
-    holding.cancel()
     await service.ask_until_taken(Stop())
     assert (await drive.look()).azimuth.position_deg == pytest.approx(stood_deg, abs=0.1)
-    fault.recovers("automatic: the jog is over; nothing is caught up")
+    fault.recovers("automatic: the motion is over; nothing is caught up")
 
 
 @pytest.mark.fault(1)
 async def test_a_cut_cable_leaves_a_drive_that_stops_itself_and_nothing_resumes(
-    service: Service, drive: DriveSimulator, cable: Network, button: Button, fault: FaultResult
+    service: Service, drive: DriveSimulator, cable: Network, fault: FaultResult
 ) -> None:
-    await button.turns()
-    holding = asyncio.create_task(button.held_on())
+    await move_far(service, drive)
     cable.freeze()
     await drive.rests()
     await service.until(lambda seen: "No communication" in seen.activity_text)
@@ -192,7 +197,6 @@ async def test_a_cut_cable_leaves_a_drive_that_stops_itself_and_nothing_resumes(
     cable.thaw()
     await service.until(lambda seen: seen.measured is not None and _is_at_rest(seen))
     await eventually(lambda: journal(service, EventKind.DRIVE_FOUND))
-    holding.cancel()
     assert tracker(service).homed
     assert not (await drive.look()).azimuth.moving
     fault.recovers("automatic: the drive is found again; the operator commands the next motion")
