@@ -2,18 +2,20 @@
 
 import sqlite3
 from contextlib import closing
+from datetime import UTC, datetime
 from pathlib import Path
 
 import httpx
 import pytest
 
-from app.link.messages import RenameSite, SetClock, SetLocation
-from app.tracker.commands.commands import CommandRejected, Jog, Park, SelectMode, SetHome, Stop, Track
+from app.link.messages import RenameSite
+from app.store.backup.backup import backup
+from app.tracker.commands.commands import CommandRejected, Jog, Park, SetHome, Stop, Track
 from app.tracker.settings.axes import Axis
 from app.tracker.state.snapshot import ActivityName
-from app.tracker.values.mode import Mode
 from tests.fault_result import FaultResult
-from tests.machine.service import SAMSUN, Service
+from tests.machine.field import noon_place, prepare
+from tests.machine.service import Service
 from tests.machine.stories import until_served
 from tests.patience import eventually
 
@@ -31,26 +33,13 @@ def damage(data_dir: Path, table: str) -> None:
         file.write(b"\xa5" * PAGE_BYTES)
 
 
-async def kept(data_dir: Path) -> str:
-    """Let a site live that tracks and has a backup; return the backup's name."""
-    service = await Service.start(data_dir)
-    try:
-        await service.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
-        await service.ask(SetClock("system"))
-        await service.ask(RenameSite("Kept"))
-        await service.ask(SetHome())
-        await service.until(lambda seen: seen.homed)
-        await service.ask(SelectMode(Mode.DUAL))
-        await service.ask(Track())
-        await until_served(service.port)
-        async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{service.port}/api/v1") as client:
-            written = await client.post("/backups")
-            assert written.status_code == 201, written.text
-            unneeded = await client.post(f"/backups/{written.json()['file']}/restore")
-            assert unneeded.status_code == 409
-        return str(written.json()["file"])
-    finally:
-        await service.stop()
+def kept(data_dir: Path) -> str:
+    """Store a site that tracks, and its backup; return the backup's name."""
+    prepare(data_dir, 1, noon_place(datetime.now(UTC)))
+    file = data_dir / "backups" / "before.backup"
+    file.parent.mkdir()
+    backup(f"sqlite:///{data_dir / 'heliopanel.db'}", file)
+    return file.name
 
 
 @pytest.mark.fault(51)
@@ -58,7 +47,7 @@ async def test_a_damaged_database_moves_nothing_and_offers_the_backup(
     tmp_path: Path, fault: FaultResult
 ) -> None:
     data_dir = tmp_path / "data"
-    backup = await kept(data_dir)
+    file = kept(data_dir)
     damage(data_dir, "trackers")
     service = await Service.start(data_dir)
     try:
@@ -77,11 +66,11 @@ async def test_a_damaged_database_moves_nothing_and_offers_the_backup(
             page = await client.get("/restore")
             assert page.status_code == 200
             assert "The database is damaged" in page.text
-            assert backup in page.text
+            assert file in page.text
             assert (await client.post("/api/v1/backups/x/restore")).status_code == 404
-            begun = await client.post(f"/api/v1/backups/{backup}/restore")
+            begun = await client.post(f"/api/v1/backups/{file}/restore")
             assert begun.status_code == 202, begun.text
-            assert begun.json()["site_name"] == "Kept"
+            assert begun.json()["site_name"] == "Field"
         await eventually(lambda: restored(service))
         assert len(service.starts("controller")) == 2
         await service.ask(RenameSite("Goes on"))
@@ -96,4 +85,4 @@ def alarms(service: Service) -> set[str]:
 
 def restored(service: Service) -> bool:
     latest = service.link.latest()
-    return latest is not None and latest.site_name == "Kept" and "store_damaged" not in alarms(service)
+    return latest is not None and latest.site_name == "Field" and "store_damaged" not in alarms(service)
