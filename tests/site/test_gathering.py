@@ -20,8 +20,9 @@ from app.tracker.weather.weather import Weather
 from tests.site.plant import SUMMER_NOON, settle
 from tests.site.test_sample_batches import CountingWriter
 from tests.site.tracking_field import ONE_HZ, activities, field_of
+from tests.soak import amount
 
-FIELD = 500
+FIELD = amount(120, 500)
 STORM = ReportWeather(Weather(wind_mps=28.0))
 MOST_TRANSACTIONS = 8
 

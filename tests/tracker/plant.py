@@ -17,11 +17,15 @@ from app.tracker.state.snapshot import ActivityName, Event, EventKind, Snapshot
 from app.tracker.values.mode import Mode
 from app.tracker.values.motion import DriveCommand, DriveRequest, RequestKind
 from app.tracker.weather.weather import NOTHING_SENSED, Quality, Reading, Sensed
+from tests.soak import amount
 
 SAMSUN = Location(41.2867, 36.33, 4.0)
 MORNING = datetime(2026, 6, 21, 6, 0, tzinfo=UTC)
 CONFIG = TrackerConfig("T1", "Tracker 1")
 TRUST = HomeTrust(MORNING, "technician", "set manually", 1)
+LONG, SHORT = timedelta(seconds=60), timedelta(seconds=5)
+FAR_APART = timedelta(seconds=amount(0.4, 0.0))
+"""Within the watchdog of the simulated drive."""
 BLANK = TrackerMemory()
 READY = TrackerMemory(mode=Mode.DUAL, home=TRUST)
 
@@ -105,14 +109,20 @@ class Plant:
         self.weather = Sensed(wind, snow, light, wind_mps, wind_from_deg)
         return self
 
-    def forward(self, seconds: float, each: Callable[[], None] | None = None) -> "Plant":
-        """Let time pass, with a tick every period."""
-        end = self.clock.now() + timedelta(seconds=seconds)
-        while self.clock.now() < end:
-            self.clock.move_to(min(end, self.clock.now() + self.period))
+    def forward(self, seconds: float, look: Callable[[], None] | None = None, *, every: int = 1) -> "Plant":
+        """Let time pass, with a tick every period and a look every so many ticks: a look takes six ticks.
+
+        In the middle of a long time, ticks are further apart, but in the soak.
+        """
+        end, ticks = self.clock.now() + timedelta(seconds=seconds), 0
+        quick, slow = self.clock.now() + LONG, end - SHORT
+        while (now := self.clock.now()) < end:
+            period = max(self.period, FAR_APART) if quick <= now < slow else self.period
+            self.clock.move_to(min(end, now + period))
             self.tick()
-            if each is not None:
-                each()
+            ticks += 1
+            if look is not None and ticks % every == 0:
+                look()
         return self
 
     def jump(self, by: timedelta) -> None:

@@ -14,6 +14,7 @@ from app.tracker.commands.commands import CommandRejected
 from app.tracker.commissioning.alignment import Mistake, diagnose, fit
 from app.tracker.memory.memory import Pointing, Sighting
 from app.tracker.mounts.mount import PLAIN, to_axes
+from tests.soak import amount
 
 SAMSUN = Location(41.2867, 36.33)
 JUNE = datetime(2026, 6, 21, tzinfo=UTC)
@@ -108,7 +109,7 @@ def test_a_compass_is_not_named_where_the_declination_explains_nothing() -> None
     assert Mistake.MAGNETIC_NORTH not in causes
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=amount(50, 200), deadline=None)
 @given(
     azimuth_deg=st.floats(-180.0, 179.0),
     elevation_deg=st.floats(-3.0, 3.0),

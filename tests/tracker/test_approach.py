@@ -11,6 +11,7 @@ from app.tracker.settings.protections import StowName
 from app.tracker.settings.strategy import Continuous, Strategy
 from app.tracker.state.snapshot import ActivityName
 from app.tracker.values.mode import Mode
+from tests.soak import amount
 from tests.tracker.plant import CONFIG, READY, Plant
 
 APPROACH = "Moving to the sun"
@@ -45,7 +46,7 @@ def test_the_first_approach_is_no_tracking_yet(strategy: Strategy | None) -> Non
         else:
             worst_tracking_deg = max(worst_tracking_deg, shown.off_sun_deg or 0.0)
 
-    plant.forward(120.0, look)
+    plant.forward(120.0, look, every=2)
     assert told(plant) == ("Tracking", False)
     assert worst_tracking_deg < CONFIG.deadband_deg
 
@@ -59,8 +60,9 @@ def test_the_runs_of_every_few_minutes_are_tracking() -> None:
         assert told(plant) == ("Tracking", False)
         moving += "moving to the sun" in plant.snapshot.activity_text
 
-    plant.forward(1200.0, look)
-    assert moving > 5
+    for _ in range(amount(12, 24)):
+        plant.forward(50.0, look, every=5)
+    assert moving > 2
 
 
 def test_after_a_stow_the_way_back_is_an_approach() -> None:

@@ -24,6 +24,7 @@ from app.tracker.state.snapshot import EventKind
 from app.tracker.values.mode import Mode
 from app.tracker.values.motion import HALT
 from tests.fault_result import FaultResult
+from tests.soak import amount
 from tests.tracker.plant import BLANK, CONFIG, MORNING, READY, SAMSUN, Plant
 from tests.tracker.shows import SYDNEY, daylight, show, utc
 
@@ -227,7 +228,7 @@ def test_a_move_through_north_goes_the_long_way_within_the_travel(fault: FaultRe
     fault.recovers("nothing was lost")
 
 
-@settings(max_examples=40)
+@settings(max_examples=amount(10, 40))
 @given(
     kind=st.sampled_from(MountKind),
     latitude_deg=st.floats(-60.0, 60.0).filter(lambda degrees: abs(degrees) > 24.0),

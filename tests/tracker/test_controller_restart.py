@@ -24,6 +24,7 @@ from app.tracker.settings.protections import ProtectionConfig, Reaction, StowNam
 from app.tracker.state.snapshot import ActivityName, EventKind, ShowPhase
 from app.tracker.weather.weather import Quality, Quantity, Reading, Sensed
 from tests.fault_result import BY_ITSELF, VIRTUAL, FaultResult
+from tests.soak import amount
 from tests.tracker.plant import CONFIG, READY, Plant
 from tests.tracker.shows import SOLSTICE
 
@@ -68,7 +69,7 @@ def test_a_storm_before_the_restart_stows_at_the_first_tick(fault: FaultResult) 
     fault.shows(text)
     plant.forward(40)
     assert doing(plant) is ActivityName.STOWED
-    plant.forward(3600)
+    plant.forward(amount(660, 3600))
     assert doing(plant) is ActivityName.STOWED
     plant.blow(3.0).forward(599)
     assert doing(plant) is ActivityName.STOWED

@@ -39,6 +39,7 @@ from app.tracker.settings.protections import (
 from app.tracker.state.snapshot import ActivityName, EventKind
 from app.tracker.weather.weather import Quantity
 from tests.fault_result import HOME_AGAIN, VIRTUAL, FaultResult
+from tests.soak import amount
 from tests.tracker.plant import CONFIG, READY, Plant
 from tests.tracker.shows import SOLSTICE
 
@@ -350,7 +351,7 @@ def test_after_a_restart_a_storm_that_was_not_seen_over_still_holds() -> None:
     plant = tracking()
     plant.blow(STORM).forward(60)
     fresh = restarted(plant)
-    fresh.blow(None, snow_kg=None, irradiance_wm2=None).forward(3600)
+    fresh.blow(None, snow_kg=None, irradiance_wm2=None).forward(amount(660, 3600))
     assert doing(fresh) is ActivityName.STOWED
     assert fresh.controller.memory.protection is Protection.WIND_STOW
 

@@ -17,6 +17,7 @@ from app.tracker.settings.axes import AxisConfig
 from app.tracker.settings.config import Orientation, TrackerConfig
 from app.tracker.values.mode import Mode
 from app.tracker.values.reason import Reason
+from tests.soak import amount
 from tests.tracker.shows import (
     ACROSS_MIDNIGHT,
     PLAIN,
@@ -251,7 +252,7 @@ def test_no_axis_is_told_to_leave_its_limits() -> None:
         assert path.panel_elevation_deg.max() <= 90.0
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=amount(15, 60), deadline=None)
 @given(
     latitude_deg=st.floats(-90.0, 90.0),
     longitude_deg=st.floats(-180.0, 180.0),

@@ -18,6 +18,7 @@ from app.tracker.settings.axes import AxisConfig
 from app.tracker.settings.config import MountKind, TrackerConfig
 from app.tracker.settings.strategy import Interval
 from app.tracker.values.mode import Mode
+from tests.soak import amount
 from tests.tracker.shows import (
     DAY,
     PLAIN,
@@ -109,7 +110,7 @@ def test_where_no_length_works_the_first_is_returned_with_its_reasons() -> None:
     assert found.longer is None
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=amount(20, 80), deadline=None)
 @given(
     latitude_deg=st.floats(-66.0, 66.0),
     longitude_deg=st.floats(-180.0, 180.0),

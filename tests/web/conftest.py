@@ -1,11 +1,30 @@
 """The panel in front of a fake machine, as most tests of pages and calls want it."""
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterator
+from concurrent.futures import ProcessPoolExecutor
 
 import httpx
 import pytest
 
+from app.web.services import simulations, studies
 from tests.fakes import FakeMachine, fake_app, serving
+from tests.web.in_process import work_here
+
+TOLD_BY_A_PROCESS = studies._told
+
+
+@pytest.fixture(scope="package", autouse=True)
+def no_processes() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        work_here(patch)
+        yield
+
+
+@pytest.fixture
+def real_processes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have the panel start its workers as in service."""
+    monkeypatch.setattr(simulations, "ProcessPoolExecutor", ProcessPoolExecutor)
+    monkeypatch.setattr(studies, "_told", TOLD_BY_A_PROCESS)
 
 
 @pytest.fixture

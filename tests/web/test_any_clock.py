@@ -9,6 +9,8 @@ import pytest
 from app.base.clock import VirtualClock
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.fault_result import BY_ITSELF, FaultResult
+from tests.patience import PATIENCE_S
+from tests.soak import amount
 from tests.web.route_table import ROUTES
 
 TODAY = datetime(2027, 6, 21, 9, 40, tzinfo=UTC)
@@ -20,6 +22,8 @@ NOW = "/api/v1/sun"
 """Tells where the sun stands now, and is refused with a sentence while that is not known."""
 LEFT_OUT = {"/api/v1/stream", "/api/v1/papers", "/api/v1/sun/accuracy"}
 """What never ends, and what takes long and does not look at the clock."""
+SLOW = {"/trackers/T1/strategy/day", "/api/v1/studies/comparison"}
+"""Simulated for a second: asked in the year that is known least, in the soak in all of them."""
 NAMES = {"tracker_id": "T1"}
 PATHS = sorted(
     re.sub(r"\{(\w+)(?::\w+)?\}", lambda found: NAMES.get(found[1], "1"), key.removeprefix("GET "))
@@ -31,10 +35,11 @@ PATHS = sorted(
 async def answers(at: datetime) -> dict[str, int]:
     """Return the status of every page and call while the site's clock shows this."""
     found = {}
+    left_out = LEFT_OUT | amount(SLOW if at != CLOCKS[-1] else set(), set())
     async with serving(fake_app(FakeMachine(VirtualClock(at)))) as browser:
         for path in PATHS:
-            if path not in LEFT_OUT:
-                found[path] = (await asyncio.wait_for(browser.get(path), 60)).status_code
+            if path not in left_out:
+                found[path] = (await asyncio.wait_for(browser.get(path), PATIENCE_S)).status_code
     return found
 
 
@@ -46,6 +51,6 @@ async def test_no_page_is_lost_to_a_clock_that_is_wrong(fault: FaultResult) -> N
     for at in CLOCKS:
         found = await answers(at)
         assert found.pop(NOW) == (200 if 1901 <= at.year <= 2099 else 422)
-        assert found == expected, at
+        assert found == expected | dict.fromkeys(SLOW & found.keys(), 200), at
     fault.prevented("a page that shows today's sun shows the nearest year with a known sun")
     fault.recovers(BY_ITSELF)

@@ -21,6 +21,9 @@ GUIDE = Path(__file__).parents[2] / "docs" / "integrate" / "integrators-guide.md
 OTHER = re.compile(r"\bT1\b|North field")
 IDS = {"tracker_id": "T2", "document": "operators", "name": "overview", "step": "location"}
 READ = sorted(key for key, needs in ROUTES.items() if needs is Permission.READ and key.startswith("GET "))
+LEFT_OUT = {"/api/v1/stream", "/api/v1/papers", "/api/v1/sun/accuracy", "/api/v1/studies/comparison"}
+"""What never ends, and what takes seconds and is worked out without any tracker."""
+TELLS_OF_ALL = ("/api/v1/trackers", "/api/v1/recordings", "/", "/journal")
 QUERY = {"/api/v1/telemetry": "?tracker_id=T2&begin=2026-06-21T00:00:00Z&end=2026-06-22T00:00:00Z"}
 
 
@@ -43,23 +46,21 @@ def addresses(office: Office) -> list[str]:
     recording = next(one for one in store.heads.values() if one.tracker_id == "T1")
     ids = IDS | {"recording_id": recording.recording_id, "number": "1", "show_id": "s1", "study_id": "none"}
     filled = [re.sub(r"\{(\w+)\}", lambda part: ids[part[1]], key.removeprefix("GET ")) for key in READ]
-    return [path + QUERY.get(path, "") for path in filled if path != "/api/v1/stream"]
+    return [path + QUERY.get(path, "") for path in filled if path not in LEFT_OUT]
 
 
 async def test_nothing_that_is_read_tells_of_another_tracker(office: Office) -> None:
     headers, read = await bearer(office, Scope.READ), 0
     whole = {"authorization": f"Bearer {await unlimited(office)}"}
-    told = set()
     async with office.browser() as browser:
         for address in addresses(office):
             found = await browser.get(address, headers=headers)
             assert found.status_code < 500, address
             assert not OTHER.search(words(found)), f"{address} tells of T1: {words(found)[:2000]}"
             read += found.status_code == 200
-            told |= {address} if OTHER.search(words(await browser.get(address, headers=whole))) else set()
+        for address in TELLS_OF_ALL:
+            assert OTHER.search(words(await browser.get(address, headers=whole))), "what T1 has is noticed"
     assert read > 60
-    expected = {"/api/v1/trackers", "/api/v1/recordings", "/", "/journal"}
-    assert expected <= told, "a token for all reads of T1 there, so this test would notice"
 
 
 async def unlimited(office: Office) -> str:

@@ -100,6 +100,7 @@ async def test_what_cannot_be_studied_is_said_in_the_form(client: httpx.AsyncCli
     assert "The step is one of 1, 2, 3" in field[: field.index("</p>")]
 
 
+@pytest.mark.usefixtures("real_processes")
 async def test_a_begun_study_opens_its_page_and_can_be_cancelled(client: httpx.AsyncClient) -> None:
     sent = {**TYPED, **PLACE, "span": "year", "step": "2"}
     begun = await client.post("/studies", data=await filled(client, "/studies", sent), headers=HTMX)
