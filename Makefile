@@ -1,6 +1,6 @@
 # make run  : sets everything up and serves the panel with a simulated tracker at http://127.0.0.1:8000
 # make test : sets up what tests need and runs them, browser tests included; what judges time is in make soak
-# make check: formatting, lint, types, import contracts, migrations, vendored files, catalogues of languages
+# make check: formatting, lint, types, layers, texts, documents, generated and vendored files, migrations
 # make fuzz : 10,000 cases against the API and hostile values for every form, in a network of its own; minutes
 # make soak : what make test leaves out: PART=timing judges how punctual things are, on a computer without other work;
 #   PART=built builds, releases and installs the product; PART=long are the long proofs: millions of random ticks,
@@ -128,17 +128,33 @@ mutants: $(VENV)/.dev ## Change what guards and limits place by place, in a copy
 browser: $(VENV)/.test system-packages ## Run the browser tests alone; screenshots go to build/screens
 	@HELIOPANEL_SCREENS=1 $(BIN)/python -m pytest tests/browser
 
-check: $(VENV)/.test ## Formatting, lint, types, import contracts, migrations, vendored files
+# Two at a time; what each says comes together. The texts take longest but for the types, and begin with them.
+CHECKS := types texts security lint generated imports secrets vendored migrations
+.PHONY: $(CHECKS:%=check-%)
+
+check: $(VENV)/.test ## Formatting, lint, types, layers, texts, documents, generated and vendored files, migrations
+	@$(MAKE) --no-print-directory --keep-going --output-sync=target --jobs=2 $(CHECKS:%=check-%)
+
+check-types:
+	@$(BIN)/mypy
+check-texts:
+	@$(BIN)/python -m checks texts sources documents
+check-security:
+	@$(BIN)/bandit -q -r app -c pyproject.toml -ll
+check-lint:
 	@$(BIN)/ruff format --check .
 	@$(BIN)/ruff check .
-	@$(BIN)/mypy
+check-generated:
+	@$(BIN)/python -m checks generated api
+check-imports:
 	@$(BIN)/lint-imports
-	@$(BIN)/bandit -q -r app -c pyproject.toml -ll
+check-secrets:
 	@$(BIN)/python -m tests.secret_search
+check-vendored:
 	@$(BIN)/python static/vendor/vendor.py check
+check-migrations:
 	@$(BIN)/python -m app.store.migrations check
 	@$(BIN)/python -m app.access.migrations
-	@$(BIN)/python -m app.web.translation.catalogues check
 
 firmware: ## Build the firmware of controllers/avr for Arduino Mega and Uno (avr-gcc)
 	@$(MAKE) -s -C controllers/avr BOARD=mega

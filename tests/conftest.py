@@ -19,7 +19,7 @@ guard.stay_here()
 os.environ.setdefault("PYTEST_TIMEOUT", str(TEST_S))
 # A product under test must not take the processor from what judges it; tests/soak has it in real time.
 os.environ["HELIOPANEL_REAL_TIME"] = "off"
-settings.register_profile("same", derandomize=True, deadline=None)
+settings.register_profile("same", derandomize=True, deadline=None, max_examples=40)
 settings.register_profile("new", deadline=None)
 settings.load_profile("new" if "HELIOPANEL_SOAK" in os.environ else "same")
 

@@ -35,6 +35,7 @@ from app.tracker.settings.strategy import (
     Strategy,
 )
 from app.tracker.values.mode import Mode
+from tests.soak import amount
 from tests.tracker.plant import READY, Plant
 
 HELD = Orientation(180.0, 45.0)
@@ -78,12 +79,12 @@ def day(strategy: Strategy, place: Location, begin: datetime, hours: float = 4.0
     [
         pytest.param(BRASOV, datetime(2026, 6, 21, 7, tzinfo=UTC), id="summer solstice, 46 north"),
         pytest.param(ADELAIDE, datetime(2026, 12, 21, 22, tzinfo=UTC), id="summer solstice, 35 south"),
-    ],
+    ][: amount(1, 2)],
 )
 def test_a_strategy_stays_within_its_bound(
     strategy: Strategy, place: Location, begin: datetime, bound_deg: float, fewest: int, most: int
 ) -> None:
-    told = day(strategy, place, begin)
+    told = day(strategy, place, begin, 4.0 if fewest > 1 else amount(1.0, 4.0))
     assert told.largest_error_deg is not None
     assert bound_deg / 4.0 < told.largest_error_deg < bound_deg or isinstance(strategy, Continuous)
     assert told.largest_error_deg < bound_deg
@@ -170,17 +171,19 @@ def test_under_the_tropic_sun_the_axes_do_not_race_between_intervals() -> None:
 
 def test_alexandrus_program_moves_at_its_times_and_stands_at_its_angles() -> None:
     config = TrackerConfig("T1", "T1", strategy=Stepped(ALEXANDRU_TABLE_3))
-    begin = datetime(2026, 6, 21, 4, tzinfo=UTC)
-    _, frames = simulate(
-        config, Pointing(), BRASOV, "UTC", Mode.DUAL, HELD, begin, begin + timedelta(hours=12)
-    )
+    begin = datetime(2026, 6, 21, amount(9, 4), tzinfo=UTC)
+    end = begin + timedelta(hours=amount(3, 12))
+    _, frames = simulate(config, Pointing(), BRASOV, "UTC", Mode.DUAL, HELD, begin, end)
     setpoints = frames.column("setpoint_azimuth_deg")
     moved = np.flatnonzero(np.abs(np.diff(setpoints)) > 1e-6) + 1
     hours = [
         solar_hour(Moment(at, sun_position(config.algorithm, BRASOV, at), BRASOV))
         for at in (begin + timedelta(seconds=float(frames.column("elapsed_s")[i])) for i in moved)
     ]
-    assert hours == pytest.approx([step.from_h for step in ALEXANDRU_TABLE_3.steps[1:]], abs=2 / 3600)
+    steps = [step.from_h for step in ALEXANDRU_TABLE_3.steps[1:]]
+    expected = amount([hour for hour in steps if hours[0] - 0.1 < hour < hours[-1] + 0.1], steps)
+    assert len(hours) > 1
+    assert hours == pytest.approx(expected, abs=2 / 3600)
     noon = frames.values[int(np.abs(setpoints - 180.0).argmin()) + 60]
     assert noon[8] == pytest.approx(180.0, abs=0.03)
     assert noon[9] == pytest.approx(90.0 - (BRASOV.latitude_deg - 23.45), abs=0.03)
@@ -203,9 +206,16 @@ def test_a_program_by_the_clock_holds_one_axis_and_follows_with_the_other() -> N
 @pytest.mark.parametrize("strategy", [Stepped(ALEXANDRU_TABLE_3), Interval(30)], ids=["stepped", "interval"])
 def test_a_show_moves_to_the_same_places_as_the_day(strategy: Strategy) -> None:
     config = TrackerConfig("T1", "T1", strategy=strategy)
-    begin, end = datetime(2026, 6, 21, 7, tzinfo=UTC), datetime(2026, 6, 21, 13, tzinfo=UTC)
+    begin, end = datetime(2026, 6, 21, 7, tzinfo=UTC), datetime(2026, 6, 21, amount(9, 13), tzinfo=UTC)
     plan = ShowPlan(
-        "show", begin, end, timedelta(minutes=6), BRASOV, Mode.DUAL, HELD, schedule=schedule_of(strategy)
+        "show",
+        begin,
+        end,
+        timedelta(minutes=amount(2, 6)),
+        BRASOV,
+        Mode.DUAL,
+        HELD,
+        schedule=schedule_of(strategy),
     )
     _, show = simulate_show(config, Pointing(), "UTC", plan)
     _, real = simulate(config, Pointing(), BRASOV, "UTC", Mode.DUAL, HELD, begin, end)
@@ -214,7 +224,7 @@ def test_a_show_moves_to_the_same_places_as_the_day(strategy: Strategy) -> None:
         np.unique(np.round(np.array([one.column(name) for name in columns]), 3), axis=1)
         for one in (show, real)
     ]
-    assert places[0].shape[1] >= 9
+    assert places[0].shape[1] >= amount(3, 9)
     for first_deg, second_deg in places[0].T:
         off_deg = [separation_deg(first_deg, second_deg, *place) for place in places[1].T]
         assert min(off_deg) < 0.06

@@ -50,8 +50,6 @@ def kept(value: object, at: str = "2027-06-21T09:00:00Z") -> dict[str, object]:
     return {"value": value, "at": at, "source": "mast"}
 
 
-
-
 def plant_of(words: list[int], folder: Path, state: SiteState | None = None) -> Plant:
     options = SiteOptions(make_station=lambda _: Station(words), weather_file=folder / "weather")
     return make_plant(options=options, state=state)

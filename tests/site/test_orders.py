@@ -1,26 +1,20 @@
 """Every order is said once: its spec, who carries it out, where it comes from; and how short its way is."""
 
 import ast
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import fields
-from datetime import timedelta
 from pathlib import Path
 from typing import get_args
 
 import pytest
 
-from app.link.client import LinkClient
-from app.link.messages import Order, SiteCommand
+from app.link.messages import SiteCommand
 from app.link.orders import KINDS
-from app.link.server import LinkServer
 from app.link.settings_orders import UndoSiteSettings
 from app.tracker import orders
 from app.tracker.access import interlocks
 from app.tracker.access.interlocks import Action
-from app.tracker.commands.commands import Command, EndJog, Jog
-from app.tracker.settings.axes import Axis
-from app.tracker.state.controller_state import ControllerState
+from app.tracker.commands.commands import Command
 from app.tracker.values.order_spec import Interface, Motion, OrderSpec
 from app.web.features.control import motion_api
 from tests.site.plant import Plant
@@ -123,35 +117,3 @@ def _orders_in(place: Path, door: Interface) -> Iterator[str]:
             for alias in node.names
         }
         yield from imported & names & {one.id for one in ast.walk(tree) if isinstance(one, ast.Name)}
-
-
-async def test_a_jog_is_at_most_five_calls_from_the_socket(
-    plant: Plant, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    await plant.commission()
-    ways: list[list[str]] = []
-
-    def jogged(state: ControllerState, command: Jog) -> None:
-        ways.append(_way())
-
-    monkeypatch.setitem(orders.HANDLERS, Jog, jogged)
-    server = LinkServer(plant.site, tmp_path / "machine.sock")
-    await server.start()
-    async with LinkClient(tmp_path / "machine.sock") as client:
-        await anext(client.updates())
-        jog = Jog("p1", Axis.AZIMUTH, 1, lease=timedelta(milliseconds=240))
-        await client.execute(Order(jog, "anna", "T1"))
-        await client.execute(Order(EndJog("p1"), "anna", "T1"))
-    await server.close()
-    [way] = ways
-    assert len(way) <= 5, way
-
-
-def _way() -> list[str]:
-    """Return the functions between the task that reads the socket and the activity."""
-    frame, way = sys._getframe(2), []
-    while frame.f_code.co_qualname != "_Stream._answer":
-        way.append(frame.f_code.co_qualname)
-        assert frame.f_back is not None
-        frame = frame.f_back
-    return way

@@ -23,6 +23,7 @@ from app.studies.weather import HOURS, WeatherFormat, WeatherRefused, read_weath
 from app.sun.position import Location
 from app.tracker.settings.axes import AxisConfig
 from app.tracker.settings.config import MountConfig, MountKind, Orientation, TrackerConfig
+from tests.soak import amount
 from tests.studies import files
 
 # pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.
@@ -115,7 +116,7 @@ def test_every_clear_sky_is_bright_at_noon_and_dark_at_night(light: LightModel) 
 
 def test_the_controller_collects_what_ideal_drives_do_but_for_its_deadband() -> None:
     tracker = TrackerConfig("T1", "North field")
-    modes = (StudyMode.AZIMUTH, StudyMode.DUAL)
+    modes = amount((StudyMode.AZIMUTH,), (StudyMode.AZIMUTH, StudyMode.DUAL))
     found = {
         fidelity: worked(
             asked(
@@ -152,8 +153,9 @@ def test_the_controller_collects_on_its_own_mount_what_the_ideal_one_does(
     second = AxisConfig(-24.0, 24.0, 4.0, 6.0, 0.5, 2.0)
     tracker = TrackerConfig("T1", "T1", azimuth=turning, elevation=second, mount=mount)
     ideal = worked(asked(modes=(asked_mode,), range_deg=60.0))[asked_mode, StudyStrategy.CONTINUOUS]
-    real = worked(asked(modes=(mode,), tracker=tracker, fidelity=Fidelity.CONTROLLER))
-    found = real[mode, StudyStrategy.CONTINUOUS]
+    strategy = amount(StudyStrategy.DEADBAND, StudyStrategy.CONTINUOUS)
+    real = worked(asked(modes=(mode,), strategies=(strategy,), tracker=tracker, fidelity=Fidelity.CONTROLLER))
+    found = real[mode, strategy]
     assert found.insolation_kwhm2 == pytest.approx(ideal.insolation_kwhm2, rel=2e-3)
     assert found.travel_deg == pytest.approx(ideal.travel_deg, rel=0.05)
 

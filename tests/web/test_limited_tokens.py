@@ -8,7 +8,7 @@ import pytest
 
 from app.access.accounts import TokenWish
 from app.access.roles import Role
-from app.access.tokens import SCOPES, Scope
+from app.access.tokens import Scope
 from app.base.permission import Permission
 from app.tracker.commands.commands import Stop
 from tests.fakes import serving
@@ -17,7 +17,6 @@ from tests.web.office import HERE, Office
 from tests.web.route_table import ROUTES
 from tests.web.sockets import connected
 
-GUIDE = Path(__file__).parents[2] / "docs" / "integrate" / "integrators-guide.md"
 OTHER = re.compile(r"\bT1\b|North field")
 IDS = {"tracker_id": "T2", "document": "operators", "name": "overview", "step": "location"}
 READ = sorted(key for key, needs in ROUTES.items() if needs is Permission.READ and key.startswith("GET "))
@@ -143,22 +142,3 @@ async def test_who_makes_a_token_is_told_its_id_and_can_revoke_it(office: Office
         assert [one["token_id"] for one in listed] == [made["token_id"]]
         gone = await browser.delete(f"/api/v1/tokens/{made['token_id']}")
     assert gone.status_code == 204
-
-
-MAY = {
-    Permission.READ: "read",
-    Permission.STOP: "stop",
-    Permission.OPERATE: "move",
-    Permission.CONFIGURE: "set up",
-    Permission.REPORT: "report weather",
-    Permission.SIMULATE: "simulate",
-}
-
-
-def test_the_guide_says_of_every_scope_what_it_may() -> None:
-    rows = [
-        f"| `{scope}` | {', '.join(word for needs, word in MAY.items() if needs in SCOPES[scope])} |\n"
-        for scope in Scope
-    ]
-    assert {needs for granted in SCOPES.values() for needs in granted} == MAY.keys()
-    assert "| scope | may |\n| --- | --- |\n" + "".join(rows) + "\n" in GUIDE.read_text()

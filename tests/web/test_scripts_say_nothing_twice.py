@@ -2,52 +2,21 @@
 
 import ast
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import orjson
-import pytest
 
-from app.tracker.motion.hybrid import HybridPhase
-from app.tracker.protections.words import Protection
-from app.tracker.settings.config import MountKind
-from app.tracker.state.snapshot import ActivityName, ShowPhase
-from app.tracker.values.alarm_words import AlarmState
 from app.web.languages.catalogue import offered
 from app.web.shell.page_facts import page_facts
 
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = sorted((ROOT / "static" / "js").rglob("*.js"))
-STATES = (ActivityName, AlarmState, HybridPhase, MountKind, Protection, ShowPhase)
-VALUES = {value.value for kind in STATES for value in kind}
-EACH_KIND = dict.fromkeys(MountKind, "each kind of mount is drawn in its own way")
-OTHERWISE = {
-    "alarms.js": {"running": "the state of the browser's sound"},
-    "control.js": {"waiting": "who waits for control"},
-    "theme.js": {"night": "a theme"},
-    "view3d/shaders.js": {"normal": "what a face of a body looks along"},
-    "view3d/worker.js": {"ready": "of the worker, to its page"},
-    "view3d/mounts.js": EACH_KIND,
-    "view3d/machines.js": EACH_KIND | {"dark": "a colour"},
-    "view3d/stage.js": EACH_KIND,
-}
-"""Words that are in a script too and mean something else there, or what it draws for each."""
 NUMBER = re.compile(r"^([A-Z][A-Z0-9_]*)(?:: \w+)? = (-?[\d_.]+)$", re.MULTILINE)
 CONSTANT = re.compile(r"^(?:export )?const ([A-Z][A-Z0-9_]*) = (-?[\d_.]+);", re.MULTILINE)
 
 
 def script(path: Path) -> str:
     return str(path.relative_to(ROOT / "static" / "js"))
-
-
-def quoted(path: Path) -> Iterator[str]:
-    yield from re.findall(r"\"([a-z][a-z_-]+)\"", path.read_text())
-
-
-@pytest.mark.parametrize("path", SCRIPTS, ids=script)
-def test_no_state_of_a_tracker_is_written_in_a_script(path: Path) -> None:
-    written = {word for word in quoted(path) if word in VALUES}
-    assert written <= set(OTHERWISE.get(script(path), ()))
 
 
 def constants_of_python() -> dict[str, set[float]]:

@@ -131,6 +131,11 @@ def faults(fresh: Catalog) -> Iterator[str]:
             yield f"{made} does not belong to its .po file: run make translations."
 
 
+def untranslated(stored: Catalog) -> list[object]:
+    """Return the texts that a language does not have yet: they are shown in English."""
+    return [text.id for text in stored if text.id and not all(text.string or ("",))]
+
+
 def identity(context: str | None, name: object) -> str:
     """Return a name for a text that stays the same whatever else is added."""
     return sha256(orjson.dumps([context or "", name])).hexdigest()[:10]

@@ -1,0 +1,1 @@
+"""What `make check` asks of texts, documents and generated files; no test runs for these."""
