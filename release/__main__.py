@@ -11,9 +11,13 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
 from datetime import UTC, date, datetime, time
 from pathlib import Path
 
+from babel.messages.pofile import read_po
+
+from app.web.translation.catalogues import untranslated as missing_in
 from release.artifacts import build
 from release.changelog import released
 from release.refused import Refused
@@ -80,9 +84,20 @@ def check(root: Path, version: str, target: Path) -> None:
         raise Refused("There are changes that are not committed. Commit or remove them first.")
     if git(root, "tag", "--list", f"v{version}"):
         raise Refused(f"{version} is released already: there is the tag v{version}.")
+    for told in untranslated(root):
+        raise Refused(told)
     if target.exists():
         raise Refused(f"{target} is there already. Remove it first.")
     released((root / CHANGELOG).read_text(), version, date.min)
+
+
+def untranslated(root: Path) -> Iterator[str]:
+    """Yield the languages that do not have every text: until a release these are shown in English."""
+    for path in sorted((root / "app/web/locale").glob("*/LC_MESSAGES/*.po")):
+        with path.open("rb") as stored:
+            missing = missing_in(read_po(stored))
+        if missing:
+            yield f"{path.relative_to(root)} does not translate {len(missing)} texts, first {missing[0]!r}."
 
 
 def raise_version(sources: Path, version: str, day: date) -> None:

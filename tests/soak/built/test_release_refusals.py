@@ -65,6 +65,16 @@ def test_what_is_not_ready_is_refused(copy: Path) -> None:
         check(copy, "1.4.0", copy / "app")
 
 
+def test_a_text_that_a_language_does_not_have_is_refused(copy: Path) -> None:
+    stored = copy / "app/web/locale/de/LC_MESSAGES/heliopanel.po"
+    stored.parent.mkdir(parents=True)
+    stored.write_text('msgid "Stop"\nmsgstr "Halt"\n\nmsgid "Save"\nmsgstr ""\n')
+    git(copy, "add", "--all")
+    git(copy, "commit", "--quiet", "-m", "a new text")
+    with pytest.raises(Refused, match="does not translate 1 texts, first 'Save'"):
+        check(copy, "1.3.0", copy / "dist")
+
+
 def test_the_command_says_why_not(copy: Path) -> None:
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     command = [sys.executable, "-m", "release", "1.1.0"]
