@@ -19,7 +19,7 @@ from app.tracker.settings.axes import AxisConfig
 from app.tracker.settings.config import NightBehaviour, Orientation, TrackerConfig
 from app.tracker.state.snapshot import ActivityName
 from app.tracker.values.mode import Mode
-from tests.soak import SOAK, amount
+from tests.amount import SOAK, amount
 
 SAMSUN = Location(41.2867, 36.33, 4.0)
 ACTIVITIES = list(ActivityName)

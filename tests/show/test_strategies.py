@@ -35,7 +35,7 @@ from app.tracker.settings.strategy import (
     Strategy,
 )
 from app.tracker.values.mode import Mode
-from tests.soak import amount
+from tests.amount import amount
 from tests.tracker.plant import READY, Plant
 
 HELD = Orientation(180.0, 45.0)

@@ -17,10 +17,10 @@ from app.store.store import JournalFilter, StoreFailed, Writer
 from app.tracker.protections.words import Protection
 from app.tracker.state.snapshot import ActivityName, Event, EventKind
 from app.tracker.weather.weather import Weather
+from tests.amount import amount
 from tests.site.plant import SUMMER_NOON, settle
 from tests.site.test_sample_batches import CountingWriter
 from tests.site.tracking_field import ONE_HZ, activities, field_of
-from tests.soak import amount
 
 FIELD = amount(120, 500)
 STORM = ReportWeather(Weather(wind_mps=28.0))

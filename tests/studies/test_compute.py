@@ -23,7 +23,7 @@ from app.studies.weather import HOURS, WeatherFormat, WeatherRefused, read_weath
 from app.sun.position import Location
 from app.tracker.settings.axes import AxisConfig
 from app.tracker.settings.config import MountConfig, MountKind, Orientation, TrackerConfig
-from tests.soak import amount
+from tests.amount import amount
 from tests.studies import files
 
 # pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.

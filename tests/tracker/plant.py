@@ -17,7 +17,7 @@ from app.tracker.state.snapshot import ActivityName, Event, EventKind, Snapshot
 from app.tracker.values.mode import Mode
 from app.tracker.values.motion import DriveCommand, DriveRequest, RequestKind
 from app.tracker.weather.weather import NOTHING_SENSED, Quality, Reading, Sensed
-from tests.soak import amount
+from tests.amount import amount
 
 SAMSUN = Location(41.2867, 36.33, 4.0)
 MORNING = datetime(2026, 6, 21, 6, 0, tzinfo=UTC)

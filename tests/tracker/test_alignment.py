@@ -14,7 +14,7 @@ from app.tracker.commands.commands import CommandRejected
 from app.tracker.commissioning.alignment import Mistake, diagnose, fit
 from app.tracker.memory.memory import Pointing, Sighting
 from app.tracker.mounts.mount import PLAIN, to_axes
-from tests.soak import amount
+from tests.amount import amount
 
 SAMSUN = Location(41.2867, 36.33)
 JUNE = datetime(2026, 6, 21, tzinfo=UTC)

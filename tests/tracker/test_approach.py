@@ -11,7 +11,7 @@ from app.tracker.settings.protections import StowName
 from app.tracker.settings.strategy import Continuous, Strategy
 from app.tracker.state.snapshot import ActivityName
 from app.tracker.values.mode import Mode
-from tests.soak import amount
+from tests.amount import amount
 from tests.tracker.plant import CONFIG, READY, Plant
 
 APPROACH = "Moving to the sun"

@@ -23,8 +23,8 @@ from app.tracker.settings.config import MountConfig, MountKind, Orientation, Row
 from app.tracker.state.snapshot import EventKind
 from app.tracker.values.mode import Mode
 from app.tracker.values.motion import HALT
+from tests.amount import amount
 from tests.fault_result import FaultResult
-from tests.soak import amount
 from tests.tracker.plant import BLANK, CONFIG, MORNING, READY, SAMSUN, Plant
 from tests.tracker.shows import SYDNEY, daylight, show, utc
 

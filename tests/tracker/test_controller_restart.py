@@ -23,8 +23,8 @@ from app.tracker.settings.config import TrackerConfig
 from app.tracker.settings.protections import ProtectionConfig, Reaction, StowName, WindProtection
 from app.tracker.state.snapshot import ActivityName, EventKind, ShowPhase
 from app.tracker.weather.weather import Quality, Quantity, Reading, Sensed
+from tests.amount import amount
 from tests.fault_result import BY_ITSELF, VIRTUAL, FaultResult
-from tests.soak import amount
 from tests.tracker.plant import CONFIG, READY, Plant
 from tests.tracker.shows import SOLSTICE
 

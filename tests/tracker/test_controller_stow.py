@@ -38,8 +38,8 @@ from app.tracker.settings.protections import (
 )
 from app.tracker.state.snapshot import ActivityName, EventKind
 from app.tracker.weather.weather import Quantity
+from tests.amount import amount
 from tests.fault_result import HOME_AGAIN, VIRTUAL, FaultResult
-from tests.soak import amount
 from tests.tracker.plant import CONFIG, READY, Plant
 from tests.tracker.shows import SOLSTICE
 

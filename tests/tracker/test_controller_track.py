@@ -13,8 +13,8 @@ from app.tracker.settings.config import NightBehaviour, Orientation, TrackerConf
 from app.tracker.state.snapshot import ActivityName, EventKind, Snapshot
 from app.tracker.values.mode import Mode
 from app.tracker.values.motion import HALT
+from tests.amount import amount
 from tests.fault_result import FaultResult
-from tests.soak import amount
 from tests.tracker.plant import BLANK, CONFIG, MORNING, READY, SAMSUN, Plant
 from tests.tracker.scripted import Scripted
 

@@ -17,7 +17,7 @@ from app.tracker.settings.axes import AxisConfig
 from app.tracker.settings.config import Orientation, TrackerConfig
 from app.tracker.values.mode import Mode
 from app.tracker.values.reason import Reason
-from tests.soak import amount
+from tests.amount import amount
 from tests.tracker.shows import (
     ACROSS_MIDNIGHT,
     PLAIN,

@@ -18,7 +18,7 @@ from app.tracker.settings.axes import AxisConfig
 from app.tracker.settings.config import MountKind, TrackerConfig
 from app.tracker.settings.strategy import Interval
 from app.tracker.values.mode import Mode
-from tests.soak import amount
+from tests.amount import amount
 from tests.tracker.shows import (
     DAY,
     PLAIN,

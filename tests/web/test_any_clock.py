@@ -7,10 +7,10 @@ from datetime import UTC, datetime
 import pytest
 
 from app.base.clock import VirtualClock
+from tests.amount import amount
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.fault_result import BY_ITSELF, FaultResult
 from tests.patience import PATIENCE_S
-from tests.soak import amount
 from tests.web.route_table import ROUTES
 
 TODAY = datetime(2027, 6, 21, 9, 40, tzinfo=UTC)

@@ -14,9 +14,9 @@ from schemathesis.specs.openapi.checks import (
 from starlette.types import Receive, Scope, Send
 
 from app.web.openapi import DOCUMENT
+from tests.amount import amount
 from tests.fakes import fake_app
 from tests.patience import PATIENCE_S
-from tests.soak import amount
 
 EXAMPLES = amount(2, 8)
 LEFT_OUT = "stream|simulations|backup|accuracy|papers|studies/comparison|studies/programs|strategy/day"

@@ -31,7 +31,7 @@ from app.web.features.records.record_words import PARTS, label, value_of
 from app.web.languages import CATALOGUE, said
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import LANGUAGES, TRANSLATED
-from tests.soak import amount
+from tests.amount import amount
 from tests.web.desk import Desk
 
 CHINESE_FONT = b"DroidSansFallback"
