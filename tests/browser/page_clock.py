@@ -238,12 +238,12 @@ class Stage:
         """Return what a coroutine of the panel comes to."""
         return asyncio.run_coroutine_threadsafe(work, self.plant.loop).result(PATIENCE_S)
 
-    def settle(self, *, hold: bool = False) -> None:
+    def settle(self, told: dict[str, int] | None = None, *, hold: bool = False) -> None:
         """Return once nothing is under way: all that was sent has come, and what it led to as well.
 
         With `hold`, what comes afterwards waits until it is settled again.
         """
-        told = self.ask(self._quiet())
+        told = told or self.ask(self._quiet())
         while True:
             said = self._each("tap.settle", {"told": told, "hold": hold})
             sent = {one["id"]: one["sent"] for some in said for one in some}
@@ -251,17 +251,18 @@ class Stage:
                 return
 
     def _beat(self, ms: int, *, more: bool) -> None:
-        self.ask(self._step(timedelta(milliseconds=ms)))
+        told = self.ask(self._step(timedelta(milliseconds=ms)))
         for context in self.contexts:
             if self.blocked is None or context is not self.blocked.context:
                 context.clock.run_for(ms)
-        self.settle(hold=more)
+        self.settle(told, hold=more)
 
-    async def _step(self, by: timedelta) -> None:
+    async def _step(self, by: timedelta) -> dict[str, int]:
         end = self.clock.now() + by
         while self.clock.now() < end:
             self.clock.move_to(min(end, self.clock.next_wake or end))
             await self._quiet()
+        return self.lines.told
 
     async def _answers(self, sent: dict[str, int]) -> dict[str, int]:
         await self.lines.until_heard(sent)

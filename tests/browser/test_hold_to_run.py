@@ -4,13 +4,13 @@ The pages are before the controller itself, all on one clock: a heartbeat every 
 """
 
 from collections.abc import Callable, Iterator
+from datetime import timedelta
 from functools import partial
 from math import ceil
 
 import pytest
 from playwright.sync_api import Browser, CDPSession, Page, expect
 
-from app.tracker.commands.commands import JOG_LEASE
 from app.tracker.settings.axes import Axis, JogSpeed
 from app.tracker.state.snapshot import ActivityName, EventKind
 from tests.browser.hands import LINK_MEASURED, middle
@@ -23,7 +23,7 @@ HOMING = "/trackers/T1/commissioning/homing"
 KEY = '[data-jog="azimuth"][data-direction="1"]'
 OTHER_KEY = '[data-jog="elevation"][data-direction="1"]'
 HELD_MS = 400
-LEASE_MS = 240
+LEASE = timedelta(milliseconds=240)
 RAMP_MS = 1000 * FIRST.config.azimuth.jog_slow_dps / FIRST.config.azimuth.acceleration_dps2
 RAMP_IN_BEATS_MS = BEAT_MS * ceil(RAMP_MS / BEAT_MS)
 STILL_MS = 500
@@ -190,7 +190,7 @@ def test_blocked_page_sends_nothing_late(why: str, site: SiteStage, fault: Fault
         page.evaluate("tap.thaw()")
         site.settle()
     (ended,) = site.happened(EventKind.JOG_ENDED)
-    assert (ended.at - begun, ended.data["outcome"]) == (JOG_LEASE, "expired")
+    assert (ended.at - begun, ended.data["outcome"]) == (LEASE, "expired")
     fault.noticed((ended.at - begun).total_seconds(), VIRTUAL)
     fault.prevented("the lease ends without a renewal; benchmarks say when the axis was told")
     page.mouse.up()
