@@ -5,6 +5,7 @@ import tomllib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from filecmp import cmp
+from functools import cache
 from importlib.metadata import Distribution, PackageNotFoundError, distribution
 from pathlib import Path
 from typing import Any
@@ -90,6 +91,7 @@ def measure(_: None = SMALL) -> list[Row]:
     return [*rows, *(alone(f"{one.name}: {one.purpose}", _told(one.size), COMMAND) for one in by_size)]
 
 
+@cache
 def installation(extra: str = "") -> dict[str, Library]:
     """Return all that is installed with Heliopanel, and with one extra of it, by name."""
     found = {OWN: Library(OWN, _own_size())}

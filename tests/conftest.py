@@ -2,6 +2,7 @@
 
 import gc
 import os
+import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -16,6 +17,7 @@ from tests.patience import TEST_S
 
 pytest_plugins = ["tests.order"]
 guard.stay_here()
+sys.modules["sniffio"] = None  # type: ignore[assignment] # httpx looks for it on the disk at every request
 os.environ.setdefault("PYTEST_TIMEOUT", str(TEST_S))
 # A product under test must not take the processor from what judges it; tests/soak has it in real time.
 os.environ["HELIOPANEL_REAL_TIME"] = "off"

@@ -11,6 +11,7 @@ import weakref
 from collections.abc import AsyncIterator
 from dataclasses import replace
 from datetime import datetime, timedelta
+from functools import cache
 from pathlib import Path
 from zoneinfo import available_timezones
 
@@ -338,12 +339,18 @@ def _check_zone(name: str) -> None:
         raise ValueError(f"{name} is not a time zone; give an IANA name such as Europe/Istanbul.")
 
 
+@cache
+def settings() -> Settings:
+    """Return the settings of every fake panel, read once: that takes half of the time of making one."""
+    return Settings(port=PORT)
+
+
 def fake_app(machine: FakeMachine | None = None, reader: FakeReader | None = None) -> DocumentedApp:
     """Return the whole panel on the fakes, with a data folder of its own that goes with it."""
     folder = Path(tempfile.mkdtemp(prefix="heliopanel-fakes-"))
     machine = machine or FakeMachine()
     app = create_app(
-        Settings(data_dir=folder, port=PORT),
+        settings().model_copy(update={"data_dir": folder}),
         machine=machine,
         reader=reader or machine.store,
         clock=machine.clock,

@@ -3,12 +3,14 @@
 import csv
 import json
 from datetime import UTC, datetime
+from functools import cache
 from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
 
 from app.base.build import VERSION
+from app.cli import day as cli_day
 from app.store.engine import open_reader, open_writer
 from app.store.migrations import upgrade
 from app.sun.position import Algorithm, Location, sun_position
@@ -94,7 +96,10 @@ def test_the_version_is_told(run: Run) -> None:
     assert run("version") == (0, f"{VERSION}\n", "")
 
 
-def test_a_simulated_day_as_csv_and_parquet(run: Run, tmp_path: Path) -> None:
+def test_a_simulated_day_as_csv_and_parquet(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cli_day, "simulate_date", cache(cli_day.simulate_date))
     day = [*SAMSUN, "--date", "2026-06-21", "--time-zone", "Europe/Istanbul", "--step-s", "60"]
     table, columns = tmp_path / "day.csv", tmp_path / "day.parquet"
 

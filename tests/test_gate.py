@@ -52,10 +52,10 @@ def test_many(number):
 
 def gate(folder: Path, tests: str, *more: str) -> subprocess.CompletedProcess[str]:
     """Run the gate on a file of tests in a folder of its own."""
-    (folder / "pytest.ini").write_text("[pytest]\njunit_family = xunit1\n")
+    (folder / "pytest.ini").write_text("[pytest]\njunit_family = xunit1\naddopts = -p xdist\n")
     (folder / "test_small.py").write_text(TESTS + tests)
     command = [sys.executable, "-m", "tests.gate", *more]
-    environment = {"PYTHONPATH": str(ROOT)}
+    environment = {"PYTHONPATH": str(ROOT), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
 

@@ -22,7 +22,7 @@ from app.tracker.state.snapshot import ActivityName, Event, EventKind, SiteSnaps
 
 SUMMER_NOON = datetime(2027, 6, 21, 9, 40, tzinfo=UTC)
 SAMSUN = Location(41.2867, 36.33, 4.0)
-STEP = timedelta(milliseconds=50)
+STEP = timedelta(seconds=1)
 IDLE_ROUNDS = 12
 FIRST = TrackerState(TrackerConfig("T1", "Tracker 1"), TrackerMemory())
 

@@ -28,6 +28,7 @@ from app.tracker.values.mode import Mode
 from app.tracker.weather.weather import Weather
 from tests.fault_result import FaultResult
 from tests.site.plant import SUMMER_NOON, Plant, make_plant
+from tests.soak import amount
 from tests.store.tracked_day import MIDNIGHT, day_info, tracked_day
 
 T = TypeVar("T")
@@ -195,7 +196,7 @@ def test_samples_of_a_recording_that_does_not_run_do_not_hold_up_the_others(
 def test_hours_of_samples_are_few_bytes(
     batches: SampleBatches, writer: CountingWriter, trackers: int, fault: FaultResult
 ) -> None:
-    hours = 6 if trackers == 1 else 2
+    hours = amount(2, 6) if trackers == 1 else amount(1, 2)
     day = tracked_day(hours * 3600, begin_s=6 * 3600.0).values
     names = [f"day-{number}" for number in range(trackers)]
     for name in names:
@@ -237,12 +238,13 @@ async def test_a_site_that_tracks_writes_once_in_the_set_time(
     await plant.ask(ReportWeather(Weather(wind_mps=3.0)), None)
     await plant.forward(seconds=60.0)
     before, began = written_bytes(), counting.transactions
-    for second in range(600):
+    for second in range(amount(310, 600)):
         await plant.ask(ReportWeather(Weather(wind_mps=3.0 + second % 10 / 10)), None)
         await plant.forward(seconds=1.0)
     transactions = counting.transactions - began
-    a_minute = ((written_bytes() - before) / 1024.0 + transactions * BESIDE_KIB) / 10.0
-    assert 2 <= transactions <= 3, "samples twice, and at most one look at the audit's last entry"
+    a_minute = ((written_bytes() - before) / 1024.0 + transactions * BESIDE_KIB) / amount(5.2, 10.0)
+    samples = amount(1, 2)
+    assert samples <= transactions <= samples + 1, "and at most one look at the audit's last entry"
     assert a_minute <= MOST_KIB_A_MINUTE[1]
     fault.shows_nothing("no user has to do anything")
     fault.recovers("nothing was lost")

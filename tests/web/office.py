@@ -13,10 +13,9 @@ from app.access.authenticator import Keeper
 from app.access.principal import this_computer
 from app.access.roles import Role
 from app.base.clock import Clock, SystemClock
-from app.base.settings import Settings
 from app.web.main import create_app
 from tests.access.fake_hasher import FakeHasher
-from tests.fakes import PORT, FakeMachine
+from tests.fakes import PORT, FakeMachine, settings
 
 PASSWORD = "violet-anvil-harbour-9"  # noqa: S105 - of people who do not exist
 COOKIE = f"heliopanel-{PORT}"
@@ -42,8 +41,8 @@ class Office:
         self.clock = clock or MovableClock()
         self.machine = FakeMachine(self.clock)
         self.hasher = FakeHasher()
-        self.settings = Settings(data_dir=folder, port=PORT).model_copy(
-            update={"host": host, "login_banner": notice}
+        self.settings = settings().model_copy(
+            update={"data_dir": folder, "host": host, "login_banner": notice}
         )
         self.app: FastAPI = create_app(
             self.settings,

@@ -6,9 +6,10 @@ import httpx
 import pytest
 
 from tests.fakes import fake_app, serving
+from tests.soak import amount
 from tests.web.forms import PageForm, bad_values, every_form, hostile_in
 
-ROUNDS = 3
+ROUNDS = amount(1, 3)
 
 
 async def send(client: httpx.AsyncClient, form: PageForm, values: dict[str, str]) -> httpx.Response:
@@ -25,8 +26,8 @@ async def fuzz(rounds: int, seed: int) -> int:
     assert len(forms) > 120, [form.action for form in forms]
     for number in range(rounds):
         async with serving(fake_app()) as client:
-            for form in forms:
-                values = bad_values(form, number, chance)
+            for place, form in enumerate(forms):
+                values = bad_values(form, number + place, chance)
                 answer = await send(client, form, values)
                 assert answer.status_code < 500 or answer.status_code == 503, (form, values, answer.text)
                 assert not hostile_in(answer.text), (form, values)

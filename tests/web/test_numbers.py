@@ -106,6 +106,15 @@ def numbers(body: Any, place: Place = ()) -> Iterator[Place]:
         yield place
 
 
+def kind_of(body: Any, place: Place) -> tuple[object, ...]:
+    """Return the field at a place, the same in every body that has it, among the fields beside it."""
+    names, inner = [], body
+    for key in place:
+        names.append((key, frozenset(inner)) if isinstance(inner, dict) else ())
+        inner = inner[key]
+    return *names, body.get("type")
+
+
 def with_value(body: Any, place: Place, value: object) -> Any:
     changed = deepcopy(body)
     inner = changed
@@ -117,10 +126,13 @@ def with_value(body: Any, place: Place, value: object) -> Any:
 
 @pytest.mark.parametrize("name", ADAPTERS)
 def test_a_number_written_as_something_else_is_refused(name: str) -> None:
-    read = ADAPTERS[name].validate_python
+    read, tried = ADAPTERS[name].validate_python, set()
     for body in bodies(name):
         read(body)
         for place in numbers(body):
+            if (kind := kind_of(body, place)) in tried:
+                continue
+            tried.add(kind)
             for posing in POSING:
                 with pytest.raises(ValidationError):
                     read(with_value(body, place, posing))

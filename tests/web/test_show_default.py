@@ -22,6 +22,7 @@ from app.web.features.shows.show_plan import Place, ShowForm, planned, presets
 from app.web.shell.forms import Typed
 from tests.fake_data import commissioned
 from tests.fakes import FakeMachine, fake_app, serving
+from tests.soak import amount
 
 SHOW = "/trackers/T1/show"
 SYDNEY = (Location(-33.87, 151.21), "Australia/Sydney")
@@ -166,7 +167,7 @@ async def test_a_day_outside_the_known_years_is_refused_in_a_sentence() -> None:
         assert "choose a day in the years 1901 to 2099." in text
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=amount(15, 60), deadline=None)
 @given(
     latitude_deg=st.floats(-66.0, 66.0),
     longitude_deg=st.floats(-180.0, 180.0),
