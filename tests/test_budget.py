@@ -5,6 +5,7 @@ from datetime import UTC, datetime, timedelta
 
 from app.base.budget import Budget
 from app.base.clock import VirtualClock
+from tests.patience import PATIENCE_S
 
 
 def clock() -> VirtualClock:
@@ -37,4 +38,4 @@ async def test_who_waits_goes_on_when_the_next_one_is_allowed() -> None:
     await asyncio.sleep(0)
     assert not waiting.done()
     time.advance(timedelta(seconds=0.05))
-    await asyncio.wait_for(waiting, 1.0)
+    await asyncio.wait_for(waiting, PATIENCE_S)

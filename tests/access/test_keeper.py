@@ -24,6 +24,7 @@ from app.base.permission import Permission
 from app.cli.users import users
 from tests.access.door import ADDRESS, HERE, PASSWORD, Door
 from tests.fault_result import FaultResult
+from tests.patience import PATIENCE_S
 
 
 @pytest.fixture
@@ -145,7 +146,7 @@ async def test_what_another_process_revokes_ends_here(door: Door) -> None:
         change.end_sessions("ada")
     other.close()
     await door.keeper.refresh()
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(PATIENCE_S):
         await waiting
     assert door.via(session) is Via.NOBODY
 

@@ -20,6 +20,7 @@ from app.access.tokens import Scope
 from app.access.users import AccessRefused
 from app.base.permission import Permission
 from tests.access.door import ADDRESS, HERE, PASSWORD, START, Door
+from tests.patience import PATIENCE_S
 
 OTHER = "quiet-lantern-meadow-4"
 PIN = "270441"
@@ -323,7 +324,7 @@ async def test_refusals_and_what_others_wrote_are_looked_at_twice_a_second(door:
     looked = asyncio.create_task(_changed(door))
     await asyncio.sleep(0)
     door.clock.advance(LOOK_EVERY)
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(PATIENCE_S):
         await looked
     assert "olga" in door.keeper.book.users
     last = (await door.recorded())[-1]
@@ -388,5 +389,5 @@ async def test_who_was_let_in_is_judged_by_what_they_may_now(door: Door) -> None
     await asyncio.sleep(0)
     assert not staying.done(), "other roles send nobody away"
     await door.keeper.log_out(who)
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(PATIENCE_S):
         await staying

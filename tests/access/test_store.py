@@ -20,6 +20,7 @@ from app.base.build import VERSION
 from app.base.settings import Settings
 from app.store.connections import sharing_engine, transaction
 from app.store.store import StoreFailed, StoreUnfit
+from tests.patience import PATIENCE_S
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 WRITERS, EACH = 4, 5
@@ -169,7 +170,7 @@ def test_who_writes_at_the_same_time_breaks_no_chain_and_hides_no_change(
 
     def write(first: int) -> None:
         other = open_store(settings)
-        at_once.wait(10)
+        at_once.wait(PATIENCE_S)
         for number in range(EACH):
             with other.writing() as change:
                 change.note(told(first + number))
@@ -179,7 +180,7 @@ def test_who_writes_at_the_same_time_breaks_no_chain_and_hides_no_change(
         others.append(threading.Thread(target=write, args=(1 + writer * EACH,)))
         others[-1].start()
     for other in others:
-        other.join(30)
+        other.join(PATIENCE_S)
     assert store.changes() == before + WRITERS * EACH
     events, previous = store.events(), FIRST
     assert len(events) == 1 + WRITERS * EACH

@@ -15,6 +15,7 @@ from app.tracker.access.interlocks import Action
 from app.tracker.memory.memory import TrackerMemory, TrackerState
 from app.tracker.settings.config import TrackerConfig
 from app.tracker.state.snapshot import EventKind
+from tests.patience import PATIENCE_S
 from tests.site.plant import Plant, make_plant, settle
 
 
@@ -63,7 +64,7 @@ async def told_when_all_stop(count: int, path: Path) -> Heard:
     reader, writer = await asyncio.open_unix_connection(path)
     listening = asyncio.create_task(heard.listen(reader))
     await plant.forward(seconds=0.6)
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(PATIENCE_S):
         while len(heard.trackers) < count:
             await settle()
     await plant.forward(seconds=0.2)
@@ -71,7 +72,7 @@ async def told_when_all_stop(count: int, path: Path) -> Heard:
         await settle()
     heard.forget()
     await plant.ask(StopAll())
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(PATIENCE_S):
         while len(heard.events) < count or len(heard.trackers) < count:
             await settle()
     listening.cancel()

@@ -16,6 +16,7 @@ from app.tracker.settings.config import Orientation
 from app.tracker.state.snapshot import ActivityName, EventKind
 from app.tracker.values.mode import Mode
 from app.tracker.values.motion import DriveCommand
+from tests.patience import PATIENCE_S
 from tests.site.plant import SAMSUN, Plant, make_plant, settle
 from tests.site.wrapped_drive import WrappedDrive, wrapped
 
@@ -186,7 +187,7 @@ async def test_stop_is_answered_although_the_disk_is_stalled() -> None:
     await plant.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
     writer.stalled = True
 
-    await asyncio.wait_for(plant.site.execute(Order(Stop(), "technician", "T1")), 3.0)
+    await asyncio.wait_for(plant.site.execute(Order(Stop(), "technician", "T1")), PATIENCE_S)
 
     assert plant.happened(EventKind.STOPPED)
     await plant.close()

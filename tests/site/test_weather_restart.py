@@ -23,6 +23,7 @@ from app.tracker.state.snapshot import SiteSnapshot
 from app.tracker.weather.simulated_weather import Scenario, SimulatedStation
 from app.tracker.weather.weather import Quality, Weather, WeatherNow
 from tests.fault_result import BY_ITSELF, FaultResult
+from tests.patience import PATIENCE_S
 from tests.site.plant import SAMSUN, SUMMER_NOON, Plant, make_plant, settle
 
 PLACED = SiteState("Storm", SAMSUN, 1, "Europe/Istanbul", ClockSetting("system"))
@@ -323,7 +324,7 @@ async def test_a_disk_that_hangs_at_the_end_does_not_keep_a_drive_turning(
     await plant.ask(Move(Orientation(200.0, 40.0)))
     await plant.forward(seconds=3.0)
     goes_on = threading.Event()
-    monkeypatch.setattr(kept_weather.Twins, "sync", lambda _: goes_on.wait(10.0))
+    monkeypatch.setattr(kept_weather.Twins, "sync", lambda _: goes_on.wait(PATIENCE_S))
     closing = asyncio.create_task(plant.site.close())
     await plant.forward(seconds=5.0)
     assert not closing.done()

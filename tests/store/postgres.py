@@ -12,6 +12,8 @@ from pathlib import Path
 
 import psycopg
 
+from tests.patience import PATIENCE_S
+
 MISSING = (
     "The tests need PostgreSQL. Install it with: sudo apt-get install --no-install-recommends postgresql"
 )
@@ -80,7 +82,7 @@ def _run(*command: object) -> None:
         stdout=subprocess.PIPE if "start" not in command else subprocess.DEVNULL,
         stderr=subprocess.STDOUT,
         cwd="/",
-        timeout=60,
+        timeout=PATIENCE_S,
         check=False,
     )
     if done.returncode:

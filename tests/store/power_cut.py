@@ -14,6 +14,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from random import Random
 
+from tests.patience import PATIENCE_S
+
 SECTOR = 512
 NAMING = {"openat": "create", "unlink": "unlink", "unlinkat": "unlink"}
 SYNCS = ("fsync", "fdatasync")
@@ -45,7 +47,7 @@ def record(command: list[str], folder: Path, log: Path) -> Recording:
     """Run a command and return what it did to the files of a folder."""
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
     tracing = ["strace", "-f", "-y", "-xx", "-s", "1000000", "-e", f"trace={CALLS}", "-e", "signal=none"]
-    subprocess.run([*tracing, "-o", str(log), *command], check=True, timeout=100)
+    subprocess.run([*tracing, "-o", str(log), *command], check=True, timeout=PATIENCE_S)
     return Recording(before, list(_calls(log, folder)))
 
 

@@ -18,6 +18,7 @@ from app.store.migrations import upgrade
 from app.store.store import JournalFilter, StoreFailed
 from app.store.writer import DatabaseWriter
 from tests.fault_result import FaultResult
+from tests.patience import PATIENCE_S
 from tests.store.samples import SITE, event
 from tests.store.tracked_day import day_info, tracked_day
 
@@ -47,7 +48,7 @@ def killed_after(url: str, first: int, acknowledgements: int) -> list[int]:
             acknowledged.append(int(receive.recv()))
             if len(acknowledged) == acknowledgements:
                 child.kill()
-    child.join(20)
+    child.join(PATIENCE_S)
     return acknowledged
 
 

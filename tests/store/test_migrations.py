@@ -25,6 +25,7 @@ from app.store.migrations import (
 from app.store.store import StoreFailed
 from app.store.tables import REVISION
 from tests.fault_result import FaultResult
+from tests.patience import PATIENCE_S
 from tests.store.samples import SITE
 
 
@@ -244,7 +245,7 @@ def test_a_migration_that_is_killed_midway_leaves_the_old_database(
         target=upgrade, args=(url,), kwargs={"scripts": scripts}
     )
     child.start()
-    child.join(20)
+    child.join(PATIENCE_S)
     assert child.exitcode == -signal.SIGKILL
     assert upgrade(url) == REVISION
     assert still_usable(url)

@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 from app.studies.jobs import JOB, CheckWeather
+from tests.patience import PATIENCE_S
 
 
 def test_it_ends_quietly_when_nobody_listens_any_more(tmp_path: Path) -> None:
@@ -18,5 +19,5 @@ def test_it_ends_quietly_when_nobody_listens_any_more(tmp_path: Path) -> None:
         process.stdin.write(JOB.dump_json(CheckWeather(str(tmp_path / "none.epw"))) + b"\n")
         process.stdin.close()
         said = process.stderr.read()
-        assert process.wait(60) == 0
+        assert process.wait(PATIENCE_S) == 0
     assert said == b""

@@ -13,6 +13,7 @@ from app.store.engine import open_reader, open_writer
 from app.store.migrations import upgrade
 from app.web.main import create_app
 from tests.fakes import serving
+from tests.patience import PATIENCE_S
 from tests.site.direct_writer import DirectWriter
 from tests.site.plant import make_plant
 
@@ -43,7 +44,7 @@ class Desk:
 
     async def ask(self, method: str, path: str, **more: Any) -> httpx.Response:
         """Return the answer; the machine's clock stands still meanwhile."""
-        return await asyncio.wait_for(self._client.request(method, path, **more), 30)
+        return await asyncio.wait_for(self._client.request(method, path, **more), PATIENCE_S)
 
     async def forward(self, seconds: float) -> None:
         """Let the machine live for a while."""

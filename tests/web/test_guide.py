@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import httpx
-import pytest
 
 from tests.web.desk import Desk
 
@@ -65,7 +64,6 @@ async def follow(desk: Desk) -> dict[str, Any]:
     return answers
 
 
-@pytest.mark.timeout(120)
 async def test_the_guide_walks_from_first_power_to_a_recorded_show(tmp_path: Path) -> None:
     async with Desk(tmp_path) as desk:
         answers = await follow(desk)

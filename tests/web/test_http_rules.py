@@ -8,6 +8,7 @@ import pytest
 
 from app.access.roles import Role
 from app.web.http.server import Connections
+from tests.patience import PATIENCE_S
 from tests.web.office import COOKIE, Office
 from tests.web.route_table import ROUTES
 from tests.web.test_server import serving
@@ -16,7 +17,7 @@ from tests.web.test_server import serving
 async def asked(port: int, head: str) -> bytes:
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     writer.write(head.format(port=port).replace("\n", "\r\n").encode() + b"\r\n\r\n")
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(PATIENCE_S):
         answer = await reader.read(4096)
     writer.close()
     return answer

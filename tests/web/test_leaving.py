@@ -18,6 +18,7 @@ from app.base.clock import VirtualClock
 from tests.access.fake_hasher import FakeHasher
 from tests.fake_data import NOON
 from tests.fault_result import VIRTUAL, FaultResult
+from tests.patience import PATIENCE_S
 from tests.web.asgi import Reading, streaming
 from tests.web.office import COOKIE, HERE, ORIGIN, Office
 from tests.web.sockets import Socket, connected
@@ -66,7 +67,7 @@ async def test_what_a_page_revokes_ends_at_once(office: Office, way: str, openin
     async with opening(office.app, headers=headers) as stream:
         await first_of(stream)
         await office.keeper.do(lambda: take_away(office.keeper.accounts))
-        await asyncio.wait_for(stream.ended.wait(), 5)
+        await asyncio.wait_for(stream.ended.wait(), PATIENCE_S)
     assert office.clock.now() == NOON
 
 
@@ -83,7 +84,7 @@ async def test_what_the_command_line_revokes_ends_within_a_second(
         take_away(Accounts(elsewhere, Passwords(FakeHasher())))
         elsewhere.close()
         clock.advance(WITHIN)
-        await asyncio.wait_for(stream.ended.wait(), 5)
+        await asyncio.wait_for(stream.ended.wait(), PATIENCE_S)
     fault.noticed(WITHIN.total_seconds(), VIRTUAL)
     fault.recovers("a new token is made, or the user signs in again")
 
@@ -97,4 +98,4 @@ async def test_a_token_that_expires_ends_its_stream_within_a_second(
     async with streaming(office.app, headers=headers) as stream:
         await first_of(stream)
         clock.move_to(token.expires_at)
-        await asyncio.wait_for(stream.ended.wait(), 5)
+        await asyncio.wait_for(stream.ended.wait(), PATIENCE_S)

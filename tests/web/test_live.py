@@ -20,6 +20,7 @@ from app.web.live.hold_to_run import Dead, Heartbeat, LinkDelay, Presses, Verdic
 from tests.fake_data import NOON
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.fault_result import REAL, FaultResult
+from tests.patience import PATIENCE_S
 from tests.web.sockets import Socket, connected
 
 
@@ -379,7 +380,7 @@ async def test_reader_that_takes_nothing_is_dropped_and_the_others_go_on(
         stuck.reads.clear()
         machine.emit()
         await forward(clock, 1.0)
-        await asyncio.wait_for(stuck.ended.wait(), 5)
+        await asyncio.wait_for(stuck.ended.wait(), PATIENCE_S)
         assert len(hub) == 1
         machine.emit()
         await forward(clock, 0.2)

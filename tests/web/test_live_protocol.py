@@ -15,6 +15,7 @@ from app.link.messages import Order
 from app.tracker.commands.commands import Stop
 from tests.fake_data import NOON
 from tests.fakes import FakeMachine
+from tests.patience import PATIENCE_S
 from tests.web.test_server import Connections, serving
 
 PING = json.dumps({"type": "ping", "tc": 1.0})
@@ -31,13 +32,13 @@ async def live_page(
 
 
 async def pongs(page: ClientConnection, count: int) -> None:
-    async with asyncio.timeout(20):
+    async with asyncio.timeout(PATIENCE_S):
         while count:
             count -= json.loads(await page.recv())["type"] == "pong"
 
 
 async def closed(page: ClientConnection) -> tuple[int, str]:
-    async with asyncio.timeout(20):
+    async with asyncio.timeout(PATIENCE_S):
         with contextlib.suppress(ConnectionClosed):
             while True:
                 await page.recv()

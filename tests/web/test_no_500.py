@@ -10,6 +10,7 @@ import pytest
 from app.access.roles import Role
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.fault_result import FaultResult
+from tests.patience import PATIENCE_S
 from tests.web.office import Office
 
 DAYS = ["0001-01-01", "1900-12-31", "2100-01-01", "9999-12-31"]
@@ -93,6 +94,6 @@ async def test_a_mistake_of_the_panel_says_that_it_hangs_up(
     async with serving(app):
         transport = httpx.ASGITransport(app, raise_app_exceptions=False)
         async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1:8010") as browser:
-            answer = await asyncio.wait_for(browser.get("/api/v1/site/notifications"), 20)
+            answer = await asyncio.wait_for(browser.get("/api/v1/site/notifications"), PATIENCE_S)
     assert answer.status_code == 500
     assert answer.headers["connection"] == "close"

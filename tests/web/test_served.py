@@ -26,7 +26,7 @@ from app.web.http.server import PanelServer
 from app.web.main import configured, create_app
 from tests.access.fake_hasher import FakeHasher
 from tests.fakes import FakeMachine, FakeReader
-from tests.patience import eventually
+from tests.patience import PATIENCE_S, eventually
 from tests.ports import free_port
 from tests.web.office import HERE, PASSWORD
 
@@ -41,7 +41,7 @@ def served(settings: Settings, on_answer: Callable[[], None] | None = None) -> I
     asyncio.run(eventually(lambda: server.started))
     yield app
     server.leave()
-    thread.join(10)
+    thread.join(PATIENCE_S)
     assert not thread.is_alive()
 
 
@@ -115,7 +115,7 @@ class Forwarding(BaseHTTPRequestHandler):
 
     def do_POST(self) -> None:
         body = self.rfile.read(int(self.headers.get("content-length", 0)))
-        panel = HTTPConnection("127.0.0.1", self.panel_port, timeout=10)
+        panel = HTTPConnection("127.0.0.1", self.panel_port, timeout=PATIENCE_S)
         told = {"X-Forwarded-For": self.client_address[0], "X-Forwarded-Proto": "https"}
         kept = {
             name: text for name, text in self.headers.items() if not name.lower().startswith("x-forwarded")
@@ -144,7 +144,7 @@ def proxy(panel_port: int) -> Iterator[int]:
     yield server.server_port
     server.shutdown()
     server.server_close()
-    thread.join(5)
+    thread.join(PATIENCE_S)
 
 
 def wrong_log_in(port: int, come_from: str, **headers: str) -> httpx.Response:

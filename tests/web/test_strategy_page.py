@@ -168,7 +168,7 @@ async def test_the_live_page_shows_program_and_correction_of_the_tracker_that_ha
 
 
 async def test_today_is_drawn_with_what_it_costs(client: httpx.AsyncClient) -> None:
-    part = (await client.get(f"{PAGE}/day", params={"kind": "interval", "minutes": "60"}, timeout=60)).text
+    part = (await client.get(f"{PAGE}/day", params={"kind": "interval", "minutes": "60"})).text
     assert "Greatest error" in part
     assert part.count("<svg") >= 2
     assert "hour of the day at the site" in part

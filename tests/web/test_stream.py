@@ -12,6 +12,7 @@ from app.tracker.state.snapshot import Event, EventKind
 from app.web.live.hub import EVENTS_KEPT
 from tests.fake_data import NOON
 from tests.fakes import FakeMachine, fake_app, serving
+from tests.patience import PATIENCE_S
 from tests.web.asgi import streaming
 
 
@@ -106,7 +107,7 @@ async def test_stuck_reader_is_dropped(app: FastAPI, machine: FakeMachine) -> No
         await stuck.next("snapshot")
         stuck.reads.clear()
         machine.emit(event("never read"))
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(PATIENCE_S):
             while len(hub):
                 await machine.clock.sleep_until(machine.clock.now() + timedelta(milliseconds=5))
         stuck.reads.set()
@@ -117,4 +118,4 @@ async def test_panel_that_ends_ends_its_streams(machine: FakeMachine) -> None:
     async with serving(app), streaming(app) as reading:
         await reading.next("snapshot")
         app.state.panel.hub.closing.set()
-        await asyncio.wait_for(reading.ended.wait(), 5)
+        await asyncio.wait_for(reading.ended.wait(), PATIENCE_S)
