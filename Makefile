@@ -149,7 +149,7 @@ check-generated:
 check-imports:
 	@$(BIN)/lint-imports
 check-secrets:
-	@$(BIN)/python -m tests.secret_search
+	@$(BIN)/python -m checks secrets
 check-vendored:
 	@$(BIN)/python static/vendor/vendor.py check
 check-migrations:

@@ -8,8 +8,8 @@ import pytest
 
 from checks.documents import faults_of
 from checks.generated import alike
+from checks.secrets import findings
 from checks.texts import english_values, marked, ruled_out, sentences
-from tests.secret_search import findings
 
 WORDS = ruled_out()
 

@@ -11,6 +11,7 @@ import pytest
 
 from app.base import extras
 from app.base.extras import LIBRARIES, ExtraMissing
+from app.cli import day as cli_day
 from app.store.connections import parse_url
 from tests.command_line import Run, run
 from tests.fakes import FakeMachine, fake_app, serving
@@ -70,7 +71,10 @@ async def test_a_page_without_its_extra_says_the_command(lacks: Callable[[str], 
     assert (answer.status_code, sentence in unescape(answer.text)) == (501, True)
 
 
-def test_a_recording_is_not_written_as_parquet(run: Run, lacks: Callable[[str], str], tmp_path: Path) -> None:
+def test_a_recording_is_not_written_as_parquet(
+    run: Run, lacks: Callable[[str], str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cli_day, "simulate_date", lambda *_, **__: (None, None))
     sentence = lacks("parquet")
     day = [*SAMSUN, "--date", "2026-06-21", "--step-s", "60", "--out", str(tmp_path / "day.parquet")]
     code, _, err = run("simulate", *day)

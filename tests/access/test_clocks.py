@@ -22,6 +22,7 @@ from app.access.throttle import LONGEST, Failures, wait_left
 from app.access.tickets import ONE_SHOT, OneShots
 from app.base.clock import SMALL_CORRECTION, is_within, lasts
 from tests.access.door import ADDRESS, START, Door
+from tests.soak import amount
 
 NONE = timedelta()
 small = st.timedeltas(-2 * SMALL_CORRECTION, 2 * SMALL_CORRECTION)
@@ -45,7 +46,9 @@ def cabinet(stepped: timedelta) -> Session:
     return Session("k", "", "t", ADDRESS, "", START, START, START, START + stepped)
 
 
-@settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=80)
+@settings(
+    deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=amount(40, 80)
+)
 @given(errors, errors, errors, errors, errors, counts, laters)
 @example(NONE, NONE, NONE, NONE, NONE, 4, NONE)
 @example(PROOF, PROOF, PROOF, PROOF, PROOF, 50, PROOF)
