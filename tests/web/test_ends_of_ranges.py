@@ -12,6 +12,7 @@ from app.web.services.studies import Studies
 from tests.fakes import PORT, fake_app
 from tests.fault_result import FaultResult
 from tests.fuzz import LastingMachine
+from tests.soak import SOAK
 from tests.web.ends import Case, Document
 
 DOCUMENT = Document(json.loads(KEPT.read_text()), {"tracker_id": "T1", "recording_id": "show-1"})
@@ -41,9 +42,10 @@ async def busy(*_: object) -> None:
 
 
 def part(number: int) -> list[Case]:
-    """Return the requests of every eighth operation."""
+    """Return the requests of every eighth operation, in the gate every third of them."""
     operations = [one for one in DOCUMENT.operations() if one[1] not in (ENDLESS, COMPUTES)]
-    return [case for one in operations[number::PARTS] for case in DOCUMENT.cases(*one)]
+    cases = [case for one in operations[number::PARTS] for case in DOCUMENT.cases(*one)]
+    return cases if SOAK else cases[number % 3 :: 3]
 
 
 @pytest.mark.fault(96)

@@ -18,7 +18,7 @@ from tests.amount import amount
 from tests.fakes import fake_app
 from tests.patience import PATIENCE_S
 
-EXAMPLES = amount(2, 8)
+EXAMPLES = amount(1, 8)
 LEFT_OUT = "stream|simulations|backup|accuracy|papers|studies/comparison|studies/programs|strategy/day"
 """Streams do not end, and the others compute for seconds."""
 
