@@ -5,14 +5,18 @@ quiet. Sockets and terminals are the real ones; both ends must be served by this
 """
 
 import asyncio
+import fcntl
 import selectors
+import socket
+import struct
 from collections.abc import Callable
+from contextlib import suppress
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-QUIET_AFTER_S = 0.02
-"""For so long at most, really, it is waited for what may still arrive."""
-
+NOT_CONFIRMED, NOT_SENT = 0x5411, 0x894B
+"""SIOCOUTQ and SIOCOUTQNSD of Linux: bytes whose arrival is not confirmed, and those that did not leave."""
+LOOK_EVERY_S = 0.001
 START = datetime(2026, 6, 21, 4, 0, tzinfo=UTC)
 
 
@@ -22,15 +26,64 @@ class _Selector(selectors.PollSelector):
     leap: Callable[[float], None]
     others_work: Callable[[], bool]
 
+    def __init__(self) -> None:
+        super().__init__()
+        self._sentinel = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._sentinel.bind(("127.0.0.1", 0))
+        self._sentinel.connect(self._sentinel.getsockname())
+
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
         if timeout is not None and timeout <= 0.0:
             return super().select(0.0)
         if timeout is None or self.others_work():
             return super().select(None)
-        found = super().select(min(timeout, QUIET_AFTER_S))
+        found = super().select(0.0)
+        while not found and self._on_its_way():
+            found = super().select(LOOK_EVERY_S)
+        found = found or super().select(0.0)
         if not found:
             self.leap(timeout)
         return found
+
+    def close(self) -> None:
+        self._sentinel.close()
+        super().close()
+
+    def _on_its_way(self) -> bool:
+        """Return whether a byte has left one end of a connection and not come to the other.
+
+        What was sent to connect or to hang up has come once the loopback has carried a word sent later.
+        """
+        self._sentinel.send(b".")
+        self._sentinel.recv(1)
+        files = [key.fd for key in self.get_map().values()]
+        if not any(map(_on_the_way, files)):
+            return False
+        for file in files:
+            _confirm(file)
+        return any(map(_on_the_way, files))
+
+
+def _on_the_way(file: int) -> int:
+    """Return how many bytes have left a connection and not arrived; whatever is no TCP hands on at once."""
+    try:
+        return _asked(file, NOT_CONFIRMED) - _asked(file, NOT_SENT)
+    except OSError:
+        return 0
+
+
+def _confirm(file: int) -> None:
+    """Have a connection confirm at once what it has got: otherwise it would wait for 40 ms."""
+    end = socket.socket(socket.AF_INET, socket.SOCK_STREAM, fileno=file)
+    with suppress(OSError):
+        end.setsockopt(socket.IPPROTO_TCP, socket.TCP_QUICKACK, 1)
+    end.detach()
+
+
+def _asked(file: int, what: int) -> int:
+    word = bytearray(4)
+    fcntl.ioctl(file, what, word)
+    return int(struct.unpack("i", word)[0])
 
 
 class PatientLoop(asyncio.SelectorEventLoop):

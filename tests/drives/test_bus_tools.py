@@ -8,7 +8,6 @@ from datetime import timedelta
 
 import pytest
 
-from app.base.clock import SystemClock
 from app.drives.connections.bus_tools import record, replay, scan
 from app.drives.connections.buses import Buses
 from app.drives.connections.probe import probe
@@ -23,6 +22,7 @@ from app.simulation.simulated import SimulatedDrive
 from app.tracker.memory.drive_check import CheckOutcome
 from app.tracker.settings.config import AxisDrive, DriveConfig, DriveKind, TrackerConfig
 from tests.drives.rigs import CONFIG
+from tests.patient_loop import LoopClock
 
 REPLY = (3, 5)
 ASK = Ask(1, 0x3200, 2)
@@ -30,7 +30,7 @@ ASK = Ask(1, 0x3200, 2)
 
 @dataclass
 class Bench:
-    """A simulated device behind a socket in real time, and the settings that reach it."""
+    """A simulated device behind a socket, and the settings that reach it."""
 
     profile: Profile
     machine: SimulatedDrive
@@ -41,8 +41,8 @@ class Bench:
 @asynccontextmanager
 async def on_the_bench(name: str) -> AsyncIterator[Bench]:
     profile = load_profile(name)
-    machine = SimulatedDrive(CONFIG, SystemClock(), watchdog=None)
-    found = devices(profile, machine, SystemClock(), 1)
+    machine = SimulatedDrive(CONFIG, LoopClock(), watchdog=None)
+    found = devices(profile, machine, LoopClock(), 1)
     server = ModbusServer(found[1], 1, others=found)
     port = await server.start("127.0.0.1", 0)
     other = AxisDrive(unit=2) if len(found) > 1 else AxisDrive()
@@ -55,18 +55,18 @@ async def on_the_bench(name: str) -> AsyncIterator[Bench]:
 
 async def test_a_scan_finds_who_answers_and_who_only_refuses() -> None:
     async with on_the_bench("leadshine-rs") as bench:
-        found = [one async for one in scan(bench.config.drive, range(1, 4), SystemClock(), address=1)]
+        found = [one async for one in scan(bench.config.drive, range(1, 4), LoopClock(), address=1)]
         assert [(one.unit, one.said) for one in found] == [
             (1, "register 1 holds 10000"),
             (2, "register 1 holds 10000"),
         ]
-        refused = [one async for one in scan(bench.config.drive, (1,), SystemClock(), address=9)]
+        refused = [one async for one in scan(bench.config.drive, (1,), LoopClock(), address=9)]
         assert "has no such register" in refused[0].said
 
 
 async def test_a_refusal_with_function_code_0x81_is_a_refusal() -> None:
     async with on_the_bench("kinco-cia402") as bench:
-        refused = [one async for one in scan(bench.config.drive, (1, 2), SystemClock(), address=9)]
+        refused = [one async for one in scan(bench.config.drive, (1, 2), LoopClock(), address=9)]
     assert ["has no such register" in one.said for one in refused] == [True, True]
 
 
@@ -74,13 +74,13 @@ async def test_a_scan_of_a_bus_that_is_not_there_says_so() -> None:
     async with on_the_bench("leadshine-rs") as bench:
         drive = bench.config.drive
     with pytest.raises(DriveSilent, match="There is no connection to 127"):
-        _ = [one async for one in scan(drive, range(1, 248), SystemClock())]
+        _ = [one async for one in scan(drive, range(1, 248), LoopClock())]
 
 
 @pytest.mark.parametrize("name", ["kinco-cia402", "leadshine-rs", "oriental-az", "delta-dvp", "sunspec-601"])
 async def test_a_probe_reads_every_register_of_every_device(name: str) -> None:
     async with on_the_bench(name) as bench:
-        readings = await probe(Buses(SystemClock()), bench.config.drive, bench.profile)
+        readings = await probe(Buses(LoopClock()), bench.config.drive, bench.profile)
         assert readings.outcome is CheckOutcome.ANSWERED, readings.message
         axes = 2 if bench.profile.adapter.has_unit_per_axis else 1
         assert len(readings.registers) == axes * len(bench.profile.registers)
@@ -93,7 +93,7 @@ async def test_what_was_recorded_reads_the_same_again_and_nothing_was_written(na
         kept: list[Exchange] = []
         command = bench.machine.command
         length = timedelta(seconds=0.3)
-        good = await record(bench.config, bench.profile, SystemClock(), kept.append, length)
+        good = await record(bench.config, bench.profile, LoopClock(), kept.append, length)
         assert good >= 1
         assert bench.machine.command == command
         assert not any(one.ask.words for one in kept)
@@ -111,7 +111,7 @@ async def test_a_silence_and_a_refusal_are_recorded_and_played_as_such() -> None
     async with on_the_bench("kinco-cia402") as bench:
         kept: list[Exchange] = []
         recording = asyncio.create_task(
-            record(bench.config, bench.profile, SystemClock(), kept.append, timedelta(seconds=0.5))
+            record(bench.config, bench.profile, LoopClock(), kept.append, timedelta(seconds=0.5))
         )
         await asyncio.sleep(0.1)
         bench.machine.inject(Fault(FaultKind.SILENCE))

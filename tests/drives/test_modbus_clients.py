@@ -22,10 +22,9 @@ from app.modbus.rtu_server import RtuServer
 from app.modbus.server import ModbusServer
 from app.tracker.settings.config import Parity, SerialConfig
 from tests.captured_logs import capture_logs
-from tests.fault_result import REAL, FaultResult
+from tests.fault_result import VIRTUAL, FaultResult
 from tests.patience import eventually
 
-pytestmark = pytest.mark.real_time
 READ = pack(">HHHBBHH", 7, 0, 6, 1, 3, 0, 125)
 REPLY_BYTES = 259
 READ_RTU = sealed(pack(">BBHH", 1, 3, 0, 125))
@@ -113,6 +112,7 @@ async def is_answered(reader: asyncio.StreamReader, writer: asyncio.StreamWriter
     return True
 
 
+@pytest.mark.real_time
 @pytest.mark.parametrize("clients", [1, 4])
 async def test_between_two_replies_to_a_flood_everything_else_has_its_turn(clients: int) -> None:
     async with served(Limits()) as (_, registers, port):
@@ -136,10 +136,10 @@ async def test_a_client_that_takes_no_replies_is_cut_off(fault: FaultResult) -> 
             async with flooding(port) as sending, asyncio.timeout(30):
                 await sending
         cut_off_s = loop.time() - began_s
-        assert Limits().take_s <= cut_off_s < 2 * Limits().take_s
+        assert Limits().take_s <= cut_off_s <= Limits().take_s + Limits().rest_s
         assert server.client_count == 0
         assert [(line["event"], line["host"]) for line in logged] == [("modbus_client_dropped", "127.0.0.1")]
-        fault.noticed(cut_off_s, REAL)
+        fault.noticed(cut_off_s, VIRTUAL)
         fault.shows_nothing("no one else is held up; the log names the host")
         again = await opened(port)
         assert await is_answered(*again)
@@ -242,7 +242,6 @@ async def test_a_client_that_is_accepted_while_the_server_closes_is_cut_off() ->
     async with served(Limits()) as (server, _, _):
         pass
     server._clients.admit(asyncio.StreamReader(), writer)
-    there.settimeout(10)
     assert await asyncio.to_thread(there.recv, 1) == b""
     assert server.client_count == 0
     there.close()

@@ -1,10 +1,9 @@
-"""A PLC whose signs of life end during a motion: a whole site notices within a second at the real socket."""
+"""A PLC whose signs of life end during a motion: a whole site notices within a second of its time."""
 
 import asyncio
 
 import pytest
 
-from app.base.clock import SystemClock
 from app.drives.profile import load_profile
 from app.link.messages import Order
 from app.machine.drive_factory import DriveFactory
@@ -16,10 +15,10 @@ from app.tracker.memory.memory import SiteState, TrackerMemory, TrackerState
 from app.tracker.settings.config import DriveConfig, DriveKind, TrackerConfig
 from app.tracker.state.snapshot import Snapshot
 from tests.drives.test_plc import ECHO, WATCHDOG_MS, Wire
-from tests.fault_result import REAL, FaultResult
+from tests.fault_result import VIRTUAL, FaultResult
 from tests.patience import eventually
+from tests.patient_loop import LoopClock
 
-pytestmark = pytest.mark.real_time
 READINGS_A_SECOND = 10
 HEARTBEAT = 2
 
@@ -36,7 +35,7 @@ HEARTBEAT = 2
 async def test_a_sign_of_life_that_ends_stops_the_motion_within_a_second(
     sign: int, frozen: bool, told: str, fault: FaultResult
 ) -> None:
-    clock = SystemClock()
+    clock = LoopClock()
     machine = SimulatedDrive(TrackerConfig("T1", "Tracker 1"), clock)
     wire = Wire(load_profile("simulated-plc"), machine, clock)
     server = ModbusServer(wire)
@@ -65,6 +64,6 @@ async def test_a_sign_of_life_that_ends_stops_the_motion_within_a_second(
     await server.close()
     assert noticed <= READINGS_A_SECOND
     assert noticed_s <= 1.0
-    fault.noticed(noticed_s, REAL)
+    fault.noticed(noticed_s, VIRTUAL)
     fault.shows(message)
     fault.recovers("automatic: when the sign of life is back; the operator commands the next motion")

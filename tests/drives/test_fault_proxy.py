@@ -1,26 +1,20 @@
 """Every fault on every wire: no wrong value is believed, the next read is right, and a stop goes at once."""
 
 import asyncio
-import sys
 
 import pytest
 
-from app.base.clock import SystemClock
 from app.drives.connections.buses import Buses
 from app.modbus.bus import BusUnit
 from app.modbus.errors import DriveError, DriveSilent
-from app.modbus.server import ModbusServer
-from app.modbus.wire import Timing
 from app.modbus.wire_faults import ONLY, Framing, WireFault, parse_script
 from app.tracker.settings.config import DriveConfig, DriveKind, SerialConfig
-from tests.drives.timed.proxied import BENCHES, STOP_REGISTER, TIMING, Bench, Registers
+from tests.drives.proxied import BENCHES, STOP_REGISTER, TIMING, Bench
 from tests.patient_loop import LoopClock
-from tests.ports import free_port
 
 RECOVERED_WITHIN_S = {"tcp": 0.3, "rtu": 1.0, "rtu-over-tcp": 1.0}
 STOP_WITHIN_S = 0.05
 """A quarter of the time that a poll without an answer holds the line."""
-COMMAND = "import typer; from app.cli.drives import fault_proxy; typer.run(fault_proxy)"
 LATE = ("delay=250", "delay=450", "delay=700")
 
 
@@ -128,39 +122,6 @@ async def test_a_line_in_use_with_other_settings_is_refused() -> None:
         await second.read(0, 1, what="a word")
     await first.close()
     await second.close()
-
-
-@pytest.mark.real_time
-async def test_the_proxy_is_played_from_the_command_line() -> None:
-    server = ModbusServer(Registers(1))
-    port = await server.start("127.0.0.1", 0)
-    near = free_port()
-    process = await asyncio.create_subprocess_exec(
-        sys.executable, "-c", COMMAND, f"127.0.0.1:{near}", f"127.0.0.1:{port}",
-        stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE,
-    )  # fmt: skip
-    assert process.stdin is not None
-    assert process.stdout is not None
-    config, clock = DriveConfig(DriveKind.MODBUS_TCP, port=near), SystemClock()
-    async with asyncio.timeout(40.0):
-        assert b"Type a fault" in await process.stdout.readline()
-        for line, told, within_s in (
-            (b"drop", b"drop", 0.3),
-            (b"x", b"no fault", 0.3),
-            (b"clear", b"clear", 30.0),
-        ):
-            device = Buses(clock).unit(config, 1, Timing(within_s))
-            process.stdin.write(line + b"\n")
-            assert told in await process.stdout.readline()
-            if told == b"clear":
-                assert await device.read(10, 2, what="words") == [1030, 1033]
-            else:
-                with pytest.raises(DriveSilent):
-                    await device.read(10, 2, what="words")
-            await device.close()
-        process.terminate()
-        assert await process.wait() == 0
-    await server.close()
 
 
 @pytest.mark.parametrize("wire", BENCHES)

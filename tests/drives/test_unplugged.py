@@ -20,11 +20,11 @@ from app.modbus.rtu_server import RtuServer
 from app.modbus.wire_faults import Framing
 from app.simulation.servers.fault_proxy import FaultProxy
 from app.tracker.settings.config import DriveConfig, DriveKind, SerialConfig
-from tests.drives.timed.proxied import TIMING, Registers
+from tests.drives.proxied import TIMING, Registers
+from tests.patience import PATIENCE_S, pause
+from tests.patient_loop import LoopClock
 from tests.peers.processes import cable
 
-pytestmark = pytest.mark.real_time
-FOUND_WITHIN_S = 10.0
 OPENED = """
 import asyncio, sys
 from pathlib import Path
@@ -45,12 +45,12 @@ def on_line(port: str | Path) -> DriveConfig:
 
 async def found(device: BusUnit, registers: Registers) -> None:
     """Read until the device answers, which it has to do by itself."""
-    async with asyncio.timeout(FOUND_WITHIN_S):
+    async with asyncio.timeout(PATIENCE_S):
         while True:
             with suppress(DriveSilent):
                 assert await device.read(10, 4, what="words") == registers.words(10, 4)
                 return
-            await asyncio.sleep(0.05)
+            await pause()
 
 
 async def missed(device: BusUnit) -> None:
@@ -69,7 +69,7 @@ async def without_surprises() -> AsyncIterator[None]:
 
 async def test_an_adapter_that_is_unplugged_is_found_again(tmp_path: Path) -> None:
     name, registers = tmp_path / "adapter", Registers(7)
-    device = Buses(SystemClock()).unit(on_line(name), 7, TIMING)
+    device = Buses(LoopClock()).unit(on_line(name), 7, TIMING)
     async with without_surprises():
         for _ in range(2):
             server = RtuServer({7: registers}, PtyLine(name))
@@ -91,12 +91,13 @@ async def test_an_unplugged_adapter_is_noticed_at_once_and_let_go(tmp_path: Path
         await far.open(print, print)
         assert await near.open(print, lost.set)
         far.close()
-        async with asyncio.timeout(2.0):
+        async with asyncio.timeout(PATIENCE_S):
             await lost.wait()
     assert not near.is_open
     assert len(os.listdir("/dev/fd")) == before, "the port is closed, so that it can be opened again"
 
 
+@pytest.mark.real_time
 @pytest.mark.parametrize("proxied", [False, True], ids=["device", "behind a proxy"])
 async def test_both_ends_of_a_cable_come_back_after_it_was_cut(tmp_path: Path, *, proxied: bool) -> None:
     registers, clock = Registers(7), SystemClock()
@@ -128,7 +129,7 @@ async def test_a_pseudo_terminal_is_opened_again_and_again(tmp_path: Path) -> No
     server = RtuServer({7: registers}, PtyLine(name))
     await server.start()
     for _ in range(3):
-        device = Buses(SystemClock()).unit(on_line(name), 7, TIMING)
+        device = Buses(LoopClock()).unit(on_line(name), 7, TIMING)
         assert await device.read(10, 4, what="words") == registers.words(10, 4)
         await device.close()
     await server.close()
@@ -147,13 +148,14 @@ async def test_a_lasting_name_stays_what_it_is(tmp_path: Path) -> None:
         os.close(end)
 
 
+@pytest.mark.real_time
 async def test_a_name_that_a_killed_process_left_behind_is_taken_over(tmp_path: Path) -> None:
     name = tmp_path / "line"
     process = await asyncio.create_subprocess_exec(
         sys.executable, "-c", OPENED, str(name), stdout=asyncio.subprocess.PIPE
     )
     assert process.stdout is not None
-    async with asyncio.timeout(20.0):
+    async with asyncio.timeout(PATIENCE_S):
         device = Path((await process.stdout.readline()).decode().strip())
         assert name.resolve() == device
         process.kill()

@@ -17,9 +17,9 @@ from app.simulation.sim_plc import SimulatedPlc
 from app.simulation.simulated import SimulatedDrive
 from app.tracker.values.motion import DriveCommand, Feedback, Velocity
 from tests.drives.conformance import is_moving
+from tests.drives.proxied import BENCHES
 from tests.drives.rigs import CONFIG, START, TICK
-from tests.drives.timed.proxied import BENCHES
-from tests.drives.timed.test_fault_proxy import RECOVERED_WITHIN_S, faults
+from tests.drives.test_fault_proxy import RECOVERED_WITHIN_S, faults
 
 UNIT = 9
 MOST_TICKS = 12
