@@ -6,6 +6,7 @@ from contextlib import asynccontextmanager
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+from app.base.clock import VirtualClock
 from app.base.settings import Settings
 from app.gateway.gateways import Gateways
 from app.link.metrics import GatewayMetrics
@@ -15,22 +16,21 @@ from app.store.store import Writer
 from app.store.writer_thread import WriterThread
 from app.tracker.memory.memory import TrackerMemory, TrackerState
 from app.tracker.settings.config import TrackerConfig
+from tests.patience import LOOK_EVERY_S, pause
 from tests.site.plant import Plant, make_plant
 
 
-class HurriedClock:
-    """Real time, ten times as fast: gateways pace themselves by it."""
+class HurriedClock(VirtualClock):
+    """Ten times as fast as this loop turns: what holds the loop up holds its time up as well."""
 
     def __init__(self) -> None:
-        self._loop = asyncio.get_running_loop()
-        self._begun_s = self._loop.time()
+        super().__init__(datetime(2027, 6, 21, 9, 40, tzinfo=UTC))
+        self._passing = asyncio.create_task(self._pass())
 
-    def now(self) -> datetime:
-        passed_s = self._loop.time() - self._begun_s
-        return datetime(2027, 6, 21, 9, 40, tzinfo=UTC) + timedelta(seconds=10.0 * passed_s)
-
-    async def sleep_until(self, at: datetime) -> None:
-        await asyncio.sleep(max(0.0, (at - self.now()).total_seconds() / 10.0))
+    async def _pass(self) -> None:
+        while True:
+            await pause()
+            self.advance(timedelta(seconds=10.0 * LOOK_EVERY_S))
 
 
 def tracker(tracker_id: str, name: str = "Tracker") -> TrackerState:

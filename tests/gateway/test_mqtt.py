@@ -29,7 +29,7 @@ from app.tracker.settings.config import Orientation
 from app.tracker.state.snapshot import ActivityName, EventKind
 from tests.fault_result import FaultResult
 from tests.gateway.rigs import gateway, kept_plant, opened
-from tests.patience import eventually
+from tests.patience import LOOK_EVERY_S, PATIENCE_S, eventually, pause
 from tests.ports import free_port
 from tests.site.plant import SAMSUN
 
@@ -54,13 +54,13 @@ class Broker:
         self.process = await asyncio.create_subprocess_exec(
             MOSQUITTO, "-c", str(config), stderr=asyncio.subprocess.DEVNULL
         )
-        for _ in range(500):
+        for _ in range(int(PATIENCE_S / LOOK_EVERY_S)):
             with contextlib.suppress(OSError):
                 _, writer = await asyncio.open_connection("127.0.0.1", self.port)
                 writer.close()
                 await writer.wait_closed()
                 break
-            await asyncio.sleep(0.01)
+            await pause()
 
     async def kill(self) -> None:
         assert self.process is not None
@@ -179,7 +179,7 @@ async def test_a_killed_broker_loses_no_event_and_the_site_does_not_wait(
 
 async def test_a_cancellation_that_comes_with_the_brokers_answer_is_heeded() -> None:
     answer: asyncio.Future[str] = asyncio.get_running_loop().create_future()
-    telling = asyncio.create_task(heeding(asyncio.wait_for(answer, 5.0)))
+    telling = asyncio.create_task(heeding(asyncio.wait_for(answer, PATIENCE_S)))
     await asyncio.sleep(0)
     answer.set_result("acknowledged")
     await asyncio.sleep(0)
@@ -513,12 +513,10 @@ def _all_once(told: list[Any]) -> list[int]:
 
 
 async def _until(gateways: Gateways, found: Callable[[GatewayMetrics], bool]) -> GatewayMetrics:
-    for _ in range(500):
-        seen = await gateway(gateways, "MQTT")
-        if found(seen):
-            return seen
-        await asyncio.sleep(0.02)
-    raise AssertionError(f"it did not become so: {seen}")
+    async with asyncio.timeout(PATIENCE_S):
+        while not found(seen := await gateway(gateways, "MQTT")):
+            await pause()
+    return seen
 
 
 async def test_alarms_are_retained_while_they_stand_and_taken_back(tmp_path: Path, broker: Broker) -> None:

@@ -10,6 +10,7 @@ from app.base.settings import Settings, SettingsWrong, read_settings
 from app.gateway.gateways import Gateways, writes
 from app.link.metrics import GatewayStatus
 from tests.gateway.rigs import HurriedClock, kept_plant
+from tests.patience import PATIENCE_S, pause
 
 
 async def test_without_settings_every_door_is_shut_and_says_how_it_is_opened(tmp_path: Path) -> None:
@@ -68,11 +69,11 @@ async def test_a_taken_port_is_told_and_the_machine_goes_on(
     async with kept_plant(tmp_path) as (plant, store):
         gateways = Gateways(plant.site, HurriedClock(), read_settings(), store)
         gateways.start()
-        for _ in range(200):
+        async with asyncio.timeout(PATIENCE_S):
             tcp, rtu, *_ = (await gateways.metrics()).gateways
-            if tcp.error and rtu.error:
-                break
-            await asyncio.sleep(0.01)
+            while not (tcp.error and rtu.error):
+                await pause()
+                tcp, rtu, *_ = (await gateways.metrics()).gateways
         await plant.forward(seconds=0.5)
         assert plant.tracker().measured is not None
         await gateways.close()

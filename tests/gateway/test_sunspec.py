@@ -40,9 +40,10 @@ from app.tracker.values.mode import Mode
 from app.tracker.values.motion import DriveCommand, Position
 from app.tracker.weather.weather import Weather
 from tests.captured_logs import capture_logs
-from tests.fault_result import REAL, FaultResult
-from tests.gateway.rigs import HurriedClock, tracker
-from tests.patience import eventually
+from tests.fault_result import VIRTUAL, FaultResult
+from tests.gateway.rigs import tracker
+from tests.patience import PATIENCE_S, eventually
+from tests.patient_loop import LoopClock
 from tests.site.plant import Plant, make_plant, settle
 
 NOTHING = 0x8000_0000
@@ -62,7 +63,7 @@ class Scada:
         return await asyncio.to_thread(self._scan)
 
     def _scan(self) -> Any:
-        device = sunspec.SunSpecModbusClientDeviceTCP(1, "127.0.0.1", self.server.port, timeout=3.0)
+        device = sunspec.SunSpecModbusClientDeviceTCP(1, "127.0.0.1", self.server.port, timeout=PATIENCE_S)
         device.scan()
         device.connect()
         return device
@@ -71,7 +72,7 @@ class Scada:
         """Send one request and return the body of the reply."""
         reader, writer = await asyncio.open_connection("127.0.0.1", self.server.port)
         writer.write(pack(">HHHB", 7, 0, len(request) + 1, unit) + request)
-        transaction, _, length, _ = unpack(">HHHB", await asyncio.wait_for(reader.readexactly(7), 3.0))
+        transaction, _, length, _ = unpack(">HHHB", await reader.readexactly(7))
         body = await reader.readexactly(length - 1)
         writer.close()
         await writer.wait_closed()
@@ -96,7 +97,7 @@ async def scada(*trackers: str, write_hosts: str = "127.0.0.1") -> AsyncIterator
     plant = make_plant(trackers=tuple(map(tracker, trackers or ("T1",))))
     await plant.start()
     wanted = Settings(sunspec_port=0, sunspec_write_hosts=write_hosts)  # type: ignore[arg-type]
-    clock = HurriedClock()
+    clock = LoopClock()
     device = SunSpecDevice(plant.site, clock, write_hosts=wanted.sunspec_write_hosts)
     server = SunSpecTcp(device, clock, wanted)
     serving = [asyncio.create_task(work) for work in (server.run(), device.follow())]
@@ -413,11 +414,11 @@ async def test_sixteen_idle_connections_do_not_lock_the_control_system_out(fault
         answered_s = loop.time() - began_s
         assert answered_s < 1.0
         assert [(line["event"], line["host"]) for line in logged] == [("modbus_client_gave_way", "127.0.0.1")]
-        fault.noticed(answered_s, REAL)
+        fault.noticed(answered_s, VIRTUAL)
         fault.shows_nothing("the new connection is answered; the log names the host that gave way")
         for _ in range(2):
             assert await system.read(BASE, 2) == [0x5375, 0x6E53]
-        assert await asyncio.wait_for(idle[0][0].read(), 3.0) == b"", "the longest idle gave way"
+        assert await idle[0][0].read() == b"", "the longest idle gave way"
         fault.recovers("automatic: at every new connection")
         for _, writer in idle:
             writer.close()
