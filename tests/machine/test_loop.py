@@ -16,6 +16,7 @@ from app.modbus.line import TcpLine
 from app.modbus.server import ModbusServer
 from app.modbus.tcp import TcpWire
 from tests.drives.test_modbus_clients import Registers
+from tests.patience import PATIENCE_S
 
 DRIVES = 2 * (min(32, (os.cpu_count() or 1) + 4))
 """More than the threads that a loop has for the work of others."""
@@ -30,9 +31,9 @@ async def _connect_all() -> None:
 
 async def _meanwhile() -> None:
     """Work of the disk, and a drive that is found by its number, beside all those names."""
-    assert await asyncio.wait_for(asyncio.to_thread(lambda: 7), 5.0) == 7
+    assert await asyncio.to_thread(lambda: 7) == 7
     server = ModbusServer(Registers())
-    wire = TcpWire("127.0.0.1", await server.start("127.0.0.1", 0), 5.0)
+    wire = TcpWire("127.0.0.1", await server.start("127.0.0.1", 0), PATIENCE_S)
     assert await wire.connect()
     wire.close()
     await server.close()
@@ -45,14 +46,14 @@ def test_names_that_nobody_answers_hold_up_neither_the_disk_nor_other_drives(
 
     def nobody(*_: Any, **__: Any) -> Any:
         asked.release()
-        answered.wait(30)
+        answered.wait(PATIENCE_S)
         raise socket.gaierror(socket.EAI_AGAIN, "no name server answers")
 
     monkeypatch.setattr(socket, "getaddrinfo", nobody)
 
     async def story() -> None:
         await _connect_all()
-        assert asked.acquire(timeout=5)
+        assert asked.acquire(timeout=PATIENCE_S)
         await _meanwhile()
         answered.set()
 
@@ -65,7 +66,7 @@ def test_names_that_nobody_answers_hold_up_neither_the_disk_nor_other_drives(
 def test_a_name_is_still_found() -> None:
     async def story() -> None:
         server = ModbusServer(Registers())
-        wire = TcpWire("localhost", await server.start("127.0.0.1", 0), 5.0)
+        wire = TcpWire("localhost", await server.start("127.0.0.1", 0), PATIENCE_S)
         assert await wire.connect()
         wire.close()
         await server.close()

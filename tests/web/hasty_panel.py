@@ -1,9 +1,8 @@
-"""`python -m tests.web.hasty_panel FOLDER PORT`: a panel alone, whose clock runs fifteen times as fast.
+"""`python -m tests.web.hasty_panel FOLDER PORT`: a panel alone, whose clock moves when it is told to.
 
-At each SIGUSR1 a minute more has passed; at a SIGUSR2 it stands, and at the next it goes on.
+At each SIGUSR1 a moment has passed, at each SIGUSR2 a minute.
 """
 
-import asyncio
 import signal
 import sys
 from datetime import datetime, timedelta
@@ -12,43 +11,31 @@ from pathlib import Path
 from app.base.clock import SystemClock
 from app.base.settings import Settings
 from app.web.main import run
+from tests.patience import pause
 
-FASTER = 15
-LOOK_EVERY_S = 0.02
+MOMENT, MINUTE = timedelta(seconds=0.3), timedelta(minutes=1)
 
 
-class HastyClock(SystemClock):
-    """The system's clock, faster, which is moved on by a minute and stands when it is told to."""
+class ToldClock(SystemClock):
+    """A clock that stands at the instant of its start until a signal moves it on."""
 
     def __init__(self) -> None:
         super().__init__()
-        self._began = super().now()
-        self._skipped = timedelta()
-        self._stands_at: datetime | None = None
-        signal.signal(signal.SIGUSR1, lambda *_: self._skip(timedelta(minutes=1)))
-        signal.signal(signal.SIGUSR2, lambda *_: self._stand_or_go_on())
+        self._at = super().now()
+        for number, by in ((signal.SIGUSR1, MOMENT), (signal.SIGUSR2, MINUTE)):
+            signal.signal(number, lambda *_, by=by: self._move(by))
 
     def now(self) -> datetime:
-        return self._stands_at or self._runs()
+        return self._at
 
-    def _runs(self) -> datetime:
-        return self._began + (super().now() - self._began) * FASTER + self._skipped
-
-    def _skip(self, more: timedelta) -> None:
-        self._skipped += more
-
-    def _stand_or_go_on(self) -> None:
-        if self._stands_at is None:
-            self._stands_at = self._runs()
-        else:
-            self._skip(self._stands_at - self._runs())
-            self._stands_at = None
+    def _move(self, by: timedelta) -> None:
+        self._at += by
 
     async def sleep_until(self, at: datetime) -> None:
         # A signal is no event of the loop: looking now and then is what is left.
-        while (left_s := (at - self.now()).total_seconds()) > 0:  # noqa: ASYNC110
-            await asyncio.sleep(min(LOOK_EVERY_S, left_s / FASTER))
+        while self.now() < at:
+            await pause()
 
 
 if __name__ == "__main__":
-    run(Settings(data_dir=Path(sys.argv[1]), port=int(sys.argv[2]), log_format="json"), HastyClock())
+    run(Settings(data_dir=Path(sys.argv[1]), port=int(sys.argv[2]), log_format="json"), ToldClock())

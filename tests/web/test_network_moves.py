@@ -6,10 +6,9 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -20,13 +19,12 @@ import pytest
 from app.base.network import read_network
 from app.base.settings import Settings
 from app.web.http.network import NOT_CONFIRMED, NOT_SERVED
+from tests.patience import PATIENCE_S, until
 from tests.ports import free_port
 
 ROOT = Path(__file__).resolve().parents[2]
-SOON_S = 60.0
-STAYS_S = 0.6
-"""A panel that goes back is gone within its farewell, 0.13 s here."""
-LOOK_EVERY_S = 0.02
+MOMENTS = 20
+"""A panel that goes back is gone within its farewell, 2 s of its clock: seven moments."""
 
 
 @dataclass
@@ -45,14 +43,14 @@ class Moving:
         command = [sys.executable, "-m", "tests.web.hasty_panel", str(folder), str(port)]
         moving = cls(folder, port, subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE))
         try:
-            moving.until(port)
-        except AssertionError:
+            until(lambda: moving.is_there(port), f"the panel answers on {port}")
+        except TimeoutError:
             moving.process.kill()
             raise AssertionError(f"The panel did not start: {moving.process.communicate()[1]!r}") from None
         return moving
 
     def ask(self, method: str, port: int, path: str, **more: Any) -> httpx.Response:
-        return httpx.request(method, f"http://127.0.0.1:{port}{path}", timeout=5, **more)
+        return httpx.request(method, f"http://127.0.0.1:{port}{path}", timeout=PATIENCE_S, **more)
 
     def is_there(self, port: int) -> bool:
         with suppress(httpx.TransportError):
@@ -60,21 +58,16 @@ class Moving:
         return False
 
     def until(self, port: int, *, there: bool = True) -> None:
-        """Return once the panel answers at a port, or does not any more; fail if that takes too long."""
-        give_up = time.monotonic() + SOON_S
-        while self.is_there(port) is not there:
-            assert time.monotonic() < give_up, f"The panel is not as expected on {port}."
-            time.sleep(LOOK_EVERY_S)
+        """Let moments pass until the panel answers at a port, or does not any more."""
 
-    @contextmanager
-    def time_stands(self) -> Iterator[None]:
-        """Have no time pass for the panel while the block runs, however long that takes."""
-        self.process.send_signal(signal.SIGUSR2)
-        yield
-        self.process.send_signal(signal.SIGUSR2)
+        def is_so() -> bool:
+            self.process.send_signal(signal.SIGUSR1)
+            return self.is_there(port) is there
+
+        until(is_so, f"the panel {'answers' if there else 'has left'} on {port}")
 
     def let_a_minute_pass(self) -> None:
-        self.process.send_signal(signal.SIGUSR1)
+        self.process.send_signal(signal.SIGUSR2)
 
     def propose(self, port: int) -> str:
         change = {"host": "127.0.0.1", "port": port, "tls": False}
@@ -83,13 +76,11 @@ class Moving:
         return str(answer.json()["ticket"])
 
     def until_taken_back(self, why: str) -> None:
-        """Return once the panel is where it was and says why; fail if that takes too long."""
-        give_up = time.monotonic() + SOON_S
-        while not self._says(why):
-            assert time.monotonic() < give_up, f"The panel does not say: {why}"
-            time.sleep(LOOK_EVERY_S)
+        """Let moments pass until the panel is where it was and says why."""
+        until(lambda: self._says(why), f"the panel says: {why}")
 
     def _says(self, why: str) -> bool:
+        self.process.send_signal(signal.SIGUSR1)
         with suppress(httpx.TransportError):
             return bool(self.state()["last_rollback"] == why)
         return False
@@ -104,7 +95,7 @@ def moving(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Moving]:
     started = Moving.start(tmp_path_factory.mktemp("moving"))
     yield started
     started.process.terminate()
-    _, log = started.process.communicate(timeout=15)
+    _, log = started.process.communicate()
     events = [json.loads(line).get("event") for line in log.splitlines() if line.startswith(b"{")]
     assert {event: events.count(event) for event in started.told} == started.told
 
@@ -113,11 +104,10 @@ def test_what_nobody_confirms_is_taken_back(moving: Moving) -> None:
     tried = free_port()
     ticket = moving.propose(tried)
     moving.until(tried)
-    with moving.time_stands():
-        assert not moving.is_there(moving.port)
-        page = moving.ask("GET", tried, f"/network/trial?ticket={ticket}").text
-        assert "Keep address" in page
-        assert Settings(data_dir=moving.folder).port == moving.port
+    assert not moving.is_there(moving.port)
+    page = moving.ask("GET", tried, f"/network/trial?ticket={ticket}").text
+    assert "Keep address" in page
+    assert Settings(data_dir=moving.folder).port == moving.port
     moving.let_a_minute_pass()
     moving.until(moving.port)
     moving.told["network_rolled_back"] += 1
@@ -129,9 +119,8 @@ def test_what_nobody_confirms_is_taken_back(moving: Moving) -> None:
 def test_what_cannot_be_served_is_taken_back_at_once(moving: Moving) -> None:
     tried = free_port()
     with ExitStack() as held:
-        with moving.time_stands():
-            moving.propose(tried)
-            held.enter_context(socket.create_server(("127.0.0.1", tried)))
+        moving.propose(tried)
+        held.enter_context(socket.create_server(("127.0.0.1", tried)))
         moving.until_taken_back(NOT_SERVED)
     moving.told["network_rolled_back"] += 1
 
@@ -140,18 +129,17 @@ def test_what_is_confirmed_there_is_kept(moving: Moving) -> None:
     tried, before = free_port(), moving.port
     ticket = moving.propose(tried)
     moving.until(tried)
-    with moving.time_stands():
-        wrong = moving.ask("POST", tried, "/network/trial?ticket=guessed")
-        assert wrong.status_code == 409
-        page = moving.ask("GET", tried, f"/network/trial?ticket={ticket}").text
-        action = re.search(r'action="(/network/trial[^"]+)"', page)
-        assert action is not None
-        assert "Network address confirmed" in moving.ask("POST", tried, action[1]).text
+    wrong = moving.ask("POST", tried, "/network/trial?ticket=guessed")
+    assert wrong.status_code == 409
+    page = moving.ask("GET", tried, f"/network/trial?ticket={ticket}").text
+    action = re.search(r'action="(/network/trial[^"]+)"', page)
+    assert action is not None
+    assert "Network address confirmed" in moving.ask("POST", tried, action[1]).text
     moving.told["network_kept"] += 1
     moving.port = tried
     moving.let_a_minute_pass()
-    stays_until = time.monotonic() + STAYS_S
-    while time.monotonic() < stays_until:
+    for _ in range(MOMENTS):
+        moving.process.send_signal(signal.SIGUSR1)
         assert moving.is_there(tried)
     assert not moving.is_there(before)
     assert (moving.state()["confirm_until"], moving.state()["last_rollback"]) == (None, "")
