@@ -129,7 +129,7 @@ browser: $(VENV)/.test system-packages ## Run the browser tests alone; screensho
 	@HELIOPANEL_SCREENS=1 $(BIN)/python -m pytest tests/browser
 
 # Two at a time; what each says comes together. The texts take longest but for the types, and begin with them.
-CHECKS := types texts security lint generated imports secrets vendored migrations
+CHECKS := types texts security lint generated imports secrets clocks vendored migrations
 .PHONY: $(CHECKS:%=check-%)
 
 check: $(VENV)/.test ## Formatting, lint, types, layers, texts, documents, generated and vendored files, migrations
@@ -150,6 +150,8 @@ check-imports:
 	@$(BIN)/lint-imports
 check-secrets:
 	@$(BIN)/python -m checks secrets
+check-clocks:
+	@$(BIN)/python -m tests.no_clock
 check-vendored:
 	@$(BIN)/python static/vendor/vendor.py check
 check-migrations:

@@ -14,7 +14,7 @@ from aiomqtt import Client, MqttError
 from websockets.asyncio.client import connect
 from websockets.exceptions import WebSocketException
 
-from tests.e2e.flood import Flooding, ends, stops
+from tests.soak.rigs.flood import Flooding, ends, stops
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,8 +6,8 @@ import sys
 from dataclasses import dataclass
 
 from bench.table import Row, alone, at_most, must_hold, spread, worst
-from tests.e2e.holds import ONE_BY_ONE, Rig, Tally, busy, rig
 from tests.e2e.socket_page import LetGo
+from tests.soak.rigs.holds import ONE_BY_ONE, Rig, Tally, busy, rig
 
 COMMAND = "python -m bench jog"
 LIMIT_MS, WATCHDOG_LIMIT_MS = 280.0, 520.0

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from bench.table import Row, at_most, must_hold
-from tests.e2e.eyes import Eyes
 from tests.e2e.integrator import Integrator
-from tests.e2e.killing import TICKS_A_SECOND, Killing
 from tests.e2e.product import DriveSim, Product
+from tests.soak.rigs.eyes import Eyes
+from tests.soak.rigs.killing_product import TICKS_A_SECOND, Killing
 
 COMMAND = "python -m bench kill"
 SHOW_S = 3600.0

@@ -15,10 +15,10 @@ from pathlib import Path
 from app.link.messages import MachineUnreachable
 from app.tracker.settings.config import DriveKind
 from bench.table import Row, at_most, must_hold
-from tests.machine import fieldwork
 from tests.machine.field import Line
-from tests.machine.fieldwork import Size as FieldSize
-from tests.machine.fieldwork import Trial
+from tests.soak.rigs import fieldwork
+from tests.soak.rigs.fieldwork import Size as FieldSize
+from tests.soak.rigs.fieldwork import Trial
 
 COMMAND = "python -m bench storm"
 LATEST_MS = 50.0

@@ -11,6 +11,7 @@ from pathlib import Path
 from struct import pack, unpack
 
 from app.modbus.rtu_frame import sealed
+from tests.patience import PATIENCE_S
 
 ROOT = Path(__file__).resolve().parents[2]
 FIRMWARE = ROOT / "controllers/avr"
@@ -241,5 +242,5 @@ def powered() -> Iterator[Board]:
         yield board
     finally:
         process.stdin.close()
-        process.wait(timeout=10)
+        process.wait(timeout=PATIENCE_S)
         process.stdout.close()

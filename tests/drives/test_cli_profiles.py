@@ -34,7 +34,7 @@ def address() -> Iterator[str]:
     yield f"127.0.0.1:{port}"
     asyncio.run_coroutine_threadsafe(server.close(), loop).result(10.0)
     loop.call_soon_threadsafe(loop.stop)
-    serving.join(10.0)
+    serving.join()
     loop.close()
 
 

@@ -1,20 +1,12 @@
-"""The product and a simulated drive, started once for each file of tests and ended by their ids."""
+"""The product, started once for each file of tests and ended by its id."""
 
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from tests.e2e.eyes import Eyes
 from tests.e2e.integrator import Integrator
-from tests.e2e.product import DriveSim, Product
-
-
-@pytest.fixture(scope="module")
-def drive() -> Iterator[DriveSim]:
-    started = DriveSim.start()
-    yield started
-    started.stop()
+from tests.e2e.product import Product
 
 
 @pytest.fixture(scope="module")
@@ -30,10 +22,3 @@ def integrator(product: Product) -> Iterator[Integrator]:
     calling = Integrator(product.url)
     yield calling
     calling.close()
-
-
-@pytest.fixture
-def eyes(drive: DriveSim) -> Iterator[Eyes]:
-    watching = Eyes(drive.port)
-    yield watching
-    watching.close()

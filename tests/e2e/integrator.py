@@ -1,9 +1,7 @@
 """An integrator who knows nothing but the REST API."""
 
-import time
 from collections.abc import Callable
 from typing import Any
-from uuid import uuid4
 
 import httpx
 
@@ -17,7 +15,6 @@ SAMSUN = {
     "time_zone": "Europe/Istanbul",
 }
 SOLSTICE_MORNING = "2027-06-21T06:00:00+03:00"
-RENEW_S = 0.06
 
 
 class Refused(Exception):
@@ -100,20 +97,6 @@ class Integrator:
         """Walk steps 1 and 2: Samsun, on a summer's morning, if nothing else is said."""
         self.call("PUT", "/api/v1/site/location", json={**place, "confirmed": True})
         self.call("PUT", "/api/v1/site/clock", json={"source": "manual", "at": at, "confirmed": True})
-
-    def jog(self, seconds: float, axis: str = "azimuth", speed: str = "fast") -> None:
-        """Hold a key for a while by renewing its lease, then let it go."""
-        press = uuid4().hex
-        ends = time.monotonic() + seconds
-        sequence = 0
-        while time.monotonic() < ends:
-            self.post(
-                "/jog",
-                {"press_id": press, "axis": axis, "direction": 1, "speed": speed, "sequence": sequence},
-            )
-            sequence += 1
-            time.sleep(RENEW_S)
-        self.call("DELETE", f"/jog/{press}")
 
     def zero(self) -> None:
         """Walk step 3 where the panel stands: here is zero."""

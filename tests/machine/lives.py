@@ -14,7 +14,7 @@ from app.machine.main import run
 from app.machine.supervised import end_with_parent
 from app.tracker.commands.commands import Command
 from app.tracker.state.snapshot import SiteSnapshot, Snapshot
-from tests.patience import eventually
+from tests.patience import PATIENCE_S, eventually
 
 FORKING = multiprocessing.get_context("forkserver")
 FORKING.set_forkserver_preload([__name__])
@@ -57,7 +57,7 @@ class Machine:
         life = self.lives[-1]
         life.kill()
         at = time.monotonic()
-        life.join(5)
+        life.join(PATIENCE_S)
         return at
 
     async def forget(self) -> None:
@@ -85,4 +85,4 @@ class Machine:
         await self.link.close()
         for life in self.lives[-1:]:
             life.terminate()
-            life.join(10)
+            life.join(PATIENCE_S)

@@ -22,7 +22,7 @@ from app.tracker.settings.config import DriveConfig, DriveKind, TrackerConfig
 from app.tracker.state.snapshot import ActivityName, SiteSnapshot, Snapshot
 from app.tracker.values.motion import Feedback
 from tests.e2e.product import DRIVE_SIM
-from tests.patience import LOOK_EVERY_S, PATIENCE_S, eventually
+from tests.patience import PATIENCE_S, eventually, pause
 from tests.ports import free_port
 
 __all__ = ["SAMSUN", "DriveSimulator", "Service", "config_for", "end"]
@@ -61,7 +61,7 @@ class DriveSimulator:
             if not (seen.azimuth.moving or seen.elevation.moving):
                 return loop.time() - begun
             assert loop.time() - begun <= within_s, "the axes still turn"
-            await asyncio.sleep(LOOK_EVERY_S)
+            await pause()
 
     async def stop(self) -> None:
         # Not `close`, which would send a stop through a second master.
@@ -153,7 +153,7 @@ class Service:
                 try:
                     return await self.ask(command)
                 except MachineUnreachable:
-                    await asyncio.sleep(LOOK_EVERY_S)
+                    await pause()
 
     def tracker(self) -> Snapshot | None:
         latest = self.link.latest()

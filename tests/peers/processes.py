@@ -8,9 +8,10 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
+from tests.patience import PATIENCE_S, eventually
+
 HERE = Path(__file__).parent
 NODE_MODULES = HERE.parents[1] / "build" / "modbus-serial" / "node_modules"
-WITHIN_S = 20.0
 
 
 def program(name: str) -> str:
@@ -25,7 +26,7 @@ async def output(*words: str) -> tuple[int, str]:
     process = await asyncio.create_subprocess_exec(
         *words, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.STDOUT
     )
-    async with asyncio.timeout(WITHIN_S):
+    async with asyncio.timeout(PATIENCE_S):
         said, _ = await process.communicate()
     return process.returncode or 0, said.decode()
 
@@ -39,7 +40,7 @@ async def running(*words: str, ready: str = "") -> AsyncIterator[None]:
     assert process.stdout is not None
     try:
         if ready:
-            async with asyncio.timeout(WITHIN_S):
+            async with asyncio.timeout(PATIENCE_S):
                 assert (await process.stdout.readline()).decode().strip() == ready
         yield
     finally:
@@ -54,10 +55,7 @@ async def cable(folder: Path) -> AsyncIterator[tuple[str, str]]:
     ends = folder / "one-end", folder / "other-end"
     words = [f"pty,raw,echo=0,link={end}" for end in ends]
     async with running(program("socat"), *words):
-        for _ in range(500):
-            if all(end.exists() for end in ends):
-                break
-            await asyncio.sleep(0.01)
+        await eventually(lambda: all(end.exists() for end in ends))
         yield str(ends[0]), str(ends[1])
 
 

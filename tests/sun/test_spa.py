@@ -10,6 +10,7 @@ from app.base.angles import wrap360
 from app.sun import koblick, spa
 from app.sun.trigonometry import SCALAR
 from tests.golden.table import GoldenRow, golden
+from tests.patience import PATIENCE_S
 
 ROWS = golden("spa_skyfield.csv")
 cases = pytest.mark.parametrize("row", ROWS, ids=[row.case for row in ROWS])
@@ -40,7 +41,7 @@ def test_neither_pvlib_nor_pandas_is_loaded_for_it() -> None:
         "print([name for name in ('pvlib', 'pandas') if name in sys.modules])"
     )
     told = subprocess.run(
-        [sys.executable, "-c", asked], capture_output=True, text=True, check=True, timeout=30
+        [sys.executable, "-c", asked], capture_output=True, text=True, check=True, timeout=PATIENCE_S
     )
     assert told.stdout.strip() == "[]"
 

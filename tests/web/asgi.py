@@ -7,6 +7,8 @@ from typing import Any
 
 from fastapi import FastAPI
 
+from tests.patience import PATIENCE_S
+
 
 class Reading:
     """What a reader of server-sent events has got."""
@@ -28,7 +30,7 @@ class Reading:
 
     async def next(self, name: str) -> dict[str, str]:
         """Return the fields of the next event of a name; others before it are passed over."""
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(PATIENCE_S):
             while True:
                 fields = dict(line.split(": ", 1) for line in (await self.parts.get()).strip().splitlines())
                 if fields["event"] == name:
@@ -71,5 +73,5 @@ async def streaming(
         yield reading
     finally:
         leaves.set()
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(PATIENCE_S):
             await serving

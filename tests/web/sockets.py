@@ -8,6 +8,8 @@ from typing import Any
 
 from fastapi import FastAPI
 
+from tests.patience import PATIENCE_S
+
 HOST = b"127.0.0.1:8010"
 
 
@@ -28,7 +30,7 @@ class Socket:
 
     async def next(self, kind: str) -> dict[str, Any]:
         """Return the next message of a kind; others before it are passed over."""
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(PATIENCE_S):
             while True:
                 message = await self.inbox.get()
                 if message["type"] == kind:
@@ -69,5 +71,5 @@ async def connected(
         yield socket
     finally:
         socket.outbox.put_nowait({"type": "websocket.disconnect", "code": 1001})
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(PATIENCE_S):
             await serving

@@ -24,6 +24,7 @@ from app.web.http.server import (
 from app.web.live.live_protocol import cautious_sockets
 from tests.fakes import FakeMachine, fake_app
 from tests.fault_result import REAL, FaultResult
+from tests.patience import PATIENCE_S
 
 
 @contextlib.asynccontextmanager
@@ -33,6 +34,7 @@ async def serving(
     socket_clock: Clock | None = None,
     machine: FakeMachine | None = None,
     turnstile: Turnstile | None = None,
+    graceful_s: int | None = 2,
 ) -> AsyncIterator[tuple[PanelServer, int]]:
     app = fake_app(machine or FakeMachine())
     turnstile = Turnstile() if turnstile is None else turnstile
@@ -42,7 +44,7 @@ async def serving(
         http=cautious(connections, turnstile, deadline_s or REQUEST_DEADLINE_S),
         ws=cautious_sockets(socket_clock or SystemClock(), turnstile),
         log_config=None,
-        timeout_graceful_shutdown=2,
+        timeout_graceful_shutdown=graceful_s,
     )
     server = PanelServer(config, app.state.panel.hub.closing.set)
     serving = asyncio.create_task(server._serve([listener]))
@@ -53,7 +55,7 @@ async def serving(
         yield server, listener.getsockname()[1]
     finally:
         server.should_exit = True
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(PATIENCE_S):
             await serving
         listener.close()
 
@@ -64,7 +66,7 @@ async def test_request_that_never_ends_is_hung_up_on() -> None:
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
         writer.write(b"GET /health HTTP/1.1\r\nHost: 127.0")
         with contextlib.suppress(ConnectionResetError):
-            assert await asyncio.wait_for(reader.read(), 10) == b""
+            assert await asyncio.wait_for(reader.read(), PATIENCE_S) == b""
         writer.close()
 
 
@@ -76,8 +78,7 @@ async def test_a_request_has_eight_seconds_to_arrive(fault: FaultResult) -> None
         writer.write(b"GET /health HTTP/1.1\r\nHost: 127.0")
         assert await _status(port) == b"200", "the connection before it was accepted"
         (held,) = server.server_state.connections
-        remaining_s = held._deadline.when() - asyncio.get_running_loop().time()
-        assert 7.0 < remaining_s <= 8.0
+        assert (held._deadline is not None, held._deadline_s) == (True, 8.0)
         fault.noticed(8.0, REAL)
         fault.shows_nothing("the connection is closed")
         writer.close()
@@ -94,7 +95,7 @@ async def holding(port: int, count: int, first: bytes) -> Held:
     for reader, writer in held:
         writer.write(first)
         if first:
-            await asyncio.wait_for(reader.readuntil(b"event: snapshot"), 10)
+            await asyncio.wait_for(reader.readuntil(b"event: snapshot"), PATIENCE_S)
     return held
 
 
@@ -148,7 +149,7 @@ async def test_a_head_that_does_not_end_is_refused() -> None:
         writer.write(b"GET /health HTTP/1.1\r\nHost: 127.0.0.1\r\nX: " + b"a" * (LARGEST_HEAD * 4))
         answer = b""
         with contextlib.suppress(ConnectionResetError):
-            answer = await asyncio.wait_for(reader.read(), 10)
+            answer = await asyncio.wait_for(reader.read(), PATIENCE_S)
         assert answer.split(b" ")[1] == b"431"
         writer.close()
 
@@ -196,7 +197,7 @@ async def test_what_comes_over_live_sockets_waits_for_a_stop_that_is_under_way(
     monkeypatch.setattr("app.web.http.server.STOP_FIRST_S", 60.0)
     machine, turnstile, clock = SlowToStop(), Turnstile(), SystemClock()
     limits = serving(Connections(100), machine=machine, turnstile=turnstile)
-    async with asyncio.timeout(10), limits as (_, port), connect(f"ws://127.0.0.1:{port}/live") as page:
+    async with limits as (_, port), connect(f"ws://127.0.0.1:{port}/live") as page:
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
         writer.write(b"POST /api/v1/trackers/T1/stop HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
         await machine.begun.wait()
@@ -213,26 +214,24 @@ async def test_what_comes_over_live_sockets_waits_for_a_stop_that_is_under_way(
         writer.close()
 
 
-async def test_server_ends_quickly_though_streams_are_open() -> None:
-    loop = asyncio.get_running_loop()
-    async with serving(Connections(100), 5.0) as (server, port):
+async def test_server_ends_by_itself_though_streams_are_open() -> None:
+    """Uvicorn would wait for them for ever: the server ends them."""
+    async with serving(Connections(100), 5.0, graceful_s=None) as (server, port):
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
         writer.write(b"GET /api/v1/stream HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
         assert b"event: snapshot" in await asyncio.wait_for(
-            reader.readuntil(b"\n\n"), 3
+            reader.readuntil(b"\n\n"), PATIENCE_S
         ) + await reader.readuntil(b"\n\n")
         page = await connect(f"ws://127.0.0.1:{port}/live")
-        begun = loop.time()
         server.should_exit = True
-        await asyncio.wait_for(reader.read(), 5)
+        await asyncio.wait_for(reader.read(), PATIENCE_S)
         await page.wait_closed()
-        assert timedelta(seconds=loop.time() - begun) < timedelta(seconds=2)
         writer.close()
 
 
 async def _status(port: int, request: str = "GET /health") -> bytes:
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     writer.write(f"{request} HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n".encode())
-    answer = await asyncio.wait_for(reader.read(), 10)
+    answer = await asyncio.wait_for(reader.read(), PATIENCE_S)
     writer.close()
     return answer.split(b" ")[1]

@@ -19,7 +19,7 @@ from app.tracker.values.mode import Mode
 from app.web.main import create_app
 from app.web.services.studies import Studies
 from tests.fakes import FakeMachine, FakeReader, serving
-from tests.patience import PATIENCE_S
+from tests.patience import PATIENCE_S, pause
 from tests.studies.files import epw
 
 V1 = "/api/v1"
@@ -42,7 +42,7 @@ async def ended(client: httpx.AsyncClient, study_id: str) -> dict[str, Any]:
             found = (await client.get(f"{V1}/studies/{study_id}")).json()
             if found["state"]["status"] not in ("waiting", "running"):
                 return found
-            await asyncio.sleep(0.01)
+            await pause()
 
 
 async def test_a_study_is_begun_watched_read_and_deleted(client: httpx.AsyncClient) -> None:

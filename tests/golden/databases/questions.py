@@ -7,6 +7,7 @@ from typing import Any
 import httpx
 
 from tests.golden.databases.folders import NAME, PASSWORD
+from tests.patience import PATIENCE_S
 
 SITE_SAYS = ("site_name", "location", "time_zone")
 STEP_SAYS = ("name", "confirmed_at", "confirmed_by")
@@ -27,7 +28,7 @@ PLAIN = (
 
 def signed_in(url: str) -> httpx.Client:
     """Return a browser in which the administrator has signed in."""
-    browser = httpx.Client(base_url=url, timeout=30.0, headers={"Origin": url})
+    browser = httpx.Client(base_url=url, timeout=PATIENCE_S, headers={"Origin": url})
     answer = browser.post("/api/v1/session", json={"name": NAME, "password": PASSWORD})
     assert answer.status_code == 204, answer.text
     return browser

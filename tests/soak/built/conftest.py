@@ -1,5 +1,5 @@
-"""The product and a simulated drive as the gate's own tests of the whole product have them."""
+"""The product and a simulated drive as the timing tests have them."""
 
-from tests.e2e.conftest import drive, eyes, integrator, product
+from tests.soak.timing.conftest import drive, integrator, product
 
-__all__ = ["drive", "eyes", "integrator", "product"]
+__all__ = ["drive", "integrator", "product"]

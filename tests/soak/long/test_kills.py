@@ -10,11 +10,11 @@ from time import monotonic
 
 import pytest
 
-from tests.e2e.eyes import Eyes
 from tests.e2e.product import DriveSim
 from tests.fault_result import REAL, FaultResult
-from tests.machine.killing import Killing
 from tests.machine.lives import Machine
+from tests.soak.rigs.eyes import Eyes
+from tests.soak.rigs.killing_controller import Killing
 
 KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "3"))
 SEED = int(os.environ.get("HELIOPANEL_TEST_SEED", "1"))

@@ -20,9 +20,9 @@ from app.tracker.values.alarm_words import AlarmState
 from app.tracker.values.mode import Mode
 from tests.amount import amount
 from tests.fault_result import REAL, FaultResult
-from tests.machine.failing_disk import DiskFault, failing, filled, small_disk
 from tests.machine.service import SAMSUN, Service
 from tests.patience import eventually
+from tests.soak.rigs.failing_disk import DiskFault, failing, filled, small_disk
 
 LATEST_TICK_S = 1.0
 WATCHED_S = 1.5

@@ -12,13 +12,13 @@ from typing import Any
 
 import pytest
 
-from tests.e2e.eyes import Eyes
 from tests.e2e.integrator import Integrator
-from tests.e2e.killing import LATEST_FEED_S, RAMP_S, WATCHDOG_S
 from tests.e2e.product import DriveSim
 from tests.e2e.proxy import network
 from tests.fault_result import REAL, FaultResult
 from tests.patience import until as eventually
+from tests.soak.rigs.eyes import Eyes
+from tests.soak.rigs.killing_product import LATEST_FEED_S, RAMP_S, WATCHDOG_S
 
 SETTLED_S = 1.3
 STEP_DEG = 0.06

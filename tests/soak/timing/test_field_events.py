@@ -10,7 +10,7 @@ import pytest
 from app.tracker.settings.config import DriveKind
 from tests.amount import SOAK, amount
 from tests.fault_result import BY_ITSELF, REAL, FaultResult
-from tests.machine.fieldwork import (
+from tests.soak.rigs.fieldwork import (
     Size,
     Trial,
     gateway,

@@ -4,10 +4,10 @@ import httpx
 import pytest
 
 from app.web.live.live_protocol import FLOOD, FLOODED
-from tests.e2e.flood import Flooding, ends, stops
 from tests.e2e.integrator import Integrator
 from tests.e2e.product import Product
 from tests.fault_result import FaultResult
+from tests.soak.rigs.flood import Flooding, ends, stops
 
 SENT = 3000
 SOCKETS = 200

@@ -8,11 +8,11 @@ import pytest
 
 from app.tracker.settings.axes import AZIMUTH_DEFAULT
 from tests.e2e.chromium import Chromium, Tab, chromium
-from tests.e2e.eyes import Eyes
 from tests.e2e.integrator import Integrator
 from tests.e2e.product import DriveSim, Product
 from tests.e2e.proxy import Network, network
 from tests.fault_result import REAL, FaultResult
+from tests.soak.rigs.eyes import Eyes
 
 HOMING = "/trackers/T1/commissioning/homing"
 KEY = '[data-jog="azimuth"][data-direction="1"]'

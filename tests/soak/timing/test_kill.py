@@ -6,10 +6,10 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from tests.e2e.eyes import Eyes
 from tests.e2e.integrator import Integrator
-from tests.e2e.killing import LATEST_FEED_S, RAMP_S, TICKS_A_SECOND, WATCHDOG_S, Killing
 from tests.e2e.product import DriveSim, Product
+from tests.soak.rigs.eyes import Eyes
+from tests.soak.rigs.killing_product import LATEST_FEED_S, RAMP_S, TICKS_A_SECOND, WATCHDOG_S, Killing
 
 KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "2"))
 PANEL_KILLS_TRACKING, PANEL_KILLS_SHOWING = 1, 1

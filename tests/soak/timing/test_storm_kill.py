@@ -9,7 +9,7 @@ import pytest
 
 from tests.e2e.product import DriveSim
 from tests.fault_result import BY_ITSELF, REAL, FaultResult
-from tests.machine.storm import Field, Storm, drive_memories
+from tests.soak.rigs.storm import Field, Storm, drive_memories
 
 KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "3"))
 TRACKERS = int(os.environ.get("HELIOPANEL_TEST_TRACKERS", "12"))

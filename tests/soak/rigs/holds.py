@@ -15,12 +15,12 @@ from pathlib import Path
 
 import httpx
 
-from tests.e2e.drive_farm import Watched, farm, keep_punctual
-from tests.e2e.held_press import Press
 from tests.e2e.integrator import Integrator
 from tests.e2e.product import Product, end
 from tests.e2e.socket_page import LetGo, Page
 from tests.patience import eventually
+from tests.soak.rigs.drive_farm import Watched, farm, keep_punctual
+from tests.soak.rigs.held_press import Press
 
 ONE_BY_ONE = (LetGo.RELEASED, LetGo.CLOSED, LetGo.HIDDEN, LetGo.CUT, LetGo.KILLED)
 """What is done to one button while the others are held on."""

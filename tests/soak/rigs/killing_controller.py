@@ -35,11 +35,11 @@ from app.tracker.settings.axes import Axis, JogSpeed
 from app.tracker.settings.config import Orientation
 from app.tracker.state.snapshot import ActivityName, Event, EventKind, ShowPhase, Snapshot
 from app.tracker.values.mode import Mode
-from tests.e2e.eyes import Eyes
-from tests.e2e.killing import LATEST_FEED_S, RAMP_S, WATCHDOG_S
 from tests.machine.lives import Machine
 from tests.machine.service import SAMSUN, config_for
 from tests.patience import eventually
+from tests.soak.rigs.eyes import Eyes
+from tests.soak.rigs.killing_product import LATEST_FEED_S, RAMP_S, WATCHDOG_S
 
 MORNING = datetime(2027, 6, 21, 3, 0, tzinfo=UTC)
 SHOW = ShowPlan("morning", MORNING, MORNING + timedelta(minutes=90), timedelta(seconds=20), SAMSUN)

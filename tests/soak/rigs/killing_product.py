@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 
 from app.tracker.settings.axes import AZIMUTH_DEFAULT
-from tests.e2e.eyes import Eyes
 from tests.e2e.integrator import Integrator
 from tests.e2e.product import Product
 from tests.e2e.sky import columns
 from tests.patience import until as eventually
+from tests.soak.rigs.eyes import Eyes
 
 SEED = int(os.environ.get("HELIOPANEL_TEST_SEED", "20270621"))
 WATCHDOG_S = 0.5

@@ -1,6 +1,6 @@
 """Photographs a real show of a day into docs/pictures/show.gif, the picture of the README.
 
-`python -m tests.e2e.moving_picture` starts the product on a free port; it needs Chromium.
+`python -m tests.soak.rigs.moving_picture` starts the product on a free port; it needs Chromium.
 """
 
 import tempfile

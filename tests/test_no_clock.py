@@ -1,0 +1,37 @@
+"""The check finds each way by which a test could go by the real clock, and leaves events alone."""
+
+from pathlib import Path
+
+import pytest
+
+from tests import no_clock
+
+OFFENCES = (
+    "time.monotonic()", "from time import perf_counter", "loop.time()", "page.wait_for_timeout(5)",
+    "time.sleep(0.1)", "asyncio.sleep(PAUSE_S)", "asyncio.timeout(5)", "asyncio.wait_for(what, 5.0)",
+    "thread.join(5)", "ended.wait(20)", "httpx.get(url, timeout=60)", "eventually(found, within_s=3.0)",
+)  # fmt: skip
+HARMLESS = (
+    "asyncio.sleep(0)", "asyncio.timeout(PATIENCE_S)", "'/'.join(names)", "witnessed(plant, within_s=1.0)",
+    "clock.advance(timedelta(seconds=5))", "process.wait()",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("line", [*OFFENCES, *HARMLESS])
+def test_what_goes_by_the_real_clock_is_found(
+    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(no_clock, "TESTS", tmp_path)
+    file = tmp_path / "test_one.py"
+    file.write_text(f"{line}\n")
+    assert bool(no_clock.offences(file)) is (line in OFFENCES)
+
+
+def test_on_the_patient_loop_the_loop_may_sleep_and_the_computer_may_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(no_clock, "TESTS", tmp_path)
+    file = tmp_path / "drives" / "test_one.py"
+    file.parent.mkdir()
+    file.write_text("asyncio.sleep(3600)\ntime.sleep(1)\n")
+    assert no_clock.offences(file) == [(2, "time.sleep(1)")]
