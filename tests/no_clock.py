@@ -112,7 +112,7 @@ def _called(call: ast.Call) -> Iterator[tuple[str, str]]:
     told, function = ast.unparse(call), ast.unparse(call.func)
     name = function.rpartition(".")[2]
     if (function in SLEEPS and not _is_zero(call)) or name == "wait_for_timeout":
-        yield name, told
+        yield function.removeprefix("asyncio."), told
     elif function.endswith(("loop.time", "get_running_loop().time")):
         yield "loop.time", told
     for keyword in call.keywords:
