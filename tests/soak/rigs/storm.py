@@ -234,7 +234,8 @@ class Storm:
         assert time.monotonic() - at <= STOWS_WITHIN_S
 
     def _all_stow(self, seen: SiteSnapshot) -> bool:
-        return all(
+        """Return whether all stow, and every drive was read in this very snapshot: a late one is unknown."""
+        return all(map(_is_read, seen.trackers)) and all(
             one.activity in STOWS for one in seen.trackers if self.plot.lefts[one.tracker_id].by_itself
         )
 
@@ -263,6 +264,11 @@ def _check_place(before: Snapshot, after: Snapshot) -> None:
     for axis, config in ((Axis.AZIMUTH, USUAL.azimuth), (Axis.ELEVATION, USUAL.elevation)):
         away_deg = abs(_place_deg(after, axis) - _place_deg(before, axis))
         assert away_deg <= config.speed_dps * LONGEST_COAST_S, (axis, before, after)
+
+
+def _is_read(seen: Snapshot) -> bool:
+    axes = (seen.azimuth, seen.elevation)
+    return all(axis is not None and axis.position_deg is not None for axis in axes)
 
 
 def _place_deg(seen: Snapshot, axis: Axis) -> float:
