@@ -38,7 +38,6 @@ PATIENT = {
 EXCEPTIONS = {
     "drives/test_modbus_server.py": "pymodbus is silent for so long where no reply is wanted",
     "e2e/chromium.py": "tells the soak when it clicked",
-    "e2e/newcomer.py": "holds a key of the page of a real product: to be moved to the page's clock",
     "e2e/product.py": "tells the soak when it sent a signal",
     "e2e/proxy.py": "tells the soak when it cut the cable",
     "e2e/socket_page.py": "its heartbeats carry the time, as those of a page do",

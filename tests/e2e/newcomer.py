@@ -9,7 +9,6 @@ from pathlib import Path
 from PIL import Image
 from playwright.sync_api import Locator, Page, expect
 
-from tests.browser.hands import CONFIRM_MS
 from tests.e2e.chromium import PAGE_READY
 from tests.e2e.first_hour import NOTES
 
@@ -65,8 +64,8 @@ class Newcomer:
         key = self.page.get_by_role("button", name=words).first
         key.scroll_into_view_if_needed()
         key.hover()
-        self.page.mouse.down()
-        self.page.wait_for_timeout(CONFIRM_MS)
+        with self.page.expect_request(lambda asked: asked.method == "POST"):
+            self.page.mouse.down()
         self.page.mouse.up()
         self.taps += 1
         self.tell(f"Hold *{words}* for 2 s.")
