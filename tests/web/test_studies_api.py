@@ -1,7 +1,7 @@
 """Studies over the API, one of them by the real worker process; weather files; programs for a tracker."""
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncGenerator, AsyncIterator
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +12,13 @@ import pytest
 from app.base.settings import Settings
 from app.energy.ideal import AxisPath
 from app.studies import compute
+from app.studies.jobs import Job, Told
 from app.studies.light import Days
 from app.studies.request import StudyRequest, StudyStrategy
 from app.tracker.settings.strategy import Stepped
 from app.tracker.values.mode import Mode
 from app.web.main import create_app
+from app.web.services import studies
 from app.web.services.studies import Studies
 from tests.fakes import FakeMachine, FakeReader, serving
 from tests.patience import PATIENCE_S, pause
@@ -87,8 +89,17 @@ async def test_a_study_under_way_is_cancelled_and_those_behind_it_go_on(client: 
     assert found["state"]["status"] == "done", found["state"]["message"]
 
 
-@pytest.mark.usefixtures("real_processes")
-async def test_no_more_than_five_are_under_way(client: httpx.AsyncClient) -> None:
+async def unending(_: Job) -> AsyncGenerator[Told, None]:
+    """Be a worker that tells nothing yet."""
+    await asyncio.Event().wait()
+    for none in ():
+        yield none
+
+
+async def test_no_more_than_five_are_under_way(
+    client: httpx.AsyncClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(studies, "_told", unending)
     answers = [await client.post(f"{V1}/studies", json=DAY) for _ in range(6)]
     assert [one.status_code for one in answers] == [202] * 5 + [429]
     assert "try again" in answers[5].json()["detail"]
