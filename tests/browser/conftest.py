@@ -24,6 +24,7 @@ from tests.fakes import FakeMachine, fake_app
 from tests.patience import PATIENCE_MS, PATIENCE_S
 
 if TYPE_CHECKING:
+    from tests.browser.one_panel import Home
     from tests.browser.page_clock import Stage
 
 SCREENS = Path(__file__).resolve().parents[2] / "build" / "screens"
@@ -241,6 +242,17 @@ def opened(visitors: Visitors, plant: Plant) -> Iterator[Opened]:
     for page in pages:
         page.close()
     assert [one for one in complaints if not any(words in one for words in allowed)] == []
+
+
+@pytest.fixture(scope="package")
+def home(browser: Browser) -> "Iterator[Home]":
+    """A panel and tabs in front of it that outlast a test, for files which use one_panel.py."""
+    from tests.browser.one_panel import Home  # noqa: PLC0415 - it is built on what is here
+
+    with running() as served:
+        found = Home(browser, served)
+        yield found
+        found.drop()
 
 
 @pytest.fixture
