@@ -3,8 +3,11 @@
 import pytest
 from playwright.sync_api import expect
 
-from tests.browser.conftest import SIZES, Opened
+from tests.browser.conftest import SIZES, Opened, Plant
 from tests.browser.layout import page_end
+from tests.browser.one_panel import opened, plant
+
+__all__ = ["opened", "plant"]
 
 PATH = "/trackers/T1/show?date=2026-06-21"
 GO = '[data-action="go_to_start"]'
@@ -49,3 +52,31 @@ def test_every_hour_under_the_curves_is_written_in_full(opened: Opened) -> None:
         }).map((text) => text.textContent)"""
     )
     assert cut == []
+
+
+def test_a_show_is_planned_run_paused_stopped_and_played_again(plant: Plant, opened: Opened) -> None:
+    page = opened("/trackers/T1/show", "desk")
+    page.get_by_role("link", name="21 June").click()
+    expect(page.locator("#f-minutes")).to_have_value("3")
+    page.locator("#f-minutes").fill("0.2")
+    expect(page.locator("#verdict:not([inert])")).to_contain_text("cannot be run")
+    page.locator("#verdict a.key-primary").click()
+    expect(page.locator("#verdict")).to_contain_text("This works")
+    page.locator(GO).click()
+    page.wait_for_url("**/shows/*")
+    for phase, key in (
+        ("Ready at the start", "run_show"),
+        ("Running", "pause_show"),
+        ("Paused", "resume_show"),
+        ("Running", "stop_show"),
+    ):
+        expect(page.locator("#show-phase")).to_have_text(phase)
+        page.locator(f'[data-action="{key}"]').click()
+    expect(page.locator("#show-phase")).to_have_text("Ended")
+    kinds = ["save_plan", "go_to_start", "run_show", "pause_show", "resume_show", "stop_show"]
+    assert [
+        one.command.kind
+        for one in plant.machine.orders
+        if "show" in one.command.kind or one.command.kind in kinds
+    ] == kinds
+    expect(page.get_by_role("link", name="Replay")).to_be_visible()
