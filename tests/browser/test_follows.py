@@ -2,31 +2,20 @@
 
 import re
 from dataclasses import replace
-from datetime import datetime, timedelta
+from datetime import timedelta
+from zoneinfo import ZoneInfo
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import expect
 
 from app.link.messages import SetLocation
 from app.tracker.memory.recording import RecordingKind
 from app.tracker.weather.weather import Weather, WeatherNow
 from tests.browser.conftest import Opened, Plant
-from tests.browser.hands import until
+from tests.browser.one_panel import opened, plant
 from tests.fake_data import recording
 
-DAY = timedelta(days=1)
-LEAST, MOST = timedelta(minutes=9), timedelta(minutes=11)
-
-
-def told_at(page: Page, share: float) -> datetime:
-    """Return the time of day that the legend tells where one points at so much of the curves' width."""
-    over = page.locator("[data-trend] .u-over")
-    box = over.bounding_box()
-    assert box is not None
-    over.hover(position={"x": box["width"] * share, "y": box["height"] / 2})
-    told = page.locator("[data-trend] .u-legend .u-series").first.locator(".u-value")
-    expect(told).to_have_text(re.compile(r"\d\d:\d\d:\d\d"))
-    return datetime.strptime(f"{told.inner_text()}Z", "%H:%M:%S%z")
+__all__ = ["opened", "plant"]
 
 
 def test_the_last_ten_minutes_begin_with_what_was_recorded(plant: Plant, opened: Opened) -> None:
@@ -34,11 +23,14 @@ def test_the_last_ten_minutes_begin_with_what_was_recorded(plant: Plant, opened:
     head = recording("today", RecordingKind.DAY, "Today", 1.0, 7200.0)
     plant.machine.store.heads["today"] = replace(head, began_at=began, ended_at=None)
     page = opened("/trackers/T1", allow=("WebGL",))
-    until(
-        page,
-        lambda: MOST > (told_at(page, 0.98) - told_at(page, 0.02)) % DAY > LEAST,
-        within_ms=10_000,
-    )
+    over = page.locator("[data-trend] .u-over")
+    box = over.bounding_box()
+    assert box is not None
+    over.hover(position={"x": box["width"] * 0.02, "y": box["height"] / 2})
+    told = page.locator("[data-trend] .u-legend .u-series").first.locator(".u-value")
+    at = plant.machine.clock.now().astimezone(ZoneInfo(plant.machine.site.time_zone))
+    since = [at - timedelta(minutes=minutes) for minutes in (9, 10)]
+    expect(told).to_have_text(re.compile("|".join(f"^{one:%H:%M}:" for one in since)))
 
 
 def test_the_weather_card_follows_what_the_station_tells(plant: Plant, opened: Opened) -> None:

@@ -7,13 +7,23 @@ from playwright.sync_api import Locator, Page, Route, expect
 
 from tests.browser.conftest import Opened, Plant
 from tests.browser.hands import arrive
+from tests.browser.one_panel import opened, plant
+
+__all__ = ["opened", "plant"]
 
 LOCATION = "/trackers/T1/commissioning/location"
 PROGRESS = "/trackers/T1/commissioning/progress/location?here=/trackers/T1/commissioning/location"
 RENEWED = f"""() => new Promise((resolve) => {{
-  document.addEventListener("htmx:finally:request", () => setTimeout(resolve, 50), {{ once: true }});
+  document.addEventListener("htmx:finally:request", () => {{
+    requestAnimationFrame(() => requestAnimationFrame(resolve));
+  }}, {{ once: true }});
   window.htmx.ajax("GET", "{PROGRESS}", {{ swap: "none" }});
 }})"""
+
+
+ANSWERED = """() => document.addEventListener("htmx:finally:request", () => {
+  setTimeout(() => console.debug("answered"));
+})"""
 
 
 def by_keyboard(page: Page, key: Locator) -> None:
@@ -53,12 +63,12 @@ def test_an_answer_that_comes_late_brings_nobody_back(plant: Plant, opened: Open
     going: list[Route] = []
     page.route("**/clock/system", lambda route: order.append(route))
     page.route("**/commissioning/homing", lambda route: going.append(route))
-    page.locator('form[action$="/clock/system"] button').click()
-    page.locator("#forward a.key").click(no_wait_after=True)
-    while not (order and going):
-        page.wait_for_timeout(20)
-    with page.expect_response("**/clock/system"):
+    page.evaluate(ANSWERED)
+    with page.expect_request("**/clock/system"):
+        page.locator('form[action$="/clock/system"] button').click()
+    with page.expect_request("**/commissioning/homing"):
+        page.locator("#forward a.key").click(no_wait_after=True)
+    with page.expect_console_message(lambda said: said.text == "answered"):
         order[0].continue_()
-    page.wait_for_timeout(200)
     going[0].continue_()
     arrive(page, "/commissioning/homing")

@@ -9,9 +9,11 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Opened, Plant
 from tests.browser.hands import signed
+from tests.browser.one_panel import opened, plant
 from tests.e2e.chromium import PAGE_READY
 from tests.fakes import FakeMachine
 
+__all__ = ["opened", "plant"]
 SETTINGS = "/trackers/T1/settings"
 NOTE = ".kept-note"
 
@@ -97,7 +99,7 @@ def test_the_quality_of_the_link_stands_beside_the_keys(plant: Plant, opened: Op
     key = page.locator('[data-jog="azimuth"][data-direction="1"]')
     key.focus()
     page.keyboard.down(" ")
-    page.wait_for_timeout(300)
+    page.wait_for_selector("[data-jog][data-held]")
     page.keyboard.up(" ")
     expect(page.locator("#lost-beats")).to_contain_text("beats lost")
 

@@ -5,8 +5,11 @@ from playwright.sync_api import Page
 
 from app.web.languages.known import LANGUAGES
 from tests.browser.conftest import Opened, Plant
-from tests.browser.test_frame import BOXES, in_language
+from tests.browser.one_panel import opened, plant, resize
+from tests.browser.test_frame import BOXES
 from tests.browser.troubles import trouble
+
+__all__ = ["opened", "plant"]
 
 MAST = "/trackers/T1/mast"
 LEAST_PX = 112
@@ -23,20 +26,16 @@ def boxes(page: Page, names: str) -> list[tuple[float, float, bool]]:
     return [tuple(one) for one in page.evaluate(BETWEEN_BARS, names)]
 
 
-@pytest.mark.parametrize("size", ["phone", "tablet"])
-def test_four_buttons_and_two_angles_are_on_one_screen(size: str, plant: Plant, opened: Opened) -> None:
-    page = opened(MAST, size)
-    for language in LANGUAGES:
-        in_language(page, plant, language, MAST)
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_four_buttons_and_two_angles_are_on_one_screen(language: str, opened: Opened) -> None:
+    page = opened(MAST, "phone", language=language)
+    for size in ("phone", "tablet"):
+        resize(page, size)
         buttons, angles = boxes(page, "[data-jog]"), boxes(page, ".mast .value-main")
         assert len(buttons) == 4
         assert len(angles) == 2
-        assert all(width >= LEAST_PX and height >= LEAST_PX for width, height, _ in buttons), language
-        assert all(inside for _, _, inside in (*buttons, *angles)), language
-
-
-def test_a_phone_of_320_px_has_the_buttons_too(plant: Plant, opened: Opened) -> None:
-    page = opened(MAST, "phone")
+        assert all(width >= LEAST_PX and height >= LEAST_PX for width, height, _ in buttons), size
+        assert all(inside for _, _, inside in (*buttons, *angles)), size
     page.set_viewport_size({"width": 320, "height": 640})
     assert all(width >= LEAST_PX and height >= LEAST_PX for width, height, _ in boxes(page, "[data-jog]"))
 

@@ -5,7 +5,10 @@ from playwright.sync_api import Page, Route, expect
 from app.link.alarm_orders import ShelveAlarm
 from app.link.messages import ConfigureTracker
 from tests.browser.conftest import Opened, Plant
+from tests.browser.one_panel import opened, plant
 from tests.fake_alarms import alarm
+
+__all__ = ["opened", "plant"]
 
 DRIVE = "/trackers/T1/drive"
 SAVE = "#drive-form button.key-primary"

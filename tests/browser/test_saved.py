@@ -1,12 +1,13 @@
 """A page that says *saved* says what was saved: every field that was changed, as it was and as it is."""
 
-from collections.abc import Callable
-
 import pytest
-from playwright.sync_api import Page, Route, expect
+from playwright.sync_api import Route, expect
 
 from tests.browser.conftest import Opened, Plant
+from tests.browser.one_panel import opened, plant
 from tests.e2e.chromium import PAGE_READY
+
+__all__ = ["opened", "plant"]
 
 T1 = "/trackers/T1"
 LIST = ".saved-what"
@@ -36,13 +37,10 @@ FIRST_NUMBER = """(name) => {
 }"""
 
 
-@pytest.mark.parametrize("size", ["tablet", "phone"])
 @pytest.mark.parametrize("name", list(SAVES))
-def test_what_was_saved_is_said(
-    name: str, size: str, opened: Opened, plant: Plant, picture: Callable[[Page, str], None]
-) -> None:
+def test_what_was_saved_is_said(name: str, opened: Opened, plant: Plant) -> None:
     path, key, typed, lines = SAVES[name]
-    page = opened(path, size, allow=("422",))
+    page = opened(path, "phone", allow=("422",))
     if not lines:
         field = page.evaluate(FIRST_NUMBER, key)
         before = page.locator(field).input_value()
@@ -59,7 +57,6 @@ def test_what_was_saved_is_said(
         expect(said).to_contain_text(line)
     expect(said.locator("li")).to_have_count(len(typed))
     assert "very-secret" not in said.inner_text() + page.evaluate("JSON.stringify({...sessionStorage})")
-    picture(page, f"saved-{name}-{size}")
 
 
 def test_a_second_change_is_told_against_the_first_and_outlives_a_reload(opened: Opened) -> None:

@@ -6,7 +6,9 @@ from playwright.sync_api import expect
 
 from app.tracker.settings.mechanics import Corner, Region
 from tests.browser.conftest import Opened, Plant
+from tests.browser.one_panel import opened, plant
 
+__all__ = ["opened", "plant"]
 T1 = "/trackers/T1"
 LIST = ".saved-what"
 WALL = Region("Wall", (Corner(170.0, 0.0), Corner(190.0, 0.0), Corner(190.0, 30.0)))

@@ -1,16 +1,17 @@
 """A field on the overview: 48 trackers on a tablet, gray when normal, the one in danger first."""
 
-from collections.abc import Callable
-
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import expect
 
 from app.tracker.state.snapshot import ActivityName, Pair
 from app.tracker.values.reason import Reason
 from tests.browser.conftest import Opened, Plant
+from tests.browser.one_panel import now, opened, plant
 from tests.fake_alarms import alarm
 from tests.fake_data import commissioned
 from tests.fake_tracker import FakeTracker
+
+__all__ = ["opened", "plant"]
 
 WHY = Reason("not_stowed", "South field does not stow.", "Stow it by hand.")
 IN_SIGHT = """() => {
@@ -39,21 +40,20 @@ def field(plant: Plant) -> Plant:
         plant.machine.trackers["T31"].not_stowed = WHY
         plant.machine.emit()
 
-    plant.do(grow)
+    now(plant, grow)
     return plant
 
 
 @pytest.mark.parametrize(("size", "least"), [("tablet", 48), ("phone", 16)])
 def test_a_field_is_seen_on_one_screen_and_the_one_in_danger_first(
-    size: str, least: int, field: Plant, opened: Opened, picture: Callable[[Page, str], None]
+    size: str, least: int, field: Plant, opened: Opened
 ) -> None:
     page = opened("/", size)
     urgent = page.locator("#tile-urgent")
     expect(urgent).to_contain_text("T31 Row")
-    assert page.locator('.tile[data-priority="1"]').count() == 1
-    assert page.locator('.tile[data-look="under-way"]').count() == 3
+    expect(page.locator('.tile[data-priority="1"]')).to_have_count(1)
+    expect(page.locator('.tile[data-look="under-way"]')).to_have_count(3)
     assert page.evaluate(IN_SIGHT) >= least
-    picture(page, f"tiles-storm-{size}")
     urgent.click()
     expect(page).to_have_url(f"{field.url}/trackers/T31")
 
