@@ -2,6 +2,8 @@
 # make test : sets up what tests need and runs them, browser tests included; what judges time is in make soak
 # make check: formatting, lint, types, layers, texts, documents, generated and vendored files, migrations
 # make fuzz : 10,000 cases against the API and hostile values for every form, in a network of its own; minutes
+# make looks: opens the pages that changed in Chromium, in all sizes, languages and themes, and stamps those that are
+#   good in tests/looks/looked_at.json, which make test compares; ALL=1 opens every page
 # make soak : what make test leaves out: PART=timing judges how punctual things are, on a computer without other work;
 #   PART=built builds, releases and installs the product; PART=long are the long proofs: millions of random ticks,
 #   1,000 kills, 300 power cuts, a day of 20 trackers
@@ -29,12 +31,12 @@ ORDER ?=
 SEED := $(if $(filter random,$(ORDER)),$(shell od -An -N3 -tu4 /dev/urandom | tr -d ' '),$(ORDER))
 IN_ORDER := $(SEED:%=--random-order=%)
 # Tests start hundreds of processes: what is compiled is kept, even where the environment says otherwise.
-test soak soak-timing soak-built soak-long browser: export PYTHONDONTWRITEBYTECODE :=
+test looks soak soak-timing soak-built soak-long browser: export PYTHONDONTWRITEBYTECODE :=
 # tests/soak is what judges time, builds and installs, or takes hours: no part of make test, as tests/looks.
 PARTS := long timing built
 
 .DEFAULT_GOAL := help
-.PHONY: help setup firmware docs reference dist fast client run test gate fresh check translations fuzz soak soak-timing soak-built soak-long mutants release bench format lock browser system-packages clean
+.PHONY: help setup firmware docs reference dist fast client run test gate looks fresh check translations fuzz soak soak-timing soak-built soak-long mutants release bench format lock browser system-packages clean
 
 help: ## Show what each command does
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-10s %s\n", $$1, $$2}'
@@ -98,6 +100,9 @@ test: ## Set up what tests need and run them, browser tests included
 	@$(BIN)/python -m tests.gate -n $(WORKERS) --dist loadfile --no-loadscope-reorder $(IN_ORDER) \
 		--ignore=tests/soak --ignore=tests/looks
 
+looks: $(VENV)/.test system-packages ## Look at the pages that changed, in all sizes, languages, and themes; ALL=1 at every page
+	@$(BIN)/python -m tests.looks $(if $(ALL),--all)
+
 gate: ## Run .ci/run in a clone of the last commit; build/green says which commit passed, and how long it took
 	@$(PYTHON) -m tests.clean_gate
 
@@ -117,7 +122,7 @@ soak-built:
 
 soak-long:
 	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/store/test_power_cut.py tests/tracker/test_stateful.py tests/site/test_field.py
-	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/soak/timing/test_clock_jump.py tests/soak/timing/test_field_events.py tests/soak/timing/test_storm.py $(addprefix tests/browser/test_,$(addsuffix .py,axe keyboard languages_fit walk))
+	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/soak/timing/test_clock_jump.py tests/soak/timing/test_field_events.py tests/soak/timing/test_storm.py
 	@HELIOPANEL_SOAK=1 HELIOPANEL_TEST_KILLS=$${HELIOPANEL_TEST_KILLS:-1000} $(BIN)/python -m pytest -s tests/soak/long
 	@HELIOPANEL_TEST_KILLS=20 $(BIN)/python -m pytest -s tests/soak/timing/test_kill.py tests/soak/timing/test_process.py
 	@HELIOPANEL_TEST_KILLS=30 HELIOPANEL_TEST_TRACKERS=100 $(BIN)/python -m pytest -s tests/soak/timing/test_storm_kill.py

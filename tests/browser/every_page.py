@@ -6,7 +6,6 @@ The list is held against the panel's own table of routes, without which no route
 from dataclasses import dataclass
 from enum import StrEnum
 
-from tests.soak import amount
 from tests.web.route_table import ROUTES
 
 T1 = "/trackers/T1"
@@ -157,8 +156,6 @@ STATES = {
     "lost-homing": Leaf(f"{T1}/commissioning/homing", Where.LOST),
 }
 EVERY_PAGE = PAGES | STATES
-LOOKED_AT = amount([*PAGES, *list(STATES)[::2]], list(EVERY_PAGE))
-"""What test_every_page.py opens."""
 NO_PAGES = {
     "/certificate/ca.crt": "a file",
     "/diagnostics.zip": "a file",

@@ -12,6 +12,9 @@ from typing import Any
 
 from playwright.sync_api import Page
 
+from tests.browser.conftest import SIZES
+
+SCREEN_SIZES = SIZES | {"wall": (1920, 1080)}
 LIMITS = {"target": 64, "held": 112, "gap": 8, "heldGap": 16}
 LOOKS = Path(__file__).parent / "looks"
 """What the tests ask of an open page, in its own language."""
@@ -21,6 +24,21 @@ PAGE_END = """() => {
   return actions.left > 0 ? innerHeight : actions.top;
 }"""
 """How far down the page is seen: the actions stand beside it, on a phone below it."""
+ON_ANOTHER = """() => {
+  const shown = (e) => e.checkVisibility() && !e.closest('.footer, svg, .skip, .visually-hidden');
+  const touched = document.querySelectorAll('a, button, input:not([type=hidden]), select, summary');
+  const whole = new Set([...touched].filter(shown).map((e) => e.closest('label') ?? e));
+  const keys = [...whole].map((e) => [e, e.getBoundingClientRect()]);
+  const found = [];
+  keys.forEach(([a, one], index) => keys.slice(index + 1).forEach(([b, two]) => {
+    const across = Math.min(one.right, two.right) - Math.max(one.left, two.left);
+    const down = Math.min(one.bottom, two.bottom) - Math.max(one.top, two.top);
+    if (across < 4 || down < 4 || a.contains(b) || b.contains(a)) return;
+    found.push(`${a.textContent.trim() || a.className} lies on ${b.textContent.trim() || b.className}`);
+  }));
+  return found;
+}"""
+"""Which keys of a page lie on one another, whatever is open."""
 LAYOUT = (LOOKS / "layout.js").read_text()
 
 
@@ -38,3 +56,16 @@ def page_end(page: Page) -> float:
 def unfold(page: Page) -> None:
     """Open everything that is closed but what opens over the page, which is looked at by itself."""
     page.evaluate("document.querySelectorAll('details:not(.pop)').forEach((one) => { one.open = true; })")
+
+
+def displaced(page: Page) -> list[str]:
+    """Return that Stop, where it is, is not where the thumb is, or not large enough."""
+    box = page.locator("#stop-key").bounding_box() if page.locator("#stop-key").count() else None
+    width, height = page.evaluate("[document.documentElement.clientWidth, innerHeight]")
+    if box is None:
+        return []
+    if width >= 900:
+        placed = box == {"x": width - 130, "y": height - 168, "width": 120, "height": 120}
+    else:
+        placed = box["x"] == 80 and box["y"] + box["height"] >= height - 8 and box["height"] >= 64
+    return [] if placed and box["width"] >= 120 else [f"Stop is out of its place: {box}"]

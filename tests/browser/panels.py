@@ -4,6 +4,7 @@ import asyncio
 import tempfile
 import threading
 from collections.abc import Callable, Coroutine, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, date, datetime, timedelta
@@ -18,7 +19,6 @@ from playwright.sync_api import Browser, BrowserContext, Page, expect
 from app.access.accounts import TokenWish
 from app.access.principal import this_computer
 from app.access.roles import Role
-from app.base.clock import SystemClock
 from app.base.settings import Settings
 from app.store.store import PlannedShow
 from app.studies.compute import finished, work_out
@@ -43,10 +43,13 @@ PASSWORD = "violet-anvil-harbour-9"  # noqa: S105 - of people who do not exist
 HERE = this_computer("127.0.0.1")
 ALONE = (Where.CALM, Where.TROUBLED, Where.UNHEARD, Where.LOST, Where.DAMAGED, Where.CLOSED, Where.TRIAL)
 LIVE = (Where.CALM, Where.LOST, Where.TROUBLED, Where.DAMAGED, Where.ADMINISTRATOR, Where.VIEWER, Where.KIOSK)
+INVITED = (Where.ADMINISTRATOR, Where.VIEWER, Where.KIOSK)
 PEOPLE = {"ada": Role.ADMINISTRATOR, "bartholomew-van-der-aa": Role.OPERATOR, "vera": Role.VIEWER}
 NOON = datetime(2026, 6, 21, 12, tzinfo=UTC)
 ALLOWED = ("Failed to load resource", "WebSocket connection", "htmx:error")
 """What a browser says of an answer that is a problem, and of a machine that is not heard."""
+DRAWN = """document.fonts.ready
+  .then(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))))"""
 SEND = """action => {
   const form = [...document.forms].find(one => new URL(one.action, location).pathname === action);
   for (const one of form.elements) {
@@ -56,6 +59,11 @@ SEND = """action => {
   }
   form.submit();
 }"""
+
+
+def home(where: Where) -> Where:
+    """Return the panel of whoever looks: people and the stranger share one."""
+    return where if where in ALONE else Where.STRANGER
 
 
 def keep_study(data: Path) -> None:
@@ -105,7 +113,8 @@ def serving(where: Where) -> Iterator[Panel]:
         thread.start()
         assert served.ready.wait(PATIENCE_S), "the panel did not start"
         panel = Panel(served, Path(folder))
-        furnish(where, panel)
+        assert served.app is not None
+        wait(panel, lambda: furnish(where, served.app, machine, panel.data))
         yield panel
         assert served.server is not None
         served.server.should_exit = True
@@ -125,35 +134,42 @@ def built(where: Where, data: Path, machine: FakeMachine) -> FastAPI:
     if where is Where.TRIAL:
         tried = Trial(settings.network, settings, HERE, "that-of-the-test")
         stage = Stage(settings, trial=tried)
-    return create_app(
-        settings, machine=machine, reader=machine.store, clock=SystemClock(), hasher=FakeHasher(), stage=stage
+    app = create_app(
+        settings, machine=machine, reader=machine.store, clock=machine.clock, hasher=FakeHasher(), stage=stage
     )
+    app.state.panel.simulations._pool = ThreadPoolExecutor(1)  # no process that loads everything once more
+    return app
 
 
-def furnish(where: Where, panel: Panel) -> None:
+async def furnish(where: Where, app: FastAPI, machine: FakeMachine, data: Path) -> None:
     """Give a panel what its pages can show."""
-    machine = panel.served.machine
     if where is Where.CALM:
-        keep_study(panel.data)
+        keep_study(data)
         plan = ShowPlan(
             SHOW_ID, NOON - timedelta(hours=8), NOON + timedelta(hours=7), timedelta(minutes=3), SAMSUN
         )
         machine.store.shows[SHOW_ID] = PlannedShow("T1", plan)
-        signed = {
-            "signatures": [{"role": "technician", "name": "Ada", "strokes": [[[9, 9], [500, 200]]]}],
-            "confirmed": True,
-        }
-        for remark in ("Frost on the ground.", "After the sun check."):
-            address = f"{panel.url}/api/v1/trackers/T1/records"
-            httpx.post(address, json=signed | {"remark": remark}, timeout=60).raise_for_status()
+        await sign_records(app)
     elif where is Where.TROUBLED:
-        panel.do(partial(trouble, machine))
+        trouble(machine)
     elif where is Where.UNHEARD:
-        panel.do(machine.cut)
+        machine.cut()
     elif where is Where.DAMAGED:
-        panel.do(lambda: damage(machine))
+        damage(machine)
     elif where is Where.STRANGER:
-        hire(panel)
+        await hire(app)
+
+
+async def sign_records(app: FastAPI) -> None:
+    """Sign two records, so that they can be compared."""
+    signed = {
+        "signatures": [{"role": "technician", "name": "Ada", "strokes": [[[9, 9], [500, 200]]]}],
+        "confirmed": True,
+    }
+    async with httpx.AsyncClient(transport=httpx.ASGITransport(app), base_url="http://127.0.0.1") as client:
+        for remark in ("Frost on the ground.", "After the sun check."):
+            answer = await client.post("/api/v1/trackers/T1/records", json=signed | {"remark": remark})
+            answer.raise_for_status()
 
 
 def damage(machine: FakeMachine) -> None:
@@ -161,13 +177,11 @@ def damage(machine: FakeMachine) -> None:
     machine.emit()
 
 
-def hire(panel: Panel) -> None:
+async def hire(app: FastAPI) -> None:
     """Add a user of every kind; others then stand before a door."""
-    assert panel.served.app is not None
-    keeper = panel.served.app.state.panel.keeper
+    keeper = app.state.panel.keeper
     for name, role in PEOPLE.items():
-        add = partial(keeper.accounts.add, HERE, name, {role}, PASSWORD, keeper._clock.now())
-        wait(panel, lambda add=add: keeper.do(add))
+        await keeper.do(partial(keeper.accounts.add, HERE, name, {role}, PASSWORD, keeper._clock.now()))
 
 
 def wait(panel: Panel, work: Callable[[], Coroutine[Any, Any, Any]]) -> Any:
@@ -176,16 +190,15 @@ def wait(panel: Panel, work: Callable[[], Coroutine[Any, Any, Any]]) -> Any:
     return asyncio.run_coroutine_threadsafe(work(), panel.served.loop).result(PATIENCE_S)
 
 
-def session(panel: Panel, where: Where) -> str:
-    """Return the id of a new session of whoever looks, nothing for whom nobody knows."""
-    assert panel.served.app is not None
-    keeper = panel.served.app.state.panel.keeper
+async def session(app: FastAPI, where: Where) -> str:
+    """Return the id of a new session of whoever looks."""
+    keeper = app.state.panel.keeper
     if where is Where.KIOSK:
         wish = TokenWish("Cabinet north", pin="471108", lifetime=timedelta(days=90))
-        token = wait(panel, lambda: keeper.do(lambda: keeper.accounts.mint(HERE, wish, keeper._clock.now())))
-        return str(wait(panel, lambda: keeper.log_in_kiosk(token, "127.0.0.1", "test")))
+        token = await keeper.do(lambda: keeper.accounts.mint(HERE, wish, keeper._clock.now()))
+        return str(await keeper.log_in_kiosk(token, "127.0.0.1", "test"))
     names = {Where.ADMINISTRATOR: "ada", Where.VIEWER: "vera"}
-    return str(wait(panel, lambda: keeper.log_in(names[where], PASSWORD, "127.0.0.1", "test")))
+    return str(await keeper.log_in(names[where], PASSWORD, "127.0.0.1", "test"))
 
 
 @dataclass
@@ -194,13 +207,15 @@ class Panels:
 
     browser: Browser
     stack: ExitStack
+    scripts: tuple[str, ...] = ()
     known: dict[Where, Panel] = field(default_factory=dict)
     visitors: dict[Where, BrowserContext] = field(default_factory=dict)
+    tabs: dict[Where, Page] = field(default_factory=dict)
     complaints: list[str] = field(default_factory=list)
 
     def at(self, where: Where) -> Panel:
         """Return the panel, served when it is first asked for; people and the stranger share one."""
-        kind = where if where in ALONE else Where.STRANGER
+        kind = home(where)
         if kind not in self.known:
             self.known[kind] = self.stack.enter_context(serving(kind))
         return self.known[kind]
@@ -211,10 +226,13 @@ class Panels:
             panel = self.at(where)
             context = self.browser.new_context(locale="en-GB", timezone_id="Europe/Istanbul")
             context.set_default_timeout(PATIENCE_MS)
-            if where in (Where.ADMINISTRATOR, Where.VIEWER, Where.KIOSK):
+            for script in self.scripts:
+                context.add_init_script(script)
+            if where in INVITED:
+                assert panel.served.app is not None
                 cookie = {
                     "name": f"heliopanel-{panel.port}",
-                    "value": session(panel, where),
+                    "value": wait(panel, lambda: session(panel.served.app, where)),
                     "url": panel.url,
                 }
                 context.add_cookies([cookie])
@@ -222,15 +240,21 @@ class Panels:
             self.stack.callback(context.close)
         return self.visitors[where]
 
+    def tab(self, where: Where) -> Page:
+        """Return the tab of whoever looks; to open another for every page takes twice as long."""
+        if where not in self.tabs:
+            self.tabs[where] = self.visitor(where).new_page()
+            listen(self.tabs[where], self.complaints)
+        return self.tabs[where]
+
     @contextmanager
     def shown(self, leaf: Leaf, language: str = "en", width: int = 390, height: int = 844) -> Iterator[Page]:
         """Show a page in a language until the block ends; nothing may be complained of in its console."""
-        panel, visitor = self.at(leaf.where), self.visitor(leaf.where)
-        visitor.add_cookies([{"name": "language", "value": language, "url": panel.url}])
-        page, complaints = visitor.new_page(), []
+        panel, page = self.at(leaf.where), self.tab(leaf.where)
+        page.context.add_cookies([{"name": "language", "value": language, "url": panel.url}])
+        self.complaints.clear()
         try:
             page.set_viewport_size({"width": width, "height": height})
-            listen(page, complaints)
             if leaf.where is Where.LOST:
                 panel.do(panel.served.machine.mend)
             answer = page.goto(panel.url + leaf.path)
@@ -241,9 +265,12 @@ class Panels:
                 panel.do(panel.served.machine.cut)
                 page.wait_for_selector("#link-banner:visible")
             yield page
-        finally:
-            page.close()
-        assert [one for one in complaints if not any(words in one for words in ALLOWED)] == []
+            page.evaluate("sessionStorage.clear()")
+            page.goto("about:blank")
+        except BaseException:
+            self.tabs.pop(leaf.where).close()
+            raise
+        assert [one for one in self.complaints if not any(words in one for words in ALLOWED)] == []
 
 
 def settle(page: Page, leaf: Leaf) -> None:
@@ -256,9 +283,10 @@ def settle(page: Page, leaf: Leaf) -> None:
     expect(page.locator('[hx-trigger="load"]:not(:has(dl))')).to_have_count(0, timeout=PATIENCE_MS)
     if leaf.unfolds:
         page.locator(leaf.unfolds).evaluate("list => { list.open = true; }")
+    page.evaluate(DRAWN)
 
 
 def resize(page: Page, width: int, height: int) -> None:
-    """Give a page another size, and its scripts two frames to follow."""
+    """Give a page another size, its letters time to come, and its scripts two frames to follow."""
     page.set_viewport_size({"width": width, "height": height})
-    page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    page.evaluate(DRAWN)

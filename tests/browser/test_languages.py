@@ -1,4 +1,4 @@
-"""A language is chosen from the list; values that the browser writes read as those of the server."""
+"""What is chosen in the frame stays: language and theme; the browser writes values as the server does."""
 
 from collections.abc import Callable
 from contextvars import copy_context
@@ -106,3 +106,27 @@ def test_the_key_of_the_theme_stays_in_the_language_of_the_page(opened: Opened) 
     label = german.gettext("%(theme)s: change to the next theme of day, sun, night, and auto.")
     expect(key).to_have_text(sun)
     expect(key).to_have_attribute("aria-label", label % {"theme": sun})
+
+
+def test_theme_changes_at_one_tap_and_stays(opened: Opened) -> None:
+    page = opened("/")
+    page.locator("#theme-form .theme-key").click()
+    expect(page.locator("html")).to_have_attribute("data-theme", "sun")
+    page.reload()
+    expect(page.locator("html")).to_have_attribute("data-theme", "sun")
+
+
+def test_arrows_choose_and_space_and_enter_press(opened: Opened) -> None:
+    page = opened("/trackers/T1/commissioning/mode")
+    first = page.locator('main input[type="radio"]:checked')
+    before = first.input_value()
+    first.focus()
+    page.keyboard.press("ArrowUp")
+    expect(page.locator('main input[type="radio"]:checked')).not_to_have_value(before)
+    page.locator("#help summary").focus()
+    for key, is_open in ((" ", True), ("Enter", False)):
+        page.keyboard.press(key)
+        assert page.locator("#help").evaluate("one => one.open") is is_open
+    page.locator("#theme-form .theme-key").focus()
+    page.keyboard.press("Enter")
+    expect(page.locator("html")).to_have_attribute("data-theme", "sun")

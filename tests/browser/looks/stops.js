@@ -7,6 +7,11 @@
   };
   const marked = (e) => [e.closest(".key-choice") ?? e, e].flatMap((one) => [getComputedStyle(one), getComputedStyle(one, "::after")])
     .some((style) => style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2);
+  const scrolledBy = (e) => {
+    let far = scrollY;
+    for (let up = e.parentElement; up && up !== document.body; up = up.parentElement) far += up.scrollTop;
+    return far;
+  };
   const look = () => {
     const e = document.activeElement;
     if (!e || e === document.body) return;
@@ -16,12 +21,15 @@
     const inFrame = e.closest(".header, .rail, .footer, .skip");
     const top = inFrame || below.left > 0 ? innerHeight : below.top;
     const scrolls = e.tagName === "TEXTAREA";  // It shows the line that is written.
-    const hidden = box.height <= top && !scrolls ? box.bottom > top + 1 || box.top < -1 : box.top >= top;
+    const head = inFrame ? 0 : document.querySelector(".header").getBoundingClientRect().bottom;
+    const hidden = box.height <= top - head && !scrolls ? box.bottom > top + 1 || box.top < -1 : box.top >= top;
     const x = Math.min(Math.max((box.left + box.right) / 2, 1), innerWidth - 1), y = Math.max(Math.min((box.top + box.bottom) / 2, top - 2), 1);
     const there = document.elementFromPoint(x, y);
     const covered = there && !e.contains(there) && !there.contains(e) && !e.closest("label")?.contains(there) && !there.closest(".glance")?.contains(e);
-    stops.push({ ...named(e), marked: marked(e), hidden: hidden || covered ? `${Math.round(box.top)} to ${Math.round(box.bottom)} of ${Math.round(top)}` : "",
-      inFooter: footer.contains(e), top: box.top + scrollY, bottom: box.bottom + scrollY, left: box.left, right: box.right });
+    const where = `${Math.round(box.top)} to ${Math.round(box.bottom)} of ${Math.round(top)}${covered ? `, below ${there.outerHTML.slice(0, 80)}` : ""}`;
+    const scrolled = scrolledBy(e);
+    stops.push({ ...named(e), marked: marked(e), hidden: hidden || covered ? where : "",
+      inFooter: footer.contains(e), top: box.top + scrolled, bottom: box.bottom + scrolled, left: box.left, right: box.right });
   };
   addEventListener("keydown", (event) => { if (event.key === "Tab") look(); }, true);
   const kinds = "a[href], button, input:not([type=hidden]), select, textarea, summary, [tabindex='0']";
