@@ -42,7 +42,7 @@ def test_a_user_is_added_with_the_password_that_was_typed_before_the_proof(
     size: str, name: str, door: Door
 ) -> None:
     page = door.signed_in("root", "/users", size)
-    door.clock.ahead += LATER
+    door.passes(LATER)
     page.locator("#f-name").fill(name)
     page.locator("#f-password").fill(NEW)
     page.get_by_role("button", name="Add", exact=True).click()
@@ -58,7 +58,7 @@ def test_a_user_is_added_with_the_password_that_was_typed_before_the_proof(
 
 def test_a_token_is_made_with_the_pin_that_was_typed_before_the_proof(door: Door) -> None:
     page = door.signed_in("root", "/tokens")
-    door.clock.ahead += LATER
+    door.passes(LATER)
     page.locator("#f-name").fill("Cabinet south")
     page.locator("#f-pin").fill("8642097")
     page.get_by_role("button", name="Create token").click()
@@ -72,7 +72,7 @@ def test_a_token_is_made_with_the_pin_that_was_typed_before_the_proof(door: Door
 def test_a_password_is_changed_after_a_rest_by_the_old_one(door: Door) -> None:
     hired(door, "yusuf")
     page = door.signed_in("yusuf", "/account")
-    door.clock.ahead += LONG_AFTER
+    door.passes(LONG_AFTER)
     page.locator("#f-old").fill(PASSWORD)
     page.locator("#f-new").fill(NEW)
     page.get_by_role("button", name="Change password").click()
