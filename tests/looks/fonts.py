@@ -7,8 +7,8 @@ from pathlib import Path
 import httpx
 from playwright.sync_api import Browser, Locator, Page
 
-from app.web.languages.known import LANGUAGES
-from app.web.translation.catalogues import read, template
+from app.web.languages.catalogue import catalogue_of
+from app.web.languages.known import LANGUAGES, TRANSLATED
 from tests.browser.panels import DRAWN
 from tests.patience import PATIENCE_MS
 
@@ -34,9 +34,12 @@ NAMES = "Ελένη Бојан Łukasz Đorđe 渡邊 直人 ひらがな 龍 Ng
 
 def said(language: str) -> str:
     """Return every letter that the program says in a language, the documents included."""
-    texts = template() if language == "en" else read(language)
-    forms = [text.id if language == "en" else text.string for text in texts if text.id]
-    words = [word for form in forms for word in ((form,) if isinstance(form, str) else form)]
+    catalogue = catalogue_of(TRANSLATED[0] if language == "en" else language)
+    texts = {**catalogue.texts, **catalogue._read_blocks()}
+    if language == "en":
+        words = [text if isinstance(text, str) else text[0] for text in texts]
+    else:
+        words = list(texts.values())
     return "".join(sorted({letter for letter in "".join(words) if letter.isprintable() and letter != " "}))
 
 

@@ -34,7 +34,9 @@ Sums = dict[str, dict[str, str]]
 
 def sums(pages: dict[str, Rendered]) -> Sums:
     """Return the sums of pages in every language, and those of the rules and of letters."""
-    found = {name: {code: _sum(page, code) for code in LANGUAGES} for name, page in pages.items()}
+    # Language by language: of one alone the catalogue keeps the documents.
+    of = {code: {name: _sum(page, code) for name, page in pages.items()} for code in LANGUAGES}
+    found = {name: {code: of[code][name] for code in LANGUAGES} for name in pages}
     fonts = [
         content("css/letters.css"),
         *(content(one) for one in sorted(loaded("/s/0000000000000000/css/letters.css"))),
