@@ -16,6 +16,15 @@ TYPES = "/manual/reference/errors.html"
 """Where the manual of every Heliopanel says what a type means."""
 
 
+RENAMED = {413: "Request Entity Too Large", 422: "Unprocessable Entity"}
+"""What Python calls otherwise from 3.13 on; the catalogues have these."""
+
+
+def phrase(status: int) -> str:
+    """Return a status in the words that every version of Python, and every catalogue, has."""
+    return RENAMED.get(status) or HTTPStatus(status).phrase
+
+
 class ProblemCode(StrEnum):
     """What programs go by: one code for each kind of problem, always with the same status."""
 
@@ -111,7 +120,7 @@ class Problem:
     @property
     def title(self) -> str:
         """Return the status in words."""
-        return HTTPStatus(self.status).phrase
+        return phrase(self.status)
 
     def body(self) -> bytes:
         """Return the problem as RFC 9457 has it."""

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator
 from enum import Enum
-from http import HTTPStatus
 from typing import IO
 
 from app.access.principal import Via
@@ -49,6 +48,7 @@ from app.web.features.control.control_api import ControlAction
 from app.web.features.records import record_words
 from app.web.features.records.signatures import SignatureRole
 from app.web.features.shows.shows_api import ShowAction
+from app.web.http.problems import phrase
 from app.web.languages.known import in_words
 from app.web.shell.control_role import Standing
 
@@ -133,7 +133,7 @@ def words() -> Iterator[str]:
         yield from (in_words(one.value) for one in kind)
     yield from map(in_words, (*KINDS, *_ACCESS.split()))
     yield from _OTHERS.split()
-    yield from (HTTPStatus(status).phrase for status in PHRASES)
+    yield from map(phrase, PHRASES)
 
 
 def extract(
