@@ -1,6 +1,7 @@
 """What of a page is the same in every process, on every day, and on every computer."""
 
 import re
+from functools import lru_cache
 
 DRAWN = re.compile(r'(?<=\s)(d|points|transform|x|y|x1|x2|y1|y2|cx|cy|r|width|height)="[^"]*"')
 """Where a drawing has its lines: numbers whose last digits differ from one processor to another."""
@@ -13,6 +14,7 @@ FILES = re.compile(r"/s/[0-9a-f]{16}/")
 NUMBER = re.compile(r"\d+")
 
 
+@lru_cache(maxsize=256)
 def masked(html: str) -> str:
     """Return a page without what differs: tickets, the address of its files, numbers, and drawn lines."""
     html = FILES.sub("/s/", html)

@@ -3,11 +3,10 @@
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from http import HTTPStatus
 from pathlib import Path
 
 from app.base.own import PROGRAM
-from app.web.http.problems import ProblemCode
+from app.web.http.problems import ProblemCode, phrase
 from tests.manual.made.markdown import code, page, table, text
 
 INTRODUCTION = """Errors of the API are `application/problem+json` (RFC 9457). `code` is the kind of problem,
@@ -50,7 +49,7 @@ def _several(sentences: set[str]) -> str:
 
 def _kind(kind: ProblemCode) -> str:
     """Return a section that `type` leads to."""
-    return f"### {code(kind.value)}\n\n{kind.status} {HTTPStatus(kind.status).phrase}. {text(kind.when)}"
+    return f"### {code(kind.value)}\n\n{kind.status} {phrase(kind.status)}. {text(kind.when)}"
 
 
 def _reasons() -> dict[str, Said]:
