@@ -15,9 +15,12 @@ Run = Callable[..., tuple[int, str, str]]
 def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
     """Return a call that runs the command line and returns its exit code, output and errors.
 
-    What options put into the environment is taken out again.
+    What options put into the environment is taken out again; what is for tests alone is no setting.
     """
-    monkeypatch.setattr(os, "environ", os.environ.copy())
+    environ = os.environ.copy()
+    for name in [name for name in environ if name.startswith("HELIOPANEL_TEST_")]:
+        del environ[name]
+    monkeypatch.setattr(os, "environ", environ)
 
     def call(*words: str) -> tuple[int, str, str]:
         monkeypatch.setattr(sys, "argv", ["heliopanel", *words])

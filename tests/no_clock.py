@@ -52,7 +52,7 @@ EXCEPTIONS = {
     "peers/modbus_tk_server.py": "a process of its own that serves until it is killed",
     "patience.py": "the one bound of all waits, and the pause between two looks",
 }
-TO_BE_MOVED: frozenset[str] = frozenset({"browser/hands.py", "browser/test_manual.py"})
+TO_BE_MOVED: frozenset[str] = frozenset({"browser/hands.py"})
 """Files of tests/browser that still go by the real clock: this list only shrinks."""
 
 SENTENCE = (

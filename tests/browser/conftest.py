@@ -22,6 +22,7 @@ from tests.e2e.chromium import QUIET as FLAGS
 from tests.e2e.letters import environment
 from tests.fakes import FakeMachine, fake_app
 from tests.patience import PATIENCE_MS, PATIENCE_S
+from tests.web.in_process import be_patient
 
 if TYPE_CHECKING:
     from tests.browser.one_panel import Home
@@ -147,6 +148,14 @@ def running(served: Served | None = None) -> Iterator[Plant]:
 def plant() -> Iterator[Plant]:
     with running() as served:
         yield served
+
+
+@pytest.fixture(scope="package", autouse=True)
+def patient() -> Iterator[None]:
+    """Have the panel wait for its calculations as long as tests wait."""
+    with pytest.MonkeyPatch.context() as patch:
+        be_patient(patch)
+        yield
 
 
 @pytest.fixture(scope="package")

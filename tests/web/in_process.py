@@ -8,12 +8,14 @@ import asyncio
 from collections.abc import AsyncGenerator
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import ContextVar
+from datetime import timedelta
 
 import pytest
 
 from app.studies import worker
 from app.studies.jobs import JOB, TOLD, Job, Told
 from app.web.services import simulations, studies
+from tests.patience import PATIENCE_S
 
 LINES: ContextVar[list[bytes]] = ContextVar("LINES")
 
@@ -37,8 +39,16 @@ def _lines(asked: bytes) -> list[bytes]:
     return LINES.get()
 
 
+def be_patient(patch: pytest.MonkeyPatch) -> None:
+    """Have the panel wait for its calculations as long as tests wait: a busy computer may take its time."""
+    patch.setattr(studies, "LONGEST_QUESTION", timedelta(seconds=PATIENCE_S))
+    patch.setattr(studies, "LONGEST", timedelta(seconds=PATIENCE_S))
+    patch.setattr(simulations, "LONGEST", timedelta(seconds=PATIENCE_S))
+
+
 def work_here(patch: pytest.MonkeyPatch) -> None:
     """Have simulations and studies worked out in this process from now on."""
+    be_patient(patch)
     patch.setattr(simulations, "ProcessPoolExecutor", ThreadWorker)
     patch.setattr(studies, "_told", told_here)
     patch.setattr(worker, "tell", lambda told: LINES.get().append(TOLD.dump_json(told)))

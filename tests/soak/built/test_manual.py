@@ -6,10 +6,12 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, expect
 
-from tests.browser.conftest import Plant, Served, listen, running
+from tests.browser.conftest import Plant, Served, browser, listen, running
 from tests.fakes import FakeMachine
 from tests.manual.site import build
 from tests.web.test_manual import app_with
+
+__all__ = ["browser"]
 
 
 @pytest.fixture(scope="module")
