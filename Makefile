@@ -121,7 +121,7 @@ soak-built:
 	@$(BIN)/python -m pytest $(IN_ORDER) tests/soak/built
 
 soak-long:
-	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/store/test_power_cut.py tests/tracker/test_stateful.py tests/site/test_field.py
+	@HELIOPANEL_SOAK=1 HELIOPANEL_TEST_PATIENCE_S=600 $(BIN)/python -m pytest -s tests --ignore=tests/soak --ignore=tests/looks
 	@HELIOPANEL_SOAK=1 $(BIN)/python -m pytest -s tests/soak/timing/test_clock_jump.py tests/soak/timing/test_field_events.py tests/soak/timing/test_storm.py
 	@HELIOPANEL_SOAK=1 HELIOPANEL_TEST_KILLS=$${HELIOPANEL_TEST_KILLS:-1000} $(BIN)/python -m pytest -s tests/soak/long
 	@HELIOPANEL_TEST_KILLS=20 $(BIN)/python -m pytest -s tests/soak/timing/test_kill.py tests/soak/timing/test_process.py

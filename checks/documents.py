@@ -18,7 +18,7 @@ NAMED = re.compile(r"`((?:app|bench|tests)/[\w/]+\.py):([\w.]+)`")
 PLACES = re.compile(r"`((?:app|templates|static|tests|alembic|deploy|docs|bench|checks)/[\w./-]*)`")
 LINKS = re.compile(r"\]\((?!https?:|#|mailto:)([^)#\s]+)")
 VARIABLE = re.compile(rf"\b{PREFIX}[A-Z_]+[A-Z]\b(?!_)")
-OF_OTHERS = re.compile(rf"{PREFIX}(TEST_\w+|DOCS|SCREENS|SOAK|REAL_TIME|NAME)")
+OF_OTHERS = re.compile(rf"{PREFIX}(TEST_\w+|DOCS|SCREENS|SOAK|NAME)")
 """Variables of tests, and a word that stands for any name."""
 SECTIONS = ("start", "operate", "install", "connect", "integrate", "reference", "explain", "develop")
 MANUAL = "zensical.toml"

@@ -11,6 +11,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 UV = Path(sys.executable).with_name("uv")
@@ -67,12 +68,19 @@ def environment(settings: Mapping[str, str], given: Mapping[str, str]) -> dict[s
 
 
 def has_uv() -> bool:
-    """Return whether uv is there, after pip was asked for it."""
-    if not UV.exists():
+    """Return whether uv is there, after pip was asked for the version that is locked."""
+    if UV_LOCK.read_text().split()[0] != f"uv=={_installed_uv()}":
         subprocess.run(
             [*PIP, "install", "--quiet", "--no-compile", *LOCKED, UV_LOCK], capture_output=True, check=False
         )
     return UV.exists()
+
+
+def _installed_uv() -> str:
+    try:
+        return version("uv")
+    except PackageNotFoundError:
+        return ""
 
 
 def by_uv(lock: str, projects: Sequence[str]) -> bool:

@@ -54,7 +54,7 @@ def _first_line(why: ElementTree.Element) -> str:
 
 def compile_once(arguments: Sequence[str]) -> None:
     """Have one process compile the tests of a new clone, which each worker would do for itself."""
-    if TESTS.exists() and not (TESTS / "__pycache__").exists():
+    if TESTS.exists() and next(TESTS.rglob("*-pytest-*.pyc"), None) is None:
         command = [sys.executable, "-m", "pytest", "--collect-only", *arguments]
         subprocess.run(command, check=False, stdout=subprocess.DEVNULL)
 

@@ -9,7 +9,7 @@ import fcntl
 import selectors
 import socket
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from datetime import UTC, datetime, timedelta
 from typing import Any
@@ -124,3 +124,8 @@ class LoopClock:
     async def sleep_until(self, at: datetime) -> None:
         """Sleep for what is left until then."""
         await asyncio.sleep(max(0.0, (at - self.now()).total_seconds()))
+
+
+def loops(*, patient: bool) -> Mapping[str, Callable[[], asyncio.AbstractEventLoop]]:
+    """Return the loop of a test, for the hook `pytest_asyncio_loop_factories` of its folder."""
+    return {"patient": PatientLoop} if patient else {"real": asyncio.new_event_loop}

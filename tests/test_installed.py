@@ -3,7 +3,7 @@
 import pytest
 
 from bench.installed import EXTRAS, OWN, PURPOSES, installation
-from tests.soak import amount
+from tests.amount import amount
 
 STUDIES = {"pandas", "pvlib", "scipy"}
 

@@ -11,7 +11,7 @@ from math import ceil, copysign, cos, pi, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from app.fast.compiled import compiled, inlined
+from app.fast.compiled import COMPILED, compiled, inlined
 from app.fast.directions import Directions
 from app.fast.trigonometry import sine_cosine
 from app.sun.trigonometry import Array
@@ -178,7 +178,7 @@ def _place(
 
 
 @compiled
-def _judge(
+def _judge_each(
     columns: Columns, read_deg: Pair, tracker: Tracker, azimuth: AxisLaw, elevation: AxisLaw, away: Array
 ) -> int:
     """Note the haversine of each tick's distance in `away`; return how many ticks need a closer look."""
@@ -199,6 +199,27 @@ def _judge(
         away[i] = meant[i] * (haversine + (OUTSIDE if beyond > 0.0 else 0.0))
         flagged += 1 if away[i] > limit else 0
     return flagged
+
+
+def _judge_all(
+    columns: Columns, read_deg: Pair, tracker: Tracker, azimuth: AxisLaw, elevation: AxisLaw, away: Array
+) -> int:
+    """Do the same over arrays: without a compiler that is quicker by far than the loop."""
+    azimuth_deg, elevation_deg, near_deg, night, meant, _ = columns
+    angle = azimuth_deg + tracker[1]
+    near = read_deg[0] + night * (near_deg - read_deg[0])
+    angle += 360.0 * np.floor((near - angle) / 360.0 + 0.5)
+    height = np.clip(elevation_deg + tracker[2], elevation[0], elevation[1])
+    turn = np.sin((angle - read_deg[0]) * HALF_DEGREE)
+    lift = np.sin((height - read_deg[1]) * HALF_DEGREE)
+    haversine = lift * lift + cos(read_deg[1] * DEGREE) * np.cos(height * DEGREE) * turn * turn
+    beyond = (angle < azimuth[0]) | (angle > azimuth[1]) | (np.abs(angle - read_deg[0]) > UNWIND_DEG)
+    found = away[: angle.size]
+    found[:] = meant * (haversine + OUTSIDE * beyond)
+    return int(np.count_nonzero(found > CLOSE * sin(tracker[0] * HALF_DEGREE) ** 2))
+
+
+_judge = _judge_each if COMPILED else _judge_all
 
 
 @compiled

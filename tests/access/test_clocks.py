@@ -22,7 +22,7 @@ from app.access.throttle import LONGEST, Failures, wait_left
 from app.access.tickets import ONE_SHOT, OneShots
 from app.base.clock import SMALL_CORRECTION, is_within, lasts
 from tests.access.door import ADDRESS, START, Door
-from tests.soak import amount
+from tests.amount import amount
 
 NONE = timedelta()
 small = st.timedeltas(-2 * SMALL_CORRECTION, 2 * SMALL_CORRECTION)

@@ -184,6 +184,19 @@ def listen(page: Page, complaints: list[str]) -> None:
     page.on("pageerror", lambda error: complaints.append(f"uncaught: {error}"))
 
 
+def visitor_of(browser: Browser, size: str = "desk", *, touch: bool = False) -> BrowserContext:
+    """Return a browser of somebody at the site, with such a screen."""
+    width, height = SIZES[size]
+    context = browser.new_context(
+        viewport={"width": width, "height": height},
+        has_touch=touch,
+        locale="en-GB",
+        timezone_id="Europe/Istanbul",
+    )
+    context.set_default_timeout(PATIENCE_MS)
+    return context
+
+
 @dataclass
 class Visitors:
     """The browsers of one file's tests, one a kind of screen; each keeps what the pages of a panel share."""
@@ -195,15 +208,8 @@ class Visitors:
         """Return the browser with which a panel is visited on such a screen."""
         kind = (url, size, touch, theme)
         if kind not in self.known:
-            width, height = SIZES[size]
-            self.known[kind] = self.browser.new_context(
-                viewport={"width": width, "height": height},
-                has_touch=touch,
-                locale="en-GB",
-                timezone_id="Europe/Istanbul",
-            )
+            self.known[kind] = visitor_of(self.browser, size, touch=touch)
             self.known[kind].add_cookies([{"name": "theme", "value": theme, "url": url}])
-            self.known[kind].set_default_timeout(PATIENCE_MS)
         return self.known[kind]
 
     def leave(self, stays: str = "") -> None:

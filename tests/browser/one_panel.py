@@ -11,11 +11,11 @@ from threading import Event
 import pytest
 from playwright.sync_api import Browser, Page
 
-from tests.browser.conftest import SIZES, Opened, Plant, listen
+from tests.browser.conftest import SIZES, Opened, Plant, listen, visitor_of
 from tests.e2e.chromium import PAGE_READY
 from tests.fake_store import FakeReader
 from tests.fakes import FakeMachine
-from tests.patience import PATIENCE_MS, PATIENCE_S
+from tests.patience import PATIENCE_S
 
 BEGUN_MS = 50
 """After this time of a page all of its scripts have begun."""
@@ -66,8 +66,7 @@ class Home:
 
     def tab(self, *, touch: bool, still: bool) -> Tab:
         if (touch, still) not in self.known:
-            context = self.browser.new_context(has_touch=touch, locale="en-GB", timezone_id="Europe/Istanbul")
-            context.set_default_timeout(PATIENCE_MS)
+            context = visitor_of(self.browser, touch=touch)
             if still:
                 instant = self.plant.machine.clock.now()
                 context.clock.install(time=instant)

@@ -18,10 +18,10 @@ from playwright.sync_api import Browser, BrowserContext, Error, Page
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.base.clock import VirtualClock
-from tests.browser.conftest import SIZES, Plant, Served, listen, running
+from tests.browser.conftest import Plant, Served, listen, running, visitor_of
 from tests.e2e.chromium import PAGE_READY
 from tests.fakes import FakeMachine
-from tests.patience import PATIENCE_MS, PATIENCE_S
+from tests.patience import PATIENCE_S
 
 NOON = datetime(2027, 6, 21, 9, 40, tzinfo=UTC)
 BEAT_MS = 50
@@ -148,14 +148,7 @@ class Stage:
         self, size: str = "desk", *, touch: bool = False, theme: str = "day", language: str = ""
     ) -> BrowserContext:
         """Return a browser whose clock shows the panel's time."""
-        width, height = SIZES[size]
-        context = self.browser.new_context(
-            viewport={"width": width, "height": height},
-            has_touch=touch,
-            locale="en-GB",
-            timezone_id="Europe/Istanbul",
-        )
-        context.set_default_timeout(PATIENCE_MS)
+        context = visitor_of(self.browser, size, touch=touch)
         cookies = {"theme": theme, "language": language}
         context.add_cookies([{"name": n, "value": v, "url": self.plant.url} for n, v in cookies.items() if v])
         context.clock.install(time=self.clock.now())

@@ -30,7 +30,7 @@ from app.tracker.settings.config import Orientation
 from app.web.http.network import Stage, Trial
 from app.web.main import create_app
 from tests.access.fake_hasher import FakeHasher
-from tests.browser.conftest import Served, listen
+from tests.browser.conftest import Served, listen, visitor_of
 from tests.browser.every_page import SHOW_ID, STUDY_ID, Leaf, Where
 from tests.browser.troubles import trouble
 from tests.e2e.chromium import PAGE_READY
@@ -224,8 +224,7 @@ class Panels:
         """Return the browser of whoever looks."""
         if where not in self.visitors:
             panel = self.at(where)
-            context = self.browser.new_context(locale="en-GB", timezone_id="Europe/Istanbul")
-            context.set_default_timeout(PATIENCE_MS)
+            context = visitor_of(self.browser)
             for script in self.scripts:
                 context.add_init_script(script)
             if where in INVITED:

@@ -1,17 +1,12 @@
 """Drives are tested on a loop that does not state how busy the computer is, unless a test says otherwise."""
 
-import asyncio
-from collections.abc import Callable, Mapping
+from typing import Any
 
 import pytest
 
-from tests.patient_loop import PatientLoop
+from tests.patient_loop import loops
 
 
-def pytest_asyncio_loop_factories(
-    config: pytest.Config, item: pytest.Item
-) -> Mapping[str, Callable[[], asyncio.AbstractEventLoop]]:
+def pytest_asyncio_loop_factories(item: pytest.Item) -> Any:
     """Return the loop that a test runs on."""
-    if item.get_closest_marker("real_time"):
-        return {"real": asyncio.new_event_loop}
-    return {"patient": PatientLoop}
+    return loops(patient=item.get_closest_marker("real_time") is None)

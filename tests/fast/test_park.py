@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from app.fast.directions import directions
-from app.fast.park import park_day, trace
+from app.fast.park import OUTSIDE, _columns, _judge_all, _judge_each, _law, park_day, trace
 from app.show.simulate import simulate
 from app.sun.position import Location
 from app.tracker.memory.memory import Pointing
@@ -15,7 +15,7 @@ from app.tracker.memory.recording import COLUMNS
 from app.tracker.settings.axes import AZIMUTH_DEFAULT
 from app.tracker.settings.config import NightBehaviour, Orientation, TrackerConfig
 from app.tracker.values.mode import Mode
-from tests.soak import amount
+from tests.amount import amount
 
 SAMSUN, HELD = Location(41.2867, 36.33), Orientation(180.0, 45.0)
 TRACKER = TrackerConfig("T1", "Tracker 1")
@@ -74,7 +74,7 @@ DAYS = {
 
 @pytest.mark.parametrize("day", DAYS.values(), ids=DAYS.keys())
 def test_every_tick_reads_as_with_the_real_controller(day: Day) -> None:
-    end = day.begin + timedelta(hours=amount(min(day.hours, 6), day.hours))
+    end = day.begin + timedelta(hours=amount(min(day.hours, 4), day.hours))
     _, frames = simulate(day.config, day.pointing, day.location, "UTC", day.mode, HELD, day.begin, end)
     at_unix_s = day.begin.timestamp() + np.arange(len(frames), dtype=np.float64)
     aims = directions(day.config, day.mode, HELD, day.location, at_unix_s)
@@ -89,8 +89,26 @@ def test_every_tick_reads_as_with_the_real_controller(day: Day) -> None:
     assert np.abs(frames.values[:, ELEVATION] - elevation_deg).max() < 1e-9
 
 
+def test_a_block_is_judged_alike_with_and_without_a_compiler() -> None:
+    config = replace(TRACKER, azimuth=replace(AZIMUTH_DEFAULT, minimum_deg=40.0, maximum_deg=320.0))
+    at_unix_s = datetime(2026, 6, 21, tzinfo=UTC).timestamp() + np.arange(0.0, 86_400.0, 60.0)
+    columns = _columns(directions(config, Mode.DUAL, HELD, SAMSUN, at_unix_s))
+    laws = _law(config.azimuth), _law(config.elevation)
+    flagged = set()
+    for read_deg in ((180.0, 45.0), (40.0, 5.0), (318.0, 88.0)):
+        each, all_ = np.full((2, at_unix_s.size), np.nan)
+        numbers = [
+            judge(columns, read_deg, (0.5, 1.3, -0.7), *laws, away)
+            for judge, away in ((_judge_each, each), (_judge_all, all_))
+        ]
+        assert numbers[0] == numbers[1]
+        assert np.abs(each - all_).max() < 1e-8
+        flagged |= {bool(one) for one in each > OUTSIDE / 2.0}
+    assert flagged == {False, True}
+
+
 def test_a_park_sums_up_what_its_trackers_do_one_by_one() -> None:
-    at_unix_s = datetime(2026, 6, 21, 3, tzinfo=UTC).timestamp() + np.arange(0.0, 21_600.0)
+    at_unix_s = datetime(2026, 6, 21, 3, tzinfo=UTC).timestamp() + np.arange(0.0, amount(7_200.0, 21_600.0))
     aims = directions(TRACKER, Mode.DUAL, HELD, SAMSUN, at_unix_s)
     deadbands_deg, offsets_deg = np.array([0.25, 0.5, 2.0]), np.array([0.0, 0.4, -1.1])
     day = park_day(

@@ -1,20 +1,14 @@
 """SunSpec has both ends in one process: its time is the patient loop's. Brokers are other processes."""
 
-import asyncio
-from collections.abc import Callable, Mapping
+from typing import Any
 
 import pytest
 
-from tests.patient_loop import PatientLoop
+from tests.patient_loop import loops
 
-PATIENT = {"tests.gateway.test_sunspec", "tests.gateway.test_mqtt_lanes", "tests.gateway.test_quiet_door"}
+PATIENT = {"test_sunspec.py", "test_mqtt_lanes.py", "test_quiet_door.py"}
 
 
-def pytest_asyncio_loop_factories(
-    config: pytest.Config, item: pytest.Item
-) -> Mapping[str, Callable[[], asyncio.AbstractEventLoop]]:
+def pytest_asyncio_loop_factories(item: pytest.Item) -> Any:
     """Return the loop that a test runs on."""
-    assert isinstance(item, pytest.Function)
-    if item.module.__name__ in PATIENT:
-        return {"patient": PatientLoop}
-    return {"real": asyncio.new_event_loop}
+    return loops(patient=item.path.name in PATIENT)

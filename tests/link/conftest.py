@@ -1,17 +1,10 @@
 """Both ends of the link are in one process: its time is the patient loop's, see `tests/patient_loop.py`."""
 
-import asyncio
-from collections.abc import Callable, Mapping
+from typing import Any
 
-import pytest
-
-from tests.patient_loop import PatientLoop
+from tests.patient_loop import loops
 
 
-def pytest_asyncio_loop_factories(
-    config: pytest.Config, item: pytest.Item
-) -> Mapping[str, Callable[[], asyncio.AbstractEventLoop]]:
+def pytest_asyncio_loop_factories() -> Any:
     """Return the loop that a test runs on."""
-    if item.get_closest_marker("real_time"):
-        return {"real": asyncio.new_event_loop}
-    return {"patient": PatientLoop}
+    return loops(patient=True)

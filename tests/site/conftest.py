@@ -1,22 +1,18 @@
 """Plants for the stories of this folder, and proof that none leaves a task behind."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import AsyncIterator
+from typing import Any
 
 import pytest
 
-from tests.patient_loop import PatientLoop
+from tests.patient_loop import loops
 from tests.site.plant import Plant, make_plant
 
 
-def pytest_asyncio_loop_factories(
-    config: pytest.Config, item: pytest.Item
-) -> Mapping[str, Callable[[], asyncio.AbstractEventLoop]]:
+def pytest_asyncio_loop_factories(item: pytest.Item) -> Any:
     """Return the loop that a test runs on: time-outs of the loop are judged on the patient one."""
-    assert isinstance(item, pytest.Function)
-    if item.module.__name__ == "tests.site.test_waiting":
-        return {"patient": PatientLoop}
-    return {"real": asyncio.new_event_loop}
+    return loops(patient=item.path.name == "test_waiting.py")
 
 
 @pytest.fixture

@@ -26,9 +26,9 @@ from app.tracker.memory.recording import COLUMNS, Frames, RecordingKind
 from app.tracker.state.snapshot import EventKind
 from app.tracker.values.mode import Mode
 from app.tracker.weather.weather import Weather
+from tests.amount import amount
 from tests.fault_result import FaultResult
 from tests.site.plant import SUMMER_NOON, Plant, make_plant
-from tests.soak import amount
 from tests.store.tracked_day import MIDNIGHT, day_info, tracked_day
 
 T = TypeVar("T")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 from urllib.parse import quote
 
-from tests.soak import SOAK
+from tests.amount import SOAK
 
 Schema = dict[str, Any]
 

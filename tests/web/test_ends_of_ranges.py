@@ -9,10 +9,10 @@ from app.store.migrations import upgrade
 from app.web.openapi import DOCUMENT as KEPT
 from app.web.services.simulations import BUSY, Busy, Simulations
 from app.web.services.studies import Studies
+from tests.amount import SOAK
 from tests.fakes import PORT, fake_app
 from tests.fault_result import FaultResult
 from tests.fuzz import LastingMachine
-from tests.soak import SOAK
 from tests.web.ends import Case, Document
 
 DOCUMENT = Document(json.loads(KEPT.read_text()), {"tracker_id": "T1", "recording_id": "show-1"})

@@ -5,8 +5,8 @@ import random
 import httpx
 import pytest
 
+from tests.amount import amount
 from tests.fakes import fake_app, serving
-from tests.soak import amount
 from tests.web.forms import PageForm, bad_values, every_form, hostile_in
 
 ROUNDS = amount(1, 3)

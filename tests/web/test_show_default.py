@@ -20,9 +20,9 @@ from app.tracker.settings.config import MountKind
 from app.tracker.values.mode import Mode
 from app.web.features.shows.show_plan import Place, ShowForm, planned, presets
 from app.web.shell.forms import Typed
+from tests.amount import amount
 from tests.fake_data import commissioned
 from tests.fakes import FakeMachine, fake_app, serving
-from tests.soak import amount
 
 SHOW = "/trackers/T1/show"
 SYDNEY = (Location(-33.87, 151.21), "Australia/Sydney")

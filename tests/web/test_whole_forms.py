@@ -13,10 +13,10 @@ from app.tracker.settings.mechanics import Corner, Region
 from app.tracker.settings.mechanisms import MECHANISMS
 from app.web.features.setup.machine_forms import texts
 from app.web.http.whole_forms import INCOMPLETE
+from tests.amount import amount
 from tests.fake_store import FakeReader
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.fault_result import FaultResult
-from tests.soak import amount
 from tests.web.filled import filled, values_of
 
 T1 = "/trackers/T1"

@@ -10,9 +10,9 @@ import pytest
 from app.tracker.mounts.usual import mounted
 from app.tracker.settings.config import MountKind, TrackerConfig
 from app.tracker.settings.strategy import Stepped
+from tests.amount import amount
 from tests.fakes import FakeMachine
 from tests.golden.table import rows
-from tests.soak import amount
 from tests.web.filled import filled
 
 NUMBERS = rows("world/numbers.csv")

@@ -5,13 +5,13 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from tests.recipes import test_recipe_of_a_drive_profile as drive_profile
-from tests.recipes import test_recipe_of_a_language as language
-from tests.recipes import test_recipe_of_a_page as page
-from tests.recipes import test_recipe_of_a_protection as protection
-from tests.recipes import test_recipe_of_a_setting as setting
-from tests.recipes import test_recipe_of_an_alarm as alarm
-from tests.recipes.program_copy import ROOT
+from tests.soak.built.recipes import test_recipe_of_a_drive_profile as drive_profile
+from tests.soak.built.recipes import test_recipe_of_a_language as language
+from tests.soak.built.recipes import test_recipe_of_a_page as page
+from tests.soak.built.recipes import test_recipe_of_a_protection as protection
+from tests.soak.built.recipes import test_recipe_of_a_setting as setting
+from tests.soak.built.recipes import test_recipe_of_an_alarm as alarm
+from tests.soak.built.recipes.program_copy import ROOT
 
 DOCUMENT = ROOT / "docs/develop/contributing.md"
 ROW = re.compile(r"^\| (an? [a-z ]+) \| (\d+) \| (.*) \| (.*) \|$", re.MULTILINE)

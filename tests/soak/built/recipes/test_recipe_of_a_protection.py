@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from tests.recipes.program_copy import followed
+from tests.soak.built.recipes.program_copy import followed
 
 MODULE = '''"""Gusts in which a panel is not stowed: it holds its position until they are over."""
 

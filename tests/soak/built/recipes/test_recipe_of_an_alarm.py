@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from tests.recipes.program_copy import followed
+from tests.soak.built.recipes.program_copy import followed
 
 ENTRY = """ENTRIES = (
     Entry(

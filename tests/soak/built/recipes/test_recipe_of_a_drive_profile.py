@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.recipes.program_copy import ROOT, followed
+from tests.soak.built.recipes.program_copy import ROOT, followed
 
 KNOWN = (ROOT / "app/drives/profiles/leadshine-rs.toml").read_text(encoding="utf-8")
 PROFILE = KNOWN.replace('name = "leadshine-rs"', 'name = "northfield-servo"', 1)

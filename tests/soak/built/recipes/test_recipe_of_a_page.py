@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.recipes.program_copy import followed
+from tests.soak.built.recipes.program_copy import followed
 
 MODULE = '''"""The page that greets."""
 

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[4]
 Edits = Mapping[str, tuple[tuple[str, str], ...]]
 """What stands in a file instead of what: each occurs there."""
 
