@@ -121,6 +121,10 @@ class LoopClock:
         """Return the present instant."""
         return START + timedelta(seconds=asyncio.get_running_loop().time())
 
+    def system_time(self, at: datetime | None = None) -> datetime:
+        """Return the same: nobody sets it."""
+        return at or self.now()
+
     async def sleep_until(self, at: datetime) -> None:
         """Sleep for what is left until then."""
         await asyncio.sleep(max(0.0, (at - self.now()).total_seconds()))

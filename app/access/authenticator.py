@@ -86,7 +86,8 @@ class Keeper:
                 await self.refresh()
 
     async def _write_refusals(self) -> None:
-        due = self.refusals.take(self._clock.now())
+        noted = self.refusals.take(self._clock.now())
+        due = [replace(one, at=self._clock.system_time(one.at)) for one in noted]
         if not due:
             return
         try:
@@ -108,16 +109,16 @@ class Keeper:
 
     def identify(self, given: Credentials) -> Principal:
         """Return who asks; a token that is wrong raises `SignInNeeded`, anything else wrong is nobody."""
-        now = self._clock.now()
+        now, shown = self._clock.now(), self._clock.system_time()
         if given.bearer:
-            found = self.book.by_token(given.bearer, now, given.address)
+            found = self.book.by_token(given.bearer, shown, given.address)
             if found is None:
                 raise SignInNeeded(N_("This token is unknown, revoked or has expired. Ask for a new one."))
             return found
         if given.ticket and (found := self._one_shots.redeem(given.ticket, now)):
             return found
         if given.session_id:
-            found = self.book.by_session(digest_of(given.session_id), now, given.address)
+            found = self.book.by_session(digest_of(given.session_id), now, shown, given.address)
             if found is not None:
                 return found
         if self.setup.loopback and not self.book.users and given.address in LOOPBACK_ADDRESSES:
@@ -133,17 +134,17 @@ class Keeper:
 
     def current(self, principal: Principal) -> Principal:
         """Return what somebody who was let in may do by now; nobody if they must leave."""
-        now = self._clock.now()
+        now, shown = self._clock.now(), self._clock.system_time()
         match principal.via:
             case Via.SESSION | Via.KIOSK:
-                found = self.book.by_session(principal.credential, now, principal.address)
+                found = self.book.by_session(principal.credential, now, shown, principal.address)
                 return found or nobody(principal.address)
             case _:
-                return principal if self.book.still(principal, now) else nobody(principal.address)
+                return principal if self.book.still(principal, now, shown) else nobody(principal.address)
 
     async def until_gone(self, principal: Principal) -> None:
         """Wait until somebody who was let in must leave."""
-        while self.book.still(principal, self._clock.now()):
+        while self.book.still(principal, self._clock.now(), self._clock.system_time()):
             await self._changed.wait()
 
     def ticket(self, principal: Principal) -> str:
@@ -175,7 +176,7 @@ class Keeper:
         """Return the id of a new session of a cabinet's panel."""
 
         def work() -> str:
-            now, token_id = self._clock.now(), token_id_of(token_text.strip()) or ""
+            now, token_id = self._clock.system_time(), token_id_of(token_text.strip()) or ""
             token = self.book.tokens.get(token_id)
             right = token is not None and token.is_kiosk and _fits(token_text.strip(), token.digest)
             if token is None or not right or now >= token.expires_at or token.is_misdated(now):
@@ -201,7 +202,7 @@ class Keeper:
 
         def work() -> None:
             self._check(self._session(principal).user, old, principal.address, principal.credential)
-            now = self._clock.now()
+            now = self._clock.system_time()
             self.accounts.set_password(principal, principal.name, new, now, keep=principal.credential)
 
         await self.do(work)
@@ -210,14 +211,19 @@ class Keeper:
         """Return the sessions of whoever is signed in, the newest first; a program has none."""
         if principal.via is not Via.SESSION:
             return ()
-        own = (one for one in self.book.sessions.values() if one.user == principal.name)
-        return tuple(sorted(own, key=lambda one: one.began_at, reverse=True))
+        return tuple(one for one in self.sessions() if one.user == principal.name)
+
+    def sessions(self) -> tuple[Session, ...]:
+        """Return all sessions, the newest first, with the instants that the system's clock shows for them."""
+        found = sorted(self.book.sessions.values(), key=lambda one: one.began_at, reverse=True)
+        told = self._clock.system_time
+        return tuple(replace(one, began_at=told(one.began_at), used_at=told(one.used_at)) for one in found)
 
     async def end_own_session(self, principal: Principal, digest: str) -> None:
         """End a session of whoever is signed in; one that is not theirs stays."""
         session = self.book.sessions.get(digest)
         if session is not None and session.user == principal.name and principal.via is Via.SESSION:
-            await self.do(lambda: self.accounts.end_session(principal, digest, self._clock.now()))
+            await self.do(lambda: self.accounts.end_session(principal, digest, self._clock.system_time()))
 
     async def step_up(self, principal: Principal, pin: str) -> None:
         """Let a cabinet's panel operate for 5 minutes."""
@@ -237,7 +243,7 @@ class Keeper:
             with self._store.writing() as change:
                 change.forgive(subject)
                 change.put_session(replace(session, stepped_until=until))
-                note(change, principal, "stepped_up", token.name, self._clock.now())
+                note(change, principal, "stepped_up", token.name, self._clock.system_time())
 
         await self.do(work)
 
@@ -245,7 +251,7 @@ class Keeper:
         """Make the first administrator with the one-time code, which is then worth nothing."""
 
         def work() -> None:
-            now, subject = self._clock.now(), (f"setup@{address}",)
+            now, subject = self._clock.system_time(), (f"setup@{address}",)
             self._wait(subject, nobody(address))
             if not self.setup.accepts(code):
                 self._fail(N_("setup code"), subject, address)
@@ -258,7 +264,7 @@ class Keeper:
         """End the session of whoever asks."""
         if principal.via in (Via.SESSION, Via.KIOSK):
             await self.do(
-                lambda: self.accounts.end_session(principal, principal.credential, self._clock.now())
+                lambda: self.accounts.end_session(principal, principal.credential, self._clock.system_time())
             )
 
     async def used(self, principal: Principal) -> None:
@@ -335,7 +341,7 @@ class Keeper:
             for subject in subjects:
                 change.put_failures(subject, one_more(before.get(subject), now))
             if self._wrong.take(now):
-                note(change, nobody(address), "log_in", account, now, "wrong")
+                note(change, nobody(address), "log_in", account, self._clock.system_time(now), "wrong")
             else:
                 self.refusals.leave_out()
         log.warning("a password was wrong", account=account, address=address)
@@ -349,7 +355,7 @@ class Keeper:
         with self._store.writing() as change:
             change.end_old_sessions(now - sessions.ABSOLUTE)
             change.put_session(session)
-            _greet(change, user or self.book.tokens[token_id].name, address, now)
+            _greet(change, user or self.book.tokens[token_id].name, address, self._clock.system_time(now))
         return session_id
 
     def _session(self, principal: Principal) -> Session:

@@ -29,7 +29,7 @@ def open_keeper(settings: Settings, clock: Clock, hasher: Hasher | None = None) 
     store, passwords = open_store(settings), Passwords(hasher or Argon())
     setup = Setup(settings.data_dir, settings.is_loopback)
     if setup.reset_wanted():
-        Accounts(store, passwords).factory_reset(nobody(N_("data folder")), clock.now())
+        Accounts(store, passwords).factory_reset(nobody(N_("data folder")), clock.system_time())
         log.warning("access was reset: all users, sessions and tokens are removed")
     _end_future(store, clock)
     keeper = Keeper(store, passwords, clock, setup)

@@ -104,10 +104,7 @@ class Principal:
             raise ProofNeeded(N_("There was no activity for 30 minutes. Enter your password to continue."))
         if self.misdated:
             raise SignInNeeded(
-                N_(
-                    "This token is dated in the future. Correct the system clock and restart Heliopanel, "
-                    "or create a new token."
-                )
+                N_("This token is dated in the future. Correct the system clock, or create a new token.")
             )
         raise NotAllowed(self.refusal(permission, tracker_id))
 

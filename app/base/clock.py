@@ -16,6 +16,13 @@ class Clock(Protocol):
     def now(self) -> datetime:
         """Return the present instant, aware, in UTC."""
 
+    def system_time(self, at: datetime | None = None) -> datetime:
+        """Return what the system's clock shows now, or showed `at`, by how it is set now.
+
+        It may be set at any time, by NTP or by hand: it is what is shown, stamped and compared with other
+        clocks, and no span is measured by it. What is older than this clock stays as it was stamped.
+        """
+
     async def sleep_until(self, at: datetime) -> None:
         """Return once `now()` is at or after `at`; at once if it is already."""
 
@@ -29,11 +36,18 @@ class SystemClock:
 
     def now(self) -> datetime:
         """Return the anchored instant plus the monotonic time that has passed since."""
-        return self._anchor + timedelta(seconds=time.monotonic() - self._counter)
+        return self._steady()
+
+    def system_time(self, at: datetime | None = None) -> datetime:
+        """Return what the system's clock shows, or showed at an instant since this clock was anchored."""
+        return _as_set(at or self.now(), self._anchor, self.drift())
 
     def drift(self) -> timedelta:
         """Return how far the system's wall clock has moved away from this clock since it was anchored."""
-        return datetime.now(UTC) - self.now()
+        return datetime.now(UTC) - self._steady()
+
+    def _steady(self) -> datetime:
+        return self._anchor + timedelta(seconds=time.monotonic() - self._counter)
 
     async def sleep_until(self, at: datetime) -> None:
         """Sleep for what is left until `at`."""
@@ -44,12 +58,25 @@ class VirtualClock:
     """A clock that moves only when it is told to; sleepers wake in the order of their instants."""
 
     def __init__(self, start: datetime) -> None:
-        self._now = start
+        self._now = self._anchor = start
+        self._drift = NOTHING
         self._sleepers: list[tuple[datetime, asyncio.Event]] = []
 
     def now(self) -> datetime:
         """Return the instant that this clock was last moved to."""
         return self._now
+
+    def set_system(self, at: datetime) -> None:
+        """Set the system's clock, as NTP does; this one goes on from where it is."""
+        self._drift = at - self._now
+
+    def system_time(self, at: datetime | None = None) -> datetime:
+        """Return what the system's clock shows, or showed at an instant since this clock began."""
+        return _as_set(at or self._now, self._anchor, self._drift)
+
+    def drift(self) -> timedelta:
+        """Return how far the system's clock was set away from this one."""
+        return self._drift
 
     @property
     def next_wake(self) -> datetime | None:
@@ -79,6 +106,10 @@ class VirtualClock:
         woken = asyncio.Event()
         self._sleepers.append((at, woken))
         await woken.wait()
+
+
+def _as_set(at: datetime, anchor: datetime, drift: timedelta) -> datetime:
+    return at if at < anchor else at + drift
 
 
 async def give_way() -> None:

@@ -19,6 +19,8 @@ from app.machine.supervised import tell_ready
 from app.machine.systemd import notify
 from app.machine.watchdog import LoopWatchdog
 from app.simulation.kept_positions import KeptPositions
+from app.site.clock.ntp import kernel_clock
+from app.site.clock.timekeeping import Timekeeper
 from app.site.site import Site, SiteOptions
 from app.store.backup.backups import backups
 from app.store.backup.restore import PENDING_NAME
@@ -108,7 +110,8 @@ def _site(settings: Settings, clock: SystemClock, why: Reason, positions: KeptPo
     state, trackers = rescued(settings.url, settings.data_dir)
     options = SiteOptions(boot_id=uuid4().hex, period=timedelta(milliseconds=settings.tick_ms), safe_mode=why)
     factory = DriveFactory(clock, settings.data_dir, positions=positions)
-    return Site(clock, factory.make, state, trackers, options=options)
+    timekeeper = Timekeeper(clock, state.clock, drift=clock.drift, kernel=kernel_clock)
+    return Site(clock, factory.make, state, trackers, timekeeper=timekeeper, options=options)
 
 
 async def _restore_handed_over(clock: Clock, data_dir: Path, stopped: asyncio.Event) -> None:

@@ -189,6 +189,7 @@ OnAnswer = Callable[[Settings], None]
 def run(settings: Settings, clock: Clock | None = None, on_answer: OnAnswer | None = None) -> None:
     """Serve the panel until it is told to end; a change of its network is tried, kept or taken back here."""
     set_up_logs("web", log_format=settings.log_format, log_level=settings.log_level)
+    clock = clock or SystemClock()
     stage: Stage | None = Stage(settings, fixed_by_environment())
     while stage is not None:
         serve = _serve if stage.trial is None else _try
@@ -198,7 +199,7 @@ def run(settings: Settings, clock: Clock | None = None, on_answer: OnAnswer | No
             gc.collect()
 
 
-def _try(stage: Stage, clock: Clock | None, on_answer: OnAnswer | None) -> Stage | None:
+def _try(stage: Stage, clock: Clock, on_answer: OnAnswer | None) -> Stage | None:
     """Serve settings that are on trial; where that fails, what was in force is next."""
     try:
         return _serve(stage, clock, on_answer)
@@ -207,7 +208,7 @@ def _try(stage: Stage, clock: Clock | None, on_answer: OnAnswer | None) -> Stage
         return stage.back(NOT_SERVED)
 
 
-def _serve(stage: Stage, clock: Clock | None, on_answer: OnAnswer | None) -> Stage | None:
+def _serve(stage: Stage, clock: Clock, on_answer: OnAnswer | None) -> Stage | None:
     """Serve one stage and return what to serve next, None if the panel was told to end."""
     settings = stage.settings
     app = create_app(settings, clock=clock, stage=stage)

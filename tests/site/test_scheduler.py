@@ -68,6 +68,9 @@ class EarlyAlarms:
     def now(self) -> datetime:
         return self._clock.now()
 
+    def system_time(self, at: datetime | None = None) -> datetime:
+        return self._clock.system_time(at)
+
     async def sleep_until(self, at: datetime) -> None:
         await self._clock.sleep_until(at - MS)
 

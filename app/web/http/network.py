@@ -136,7 +136,7 @@ class NetworkDesk:
         has_administrator = self._keeper.book.has_administrator
         refuse_impossible(before, wanted, self._stage.fixed, has_administrator=has_administrator)
         write_network(before.data_dir, before.network)
-        return prepared(before, wanted, self._clock.now())
+        return prepared(before, wanted, self._clock.system_time())
 
     async def keep(self, ticket: str, address: str) -> None:
         """Keep what is served on trial, or raise `NotOnTrial`; whoever has the ticket has reached it."""
@@ -190,7 +190,7 @@ class NetworkDesk:
             await self._note("network_rolled_back", outcome.by, what)
 
     async def _note(self, action: str, by: Principal, result: str) -> None:
-        now = self._clock.now()
+        now = self._clock.system_time()
         await self._keeper.do(lambda: self._keeper.accounts.record(by, action, "network", now, result))
 
 

@@ -74,7 +74,7 @@ class Studies:
         if len(self._tasks) >= MOST_OPEN:
             raise Busy(TOO_MANY)
         weather = self.folder.weather_path(request.weather_file) if request.weather_file else None
-        asked_at = self._clock.now()
+        asked_at = self._clock.system_time()
         study_id = f"{asked_at:%Y%m%dT%H%M%S}-{secrets.token_hex(3)}"
         state = StudyState(study_id, request.title, asked_at, StudyStatus.WAITING, of=len(request.cases))
         await run_in_threadpool(self.folder.open, state, request)

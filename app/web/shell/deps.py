@@ -42,6 +42,11 @@ class Panel:
     network: NetworkDesk
     manual: Manual = field(default_factory=own_manual)
 
+    def site_now(self) -> datetime:
+        """Return the site's time; the system's while the controller does not tell it."""
+        latest = self.machine.latest()
+        return latest.at if latest else self.clock.system_time()
+
 
 def panel(connection: HTTPConnection) -> Panel:
     """Return what `create_app` built; for who reaches some trackers only, with those alone."""

@@ -68,7 +68,7 @@ async def read_me(request: Request, built: PanelDep, who: PrincipalDep) -> Mysel
         permissions=tuple(sorted(who.permissions)),
         via=who.via,
         trackers=None if who.trackers is None else tuple(sorted(who.trackers)),
-        proven_at=who.proven_at,
+        proven_at=who.proven_at and built.clock.system_time(who.proven_at),
         csrf_token=built.keeper.csrf(session_id) if who.via in (Via.SESSION, Via.KIOSK) else None,
     )
 

@@ -79,6 +79,6 @@ def _answer(request: Request, *, error: Exception | None = None, done: str = "")
         done=done,
         sessions=built.keeper.own_sessions(who),
         mine=who.credential,
-        now=built.clock.now(),
+        now=built.clock.system_time(),
     )
     return whole_page(request, context, status=problem.status if problem else 200)

@@ -118,7 +118,7 @@ async def _then(
 ) -> Response:
     built = panel(request)
     try:
-        await built.keeper.do(lambda: work(built.clock.now()))
+        await built.keeper.do(lambda: work(built.clock.system_time()))
     except AccessRefused as error:
         return _answer(request, typed, error=error)
     if not first:
@@ -140,7 +140,7 @@ def _answer(
     context = UsersPage(
         frame=site_frame(request, N_("Users")),
         users=tuple(sorted(book.users.values(), key=lambda one: one.name)),
-        sessions=tuple(sorted(book.sessions.values(), key=lambda one: one.used_at, reverse=True)),
+        sessions=tuple(sorted(built.keeper.sessions(), key=lambda one: one.used_at, reverse=True)),
         form={"name": Field("name", typed[0]), "password": Field("password", "")},
         chosen=typed[1] or frozenset({Role.ADMINISTRATOR if not book.users else Role.OPERATOR}),
         problem=problem.detail if problem else "",

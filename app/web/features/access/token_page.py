@@ -58,7 +58,7 @@ async def mint(
     trackers = frozenset(typed.trackers.replace(",", " ").split()) or None
     wish = TokenWish(typed.name, scopes, trackers, timedelta(days=days), typed.pin.strip())
     try:
-        text = await built.keeper.do(lambda: built.keeper.accounts.mint(who, wish, built.clock.now()))
+        text = await built.keeper.do(lambda: built.keeper.accounts.mint(who, wish, built.clock.system_time()))
     except AccessRefused as error:
         return _answer(request, found, scopes, problem=problem_of(error).detail, status=422)
     return _answer(request, Typed(EMPTY), frozenset({Scope.READ}), made=text)
@@ -68,7 +68,7 @@ async def mint(
 @needs(Permission.ADMINISTER)
 async def revoke(request: Request, token_id: str, built: PanelDep, who: PrincipalDep) -> Response:
     """Revoke a token; what it opened ends within a second."""
-    await built.keeper.do(lambda: built.keeper.accounts.revoke(who, token_id, built.clock.now()))
+    await built.keeper.do(lambda: built.keeper.accounts.revoke(who, token_id, built.clock.system_time()))
     return _answer(request, Typed(EMPTY), frozenset({Scope.READ}))
 
 
@@ -89,6 +89,6 @@ def _answer(
         chosen=frozenset(scope.value for scope in chosen),
         problem=problem,
         made=made,
-        now=built.clock.now(),
+        now=built.clock.system_time(),
     )
     return whole_page(request, context, status=status)

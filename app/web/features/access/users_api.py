@@ -115,7 +115,7 @@ async def list_users(built: PanelDep) -> Page[Person]:
 @needs(Permission.ADMINISTER, proven=True)
 async def add_user(typed: NewUser, built: PanelDep, who: PrincipalDep) -> Person:
     """Add a user; the first one must be an administrator, and from then on everybody signs in."""
-    now, password = built.clock.now(), typed.password.get_secret_value()
+    now, password = built.clock.system_time(), typed.password.get_secret_value()
     user = await built.keeper.do(
         lambda: built.keeper.accounts.add(who, typed.name, typed.roles, password, now)
     )
@@ -127,7 +127,8 @@ async def add_user(typed: NewUser, built: PanelDep, who: PrincipalDep) -> Person
 async def change_user(name: UserName, typed: UserChange, built: PanelDep, who: PrincipalDep) -> Person:
     """Give a user other roles or another password, which ends their sessions."""
     _known(built, name)
-    now, accounts, roles, secret = built.clock.now(), built.keeper.accounts, typed.roles, typed.password
+    now, accounts = built.clock.system_time(), built.keeper.accounts
+    roles, secret = typed.roles, typed.password
     if roles is not None:
         await built.keeper.do(lambda: accounts.set_roles(who, name, roles, now))
     if secret is not None:
@@ -140,14 +141,14 @@ async def change_user(name: UserName, typed: UserChange, built: PanelDep, who: P
 async def remove_user(name: UserName, built: PanelDep, who: PrincipalDep) -> None:
     """Remove a user with all sessions and tokens; one administrator always stays."""
     _known(built, name)
-    await built.keeper.do(lambda: built.keeper.accounts.remove(who, name, built.clock.now()))
+    await built.keeper.do(lambda: built.keeper.accounts.remove(who, name, built.clock.system_time()))
 
 
 @router.get("/sessions", summary="All sessions")
 @needs(Permission.ADMINISTER)
 async def list_sessions(built: PanelDep) -> Page[SignedIn]:
     """Return who is signed in, from where, and since when."""
-    return whole(SignedIn.of(session) for session in built.keeper.book.sessions.values())
+    return whole(SignedIn.of(session) for session in built.keeper.sessions())
 
 
 @router.delete("/sessions/{digest}", status_code=204, summary="End a session", responses=NOT_FOUND)
@@ -156,7 +157,7 @@ async def end_session(digest: Digest, built: PanelDep, who: PrincipalDep) -> Non
     """End a session; what it opened ends within a second."""
     if digest not in built.keeper.book.sessions:
         raise NotFound(N_("There is no such session; it may have ended."))
-    await built.keeper.do(lambda: built.keeper.accounts.end_session(who, digest, built.clock.now()))
+    await built.keeper.do(lambda: built.keeper.accounts.end_session(who, digest, built.clock.system_time()))
 
 
 @router.get("/tokens", summary="All tokens")
@@ -177,7 +178,7 @@ async def create_token(typed: NewToken, built: PanelDep, who: PrincipalDep) -> M
         timedelta(days=typed.days),
         typed.pin.get_secret_value() if typed.pin else "",
     )
-    now = built.clock.now()
+    now = built.clock.system_time()
     token = await built.keeper.do(lambda: built.keeper.accounts.mint(who, wish, now))
     return Minted(token_id=token_id_of(token) or "", token=token)
 
@@ -188,7 +189,7 @@ async def revoke_token(token_id: TokenId, built: PanelDep, who: PrincipalDep) ->
     """Revoke a token; what it opened ends within a second."""
     if token_id not in built.keeper.book.tokens:
         raise NotFound(N_("There is no such token; it may have been revoked."))
-    await built.keeper.do(lambda: built.keeper.accounts.revoke(who, token_id, built.clock.now()))
+    await built.keeper.do(lambda: built.keeper.accounts.revoke(who, token_id, built.clock.system_time()))
 
 
 def _known(built: PanelDep, name: str) -> User:

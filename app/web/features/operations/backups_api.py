@@ -77,7 +77,7 @@ def list_backups(built: PanelDep) -> Page[BackupOnDisk]:
 @needs(Permission.ADMINISTER, proven=True)
 def create_backup(built: PanelDep, response: Response) -> Backup:
     """Write a checked backup of the whole store into the data folder while everything runs."""
-    name = f"heliopanel-{built.clock.now().astimezone(UTC):%Y%m%d-%H%M%S-%f}.backup"
+    name = f"heliopanel-{built.clock.system_time().astimezone(UTC):%Y%m%d-%H%M%S-%f}.backup"
     path = built.settings.data_dir / "backups" / name
     info = backup(built.settings.url, path)
     response.headers["Location"] = f"{ROOT}/backups/{name}"
@@ -106,7 +106,7 @@ def download_backup(name: BackupName, built: PanelDep) -> FileResponse:
 @needs(Permission.ADMINISTER, proven=True)
 async def restore_backup(name: BackupName, built: PanelDep) -> RestoreBegun:
     """Bring a backup back; only while the database is damaged, when the service runs in safe mode."""
-    found = await run_in_threadpool(restore, built, name, built.clock.now())
+    found = await run_in_threadpool(restore, built, name, built.site_now())
     return RestoreBegun(
         site_name=found.site_name, trackers=found.trackers, events=found.events, recordings=found.recordings
     )

@@ -77,7 +77,7 @@ async def read_metrics(panel: PanelDep) -> Response:
 @needs(Permission.ADMINISTER, ticketed=True)
 async def download_diagnostics(panel: PanelDep) -> Response:
     """Return versions, settings without secrets, state and the newest 1,000 events."""
-    parts = about(panel.settings, panel.clock.now()) | await live(panel.machine)
+    parts = about(panel.settings, panel.site_now()) | await live(panel.machine)
     parts |= await run_in_threadpool(stored, panel.reader)
     return _attached(await run_in_threadpool(zipped, parts), "application/zip", "heliopanel-diagnostics.zip")
 

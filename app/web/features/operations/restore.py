@@ -34,7 +34,7 @@ async def restore(
     request: Request, built: PanelDep, file: Annotated[str, Form(max_length=200)] = ""
 ) -> Response:
     """Hand the chosen backup over; the controller service starts again on it."""
-    found = await run_in_threadpool(hand_over, built, file, built.clock.now())
+    found = await run_in_threadpool(hand_over, built, file, built.site_now())
     return _answer(
         request,
         built,

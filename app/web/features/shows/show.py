@@ -130,8 +130,8 @@ def _place(detail: SiteDetail, tracker_id: str, built: Panel) -> Place:
     """Return what a plan depends on, or raise `CommandRejected` where the site has no location yet."""
     if detail.site.location is None:
         raise CommandRejected(NO_LOCATION)
-    latest, zone = built.machine.latest(), detail.site.time_zone
-    today = day_in(zone, latest.at if latest else built.clock.now())
+    zone = detail.site.time_zone
+    today = day_in(zone, built.site_now())
     return Place(tracker_of(detail, tracker_id), detail.site.location, zone, today)
 
 

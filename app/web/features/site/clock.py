@@ -48,8 +48,7 @@ class ClockForm(BaseModel):
 async def show(request: Request, tracker_id: str, built: PanelDep) -> Response:
     """Show the controller's clock beside this device's."""
     detail = await built.machine.detail()
-    latest = built.machine.latest()
-    now = latest.at if latest else built.clock.now()
+    now = built.site_now()
     zone = detail.site.time_zone
     typed = Typed(
         {"date": local(now, zone, "%Y-%m-%d"), "time": local(now, zone, "%H:%M"), "time_zone": zone}
@@ -63,7 +62,7 @@ async def keep_system(
     tracker_id: str, press: PressDep, built: PanelDep, at: DeviceAt = "", confirmed: Confirmed = ""
 ) -> Response:
     """Trust the clock of the controller's computer; ask first where it differs from this device's."""
-    doubt = clock_doubt(built.clock.now(), _told(at))
+    doubt = clock_doubt(built.clock.system_time(), _told(at))
     if doubt and confirmed != "yes":
         return page(press.request, ClockQuestion(doubt), status=422)
     await press.send(SetClock("system"))

@@ -134,7 +134,7 @@ def _doubted(found: Read, site: SiteState, built: Panel) -> Read:
     device_zone = found.typed.texts["device_zone"]
     known = device_zone if device_zone in zones() else ""
     doubts = place_doubts(
-        found.location, found.zone, built.clock.now(), before=site.location, device_zone=known
+        found.location, found.zone, built.site_now(), before=site.location, device_zone=known
     )
     return replace(found, doubts=doubts)
 
@@ -195,7 +195,7 @@ def _answer(
     untouched = not any(found.typed.texts[name] for name in ("latitude", "longitude"))
     if untouched and status == 200:
         found.typed.errors.clear()
-    now = frame.site.at if frame.site else built.clock.now()
+    now = built.site_now()
     context = LocationPage(
         frame=frame,
         form=found.typed.form(NAMES),

@@ -157,7 +157,7 @@ async def set_location(
     """
     location = Location(place.latitude_deg, place.longitude_deg, place.altitude_m)
     before = (await machine.detail()).site.location
-    doubts = place_doubts(location, place.time_zone, built.clock.now(), before=before)
+    doubts = place_doubts(location, place.time_zone, built.site_now(), before=before)
     if doubts and not place.confirmed:
         raise NotAcceptable(
             join(" ", (*doubts, N_("If the location is correct, send the request again with `confirmed`.")))
@@ -185,7 +185,7 @@ async def set_clock(change: ClockChange, sender: SenderDep, built: PanelDep) -> 
     One that differs by more than a minute from `device_at`, or, where it is set by hand without that, from
     the computer's clock, is refused with the difference until it is `confirmed`.
     """
-    now = built.clock.now()
+    now = built.clock.system_time()
     other = change.device_at or (now if change.at else None)
     if (doubt := clock_doubt(change.at or now, other)) and not change.confirmed:
         raise NotAcceptable(

@@ -27,8 +27,7 @@ async def glance(
 ) -> Response:
     """Show the page at once, and what it compares as soon as that is worked out."""
     detail = await machine.detail()
-    latest = machine.latest()
-    year = (latest.at if latest else built.clock.now()).year
+    year = built.site_now().year
     question = None if detail.site.location is None else glance_question(detail, detail.site.location, year)
     context = GlancePage(
         frame=site_frame(request, N_("At a glance"), back=Link(N_("Studies"), "/studies")),

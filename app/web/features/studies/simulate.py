@@ -62,8 +62,7 @@ class SimulationForm(BaseModel):
 async def simulate(request: Request, machine: MachineDep, built: PanelDep) -> Response:
     """Show the form for a day's simulation."""
     detail = await machine.detail()
-    latest = machine.latest()
-    today = day_in(detail.site.time_zone, latest.at if latest else built.clock.now())
+    today = day_in(detail.site.time_zone, built.site_now())
     first = next(iter(detail.trackers), "")
     form = SimulationForm(tracker=first, date=today.isoformat(), mode=Mode.DUAL)
     return _answer(request, detail, Typed(form.model_dump()))

@@ -98,8 +98,7 @@ async def ask(
     """Show the question at once, and the programs as soon as they are worked out."""
     detail = await machine.detail()
     asked = {name: text for name, text in request.query_params.items() if name in NAMES}
-    latest = machine.latest()
-    today = day_in("UTC", latest.at if latest else built.clock.now())
+    today = day_in("UTC", built.site_now())
     form = ProgramForm(**{"date": today.isoformat(), **_site_values(detail), **asked})
     typed = Typed(form.model_dump())
     wanted = _read(typed)

@@ -104,8 +104,7 @@ async def day(
         raise NotAcceptable(N_("Save the location first: step 1 of commissioning."))
     if typed.errors:
         raise NotAcceptable(join(" ", typed.errors.values()))
-    latest = machine.latest()
-    begin, end = _today(latest.at if latest else built.clock.now(), detail.site.time_zone)
+    begin, end = _today(built.site_now(), detail.site.time_zone)
     question = asked_day(tracker, wanted, detail.site.location, begin, end)
     try:
         found = await built.simulations.work_out(day_of, question)

@@ -156,8 +156,7 @@ def _hint(name: str, least: float, most: float) -> str:
 async def studies(request: Request, machine: MachineDep, built: PanelDep) -> Response:
     """Show the form for a study and the studies so far."""
     detail = await machine.detail()
-    latest = machine.latest()
-    today = day_in("UTC", latest.at if latest else built.clock.now())
+    today = day_in("UTC", built.site_now())
     form = BEGUN.model_copy(update={"date": today.isoformat(), **_site_values(detail)})
     return await _answer(request, detail, built, form, Typed(_texts(form)))
 

@@ -102,7 +102,7 @@ async def compare_studies(
     detail = await machine.detail()
     if detail.site.location is None:
         raise NotAcceptable(N_("The site has no location yet: set it first."))
-    asked_year = panel.clock.now().year if year is None else year
+    asked_year = panel.site_now().year if year is None else year
     return await panel.studies.compare(glance_question(detail, detail.site.location, asked_year))
 
 
