@@ -10,6 +10,7 @@ from app.access.tables import REVISION, VERSION_TABLE, meta, metadata
 from app.base.build import VERSION
 from app.base.message import say
 from app.base.own import own_folder
+from app.base.sqlite_url import sqlite_url
 from app.base.startup import late
 from app.store.connections import revision_of, sharing_engine, transaction
 from app.store.files import copy_sqlite
@@ -91,7 +92,7 @@ def differences(connection: Connection) -> list[object]:
 def check() -> list[object]:
     """Return in what freshly migrated tables differ from `tables.py`; nothing is how it must be."""
     with tempfile.TemporaryDirectory() as folder:
-        engine = sharing_engine(f"sqlite:///{Path(folder) / 'check.db'}")
+        engine = sharing_engine(sqlite_url(Path(folder) / "check.db"))
         try:
             upgrade(engine)
             with transaction(engine) as connection:

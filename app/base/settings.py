@@ -20,11 +20,13 @@ from pydantic_settings import (
 from app.base.errors import WRONG, Foreseen
 from app.base.hosts import checked_host
 from app.base.network import FILE_NAME, NETWORK_FIELDS, Network, read_network
+from app.base.sqlite_url import sqlite_url
 
 PREFIX = "HELIOPANEL_"
 FILE_VARIABLE = "HELIOPANEL_CONFIG"
 
 LONGEST_SOCKET_PATH = 100
+"""In bytes, of which a letter beyond ASCII has up to four."""
 LOOPBACK = {"127.0.0.1", "::1", "localhost"}
 
 
@@ -262,14 +264,14 @@ class Settings(BaseSettings):
     @property
     def url(self) -> str:
         """Return the database URL that the store opens."""
-        return self.database_url or f"sqlite:///{self.data_dir.resolve() / 'heliopanel.db'}"
+        return self.database_url or sqlite_url(self.data_dir.resolve() / "heliopanel.db")
 
     @property
     def access_url(self) -> str:
         """Return the database of users: a file of its own, or beside everything else on PostgreSQL."""
         if self.database_url is not None and not self.database_url.startswith("sqlite"):
             return self.database_url
-        return f"sqlite:///{self.data_dir.resolve() / 'access.db'}"
+        return sqlite_url(self.data_dir.resolve() / "access.db")
 
     @property
     def tls_dir(self) -> Path:
@@ -311,10 +313,10 @@ class Settings(BaseSettings):
     def link_path(self) -> Path:
         """Return the Unix socket between panel and machine; kept short, as the system limits its length."""
         path = self.data_dir.resolve() / "machine.sock"
-        if len(str(path)) <= LONGEST_SOCKET_PATH:
-            return path
-        digest = hashlib.sha256(str(path).encode()).hexdigest()[:16]
-        return Path(tempfile.gettempdir()) / f"heliopanel-{digest}.sock"
+        name = f"heliopanel-{hashlib.sha256(os.fsencode(path)).hexdigest()[:16]}.sock"
+        short = (path, Path(tempfile.gettempdir()) / name)
+        fits = (one for one in short if len(os.fsencode(one)) <= LONGEST_SOCKET_PATH)
+        return next(fits, Path("/tmp") / name)  # noqa: S108 - no secret is in the name, and it always fits
 
 
 def read_settings() -> Settings:

@@ -12,6 +12,7 @@ from app.base.clock import Clock, SystemClock
 from app.base.logs import get_logger
 from app.base.message import N_, say
 from app.base.settings import Settings
+from app.base.sqlite_url import sqlite_url
 from app.link.server import LinkServer
 from app.machine.drive_factory import DriveFactory
 from app.machine.process import on_signals, raise_priority
@@ -47,7 +48,7 @@ def rescued(url: str, data_dir: Path) -> tuple[SiteState, tuple[TrackerState, ..
 
     Only what is needed to stop the drives is believed: no zero is trusted, nothing tracks.
     """
-    sources = (url, *(f"sqlite:///{one.path}" for one in backups(data_dir)))
+    sources = (url, *(sqlite_url(one.path) for one in backups(data_dir)))
     for source in sources:
         found = _read(source)
         if found is not None:

@@ -13,6 +13,7 @@ from typing import Any
 from sqlalchemy import Connection
 
 from app.base.own import own_folder, own_process
+from app.base.sqlite_url import sqlite_url
 from app.base.startup import late
 from app.store.connections import revision_of, sqlite_path, transaction, writing_engine
 from app.store.files import copy_sqlite, keep_private, make_folder
@@ -104,7 +105,7 @@ def _config(connection: Connection, scripts: Path) -> Any:
 def check() -> list[object]:
     """Return in what freshly migrated tables differ from `tables.py`; nothing is how it must be."""
     with tempfile.TemporaryDirectory() as folder:
-        url = f"sqlite:///{Path(folder) / 'check.db'}"
+        url = sqlite_url(Path(folder) / "check.db")
         upgrade(url)
         engine = writing_engine(url)
         try:

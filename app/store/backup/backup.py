@@ -9,6 +9,7 @@ from urllib.parse import quote
 from sqlalchemy import Connection, func, insert, inspect, select, text
 
 from app.base.message import say, told_by
+from app.base.sqlite_url import sqlite_url
 from app.store import tables
 from app.store.connections import (
     reading_engine,
@@ -75,7 +76,7 @@ def inspect_backup(path: Path) -> BackupInfo:
     """Return what is in a backup file after checking every page of it, or raise `StoreFailed`."""
     if not path.is_file():
         raise StoreFailed(say("There is no file {path}. Give the path of a backup.", path=path))
-    engine = reading_engine(f"sqlite:///{path}")
+    engine = reading_engine(sqlite_url(path))
     try:
         with transaction(engine) as connection:
             if connection.execute(text("PRAGMA integrity_check(1)")).scalar_one() != "ok":
@@ -120,8 +121,8 @@ def _copy_to_file(url: str, target: Path) -> None:
     if source is not None:
         _vacuum(source, target)
         return
-    upgrade(f"sqlite:///{target}")
-    reading, writing = reading_engine(url), writing_engine(f"sqlite:///{target}")
+    upgrade(sqlite_url(target))
+    reading, writing = reading_engine(url), writing_engine(sqlite_url(target))
     try:
         with transaction(reading) as from_connection, transaction(writing) as to_connection:
             require_revision(from_connection)

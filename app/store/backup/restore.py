@@ -12,6 +12,7 @@ from sqlalchemy import Connection, func, select
 
 from app.audit.entry import Entry, told
 from app.base.message import N_
+from app.base.sqlite_url import sqlite_url
 from app.store import tables
 from app.store.auditing import append
 from app.store.backup.backup import BackupInfo, audit_head, backup, copy_database, inspect_backup
@@ -119,7 +120,7 @@ def _record(staged: Path, found: BackupInfo, head: str, now: datetime) -> None:
     entry = Entry(
         now, 0, "", "unknown", N_("local user"), "console", "", "restore_backup", "site", told(given)
     )
-    engine = writing_engine(f"sqlite:///{staged}")
+    engine = writing_engine(sqlite_url(staged))
     try:
         with transaction(engine) as connection:
             append(connection, entry)
@@ -148,7 +149,7 @@ def _stage(source: Path, staged: Path) -> Path:
     make_folder(staged.parent)
     copy_sqlite(source, staged)
     try:
-        upgrade(f"sqlite:///{staged}")
+        upgrade(sqlite_url(staged))
         make_portable(staged)
     except StoreFailed:
         remove_sqlite(staged)
@@ -178,7 +179,7 @@ def _fold_log(path: Path) -> None:
 
 def _replace_rows(staged: Path, url: str, source: Path) -> Path | None:
     kept = _keep_rows(url, source)
-    reading, writing = reading_engine(f"sqlite:///{staged}"), writing_engine(url)
+    reading, writing = reading_engine(sqlite_url(staged)), writing_engine(url)
     try:
         with transaction(reading) as from_connection, transaction(writing) as to_connection:
             if kept is not None:
