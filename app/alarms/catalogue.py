@@ -335,6 +335,27 @@ ENTRIES = (
         LONG, SHORT,
     ),
     Entry(
+        "certificate_invalid", 3, Group.INTERFACES, N_("Certificate not valid"),
+        N_("Tablets and browsers refuse to open Heliopanel, so that it cannot be stopped from there."),
+        N_("Check the clock in step 2: Heliopanel then renews its own certificate automatically. If that "
+        "does not help, run heliopanel tls init. Replace any other certificate together with its key."),
+        LONG, SHORT, (), (Group.CLOCK,),
+    ),
+    Entry(
+        "certificate_ends", 4, Group.INTERFACES, N_("Certificate expires soon"),
+        N_("After its last day, tablets and browsers refuse to open Heliopanel."),
+        N_("Run heliopanel tls init if this is Heliopanel's own certificate. Replace any other certificate "
+        "together with its key."),
+        LONG, SHORT, ("certificate_invalid",),
+    ),
+    Entry(
+        "authority_ends", 3, Group.INTERFACES, N_("Certificate authority at its end"),
+        N_("Once it has expired, tablets and browsers refuse to open Heliopanel."),
+        N_("Remove the folder tls from the data folder, run heliopanel tls init, and restart Heliopanel. "
+        "Then install the new authority on each tablet from the Certificate page."),
+        LONG,
+    ),
+    Entry(
         "notification_failed", 4, Group.INTERFACES, N_("Alarms are not sent"),
         N_("Users away from this screen are not notified of alarms."),
         N_("Open Notifications on the Site page, correct the address, and send a test message."),

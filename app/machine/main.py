@@ -13,16 +13,18 @@ from app.alarms.conditions import MEGABYTE, SITE, Condition
 from app.audit.entry import Entry, told
 from app.base.build import BUILT_AT, VERSION
 from app.base.clock import SystemClock
+from app.base.lasting import lasting
 from app.base.logs import get_logger, set_up_logs
 from app.base.message import N_, Message, say, told_by
 from app.base.outliving import memory_beside
-from app.base.settings import Settings
+from app.base.settings import Settings, read_settings
 from app.base.startup import settle
 from app.base.zones import zones_missing
 from app.drives.connections.met_station import met_reader
 from app.drives.connections.probe import DriveProbe
 from app.gateway.gateways import Gateways
 from app.link.server import LinkServer
+from app.machine.certificate_watch import CertificateWatch
 from app.machine.drive_factory import DriveFactory
 from app.machine.lock import only_instance
 from app.machine.loop import run_loop
@@ -134,7 +136,10 @@ async def _serve(settings: Settings, clock: SystemClock, writer: Writer, positio
     watching = asyncio.create_task(
         LoopWatchdog(clock, alive=lambda: site.alive, stop_drives=site.stop_drives).run()
     )
-    guarding = asyncio.create_task(_memory_guard(settings, clock, site, stopped).run(), name="memory guard")
+    guarding = asyncio.gather(
+        _memory_guard(settings, clock, site, stopped).run(),
+        lasting("certificates", CertificateWatch(clock, site, read_settings).run, clock),
+    )
     log.info("machine_ready", version=VERSION, link=str(settings.link_path), sqlite=sqlite3.sqlite_version)
     notice = sqlite_notice()
     if notice is not None:

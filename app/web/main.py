@@ -43,6 +43,7 @@ from app.web.http.nesting import NestingLimit
 from app.web.http.network import NOT_SERVED, NetworkDesk, Stage
 from app.web.http.routes import guarded_routes
 from app.web.http.security import LARGEST_BODY, Guard, SecurityHeaders, Uploads, host_names
+from app.web.http.served_certificate import ServedCertificate
 from app.web.http.server import (
     FAREWELL_S,
     KEEP_ALIVE_S,
@@ -101,6 +102,7 @@ def create_app(
     network = NetworkDesk(stage or Stage(settings), clock, keeper)
     panel = Panel(settings, machine, reader, clock, _assets(), hub, Simulations(), studies, keeper, network)
     app.state.panel = panel
+    app.state.certificate = ServedCertificate(settings, machine, clock)
     app.state.templates, app.state.error_page = environment(), error_page
     app.mount("/s", panel.assets, name="static")
     needs(Permission.READ)(panel.manual)
@@ -171,6 +173,7 @@ async def _living(app: FastAPI) -> AsyncIterator[None]:
             lasting("live values", panel.hub.run, panel.clock),
             lasting("access", panel.keeper.run, panel.clock),
             lasting("network", panel.network.run, panel.clock),
+            lasting("certificate", app.state.certificate.run, panel.clock),
         )
         try:
             yield
@@ -214,7 +217,9 @@ def _serve(stage: Stage, clock: Clock, on_answer: OnAnswer | None) -> Stage | No
     app = create_app(settings, clock=clock, stage=stage)
     panel: Panel = app.state.panel
     told = None if on_answer is None else partial(on_answer, settings)
-    server = PanelServer(configured(app, settings), panel.hub.closing.set, told)
+    config = configured(app, settings)
+    app.state.certificate.context = lambda: config.ssl if config.loaded else None
+    server = PanelServer(config, panel.hub.closing.set, told)
     panel.network.restart = server.leave
     settle()
     server.run()

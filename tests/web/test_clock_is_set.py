@@ -1,4 +1,4 @@
-"""The system's clock is set while the web process runs: by NTP after a start without a clock chip, or by hand.
+"""The system's clock is set while the web process runs: by NTP after a start with a wrong time, or by hand.
 
 Each row is one story: something is noted under a clock, the clock is set in the same life, some time passes,
 and somebody asks. What is shown, stamped and compared is right; what guards something counts on.
