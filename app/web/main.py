@@ -35,6 +35,7 @@ from app.web.features.operations.operations_api import router as operations
 from app.web.http import errors, manual
 from app.web.http.assets import Assets
 from app.web.http.gate import Gate, record_foreign
+from app.web.http.head import HeadAsGet
 from app.web.http.late_routes import LateRoute
 from app.web.http.limits import StreamLimit
 from app.web.http.mdns import announced
@@ -120,6 +121,7 @@ def create_app(
     app.add_middleware(Guard, hosts=host_names(settings), on_refusal=record_foreign(keeper, clock))
     app.add_middleware(SecurityHeaders)
     app.add_middleware(Speech)
+    app.add_middleware(HeadAsGet)
     return app
 
 

@@ -92,8 +92,8 @@ def asked_of(routes: Iterable[Guarded], scope: Scope) -> Asked:
 
 def methods_of(routes: Iterable[Guarded], path: str) -> list[str]:
     """Return every method that an address takes; the framework tells those of its first route alone."""
-    found = (route.methods for route in routes if route.pattern.match(path))
-    return sorted(frozenset().union(*found) - {"WS"})
+    found = frozenset[str]().union(*(route.methods for route in routes if route.pattern.match(path)))
+    return sorted((found | {"HEAD"} if "GET" in found else found) - {"WS"})
 
 
 @cache
