@@ -11,8 +11,8 @@ from starlette.requests import Request
 from app.base.message import Message, say, told_by, with_format, word
 from app.base.zones import zone_of
 from app.sun.accuracy import FIRST_YEAR, LAST_YEAR
-from app.tracker.values.minus import with_minus
 from app.web.http.whole_forms import FormIncomplete
+from app.web.shell import typed_numbers
 from app.web.shell.contexts import Field, Form
 
 T = TypeVar("T")
@@ -45,13 +45,13 @@ class Typed:
             self.errors[name] = told_by(error)
             return instead
 
-    def number(self, name: str, label: str, least: float, most: float) -> float:
+    def number(self, name: str, label: str, least: float, most: float, unit: str = "") -> float:
         """Return a number within its range, NaN where the text is none."""
-        return self.read(name, lambda text: number(text, label, least, most), nan)
+        return self.read(name, lambda text: number(text, label, least, most, unit), nan)
 
-    def whole(self, name: str, label: str, least: int, most: int) -> int:
+    def whole(self, name: str, label: str, least: int, most: int, unit: str = "") -> int:
         """Return a whole number within its range."""
-        return self.read(name, lambda text: whole(text, label, least, most), least)
+        return self.read(name, lambda text: whole(text, label, least, most, unit), least)
 
     def day(self, name: str, label: str) -> date:
         """Return a date."""
@@ -71,10 +71,15 @@ async def sent(request: Request) -> Typed:
     return Typed({name: text for name, text in (await request.form()).items() if isinstance(text, str)})
 
 
-def number(text: str, label: str, least: float, most: float) -> float:
-    """Return the number that a text with a comma or a point means."""
-    plain = with_minus(text).replace(" ", "").replace(",", ".")
-    if not re.fullmatch(r"[+-]?\d+(\.\d*)?|[+-]?\.\d+", plain):
+def number(text: str, label: str, least: float, most: float, unit: str = "") -> float:
+    """Return the number that a text with a comma or a point means; `unit` may stand behind it."""
+    plain = typed_numbers.plain(text, unit)
+    if most >= typed_numbers.THOUSAND:
+        _refuse_two_ways(plain, label)
+    value = typed_numbers.value(plain)
+    if value is None and typed_numbers.has_unit(plain):
+        raise Unreadable(say("{label}: type the number alone, without a unit.", label=word(label)))
+    if value is None:
         raise Unreadable(
             say(
                 "{label}: type a number, such as {least}.",
@@ -82,7 +87,6 @@ def number(text: str, label: str, least: float, most: float) -> float:
                 least=with_format(least, ".10g"),
             )
         )
-    value = float(plain)
     if not least <= value <= most:
         raise Unreadable(
             say(
@@ -95,12 +99,34 @@ def number(text: str, label: str, least: float, most: float) -> float:
     return value
 
 
-def whole(text: str, label: str, least: int, most: int) -> int:
-    """Return the whole number that a text means."""
-    value = number(text, label, least, most)
-    if value != int(value):
+def whole(text: str, label: str, least: int, most: int, unit: str = "") -> int:
+    """Return the whole number that a text means; decimals of zeros may always be thousands."""
+    plain = typed_numbers.plain(text, unit)
+    if plain.endswith("000"):
+        _refuse_two_ways(plain, label)
+    value = typed_numbers.value(plain)
+    if value is not None and not value.is_integer():
         raise Unreadable(say("{label} must be a whole number.", label=word(label)))
-    return int(value)
+    return int(number(plain, label, least, most))
+
+
+def _refuse_two_ways(plain: str, label: str) -> None:
+    """Raise `Unreadable` where the decimals of a number may be thousands."""
+    if ways := typed_numbers.two_ways(plain):
+        thousands, decimals = (with_format(float(way), f".{_decimals(way)}f") for way in ways)
+        raise Unreadable(
+            say(
+                "{label}: {text} can be read in two ways. Type {thousands} or {decimals}.",
+                label=word(label),
+                text=plain,
+                thousands=thousands,
+                decimals=decimals,
+            )
+        )
+
+
+def _decimals(text: str) -> int:
+    return len(text.partition(".")[2])
 
 
 def day(text: str, label: str) -> date:

@@ -11,6 +11,7 @@ from app.base.message import say, told_of_value, word
 from app.tracker.settings.declared import Declared, declared
 from app.web.shell.contexts import SettingRow
 from app.web.shell.forms import Typed, Unreadable
+from app.web.shell.typed_numbers import written
 
 T = TypeVar("T")
 CHECKED = "yes"
@@ -47,15 +48,15 @@ def below(kind: type[Any], group: str) -> tuple[Declared, ...]:
 def texts(settings: Any, chosen: Iterable[Declared] | None = None) -> dict[str, str]:
     """Return what is set as the texts of a form."""
     wanted = declared(type(settings)).values() if chosen is None else chosen
-    return {field_name(one.path): text(one.of(settings)) for one in wanted}
+    return {field_name(one.path): text(one.of(settings), one.most) for one in wanted}
 
 
-def text(value: Any) -> str:
-    """Return one value as the text of its field."""
+def text(value: Any, most: float) -> str:
+    """Return one value as the text of its field; `most` ends the range of a number."""
     if isinstance(value, bool):
         return CHECKED if value else ""
     if isinstance(value, float):
-        return f"{value:.10g}"
+        return written(value, most)
     return "" if value is None else str(value)
 
 
@@ -70,9 +71,9 @@ def typed_value(typed: Typed, one: Declared, title: str = "") -> Any:
     if one.is_optional and not given:
         return None
     if one.kind is int:
-        return typed.whole(name, label, int(one.least), int(one.most))
+        return typed.whole(name, label, int(one.least), int(one.most), one.setting.unit)
     if one.is_number:
-        return typed.number(name, label, one.least, one.most)
+        return typed.number(name, label, one.least, one.most, one.setting.unit)
     return typed.read(name, lambda text: _short(text, one), "")
 
 

@@ -1,6 +1,5 @@
 """The form of a drive's settings: what is stored as texts, and what was typed as settings."""
 
-from decimal import Decimal
 from typing import TypeVar
 
 from pydantic import BaseModel
@@ -11,6 +10,7 @@ from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import AxisDrive, DriveConfig, DriveKind, Parity, SerialConfig
 from app.web.features.commissioning.drive_contexts import Options
 from app.web.shell.forms import Typed, Unreadable
+from app.web.shell.typed_numbers import written
 
 Word = TypeVar("Word", DriveKind, Parity)
 KINDS: Options = (
@@ -19,6 +19,7 @@ KINDS: Options = (
     (DriveKind.MODBUS_RTU.value, N_("Modbus RTU, on a serial port")),
     (DriveKind.MODBUS_RTU_OVER_TCP.value, N_("Modbus RTU through a gateway")),
 )
+MOST_STEPS, MOST_GEAR = 999_999_999, 999_999
 UNITS = (0, 255)
 SERIAL_UNITS = (1, 247)
 """On a serial line unit 0 is the broadcast, which nobody answers."""
@@ -69,15 +70,12 @@ def texts_of(drive: DriveConfig) -> dict[str, str]:
 def _axis_texts(axis: Axis, own: AxisDrive) -> dict[str, str]:
     return {
         f"{axis}_unit": "" if own.unit is None else str(own.unit),
-        f"{axis}_steps": "" if own.steps_per_revolution is None else _plain(own.steps_per_revolution),
-        f"{axis}_gear": _plain(own.gear_ratio),
+        f"{axis}_steps": ""
+        if own.steps_per_revolution is None
+        else written(own.steps_per_revolution, MOST_STEPS, None),
+        f"{axis}_gear": written(own.gear_ratio, MOST_GEAR, None),
         f"{axis}_inverted": "yes" if own.inverted else "",
     }
-
-
-def _plain(value: float) -> str:
-    """Return a number with every digit that it has, so that what is shown and saved again stays the same."""
-    return format(Decimal(str(value)), "f").removesuffix(".0")
 
 
 def read_drive(typed: Typed, stored: DriveConfig, choices: DriveChoices) -> DriveConfig | None:
@@ -162,11 +160,11 @@ def _axis(typed: Typed, axis: Axis, units: tuple[int, int]) -> AxisDrive:
     numbers = (
         typed.whole(f"{axis}_unit", say("{label} unit", label=word(label)), *units) if unit else None,
         typed.number(
-            f"{axis}_steps", say("{label} steps per revolution", label=word(label)), 1e-3, 999_999_999
+            f"{axis}_steps", say("{label} steps per revolution", label=word(label)), 1e-3, MOST_STEPS
         )
         if steps
         else None,
-        typed.number(f"{axis}_gear", say("{label} gear ratio", label=word(label)), 1e-4, 999_999),
+        typed.number(f"{axis}_gear", say("{label} gear ratio", label=word(label)), 1e-4, MOST_GEAR),
     )
     if any(name.startswith(f"{axis}_") for name in typed.errors):
         return AxisDrive()

@@ -88,7 +88,7 @@ async def answer_scale(
 ) -> Response:
     """Take the measured angle; one that differs corrects the gear ratio."""
     typed = Typed({"measured": measured})
-    measured_deg = typed.number("measured", N_("Measured angle"), 0.1, 720)
+    measured_deg = typed.number("measured", N_("Measured angle"), 0.1, 720, "°")
     if typed.errors:
         return await _answer(press.request, tracker_id, machine, typed, status=422)
     try:

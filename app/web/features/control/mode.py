@@ -130,10 +130,10 @@ def _read(found: Typed, tracker: TrackerDetail, mode: Mode) -> Orientation:
     azimuth_deg, elevation_deg = stored.azimuth_deg, stored.elevation_deg
     asked = held(config, mode)
     if "azimuth" in asked:
-        azimuth_deg = found.number("azimuth", N_("Azimuth"), 0, 360)
+        azimuth_deg = found.number("azimuth", N_("Azimuth"), 0, 360, "°")
     if "elevation" in asked:
         lowest_deg, highest_deg = _elevations(config)
-        elevation_deg = found.number("elevation", N_("Elevation"), lowest_deg, highest_deg)
+        elevation_deg = found.number("elevation", N_("Elevation"), lowest_deg, highest_deg, "°")
     return Orientation(azimuth_deg, elevation_deg)
 
 

@@ -86,8 +86,8 @@ async def move(
 ) -> Response:
     """Go to a typed direction and stay there."""
     found = Typed(typed.model_dump())
-    azimuth_deg = found.number("azimuth", N_("Azimuth"), 0, 360)
-    elevation_deg = found.number("elevation", N_("Elevation"), 0, 90)
+    azimuth_deg = found.number("azimuth", N_("Azimuth"), 0, 360, "°")
+    elevation_deg = found.number("elevation", N_("Elevation"), 0, 90, "°")
     if found.errors:
         detail = await machine.detail()
         return _answer(press.request, detail, tracker_of(detail, tracker_id), found, status=422)

@@ -12,6 +12,7 @@ from app.tracker.settings.config import MountConfig, MountKind, Orientation, Row
 from app.tracker.settings.mechanisms import MECHANISMS
 from app.tracker.settings.transmission import LinearActuator, Point
 from app.web.shell.forms import Typed, Unreadable
+from app.web.shell.typed_numbers import written
 
 NO_ACTUATOR, OWN_POINTS = "none", "own"
 AXES = {"first": Axis.AZIMUTH, "second": Axis.ELEVATION}
@@ -75,13 +76,13 @@ def _park(config: TrackerConfig) -> Orientation:
 def _mount(typed: Typed, mount: MountConfig) -> MountConfig | None:
     wanted = mount
     if mount.kind is not MountKind.AZIMUTH_ELEVATION:
-        azimuth_deg = typed.number("axis_azimuth", N_("Azimuth of the axis"), 0, 359.999)
+        azimuth_deg = typed.number("axis_azimuth", N_("Azimuth of the axis"), 0, 359.999, "°")
         wanted = replace(wanted, axis_azimuth_deg=azimuth_deg) if not typed.errors else wanted
     if mount.kind in (MountKind.EQUATORIAL, MountKind.TILTED_SINGLE_AXIS):
-        tilt_deg = typed.number("axis_tilt", N_("Tilt of the axis"), 0, 90)
+        tilt_deg = typed.number("axis_tilt", N_("Tilt of the axis"), 0, 90, "°")
         wanted = replace(wanted, axis_tilt_deg=tilt_deg) if not typed.errors else wanted
     if mount.kind is MountKind.VERTICAL_SINGLE_AXIS:
-        tilt_deg = typed.number("panel_tilt", N_("Tilt of the panel"), 0, 90)
+        tilt_deg = typed.number("panel_tilt", N_("Tilt of the panel"), 0, 90, "°")
         wanted = replace(wanted, panel_tilt_deg=tilt_deg) if not typed.errors else wanted
     rows = _rows(typed, mount)
     if typed.errors:
@@ -97,7 +98,7 @@ def _rows(typed: Typed, mount: MountConfig) -> Rows | None:
     if not typed.text("rows"):
         return None
     ratio = typed.number("ratio", N_("Ground coverage ratio"), 0.01, 1)
-    slope_deg = typed.number("slope", N_("Slope across the rows"), -60, 60)
+    slope_deg = typed.number("slope", N_("Slope across the rows"), -60, 60, "°")
     return None if typed.errors else Rows(ratio, slope_deg)
 
 
@@ -149,11 +150,14 @@ def _narrowed(axis: AxisConfig, actuator: LinearActuator) -> AxisConfig:
 def _own(typed: Typed, prefix: str) -> LinearActuator | None:
     """Return the actuator whose points were typed, None while something in them is wrong."""
     at = {
-        name: typed.number(f"{prefix}_{name}", label, -FARTHEST_MM, FARTHEST_MM)
+        name: typed.number(f"{prefix}_{name}", label, -FARTHEST_MM, FARTHEST_MM, "mm")
         for name, label in POINTS.items()
     }
-    sizes = {name: typed.number(f"{prefix}_{name}", label, 0.1, FARTHEST_MM) for name, label in SIZES.items()}
-    at_deg = typed.number(f"{prefix}_at", N_("Axis angle of the points"), -720, 720)
+    sizes = {
+        name: typed.number(f"{prefix}_{name}", label, 0.1, FARTHEST_MM, "mm/s" if name == "speed" else "mm")
+        for name, label in SIZES.items()
+    }
+    at_deg = typed.number(f"{prefix}_at", N_("Axis angle of the points"), -720, 720, "°")
     if typed.errors:
         return None
     try:
@@ -189,6 +193,6 @@ def _actuator_texts(prefix: str, actuator: LinearActuator | None) -> dict[str, s
         "speed": actuator.speed_mm_s,
     }
     named = next((name for name, make in MECHANISMS.items() if make() == actuator), OWN_POINTS)
-    return {f"{prefix}_{name}": f"{value:.10g}" for name, value in numbers.items()} | {
+    return {f"{prefix}_{name}": written(value, FARTHEST_MM) for name, value in numbers.items()} | {
         f"{prefix}_actuator": named
     }

@@ -16,6 +16,7 @@ from app.sun.position import Algorithm
 from app.tracker.memory.recording import RecordingInfo, RecordingKind
 from app.tracker.settings.axes import AZIMUTH_DEFAULT, ELEVATION_DEFAULT
 from app.web.charts.sunpath import diagram_of, sector
+from app.web.features.shows.show_plan import LONGEST_MIN
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.shell.contexts import Forward, Frame, Link, PlayerPage, RecordingsPage
@@ -25,6 +26,7 @@ from app.web.shell.frame import site_frame
 from app.web.shell.orders import PressDep
 from app.web.shell.render import go, page
 from app.web.shell.scene import scene_recorded
+from app.web.shell.typed_numbers import written
 
 router = page_router(prefix="/recordings")
 SHOWN = 200
@@ -100,7 +102,7 @@ def _plan(info: RecordingInfo) -> dict[str, str]:
         "start": local(info.sun_start, zone, "%H:%M:%S"),
         "end": local(info.sun_end, zone, "%H:%M:%S"),
     }
-    return plan | {"minutes": f"{info.duration_s / 60:.4g}"} if is_show else plan
+    return plan | {"minutes": written(info.duration_s / 60, LONGEST_MIN, 6)} if is_show else plan
 
 
 def _last_of(reader: Reader, show_id: str) -> RecordingInfo | None:

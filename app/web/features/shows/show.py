@@ -17,7 +17,7 @@ from app.tracker.programs.show import ShowPlan
 from app.tracker.values.reason import Reason
 from app.web.charts.sunpath import diagram_of, outline
 from app.web.features.shows.show_contexts import ShowPlanPage, ShowRunPage
-from app.web.features.shows.show_plan import NAMES, Place, ShowForm, planned, presets
+from app.web.features.shows.show_plan import LONGEST_MIN, NAMES, Place, ShowForm, planned, presets
 from app.web.http.errors import NotFound
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
@@ -28,6 +28,7 @@ from app.web.shell.frame import snapshot_of, tracker_frame
 from app.web.shell.orders import PressDep
 from app.web.shell.render import go, page
 from app.web.shell.scene import scene_on
+from app.web.shell.typed_numbers import written
 from app.web.shell.wizard import tracker_of
 
 router = page_router(prefix="/trackers/{tracker_id}")
@@ -156,7 +157,7 @@ def _run_page(
     latest = built.machine.latest()
     zone = latest.time_zone if latest else "UTC"
     on = wanted.begin_at.astimezone(zone_of(zone)).date()
-    minutes = f"{wanted.duration.total_seconds() / 60:.6g}"
+    minutes = written(wanted.duration.total_seconds() / 60, LONGEST_MIN, 6)
     again = {
         "date": on.isoformat(),
         "start": local(wanted.begin_at, zone, "%H:%M:%S"),

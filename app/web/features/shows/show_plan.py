@@ -27,8 +27,10 @@ from app.web.features.shows.show_contexts import Preset, Verdict
 from app.web.shell.contexts import Link
 from app.web.shell.formats import ISO_DATE, duration, local, read_local
 from app.web.shell.forms import Typed
+from app.web.shell.typed_numbers import written
 
 NAMES = ("date", "start", "end", "minutes")
+LONGEST_MIN = 1440
 SHORTEST_LIGHT = timedelta(minutes=10)
 """A day with less sun than this between two sunsets is shown whole."""
 
@@ -89,7 +91,7 @@ def read(typed: Typed, place: Place) -> ShowPlan | None:
     """Return the plan that was typed; an end that is not after the start lies on the next day."""
     day = typed.day("date", N_("Date"))
     start, end = typed.clock_time("start", N_("Start")), typed.clock_time("end", N_("End session"))
-    minutes = typed.number("minutes", N_("Minutes"), 0.1, 1440)
+    minutes = typed.number("minutes", N_("Minutes"), 0.1, LONGEST_MIN, "min")
     if typed.errors:
         return None
     last_day = day if end > start else day + timedelta(days=1)
@@ -164,7 +166,7 @@ def _lit(place: Place, day: date) -> tuple[datetime, datetime] | None:
 
 def _minutes(length: timedelta) -> str:
     """Return a length as the form has it, rounded up, so that what works still does."""
-    return f"{ceil(length.total_seconds() / 60 * 1000) / 1000:g}"
+    return written(ceil(length.total_seconds() / 60 * 10_000) / 10_000, LONGEST_MIN)
 
 
 def _verdict(check: ShowCheck, plan: ShowPlan, place: Place, typed: Typed, longer: Reason | None) -> Verdict:

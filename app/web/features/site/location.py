@@ -31,12 +31,14 @@ from app.web.shell.formats import compass, decimals, formatted, local
 from app.web.shell.forms import Typed
 from app.web.shell.orders import PressDep
 from app.web.shell.render import go, page
+from app.web.shell.typed_numbers import written
 from app.web.shell.wizard import tracker_of, wizard_frame
 
 router = page_router(prefix="/trackers/{tracker_id}/commissioning/location")
 NAMES = ("latitude", "longitude", "altitude", "latitude_side", "longitude_side", "time_zone", "device_zone")
 BY_PLACE = ""
 SHOWN_DEG = 1e-4
+ALTITUDES_M = (-500, 9000)
 
 
 class LocationForm(BaseModel):
@@ -109,7 +111,7 @@ def read(form: LocationForm) -> Read:
     texts |= _sides(texts)
     typed = Typed(texts)
     latitude, longitude = (coordinates.read(typed, name, texts[f"{name}_side"]) for name in coordinates.AXES)
-    altitude = typed.number("altitude", N_("Altitude"), -500, 9000) if form.altitude.strip() else 0.0
+    altitude = typed.number("altitude", N_("Altitude"), *ALTITUDES_M, "m") if form.altitude.strip() else 0.0
     if form.time_zone and form.time_zone not in zones():
         typed.errors["time_zone"] = N_("Choose a time zone from the list.")
     if typed.errors:
@@ -173,7 +175,7 @@ def _saved(site: SiteState) -> LocationForm:
     return LocationForm(
         latitude=coordinates.degrees_text(abs(place.latitude_deg)),
         longitude=coordinates.degrees_text(abs(place.longitude_deg)),
-        altitude=f"{place.altitude_m:g}",
+        altitude=written(place.altitude_m, ALTITUDES_M[1]),
         latitude_side="S" if place.latitude_deg < 0 else "N",
         longitude_side="W" if place.longitude_deg < 0 else "E",
         time_zone=BY_PLACE if by_place else site.time_zone,

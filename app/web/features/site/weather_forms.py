@@ -7,6 +7,7 @@ from app.tracker.memory.memory import MetStation
 from app.tracker.weather.simulated_weather import MOST_SEED, SPANS, Scenario, SimulatedStation
 from app.tracker.weather.weather_windows import LIMITS, WeatherWindows
 from app.web.shell.forms import Typed, Unreadable
+from app.web.shell.typed_numbers import written
 
 STATION_NAMES = ("host", "port", "unit")
 SIMULATION_NAMES = ("scenario", "seed", *SPANS)
@@ -19,6 +20,7 @@ SCENARIOS = (
     (Scenario.CLOUDS.value, N_("Clouds, then heavy overcast, 56 min")),
 )
 USUAL = WeatherWindows()
+UNITS = {"percent": "%", "degrees from north": "°", "degrees Celsius": "°C"}
 
 
 def station_texts(station: MetStation | None) -> Typed:
@@ -32,14 +34,14 @@ def simulation_texts(station: SimulatedStation | None) -> Typed:
     """Return the form of the made-up weather; light is empty where the sky is clear."""
     shown = station or SimulatedStation()
     values = {name: getattr(shown, name) for name in SPANS}
-    texts = {name: "" if value is None else f"{value:g}" for name, value in values.items()}
+    texts = {name: "" if value is None else written(value, SPANS[name][2]) for name, value in values.items()}
     return Typed({"scenario": shown.scenario.value, "seed": str(shown.seed), **texts})
 
 
 def window_texts(windows: WeatherWindows | None) -> Typed:
     """Return the form of windows and ages."""
     shown = windows or USUAL
-    return Typed({name: f"{getattr(shown, name):g}" for name in LIMITS})
+    return Typed({name: written(getattr(shown, name), high) for name, (_, _, high) in LIMITS.items()})
 
 
 def window_hints() -> dict[str, str]:
@@ -69,8 +71,8 @@ def read_simulation(typed: Typed) -> SimulatedStation | None:
     scenario = typed.read("scenario", _scenario, Scenario.MANUAL)
     seed = typed.whole("seed", N_("Seed"), 0, MOST_SEED)
     values: dict[str, Any] = {
-        name: typed.number(name, title, low, high)
-        for name, (title, low, high, _) in SPANS.items()
+        name: typed.number(name, title, low, high, UNITS.get(unit, unit))
+        for name, (title, low, high, unit) in SPANS.items()
         if name != "irradiance_wm2" or typed.texts[name].strip()
     }
     return None if typed.errors else SimulatedStation(scenario, seed, **values)
@@ -78,7 +80,7 @@ def read_simulation(typed: Typed) -> SimulatedStation | None:
 
 def read_windows(typed: Typed) -> WeatherWindows | None:
     """Return the typed windows and ages, None while anything in them is wrong."""
-    values = {name: typed.number(name, title, low, high) for name, (title, low, high) in LIMITS.items()}
+    values = {name: typed.number(name, title, low, high, "s") for name, (title, low, high) in LIMITS.items()}
     return None if typed.errors else WeatherWindows(**values)
 
 

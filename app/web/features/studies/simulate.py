@@ -95,7 +95,8 @@ def _read(typed: Typed, detail: SiteDetail) -> SimulationRequest | None:
     day = typed.day("date", N_("Date"))
     mode = typed.read("mode", _mode, Mode.DUAL)
     held = Orientation(
-        typed.number("azimuth", N_("Azimuth"), 0, 360), typed.number("elevation", N_("Elevation"), 0, 90)
+        typed.number("azimuth", N_("Azimuth"), 0, 360, "°"),
+        typed.number("elevation", N_("Elevation"), 0, 90, "°"),
     )
     weather = _weather(typed, day, zone)
     if typed.errors or location is None:

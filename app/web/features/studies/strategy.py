@@ -75,7 +75,7 @@ async def save(
     wanted = read_strategy(typed, config.strategy)
     deadband_deg = config.deadband_deg
     if isinstance(wanted, Deadband):
-        deadband_deg = typed.number("deadband", N_("Deadband"), 0.02, 10)
+        deadband_deg = typed.number("deadband", N_("Deadband"), 0.02, 10, "°")
     if typed.errors:
         return _answer(press.request, tracker, typed=typed, block="choice", status=422)
     try:

@@ -28,7 +28,9 @@ from app.tracker.settings.strategy import (
 )
 from app.web.features.studies.strategy_contexts import ProgramRow, ProgramTable, StrategyChoice
 from app.web.http.whole_forms import MAY_BE_ABSENT
+from app.web.shell import typed_numbers
 from app.web.shell.forms import Typed, Unreadable, number
+from app.web.shell.typed_numbers import written
 
 CHOICES = (
     StrategyChoice(
@@ -84,6 +86,8 @@ FRAMES = (
     (StepFrame.AXES.value, N_("The mount's own axes")),
 )
 EMPTY_ROWS = 3
+LIGHTEST_WM2 = 2000
+A_DAY_S = 86_400
 
 
 class StrategyForm(BaseModel):
@@ -172,10 +176,10 @@ def hybrid_texts(hybrid: HybridConfig) -> dict[str, str]:
     """Return the correction as the form shows it."""
     return {
         "enabled": "yes" if hybrid.enabled else "",
-        "threshold": f"{hybrid.threshold_wm2:g}",
+        "threshold": written(hybrid.threshold_wm2, LIGHTEST_WM2),
         "gain": f"{hybrid.gain_dps:g}",
         "bound": f"{hybrid.bound_deg:g}",
-        "decay": f"{hybrid.decay_s:g}",
+        "decay": written(hybrid.decay_s, A_DAY_S),
         "azimuth_off": f"{hybrid.simulated.azimuth_deg:g}",
         "elevation_off": f"{hybrid.simulated.elevation_deg:g}",
         "cloud": f"{hybrid.simulated.cloud * 100.0:g}",
@@ -185,15 +189,15 @@ def hybrid_texts(hybrid: HybridConfig) -> dict[str, str]:
 def read_hybrid(typed: Typed) -> HybridConfig | None:
     """Return the correction that was typed, None while anything in it is wrong."""
     values = (
-        typed.number("threshold", N_("Irradiance threshold"), 1, 2000),
+        typed.number("threshold", N_("Irradiance threshold"), 1, LIGHTEST_WM2, "W/m²"),
         typed.number("gain", N_("Gain"), 0.001, 10),
-        typed.number("bound", N_("Correction limit"), 0.01, 10),
-        typed.number("decay", N_("Decay time constant"), 0, 86400),
+        typed.number("bound", N_("Correction limit"), 0.01, 10, "°"),
+        typed.number("decay", N_("Decay time constant"), 0, A_DAY_S, "s"),
     )
     played = (
-        typed.number("azimuth_off", N_("Simulated misalignment, azimuth"), -10, 10),
-        typed.number("elevation_off", N_("Simulated misalignment, elevation"), -10, 10),
-        typed.number("cloud", N_("Simulated cloud"), 0, 100),
+        typed.number("azimuth_off", N_("Simulated misalignment, azimuth"), -10, 10, "°"),
+        typed.number("elevation_off", N_("Simulated misalignment, elevation"), -10, 10, "°"),
+        typed.number("cloud", N_("Simulated cloud"), 0, 100, "%"),
     )
     if typed.errors:
         return None
@@ -233,13 +237,19 @@ def read_program(form: ProgramForm) -> StepProgram:
     column = "solar_time" if form.base == TimeBase.SOLAR else f"clock_time{_offset(form.offset)}"
     head = ",".join((column, *COLUMNS[StepFrame(form.angles)]))
     rows = [
-        ",".join(f'"{cell.strip()}"' for cell in cells) if any(cell.strip() for cell in cells) else ""
+        ",".join(f'"{_cell(cell)}"' for cell in cells) if any(cell.strip() for cell in cells) else ""
         for cells in zip(form.at, form.first, form.second, strict=False)
     ]
     try:
         return from_table("\n".join([head, *rows]), name=form.program_name.strip() or N_("My program"))
     except TableWrong as error:
         raise TableWrong(*(_row_of_table(sentence) for sentence in error.sentences)) from error
+
+
+def _cell(text: str) -> str:
+    """Return a typed number as a table has it; any other text is left for the table to read."""
+    value = typed_numbers.value(typed_numbers.plain(text, "°"))
+    return text.strip() if value is None else number_text(value)
 
 
 def _row_of_table(sentence: str) -> str:
@@ -253,7 +263,7 @@ def _row_of_table(sentence: str) -> str:
 
 def _offset(text: str) -> str:
     try:
-        hours = number(text.strip() or "0", N_("UTC offset"), -99, 99)
+        hours = number(text.strip() or "0", N_("UTC offset"), -99, 99, "h")
     except Unreadable as error:
         raise TableWrong(N_("UTC offset: type hours, such as 3 or -3.5.")) from error
     minutes = round(abs(hours) * 60.0)

@@ -35,13 +35,15 @@ from app.web.shell.deps import MachineDep, PanelDep
 from app.web.shell.forms import Typed
 from app.web.shell.frame import site_frame
 from app.web.shell.render import go, page
+from app.web.shell.typed_numbers import written
 
 router = page_router(prefix="/studies")
 
+ALTITUDES_M = (-500, 9000)
 NUMBERS = (
     ("latitude", "latitude_deg", N_("Latitude"), -90, 90),
     ("longitude", "longitude_deg", N_("Longitude"), -180, 180),
-    ("altitude", "altitude_m", N_("Altitude"), -500, 9000),
+    ("altitude", "altitude_m", N_("Altitude"), *ALTITUDES_M),
     ("azimuth", "azimuth_deg", N_("Fixed azimuth"), 0, 359.999),
     ("elevation", "elevation_deg", N_("Fixed elevation"), -90, 90),
     ("deadband", "deadband_deg", N_("Deadband"), 0.05, 30),
@@ -216,7 +218,7 @@ def _site_values(detail: SiteDetail) -> dict[str, str]:
     return {
         "latitude": f"{known.latitude_deg:.6g}",
         "longitude": f"{known.longitude_deg:.6g}",
-        "altitude": f"{known.altitude_m:.6g}",
+        "altitude": written(known.altitude_m, ALTITUDES_M[1]),
         "azimuth": "180" if known.latitude_deg >= 0.0 else "0",
         "elevation": f"{90.0 - abs(known.latitude_deg):.4g}",
     }
