@@ -5,7 +5,7 @@ import secrets
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
-from typing import TypeVar
+from typing import NoReturn, TypeVar
 
 from sqlalchemy.exc import SQLAlchemyError
 
@@ -13,7 +13,7 @@ from app.access import sessions
 from app.access.access_cache import Book
 from app.access.accounts import Accounts, note
 from app.access.events import AccessEvent, Recorded
-from app.access.passwords import Passwords
+from app.access.passwords import Passwords, prepared
 from app.access.principal import Principal, SignInNeeded, Via, nobody, this_computer
 from app.access.refusals import Allowance, Refusals
 from app.access.roles import NOBODY, Role
@@ -237,7 +237,7 @@ class Keeper:
                 )
             subject = (f"pin:{token.token_id}",)
             self._wait(subject, principal)
-            if not self._passwords.matches(token.pin_hash, pin):
+            if not self._passwords.matches_pin(token.pin_hash, pin):
                 self._fail(say("PIN of {name}", name=token.name), subject, principal.address)
             until = self._clock.now() + sessions.STEP_UP
             with self._store.writing() as change:
@@ -318,10 +318,15 @@ class Keeper:
         subjects = (here,) if knows else (here, *elsewhere)
         self._wait(subjects, nobody(address), first=here)
         user = self.book.users.get(account)
-        if not self._passwords.matches(user.password_hash if user else None, password):
+        form = self._passwords.matching(user.password_hash if user else None, password)
+        if user is None or form is None:
             self._fail(account, subjects, address)
+        renewed = "" if form == prepared(password) else self._passwords.hash_again(password)
         with self._store.writing() as change:
             change.forgive((here,))
+            stored = change.users().get(account) if renewed else None
+            if stored is not None and stored.password_hash == user.password_hash:
+                change.put_user(replace(stored, password_hash=renewed))
 
     def _wait(self, subjects: tuple[str, ...], who: Principal, *, first: str = "") -> None:
         found = self._store.failures(subjects)
@@ -334,7 +339,7 @@ class Keeper:
             )
             raise throttled
 
-    def _fail(self, account: str, subjects: tuple[str, ...], address: str) -> None:
+    def _fail(self, account: str, subjects: tuple[str, ...], address: str) -> NoReturn:
         now = self._clock.now()
         with self._store.writing() as change:
             before: dict[str, Failures] = change.failures(subjects)

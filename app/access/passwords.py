@@ -5,6 +5,7 @@ import re
 from functools import cache
 from importlib.resources import files
 from typing import Protocol
+from unicodedata import category, decimal, normalize
 
 from argon2 import PasswordHasher
 from argon2.exceptions import InvalidHashError, VerificationError, VerifyMismatchError
@@ -15,6 +16,7 @@ from app.base.message import N_, say
 SHORTEST, LONGEST = 12, 128
 TIME_COST, MEMORY_KIB, LANES = 3, 64 * 1024, 1
 PIN = re.compile(r"\d{6,12}")
+NO_LETTER = re.compile(r"[\W\d_]")
 LOOKALIKES = str.maketrans("013457@$!", "oieastasi")
 ROWS = (
     "01234567890123456789",
@@ -66,12 +68,17 @@ class Passwords:
 
     def hash(self, password: str, name: str = "") -> str:
         """Return the hash of a password, or raise `AccessRefused` if people would guess it."""
-        if fault := weakness(password, name):
+        if fault := weakness(prepared(password), name):
             raise AccessRefused(fault)
-        return self._hasher.hash(password)
+        return self.hash_again(password)
+
+    def hash_again(self, password: str) -> str:
+        """Return the hash of a password that was right under another one."""
+        return self._hasher.hash(prepared(password))
 
     def hash_pin(self, pin: str) -> str:
         """Return the hash of a cabinet panel's PIN, or raise `AccessRefused`."""
+        pin = in_digits(pin)
         if not PIN.fullmatch(pin) or len(set(pin)) < 3 or pin in ROWS[0]:
             raise AccessRefused(
                 N_("A PIN has 6 to 12 digits, with at least three different digits and no simple sequence.")
@@ -80,9 +87,34 @@ class Passwords:
 
     def matches(self, password_hash: str | None, password: str) -> bool:
         """Return whether a password is right; without a hash the same work is done and it is wrong."""
+        return self.matching(password_hash, password) is not None
+
+    def matching(self, password_hash: str | None, password: str) -> str | None:
+        """Return the form of a password that its hash was made of, None where it is wrong.
+
+        Hashes made before passwords were prepared are of what was typed, on one keyboard or another.
+        """
         self.warm()
-        found = self._hasher.verify(password_hash or self._nobodys or "", password[: LONGEST + 1])
-        return found and password_hash is not None
+        plain = prepared(password)
+        forms = dict.fromkeys((plain, password, normalize("NFD", password)))
+        stored = password_hash or self._nobodys or ""
+        found = next((form for form in forms if self._hasher.verify(stored, form[: LONGEST + 1])), None)
+        return None if password_hash is None else found
+
+    def matches_pin(self, pin_hash: str, pin: str) -> bool:
+        """Return whether a PIN is right, with the digits of any keyboard."""
+        return any(self.matches(pin_hash, form) for form in dict.fromkeys((in_digits(pin), pin)))
+
+
+def prepared(password: str) -> str:
+    """Return a password as it is hashed, however keyboards compose its letters (RFC 8265, OpaqueString)."""
+    spaced = "".join(" " if category(letter) == "Zs" else letter for letter in password)
+    return normalize("NFC", spaced)
+
+
+def in_digits(pin: str) -> str:
+    """Return a PIN with the digits 0 to 9."""
+    return "".join(letter if decimal(letter, None) is None else str(decimal(letter)) for letter in pin)
 
 
 def weakness(password: str, name: str = "") -> str | None:
@@ -114,8 +146,8 @@ def _is_row(text: str) -> bool:
 
 def _is_common(text: str, name: str) -> bool:
     """Return whether nothing is left of a text but common words, the user's name, digits and signs."""
-    words = common_words() | ({re.sub(r"[^a-z]", "", name)} - {""})
-    return any(_made_of(re.sub(r"[^a-z]", "", shape), words) for shape in (text, text.translate(LOOKALIKES)))
+    words = common_words() | ({NO_LETTER.sub("", name)} - {""})
+    return any(_made_of(NO_LETTER.sub("", shape), words) for shape in (text, text.translate(LOOKALIKES)))
 
 
 def _made_of(text: str, words: frozenset[str] | set[str]) -> bool:
