@@ -2,10 +2,11 @@
 
 import json
 import os
-import tomllib
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
+
+from app.base.file_text import toml_of
 
 FILE_NAME = "network.toml"
 PRIVATE = 0o600
@@ -31,7 +32,7 @@ def read_network(folder: Path) -> dict[str, Any]:
     Raises `OSError` or `ValueError` for a file that cannot be read.
     """
     path = folder / FILE_NAME
-    return tomllib.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    return toml_of(path.read_bytes()) if path.exists() else {}
 
 
 def write_network(folder: Path, network: Network) -> None:

@@ -4,7 +4,6 @@ import hashlib
 import ipaddress
 import os
 import tempfile
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -18,6 +17,7 @@ from pydantic_settings import (
 )
 
 from app.base.errors import WRONG, Foreseen
+from app.base.file_text import toml_of
 from app.base.hosts import checked_host
 from app.base.network import FILE_NAME, NETWORK_FIELDS, Network, read_network
 from app.base.sqlite_url import sqlite_url
@@ -374,9 +374,13 @@ def _from_page(folder: Path) -> dict[str, Any]:
         return read_network(folder)
     except (OSError, ValueError) as error:
         raise SettingsWrong(
-            f"The file {folder / FILE_NAME}, which the page Network wrote, cannot be read: {error}. "
+            f"The file {folder / FILE_NAME}, which the page Network wrote, cannot be read: {_reason(error)}. "
             "Remove it; the environment and the defaults count then."
         ) from error
+
+
+def _reason(error: Exception) -> str:
+    return str(error).rstrip(".")
 
 
 def _from_file() -> dict[str, Any]:
@@ -385,9 +389,9 @@ def _from_file() -> dict[str, Any]:
     if not path:
         return {}
     try:
-        found = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        found = toml_of(Path(path).read_bytes())
     except (OSError, ValueError) as error:
         raise SettingsWrong(
-            f"The settings file {path} of {FILE_VARIABLE} cannot be read: {error}."
+            f"The settings file {path} of {FILE_VARIABLE} cannot be read: {_reason(error)}."
         ) from error
     return {name.removeprefix(PREFIX).lower(): value for name, value in found.items()}

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from app.base.clock import SystemClock
+from app.base.file_text import utf8_of
 from app.cli.drives import BaudRate, ParityBit, StopBits
 from app.cli.drives import drive as drive
 from app.drives.connections.bus_tools import Played, record, replay, scan
@@ -173,7 +174,7 @@ def replay_command(
     ] = "",
 ) -> None:
     """Show what a profile makes of a recorded trace, or serve its answers as the device did."""
-    exchanges = parse_trace(file.read_text(encoding="utf-8").splitlines(), file.name)
+    exchanges = parse_trace(utf8_of(file.read_bytes()).splitlines(), file.name)
     if tcp:
         run_trace_server(tcp, exchanges)
         return

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
+from app.base.file_text import TextRefused, utf8_of
 from app.drives.profile_rules import (
     LAST_ADDRESS,
     check_bits,
@@ -158,9 +159,11 @@ def read_profile(path: Path) -> Profile:
     """Return the profile in a file, or raise `ProfileError` or `OSError`."""
     content = path.read_bytes()
     try:
-        text = content.decode()
-    except UnicodeDecodeError as error:
-        line = content[: error.start].count(b"\n") + 1
+        text = utf8_of(content)
+    except TextRefused as error:
+        wrong = error.__cause__
+        before = content[: wrong.start] if isinstance(wrong, UnicodeDecodeError) else b""
+        line = before.count(b"\n") + 1
         raise ProfileError(f"{path.name}, line {line}: this is not UTF-8 text. Save it as UTF-8.") from error
     return parse_profile(text, path.name)
 

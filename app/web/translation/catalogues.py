@@ -22,6 +22,7 @@ from babel.messages.frontend import parse_mapping_cfg
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
 
+from app.base.file_text import utf8_of
 from app.web.languages.catalogue import GAP
 from app.web.languages.known import LOCALE, TRANSLATED
 
@@ -179,7 +180,7 @@ def write(code: str, catalog: Catalog) -> None:
 
 def import_lines(code: str, file: Path) -> None:
     """Take translations from lines of JSON."""
-    lines = [orjson.loads(line) for line in file.read_text().splitlines() if line.strip()]
+    lines = [orjson.loads(line) for line in utf8_of(file.read_bytes()).splitlines() if line.strip()]
     catalog, unknown = take(renewed(read(code), template()), lines)
     write(code, catalog)
     sys.stdout.write(f"{len(lines) - unknown} translations taken, {unknown} belong to no text.\n")
