@@ -1,10 +1,10 @@
 """The text of files that people write or download, whatever program saved them.
 
-UTF-8 with or without a byte order mark, UTF-16 with one; every line ends in a line feed. What has neither a
-mark nor is UTF-8 is in one of many single-byte encodings, which differ in the letters beyond ASCII, never in
-digits, points, commas, and names of columns. So only a reader that needs nothing else of a file takes it, such
-as that of weather files, whose city and comments are not used: `letters_count=False`. Where names are kept,
-a guess would change them, so the file is refused.
+UTF-8 with or without a byte order mark, UTF-16 with one; every line ends in a line feed. What has no mark
+and is not UTF-8 is in one of many single-byte encodings, which differ in the letters beyond ASCII, never in
+digits, points, commas, and names of columns. So it is taken only by a reader that needs nothing else of a
+file, such as that of weather files, whose city and comments are not used: `letters_count=False`. Where names
+are kept, a guess would change them, so the file is refused.
 
 No detector of encodings: charset-normalizer comes only with the extra `studies`, and it guesses.
 """

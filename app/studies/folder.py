@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
+from unicodedata import normalize
 
 from pydantic import ValidationError
 
 from app.base.adapter import adapter
-from app.base.message import N_, say
+from app.base.message import N_, join, say
 from app.studies.jobs import WeatherSeen
 from app.studies.request import StudyRequest
 from app.studies.result import StudyResult
@@ -19,7 +20,11 @@ from app.studies.result import StudyResult
 MOST_STUDIES = 100
 MOST_WEATHER_FILES = 20
 LARGEST_WEATHER = 8 * 1024 * 1024
-NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,79}")
+LONGEST_FILE_NAME = 120
+MOST_NAME_BYTES = 240
+"""Linux takes 255, the endings of our own among them."""
+OUR_ENDINGS = (".json", ".new", ".part")
+JOINERS = "\N{ZERO WIDTH NON-JOINER}\N{ZERO WIDTH JOINER}"
 STUDY_ID = re.compile(r"[0-9]{8}T[0-9]{6}-[0-9a-f]{6}")
 INTERRUPTED = N_("Heliopanel was restarted while the study was running; run the study again.")
 
@@ -67,6 +72,26 @@ class StudyState:
     def percent(self) -> int:
         """Return how much is done."""
         return 100 if self.status is StudyStatus.DONE else 100 * self.done // max(1, self.of)
+
+
+def weather_name(given: str) -> str:
+    """Return the name under which a file is kept: composed, with plain spaces. Raises `WeatherFileRefused`.
+
+    macOS and phones decompose letters, and two names that look alike must be one.
+    """
+    name = normalize("NFC", given.replace("\N{NO-BREAK SPACE}", " ")).strip()
+    fits = 1 <= len(name) <= LONGEST_FILE_NAME and len(name.encode(errors="replace")) <= MOST_NAME_BYTES
+    usual = all(one.isprintable() or one in JOINERS for one in name) and not set(name) & set("/\\")
+    if not (fits and usual) or name.startswith(".") or name.endswith(OUR_ENDINGS):
+        raise WeatherFileRefused(
+            say(
+                "Name the weather file with at most {longest} letters, digits, and other characters, without "
+                "slashes, not beginning with a dot, and not ending in {endings}.",
+                longest=LONGEST_FILE_NAME,
+                endings=join(", ", OUR_ENDINGS),
+            )
+        )
+    return name
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,12 +175,19 @@ class StudyFolder:
 
     def weather_path(self, name: str) -> Path:
         """Return where a stored weather file lies; raises `StudyUnknown`."""
-        if NAME.fullmatch(name) is None or not (self._weather / name).is_file():
+        try:
+            path = self._weather / weather_name(name)
+        except WeatherFileRefused:
+            path = None
+        if path is None or not path.is_file():
             raise StudyUnknown(say("There is no weather file {name}: upload it first.", name=repr(name)))
-        return self._weather / name
+        return path
 
     def put_weather(self, name: str, content: bytes) -> Path:
-        """Keep the bytes of a weather file that is yet to be looked at; raises `WeatherFileRefused`."""
+        """Keep the bytes of a weather file that is yet to be looked at; raises `WeatherFileRefused`.
+
+        `name` is one of `weather_name`.
+        """
         self._check_weather(name, content)
         self._weather.mkdir(parents=True, exist_ok=True)
         path = self._weather / f"{name}.new"
@@ -175,13 +207,6 @@ class StudyFolder:
         path.unlink()
 
     def _check_weather(self, name: str, content: bytes) -> None:
-        if NAME.fullmatch(name) is None or name.endswith((".json", ".new")):
-            raise WeatherFileRefused(
-                N_(
-                    "Name the weather file with at most 80 letters, digits, spaces, dots, and dashes, "
-                    "not ending in .json."
-                )
-            )
         if not content:
             raise WeatherFileRefused(N_("The weather file is empty: choose the file again."))
         if len(content) > LARGEST_WEATHER:

@@ -160,13 +160,18 @@ class Studied:
 
 @dataclass(frozen=True, slots=True)
 class WeatherSeen:
-    """The file can be used: what it is and where it is from."""
+    """The file can be used: what it is and where it is from.
+
+    `filled_hours` had missing values, which are interpolated; 29 February is left out where there is one.
+    """
 
     format: str
     location: Location
     utc_offset_h: float
     global_kwhm2: float
     tell: Literal["weather"] = "weather"
+    filled_hours: int = 0
+    has_leap_day: bool = False
 
 
 @dataclass(frozen=True, slots=True)

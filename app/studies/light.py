@@ -71,8 +71,7 @@ def weather_days(asked: StudyRequest, weather: WeatherYear) -> Days:
     columns = (local(one) for one in (weather.direct_wm2, weather.diffuse_wm2, weather.global_wm2))
     light = _light(path, at_s, *columns)
     air, wind = local(weather.air_degc), local(weather.wind_mps)
-    source = say("weather file, {format}", format=weather.format)
-    return Days(weather.location, offset_h, source, chosen, weights, 60, at_s, light, air, wind)
+    return Days(weather.location, offset_h, weather.source, chosen, weights, 60, at_s, light, air, wind)
 
 
 def clear_light(model: LightModel, location: Location, at_unix_s: Array) -> Light:

@@ -58,7 +58,14 @@ def done(job: Job) -> Told:
         case CheckWeather(path):
             seen = read_weather(Path(path))
             yearly_kwhm2 = float(seen.global_wm2.sum()) / 1000.0
-            return WeatherSeen(seen.format, seen.location, seen.utc_offset_h, yearly_kwhm2)
+            return WeatherSeen(
+                seen.format,
+                seen.location,
+                seen.utc_offset_h,
+                yearly_kwhm2,
+                filled_hours=seen.filled_hours,
+                has_leap_day=seen.has_leap_day,
+            )
         case FindPrograms(question):
             return ProgramsFound(find_programs(question))
         case CompareSite(config, location, year, held, sky):

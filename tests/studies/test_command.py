@@ -54,7 +54,10 @@ def test_a_weather_file_is_read_from_its_path(run: Run, tmp_path: Path) -> None:
     ("words", "sentence"),
     [
         (("--step", "7"), "The step is one of 1, 2, 3"),
-        (("--weather", "/nowhere/file.epw"), "No such file"),
+        (
+            ("--weather", "/nowhere/file.epw"),
+            "The weather file file.epw cannot be read (No such file or directory). Check its path.",
+        ),
     ],
 )
 def test_what_cannot_be_is_said_in_a_sentence(run: Run, words: tuple[str, ...], sentence: str) -> None:

@@ -19,7 +19,8 @@ from app.studies.light import clear_days, standard_offset_h, weather_days
 from app.studies.programs import find_programs
 from app.studies.request import Fidelity, LightModel, Span, StudyMode, StudyRequest, StudyStrategy
 from app.studies.result import CaseResult, StudyResult, curves_csv, table_csv
-from app.studies.weather import HOURS, WeatherFormat, WeatherRefused, read_weather
+from app.studies.weather import HOURS, WeatherFormat, read_weather
+from app.studies.weather_columns import WeatherRefused
 from app.sun.position import Location
 from app.tracker.settings.axes import AxisConfig
 from app.tracker.settings.config import MountConfig, MountKind, Orientation, TrackerConfig

@@ -16,7 +16,7 @@ from app.base.logs import get_logger
 from app.base.message import N_, say
 from app.base.own import own_process
 from app.fast.comparison import Comparison
-from app.studies.folder import StudyFolder, StudyState, StudyStatus, StudyUnknown, WeatherFile
+from app.studies.folder import StudyFolder, StudyState, StudyStatus, StudyUnknown, WeatherFile, weather_name
 from app.studies.jobs import (
     JOB,
     TOLD,
@@ -118,6 +118,7 @@ class Studies:
 
     async def add_weather(self, name: str, content: bytes) -> WeatherFile:
         """Keep a weather file if it can be used; raise `ValueError` with a sentence if not."""
+        name = weather_name(name)
         new = await run_in_threadpool(self.folder.put_weather, name, content)
         try:
             seen = await self._answer(CheckWeather(str(new)))

@@ -13,7 +13,7 @@ from app.base.message import N_, told_by
 from app.base.permission import Permission
 from app.fast.comparison import Comparison
 from app.link.messages import ConfigureTracker
-from app.studies.folder import StudyState, WeatherFile
+from app.studies.folder import LONGEST_FILE_NAME, StudyState, WeatherFile
 from app.studies.jobs import ProgramAnswer
 from app.studies.request import FIRST_YEAR, LAST_YEAR, StudyRequest
 from app.studies.result import StudyResult, curves_csv, table_csv
@@ -31,7 +31,9 @@ from app.web.shell.deps import MachineDep, PanelDep, PrincipalDep
 router = api_router(tags=["studies"])
 
 StudyId = Annotated[str, Path(min_length=1, max_length=64, description="Id of the study.")]
-FileName = Annotated[str, Path(min_length=1, max_length=80, description="Name of the weather file.")]
+FileName = Annotated[
+    str, Path(min_length=1, max_length=LONGEST_FILE_NAME, description="Name of the weather file.")
+]
 
 
 class StudyFormat(StrEnum):

@@ -12,6 +12,7 @@ from app.energy.program import step_program
 from app.energy.stepping import Steps
 from app.fast.comparison import ClearSky
 from app.link.messages import SiteDetail, UnknownTracker
+from app.studies.folder import LONGEST_FILE_NAME
 from app.studies.jobs import CompareSite, ProgramAnswer, ProgramLight, ProgramQuestion
 from app.studies.request import (
     FIRST_YEAR,
@@ -75,7 +76,9 @@ class NewStudy(Place):
         None, description="Elevation of the held normal; left out: 90 degrees less the latitude."
     )
     light: LightModel = LightModel.INEICHEN
-    weather_file: str | None = Field(None, max_length=80, description="Name of an uploaded weather file.")
+    weather_file: str | None = Field(
+        None, max_length=LONGEST_FILE_NAME, description="Name of an uploaded weather file."
+    )
     transposition: Transposition = Transposition.HAY_DAVIES
     albedo: float = Field(0.2, ge=0, le=1)
     power_w: float = Field(

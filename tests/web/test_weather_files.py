@@ -1,0 +1,181 @@
+"""Weather files as they are downloaded and saved again, and their names: taken, or refused in our words."""
+
+from collections.abc import AsyncIterator, Callable
+from html import unescape
+from pathlib import Path
+
+import httpx
+import pytest
+
+from app.base.settings import Settings
+from app.cli import study
+from app.studies import worker
+from app.studies.jobs import JOB
+from app.studies.weather import read_weather
+from app.studies.weather_columns import WeatherRefused
+from app.web.main import create_app
+from tests.command_line import Run, run
+from tests.fakes import FakeMachine, FakeReader, serving
+from tests.golden.table import rows
+from tests.studies import files
+
+__all__ = ["run"]
+# pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.
+pytestmark = pytest.mark.filterwarnings("ignore:DatetimeIndex.dayofyear is deprecated")
+
+ROWS = rows("world/weather_files.csv")
+EPW_ROWS = [row for row in ROWS if row["format"] == "EPW"]
+NAMES = rows("world/file_names.csv")
+FILES = "/api/v1/weather-files"
+HTMX = {"HX-Request": "true"}
+MADE: dict[str, Callable[[], bytes]] = {
+    "EPW": files.epw,
+    "TMY3": files.tmy3,
+    "PVGIS_TMY": files.pvgis_tmy,
+    "PVGIS_HOURLY": files.pvgis_hourly,
+}
+HEAD_LINES = {"EPW": 8, "TMY3": 2, "PVGIS_TMY": 18}
+CITIES = {"EPW": "Samsun", "TMY3": "SAMSUN", "PVGIS_HOURLY": "PVGIS-SARAH3"}
+COLUMNS = {
+    "EPW": {"temp_air": 6, "ghi": 13, "dni": 14, "dhi": 15, "wind_speed": 21},
+    "TMY3": {"ghi": 2, "dni": 3, "dhi": 4},
+}
+LEAP = {
+    "EPW": ("2021,2,28,", "2021,2,29,"),
+    "TMY3": ("02/28/2021,", "02/29/2021,"),
+    "PVGIS_TMY": ("20210228:", "20210229:"),
+}
+ENDS = {"": "\n", "crlf": "\r\n", "cr": "\r"}
+
+
+def made(row: dict[str, str]) -> bytes:
+    """Return the file of a row: a year made here, changed and saved as the row says."""
+    text = changed(MADE[row["format"]]().decode().replace("\r\n", "\n"), row["format"], row["change"])
+    encoding, _, ends = row["saved"].partition(" ")
+    return text.replace("\n", ENDS[ends]).encode(encoding)
+
+
+def changed(text: str, kind: str, change: str) -> str:
+    match change.split(" "):
+        case [""]:
+            return text
+        case ["city", name]:
+            return text.replace(CITIES[kind], name, 1)
+        case ["leap", "day"]:
+            before, leap = LEAP[kind]
+            day = [line for line in text.splitlines(keepends=True) if line.startswith(before)]
+            return text.replace(day[-1], day[-1] + "".join(day).replace(before, leap), 1)
+        case ["cut", "line", at]:
+            lines = text.splitlines()
+            lines[int(at) - 1] = ",".join(lines[int(at) - 1].split(",")[:3])
+            return "\n".join(lines)
+        case [column, value, span]:
+            first, last = (int(hour) + HEAD_LINES[kind] for hour in span.split("-"))
+            lines = text.splitlines()
+            for hour in range(first, last + 1):
+                cells = lines[hour].split(",")
+                cells[COLUMNS[kind][column]] = value
+                lines[hour] = ",".join(cells)
+            return "\n".join(lines)
+    raise ValueError(change)
+
+
+def named(row: dict[str, str]) -> str:
+    return f"{row['format']} {row['saved']} {row['change']}"
+
+
+@pytest.fixture
+async def client(machine: FakeMachine, tmp_path: Path) -> AsyncIterator[httpx.AsyncClient]:
+    app = create_app(Settings(data_dir=tmp_path), machine=machine, reader=FakeReader(), clock=machine.clock)
+    async with serving(app) as browser:
+        yield browser
+
+
+@pytest.mark.parametrize("row", ROWS, ids=named)
+async def test_the_api_takes_a_file_or_says_why_not(client: httpx.AsyncClient, row: dict[str, str]) -> None:
+    answer = await client.post(FILES, files={"file": ("file.csv", made(row))})
+    if row["refusal"]:
+        assert answer.status_code == 422
+        assert row["refusal"] in answer.json()["detail"]
+        return
+    assert answer.status_code == 201, answer.text
+    seen = answer.json()["seen"]
+    assert (seen["filled_hours"] > 0) == ("interpolated" in row["source_said"])
+    assert seen["has_leap_day"] == ("29 February" in row["source_said"])
+    assert seen["location"]["latitude_deg"] == files.LATITUDE
+
+
+@pytest.mark.parametrize("row", EPW_ROWS, ids=named)
+async def test_the_page_takes_it_and_tells_what_was_made_of_it(
+    client: httpx.AsyncClient, row: dict[str, str]
+) -> None:
+    answer = await client.post("/studies/weather", files={"file": ("file.epw", made(row))}, headers=HTMX)
+    if row["refusal"]:
+        assert answer.status_code == 422
+        assert row["refusal"] in unescape(answer.text)
+        return
+    page = " ".join((await client.get("/studies")).text.split())
+    for part in row["source_said"].split(", ")[2:]:
+        assert f" · {part}" in page
+
+
+@pytest.mark.parametrize("row", EPW_ROWS, ids=named)
+def test_the_command_takes_it_and_tells_what_was_made_of_it(
+    run: Run, row: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(worker, "tell", lambda _: None)
+    monkeypatch.setattr(study, "_told", lambda job: iter([worker._answer(JOB.dump_json(job))]))
+    path = tmp_path / "Zürich (2020).epw"
+    path.write_bytes(made(row))
+    options = ("--lat", "41", "--lon", "36", "--date", "2026-06-21", "--span", "day", "--mode", "dual")
+    code, out, err = run("study", *options, "--weather", str(path))
+    if row["refusal"]:
+        assert code != 0
+        assert row["refusal"] in err
+    else:
+        assert code == 0, err
+        assert out.startswith(f"{row['source_said']}, 1 day")
+
+
+def test_a_gap_is_interpolated_over_the_end_of_the_year(tmp_path: Path) -> None:
+    path = tmp_path / "file.epw"
+    path.write_bytes(changed(files.epw().decode(), "EPW", "temp_air 99.9 8759-8759").encode())
+    air = read_weather(path).air_degc
+    assert air[-1] == pytest.approx((air[-2] + air[0]) / 2.0)
+
+
+def test_a_gap_over_the_end_of_the_year_is_one_gap(tmp_path: Path) -> None:
+    path = tmp_path / "file.epw"
+    text = changed(files.epw().decode(), "EPW", "dni 9999 8758-8759")
+    path.write_bytes(changed(text, "EPW", "dni 9999 0-1").encode())
+    with pytest.raises(WeatherRefused, match="From hour 8759 of the file, 4 hours have no dni"):
+        read_weather(path)
+
+
+@pytest.mark.parametrize("row", NAMES, ids=lambda row: row["source"] or row["text"])
+async def test_a_file_is_kept_under_its_name_used_and_deleted(
+    client: httpx.AsyncClient, row: dict[str, str]
+) -> None:
+    answer = await client.post(FILES, files={"file": (row["text"], files.epw())})
+    if not row["kept"]:
+        assert answer.status_code == 422
+        assert "Name the weather file with at most 120 letters" in answer.json()["detail"]
+        return
+    assert answer.json()["name"] == row["kept"]
+    typed = row["text"].rpartition("\\")[2]
+    asked = {"date": "2026-06-21", "span": "day", "light": "weather-file", "weather_file": typed}
+    assert (await client.post("/api/v1/studies", json=asked | {"step_min": 60})).status_code == 202
+    page = (await client.get("/studies")).text
+    assert row["kept"] in unescape(page)
+    action = unescape(page).partition('action="/studies/weather/')[2].partition('"')[0]
+    assert (await client.post(f"/studies/weather/{action}", headers=HTMX)).status_code in (200, 204)
+    assert (await client.get(FILES)).json()["items"] == []
+    again = await client.post("/studies/weather", files={"file": (row["text"], files.epw())}, headers=HTMX)
+    assert again.status_code in (200, 204)
+
+
+async def test_a_name_that_is_too_long_is_refused(client: httpx.AsyncClient) -> None:
+    for name in ("a" * 117 + ".epw", "天" * 77 + ".epw" * 3):
+        answer = await client.post(FILES, files={"file": (name, files.epw())})
+        assert answer.status_code == 422
+        assert "Name the weather file" in answer.json()["detail"]
