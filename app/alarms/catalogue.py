@@ -191,6 +191,11 @@ ENTRIES = (
         N_("Look up the code in the drive's manual, remove the cause, then reset the fault."),
     ),
     Entry(
+        "command_refused", 2, Group.DRIVE, N_("Drive refuses its commands"),
+        N_("The tracker is at standstill and does not stow."),
+        N_("Correct the settings or the drive as described, then reset the fault."),
+    ),
+    Entry(
         "drive_lost", 2, Group.DRIVE, N_("Drive does not answer"),
         N_("Position unknown: no tracking, no stow. A drive with a watchdog has stopped automatically."),
         N_("Check its power and cable. Heliopanel retries the connection automatically."),

@@ -13,10 +13,12 @@ from app.base.clock import SystemClock
 from app.base.file_text import utf8_of
 from app.cli.drives import BaudRate, ParityBit, StopBits
 from app.cli.drives import drive as drive
+from app.drives.connections.adapters import drive_on
 from app.drives.connections.bus_tools import Played, record, replay, scan
 from app.drives.connections.buses import Buses
 from app.drives.connections.probe import probe
 from app.drives.connections.profile_needs import check_needs
+from app.drives.drive import check_fit
 from app.drives.profile import Profile, known_profiles, load_profile
 from app.drives.write_frame import write_frame
 from app.modbus.errors import DriveError
@@ -69,10 +71,18 @@ def profiles() -> None:
 
 
 @drive.command()
-def check(file: ProfileName) -> None:
+def check(
+    file: ProfileName,
+    gear: Annotated[
+        float | None,
+        typer.Option(min=0.0001, max=999_999, help="Gear ratio of both axes: check that its numbers fit."),
+    ] = None,
+) -> None:
     """Check a profile: a wrong one is refused with file, line, key and rule."""
     found = load_profile(file)
     check_needs(found)
+    if gear is not None:
+        _check_gear(found, gear)
     typer.echo(
         f"{file} is a right profile for adapter {found.adapter}: {len(found.registers)} registers, "
         f"{_watchdog(found)}, {_switches(found)}. {_verified(found)}"
@@ -198,6 +208,13 @@ def frame(
 ) -> None:
     """Print the Modbus RTU frame that writes a register, to hold against the manual; sends nothing."""
     typer.echo(write_frame(load_profile(profile), {register: value}, unit).hex(" ").upper())
+
+
+def _check_gear(profile: Profile, gear_ratio: float) -> None:
+    """Raise `DriveError` if a tracker with usual limits and speeds has a number that fits no register."""
+    drive = _with_axes(DriveConfig(DriveKind.MODBUS_TCP), profile, None, gear_ratio)
+    buses, clock = Buses(SystemClock()), SystemClock()
+    check_fit(drive_on(_tracker(drive), profile, lambda one: buses.unit(drive, one, profile.timing), clock))
 
 
 async def _scan(config: DriveConfig, units: range, address: int) -> int:

@@ -48,6 +48,20 @@ class SharingDrive(Protocol):
         """Return how the line is shared, None where there is none."""
 
 
+@runtime_checkable
+class EncodingDrive(Protocol):
+    """A drive whose commands are numbers in registers, which can be tried without a connection."""
+
+    def check_fit(self) -> None:
+        """Raise `DriveError` for a number that the settings can command and a register cannot hold."""
+
+
+def check_fit(drive: Drive) -> None:
+    """Raise `DriveError` if the settings of a drive command a number that does not fit into its register."""
+    if isinstance(drive, EncodingDrive):
+        drive.check_fit()
+
+
 def line_turn(drive: Drive) -> LineTurn | None:
     """Return how a drive shares its line with others, None where it has none or does not tell."""
     return drive.line_turn if isinstance(drive, SharingDrive) else None

@@ -1,7 +1,7 @@
 """Rules that hold between the tables of a profile; a broken one is told with file, line, key and rule."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 from app.base.message import say
 from app.drives.profile_text import Source
@@ -63,10 +63,15 @@ def check_bits(bits: Mapping[str, Mapping[str, int]], registers: Registers, sour
                 raise source.error(f"bits.{name}.{word}", rule)
 
 
-def check_enums(names: Iterable[str], registers: Registers, source: Source) -> None:
-    """Raise `ProfileError` for words that no register takes."""
-    for name in names:
-        if not any(has_words(register.name, name) for register in registers.values()):
+def check_enums(enums: Mapping[str, Mapping[str, int]], registers: Registers, source: Source) -> None:
+    """Raise `ProfileError` for words that no register takes, or whose numbers one cannot hold."""
+    for name, words in enums.items():
+        taking = [register for register in registers.values() if has_words(register.name, name)]
+        for register in taking:
+            if register.access is Access.READ_WRITE:
+                for word, number in words.items():
+                    check_step(register, number, f"enums.{name}.{word}", source)
+        if not taking:
             rule = say(
                 "there is no register named {name}, *_{name2} or {name3}_kind that takes these words",
                 name=name,

@@ -3,6 +3,10 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from math import isfinite
+
+from app.base.message import data, say, with_format
+from app.modbus.errors import DriveRefused
 
 
 class WordType(StrEnum):
@@ -19,6 +23,10 @@ class WordOrder(StrEnum):
 
     HIGH_FIRST = "high-first"
     LOW_FIRST = "low-first"
+
+
+class ValueMisfit(DriveRefused):
+    """A value does not fit into its register: it is refused before anything is sent."""
 
 
 class Access(StrEnum):
@@ -83,19 +91,34 @@ class Register:
         return round(self.integer(words, first_address) * self.scale * self.sign, 9) + 0.0
 
     def placed(self, value: float) -> dict[int, int]:
-        """Return address and word of a value in its unit, or raise `ValueError` if it does not fit."""
+        """Return address and word of a value in its unit, or raise `ValueMisfit`."""
         return dict(enumerate(self.words(value), self.address))
 
     def words(self, value: float) -> tuple[int, ...]:
-        """Return the words for a value in its unit, or raise `ValueError` if it does not fit."""
-        integer = round(value / (self.scale * self.sign))
-        lowest, highest = RANGES[self.type]
-        if not lowest <= integer <= highest:
-            raise ValueError(f"{value} does not fit into register {self.name} ({self.type}).")
+        """Return the words for a value in its unit, or raise `ValueMisfit`."""
+        integer = self.packed(value)
         if not self.is_wide:
             return (integer & 0xFFFF,)
         high, low = integer >> 16 & 0xFFFF, integer & 0xFFFF
         return (low, high) if self.order is WordOrder.LOW_FIRST else (high, low)
+
+    def packed(self, value: float) -> int:
+        """Return the integer that stands for a value in its unit, or raise `ValueMisfit`."""
+        exact = value / (self.scale * self.sign)
+        lowest, highest = RANGES[self.type]
+        if not isfinite(exact) or not lowest <= round(exact) <= highest:
+            ends = sorted(end * self.scale * self.sign + 0.0 for end in (lowest, highest))
+            raise ValueMisfit(
+                say(
+                    "{value} does not fit into register {name} ({address}), which holds {least} to {most}.",
+                    value=with_format(value, NUMBER),
+                    name=self.name,
+                    address=self.address,
+                    least=with_format(ends[0], NUMBER),
+                    most=data(f"{ends[1]:{NUMBER}} {self.unit}".strip()),
+                )
+            )
+        return round(exact)
 
     def is_plausible(self, value: float) -> bool:
         """Return whether a value lies in the range that the profile gives."""
@@ -103,6 +126,7 @@ class Register:
         return above and (self.maximum is None or value <= self.maximum)
 
 
+NUMBER = ".10g"
 RANGES = {
     WordType.UINT16: (0, 0xFFFF),
     WordType.INT16: (-0x8000, 0x7FFF),

@@ -9,7 +9,7 @@ from datetime import datetime
 from typing import assert_never
 
 from app.base.message import say, with_format
-from app.drives.drive import Drive, answers_at_once, line_turn
+from app.drives.drive import Drive, answers_at_once, check_fit, line_turn
 from app.modbus.line_turn import LineTurn
 from app.tracker.settings.axes import Axis, AxisConfig
 from app.tracker.settings.config import AxisDrive, TrackerConfig
@@ -97,6 +97,10 @@ class CorrectedDrive:
     def capabilities(self) -> DriveCapabilities:
         """Return what the drive can do."""
         return self._inner.capabilities
+
+    def check_fit(self) -> None:
+        """Try the numbers of the drive behind this one, whose limits and speeds are in its own units."""
+        check_fit(self._inner)
 
     async def read(self) -> Feedback:
         """Return a fresh reading, or raise `DriveError`."""

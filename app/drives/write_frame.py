@@ -9,7 +9,10 @@ from app.modbus.wire import Ask
 
 
 def write_frame(profile: Profile, values: Mapping[str, float], unit: int) -> bytes:
-    """Return the RTU frame that writes neighbouring registers, or raise `ValueError` if that takes more."""
+    """Return the RTU frame that writes neighbouring registers, or raise `ValueError` if that takes more.
+
+    Raises `ValueMisfit` for a value that does not fit into its register.
+    """
     words: dict[int, int] = {}
     for name, value in values.items():
         register = profile.registers.get(name)

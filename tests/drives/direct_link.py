@@ -17,6 +17,7 @@ from app.drives.profile import Adapter, load_profile
 from app.drives.unit import Unit
 from app.modbus.bus import Priority
 from app.modbus.errors import DriveError, DriveSilent
+from app.modbus.line_turn import LineTurn
 from app.modbus.server import Device
 from app.simulation.devices.shelf import devices
 from app.simulation.simulated import SimulatedDrive
@@ -35,6 +36,8 @@ DIALECTS: Mapping[Adapter, Callable[[Unit, Gearing, float], Dialect]] = {
 
 class DirectLink:
     """Carries requests out at once; `holds` says whose reply waits for `release`, `loses` whose is lost."""
+
+    line_turn = LineTurn(1, 0.0, 0.0)
 
     def __init__(self, device: Device) -> None:
         self.device = device

@@ -114,3 +114,18 @@ def test_a_replay_tells_angles_behind_the_gear_and_wants_a_file_that_is_there(
     assert angles[1] > 1.0
     code, said = run("replay", str(tmp_path / "none.jsonl"), "--profile", "leadshine-rs")
     assert (code, "does not exist" in said) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("profile", "gear", "says"),
+    [
+        ("leadshine-rs", "1", "1000000 does not fit into register path_acceleration"),
+        ("leadshine-rs", "60", None),
+        ("kinco-cia402", "300000", "does not fit into register target_position"),
+        ("simulated-plc", "1", None),
+    ],
+)
+def test_a_profile_is_checked_with_a_gear(profile: str, gear: str, says: str | None) -> None:
+    code, text = run("check", profile, "--gear", gear)
+    assert (code == 0) is (says is None), text
+    assert says is None or says in text

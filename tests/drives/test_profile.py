@@ -7,7 +7,7 @@ import pytest
 from app.drives.connections.profile_needs import check_needs
 from app.drives.dialects.plc_map import PlcMap
 from app.drives.profile import PROFILES, ProfileError, known_profiles, load_profile, parse_profile
-from app.drives.register import Register, WordOrder, WordType
+from app.drives.register import Register, ValueMisfit, WordOrder, WordType
 from app.simulation.profile_page import DOCS, renewed
 
 TEXT = (PROFILES / "simulated-plc.toml").read_text(encoding="utf-8")
@@ -141,5 +141,5 @@ def test_values_are_packed_and_unpacked(name: str) -> None:
 
 @pytest.mark.parametrize("value", [-1, 65536, float("1e12")])
 def test_what_does_not_fit_is_refused(value: float) -> None:
-    with pytest.raises(ValueError, match="does not fit into register x"):
+    with pytest.raises(ValueMisfit, match="does not fit into register x"):
         Register("x", 7, WordType.UINT16).words(value)

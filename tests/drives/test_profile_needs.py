@@ -37,6 +37,12 @@ LACKING = {
     "a known ramp": ("leadshine-rs", '"ms/1000rpm"', '"s"', "needs steps/s2 or ms/1000rpm as the unit"),
     "a sequence": ("oriental-az", "set_home = [", "zero = [", "needs a sequence named set_home"),
     "a model's point": ("sunspec-601", "scale = {", "power = {", "needs a register named scale"),
+    "a counter that would overflow": (
+        "simulated-plc",
+        'keep_alive = { address = 20, type = "uint16"',
+        'keep_alive = { address = 20, type = "int16"',
+        "keep_alive counts to 65535",
+    ),
 }
 
 
@@ -68,6 +74,12 @@ def test_a_wrong_sequence_or_axis_is_refused_with_its_line(what: str) -> None:
     assert right in text
     with pytest.raises(ProfileError, match=sentence):
         parse_profile(text.replace(right, wrong, 1), "own.toml")
+
+
+def test_a_word_whose_number_does_not_fit_is_refused_with_its_line() -> None:
+    text = text_of("kinco-cia402").replace("home = 33 ", "home = 40000 ", 1)
+    with pytest.raises(ProfileError, match=r"line \d+, enums.homing_method.home: 40000 does not fit into"):
+        parse_profile(text, "own.toml")
 
 
 def test_a_step_takes_a_word_or_a_number() -> None:

@@ -51,15 +51,21 @@ class Cia402Axis:
                 say("it is in state {state}, not {enabled}", state=state, enabled=State.ENABLED)
             )
 
+    def moving(self, target: int, speed_dps: float) -> Mapping[str, float]:
+        """Return the ramps, and target and speed of profile position mode."""
+        return self._ramps() | self._position(target, speed_dps).values()
+
+    def turning(self, velocity_dps: float) -> Mapping[str, float]:
+        """Return the ramps, and the speed of profile velocity mode."""
+        return self._ramps() | self._velocity(velocity_dps).values()
+
     async def move(self, target: int, speed_dps: float, *, confirmed: bool) -> None:
         """Go to a position in profile position mode."""
-        speed = self._gearing.speed(speed_dps, self._speed_unit("profile_velocity"))
-        await self._run(ProfilePosition(target, speed), confirmed=confirmed)
+        await self._run(self._position(target, speed_dps), confirmed=confirmed)
 
     async def turn(self, velocity_dps: float) -> None:
         """Turn in profile velocity mode."""
-        unit = self._speed_unit("target_velocity")
-        await self._run(ProfileVelocity(self._gearing.velocity(velocity_dps, unit)), confirmed=False)
+        await self._run(self._velocity(velocity_dps), confirmed=False)
 
     async def halt(self) -> None:
         """Set the halt bit: the drive ramps down and holds."""
@@ -83,15 +89,23 @@ class Cia402Axis:
         await self._unit.stop({"controlword": cia402.HALTED})
 
     async def _run(self, mode: Mode, *, confirmed: bool) -> None:
-        ramps = ("profile_acceleration", "profile_deceleration")
-        values = {name: self._ramp(name) for name in ramps if self._unit.has(name)}
-        await self._unit.put(values | {"mode": mode.number})
+        await self._unit.put(self._ramps() | {"mode": mode.number})
         await self._unit.put(mode.values(), confirmed=confirmed)
         for controlword in mode.controlwords:
             await self._unit.put({"controlword": controlword})
 
     async def _state(self) -> State:
         return cia402.state_of(int((await self._unit.poll("statusword"))["statusword"]))
+
+    def _position(self, target: int, speed_dps: float) -> ProfilePosition:
+        return ProfilePosition(target, self._gearing.speed(speed_dps, self._speed_unit("profile_velocity")))
+
+    def _velocity(self, velocity_dps: float) -> ProfileVelocity:
+        return ProfileVelocity(self._gearing.velocity(velocity_dps, self._speed_unit("target_velocity")))
+
+    def _ramps(self) -> dict[str, float]:
+        ramps = ("profile_acceleration", "profile_deceleration")
+        return {name: self._ramp(name) for name in ramps if self._unit.has(name)}
 
     def _ramp(self, name: str) -> float:
         return self._gearing.ramp(self._acceleration_dps2, self._unit.profile.registers[name].unit)

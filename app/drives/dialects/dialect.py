@@ -28,6 +28,12 @@ class Dialect(Protocol):
     def status(self, values: Mapping[str, float]) -> AxisStatus:
         """Return what the registers of a reading say; pure."""
 
+    def moving(self, target: int, speed_dps: float) -> Mapping[str, float]:
+        """Return the registers that send the axis to a position; pure."""
+
+    def turning(self, velocity_dps: float) -> Mapping[str, float]:
+        """Return the registers that turn the axis; pure."""
+
     async def enable(self) -> None:
         """Power the motor without moving it, or raise `DriveError`."""
 

@@ -41,17 +41,25 @@ class DirectAxis:
         """Take away a stop input that is still on: nothing starts under it."""
         await self._unit.put({"input_command": 0})
 
+    def moving(self, target: int, speed_dps: float) -> Mapping[str, float]:
+        """Return the direct data of a move to a position."""
+        speed = self._gearing.speed(speed_dps, self._unit.profile.registers["direct_speed"].unit)
+        return self._data("absolute", target, speed)
+
+    def turning(self, velocity_dps: float) -> Mapping[str, float]:
+        """Return the direct data of continuous motion at a signed speed."""
+        speed = self._gearing.velocity(velocity_dps, self._unit.profile.registers["direct_speed"].unit)
+        return self._data("continuous", 0, speed)
+
     async def move(self, target: int, speed_dps: float, *, confirmed: bool) -> None:
         """Go to a position: one frame of sixteen registers."""
-        speed = self._gearing.speed(speed_dps, self._unit.profile.registers["direct_speed"].unit)
-        await self._operate(self._types["absolute"], target, speed)
+        await self._unit.put(self.moving(target, speed_dps), renewed=True)
         if confirmed:
             self._unit.expect({"direct_position": target})
 
     async def turn(self, velocity_dps: float) -> None:
         """Run continuously at a signed speed."""
-        speed = self._gearing.velocity(velocity_dps, self._unit.profile.registers["direct_speed"].unit)
-        await self._operate(self._types["continuous"], 0, speed)
+        await self._unit.put(self.turning(velocity_dps), renewed=True)
 
     async def halt(self) -> None:
         """Give the stop input."""
@@ -79,10 +87,10 @@ class DirectAxis:
         for word in (self._inputs[name], 0):
             await self._unit.put({"input_command": word}, renewed=True)
 
-    async def _operate(self, kind: int, position: int, speed: float) -> None:
-        values: dict[str, float] = {
+    def _data(self, kind: str, position: int, speed: float) -> Mapping[str, float]:
+        return {
             "direct_data_number": 0,
-            "direct_type": kind,
+            "direct_type": self._types[kind],
             "direct_position": position,
             "direct_speed": speed,
             "direct_acceleration": self._ramp,
@@ -90,4 +98,3 @@ class DirectAxis:
             "direct_current": self._current,
             "direct_trigger": self._start,
         }
-        await self._unit.put(values, renewed=True)

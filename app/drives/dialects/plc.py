@@ -30,6 +30,7 @@ class PlcDrive:
     """
 
     def __init__(self, config: TrackerConfig, profile: Profile, clock: Clock, link: BusUnit) -> None:
+        self._config = config
         self._profile = profile
         self._map = PlcMap(profile)
         self._link = link
@@ -74,6 +75,11 @@ class PlcDrive:
             watchdog_action=self._profile.watchdog.action if self._profile.watchdog is not None else "",
             unverified=self._profile.unverified,
         )
+
+    def check_fit(self) -> None:
+        """Raise `ValueMisfit` if the settings command a number that does not fit into its register."""
+        for axis in self._config.mount.axes:
+            self._map.check_fit(axis, self._config.axis(axis))
 
     async def read(self) -> Feedback:
         """Return one fresh, checked and complete reading, or raise `DriveError`."""

@@ -4,9 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import astuple
 
 from app.base.message import N_, say
+from app.drives.dialects.extremes import check_encoded, extremes
 from app.drives.profile import Profile
-from app.drives.register import Register
-from app.tracker.settings.axes import Axis
+from app.drives.register import Register, ValueMisfit
+from app.tracker.settings.axes import Axis, AxisConfig
 from app.tracker.values.motion import (
     HALT,
     AxisCommand,
@@ -27,6 +28,7 @@ NEEDED = (
     *(f"{axis}_{part}" for axis in Axis for part in ("motion", "setpoint", "speed", "position", "velocity")),
 )  # fmt: skip
 LIGHT = tuple(f"light_{axis}_{side}" for axis in Axis for side in ("lower", "higher"))
+COUNTED, MOST_COUNTED = ("keep_alive", "request_number"), 0xFFFF
 CLOCK_PARTS = ("year", "month", "day", "hour", "minute", "second")
 NEEDED_ENUMS = {"motion": ("halt", "velocity", "position"), "request": ("none",)}
 NO_SWITCHES: Mapping[str, int] = {}
@@ -50,16 +52,25 @@ class PlcMap:
         """Return address and word of everything a command says; nothing about a request or horn it lacks."""
         words: dict[int, int] = {}
         for axis, wanted in ((Axis.AZIMUTH, command.azimuth), (Axis.ELEVATION, command.elevation)):
-            motion, setpoint, speed = self._numbers(wanted)
-            words |= self.words(f"{axis}_motion", motion)
-            words |= self.words(f"{axis}_setpoint", setpoint)
-            words |= self.words(f"{axis}_speed", speed)
+            for name, value in self.axis_values(axis, wanted).items():
+                words |= self.words(name, value)
         if command.horn:
             words |= self.words("horn", 1)
         if command.request is not None:
             words |= self.words("request_number", command.request.number & 0xFFFF)
             words |= self.words("request_kind", self._requests[command.request.kind])
         return words
+
+    def axis_values(self, axis: Axis, wanted: AxisCommand) -> dict[str, float]:
+        """Return what one axis is told, by the names of its registers."""
+        motion, setpoint, speed = self._numbers(wanted)
+        return {f"{axis}_motion": motion, f"{axis}_setpoint": setpoint, f"{axis}_speed": speed}
+
+    def check_fit(self, axis: Axis, config: AxisConfig) -> None:
+        """Raise `ValueMisfit` if an axis's settings command a number that does not fit into its register."""
+        for command in extremes(config):
+            values = self.axis_values(axis, command)
+            check_encoded(axis, self._registers, values)
 
     def words(self, name: str, value: float) -> dict[int, int]:
         """Return address and word of one register's value; nothing if the profile has no such register."""
@@ -217,6 +228,7 @@ def _check(profile: Profile) -> None:
     for name in NEEDED:
         if name not in profile.registers:
             raise profile.text.error(f"registers.{name}", f"a plc needs a register named {name}")
+    _check_counted(profile)
     if "status" not in profile.blocks:
         raise profile.text.error("blocks.status", "a plc needs a block named status")
     if "status" not in profile.bits:
@@ -226,6 +238,16 @@ def _check(profile: Profile) -> None:
             if word not in profile.enums.get(enum, {}):
                 raise profile.text.error(f"enums.{enum}", f"the enumeration {enum} needs the word {word}")
     _check_block(profile)
+
+
+def _check_counted(profile: Profile) -> None:
+    """Raise `ProfileError` for a counter that could not hold its numbers one day."""
+    for name in COUNTED:
+        try:
+            profile.registers[name].packed(MOST_COUNTED)
+        except ValueMisfit as misfit:
+            rule = f"{name} counts to {MOST_COUNTED}: make it uint16"
+            raise profile.text.error(f"registers.{name}.type", rule) from misfit
 
 
 def _check_block(profile: Profile) -> None:

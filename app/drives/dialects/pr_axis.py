@@ -69,20 +69,25 @@ class PrAxis:
         if not await self._is_enabled():
             raise self._unit.not_taken(N_("the motor is not enabled"))
 
+    def moving(self, target: int, speed_dps: float) -> Mapping[str, float]:
+        """Return the path block of a move to a position."""
+        speed = self._gearing.speed(speed_dps, self._unit.profile.registers["path_speed"].unit)
+        return self._path("absolute", target, speed)
+
+    def turning(self, velocity_dps: float) -> Mapping[str, float]:
+        """Return the path block of the velocity mode, whose speed is signed."""
+        speed = self._gearing.velocity(velocity_dps, self._unit.profile.registers["path_speed"].unit)
+        return self._path("velocity", 0, speed)
+
     async def move(self, target: int, speed_dps: float, *, confirmed: bool) -> None:
         """Go to a position: one frame of eight registers."""
-        speed = self._gearing.speed(speed_dps, self._unit.profile.registers["path_speed"].unit)
-        path = PathBlock(self._modes["absolute"], target, speed, self._ramp, self._ramp, self._start)
-        values = path.values()
-        await self._unit.put(values, renewed=True)
+        await self._unit.put(self.moving(target, speed_dps), renewed=True)
         if confirmed:
             self._unit.expect({"path_position": target})
 
     async def turn(self, velocity_dps: float) -> None:
-        """Run the velocity mode of path 0, whose speed is signed."""
-        speed = self._gearing.velocity(velocity_dps, self._unit.profile.registers["path_speed"].unit)
-        path = PathBlock(self._modes["velocity"], 0, speed, self._ramp, self._ramp, self._start)
-        await self._unit.put(path.values(), renewed=True)
+        """Run the velocity mode of path 0."""
+        await self._unit.put(self.turning(velocity_dps), renewed=True)
 
     async def halt(self) -> None:
         """Trigger the stop."""
@@ -103,6 +108,10 @@ class PrAxis:
     async def stop(self) -> None:
         """Trigger the stop ahead of everything that waits."""
         await self._unit.stop({"trigger": self._triggers["stop"]})
+
+    def _path(self, mode: str, target: int, speed: float) -> Mapping[str, float]:
+        path = PathBlock(self._modes[mode], target, speed, self._ramp, self._ramp, self._start)
+        return path.values()
 
     async def _is_enabled(self) -> bool:
         return flag(self._bits, "enabled", (await self._unit.poll("status"))["status"])

@@ -1,5 +1,6 @@
 """One axis of a tracker on a drive of its own, whatever the drive speaks."""
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import assert_never
@@ -7,10 +8,11 @@ from typing import assert_never
 from app.base.clock import Clock
 from app.base.message import say
 from app.drives.dialects.dialect import AxisStatus, Dialect
+from app.drives.dialects.extremes import check_encoded, extremes
 from app.drives.dialects.gearing import Gearing
 from app.drives.unit import Unit
 from app.modbus.errors import DriveError
-from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.axes import Axis, AxisConfig
 from app.tracker.values.motion import AxisCommand, AxisFeedback, Halt, Position, RequestKind, Velocity
 
 DISABLED = 0xFFFF
@@ -66,6 +68,12 @@ class RegisterAxis:
         self._is_faulty = False
         self._task: _Task | None = None
         self._outcome: bool | None = None
+
+    def check_fit(self, axis: Axis) -> None:
+        """Raise `ValueMisfit` if the settings command a number that does not fit into its register."""
+        for command in extremes(self._config):
+            for values in self._encoded(command):
+                check_encoded(axis, self.unit.profile.registers, values)
 
     async def read(self) -> AxisReading:
         """Return one fresh reading, or raise `DriveError`."""
@@ -213,10 +221,25 @@ class RegisterAxis:
             raise DriveError(
                 say("The drive at {where} has not been read yet; it is not moved.", where=self.unit.where)
             )
+        target, speed_dps = self._stepped(self._last.position_deg, velocity_dps)
+        await self._dialect.move(target, speed_dps, confirmed=False)
+
+    def _stepped(self, from_deg: float, velocity_dps: float) -> tuple[int, float]:
+        """Return target and speed of a step of hand motion."""
         speed_dps = min(abs(velocity_dps), self._config.speed_dps)
         reach_deg = speed_dps * LEASE_S + speed_dps**2 / (2.0 * self._config.acceleration_dps2)
-        target_deg = self._last.position_deg + (reach_deg if velocity_dps > 0.0 else -reach_deg)
-        await self._dialect.move(self._gearing.steps(target_deg), speed_dps, confirmed=False)
+        return self._gearing.steps(from_deg + (reach_deg if velocity_dps > 0.0 else -reach_deg)), speed_dps
+
+    def _encoded(self, command: Position | Velocity) -> Iterator[Mapping[str, float]]:
+        """Yield the registers of a command; without a watchdog a turn is a step, here from either limit."""
+        match command:
+            case Position(position_deg, speed_dps):
+                yield self._dialect.moving(self._gearing.steps(position_deg), speed_dps)
+            case Velocity(velocity_dps) if self._has_watchdog:
+                yield self._dialect.turning(velocity_dps)
+            case Velocity(velocity_dps):
+                for from_deg in (self._config.minimum_deg, self._config.maximum_deg):
+                    yield self._dialect.moving(*self._stepped(from_deg, velocity_dps))
 
     def _notice(self, status: AxisStatus) -> None:
         """Note that the motor was switched off, and by what: a restart, or somebody else."""

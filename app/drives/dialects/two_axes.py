@@ -48,6 +48,7 @@ class TwoAxisDrive:
         where: str,
     ) -> None:
         self._profile = profile
+        self._mounted = config.mount.axes
         self._axes = axes
         self._where = where
         self._plausibility = Plausibility(config, clock, {})
@@ -79,6 +80,11 @@ class TwoAxisDrive:
             watchdog_action=watchdog.action if watchdog is not None else "",
             unverified=self._profile.unverified,
         )
+
+    def check_fit(self) -> None:
+        """Raise `ValueMisfit` if the settings command a number that does not fit into its register."""
+        for axis in self._mounted:
+            self._axes[axis].check_fit(axis)
 
     async def read(self) -> Feedback:
         """Return one fresh reading of both axes, or raise `DriveError`."""

@@ -11,7 +11,8 @@ from app.base.clock import Clock
 from app.base.logs import get_logger
 from app.base.message import N_, NOTHING, say, told_by
 from app.drives.drive import Drive, answers_at_once, line_turn
-from app.modbus.errors import DriveError
+from app.drives.register import ValueMisfit
+from app.modbus.errors import DriveError, DriveRefused
 from app.site.loop.line_pace import LinePace
 from app.site.loop.link_quality import RoundTrips
 from app.site.loop.scheduler import Scheduler, Slot
@@ -30,6 +31,8 @@ from app.tracker.values.reason import Reason
 
 STOP_WITHIN_S = 0.5
 CLOSE_WITHIN_S = 1.0
+MOST_REFUSALS = 3
+"""So many commands may be refused before one that moves an axis is taken; then that is a fault."""
 STANDSTILL = Velocity(0.0)
 NEVER_FORBIDDEN = ("stop", "reset_fault")
 
@@ -72,6 +75,8 @@ class TrackerLoop:
         self._on_tick = on_tick
         self._trouble: Reason | None = None
         self._write_failed = False
+        self._was_read = False
+        self._refusals: tuple[Reason, ...] = ()
         self._ending = False
         self._stored_memory = state.memory
         self._last_snapshot: Snapshot | None = None
@@ -239,18 +244,22 @@ class TrackerLoop:
         self.feedback = shifted(self.memory.home_shift, raw)
         seen = self._surroundings.observe(self.config, self.feedback)
         pace = self._line.pace
-        seen = seen._replace(link=self.round_trips.quality(pace.within_s), silence=pace.silence)
+        refused = self._refusals[-1] if len(self._refusals) >= MOST_REFUSALS else None
+        link = self.round_trips.quality(pace.within_s)
+        seen = seen._replace(link=link, silence=pace.silence, refused=refused)
         tick = self.controller.tick(seen)
         if not self.controller.is_silent:
             told = _unmoved(tick.command) if unheard or self._ending else tick.command
             await self._write(unshifted(self.memory.home_shift, told))
+            if not self._write_failed and (_moves(told) or self.activity is ActivityName.FAULTED):
+                self._refusals = ()
         self._on_tick(self, seen, tick.events)
 
     def _in_time(self) -> AbstractAsyncContextManager[object]:
         return nullcontext() if self.answers_at_once else asyncio.timeout(self._line.pace.within_s)
 
     async def _read(self) -> Feedback | None:
-        asked_at = self._clock.now()
+        asked_at, self._was_read = self._clock.now(), False
         try:
             async with self._in_time():
                 feedback = await self.drive.read()
@@ -260,6 +269,7 @@ class TrackerLoop:
             self.counter.read_failures += 1
             self._trouble = _trouble(error)
             return None
+        self._was_read = True
         self.round_trips.count(self._clock.now() - asked_at)
         if self._write_failed:
             return None
@@ -275,6 +285,10 @@ class TrackerLoop:
             self.counter.write_failures += 1
             self._write_failed = True
             self._trouble = _trouble(error)
+            if self._was_read and isinstance(error, DriveRefused):
+                times = MOST_REFUSALS if isinstance(error, ValueMisfit) else 1
+                refusals = (*self._refusals, *[_refused(self.config, error)] * times)
+                self._refusals = refusals[-MOST_REFUSALS:]
 
     async def _break_off(self, error: Exception) -> None:
         """Stop this tracker for good after an error that nobody foresaw; the others go on."""
@@ -303,6 +317,22 @@ def _unmoved(command: DriveCommand) -> DriveCommand:
 
 def _still(axis: AxisCommand) -> AxisCommand:
     return axis if axis == STANDSTILL else HALT
+
+
+def _moves(command: DriveCommand) -> bool:
+    return any(axis not in (HALT, STANDSTILL) for axis in (command.azimuth, command.elevation))
+
+
+def _refused(config: TrackerConfig, error: DriveRefused) -> Reason:
+    return Reason(
+        "command_refused",
+        say(
+            "The drive of {name} was not given its command: {refusal}",
+            name=config.name,
+            refusal=told_by(error),
+        ),
+        N_("Correct the settings or the drive as described, then reset the fault."),
+    )
 
 
 def _trouble(error: DriveError | TimeoutError) -> Reason:

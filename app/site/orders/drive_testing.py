@@ -3,7 +3,7 @@
 from dataclasses import replace
 from math import isfinite
 
-from app.base.message import N_, Message, say, with_format
+from app.base.message import N_, Message, join, say, told_by, with_format
 from app.link.messages import AnswerDirection, AnswerScale, CheckConnection, RestoreDrive, SetSoftLimit
 from app.site.loop.loop import TrackerLoop
 from app.site.orders import tracker_setup
@@ -11,7 +11,7 @@ from app.site.state.model import SiteModel
 from app.site.state.validation import check_drive
 from app.tracker.access.interlocks import Action
 from app.tracker.commands.commands import CommandRejected
-from app.tracker.memory.drive_check import DriveCheck
+from app.tracker.memory.drive_check import CheckOutcome, DriveCheck, DriveReadings
 from app.tracker.memory.drive_tests import (
     AxisEnd,
     DirectionProof,
@@ -143,7 +143,9 @@ async def check_connection(model: SiteModel, wanted: CheckConnection, actor: str
     loop = model.tracker(wanted.tracker_id)
     tracker_setup.refuse_while_busy(model, loop)
     check_drive(wanted.drive)
-    readings = await model.checks.look(wanted.drive)
+    readings = _judged_fit(
+        model, replace(loop.config, drive=wanted.drive), await model.checks.look(wanted.drive)
+    )
     model.checks.keep(wanted.tracker_id, DriveCheck(wanted.drive, model.now(), actor, readings))
     event = model.event(
         EventKind.DRIVE_CHECKED,
@@ -158,6 +160,17 @@ async def check_connection(model: SiteModel, wanted: CheckConnection, actor: str
     )
     await model.ledger.append((event,))
     return (event,)
+
+
+def _judged_fit(model: SiteModel, config: TrackerConfig, readings: DriveReadings) -> DriveReadings:
+    """Return the readings of a drive that answers, with what of the settings does not fit its registers."""
+    if readings.outcome is not CheckOutcome.ANSWERED:
+        return readings
+    try:
+        model.check_drive(config)
+    except ValueError as error:
+        return replace(readings, message=join(" ", (readings.message, told_by(error))))
+    return readings
 
 
 def _judged(model: SiteModel, tracker_id: str, kind: ProofKind) -> tuple[TrackerLoop, ProofMove]:

@@ -7,7 +7,7 @@ from datetime import datetime, timedelta
 
 from app.base.clock import Clock
 from app.base.message import N_, Message, say, told_by
-from app.drives.drive import Drive
+from app.drives.drive import Drive, check_fit
 from app.link.messages import UnknownTracker
 from app.modbus.errors import DriveError
 from app.site.clock.timekeeping import Timekeeper
@@ -148,11 +148,11 @@ class SiteModel:
         )
 
     def check_drive(self, config: TrackerConfig) -> None:
-        """Raise `ValueError` if no drive can be made of a configuration."""
+        """Raise `ValueError` if no drive can be made of a configuration, or its numbers do not fit."""
         if config.drive.kind is DriveKind.SIMULATED:
             return
         try:
-            self.make_drive(config)
+            check_fit(self.make_drive(config))
         except DriveError as error:
             raise ValueError(told_by(error)) from error
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 from app.sun.position import Location, SunPosition
 from app.tracker.protections.words import LinkQuality
 from app.tracker.values.motion import Feedback
+from app.tracker.values.reason import Reason
 from app.tracker.weather.weather import NOTHING_SENSED, Sensed
 
 SILENCE = timedelta(seconds=0.6)
@@ -19,7 +20,7 @@ class Observation(NamedTuple):
     is the direction of the next sunrise (None: no sunrise ahead). `feedback` is None if this read failed.
     `location_revision` is `SiteState.location_revision`: confirmations carry it. `link` is how the
     drive's replies came of late, None while too few were counted. A drive that was not heard for longer
-    than `silence` is lost.
+    than `silence` is lost. `refused` is why the drive was not given its last commands, None if it was.
     """
 
     now: datetime
@@ -33,3 +34,4 @@ class Observation(NamedTuple):
     weather: Sensed = NOTHING_SENSED
     link: LinkQuality | None = None
     silence: timedelta = SILENCE
+    refused: Reason | None = None

@@ -5,6 +5,7 @@ from app.tracker.settings.mechanics import FaultClass
 CLASSES: dict[str, FaultClass] = {
     "drive_lost": FaultClass.LINK,
     "drive_fault": FaultClass.DRIVE,
+    "command_refused": FaultClass.DRIVE,
     "following_error": FaultClass.FOLLOWING,
     "position_frozen": FaultClass.FOLLOWING,
     "move_overdue": FaultClass.FOLLOWING,

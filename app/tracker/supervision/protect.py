@@ -76,6 +76,9 @@ def protect(state: ControllerState, before: Feedback | None, feedback: Feedback,
     suspicious = feedback.fault_code or feedback.azimuth.at_upper_limit or feedback.elevation.at_upper_limit
     if suspicious and not is_silent(state):
         _refuse_fault(state, feedback)
+    refused = None if state.seen is None else state.seen.refused
+    if refused is not None and not isinstance(state.activity, Faulted):
+        fail(state, refused)
     if before is not None and before is not feedback:
         _compare(state, before, feedback, elapsed.total_seconds())
     home = state.memory.home
