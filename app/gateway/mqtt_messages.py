@@ -107,7 +107,7 @@ def columns_payload(site: SiteSnapshot) -> bytes:
 
 
 def site_payload(site: SiteSnapshot) -> bytes:
-    """Return the site now; stale weather is told as null."""
+    """Return the site now; weather that is stale or impossible is told as null."""
     weather = None if site.weather is None else site.weather.usable
     sun = site.sun
     told: dict[str, Any] = {

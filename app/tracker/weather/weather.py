@@ -1,7 +1,7 @@
 """What a weather station of the site measured, and how old that is."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from datetime import datetime
 from enum import StrEnum
 from math import isfinite
@@ -168,5 +168,8 @@ class WeatherNow:
 
     @property
     def usable(self) -> Weather | None:
-        """Return the readings, None if they are stale."""
-        return None if self.stale else self.readings
+        """Return the readings without those that are impossible, None if they are stale."""
+        if self.stale:
+            return None
+        told = (name for name, one in self.quantities.items() if one.quality is Quality.IMPOSSIBLE)
+        return replace(self.readings, **dict.fromkeys(told))
