@@ -188,7 +188,9 @@ def _tell(what: str, broken: Break) -> bool:
 def _write(out: Path, as_format: Format, columns: Sequence[str], rows: Iterable[Row]) -> int:
     """Write rows and return how many there were."""
     count = 0
-    with open(out, "w", newline="", encoding="utf-8", opener=private_opener) as file:
+    # Without the byte order mark, Excel reads UTF-8 as the computer's own encoding.
+    encoding = "utf-8-sig" if as_format is Format.CSV else "utf-8"
+    with open(out, "w", newline="", encoding=encoding, opener=private_opener) as file:
         put = _put_csv(file, columns) if as_format is Format.CSV else _put_json(file)
         for count, one in enumerate(rows, start=1):  # noqa: B007 - the last number is the count
             put(one)

@@ -91,7 +91,8 @@ def test_the_record_of_users_is_checked_too(ask: Ask, tmp_path: Path) -> None:
 def test_the_audit_is_taken_along(ask: Ask, tmp_path: Path) -> None:
     told = ask("export", str(tmp_path / "audit.csv"), "--since", "2027-06-22")
     assert told.exit_code == 0, told.output
-    with (tmp_path / "audit.csv").open() as file:
+    assert (tmp_path / "audit.csv").read_bytes().startswith(b"\xef\xbb\xbf"), "for Excel"
+    with (tmp_path / "audit.csv").open(encoding="utf-8-sig") as file:
         rows = list(csv.DictReader(file))
     assert [row["seq"] for row in rows] == ["2", "3", "4", "5"]
     assert rows[0]["actor"] == f"'{ENTRY.actor}"
@@ -104,7 +105,7 @@ def test_the_audit_is_taken_along(ask: Ask, tmp_path: Path) -> None:
 def test_the_record_of_users_is_taken_along(ask: Ask, tmp_path: Path) -> None:
     told = ask("export", str(tmp_path / "access.csv"), "--of", "access")
     assert "2 entries of the record of users and tokens are in" in told.output
-    with (tmp_path / "access.csv").open() as file:
+    with (tmp_path / "access.csv").open(encoding="utf-8-sig") as file:
         rows = list(csv.DictReader(file))
     assert [(row["number"], row["action"]) for row in rows] == [("1", "add_user"), ("2", "log_in")]
     assert rows[1]["prev_hash"] == rows[0]["hash"]

@@ -74,7 +74,7 @@ def test_a_scenario_waits_for_its_time_in_calm() -> None:
         ("time,wind_mps\n10:60,3", "give a time such as 11:30"),
         ("time,wind_mps\n10:00,fast", "wind_mps must be a number, not 'fast'"),
         ("time,wind_mps\n10:00,99", "The simulated mean wind must lie between 0 and 50"),
-        ("time,wind_mps\n10:00,nan", "The simulated mean wind must lie between 0 and 50"),
+        ("time,wind_mps\n10:00,nan", "wind_mps must be a number, not 'nan'"),
         ("time,wind_mps\n10:00,3\n10:00,4", "must come after the one before it"),
         ("time,wind_mps", "has 1 to 500 steps"),
     ],

@@ -100,6 +100,9 @@ async def test_the_journal_is_narrowed_and_handed_out_as_a_file(desk: Desk) -> N
     head, line = file.text.splitlines()
     assert head == "number,at,kind,tracker_id,actor,message,data"
     assert "was acknowledged." in line
+    for_excel = await desk.ask("GET", "/api/v1/journal/export?format=excel&kind=alarm_acknowledged")
+    assert for_excel.content == b"\xef\xbb\xbf" + file.content
+    assert for_excel.headers["content-disposition"] == 'attachment; filename="journal.csv"'
     whole = (await desk.ask("GET", "/api/v1/journal/export?format=json")).json()
     assert {"alarm_raised", "alarm_acknowledged", "controller_started"} & {one["kind"] for one in whole}
     assert (await desk.ask("GET", "/api/v1/journal/export?format=json&actor=nobody")).json() == []
@@ -109,7 +112,7 @@ async def test_the_journal_page_keeps_what_was_typed(desk: Desk) -> None:
     page = await desk.ask("GET", "/journal?text=stored&kind=alarm_raised&start=2027-06-21")
     assert page.status_code == 200
     assert 'value="stored"' in page.text
-    assert "/api/v1/journal/export?format=csv&amp;kind=alarm_raised&amp;text=stored" in page.text
+    assert "/api/v1/journal/export?format=excel&amp;kind=alarm_raised&amp;text=stored" in page.text
     wrong = await desk.ask("GET", "/journal?start=tomorrow")
     assert wrong.status_code == 422
     assert 'value="tomorrow"' in wrong.text

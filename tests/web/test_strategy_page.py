@@ -84,7 +84,7 @@ async def test_a_program_made_by_hand_is_saved(client: httpx.AsyncClient, machin
     assert isinstance(strategy, Stepped)
     assert strategy.program.steps[1] == ProgramStep(12.5, 180.0, None)
     assert (strategy.program.frame, strategy.program.utc_offset_h) == (StepFrame.HORIZON, 3.0)
-    assert (await client.get(f"{PAGE}/program.csv")).text == to_table(strategy.program)
+    assert (await client.get(f"{PAGE}/program.csv")).text == "\ufeff" + to_table(strategy.program)
 
 
 async def test_a_wrong_row_is_named_and_what_was_typed_stays(

@@ -3,7 +3,8 @@
 First a line `# name`, then a line with the names of the columns, which say what times and angles are:
 `solar_time`, or `clock_time` (UTC), or `clock_time_utc+02:00`; then `azimuth_deg,elevation_deg`, or
 `hour_angle_deg,declination_deg`, or `first_axis_deg,second_axis_deg`. Times are 07:52:48, or hours such as
-7.88; an angle that is left empty follows the tracker's mode.
+7.88; an angle that is left empty follows the tracker's mode. Semicolons or tabs and decimal commas, as
+spreadsheets save them, are read as well; what is written here is always the same.
 """
 
 import csv
@@ -21,7 +22,7 @@ from app.tracker.settings.stepped import (
     TimeBase,
     step_errors,
 )
-from app.tracker.values.minus import with_minus
+from app.tracker.values.file_table import FileTable, TableRefused, read_table
 
 COLUMNS = {
     StepFrame.HORIZON: ("azimuth_deg", "elevation_deg"),
@@ -48,6 +49,7 @@ class _Reading:
     """What was read so far, and what was wrong with it."""
 
     frame: StepFrame
+    table: FileTable
     steps: list[ProgramStep] = field(default_factory=list)
     wrong: list[str] = field(default_factory=list)
 
@@ -55,7 +57,7 @@ class _Reading:
 def to_table(program: StepProgram) -> str:
     """Return a program as CSV with lines that end in a line feed."""
     out = StringIO()
-    out.write(f"# {program.name}\n")
+    out.write(_comment(program.name))
     rows = csv.writer(out, lineterminator="\n")
     rows.writerow((_time_column(program), *COLUMNS[program.frame]))
     for step in program.steps:
@@ -72,33 +74,25 @@ def from_table(text: str, *, name: str = "") -> StepProgram:
                 longest_text=LONGEST_TEXT,
             )
         )
-    titles, rows = _lines(text)
-    if not rows:
+    try:
+        table = read_table(text)
+    except TableRefused as error:
+        raise TableWrong(told_by(error)) from error
+    if not table.names:
         raise TableWrong(
             N_("The file is empty: it needs a line with the names of the columns, then the steps.")
         )
-    frame, base, offset_h = _head(rows[0][1])
-    reading = _Reading(frame)
-    for number, cells in rows[1 : MOST_STEPS + 2]:
+    frame, base, offset_h = _head(table.names)
+    reading = _Reading(frame, table)
+    for number, cells in table.rows[: MOST_STEPS + 1]:
         _read_row(reading, number, cells)
     if reading.wrong:
         raise TableWrong(*reading.wrong[:MOST_SENTENCES])
     try:
-        title = titles[0] if titles and titles[0] else name or UNNAMED
+        title = table.comments[0] if table.comments and table.comments[0] else name or UNNAMED
         return StepProgram(title, tuple(reading.steps), frame, base, offset_h)
     except ValueError as error:
         raise TableWrong(told_by(error)) from error
-
-
-def read_time(text: str) -> float:
-    """Return a time of the day in hours from 07:52:48 or 7.88; raises `ValueError`."""
-    found = TIME.fullmatch(text.strip())
-    if found is None:
-        return float(text)
-    hours, minutes, seconds = int(found[1]), int(found[2]), float(found[3] or 0.0)
-    if minutes >= 60 or seconds >= 60.0:
-        raise ValueError(say("{text} is not a time.", text=text))
-    return (hours * 3600.0 + minutes * 60.0 + seconds) / 3600.0
 
 
 def time_text(hour: float) -> str:
@@ -126,24 +120,14 @@ def _time_column(program: StepProgram) -> str:
     return f"clock_time_utc{sign}{minutes // 60:02d}:{minutes % 60:02d}"
 
 
-def _lines(text: str) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """Return the comments, and the other lines that are not empty with their numbers, cut into cells."""
-    comments: list[str] = []
-    rows: list[tuple[int, list[str]]] = []
-    for number, line in enumerate(text.removeprefix("\ufeff").splitlines(), start=1):
-        if line.startswith("#"):
-            comments.append(line.lstrip("# ").strip())
-        elif line.strip(" ,;\t"):
-            rows.append((number, [cell.strip() for cell in _cells(line)]))
-    return comments, rows
+def _comment(name: str) -> str:
+    """Return the line with the name, in quotation marks where a spreadsheet would cut it into cells."""
+    line = f"# {name}"
+    plain = name == name.strip() and not re.search('[",;\t]', name)
+    return f"{line}\n" if plain else '"{}"\n'.format(line.replace('"', '""'))
 
 
-def _cells(line: str) -> list[str]:
-    separator = ";" if ";" in line else ","
-    return next(csv.reader([line], delimiter=separator))
-
-
-def _head(cells: list[str]) -> tuple[StepFrame, TimeBase, float]:
+def _head(cells: tuple[str, ...]) -> tuple[StepFrame, TimeBase, float]:
     """Return what the names of the columns say."""
     frames = {names: frame for frame, names in COLUMNS.items()}
     frame = frames.get((cells[1], cells[2])) if len(cells) == 3 else None
@@ -164,13 +148,13 @@ def _head(cells: list[str]) -> tuple[StepFrame, TimeBase, float]:
     return frame, TimeBase.CLOCK, -offset_h if clock[1] == "-" else offset_h
 
 
-def _read_row(reading: _Reading, number: int, cells: list[str]) -> None:
+def _read_row(reading: _Reading, number: int, cells: tuple[str, ...]) -> None:
     names = COLUMNS[reading.frame]
     if len(cells) != 3:
         reading.wrong.append(say("Row {number} has {cells} cells, not 3.", number=number, cells=len(cells)))
         return
     wrong: list[str] = []
-    values = list(_numbers(number, ("time", *names), cells, wrong))
+    values = list(_numbers(reading.table, number, ("time", *names), cells, wrong))
     if values[0] is None and not wrong:
         wrong.append(say("Row {number}, time: give a time such as 07:52:48.", number=number))
     if not wrong and values[0] is not None:
@@ -184,12 +168,23 @@ def _read_row(reading: _Reading, number: int, cells: list[str]) -> None:
     reading.wrong += wrong
 
 
+def _time(table: FileTable, text: str) -> float:
+    """Return a time of the day in hours from 07:52:48 or 7.88; raises `ValueError`."""
+    found = TIME.fullmatch(text)
+    if found is None:
+        return table.number(text)
+    hours, minutes, seconds = int(found[1]), int(found[2]), float(found[3] or 0.0)
+    if minutes >= 60 or seconds >= 60.0:
+        raise ValueError(text)
+    return (hours * 3600.0 + minutes * 60.0 + seconds) / 3600.0
+
+
 def _numbers(
-    number: int, names: tuple[str, ...], cells: list[str], wrong: list[str]
+    table: FileTable, number: int, names: tuple[str, ...], cells: tuple[str, ...], wrong: list[str]
 ) -> Iterator[float | None]:
     for place, (name, cell) in enumerate(zip(names, cells, strict=True)):
         try:
-            yield None if not cell else read_time(cell) if place == 0 else float(with_minus(cell))
+            yield None if not cell else _time(table, cell) if place == 0 else table.number(cell)
         except ValueError:
             wanted = N_("a time such as 07:52:48 or 7.88") if place == 0 else N_("a number")
             wrong.append(

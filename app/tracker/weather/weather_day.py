@@ -1,7 +1,5 @@
 """The weather of a simulated day: a scenario, or steps by the clock, each of which holds until the next."""
 
-import csv
-import io
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -11,7 +9,7 @@ from typing import Any
 
 from app.base.message import N_, join, say
 from app.sun.position import SunPosition
-from app.tracker.values.minus import with_minus
+from app.tracker.values.file_table import FileTable, TableRefused, read_table
 from app.tracker.weather.simulated_weather import SPANS, Scenario, SimulatedStation, weather_at
 from app.tracker.weather.weather import Weather
 
@@ -94,40 +92,41 @@ def read_steps(text: str) -> tuple[WeatherStep, ...]:
     A time is hours and minutes after the midnight before the begin; 24:00 and more are the next days. An
     empty field leaves the value as it was, and the light to a clear sky.
     """
-    rows = [row for row in csv.reader(io.StringIO(text), skipinitialspace=True) if any(map(str.strip, row))]
-    if not rows:
+    table = read_table(text)
+    if not table.names:
         raise ValueError(N_("The weather is empty: give a line of names and one line for each step."))
-    names = [name.strip() for name in rows[0]]
-    unknown = [name for name in names if name != "time" and name not in SPANS]
-    if "time" not in names or unknown or len(set(names)) != len(names):
+    unknown = [name for name in table.names if name != "time" and name not in SPANS]
+    if "time" not in table.names or unknown or len(set(table.names)) != len(table.names):
         known = join(", ", SPANS)
         raise ValueError(
             say("The first line must name the columns: time and any of {known}, each once.", known=known)
         )
-    return tuple(_step(names, row, number) for number, row in enumerate(rows[1:], start=2))
+    return tuple(_step(table, row, number) for number, row in table.rows)
 
 
-def _step(names: list[str], row: list[str], number: int) -> WeatherStep:
-    if len(row) != len(names):
+def _step(table: FileTable, row: tuple[str, ...], number: int) -> WeatherStep:
+    if len(row) != len(table.names):
         raise ValueError(
             say(
                 "Line {number} of the weather has {row} fields; there must be {names}.",
                 number=number,
                 row=len(row),
-                names=len(names),
+                names=len(table.names),
             )
         )
-    fields = dict(zip(names, map(str.strip, row), strict=True))
+    fields = dict(zip(table.names, row, strict=True))
     after = after_midnight(fields.pop("time"), say("Line {number} of the weather", number=number))
-    return WeatherStep(after, dict(_values(fields, number)))
+    return WeatherStep(after, dict(_values(table, fields, number)))
 
 
-def _values(fields: Mapping[str, str], number: int) -> Iterator[tuple[str, float]]:
+def _values(table: FileTable, fields: Mapping[str, str], number: int) -> Iterator[tuple[str, float]]:
     for name, text in fields.items():
         if not text:
             continue
         try:
-            yield name, float(with_minus(text))
+            yield name, table.number(text, number, SPANS[name][2])
+        except TableRefused:
+            raise
         except ValueError as error:
             raise ValueError(
                 say(

@@ -3,6 +3,11 @@
 import re
 from urllib.parse import quote
 
+BYTE_ORDER_MARK = "\ufeff"
+"""Begins a CSV that a person downloads: without it Excel reads UTF-8 as the computer's own encoding.
+
+Files of nothing but ASCII need none, and programs that read the API get none unless they ask for it.
+"""
 UNUSUAL = re.compile(r"[^A-Za-z0-9._-]+")
 
 

@@ -64,7 +64,7 @@ def journal(
         kinds=tuple(EventKind),
         query=typed,
         error=wrong_since or wrong_until,
-        csv=_file(narrowed, "csv"),
+        csv=_file(narrowed, "excel"),
         json=_file(narrowed, "json"),
         older=_older(typed, found[-1].number) if len(found) == A_PAGE else None,
     )

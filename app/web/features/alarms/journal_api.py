@@ -64,5 +64,5 @@ def read_journal(
 def export_journal(
     reader: ReaderDep, narrowed: FilterDep, format: JournalFormat = JournalFormat.CSV
 ) -> Response:
-    """Return everything that the filters leave, as CSV or JSON."""
+    """Return everything that the filters leave, as CSV, as CSV for Excel, or as JSON."""
     return journal_file(reader, narrowed, format)

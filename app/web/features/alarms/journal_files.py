@@ -11,6 +11,7 @@ import orjson
 from starlette.responses import Response, StreamingResponse
 
 from app.store.store import JournalEntry, JournalFilter, Reader
+from app.web.http.attachments import BYTE_ORDER_MARK, kept_as
 
 AT_ONCE = 1000
 COLUMNS = ("number", "at", "kind", "tracker_id", "actor", "message", "data")
@@ -18,9 +19,10 @@ FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
 class JournalFormat(StrEnum):
-    """The kinds of file."""
+    """The kinds of file; `excel` is CSV that begins with a byte order mark."""
 
     CSV = "csv"
+    EXCEL = "excel"
     JSON = "json"
 
 
@@ -29,10 +31,13 @@ def journal_file(reader: Reader, wanted: JournalFilter, kind: JournalFormat) -> 
     pages = _pages(reader, wanted)
     first = next(pages, [])  # read before the answer begins, so that a failing store is told as such
     entries = chain.from_iterable(chain((first,), pages))
-    headers = {"Content-Disposition": f'attachment; filename="journal.{kind.value}"'}
-    if kind is JournalFormat.CSV:
-        return StreamingResponse(_csv(entries), media_type="text/csv; charset=utf-8", headers=headers)
-    return StreamingResponse(_json(entries), media_type="application/json", headers=headers)
+    if kind is JournalFormat.JSON:
+        return StreamingResponse(
+            _json(entries), media_type="application/json", headers=kept_as("journal.json")
+        )
+    mark = (BYTE_ORDER_MARK,) if kind is JournalFormat.EXCEL else ()
+    lines, headers = chain(mark, _csv(entries)), kept_as("journal.csv")
+    return StreamingResponse(lines, media_type="text/csv; charset=utf-8", headers=headers)
 
 
 def _pages(reader: Reader, wanted: JournalFilter) -> Iterator[list[JournalEntry]]:

@@ -23,7 +23,7 @@ from app.web.charts.axis import angle_step
 from app.web.charts.plot import Curve, Plot, line_plot
 from app.web.features.studies.study_contexts import Options, ProgramView, StepProgramPage
 from app.web.features.studies.study_orders import NewProgram, chosen_program
-from app.web.http.attachments import kept_as
+from app.web.http.attachments import BYTE_ORDER_MARK, kept_as
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
@@ -151,7 +151,7 @@ async def program(machine: MachineDep, built: PanelDep, form: Annotated[ProgramF
     """Return the steps of the chosen program as a file, which the strategy of a tracker reads."""
     chosen = _chosen(await _answered(form, await machine.detail(), built), form)
     named = kept_as(f"program-{len(chosen.steps) - 1}-steps-{form.date}.csv")
-    return Response(to_table(chosen), media_type=CSV, headers=named)
+    return Response(BYTE_ORDER_MARK + to_table(chosen), media_type=CSV, headers=named)
 
 
 async def _answered(form: ProgramForm, detail: SiteDetail, built: PanelDep) -> ProgramAnswer:

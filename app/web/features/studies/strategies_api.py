@@ -11,6 +11,7 @@ from pydantic import Field, WrapValidator
 from starlette.requests import Request
 
 from app.base.adapter import adapter
+from app.base.file_text import TextRefused, text_of
 from app.base.message import N_, told_by
 from app.base.permission import Permission
 from app.base.zones import day_in
@@ -37,7 +38,8 @@ CivilDate = date
 CSV = "text/csv; charset=utf-8"
 CSV_BODY = {
     "requestBody": {
-        "description": "The table in UTF-8; `text/csv` is taken as well, but few client generators know it.",
+        "description": "The table in UTF-8, or in UTF-16 with a byte order mark; `text/csv` is taken as "
+        "well, but few client generators know it.",
         "required": True,
         "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
     }
@@ -108,8 +110,8 @@ async def write_program_table(
 ) -> StepProgram:
     """Read the table, keep the program and make it the tracker's strategy."""
     try:
-        program = from_table((await request.body()).decode("utf-8"))
-    except UnicodeDecodeError as error:
+        program = from_table(text_of(await request.body()))
+    except TextRefused as error:
         raise NotAcceptable(N_("The file is not UTF-8 text; save it as CSV in UTF-8.")) from error
     except TableWrong as error:
         raise NotAcceptable(told_by(error)) from error

@@ -39,7 +39,7 @@ from app.web.features.studies.strategy_forms import (
     strategy_texts,
     typed_program,
 )
-from app.web.http.attachments import kept_as
+from app.web.http.attachments import BYTE_ORDER_MARK, kept_as
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
@@ -142,7 +142,9 @@ async def export(tracker_id: str, machine: MachineDep) -> Response:
     """Hand the kept program out as a table."""
     kept = kept_program(tracker_of(await machine.detail(), tracker_id))
     named = kept_as(f"{tracker_id}-program.csv")
-    return PlainTextResponse(to_table(kept), headers=named, media_type="text/csv; charset=utf-8")
+    return PlainTextResponse(
+        BYTE_ORDER_MARK + to_table(kept), headers=named, media_type="text/csv; charset=utf-8"
+    )
 
 
 @router.post("/hybrid")
