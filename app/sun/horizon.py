@@ -1,13 +1,15 @@
 """The horizon as it was entered by hand: how high hills, trees and houses stand in each direction."""
 
 from bisect import bisect_right
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
+from operator import itemgetter
 
 from app.base.message import N_, say, with_format
 
 OUTLINE_STEP_DEG = 5.0
-MOST_POINTS = 72
+MOST_POINTS = 360
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +51,7 @@ class Horizon:
         if not self.points:
             return 0.0
         azimuth_deg %= 360.0
-        place = bisect_right([one for one, _ in self.points], azimuth_deg)
+        place = bisect_right(self.points, azimuth_deg, key=itemgetter(0))
         before, below_deg = self.points[place - 1]
         after, above_deg = self.points[place % len(self.points)]
         span_deg = (after - before) % 360.0
@@ -70,3 +72,30 @@ class Horizon:
 
 
 FLAT = Horizon()
+
+
+def joined(points: Iterable[tuple[float, float]]) -> Horizon:
+    """Return the horizon of points in any order, of which the same direction may be named twice.
+
+    Azimuths may be -180 to 360, as closed lists have them: 0 and 360 are one point where they have one
+    elevation. Raises `ValueError` with both where they differ, and for what `Horizon` refuses.
+    """
+    turned: dict[float, tuple[float, float]] = {}
+    kept: list[tuple[float, float]] = []
+    for azimuth_deg, elevation_deg in points:
+        north_deg = azimuth_deg % 360.0 % 360.0  # the first is 360 for the smallest negative numbers
+        other = turned.setdefault(north_deg, (azimuth_deg, elevation_deg))
+        if other == (azimuth_deg, elevation_deg) or other[0] == azimuth_deg:
+            kept.append((north_deg, elevation_deg))
+        elif other[1] != elevation_deg:
+            raise ValueError(
+                say(
+                    "Azimuths {azimuth1} and {azimuth2} are the same direction, but their elevations are "
+                    "{elevation1} and {elevation2}. Give them the same elevation, or leave one out.",
+                    azimuth1=with_format(other[0], "g"),
+                    azimuth2=with_format(azimuth_deg, "g"),
+                    elevation1=with_format(other[1], "g"),
+                    elevation2=with_format(elevation_deg, "g"),
+                )
+            )
+    return Horizon(tuple(sorted(kept)))

@@ -154,7 +154,7 @@ async def test_a_recording_is_replayed_behind_the_horizon_of_its_time(
         ("100 5\nx 5", "Line 2, azimuth: type a number, such as 0."),
         ("100 95", "Line 1, elevation must be between 0 and 89.9."),
         ("100 5\n100 6", "each azimuth only once"),
-        ("\n".join(f"{one} 1" for one in range(80)), "at most 72 points"),
+        ("\n".join(f"{one / 2:g} 1" for one in range(361)), "at most 360 points"),
     ],
 )
 async def test_what_is_wrong_stays_in_the_form(
@@ -177,7 +177,7 @@ async def test_the_api_sets_the_horizon_and_tells_when_the_sun_is_behind_it(
     up = site["sun"]["apparent_elevation_deg"] >= 0.0
     assert site["sun_behind_horizon"] == answer["sun_behind_horizon"] == up
     assert (await panel.put("/api/v1/site/horizon", json={"points": []})).json()["points"] == []
-    bad = await panel.put("/api/v1/site/horizon", json={"points": [{"azimuth_deg": 360, "elevation_deg": 1}]})
+    bad = await panel.put("/api/v1/site/horizon", json={"points": [{"azimuth_deg": 361, "elevation_deg": 1}]})
     assert bad.status_code == 422
 
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+from app.base.message import Message
 from app.tracker.settings.config import TrackerConfig
 from app.web.charts.drawings import Cartesian, SunDiagram
 from app.web.shell.contexts import Form, Frame, Link
@@ -30,6 +31,7 @@ class HorizonPage:
     form: Form
     count: int
     cartesian: Cartesian | None
+    notes: tuple[Message, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
