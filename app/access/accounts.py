@@ -18,6 +18,7 @@ from app.access.users import (
     keep_an_administrator,
 )
 from app.base.message import N_, say
+from app.base.names import tidy, unseen
 
 LONGEST_TOKEN_NAME = 64
 
@@ -92,12 +93,12 @@ class Accounts:
 
     def mint(self, by: Principal, wish: TokenWish, now: datetime) -> str:
         """Make a token and return its text, which is not kept."""
-        _check(wish)
+        wish = replace(wish, name=_checked(wish))
         pin_hash = self._passwords.hash_pin(wish.pin) if wish.pin else ""
         token_id, text = mint()
         token = Token(
             token_id,
-            wish.name.strip(),
+            wish.name,
             by.name[:32],
             digest_of(text),
             wish.scopes,
@@ -147,13 +148,18 @@ def _known(users: dict[str, User], name: str) -> User:
     return user
 
 
-def _check(wish: TokenWish) -> None:
-    if not 1 <= len(wish.name.strip()) <= LONGEST_TOKEN_NAME:
+def _checked(wish: TokenWish) -> str:
+    """Return the name of a token as it is stored, or raise `AccessRefused`."""
+    name = tidy(wish.name)
+    if fault := unseen(name):
+        raise AccessRefused(fault)
+    if not 1 <= len(name) <= LONGEST_TOKEN_NAME:
         raise AccessRefused(N_("Enter a token name of 1 to 64 characters that describes its purpose."))
     if not wish.scopes and not wish.pin:
         raise AccessRefused(say("Choose the purpose of the token: {scope}.", scope=", ".join(Scope)))
     if not timedelta(hours=1) <= wish.lifetime <= LONGEST_LIFETIME:
         raise AccessRefused(N_("A token is valid for 1 hour to 366 days."))
+    return name
 
 
 def _words(words: Iterable[str]) -> str:

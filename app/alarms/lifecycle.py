@@ -12,6 +12,7 @@ from app.alarms.alarm import Alarm, Shelf
 from app.alarms.catalogue import FLOOD
 from app.alarms.conditions import SITE, Condition
 from app.base.message import N_, NOTHING, say
+from app.base.names import clean
 from app.tracker.values.alarm_words import AlarmState
 
 LONGEST_SHELF = timedelta(hours=24)
@@ -119,11 +120,12 @@ def shelve(
     alarm = _standing(book, name)
     if alarm.entry.priority == ALWAYS_ANNOUNCED:
         raise ValueError(N_("An alarm of priority 1 cannot be shelved. Acknowledge it and remove its cause."))
-    if not reason.strip():
+    reason = clean(reason)
+    if not reason:
         raise ValueError(N_("Enter the reason for shelving the alarm."))
     if not SHORTEST_SHELF <= duration <= LONGEST_SHELF:
         raise ValueError(N_("An alarm can be shelved for 1 minute to 24 hours."))
-    shelved = replace(alarm, shelf=Shelf(now + duration, by, reason.strip()), told=False)
+    shelved = replace(alarm, shelf=Shelf(now + duration, by, reason), told=False)
     return _with(book, shelved), (Change(Happened.SHELVED, shelved, by),)
 
 

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from app.base.names import JOINERS
+
 
 class PointType(StrEnum):
     """How a point is packed."""
@@ -92,7 +94,8 @@ class Model:
 
 def _text_words(text: str, size: int) -> tuple[int, ...]:
     """Return UTF-8 in a fixed number of words, cut between characters, zeros behind."""
-    packed = text.encode()[: 2 * size].decode(errors="ignore").encode().ljust(2 * size, b"\0")
+    cut = text.encode()[: 2 * size].decode(errors="ignore").rstrip(JOINERS)
+    packed = cut.encode().ljust(2 * size, b"\0")
     return tuple(int.from_bytes(packed[place : place + 2]) for place in range(0, 2 * size, 2))
 
 

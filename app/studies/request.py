@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Final
 
 from app.base.message import N_, join, say
+from app.base.names import tidy, unseen
 from app.energy.motion import DriveCosts
 from app.energy.plane import Around
 from app.sun.position import Location
@@ -162,7 +163,9 @@ class StudyRequest:
 
 def _general(asked: StudyRequest) -> list[str]:
     found: list[str] = []
-    if len(asked.title) > LONGEST_TITLE or not asked.title.isprintable():
+    if fault := unseen(tidy(asked.title)):
+        found.append(fault)
+    elif len(asked.title) > LONGEST_TITLE:
         found.append(
             say("The title has at most {longest_title} printable characters.", longest_title=LONGEST_TITLE)
         )

@@ -7,6 +7,7 @@ from datetime import timedelta
 
 from app.base.logs import get_logger
 from app.base.message import N_, Message, join, say
+from app.base.names import clean
 from app.link.messages import AnswerControl, Order, ReleaseControl, RenewControl, RequestControl
 from app.site.loop.loop import TrackerLoop
 from app.site.orders import tracker_orders
@@ -107,6 +108,7 @@ async def request(model: SiteModel, command: RequestControl, order: Order) -> tu
 
     Of one tracker it can also be asked for; doors that have no page to wait at cannot ask.
     """
+    command = replace(command, reason=clean(command.reason))
     if len(command.reason) > LONGEST_REASON:
         raise ValueError(
             say("A reason has at most {longest_reason} characters.", longest_reason=LONGEST_REASON)
@@ -146,7 +148,7 @@ async def _want(
         return ()
     if rules.passes_at_once(authority, who):
         return await _pass_on(model, loop, who, order.actor, command.reason)
-    reason = command.reason.strip()
+    reason = command.reason
     if command.takes and not reason:
         raise CommandRejected(NO_REASON)
     until = now + (rules.COUNTDOWN if command.takes else rules.ASK_LASTS)

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from app.base.message import N_, say
+from app.base.names import clean
 from app.link.messages import (
     SetLocation,
     SiteCommand,
@@ -63,7 +64,7 @@ async def lock(model: SiteModel, command: LockSettings, actor: str) -> tuple[Eve
 async def unlock(model: SiteModel, command: UnlockSettings, actor: str) -> tuple[Event, ...]:
     """Unlock a tracker's settings, stored before this returns."""
     loop = model.tracker(command.tracker_id)
-    reason = command.reason.strip()
+    reason = clean(command.reason)
     if len(reason) > LONGEST_REASON:
         raise ValueError(
             say("A reason has at most {longest_reason} characters.", longest_reason=LONGEST_REASON)

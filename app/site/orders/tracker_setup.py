@@ -11,7 +11,7 @@ from app.site.orders import weather_setup
 from app.site.orders.line_room import refuse_starved_drive
 from app.site.recording.auditing import as_action
 from app.site.state.model import SiteModel
-from app.site.state.validation import check_config, check_name
+from app.site.state.validation import check_config, with_clean_names
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.memory.memory import Pointing, StepName, TrackerMemory, TrackerState
 from app.tracker.motion.limit_change import Standing, review
@@ -29,7 +29,7 @@ NOTHING_TO_UNDO = Reason(
 async def add(model: SiteModel, command: AddTracker, actor: str) -> tuple[Event, ...]:
     """Add a tracker."""
     weather_setup.refuse_real(model, command.config)
-    config = replace(command.config, name=check_name(command.config.name))
+    config = with_clean_names(command.config)
     check_config(config)
     if config.tracker_id in model.loops:
         raise CommandRejected(
@@ -72,7 +72,7 @@ async def obey_configure(model: SiteModel, command: ConfigureTracker, actor: str
 async def configure(model: SiteModel, config: TrackerConfig, actor: str) -> tuple[Event, ...]:
     """Replace a tracker's configuration while it stands still."""
     loop = model.tracker(config.tracker_id)
-    config = replace(config, name=check_name(config.name))
+    config = with_clean_names(config)
     check_config(config)
     refuse_while_busy(model, loop)
     _refuse_unsafe_limits(loop, config)

@@ -2,15 +2,18 @@
 
 import re
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import assert_never
 
 from app.base.hosts import host_fault
 from app.base.message import N_, join, say, told_by
+from app.base.names import clean
 from app.base.zones import shown_zone, zones_missing
 from app.drives.scaled import check_ratio
 from app.tracker.settings.axes import AxisConfig
 from app.tracker.settings.config import LONGEST_NAME, DriveConfig, DriveKind, MountKind, TrackerConfig
 from app.tracker.settings.declared import wrong
+from app.tracker.settings.strategy import Stepped
 from app.tracker.values.reason import Reason
 
 NO_ZONES = Reason(
@@ -25,13 +28,23 @@ RTU_UNITS = (1, 247)
 
 
 def check_name(name: str) -> str:
-    """Return a name without blanks around it, or raise `ValueError`."""
-    plain = name.strip()
-    if not 1 <= len(plain) <= LONGEST_NAME or not plain.isprintable():
+    """Return a name as it is stored, or raise `ValueError`."""
+    plain = clean(name)
+    if not 1 <= len(plain) <= LONGEST_NAME:
         raise ValueError(
             say("A name has 1 to {longest_name} printable characters.", longest_name=LONGEST_NAME)
         )
     return plain
+
+
+def with_clean_names(config: TrackerConfig) -> TrackerConfig:
+    """Return a configuration with its names as they are stored, or raise `ValueError`."""
+    regions = tuple(replace(one, name=clean(one.name)) for one in config.machine.regions)
+    strategy = config.strategy
+    if isinstance(strategy, Stepped):
+        strategy = Stepped(replace(strategy.program, name=clean(strategy.program.name)))
+    machine = replace(config.machine, regions=regions)
+    return replace(config, name=check_name(config.name), machine=machine, strategy=strategy)
 
 
 def check_time_zone(name: str) -> str:

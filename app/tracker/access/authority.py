@@ -3,6 +3,7 @@
 from datetime import timedelta
 
 from app.base.message import N_, say, with_format
+from app.base.names import tidy
 from app.tracker.access.interlocks import Action, demand
 from app.tracker.access.maintenance_inhibit import named
 from app.tracker.commands.commands import BeginServiceMode
@@ -45,8 +46,8 @@ def at_cabinet(state: ControllerState) -> Reason:
 
 def begin_service_mode(state: ControllerState, command: BeginServiceMode) -> None:
     """Stop, and from now on move slowly and only while the area is clear, or raise `CommandRejected`."""
-    demand(state, Action.BEGIN_SERVICE_MODE, named(command.name, N_("Service mode")))
-    name = command.name.strip()
+    name = tidy(command.name)
+    demand(state, Action.BEGIN_SERVICE_MODE, named(name, N_("Service mode")))
     stop(state, N_("service mode begins."))
     state.remember(service=ServiceMode(name, state.actor, state.site_time))
     state.clear_until = None

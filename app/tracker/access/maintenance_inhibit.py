@@ -1,6 +1,7 @@
 """The maintenance lock: while somebody works on the machine, nothing but their own hand moves it."""
 
 from app.base.message import N_, say
+from app.base.names import tidy, unseen
 from app.tracker.access.interlocks import Action, demand
 from app.tracker.commands.commands import SetInhibit
 from app.tracker.protections.words import MaintenanceLock
@@ -15,8 +16,8 @@ LONGEST_REASON = 200
 
 def set_inhibit(state: ControllerState, command: SetInhibit) -> None:
     """Stop and forbid every automatic motion, or raise `CommandRejected`."""
-    demand(state, Action.SET_INHIBIT, named(command.name, N_("A maintenance inhibit")), _too_long(command))
-    name, why = command.name.strip(), command.reason.strip()
+    name, why = tidy(command.name), tidy(command.reason)
+    demand(state, Action.SET_INHIBIT, named(name, N_("A maintenance inhibit")), _too_long(why))
     stop(state, N_("a maintenance inhibit was set."))
     state.remember(lock=MaintenanceLock(name, state.actor, state.site_time, why))
     state.say(
@@ -41,20 +42,24 @@ def release_inhibit(state: ControllerState) -> None:
 
 
 def named(name: str, what: str) -> Reason | None:
-    """Return that a name is missing or no name, None where it is one."""
-    if name.isprintable() and 1 <= len(name.strip()) <= LONGEST_NAME:
+    """Return that a tidy name is missing or no name, None where it is one."""
+    fault = unseen(name)
+    if fault is None and 1 <= len(name) <= LONGEST_NAME:
         return None
     return Reason(
         "lock_unnamed",
-        say(
+        fault
+        or say(
             "{what} requires a name of 1 to {longest_name} characters.", what=what, longest_name=LONGEST_NAME
         ),
         N_("Enter the name of the person who works on the tracker."),
     )
 
 
-def _too_long(command: SetInhibit) -> Reason | None:
-    if len(command.reason.strip()) <= LONGEST_REASON:
+def _too_long(why: str) -> Reason | None:
+    if fault := unseen(why):
+        return Reason("lock_unnamed", fault)
+    if len(why) <= LONGEST_REASON:
         return None
     return Reason(
         "lock_unnamed",

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from io import StringIO
 
 from app.base.message import N_, join, say, told_by
+from app.base.names import tidy
 from app.tracker.settings.stepped import (
     MOST_STEPS,
     ProgramStep,
@@ -90,7 +91,7 @@ def from_table(text: str, *, name: str = "") -> StepProgram:
         raise TableWrong(*reading.wrong[:MOST_SENTENCES])
     try:
         title = table.comments[0] if table.comments and table.comments[0] else name or UNNAMED
-        return StepProgram(title, tuple(reading.steps), frame, base, offset_h)
+        return StepProgram(tidy(title), tuple(reading.steps), frame, base, offset_h)
     except ValueError as error:
         raise TableWrong(told_by(error)) from error
 

@@ -7,6 +7,7 @@ from typing import Annotated
 from annotated_types import Ge, Le, MaxLen
 
 from app.base.message import N_, say
+from app.base.names import tidy
 from app.tracker.settings.declared import Setting, check
 
 MOST_REGIONS = 20
@@ -123,7 +124,7 @@ class Region:
     corners: tuple[Corner, ...]
 
     def __post_init__(self) -> None:
-        if not 1 <= len(self.name.strip()) <= 60:
+        if not 1 <= len(tidy(self.name)) <= 60:
             raise ValueError(N_("A forbidden region has a name of 1 to 60 letters."))
         if not 3 <= len(self.corners) <= MOST_CORNERS:
             raise ValueError(

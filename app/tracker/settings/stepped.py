@@ -14,6 +14,7 @@ from itertools import pairwise
 from math import isfinite
 
 from app.base.message import N_, join, say, with_format
+from app.base.names import tidy, unseen
 
 HOURS_A_DAY = 24.0
 MOST_STEPS = 288
@@ -146,7 +147,10 @@ def program_errors(program: StepProgram) -> tuple[str, ...]:
 
 def _head_errors(program: StepProgram) -> list[str]:
     found: list[str] = []
-    if not 1 <= len(program.name.strip()) <= LONGEST_NAME or not program.name.isprintable():
+    name = tidy(program.name)
+    if fault := unseen(name):
+        found.append(fault)
+    elif not 1 <= len(name) <= LONGEST_NAME:
         found.append(
             say(
                 "Give the program a name of 1 to {longest_name} printable characters.",

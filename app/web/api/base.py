@@ -6,9 +6,10 @@ from typing import Annotated, Any, Generic, Self, TypeVar
 
 from fastapi import APIRouter, Path, Query
 from fastapi.routing import APIRoute
-from pydantic import BaseModel, ConfigDict, Field, ModelWrapValidatorHandler, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ModelWrapValidatorHandler, model_validator
 
 from app.base.instants import Instant
+from app.base.names import clean
 from app.link.order_models import Azimuth as Azimuth
 from app.link.order_models import Elevation as Elevation
 from app.tracker.values.reason import Reason
@@ -26,6 +27,19 @@ IssuedAt = Annotated[
     Instant | None,
     Query(description="When this was asked, by the site's clock; refused when more than 2 s old or ahead."),
 ]
+
+
+def _clean(given: Any) -> Any:
+    return clean(given) if isinstance(given, str) else given
+
+
+def _clean_lines(given: Any) -> Any:
+    return clean(given, lines=True) if isinstance(given, str) else given
+
+
+Clean = BeforeValidator(_clean)
+"""A name or a short text as it is stored; its length is that of what is stored."""
+CleanLines = BeforeValidator(_clean_lines)
 
 
 class Input(BaseModel):

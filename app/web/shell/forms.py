@@ -9,6 +9,7 @@ from typing import TypeVar
 from starlette.requests import Request
 
 from app.base.message import Message, say, told_by, with_format, word
+from app.base.names import clean
 from app.base.zones import zone_of
 from app.sun.accuracy import FIRST_YEAR, LAST_YEAR
 from app.web.http.whole_forms import FormIncomplete
@@ -127,6 +128,14 @@ def _refuse_two_ways(plain: str, label: str) -> None:
 
 def _decimals(text: str) -> int:
     return len(text.partition(".")[2])
+
+
+def clean_name(text: str) -> str:
+    """Return a typed name or title as it is stored."""
+    try:
+        return clean(text)
+    except ValueError as error:
+        raise Unreadable(told_by(error)) from error
 
 
 def day(text: str, label: str) -> date:

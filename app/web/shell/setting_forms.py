@@ -10,7 +10,7 @@ from app.base.adapter import adapter
 from app.base.message import say, told_of_value, word
 from app.tracker.settings.declared import Declared, declared
 from app.web.shell.contexts import SettingRow
-from app.web.shell.forms import Typed, Unreadable
+from app.web.shell.forms import Typed, Unreadable, clean_name
 from app.web.shell.typed_numbers import written
 
 T = TypeVar("T")
@@ -113,6 +113,7 @@ def _place(kind: type[Any], where: tuple[int | str, ...]) -> str:
 
 def _short(text: str, one: Declared) -> str:
     shortest, longest = one.lengths
+    text = clean_name(text)
     if not shortest <= len(text) <= longest:
         label = one.title
         raise Unreadable(

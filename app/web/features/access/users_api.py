@@ -13,7 +13,7 @@ from app.access.tokens import Scope, Token, token_id_of
 from app.access.users import User
 from app.base.message import N_, say
 from app.base.permission import Permission
-from app.web.api.base import NOT_FOUND, Input, Output, Page, api_router, whole
+from app.web.api.base import NOT_FOUND, Clean, Input, Output, Page, api_router, whole
 from app.web.http.errors import NotFound
 from app.web.http.needs import needs
 from app.web.shell.deps import PanelDep, PrincipalDep
@@ -77,7 +77,7 @@ class SignedIn(Output):
 class NewToken(Input):
     """A token to be made."""
 
-    name: str = Field(min_length=1, max_length=64, examples=["SCADA of the plant"])
+    name: Annotated[str, Clean] = Field(min_length=1, max_length=64, examples=["SCADA of the plant"])
     scopes: tuple[Scope, ...] = ()
     trackers: tuple[Annotated[str, Field(min_length=1, max_length=64)], ...] | None = None
     days: int = Field(90, ge=1, le=366, description="How long it is good for.")

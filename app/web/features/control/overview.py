@@ -8,6 +8,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.base.message import N_, Message, say
+from app.base.names import LONGEST_TYPED, tidy, unseen
 from app.base.permission import Permission
 from app.link.messages import AddTracker, RenameSite, SiteDetail, StopAll
 from app.tracker.commissioning.steps import StepStatus
@@ -49,7 +50,7 @@ async def add_tracker(
     press: PressDep, machine: MachineDep, tracker_id: Annotated[str, Form()], name: Annotated[str, Form()]
 ) -> Response:
     """Add a tracker with a simulated drive; its settings come next."""
-    tracker_id, name = tracker_id.strip(), name.strip()
+    tracker_id, name = tracker_id.strip(), tidy(name)
     if errors := _faults(tracker_id, name, await machine.detail()):
         return _answer(press.request, await machine.detail(), (tracker_id, name), errors, 422)
     await press.send(AddTracker(TrackerConfig(tracker_id, name)))
@@ -58,9 +59,9 @@ async def add_tracker(
 
 @router.post("/site/name")
 @needs(Permission.CONFIGURE)
-async def rename_site(press: PressDep, name: Annotated[str, Form(max_length=LONGEST_NAME)]) -> Response:
+async def rename_site(press: PressDep, name: Annotated[str, Form(max_length=LONGEST_TYPED)]) -> Response:
     """Give the site another name."""
-    await press.send(RenameSite(name.strip()))
+    await press.send(RenameSite(name))
     return press.answer(N_("The site's name is saved."))
 
 
@@ -82,6 +83,8 @@ def _faults(tracker_id: str, name: str, detail: SiteDetail) -> dict[str, Message
         )
     if not name:
         errors["name"] = N_("Give the tracker a name, such as North field 2.")
+    elif fault := unseen(name):
+        errors["name"] = fault
     return errors
 
 

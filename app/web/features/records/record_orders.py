@@ -5,11 +5,12 @@ from collections.abc import Awaitable, Callable, Sequence
 
 from starlette.concurrency import run_in_threadpool
 
-from app.base.message import N_, say
+from app.base.message import N_, say, told_by
+from app.base.names import clean
 from app.link.messages import UnknownTracker
 from app.link.record_orders import AddRecordPhoto, RecordOrder, RemoveRecordPhoto, SignRecord
 from app.store.store import Photo, Reader, RecordHead, SignedRecord, StoreFailed
-from app.web.features.records.photos import plain_photo
+from app.web.features.records.photos import PhotoRefused, plain_photo
 from app.web.features.records.record import read_record
 from app.web.features.records.record_document import document
 from app.web.features.records.sign_doubts import sign_doubts
@@ -22,9 +23,13 @@ Send = Callable[[RecordOrder], Awaitable[object]]
 
 async def add_photo(send: Send, tracker_id: str, upload: bytes, caption: str) -> None:
     """Keep a photo for the next record of a tracker, or raise `PhotoRefused`."""
+    try:
+        caption = clean(" ".join(caption.split()))
+    except ValueError as error:
+        raise PhotoRefused(told_by(error)) from error
     photo = await run_in_threadpool(plain_photo, upload)
     encoded = b64encode(photo.content).decode()
-    await send(AddRecordPhoto(tracker_id, encoded, photo.width, photo.height, " ".join(caption.split())))
+    await send(AddRecordPhoto(tracker_id, encoded, photo.width, photo.height, caption))
 
 
 async def remove_photo(send: Send, reader: Reader, tracker_id: str, number: int) -> None:

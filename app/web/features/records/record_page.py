@@ -9,6 +9,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.base.message import N_, say, told_by
+from app.base.names import clean
 from app.base.permission import Permission
 from app.link.record_orders import RecordOrder
 from app.web.features.control.mode import choice
@@ -65,7 +66,12 @@ async def sign_record(
     """Keep the record with its signatures for good."""
     typed = Typed(form.model_dump())
     signatures = _signatures(typed)
-    if len(form.remark) > LONGEST_REMARK:
+    remark = ""
+    try:
+        remark = clean(form.remark, lines=True)
+    except ValueError as error:
+        typed.errors["remark"] = told_by(error)
+    if len(remark) > LONGEST_REMARK:
         typed.errors["remark"] = say(
             "A remark can have at most {longest_remark} characters.", longest_remark=LONGEST_REMARK
         )
@@ -74,7 +80,7 @@ async def sign_record(
     if form.confirmed != "yes" and (doubts := await asked_before_signing(built, tracker_id)):
         return await _answer(press.request, tracker_id, built, typed, status=422, doubts=doubts)
     actor = principal(press.request).actor
-    head = await sign(_sender(press), built, tracker_id, actor, form.remark.strip(), signatures)
+    head = await sign(_sender(press), built, tracker_id, actor, remark, signatures)
     return go(press.request, f"/records/{head.number}")
 
 

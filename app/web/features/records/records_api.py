@@ -12,6 +12,8 @@ from app.store.store import RecordHead
 from app.web.api.base import (
     NOT_FOUND,
     REFUSED,
+    Clean,
+    CleanLines,
     Cursor,
     Input,
     Limit,
@@ -80,7 +82,7 @@ class Signed(Input):
     """Who signs, for whom, and what was drawn: strokes of points in a field of 1000 x 300, y downwards."""
 
     role: SignatureRole
-    name: str = Field(min_length=1, max_length=LONGEST_NAME)
+    name: Annotated[str, Clean] = Field(min_length=1, max_length=LONGEST_NAME)
     strokes: tuple[Drawn, ...] = Field((), max_length=MOST_STROKES)
 
 
@@ -88,7 +90,7 @@ class NewRecord(Input):
     """The signatures of a record, the technician's among them, and a remark."""
 
     signatures: tuple[Signed, ...] = Field(min_length=1, max_length=2)
-    remark: str = Field("", max_length=LONGEST_REMARK)
+    remark: Annotated[str, CleanLines] = Field("", max_length=LONGEST_REMARK)
     confirmed: bool = Field(
         False, description="It is to be signed although steps or drive tests are open or an alarm is active."
     )

@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 from app.base.message import N_, Message, say
+from app.base.names import tidy, unseen
 from app.store.documents import plain
 
 WIDTH, HEIGHT = 1000, 300
@@ -62,7 +63,7 @@ class Signature:
 
 def signature(role: SignatureRole, name: str, drawn: str) -> Signature | None:
     """Return what was signed, None where nothing was, or raise `SignatureRefused`."""
-    name = plain(" ".join(name.split()))
+    name = plain(tidy(" ".join(name.split())))
     strokes = _strokes(drawn)
     if not name and not strokes:
         return None
@@ -70,6 +71,8 @@ def signature(role: SignatureRole, name: str, drawn: str) -> Signature | None:
         raise SignatureRefused(
             say("{role_words}: type the name of the person who signed.", role_words=ROLE_WORDS[role])
         )
+    if fault := unseen(name):
+        raise SignatureRefused(fault)
     if len(name) > LONGEST_NAME:
         raise SignatureRefused(
             say(

@@ -21,7 +21,7 @@ from app.web.features.setup.protection_contexts import FaultRow
 from app.web.features.setup.protection_forms import group_of
 from app.web.shell import setting_forms
 from app.web.shell.contexts import SettingRow
-from app.web.shell.forms import Typed, Unreadable
+from app.web.shell.forms import Typed, Unreadable, clean_name
 from app.web.shell.setting_forms import below, field_name, rows
 
 REGIONS = "regions"
@@ -102,11 +102,12 @@ def _holds(typed: Typed, place: int) -> bool:
 
 
 def _name(text: str) -> str:
-    if not 1 <= len(text) <= 60 or not text.isprintable():
+    name = clean_name(text)
+    if not 1 <= len(name) <= 60:
         raise Unreadable(
             N_("Region: give it a name of 1 to 60 characters; to remove the region, clear both fields.")
         )
-    return text
+    return name
 
 
 def _corners(text: str) -> list[dict[str, float]]:

@@ -8,6 +8,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.base.message import N_
+from app.base.names import LONGEST_TYPED
 from app.base.permission import Permission
 from app.link.messages import ConfigureTracker, TrackerDetail
 from app.tracker.commands.commands import ReleaseInhibit, Resume, SetInhibit, Stow
@@ -72,7 +73,7 @@ async def resume(tracker_id: str, press: PressDep) -> Response:
 async def lock(
     tracker_id: str,
     press: PressDep,
-    name: Annotated[str, Form(max_length=60)] = "",
+    name: Annotated[str, Form(max_length=LONGEST_TYPED)] = "",
     reason: Annotated[str, Form(max_length=200)] = "",
 ) -> Response:
     """Forbid every automatic motion."""

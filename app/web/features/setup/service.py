@@ -7,6 +7,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.base.message import N_
+from app.base.names import LONGEST_TYPED
 from app.base.permission import Permission
 from app.tracker.commands.commands import BeginServiceMode, ConfirmAreaClear, EndServiceMode
 from app.web.features.setup.protection_contexts import ServicePage
@@ -40,7 +41,9 @@ async def service(request: Request, tracker_id: str, machine: MachineDep) -> Res
 
 @router.post("")
 @needs(Permission.OPERATE)
-async def begin(tracker_id: str, press: PressDep, name: Annotated[str, Form(max_length=60)] = "") -> Response:
+async def begin(
+    tracker_id: str, press: PressDep, name: Annotated[str, Form(max_length=LONGEST_TYPED)] = ""
+) -> Response:
     """Begin service mode in somebody's name."""
     await press.send(BeginServiceMode(name), tracker_id)
     return press.answer(N_("Service mode is on. The tracker moves only after you press Confirm area clear."))

@@ -1,7 +1,7 @@
 """The site: its name, place and clock."""
 
 from datetime import datetime, timedelta
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -14,7 +14,7 @@ from app.sun.position import Location
 from app.tracker.settings.config import LONGEST_NAME
 from app.tracker.state.snapshot import SiteSnapshot
 from app.tracker.values.reason import Reason
-from app.web.api.base import CHANGED, REFUSED, TAGGED, Input, Output, api_router
+from app.web.api.base import CHANGED, REFUSED, TAGGED, Clean, Input, Output, api_router
 from app.web.api.orders import SenderDep, listed
 from app.web.api.tags import of_site, tagged, unless_changed
 from app.web.features.site.clock_doubt import clock_doubt
@@ -32,7 +32,9 @@ CLOCK = of_site(lambda site: (site.clock, site.time_zone))
 class SiteName(Input):
     """A new name for the site."""
 
-    name: str = Field(min_length=1, max_length=LONGEST_NAME, examples=["Samsun solar field"])
+    name: Annotated[str, Clean] = Field(
+        min_length=1, max_length=LONGEST_NAME, examples=["Samsun solar field"]
+    )
 
 
 class SitePlace(Input):

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from datetime import date, datetime, timedelta, tzinfo
-from typing import Self
+from typing import Annotated, Self
 
 from fastapi.responses import Response
 from pydantic import Field, model_validator
@@ -28,7 +28,7 @@ from app.tracker.weather.weather_day import (
     read_steps,
     stepped_day,
 )
-from app.web.api.base import NOT_FOUND, REFUSED, TOO_MANY, Azimuth, Elevation, Input, api_router
+from app.web.api.base import NOT_FOUND, REFUSED, TOO_MANY, Azimuth, Clean, Elevation, Input, api_router
 from app.web.api.orders import SenderDep
 from app.web.api.sun import location_of, midnights
 from app.web.api.trackers import detail_of
@@ -97,7 +97,7 @@ class NewSimulation(Input):
     step_s: float = Field(1.0, ge=0.1, le=60, description="Seconds between samples.")
     algorithm: Algorithm | None = Field(None, description="Left out: the tracker's own.")
     weather: DayWeatherIn | None = Field(None, description="Left out: no weather, and no protection acts.")
-    title: str = Field("", max_length=120)
+    title: Annotated[str, Clean] = Field("", max_length=120)
 
     @model_validator(mode="after")
     def _one_of_two(self) -> Self:

@@ -6,6 +6,7 @@ from typing import Annotated
 from pydantic import BaseModel
 
 from app.base.message import N_, say, told_by
+from app.base.names import tidy
 from app.tracker.programs.step_table import (
     COLUMNS,
     TableWrong,
@@ -241,7 +242,7 @@ def read_program(form: ProgramForm) -> StepProgram:
         for cells in zip(form.at, form.first, form.second, strict=False)
     ]
     try:
-        return from_table("\n".join([head, *rows]), name=form.program_name.strip() or N_("My program"))
+        return from_table("\n".join([head, *rows]), name=tidy(form.program_name) or N_("My program"))
     except TableWrong as error:
         raise TableWrong(*(_row_of_table(sentence) for sentence in error.sentences)) from error
 

@@ -32,7 +32,7 @@ from app.web.http.needs import needs
 from app.web.http.whole_forms import CHECKED_ONLY
 from app.web.shell import coordinates
 from app.web.shell.deps import MachineDep, PanelDep
-from app.web.shell.forms import Typed
+from app.web.shell.forms import Typed, clean_name
 from app.web.shell.frame import site_frame
 from app.web.shell.render import go, page
 from app.web.shell.typed_numbers import written
@@ -228,6 +228,7 @@ def _read(typed: Typed, form: StudyForm, detail: SiteDetail) -> StudyRequest | N
     """Return the study; None where something typed is wrong, with the reasons kept."""
     typed.texts |= coordinates.spread(typed.texts)
     day = typed.day("date", N_("Date"))
+    title = typed.read("title", clean_name, "")
     values: dict[str, object] = {
         target: coordinates.number(typed, name, label, least, most)
         for name, target, label, least, most in NUMBERS
@@ -238,7 +239,7 @@ def _read(typed: Typed, form: StudyForm, detail: SiteDetail) -> StudyRequest | N
     name = form.light.removeprefix(FILE) if form.light.startswith(FILE) else None
     values |= {
         "date": day,
-        "title": form.title.strip(),
+        "title": title,
         "span": form.span,
         "modes": form.modes,
         "strategies": form.strategies,

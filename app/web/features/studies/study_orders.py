@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from datetime import date
+from typing import Annotated
 
 from pydantic import Field
 
@@ -29,7 +30,7 @@ from app.sun.position import Location
 from app.tracker.settings.config import Orientation, TrackerConfig
 from app.tracker.settings.stepped import StepProgram
 from app.tracker.settings.strategy import Stepped
-from app.web.api.base import Azimuth, Elevation, Input
+from app.web.api.base import Azimuth, Clean, Elevation, Input
 
 CivilDate = date
 NO_PLACE = N_("Give latitude and longitude, or save the site's location first: step 1 of commissioning.")
@@ -59,7 +60,7 @@ class NewStudy(Place):
     """What to compare; everything but the day has a value if it is left out."""
 
     date: CivilDate = Field(description="The day, or any day of the year.", examples=["2026-06-21"])
-    title: str = Field("", max_length=120)
+    title: Annotated[str, Clean] = Field("", max_length=120)
     time_zone: str | None = Field(None, max_length=64, description="IANA name; left out: the site's.")
     span: Span = Field(Span.TWELVE_DAYS, description="A day, the 12 representative days, or a year.")
     step_min: int = Field(10, ge=1, le=60, description="Minutes between instants; divides an hour.")
