@@ -1,5 +1,7 @@
 """Commands over MQTT: read, sent through the same orders as every door, and answered."""
 
+import re
+from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Annotated, Any, Union, get_args
 
@@ -35,8 +37,11 @@ RETAINED = Reason(
     N_("Send the command again without the retain flag, and clear the retained message with an empty one."),
 )
 MODELS = {one: order_model(one, Message) for one in get_args(Command) if Interface.MQTT in one.spec.by}
+STOP_ANYWHERE = re.compile(rb'"type"\s*:\s*"stop"')
+MOST_PLACES, LONGEST_PLACE = 5, 60
 _ANY: Any = Annotated[Union[tuple(MODELS.values())], Field(discriminator="type")]  # noqa: UP007
 MESSAGES: TypeAdapter[Message] = TypeAdapter(_ANY)
+UNNAMED_STOP = MODELS[Stop].model_validate({"type": "stop", "client": UNNAMED})
 
 
 TOO_MANY = Reason(
@@ -52,12 +57,15 @@ async def obey(door: Door, tracker_id: str, payload: bytes, *, against: tuple[Re
     `against` says why it is not carried out, unless it is a stop. What asks for a stop is a stop, whatever
     else is wrong with the message.
     """
+    asks_for_stop = is_stop(payload)
     try:
         message = MESSAGES.validate_json(payload)
     except ValidationError as error:
-        if not is_stop(payload):
+        if not asks_for_stop:
             return _answer(None, _malformed(error))
-        message = MODELS[Stop].model_validate({"type": "stop", "client": UNNAMED})
+        message = UNNAMED_STOP
+    if asks_for_stop and message.order is not Stop:
+        message = UNNAMED_STOP
     actor = f"mqtt {message.client}"
     goes = message.order is Stop or not against
     reasons = await _carry_out(door, tracker_id, message, actor) if goes else against
@@ -85,23 +93,30 @@ async def _carry_out(door: Door, tracker_id: str, message: Message, actor: str) 
 
 
 def is_stop(payload: bytes) -> bool:
-    """Return whether a message asks for a stop."""
+    """Return whether a message asks for a stop, be the rest of it JSON or not."""
     try:
         said = orjson.loads(payload)
     except orjson.JSONDecodeError:
-        return False
-    return isinstance(said, dict) and said.get("type") == "stop"
+        said = None
+    return (isinstance(said, dict) and said.get("type") == "stop") or STOP_ANYWHERE.search(
+        payload
+    ) is not None
 
 
 def _malformed(error: ValidationError) -> Reason:
-    places = join(
-        "; ", (f"{'.'.join(map(str, one['loc'])) or 'message'}: {one['msg']}" for one in error.errors())
-    )
+    wrong = error.errors()[:MOST_PLACES]
+    places = join("; ", (f"{_place(one['loc'])}: {one['msg']}" for one in wrong))
     return Reason(
         "malformed",
         say("This is not a valid command: {places}.", places=places),
         N_("The MQTT document lists every command."),
     )
+
+
+def _place(names: Iterable[object]) -> str:
+    """Return where a message is wrong; a sender's own name is cut, and shown without what is not visible."""
+    place = ".".join(map(str, names))[:LONGEST_PLACE].encode("unicode_escape").decode("ascii")
+    return place or "message"
 
 
 def _answer(key: str | None, *reasons: Reason) -> bytes:

@@ -1,5 +1,6 @@
 """What is told over MQTT: topics and JSON payloads, units in the names, unknown values null."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -12,6 +13,8 @@ from app.tracker.memory.recording import RecordingInfo
 from app.tracker.state.snapshot import Pair, SiteSnapshot, Snapshot
 from app.tracker.values.alarm_words import AlarmNow
 
+ADDRESS = re.compile(r"[\w-]{1,40}", re.ASCII)
+"""What may stand where a topic names a tracker; whether there is one is for the site to say."""
 ONLINE, OFFLINE = "online", "offline"
 COLUMNS = (
     "tracker_id", "activity", "tracking_on", "target_azimuth_deg", "target_elevation_deg",
@@ -72,9 +75,11 @@ class Topics:
         """Return where it is told what came of a command."""
         return f"{self.base}/trackers/{tracker_id}/result"
 
-    def addressed(self, topic: str) -> str:
-        """Return the tracker of a command's topic."""
-        return topic.removeprefix(f"{self.base}/trackers/").removesuffix("/command")
+    def addressed(self, topic: str) -> str | None:
+        """Return the tracker of a command's topic, None if it is no such topic or names nothing sensible."""
+        tracker_id = topic.removeprefix(f"{self.base}/trackers/").removesuffix("/command")
+        is_ours = topic == self.command(tracker_id)
+        return tracker_id if is_ours and ADDRESS.fullmatch(tracker_id) else None
 
 
 def tracker_payload(site: SiteSnapshot, tracker: Snapshot) -> bytes:

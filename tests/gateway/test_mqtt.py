@@ -469,7 +469,7 @@ async def test_tls_and_a_password_open_a_broker_that_wants_them(tmp_path: Path) 
         )
         wanted = wanted.model_copy(update={"mqtt_port": tls_port})
         async with opened(plant, wanted, store) as gateways:
-            await _until(gateways, lambda seen: "Not authorized" in seen.error)
+            await _until(gateways, lambda seen: "does not authorize this controller" in seen.error)
         right = wanted.model_copy(update={"mqtt_password": SecretStr("open sesame")})
         async with opened(plant, right, store) as gateways:
             await _until(gateways, lambda seen: seen.status is GatewayStatus.CONNECTED)

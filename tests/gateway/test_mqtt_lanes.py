@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from app.base.clock import VirtualClock
-from app.gateway.mqtt import SAY_AGAIN, quiet_logger
+from app.gateway.mqtt_client import SAY_AGAIN, quiet_logger
 from app.gateway.mqtt_lanes import MOST_AT_ONCE, MOST_WAITING, CommandLanes
 from app.link.messages import Order
 from app.tracker.commands.commands import Stop

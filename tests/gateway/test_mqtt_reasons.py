@@ -1,0 +1,263 @@
+"""Whatever a broker may answer by its format is told with what to do, and costs no event."""
+
+import asyncio
+import itertools
+import json
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from datetime import timedelta
+from pathlib import Path
+from typing import Any
+
+import pytest
+from aiomqtt import Client, ProtocolVersion
+from paho.mqtt.packettypes import PacketTypes
+from paho.mqtt.reasoncodes import ReasonCode
+
+from app.base.settings import Settings
+from app.gateway.gateways import Gateways
+from app.gateway.mqtt import CUT_OFF_OFTEN, FIRST_DELAY, LONGEST_DELAY, LONGEST_WHEN_TAKEN_OVER, next_delay
+from app.link.messages import RenameSite
+from app.link.metrics import GatewayMetrics, GatewayStatus
+from app.store.store import JournalFilter, Writer
+from tests.captured_logs import capture_logs
+from tests.gateway.fake_broker import FakeBroker, serving
+from tests.gateway.rigs import gateway, kept_plant, opened
+from tests.golden.table import rows
+from tests.patience import PATIENCE_S, eventually, pause
+from tests.site.plant import Plant
+
+ROWS = rows("world/broker_reasons.csv")
+PACKETS = {
+    "connack": PacketTypes.CONNACK,
+    "disconnect": PacketTypes.DISCONNECT,
+    "puback": PacketTypes.PUBACK,
+    "suback": PacketTypes.SUBACK,
+}
+UNSUPPORTED_VERSION = 0x84
+"""It is told by the connection in MQTT 3.1.1 that follows."""
+
+
+def at(packet: str) -> list[Any]:
+    found = [row for row in ROWS if row["at"] == packet]
+    return [pytest.param(int(row["code"], 16), row["words"], id=row["code"]) for row in found]
+
+
+def settings(tmp_path: Path, broker: FakeBroker, **more: Any) -> Settings:
+    return Settings(
+        data_dir=tmp_path, mqtt_host="127.0.0.1", mqtt_port=broker.port, mqtt_base_topic="plant", **more
+    )
+
+
+@asynccontextmanager
+async def telling(
+    tmp_path: Path, broker: FakeBroker, **more: Any
+) -> AsyncIterator[tuple[Plant, Gateways, Writer]]:
+    async with (
+        serving(broker),
+        kept_plant(tmp_path) as (plant, store),
+        opened(plant, settings(tmp_path, broker, **more), store) as gateways,
+    ):
+        await until(
+            gateways, lambda metrics: metrics.status is GatewayStatus.CONNECTED or metrics.error != ""
+        )
+        yield plant, gateways, store
+
+
+async def until(gateways: Gateways, found: Callable[[GatewayMetrics], bool]) -> GatewayMetrics:
+    async with asyncio.timeout(PATIENCE_S):
+        while not found(seen := await gateway(gateways, "MQTT")):
+            await pause()
+    return seen
+
+
+def test_the_table_has_every_code_that_a_broker_may_send() -> None:
+    listed = {(row["at"], int(row["code"], 16)) for row in ROWS}
+    known = {
+        (name, code)
+        for name, packet in PACKETS.items()
+        for code, names in ReasonCode.names.items()
+        if code >= 0x80 and any(packet in packets for packets in names.values())
+    }
+    assert known ^ listed == {("connack", UNSUPPORTED_VERSION)}
+
+
+@pytest.mark.parametrize(("code", "words"), at("connack"))
+async def test_a_refused_connection_is_told_with_what_to_do(tmp_path: Path, code: int, words: str) -> None:
+    async with telling(tmp_path, FakeBroker(connack=code, server="other.example")) as (_, gateways, _):
+        seen = await until(gateways, lambda metrics: words in metrics.error)
+        assert seen.status is GatewayStatus.CONNECTING
+
+
+@pytest.mark.parametrize(("code", "words"), at("disconnect"))
+async def test_an_ended_connection_is_told_with_what_to_do(tmp_path: Path, code: int, words: str) -> None:
+    broker = FakeBroker()
+    async with telling(tmp_path, broker) as (plant, gateways, _):
+        await until(gateways, lambda metrics: metrics.status is GatewayStatus.CONNECTED)
+        with capture_logs() as lines:
+            broker.connack = 0x88
+            broker.session.farewell(code, "other.example")
+            await eventually(lambda: any(line.get("code") == code for line in lines))
+        broker.connack = 0
+        assert any(words in line["told"] for line in lines if line.get("code") == code), lines
+        await until(gateways, lambda metrics: metrics.status is GatewayStatus.CONNECTED)
+        await _event_arrives(plant, broker)
+
+
+async def _event_arrives(plant: Plant, broker: FakeBroker) -> None:
+    await plant.ask(RenameSite("Told"))
+    await eventually(lambda: any(b"Told" in payload for payload in broker.told("plant/events")))
+
+
+@pytest.mark.parametrize(("code", "words"), at("puback"))
+async def test_a_refused_event_is_told_with_what_to_do(tmp_path: Path, code: int, words: str) -> None:
+    broker = FakeBroker(puback=lambda topic, payload: code if topic == "plant/events" else 0)
+    async with telling(tmp_path, broker) as (plant, gateways, _):
+        await plant.ask(RenameSite("North"))
+        seen = await until(gateways, lambda metrics: words in metrics.error)
+        assert seen.status is GatewayStatus.CONNECTED
+        assert broker.connected == 1, "what is refused does not end the connection"
+
+
+async def test_refused_events_are_kept_until_they_are_accepted(tmp_path: Path) -> None:
+    rules = {"plant/events": 0x87}
+    broker = FakeBroker(puback=lambda topic, payload: rules.get(topic, 0))
+    async with telling(tmp_path, broker) as (plant, gateways, store):
+        await plant.ask(RenameSite("North"))
+        await until(gateways, lambda metrics: "access rules" in metrics.error)
+        snapshots = len(broker.told("plant/site"))
+        await eventually(lambda: len(broker.told("plant/site")) > snapshots)
+        rules.clear()
+        await plant.ask(RenameSite("South"))
+        await until(gateways, lambda metrics: not metrics.error and metrics.waiting == 0)
+        told = [json.loads(payload)["sequence"] for payload in broker.told("plant/events")]
+        assert (
+            told
+            == [entry.number for entry in store.journal(JournalFilter(after=0, limit=1000))][-len(told) :]
+        )
+        assert any(b"North" in payload for payload in broker.told("plant/events"))
+
+
+async def test_one_event_that_is_refused_holds_up_no_snapshot_and_is_not_sent_at_once_again(
+    tmp_path: Path,
+) -> None:
+    broker = FakeBroker(puback=lambda topic, payload: 0x97 if b"North" in payload else 0)
+    async with telling(tmp_path, broker) as (plant, gateways, _):
+        await plant.ask(RenameSite("North"))
+        await plant.ask(RenameSite("South"))
+        await until(gateways, lambda metrics: "quota" in metrics.error)
+        snapshots = len(broker.told("plant/site"))
+        await eventually(lambda: len(broker.told("plant/site")) > snapshots + 5)
+        assert len([one for one in broker.refused if b"North" in one[1]]) <= 2
+
+
+@pytest.mark.parametrize(("code", "words"), at("suback"))
+async def test_a_refused_subscription_is_told_with_what_to_do(tmp_path: Path, code: int, words: str) -> None:
+    async with telling(tmp_path, FakeBroker(suback=code), mqtt_commands=True) as (_, gateways, _):
+        seen = await until(gateways, lambda metrics: words in metrics.error)
+        assert seen.error.startswith("No commands are received over MQTT.")
+
+
+async def test_a_refused_subscription_is_tried_again(tmp_path: Path) -> None:
+    broker = FakeBroker(suback=0x97)
+    async with telling(tmp_path, broker, mqtt_commands=True) as (_, gateways, _):
+        await until(gateways, lambda metrics: "quota" in metrics.error)
+        broker.suback = 1
+        seen = await until(gateways, lambda metrics: not metrics.error)
+        assert seen.status is GatewayStatus.CONNECTED
+        assert broker.connected == 1
+
+
+async def test_a_refused_alarm_and_announcement_are_told_again_without_the_others(tmp_path: Path) -> None:
+    denied = {"homeassistant/sensor/plant_T1/activity/config"}
+    broker = FakeBroker(puback=lambda topic, payload: 0x87 if topic in denied else 0)
+    async with telling(tmp_path, broker, mqtt_discovery=True) as (plant, gateways, _):
+        await plant.forward(seconds=1)
+        await until(gateways, lambda metrics: "sensor/plant_T1/activity" in metrics.error)
+        denied.clear()
+        await until(gateways, lambda metrics: not metrics.error)
+        topics = [topic for topic, _ in broker.accepted if topic.startswith("homeassistant/")]
+        assert len(topics) == len(set(topics)) == 5
+
+
+async def test_two_controllers_with_one_id_are_told_so_and_take_turns_ever_more_seldom(
+    tmp_path: Path,
+) -> None:
+    broker = FakeBroker()
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+    async with (
+        serving(broker),
+        kept_plant(tmp_path / "one") as (first, store_one),
+        kept_plant(tmp_path / "two") as (second, store_two),
+    ):
+        with capture_logs() as lines:
+            async with (
+                opened(first, settings(tmp_path / "one", broker), store_one),
+                opened(second, settings(tmp_path / "two", broker), store_two),
+            ):
+                await eventually(lambda: broker.connected >= 8)
+    ended = [line for line in lines if line.get("code") == 0x8E]
+    assert {line["told"] for line in ended} == {
+        "Another client uses the ID heliopanel at this broker. Choose another ID for this controller: set "
+        "HELIOPANEL_MQTT_CLIENT_ID, and restart Heliopanel."
+    }
+    pauses = [line["again_s"] for line in ended]
+    assert pauses[0] == 1.0
+    assert max(pauses) >= 4.0
+    assert all(later >= earlier for earlier, later in itertools.pairwise(pauses))
+
+
+@pytest.mark.parametrize(
+    ("delay", "lasted", "longest", "expected"),
+    [
+        (timedelta(), timedelta(seconds=1), LONGEST_DELAY, FIRST_DELAY),
+        (timedelta(seconds=16), timedelta(seconds=16), LONGEST_DELAY, LONGEST_DELAY),
+        (timedelta(seconds=30), timedelta(seconds=60), LONGEST_DELAY, LONGEST_DELAY),
+        (timedelta(seconds=30), timedelta(seconds=61), LONGEST_DELAY, FIRST_DELAY),
+        (timedelta(seconds=30), timedelta(seconds=61), LONGEST_WHEN_TAKEN_OVER, timedelta(seconds=60)),
+        (timedelta(minutes=5), timedelta(minutes=10), LONGEST_WHEN_TAKEN_OVER, timedelta(minutes=5)),
+        (timedelta(minutes=5), timedelta(minutes=11), LONGEST_WHEN_TAKEN_OVER, FIRST_DELAY),
+    ],
+)
+def test_the_pause_is_the_first_again_only_after_a_connection_that_lasted(
+    delay: timedelta, lasted: timedelta, longest: timedelta, expected: timedelta
+) -> None:
+    assert next_delay(delay, lasted, longest) == expected
+
+
+async def test_a_broker_of_mqtt_3_that_ends_every_connection_is_told_with_the_likely_cause(
+    tmp_path: Path,
+) -> None:
+    broker = FakeBroker(knows_mqtt_5=False)
+    async with telling(tmp_path, broker) as (_, gateways, _):
+        for _ in range(CUT_OFF_OFTEN):
+            await eventually(lambda: broker.told("plant/availability"))
+            broker.accepted.clear()
+            broker.session.farewell(0)
+        seen = await until(gateways, lambda metrics: "ends every connection soon" in metrics.error)
+        assert "another client uses the ID heliopanel" in seen.error
+
+
+async def test_a_client_of_another_program_that_takes_the_id_in_mqtt_3_is_recognized(tmp_path: Path) -> None:
+    broker = FakeBroker(knows_mqtt_5=False)
+    async with telling(tmp_path, broker) as (_, gateways, _):
+        for _ in range(CUT_OFF_OFTEN):
+            await until(gateways, lambda metrics: metrics.status is GatewayStatus.CONNECTED)
+            async with Client(
+                "127.0.0.1", broker.port, identifier="heliopanel", protocol=ProtocolVersion.V311
+            ):
+                await until(gateways, lambda metrics: metrics.status is GatewayStatus.CONNECTING)
+        await until(gateways, lambda metrics: "another client uses the ID heliopanel" in metrics.error)
+
+
+async def test_an_answer_of_no_format_ends_the_connection_and_leaves_no_other_behind(tmp_path: Path) -> None:
+    broker = FakeBroker()
+    async with telling(tmp_path, broker) as (plant, gateways, _):
+        await until(gateways, lambda metrics: metrics.status is GatewayStatus.CONNECTED)
+        malformed = broker.session
+        malformed.send(14, b"\x7f\x00")
+        await eventually(lambda: malformed.writer.is_closing())
+        await eventually(lambda: broker.connected == 2)
+        await until(gateways, lambda metrics: metrics.status is GatewayStatus.CONNECTED)
+        await _event_arrives(plant, broker)
