@@ -21,6 +21,7 @@ from app.base.file_text import toml_of
 from app.base.hosts import checked_host
 from app.base.network import FILE_NAME, NETWORK_FIELDS, Network, read_network
 from app.base.sqlite_url import sqlite_url
+from app.base.topics import checked_name, checked_topic
 
 PREFIX = "HELIOPANEL_"
 FILE_VARIABLE = "HELIOPANEL_CONFIG"
@@ -139,7 +140,6 @@ class Settings(BaseSettings):
     )
     mqtt_base_topic: str = Field(
         "heliopanel",
-        pattern=r"^[^+#/\s][^+#\s]{0,98}[^+#/\s]$",
         description="First levels of every topic; another one for every controller on a broker.",
     )
     mqtt_client_id: str = Field(
@@ -199,6 +199,16 @@ class Settings(BaseSettings):
     @classmethod
     def _host(cls, host: str | None) -> str | None:
         return None if host is None else checked_host(host)
+
+    @field_validator("mqtt_base_topic")
+    @classmethod
+    def _topic(cls, topic: str) -> str:
+        return checked_topic("HELIOPANEL_MQTT_BASE_TOPIC", topic)
+
+    @field_validator("mqtt_client_id", "mqtt_username")
+    @classmethod
+    def _name(cls, name: str | None, info: ValidationInfo) -> str | None:
+        return None if name is None else checked_name(PREFIX + str(info.field_name).upper(), name)
 
     @field_validator("sunspec_host")
     @classmethod

@@ -1,6 +1,8 @@
 """What Home Assistant is told so that it finds every tracker by itself: sensors, and buttons if allowed."""
 
+import re
 from collections.abc import Iterator, Sequence
+from hashlib import sha256
 from typing import Any
 
 import orjson
@@ -10,6 +12,7 @@ from app.gateway.mqtt_messages import OFFLINE, ONLINE, Topics
 from app.tracker.state.snapshot import Snapshot
 
 PREFIX = "homeassistant"
+NOT_ALLOWED = re.compile(r"[^A-Za-z0-9_-]")
 SENSORS: tuple[tuple[str, str, dict[str, Any]], ...] = (
     ("measured_azimuth_deg", "Azimuth", {"unit_of_measurement": "°", "suggested_display_precision": 1}),
     ("measured_elevation_deg", "Elevation", {"unit_of_measurement": "°", "suggested_display_precision": 1}),
@@ -26,6 +29,16 @@ Announcement = tuple[str, bytes]
 def announcements(topics: Topics, trackers: Sequence[Snapshot], *, commands: bool) -> dict[str, bytes]:
     """Return everything that is announced about the trackers, by topic."""
     return dict(one for tracker in trackers for one in _of_tracker(topics, tracker, commands=commands))
+
+
+def node_id(base: str, tracker_id: str) -> str:
+    """Return how Home Assistant knows a tracker; it ignores ids of anything but `[A-Za-z0-9_-]`.
+
+    A base topic with other letters has a digest of it in the id, as two of them may leave the same rest.
+    One of ASCII has none: its ids are in use.
+    """
+    node = NOT_ALLOWED.sub("_", f"{base}_{tracker_id}")
+    return node if base.isascii() else f"{node}_{sha256(base.encode()).hexdigest()[:16]}"
 
 
 def _of_tracker(topics: Topics, tracker: Snapshot, *, commands: bool) -> Iterator[Announcement]:
@@ -50,8 +63,7 @@ def _of_tracker(topics: Topics, tracker: Snapshot, *, commands: bool) -> Iterato
 def _one(
     topics: Topics, tracker: Snapshot, component: str, name: str, label: str, more: dict[str, Any]
 ) -> Announcement:
-    node = f"{topics.base}_{tracker.tracker_id}".replace("/", "_")
-    node = "".join(letter if letter.isalnum() or letter in "_-" else "_" for letter in node)
+    node = node_id(topics.base, tracker.tracker_id)
     told = {
         "name": label,
         "unique_id": f"{node}_{name}",
