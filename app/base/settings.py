@@ -200,15 +200,11 @@ class Settings(BaseSettings):
     def _host(cls, host: str | None) -> str | None:
         return None if host is None else checked_host(host)
 
-    @field_validator("mqtt_base_topic")
+    @field_validator("mqtt_base_topic", "mqtt_client_id", "mqtt_username")
     @classmethod
-    def _topic(cls, topic: str) -> str:
-        return checked_topic("HELIOPANEL_MQTT_BASE_TOPIC", topic)
-
-    @field_validator("mqtt_client_id", "mqtt_username")
-    @classmethod
-    def _name(cls, name: str | None, info: ValidationInfo) -> str | None:
-        return None if name is None else checked_name(PREFIX + str(info.field_name).upper(), name)
+    def _mqtt_text(cls, text: str | None, info: ValidationInfo) -> str | None:
+        check = checked_topic if info.field_name == "mqtt_base_topic" else checked_name
+        return None if text is None else check(PREFIX + str(info.field_name).upper(), text)
 
     @field_validator("sunspec_host")
     @classmethod
