@@ -1,9 +1,7 @@
 """The environment as one frozen object, read once by the mains and the command line."""
 
-import hashlib
 import ipaddress
 import os
-import tempfile
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -20,14 +18,13 @@ from app.base.errors import WRONG, Foreseen
 from app.base.file_text import toml_of
 from app.base.hosts import checked_host
 from app.base.network import FILE_NAME, NETWORK_FIELDS, Network, read_network
+from app.base.socket_path import socket_path
 from app.base.sqlite_url import sqlite_url
 from app.base.topics import checked_name, checked_topic
 
 PREFIX = "HELIOPANEL_"
 FILE_VARIABLE = "HELIOPANEL_CONFIG"
 
-LONGEST_SOCKET_PATH = 100
-"""In bytes, of which a letter beyond ASCII has up to four."""
 LOOPBACK = {"127.0.0.1", "::1", "localhost"}
 
 
@@ -317,12 +314,8 @@ class Settings(BaseSettings):
 
     @property
     def link_path(self) -> Path:
-        """Return the Unix socket between panel and machine; kept short, as the system limits its length."""
-        path = self.data_dir.resolve() / "machine.sock"
-        name = f"heliopanel-{hashlib.sha256(os.fsencode(path)).hexdigest()[:16]}.sock"
-        short = (path, Path(tempfile.gettempdir()) / name)
-        fits = (one for one in short if len(os.fsencode(one)) <= LONGEST_SOCKET_PATH)
-        return next(fits, Path("/tmp") / name)  # noqa: S108 - no secret is in the name, and it always fits
+        """Return the Unix socket between panel and machine."""
+        return socket_path(self.data_dir.resolve() / "machine.sock")
 
 
 def read_settings() -> Settings:
