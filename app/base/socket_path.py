@@ -14,4 +14,4 @@ def socket_path(wanted: Path) -> Path:
     name = f"heliopanel-{hashlib.sha256(os.fsencode(wanted)).hexdigest()[:16]}.sock"
     short = (wanted, Path(tempfile.gettempdir()) / name)
     fits = (one for one in short if len(os.fsencode(one)) <= LONGEST_PATH)
-    return next(fits, Path("/tmp") / name)  # noqa: S108 - no secret is in the name, and it always fits
+    return next(fits, Path("/tmp") / name)  # noqa: S108  # nosec B108 - it always fits

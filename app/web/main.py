@@ -111,18 +111,25 @@ def create_app(
     app.router.routes.extend(_doors())
     app.state.routes = guarded_routes(app.routes)
     errors.install(app)
+    _wrap(app, panel)
+    return app
+
+
+def _wrap(app: DocumentedApp, panel: Panel) -> None:
+    """Put around the routes what every request passes, the innermost first."""
     app.add_middleware(AskFirst)
     app.add_middleware(NestingLimit)
     app.add_middleware(Uploads)
     app.add_middleware(RequestBodyLimitMiddleware, max_body_size=LARGEST_BODY)
     app.add_middleware(GZipMiddleware, minimum_size=SMALLEST_COMPRESSED)
-    app.add_middleware(Gate, panel_app=app, keeper=keeper, clock=clock, routes=app.state.routes)
-    app.add_middleware(StreamLimit, clock=clock)
-    app.add_middleware(Guard, hosts=host_names(settings), on_refusal=record_foreign(keeper, clock))
+    app.add_middleware(Gate, panel_app=app, keeper=panel.keeper, clock=panel.clock, routes=app.state.routes)
+    app.add_middleware(StreamLimit, clock=panel.clock)
+    app.add_middleware(
+        Guard, hosts=host_names(panel.settings), on_refusal=record_foreign(panel.keeper, panel.clock)
+    )
     app.add_middleware(SecurityHeaders)
     app.add_middleware(Speech)
     app.add_middleware(HeadAsGet)
-    return app
 
 
 NOWHERE = {"type": "http", "method": "GET", "path": "/-", "root_path": "", "headers": []}

@@ -270,7 +270,11 @@ async def test_a_step_program_reads_the_same_signs(
 
 async def test_a_step_program_reads_decimal_commas(machine: FakeMachine, client: httpx.AsyncClient) -> None:
     action = f"{STRATEGY}/program"
-    steps: dict[str, str | list[str]] = {"at": ["8,5", "12:00"], "first": ["100,5°", "110"], "second": ["30,25", "−2,5"]}
+    steps: dict[str, str | list[str]] = {
+        "at": ["8,5", "12:00"],
+        "first": ["100,5°", "110"],
+        "second": ["30,25", "−2,5"],
+    }
     answer = await client.post(action, data=await filled(client, STRATEGY, steps, action=action))
     assert answer.status_code == 303, answer.text
     strategy = config(machine).strategy
