@@ -76,7 +76,7 @@ def test_the_sun_now_in_words(run: Run) -> None:
     [
         (["sun", "--lat", "141", "--lon", "0"], "Latitude must lie between"),
         (["sun", *SAMSUN, "--at", "2026-06-21T12:00"], "has no time zone"),
-        (["simulate", *SAMSUN, "--date", "2026-13-01", "--out", "x.csv"], "month"),
+        (["simulate", *SAMSUN, "--date", "2026-13-01", "--out", "x.csv"], "not a day of the calendar"),
         (["restore", "/nowhere/backup.db"], "/nowhere/backup.db"),
         (["drive-sim", "--tcp", "nowhere"], "HOST:PORT"),
     ],

@@ -11,7 +11,7 @@ from app.base.message import say
 FIRST_YEAR, LAST_YEAR = 1970, 2099
 """The years in which the sun is known and a clock can be right; a day more or less stays in the calendar."""
 NUMBER = re.compile(r"\s*[-+]?[\d._]+(?:[eE][-+]?\d+)?\s*")
-NOT_A_NUMBER = "Write the instant in ISO 8601 with its offset, such as 2026-06-21T12:00:00+03:00."
+HOW_TO_WRITE = "Write the instant in ISO 8601 with its offset, such as 2026-06-21T12:00:00+03:00."
 NOT_OF_THESE_TIMES = say("Enter a year from {first} to {last}.", first=FIRST_YEAR, last=LAST_YEAR)
 LEAP_SECOND = re.compile(r"([T ]\d{2}:\d{2}):60(?:[.,]\d+)?(?=$|[Zz+-])")
 
@@ -28,7 +28,7 @@ def without_leap_second(text: str) -> str:
 def _clamped(given: object) -> object:
     """Return what is to be read as an instant; a number, taken for seconds since 1970, is refused."""
     if isinstance(given, int | float) or (isinstance(given, str) and NUMBER.fullmatch(given)):
-        raise ValueError(NOT_A_NUMBER)
+        raise ValueError(HOW_TO_WRITE)
     return without_leap_second(given) if isinstance(given, str) else given
 
 
@@ -37,7 +37,11 @@ def read_instant(text: str) -> datetime:
 
     It has no time zone where the text has none.
     """
-    return of_these_times(datetime.fromisoformat(without_leap_second(text)))
+    try:
+        found = datetime.fromisoformat(without_leap_second(text))
+    except ValueError:
+        raise ValueError(HOW_TO_WRITE) from None
+    return of_these_times(found)
 
 
 def is_of_these_times(instant: datetime) -> bool:

@@ -10,6 +10,7 @@ import typer
 
 from app.base.clock import SystemClock
 from app.base.instants import read_instant
+from app.cli.local_day import local_day
 from app.show.simulate import simulate_date, simulate_show_of_date
 from app.store.exports import to_csv, to_parquet
 from app.sun.position import Algorithm, Location, sun_position
@@ -62,7 +63,7 @@ def simulate(
 ) -> None:
     """Simulate a day, or a show of it, with the real controller on a virtual clock; write the recording."""
     tracker, place = TrackerConfig("T1", "Tracker 1", algorithm=algorithm), Location(lat, lon)
-    day = datetime.fromisoformat(date).date()
+    day = local_day(date)
     if show_minutes is None:
         step = timedelta(seconds=step_s)
         info, frames = simulate_date(tracker, place, time_zone, day, mode=mode, step=step)

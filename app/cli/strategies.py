@@ -1,11 +1,12 @@
 """The command that compares tracking strategies over a day, with the real controller on a virtual clock."""
 
-from datetime import datetime, timedelta
+from datetime import datetime, time, timedelta
 from typing import Annotated
 from zoneinfo import ZoneInfo
 
 import typer
 
+from app.cli.local_day import local_day
 from app.show.strategy_day import strategy_day
 from app.show.strategy_told import StrategyDay
 from app.sun.position import Location
@@ -50,7 +51,7 @@ def strategies(
     time_zone: Annotated[str, typer.Option(help="IANA time zone of the day.")] = "UTC",
 ) -> None:
     """Print moves, errors and travel of every strategy over a day, as a table."""
-    begin = datetime.fromisoformat(date).replace(tzinfo=ZoneInfo(time_zone))
+    begin = datetime.combine(local_day(date), time(), ZoneInfo(time_zone))
     typer.echo(f"| {' | '.join(COLUMNS)} |")
     typer.echo("| --- |" + " ---: |" * (len(COLUMNS) - 1))
     for name, strategy in COMPARED:

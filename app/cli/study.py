@@ -2,7 +2,6 @@
 
 import subprocess
 from collections.abc import Iterator
-from datetime import datetime
 from pathlib import Path
 from typing import Annotated
 
@@ -11,6 +10,7 @@ import typer
 from app.base.adapter import adapter
 from app.base.extras import need
 from app.base.own import own_process
+from app.cli.local_day import local_day
 from app.energy.motion import DriveCosts
 from app.energy.plane import Around, Transposition
 from app.fast.comparison import ClearSky, Comparison
@@ -64,7 +64,7 @@ def study(
         location=place,
         time_zone=time_zone,
         span=span,
-        on=datetime.fromisoformat(date).date(),
+        on=local_day(date),
         modes=tuple(mode or StudyMode),
         strategies=tuple(strategy or (StudyStrategy.CONTINUOUS,)),
         held=_held(place, azimuth, elevation),

@@ -1,10 +1,22 @@
 """Instants as the world brings them: taken as they are meant, or refused with a sentence, everywhere."""
 
+import json
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
 import httpx
 import pytest
+from starlette.routing import BaseRoute
 
+from app.base.own import own_folder
+from app.base.sqlite_url import sqlite_url
 from app.link.messages import SetClock
-from tests.fakes import FakeMachine
+from app.store.engine import open_reader
+from app.store.migrations import upgrade
+from app.web.http.late_routes import LateRoute
+from tests.amount import amount
+from tests.fakes import FakeMachine, fake_app, serving
 from tests.fault_result import FaultResult
 from tests.golden.table import rows
 from tests.web.filled import filled
@@ -61,3 +73,65 @@ async def test_a_day_outside_the_years_of_the_sun_is_not_simulated(
     answer = await client.post("/simulate", data=form)
     assert answer.status_code == 422
     assert REFUSED in answer.text
+
+
+DOCUMENT = json.loads((own_folder("docs") / "openapi.json").read_bytes())
+NEVER_ENDS = ("/api/v1/stream",)
+NAMED = {"tracker_id": "T1", "step": "clock", "name": "home", "language": "en"}
+NUMBERS = ["-1", "9223372036854775808", "-9223372036854775809", "99999999999999999999", "1e999"]
+
+
+def address(path: str) -> str:
+    return re.sub(r"\{(\w+)(?::\w+)?\}", lambda found: NAMED.get(found[1], "1"), path)
+
+
+INSTANTS = [
+    (method, address(path), one["name"])
+    for path, calls in DOCUMENT["paths"].items()
+    for method, call in calls.items()
+    for one in call.get("parameters", ())
+    if one["in"] == "query" and "date-time" in json.dumps(one["schema"])
+]
+
+
+@pytest.mark.parametrize("row", ROWS, ids=[row["text"] for row in ROWS])
+async def test_no_call_takes_an_instant_that_is_refused_elsewhere(
+    row: dict[str, str], client: httpx.AsyncClient
+) -> None:
+    assert len(INSTANTS) > 50
+    for method, path, name in INSTANTS:
+        answer = await client.request(method, path, params={name: row["text"]})
+        wrong = answer.json().get("errors", ()) if answer.status_code == 422 else ()
+        named = name in json.dumps(wrong)
+        assert answer.status_code < 500, (method, path, name)
+        assert named == (row["taken"] == "no"), (method, path, name, answer.text)
+
+
+def of_pages(routes: Iterable[BaseRoute], prefix: str = "") -> Iterator[tuple[str, set[str]]]:
+    """Yield every address that is read, with the names of the fields that its query takes."""
+    for route in routes:
+        if isinstance(route, LateRoute):
+            if "GET" in route.methods and prefix + route.path not in NEVER_ENDS:
+                asked = [route.dependant]
+                for one in asked:
+                    asked.extend(one.dependencies)
+                yield address(prefix + route.path), {name.alias for one in asked for name in one.query_params}
+        elif inner := getattr(route, "original_router", None):
+            yield from of_pages(inner.routes, prefix + getattr(route, "include_context").prefix)  # noqa: B009
+
+
+async def test_no_field_of_any_address_ends_in_an_error_of_ours(tmp_path: Path) -> None:
+    url = sqlite_url(tmp_path / "heliopanel.db")
+    upgrade(url)
+    app = fake_app(FakeMachine(), open_reader(url))  # type: ignore[arg-type]
+    texts = ["0001-01-01", "9999-12-31", "9999-12-31T23:59:59-12:00", *NUMBERS, *DAYS]
+    texts += [row["text"] for row in ROWS if row["taken"] == "no"]
+    async with serving(app) as client:
+        tried = 0
+        for path, names in of_pages(app.router.routes):
+            for name in names:
+                for text in texts[: amount(5, len(texts))]:
+                    answer = await client.get(path, params={name: text})
+                    assert answer.status_code < 500, (path, name, text)
+                    tried += 1
+    assert tried > 300

@@ -28,6 +28,7 @@ from app.web.api.orders import Sender, SenderDep
 from app.web.http.needs import needs
 from app.web.shell.deps import ReaderDep, SnapshotDep
 
+Priority = Annotated[int, Field(ge=1, le=4)]
 router = api_router(prefix="/alarms", tags=["alarms"])
 AlarmId = Annotated[
     str, Path(min_length=1, max_length=120, description="Name of the alarm.", examples=["drive_lost@T1"])
@@ -82,7 +83,7 @@ def read_alarm_history(
     cursor: Cursor = None,
     limit: Limit = 100,
     tracker_id: Annotated[str | None, Query(max_length=64)] = None,
-    priority: Annotated[list[int] | None, Query(description="Only these priorities.")] = None,
+    priority: Annotated[list[Priority] | None, Query(description="Only these priorities.")] = None,
 ) -> Page[PastAlarm]:
     """Return alarms that were raised, a page at a time."""
     found = reader.alarm_history(AlarmFilter(before(cursor), limit, tracker_id, tuple(priority or ())))

@@ -47,7 +47,7 @@ def journal(
     begins, wrong_since = _day(typed.start, frame.zone)
     ends, wrong_until = _day(typed.end, frame.zone, last=True)
     narrowed = JournalFilter(
-        before=before,
+        before=before if before is not None and 0 < before < 2**63 else None,
         limit=A_PAGE,
         tracker_id=typed.tracker or None,
         kinds=(EventKind(typed.kind),) if typed.kind in list(EventKind) else (),
