@@ -135,3 +135,28 @@ async def test_no_field_of_any_address_ends_in_an_error_of_ours(tmp_path: Path) 
                     assert answer.status_code < 500, (path, name, text)
                     tried += 1
     assert tried > 300
+
+
+DATED = ("date", "at", "start", "end", "issued_at", "measured_at", "begun_at", "device_at")
+ENDLESS = ["0001-01-01", "9999-12-31", "2100-01-01", "0001-01-01T00:00:00+14:00", "9999-12-31T23:59:59-12:00"]
+
+
+def bodies() -> Iterator[tuple[str, str, dict[str, object]]]:
+    """Yield the example of every body in the document, with method and address."""
+    for path, calls in DOCUMENT["paths"].items():
+        for method, call in calls.items():
+            content = call.get("requestBody", {}).get("content", {}).get("application/json", {})
+            several = content.get("examples", {"": {"value": content.get("example")}})
+            for one in several.values():
+                if isinstance(one["value"], dict):
+                    yield method, address(path), one["value"]
+
+
+@pytest.mark.parametrize("name", DATED)
+async def test_no_body_with_an_end_of_the_calendar_ends_in_an_error_of_ours(
+    name: str, client: httpx.AsyncClient
+) -> None:
+    for method, path, body in bodies():
+        for text in ENDLESS:
+            answer = await client.request(method, path, json=body | {name: text})
+            assert answer.status_code < 500, (method, path, body, text, answer.text)
