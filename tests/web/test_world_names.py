@@ -220,6 +220,12 @@ async def test_what_is_typed_at_a_tracker_has_one_spelling(
     assert answer.status_code == 303, answer.text
     events = (await desk.ask("GET", "/api/v1/journal")).json()["items"]
     assert any(stored in json.dumps(one, ensure_ascii=False) for one in events), events
+    if field == "name":
+        asked = {"text": typed}
+        assert (await desk.ask("GET", "/api/v1/journal", params=asked)).json()["items"], (
+            "found as it was typed"
+        )
+        assert stored in unescape((await desk.ask("GET", "/journal", params=asked)).text)
 
 
 STORED = dict.fromkeys(row["stored"] for row in NAMES if not code_of(row))

@@ -9,6 +9,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.base.message import N_
+from app.base.names import tidy
 from app.base.permission import Permission
 from app.base.zones import zone_of
 from app.store.store import JournalFilter
@@ -43,7 +44,7 @@ def journal(
 ) -> Response:
     """Show one page of the journal; `before` is the number of the oldest entry of the page before."""
     frame = site_frame(request, N_("Journal"))
-    typed = JournalQuery(tracker, kind, actor.strip(), text.strip(), start.strip(), end.strip())
+    typed = JournalQuery(tracker, kind, tidy(actor), tidy(text), start.strip(), end.strip())
     begins, wrong_since = _day(typed.start, frame.zone)
     ends, wrong_until = _day(typed.end, frame.zone, last=True)
     narrowed = JournalFilter(

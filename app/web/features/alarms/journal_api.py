@@ -7,6 +7,7 @@ from fastapi import Depends, Query
 from starlette.responses import Response
 
 from app.base.instants import Instant
+from app.base.names import tidy
 from app.base.permission import Permission
 from app.store.store import JournalEntry, JournalFilter
 from app.tracker.state.snapshot import EventKind
@@ -28,6 +29,7 @@ def _narrowed(
 ) -> JournalFilter:
     """Return what the query narrows the journal to."""
     kinds = tuple(kind or ())
+    actor, text = (found if found is None else tidy(found) for found in (actor, text))
     return JournalFilter(tracker_id=tracker_id, kinds=kinds, actor=actor, text=text, start=start, end=end)
 
 
