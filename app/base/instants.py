@@ -1,7 +1,7 @@
 """Instants as programs and people write them, leap seconds included."""
 
 import re
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 from typing import Annotated
 
 from pydantic import AfterValidator, AwareDatetime, BeforeValidator, Strict
@@ -13,6 +13,8 @@ FIRST_YEAR, LAST_YEAR = 1970, 2099
 NUMBER = re.compile(r"\s*[-+]?[\d._]+(?:[eE][-+]?\d+)?\s*")
 HOW_TO_WRITE = "Write the instant in ISO 8601 with its offset, such as 2026-06-21T12:00:00+03:00."
 NOT_OF_THESE_TIMES = say("Enter a year from {first} to {last}.", first=FIRST_YEAR, last=LAST_YEAR)
+DAY = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}")
+NOT_A_DAY = "Write the date as year-month-day, such as 2026-06-21."
 LEAP_SECOND = re.compile(r"([T ]\d{2}:\d{2}):60(?:[.,]\d+)?(?=$|[Zz+-])")
 
 
@@ -63,3 +65,14 @@ Instant = Annotated[AwareDatetime, Strict(False), BeforeValidator(_clamped), Aft
 
 It is text in JSON: where a model is strict, the text would be refused behind a validator of ours.
 """
+
+
+def _written_day(given: object) -> object:
+    """Return what is to be read as a date; a number, which would be seconds since 1970, is refused."""
+    if isinstance(given, date) or (isinstance(given, str) and DAY.fullmatch(given)):
+        return given
+    raise ValueError(NOT_A_DAY)
+
+
+Day = Annotated[date, BeforeValidator(_written_day)]
+"""A civil date in what comes in."""

@@ -12,7 +12,7 @@ from fastapi import Query
 from fastapi.responses import Response
 from pydantic import Field
 
-from app.base.instants import Instant
+from app.base.instants import Day, Instant
 from app.base.message import N_, say
 from app.base.permission import Permission
 from app.base.zones import day_in, zone_of
@@ -117,7 +117,7 @@ async def read_sun(
 @needs(Permission.READ)
 def read_sun_day(
     site: SnapshotDep,
-    date: Annotated[date | None, Query(description="Civil date of the site; left out: today.")] = None,
+    date: Annotated[Day | None, Query(description="Civil date of the site; left out: today.")] = None,
     step_s: Annotated[int, Query(ge=10, le=21600, description="Seconds between points.")] = 300,
     algorithm: AlgorithmQuery = Algorithm.PSA,
     format: TextFormat = TextFormat.JSON,

@@ -1,6 +1,6 @@
 """Shows: plan, check, go to the start, run, pause, resume, stop."""
 
-from datetime import date, datetime, timedelta
+from datetime import datetime, timedelta
 from enum import StrEnum
 from typing import Self
 from urllib.parse import quote
@@ -10,7 +10,7 @@ from fastapi.responses import Response
 from pydantic import Field, model_validator
 from starlette.concurrency import run_in_threadpool
 
-from app.base.instants import Instant
+from app.base.instants import Day, Instant
 from app.base.message import N_, say
 from app.base.permission import Permission
 from app.base.zones import day_in
@@ -43,7 +43,6 @@ from app.web.shell.deps import MachineDep, ReaderDep, SnapshotDep
 
 router = api_router(prefix="/trackers/{tracker_id}/shows", tags=["shows"])
 
-CivilDate = date
 OTHER_SHOW = Reason(
     "other_show",
     N_("This show is not in progress on this tracker."),
@@ -56,7 +55,7 @@ class NewShow(Input):
 
     start: Instant | None = Field(None, examples=["2026-06-21T06:00:00+03:00"])
     end: Instant | None = Field(None, examples=["2026-06-21T20:00:00+03:00"])
-    date: CivilDate | None = Field(None, description="Civil date of the site: from sunrise to sunset.")
+    date: Day | None = Field(None, description="Civil date of the site: from sunrise to sunset.")
     duration_s: float = Field(ge=1, le=604800, description="How long the show takes.", examples=[180])
     mode: Mode | None = Field(
         None, description="Left out: the tracker's selected mode, else all axes follow."

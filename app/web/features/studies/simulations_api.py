@@ -1,13 +1,13 @@
 """A whole day at the controller's fidelity on a virtual clock; nothing moves."""
 
 from dataclasses import replace
-from datetime import date, datetime, timedelta, tzinfo
+from datetime import datetime, timedelta, tzinfo
 from typing import Annotated, Self
 
 from fastapi.responses import Response
 from pydantic import Field, model_validator
 
-from app.base.instants import Instant
+from app.base.instants import Day, Instant
 from app.base.message import N_, told_by
 from app.base.permission import Permission
 from app.base.zones import day_in, zone_of
@@ -38,8 +38,6 @@ from app.web.services.simulations import SimulationRequest
 from app.web.shell.deps import MachineDep, PanelDep, SnapshotDep
 
 router = api_router(tags=["recordings"])
-
-CivilDate = date
 
 
 class DayStepIn(Input):
@@ -88,7 +86,7 @@ class NewSimulation(Input):
     """Which tracker and which span: a civil `date` from midnight to midnight, or `start` and `end`."""
 
     tracker_id: str = Field(min_length=1, max_length=64, examples=["T1"])
-    date: CivilDate | None = Field(None, description="Civil date of the site.", examples=["2026-06-21"])
+    date: Day | None = Field(None, description="Civil date of the site.", examples=["2026-06-21"])
     start: Instant | None = None
     end: Instant | None = None
     mode: Mode | None = Field(None, description="Left out: the tracker's selected mode, else dual.")

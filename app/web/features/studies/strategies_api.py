@@ -1,7 +1,6 @@
 """Strategies: the step program of a tracker as JSON and CSV, and a day by any strategy."""
 
 from dataclasses import replace
-from datetime import date
 from enum import StrEnum
 from typing import Annotated
 
@@ -12,6 +11,7 @@ from starlette.requests import Request
 
 from app.base.adapter import adapter
 from app.base.file_text import TextRefused, text_of
+from app.base.instants import Day
 from app.base.message import N_, told_by
 from app.base.permission import Permission
 from app.base.zones import day_in
@@ -21,7 +21,17 @@ from app.tracker.programs.examples import EXAMPLES
 from app.tracker.programs.step_table import TableWrong, from_table, to_table
 from app.tracker.settings.stepped import StepProgram
 from app.tracker.settings.strategy import Stepped, Strategy
-from app.web.api.base import CHANGED, NOT_FOUND, REFUSED, TAGGED, TOO_MANY, Input, TrackerId, api_router
+from app.web.api.base import (
+    CHANGED,
+    NOT_FOUND,
+    REFUSED,
+    TAGGED,
+    TOO_MANY,
+    Input,
+    Responses,
+    TrackerId,
+    api_router,
+)
 from app.web.api.numbers import true_to_kind
 from app.web.api.orders import SenderDep
 from app.web.api.sun import location_of, midnights
@@ -34,8 +44,8 @@ from app.web.shell.deps import MachineDep, PanelDep, SnapshotDep
 
 router = api_router(prefix="/trackers/{tracker_id}", tags=["trackers"])
 
-CivilDate = date
 CSV = "text/csv; charset=utf-8"
+TABLE: Responses = {200: TAGGED[200] | {"content": {"text/csv": {"schema": {"type": "string"}}}}}
 CSV_BODY = {
     "requestBody": {
         "description": "The table in UTF-8, or in UTF-16 with a byte order mark; `text/csv` is taken as "
@@ -59,7 +69,7 @@ class StrategyQuestion(Input):
     strategy: Annotated[Strategy, Field(discriminator="kind")] | None = Field(
         None, description="Left out: the tracker's own."
     )
-    date: CivilDate | None = Field(None, description="Civil date of the site; left out: today.")
+    date: Day | None = Field(None, description="Civil date of the site; left out: today.")
 
 
 async def strategy_of(machine: MachineDep, tracker_id: TrackerId) -> Strategy:
@@ -67,7 +77,12 @@ async def strategy_of(machine: MachineDep, tracker_id: TrackerId) -> Strategy:
     return (await detail_of(machine, tracker_id)).state.config.strategy
 
 
-@router.get("/program", summary="The step program that a tracker follows", responses=TAGGED | NOT_FOUND)
+@router.get(
+    "/program",
+    summary="The step program that a tracker follows",
+    response_model=StepProgram,
+    responses=TABLE | NOT_FOUND,
+)
 @needs(Permission.READ)
 async def read_program(
     tracker_id: TrackerId, machine: MachineDep, format: ProgramFormat = ProgramFormat.JSON

@@ -1,11 +1,11 @@
 """From what is asked to a study, with the site's own values where none is given."""
 
 from dataclasses import replace
-from datetime import date
 from typing import Annotated
 
 from pydantic import Field
 
+from app.base.instants import Day
 from app.base.message import N_, say, with_format
 from app.energy.motion import DriveCosts
 from app.energy.plane import Around, Transposition
@@ -32,7 +32,6 @@ from app.tracker.settings.stepped import StepProgram
 from app.tracker.settings.strategy import Stepped
 from app.web.api.base import Azimuth, Clean, Elevation, Input
 
-CivilDate = date
 NO_PLACE = N_("Give latitude and longitude, or save the site's location first: step 1 of commissioning.")
 HALF_A_PLACE = N_("Give latitude and longitude together, or leave both out for the site's location.")
 
@@ -59,7 +58,7 @@ class Place(Input):
 class NewStudy(Place):
     """What to compare; everything but the day has a value if it is left out."""
 
-    date: CivilDate = Field(description="The day, or any day of the year.", examples=["2026-06-21"])
+    date: Day = Field(description="The day, or any day of the year.", examples=["2026-06-21"])
     title: Annotated[str, Clean] = Field("", max_length=120)
     time_zone: str | None = Field(None, max_length=64, description="IANA name; left out: the site's.")
     span: Span = Field(Span.TWELVE_DAYS, description="A day, the 12 representative days, or a year.")
@@ -154,7 +153,7 @@ class NewStudy(Place):
 class NewProgram(Place):
     """Which step programs to find, and where to use one of them."""
 
-    date: CivilDate = Field(examples=["2026-06-21"])
+    date: Day = Field(examples=["2026-06-21"])
     most_steps: int = Field(12, ge=1, le=48)
     range_deg: float = Field(60.0, ge=5, le=120, description="Hour angle to either side of noon.")
     step_s: float = Field(0.0, ge=0, le=3600, description="How long a step takes.")
