@@ -80,7 +80,7 @@ def export(
     ] = Kept.ORDERS,
     since: Since = "",
 ) -> None:
-    """Write one of the two records into a file: CSV with a head line, or JSON with one entry a line."""
+    """Write one of the two records into a file: CSV with a byte order mark and a head line, or JSON lines."""
     settings, begin = read_settings(), _instant(since)
     match kept:
         case Kept.ORDERS:
