@@ -7,6 +7,7 @@ positive to the west. What was changed in reading is told by notes; what can mea
 import re
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import takewhile
 
 from app.base.message import N_, Message, say, told_by
 from app.sun.horizon import Horizon, joined
@@ -50,21 +51,27 @@ class HorizonRead:
 
 def read(text: str) -> HorizonRead:
     """Return the horizon that lines of azimuth and elevation mean, in any order; raises `Unreadable`."""
-    lines = list(enumerate(re.split("\r\n?|\n", text.removeprefix("\ufeff")), start=1))
-    excels = [found[1] for _, line in lines if (found := EXCELS_LINE.fullmatch(line))]
-    lines = [(row, line) for row, line in lines if not EXCELS_LINE.fullmatch(line)]
-    separator = excels[0] if excels else _separator([line for _, line in lines])
-    from_south = next((at for at, (_, line) in enumerate(lines) if _is_pvgis(line, separator)), None)
-    if from_south is not None:
-        lines = _until_blank(lines[from_south + 1 :])
-        profile = [_point(row, _words(line, separator)[:2], 180.0) for row, line in lines]
-        return _joined(
-            [(azimuth_deg + 180.0, up_deg) for azimuth_deg, up_deg in profile], [HorizonNote.PVGIS]
+    numbered = enumerate(re.split("\r\n?|\n", text.removeprefix("\ufeff")), start=1)
+    lines = [(row, line) for row, line in numbered if line.strip(EMPTY)]
+    excels = EXCELS_LINE.fullmatch(lines[0][1]) if lines else None
+    separator = excels[1] if excels else _separator([line for _, line in lines])
+    table = lines[1:] if excels else lines
+    at = next((at for at, (_, line) in enumerate(table) if _is_pvgis(line, separator)), None)
+    if at is not None:
+        # Behind the table PVGIS explains its columns.
+        table = list(takewhile(lambda one: not _is_head(one[1]), table[at + 1 :]))
+        profile = [_point(row, _words(line, separator)[:2], 180.0) for row, line in table]
+        points, notes = [(one + 180.0, up_deg) for one, up_deg in profile], [HorizonNote.PVGIS]
+    else:
+        has_head = bool(table) and _is_head(table[0][1])
+        order = -1 if has_head and _is_turned(table[0], separator) else 1
+        points = [_point(row, _words(line, separator)[::order]) for row, line in table[has_head:]]
+        notes = [HorizonNote.NEGATIVE] if any(one < 0.0 for one, _ in points) else []
+    if lines and not points:
+        raise Unreadable(
+            N_("There are no points below the first line. For a flat horizon, leave the field empty.")
         )
-    lines = [(row, line) for row, line in lines if line.strip(EMPTY)]
-    is_turned = bool(lines) and _is_head(lines[0][1]) and _is_turned(lines.pop(0), separator)
-    points = [_point(row, _words(line, separator)[:: -1 if is_turned else 1]) for row, line in lines]
-    return _joined(points, [HorizonNote.NEGATIVE] if any(one < 0.0 for one, _ in points) else [])
+    return _joined(points, notes)
 
 
 def _joined(points: list[tuple[float, float]], notes: list[HorizonNote]) -> HorizonRead:
@@ -104,12 +111,6 @@ def _words(line: str, separator: str) -> list[str]:
 
 def _is_pvgis(line: str, separator: str) -> bool:
     return _words(line, separator)[:2] == PVGIS_HEAD
-
-
-def _until_blank(lines: list[Line]) -> list[Line]:
-    """Return the lines of PVGIS's table: behind an empty line it explains the columns."""
-    end = next((at for at, (_, line) in enumerate(lines) if not line.strip(EMPTY)), len(lines))
-    return lines[:end]
 
 
 def _is_turned(head: Line, separator: str) -> bool:
