@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.base.clock import VirtualClock
+from app.base.message import N_
 from app.drives.dialects.extremes import extremes
 from app.drives.dialects.gearing import gearing_of
 from app.drives.dialects.register_axis import RegisterAxis
@@ -203,7 +204,7 @@ class Answering(Checks):
     """A connection test that always finds the drive."""
 
     async def look(self, drive: DriveConfig) -> DriveReadings:
-        return DriveReadings(CheckOutcome.ANSWERED, "The device answers: 34 registers were read.")
+        return DriveReadings(CheckOutcome.ANSWERED, N_("The device answers: 34 registers were read."))
 
 
 async def test_the_connection_test_says_what_does_not_fit(tmp_path: Path) -> None:

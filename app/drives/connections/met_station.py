@@ -3,18 +3,17 @@
 Source: SunSpec Device Information Model Reference, model 307. Its wind speed has a resolution of 1 m/s.
 """
 
-from app.base.message import N_, say
+from app.base.message import N_
 from app.drives.connections.buses import Buses
+from app.drives.dialects.sunspec_models import MODEL_HEADER, MapSearch, model_at
 from app.modbus.bus import BusUnit
-from app.modbus.errors import DriveError, DriveRefused
+from app.modbus.errors import DriveError
 from app.modbus.wire import Timing
 from app.tracker.memory.memory import MetStation
 from app.tracker.settings.config import DriveConfig, DriveKind
 from app.tracker.weather.weather import Weather, is_possible
 
-BASES = (40000, 50000, 0)
-MARK = [0x5375, 0x6E53]
-MODEL, END_MODEL, MOST_MODELS, HEADER = 307, 0xFFFF, 40, 2
+MODEL = 307
 UNKNOWN, SIGN = 0x8000, 0x8000
 POINTS = (
     ("temperature_degc", 0.1), ("humidity_pct", 1.0), ("pressure_hpa", 1.0), ("wind_mps", 1.0),
@@ -29,51 +28,27 @@ class MetReader:
 
     def __init__(self, link: BusUnit) -> None:
         self._link = link
+        self._search = MapSearch()
         self._address: int | None = None
+        self._length = 0
 
     async def read(self) -> tuple[Weather | None, tuple[str, ...]]:
         """Return what it measures and what of it is impossible, or raise `DriveError`."""
         if self._address is None:
-            self._address = await self._found()
+            where = str(self._link)
+            base = await self._search.base(self._link, where)
+            self._address, self._length = await model_at(self._link, base, MODEL, where)
+        count = min(self._length, len(POINTS))
         try:
-            words = await self._link.read(self._address + HEADER, len(POINTS), what=N_("SunSpec model 307"))
+            words = await self._link.read(self._address + MODEL_HEADER, count, what=N_("SunSpec model 307"))
         except DriveError:
             self._address = None
             raise
-        return weather_of(words)
+        return weather_of([*words, *[UNKNOWN] * (len(POINTS) - count)])
 
     async def close(self) -> None:
         """Let go of the connection."""
         await self._link.close()
-
-    async def _found(self) -> int:
-        for base in BASES:
-            try:
-                mark = await self._link.read(base, len(MARK), what=N_("the beginning of the SunSpec map"))
-            except DriveRefused:
-                continue
-            if mark == MARK:
-                return await self._model(base + len(MARK))
-        raise DriveRefused(
-            say(
-                "The device at {link} is not a SunSpec device: no register map begins with SunS.",
-                link=self._link,
-            )
-        )
-
-    async def _model(self, address: int) -> int:
-        for _ in range(MOST_MODELS):
-            model, length = await self._link.read(address, HEADER, what=N_("a SunSpec model's header"))
-            if model == MODEL:
-                return address
-            if model == END_MODEL:
-                break
-            address += HEADER + length
-        raise DriveRefused(
-            say(
-                "The device at {link} has no SunSpec model 307, Base Met. Check its unit id.", link=self._link
-            )
-        )
 
 
 def weather_of(words: list[int]) -> tuple[Weather | None, tuple[str, ...]]:

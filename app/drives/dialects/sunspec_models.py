@@ -4,32 +4,87 @@ Source: SunSpec Device Information Model Specification: "SunS" at a base address
 """
 
 from dataclasses import replace
+from typing import Protocol
 
-from app.base.message import say
+from app.base.message import N_, Message, data, join, say, told_by
 from app.drives.profile import Block, Profile
-from app.drives.unit import Link, Unit
-from app.modbus.errors import DriveRefused
+from app.modbus.errors import DriveError, DriveRefused, DriveSilent
 
-END_MODEL, MOST_MODELS = 0xFFFF, 40
+BASES = (40000, 50000, 0)
+"""Where a map may begin, as the specification lists it."""
+MARK = [0x5375, 0x6E53]
+END_MODEL, MOST_MODELS, ADDRESSES = 0xFFFF, 40, 0x10000
 CONTROLLER_LENGTH, TRACKER_LENGTH = 26, 22
 MODEL_HEADER = 2
-MARK = ("sunspec_id", "sunspec_id_end")
+NO_ANSWER, REFUSED, FAILED = N_("no answer"), N_("refused"), N_("failed")
 
 
-async def located(profile: Profile, link: Link, where: str) -> Profile:
-    """Return the profile with its model and its tracker where this device has them, or raise `DriveError`.
+class Reading(Protocol):
+    """A device whose registers can be read."""
 
-    Registers from `model` on are moved; `first_model` is where the chain begins.
+    async def read(self, address: int, count: int, *, what: str) -> list[int]:
+        """Return holding registers, or raise `DriveError`."""
+
+
+class MapSearch:
+    """Finds where the map of a device begins, at one base after the other.
+
+    A base at which nothing answers is passed over, also where the caller gave up waiting: the next call goes
+    on with the next one. A base that was right before is tried first.
     """
-    await _identify(profile, link, where)
-    wanted = profile.registers["model"].expect
-    address = profile.registers["first_model"].address
+
+    def __init__(self, first: int = BASES[0]) -> None:
+        self._bases = [first, *(base for base in BASES if base != first)]
+        self._answers: dict[int, Message] = {}
+        self._silent: DriveSilent | None = None
+
+    async def base(self, link: Reading, where: str) -> int:
+        """Return the address of the mark, or raise `DriveError` that says what each base answered."""
+        for base in [base for base in self._bases if base not in self._answers]:
+            self._answers[base] = NO_ANSWER
+            try:
+                words = await link.read(base, len(MARK), what=N_("the beginning of the SunSpec map"))
+            except DriveSilent as error:
+                self._silent = error
+            except DriveRefused:
+                self._answers[base] = REFUSED
+            except DriveError:
+                self._answers[base] = FAILED
+            else:
+                if list(words) == MARK:
+                    self._bases.insert(0, self._bases.pop(self._bases.index(base)))
+                    self._answers.clear()
+                    return base
+                self._answers[base] = data(" ".join(f"0x{word:04X}" for word in words))
+        raise self._not_found(where)
+
+    def _not_found(self, where: str) -> DriveError:
+        """Return what each base answered, and begin anew."""
+        answers, silent = self._answers, self._silent
+        self._answers, self._silent = {}, None
+        listed = join("; ", (say("{base}: {answer}", base=base, answer=answers[base]) for base in answers))
+        tried = say(
+            "The device at {where} is not a SunSpec device: no register map begins with SunS ({answers}). "
+            "Check address, unit, and profile.",
+            where=where,
+            answers=listed,
+        )
+        if set(answers.values()) != {NO_ANSWER}:
+            return DriveRefused(tried)
+        unanswered = say("No SunSpec map answers ({answers}).", answers=listed)
+        return DriveSilent(unanswered if silent is None else join(" ", (told_by(silent), unanswered)))
+
+
+async def model_at(link: Reading, base: int, wanted: int, where: str) -> tuple[int, int]:
+    """Return address and length of a model in the map that begins at a base, or raise `DriveError`."""
+    address = base + len(MARK)
     for _ in range(MOST_MODELS):
-        model, length = await link.read(address, MODEL_HEADER, what=f"model header of profile {profile.name}")
-        if model == wanted:
-            found = _shifted(profile, address)
-            _check_count(found, length, where)
-            return found
+        if address + MODEL_HEADER > ADDRESSES:
+            break
+        what = N_("the header of a SunSpec model")
+        model, length = await link.read(address, MODEL_HEADER, what=what)
+        if model == wanted and 0 < length <= ADDRESSES - MODEL_HEADER - address:
+            return address, length
         if model == END_MODEL:
             break
         address += MODEL_HEADER + length
@@ -42,20 +97,21 @@ async def located(profile: Profile, link: Link, where: str) -> Profile:
     )
 
 
-async def _identify(profile: Profile, link: Link, where: str) -> None:
-    found = await Unit(profile, link, where).poll(*MARK)
-    if any(value != profile.registers[name].expect for name, value in found.items()):
-        raise DriveRefused(
-            say(
-                "The device at {where} is not a SunSpec device: its map does not begin with SunS. "
-                "Check address, unit and profile.",
-                where=where,
-            )
-        )
+async def located(profile: Profile, link: Reading, where: str, search: MapSearch | None = None) -> Profile:
+    """Return the profile with its model and its tracker where this device has them, or raise `DriveError`.
+
+    Registers from `model` on are moved to where the model is, those before it with the base of the map.
+    """
+    first, wanted = profile.registers["sunspec_id"].address, profile.registers["model"].expect or 0
+    base = await (search or MapSearch(first)).base(link, where)
+    address, length = await model_at(link, base, wanted, where)
+    found = _shifted(profile, address, base - first)
+    _check_count(found, length, where)
+    return found
 
 
 def _check_count(profile: Profile, length: int, where: str) -> None:
-    trackers = (length - CONTROLLER_LENGTH) // TRACKER_LENGTH
+    trackers = max(0, (length - CONTROLLER_LENGTH) // TRACKER_LENGTH)
     if profile.tracker > trackers:
         raise DriveRefused(
             say(
@@ -69,8 +125,8 @@ def _check_count(profile: Profile, length: int, where: str) -> None:
         )
 
 
-def _shifted(profile: Profile, model_address: int) -> Profile:
-    """Return the profile with everything from model 601 on where this device has it.
+def _shifted(profile: Profile, model_address: int, base_by: int) -> Profile:
+    """Return the profile with everything from model 601 on where this device has it, the rest with the base.
 
     The points of the repeated block become those of the profile's tracker, in a frame of their own where the
     controller's own points are not its neighbours any more.
@@ -80,7 +136,7 @@ def _shifted(profile: Profile, model_address: int) -> Profile:
     by, on = model_address - first, (profile.tracker - 1) * TRACKER_LENGTH
 
     def moved(address: int) -> int:
-        return address + (by if address >= first else 0) + (on if address >= repeated else 0)
+        return address + (by if address >= first else base_by) + (on if address >= repeated else 0)
 
     blocks = [
         replace(part, address=moved(part.address))

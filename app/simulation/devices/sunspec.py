@@ -2,10 +2,12 @@
 
 Source: SunSpec Alliance model definitions 1 and 601 (draft 2). In automatic control it stands still, in
 manual control it goes to its targets, calibration searches the origin of both axes and ends in automatic.
+Azimuth is 0 to 360 degrees from true north; it goes the shorter way.
 """
 
 from collections.abc import Collection
 
+from app.base.angles import wrap180, wrap360
 from app.base.clock import Clock
 from app.simulation.devices.axis_device import AxisDevice
 from app.simulation.simulated_machine import SimulatedMachine
@@ -67,7 +69,7 @@ class SunSpecTracker(AxisDevice):
         if self.word(CONTROL) == CALIBRATE and not (observed.azimuth.moving or observed.elevation.moving):
             self._end_calibration()
             observed = self.machine.observe()
-        self.put_wide(AZIMUTH_POSITION, self.steps(observed.azimuth.position_deg))
+        self.put_wide(AZIMUTH_POSITION, self.steps(wrap360(observed.azimuth.position_deg)))
         self.put_wide(ELEVATION_POSITION, self.steps(observed.elevation.position_deg))
         self.put(TRACKER_ALARMS, 1 if fault_code else 0)
 
@@ -77,6 +79,9 @@ class SunSpecTracker(AxisDevice):
             case mode if mode == MANUAL:
                 for axis, address in ((Axis.AZIMUTH, AZIMUTH_MANUAL), (Axis.ELEVATION, ELEVATION_MANUAL)):
                     target_deg = self.wide(address) / self.steps_per_deg
+                    if axis is Axis.AZIMUTH:
+                        here_deg = self.machine.observe().azimuth.position_deg
+                        target_deg = here_deg + wrap180(target_deg - here_deg)
                     self.machine.turn(axis, Position(target_deg, SPEED[axis]))
             case mode if mode == CALIBRATE:
                 for axis in Axis:
