@@ -1,9 +1,11 @@
 """`python -m tests.fuzz`: at least 10,000 cases against the whole API, and hostile values for every form.
 
+Each text that the API takes is given texts of the world as well, and tables as files have them.
+
 The panel is the real one on a machine in memory that keeps its two trackers and its recordings. Parts run
-alone with `forms`, or with `api` and `--only REGEX` of paths, `--without REGEX` of others; the exit code is 1
-after any failure. It runs in a network of its own where that is allowed: the document's examples name hosts,
-and what is fuzzed may call them.
+alone with `forms`, with `texts`, or with `api` and `--only REGEX` of paths, `--without REGEX` of others; the
+exit code is 1 after any failure. It runs in a network of its own where that is allowed: the document's
+examples name hosts, and what is fuzzed may call them.
 """
 
 import argparse
@@ -24,11 +26,13 @@ from app.tracker.commands.commands import CommandRejected
 from app.tracker.state.snapshot import SiteSnapshot
 from app.tracker.values.reason import Reason
 from tests.alone import begin_alone
-from tests.fakes import FakeMachine, fake_app
+from tests.fakes import FakeMachine, fake_app, serving
+from tests.web.api_texts import send_texts
 from tests.web.test_forms import fuzz
 
 EXAMPLES = 125
 FORM_ROUNDS = 60
+TEXTS_EACH = 60
 SEED = 3
 SCHEMATHESIS = Path(sys.executable).with_name("st")
 CONFIG = Path(__file__).with_name("schemathesis.toml")
@@ -88,22 +92,30 @@ def _api(only: str, without: str, examples: int) -> int:
     return subprocess.run(command, check=False).returncode
 
 
-def _forms() -> int:
+def _forms() -> None:
     print(f"{asyncio.run(fuzz(FORM_ROUNDS, SEED))} bad values were sent to the forms; none broke anything.")
-    return 0
+
+
+async def _texts() -> int:
+    app = fake_app(LastingMachine())
+    async with serving(app) as client:
+        return await send_texts(client, app.openapi(), TEXTS_EACH, SEED)
 
 
 def main() -> int:
     """Run what was asked for, without a name both, and return the exit code."""
     arguments = argparse.ArgumentParser(prog="python -m tests.fuzz", description=__doc__)
-    arguments.add_argument("part", nargs="?", choices=("api", "forms", "all"), default="all")
+    arguments.add_argument("part", nargs="?", choices=("api", "forms", "texts", "all"), default="all")
     arguments.add_argument("--only", default=".", help="regular expression of the API's paths")
     arguments.add_argument("--without", default=LEFT_OUT, help="regular expression of paths left out")
     arguments.add_argument("--examples", type=int, default=EXAMPLES, help="cases for each operation")
     given = arguments.parse_args()
     begin_alone("tests.fuzz", *sys.argv[1:])
-    forms = 0 if given.part == "api" else _forms()
-    return forms or (0 if given.part == "forms" else _api(given.only, given.without, given.examples))
+    if given.part in ("forms", "all"):
+        _forms()
+    if given.part in ("texts", "all"):
+        print(f"{asyncio.run(_texts())} texts were sent to the API; none broke anything.")
+    return _api(given.only, given.without, given.examples) if given.part in ("api", "all") else 0
 
 
 if __name__ == "__main__":

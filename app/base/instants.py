@@ -14,7 +14,7 @@ NUMBER = re.compile(r"\s*[-+]?[\d._]+(?:[eE][-+]?\d+)?\s*")
 HOW_TO_WRITE = "Write the instant in ISO 8601 with its offset, such as 2026-06-21T12:00:00+03:00."
 NOT_OF_THESE_TIMES = say("Enter a year from {first} to {last}.", first=FIRST_YEAR, last=LAST_YEAR)
 DAY = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}")
-NOT_A_DAY = "Write the date as year-month-day, such as 2026-06-21."
+NOT_A_DAY = "Write a day of the calendar as year-month-day, such as 2026-06-21."
 LEAP_SECOND = re.compile(r"([T ]\d{2}:\d{2}):60(?:[.,]\d+)?(?=$|[Zz+-])")
 
 
@@ -69,9 +69,14 @@ It is text in JSON: where a model is strict, the text would be refused behind a 
 
 def _written_day(given: object) -> object:
     """Return what is to be read as a date; a number, which would be seconds since 1970, is refused."""
-    if isinstance(given, date) or (isinstance(given, str) and DAY.fullmatch(given)):
+    if isinstance(given, date):
         return given
-    raise ValueError(NOT_A_DAY)
+    if not isinstance(given, str) or DAY.fullmatch(given) is None:
+        raise ValueError(NOT_A_DAY)
+    try:
+        return date.fromisoformat(given)
+    except ValueError as error:
+        raise ValueError(NOT_A_DAY) from error
 
 
 Day = Annotated[date, BeforeValidator(_written_day)]
