@@ -111,3 +111,14 @@ async def test_a_paper_that_is_not_there_is_documented_as_missing(api: httpx.Asy
     assert (await api.get(f"{V1}/papers", params={"paper": "none"})).status_code == 404
     described = (await api.get(f"{V1}/openapi.json")).json()["paths"]
     assert "404" in described[f"{V1}/papers"]["get"]["responses"]
+
+
+async def test_a_step_program_is_documented_in_each_of_its_forms(api: httpx.AsyncClient) -> None:
+    table = "clock_time,azimuth_deg,elevation_deg\n06:00,90,20\n12:00,180,60\n"
+    assert (await api.put(f"{V1}/trackers/T1/program.csv", content=table)).status_code == 200
+    described = (await api.get(f"{V1}/openapi.json")).json()["paths"][f"{V1}/trackers/{{tracker_id}}/program"]
+    documented = described["get"]["responses"]["200"]["content"]
+    for form in ("json", "csv"):
+        answer = await api.get(f"{V1}/trackers/T1/program", params={"format": form})
+        assert answer.headers["content-type"].partition(";")[0] in documented
+    assert documented["application/json"]["schema"]
