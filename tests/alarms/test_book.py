@@ -112,6 +112,18 @@ def test_it_lasts_for_its_delay_before_it_is_raised_and_before_it_returns() -> N
     assert desk.happened("drive_lost@T1") == [Happened.RAISED]
 
 
+def test_a_reason_has_one_spelling() -> None:
+    desk = Desk()
+    name = "disk_full"
+    desk.see(of(name, None), for_s=4)
+    with pytest.raises(ValueError, match="U\\+202E"):
+        desk.shelve(name, reason="known\u202e")
+    desk.shelve(name, reason="Gu\u0308nes\u0327\u00a0K.")
+    shelf = desk.book.alarms[name].shelf
+    assert shelf is not None
+    assert shelf.reason == "Güneş K."
+
+
 def test_a_shelved_alarm_comes_back_by_itself() -> None:
     desk = Desk()
     desk.see(of("disk_full", None), for_s=4)

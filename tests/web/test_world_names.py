@@ -4,12 +4,14 @@ import json
 from collections.abc import Awaitable, Callable
 from dataclasses import replace
 from html import unescape
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 from unicodedata import normalize
 
 import httpx
 import pytest
+from PIL import Image
 from pydantic import TypeAdapter, ValidationError
 
 from app.base.logs import _on_one_line
@@ -17,6 +19,8 @@ from app.base.message import told_of_value
 from app.base.names import JOINERS, clean, tidy, unseen
 from app.gateway.sunspec_points import _text_words
 from app.tracker.settings.mechanics import Region
+from app.web.features.records.photos import PhotoRefused
+from app.web.features.records.record_orders import add_photo
 from app.web.features.records.records_api import NewRecord
 from app.web.features.records.signatures import SignatureRefused, SignatureRole, signature
 from app.web.features.studies.simulations_api import NewSimulation
@@ -256,10 +260,36 @@ async def test_a_name_with_joiners_goes_wherever_names_go(name: str) -> None:
 
 async def test_the_length_is_that_of_what_is_stored(desk: Desk) -> None:
     longest = "ảấộữịè" * 10
-    for send, read in (ENTRANCES["site, page"], ENTRANCES["site, API"], ENTRANCES["tracker, page"]):
+    for what in ("site, page", "site, API", "tracker, page", "tracker, API", "region, page"):
+        send, read = ENTRANCES[what]
         assert (await send(desk, normalize("NFD", longest))).status_code < 400
         assert await read(desk) == longest
         assert (await send(desk, longest + "x")).status_code == 422
+
+
+@pytest.mark.parametrize(("typed", "stored"), [("Gu\u0308nes\u0327\u00a0K.", "Güneş K."), ("G\u202e", "")])
+async def test_a_caption_has_one_spelling(typed: str, stored: str) -> None:
+    sent: list[Any] = []
+
+    async def send(order: Any) -> None:
+        sent.append(order)
+
+    picture = BytesIO()
+    Image.new("RGB", (2, 2)).save(picture, "PNG")
+    if stored:
+        await add_photo(send, "T1", picture.getvalue(), typed)
+        assert [order.caption for order in sent] == [stored]
+    else:
+        with pytest.raises(PhotoRefused, match="U\\+202E"):
+            await add_photo(send, "T1", picture.getvalue(), typed)
+        assert not sent
+
+
+async def test_a_reason_to_take_control_has_one_spelling(desk: Desk) -> None:
+    asked = {"action": "take_over", "reason": "Gu\u0308nes\u202e"}
+    answer = await desk.ask("POST", f"{API}/control", json=asked)
+    assert answer.status_code == 422
+    assert "U+202E" in answer.text
 
 
 def test_regions_from_before_are_read() -> None:

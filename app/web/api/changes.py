@@ -9,7 +9,7 @@ from pydantic import Field as Described
 from pydantic import create_model
 
 from app.tracker.settings.declared import Parts, annotations_of, bare, default_of, setting_of
-from app.web.api.base import Input
+from app.web.api.base import Clean, Input
 
 
 class Change(Input):
@@ -70,6 +70,8 @@ def _shape(annotation: Any, notes: tuple[Any, ...], *, is_whole: bool) -> Any:
         annotation = whole_of(kind) if is_whole else change_of(kind, parts)
     elif kinds := [arm for arm in get_args(annotation) if is_dataclass(arm)]:
         notes = (*notes, Described(discriminator="kind")) if len(kinds) > 1 else notes
+    elif annotation is str:
+        notes = (Clean, *notes)
     return Annotated[annotation, *notes] if notes else annotation
 
 

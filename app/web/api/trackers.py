@@ -1,7 +1,7 @@
 """Trackers: what is set, what is, what can be done."""
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field, ValidationError
 from starlette.requests import Request
@@ -22,6 +22,7 @@ from app.web.api.base import (
     NOT_FOUND,
     REFUSED,
     TAGGED,
+    Clean,
     Output,
     Page,
     TrackerId,
@@ -48,7 +49,7 @@ class NewTracker(TrackerChange):
     """A tracker to add; what is left out has its default."""
 
     tracker_id: str = Field(min_length=1, max_length=64, description="Short and new.", examples=["T2"])
-    name: TrackerName = Field(examples=["South field"])
+    name: Annotated[TrackerName, Clean] = Field(examples=["South field"])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
