@@ -251,11 +251,38 @@ async def test_a_client_of_another_program_that_takes_the_id_in_mqtt_3_is_recogn
         await until(gateways, lambda metrics: "another client uses the ID heliopanel" in metrics.error)
 
 
+ODD = {
+    "an acknowledgement of nothing": b"\x40\x02\xff\xff",
+    "a reason that is none": b"\x40\x03\xff\xff\x7f",
+    "a grant of nothing": b"\x90\x04\xff\xff\x00\x01",
+    "a second welcome": b"\x20\x03\x00\x00\x00",
+    "an end without a reason": b"\xe0\x00",
+    "an end with a reason that is none": b"\xe0\x02\x7f\x00",
+    "a question about the password": b"\xf0\x00",
+    "a kind that is reserved": b"\x00\x00",
+    "a length without an end": b"\x30\xff\xff\xff\xff\xff",
+    "a ping of the wrong side": b"\xc0\x00",
+}
+
+
+@pytest.mark.parametrize("packet", ODD.values(), ids=ODD)
+async def test_a_packet_that_no_broker_should_send_costs_no_event(tmp_path: Path, packet: bytes) -> None:
+    broker = FakeBroker()
+    async with telling(tmp_path, broker) as (plant, gateways, store):
+        broker.session.writer.write(packet)
+        await _event_arrives(plant, broker)
+        await until(gateways, lambda metrics: metrics.status is GatewayStatus.CONNECTED)
+        assert len(broker.sessions) == 1
+        told = [json.loads(payload)["sequence"] for payload in broker.told("plant/events")]
+        journal = [entry.number for entry in store.journal(JournalFilter(after=0, limit=1000))]
+        assert list(dict.fromkeys(told)) == journal[-len(set(told)) :]
+
+
 async def test_an_answer_of_no_format_ends_the_connection_and_leaves_no_other_behind(tmp_path: Path) -> None:
     broker = FakeBroker()
     async with telling(tmp_path, broker) as (plant, gateways, _):
         await until(gateways, lambda metrics: metrics.status is GatewayStatus.CONNECTED)
-        malformed = broker.session
+        malformed = broker.sessions.pop("heliopanel")
         malformed.send(14, b"\x7f\x00")
         await eventually(lambda: malformed.writer.is_closing())
         await eventually(lambda: broker.connected == 2)
