@@ -54,7 +54,7 @@ class BrokerClient(Client):
         self._refusals: dict[int, Reason] = {}
 
     def close(self) -> None:
-        """Close what is left of the connection: after a malformed packet the library keeps it open."""
+        """Close what is left: the library keeps a connection open that the broker was too slow to accept."""
         self._client._sock_close()  # noqa: SLF001 - the library has no other way
         if self._disconnected.done():
             self._disconnected.exception()

@@ -38,6 +38,8 @@ class FakeBroker:
     puback: Callable[[str, bytes], int] = lambda topic, payload: 0
     suback: int = 1
     knows_mqtt_5: bool = True
+    is_silent: bool = False
+    unanswered: list[Session] = field(default_factory=list)
     port: int = 0
     connected: int = 0
     subscribed: int = 0
@@ -80,6 +82,9 @@ class FakeBroker:
             rest = rest[1 + rest[0] :]
         name = rest[2 : 2 + int.from_bytes(rest[:2])].decode()
         session = Session(name, version, writer)
+        if self.is_silent:
+            self.unanswered.append(session)
+            return session
         if version == MQTT_5 and not self.knows_mqtt_5:
             session.send(CONNACK, b"\x00\x01")
             writer.close()
