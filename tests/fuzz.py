@@ -32,7 +32,7 @@ from tests.web.test_forms import fuzz
 
 EXAMPLES = 125
 FORM_ROUNDS = 60
-TEXTS_EACH = 60
+TEXTS_EACH = 10
 SEED = 3
 SCHEMATHESIS = Path(sys.executable).with_name("st")
 CONFIG = Path(__file__).with_name("schemathesis.toml")

@@ -14,7 +14,7 @@ from tests.web.forms import HOSTILE, WORLD
 METHODS = ("get", "post", "put", "patch", "delete")
 ENDLESS = "/api/v1/stream"
 """It never ends; `tests/web/test_stream.py` holds what it takes."""
-CALCULATED, SELDOM = ("/api/v1/simulations", "/api/v1/studies/programs"), 20
+CALCULATED, SELDOM = ("/api/v1/simulations", "/api/v1/studies/programs"), 10
 """What calculates for seconds takes one text where the others take so many."""
 JSON = "application/json"
 TABLE = "time,azimuth_deg,elevation_deg\r\n06:00:00,90.5,20\r\n12:00:00,180,60,5\r\n"
