@@ -85,7 +85,8 @@ class MqttGateway:
     def metrics(self) -> GatewayMetrics:
         """Return how it is doing."""
         connected = self._status is GatewayStatus.CONNECTED
-        refused = (sentence for _, sentence in self._refused.values())
+        now = self._clock.now()
+        refused = (told for again, told in self._refused.values() if now < again + LONGEST_DELAY)
         error = self._error or next(refused, NOTHING)
         return GatewayMetrics(
             MQTT_NAME, self._status, plain(self._where), int(connected), error, self._waiting

@@ -56,7 +56,7 @@ class BrokerClient(Client):
     def close(self) -> None:
         """Close what is left: the library keeps a connection open that the broker was too slow to accept."""
         self._client._sock_close()  # noqa: SLF001 - the library has no other way
-        if self._disconnected.done():
+        if self._disconnected.done() and not self._disconnected.cancelled():
             self._disconnected.exception()
 
     def _on_connect(

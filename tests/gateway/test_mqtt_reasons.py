@@ -5,18 +5,20 @@ import itertools
 import json
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
-from datetime import timedelta
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
 import pytest
-from aiomqtt import Client, ProtocolVersion
+from aiomqtt import Client, MqttError, ProtocolVersion
 from paho.mqtt.packettypes import PacketTypes
 from paho.mqtt.reasoncodes import ReasonCode
 
+from app.base.clock import VirtualClock
 from app.base.settings import Settings
 from app.gateway.gateways import Gateways
 from app.gateway.mqtt import CUT_OFF_OFTEN, FIRST_DELAY, LONGEST_DELAY, LONGEST_WHEN_TAKEN_OVER, next_delay
+from app.gateway.mqtt_client import broker_client
 from app.link.messages import RenameSite
 from app.link.metrics import GatewayMetrics, GatewayStatus
 from app.store.store import JournalFilter, Writer
@@ -27,6 +29,7 @@ from tests.golden.table import rows
 from tests.patience import PATIENCE_S, eventually, pause
 from tests.site.plant import Plant
 
+NOON = datetime(2026, 11, 28, 12, tzinfo=UTC)
 ROWS = rows("world/broker_reasons.csv")
 PACKETS = {
     "connack": PacketTypes.CONNACK,
@@ -149,6 +152,27 @@ async def test_one_event_that_is_refused_holds_up_no_snapshot_and_is_not_sent_at
         snapshots = len(broker.told("plant/site"))
         await eventually(lambda: len(broker.told("plant/site")) > snapshots + 5)
         assert len([one for one in broker.refused if b"North" in one[1]]) <= 2
+
+
+async def test_what_is_not_sent_again_is_not_told_as_refused_for_ever(tmp_path: Path) -> None:
+    """The answer to a command, and an alarm that has ended meanwhile."""
+    result = "plant/trackers/T1/result"
+    broker = FakeBroker(puback=lambda topic, payload: 0x87 if topic == result else 0)
+    async with telling(tmp_path, broker, mqtt_commands=True) as (_, gateways, _):
+        broker.publish(b"plant/trackers/T1/command", b'{"type":"stop","client":"a"}')
+        await until(gateways, lambda metrics: result in metrics.error)
+        await until(gateways, lambda metrics: not metrics.error)
+        assert broker.connected == 1
+
+
+async def test_a_farewell_that_no_broker_took_leaves_the_gateway_able_to_connect_again() -> None:
+    client = broker_client(
+        Settings(mqtt_host="127.0.0.1"), VirtualClock(NOON), "plant/availability", ProtocolVersion.V5
+    )
+    client.timeout = 0.0
+    with pytest.raises(MqttError, match="timed out"):
+        await client._wait_for(client._disconnected, timeout=None)
+    client.close()
 
 
 @pytest.mark.parametrize(("code", "words"), at("suback"))
