@@ -1,6 +1,7 @@
 """The panel's certificate is renewed under a clock that is certain, and served without a restart."""
 
 import ssl
+import threading
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -94,6 +95,8 @@ async def test_it_is_renewed_by_a_clock_that_is_certain(tmp_path: Path, row: Clo
     found = read(folder / SERVER)
     assert (found.names, found.validity(max(now, BUILT_AT))) == (NAMES, Validity.VALID)
     assert panel.handed_out() == found.not_after
+    await panel.later()
+    assert served(folder) == after, "it is renewed once"
 
 
 @rows("certificate_unsure")
@@ -184,6 +187,22 @@ async def test_a_pair_that_does_not_fit_leaves_what_is_served(tmp_path: Path) ->
         await panel.later()
     assert panel.handed_out() == before
     assert [one["event"] for one in logs] == ["certificate_unusable"]
+
+
+async def test_the_context_of_new_connections_is_changed_where_they_are_made(tmp_path: Path) -> None:
+    """OpenSSL makes connections of a context in one thread only while no other changes it."""
+    init(tmp_path / "tls", NAMES, NOON)
+    panel = Panel(tmp_path, timedelta())
+    threads: list[threading.Thread] = []
+
+    class Context(ssl.SSLContext):
+        def load_cert_chain(self, *files: object, **more: object) -> None:
+            threads.append(threading.current_thread())
+
+    panel.desk.context = lambda: Context(ssl.PROTOCOL_TLS_SERVER)
+    init(tmp_path / "tls", NAMES, NOON + timedelta(days=1))
+    await panel.later()
+    assert threads == [threading.current_thread()]
 
 
 def test_no_wrong_clock_makes_an_authority_that_is_not_valid(tmp_path: Path) -> None:

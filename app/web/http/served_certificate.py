@@ -47,7 +47,8 @@ class ServedCertificate:
         try:
             wrong, about = await asyncio.to_thread(self._renew_if_due, self._files[0])
             if (written := self._written()) != self._served:
-                await asyncio.to_thread(self._serve, self._files)
+                await asyncio.to_thread(_tried, self._files)
+                self._serve(self._files)
                 self._served = written
         except (OSError, ValueError) as error:
             wrong, about = "certificate_unusable", {"reason": str(error)}
@@ -71,11 +72,16 @@ class ServedCertificate:
         return wrong, {"certificate": str(path), "valid_from": begin, "until": end}
 
     def _certain(self) -> datetime | None:
-        """Return the time where the site's clock is trusted or NTP keeps the system's, None elsewhere."""
+        """Return the time where the site's clock is trusted or NTP keeps the system's, None elsewhere.
+
+        It is never before this software was built, which NTP may show: what was made then would never be
+        valid, and be made anew at every look.
+        """
         site = self._machine.latest()
         if site is None or not (site.clock.trusted or site.clock.ntp_synchronised):
             return None
-        return site.at if site.clock.trusted else self._clock.system_time()
+        at = site.at if site.clock.trusted else self._clock.system_time()
+        return max(at, BUILT_AT)
 
     def _written(self) -> tuple[tuple[int, int], ...]:
         try:
@@ -85,8 +91,12 @@ class ServedCertificate:
         return tuple((one.st_ino, one.st_mtime_ns) for one in found)
 
     def _serve(self, files: tuple[Path, Path]) -> None:
-        """Serve new connections with these files; tried apart, as a bad pair would spoil the context."""
-        ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(*files, password="")
+        """Serve new connections with these files; in no thread, as connections are made of the context."""
         if (context := self.context()) is not None:
             context.load_cert_chain(*files, password="")
             log.info("certificate_served")
+
+
+def _tried(files: tuple[Path, Path]) -> None:
+    """Raise `OSError` for files that do not fit together: they would spoil the context."""
+    ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(*files, password="")
