@@ -200,6 +200,27 @@ async def test_gear_left_at_one_is_a_fault_that_names_the_register_and_can_be_re
     await plant.close()
 
 
+async def test_what_is_stored_and_does_not_fit_refuses_no_other_setting(tmp_path: Path) -> None:
+    """A kept tracker is still renamed and protected; its speeds and its drive are saved once they fit."""
+    row = MISFITS[0]
+    clock = VirtualClock(SUMMER_NOON)
+    kept = config_of(row)
+    factory = factory_of(row, tmp_path, clock)
+    state = TrackerState(kept, TrackerMemory())
+    plant = Plant(clock, Site(clock, factory.make, SiteState(), (state,), options=SiteOptions()), {})
+    await plant.start()
+    named = replace(kept, name="North")
+    await plant.ask(ConfigureTracker(named))
+    assert plant.site.model.tracker("T1").config == named
+    narrowed = replace(named, azimuth=replace(named.azimuth, maximum_deg=350.0))
+    with pytest.raises(ValueError, match="the acceleration or the gear ratio of the azimuth axis"):
+        await plant.ask(ConfigureTracker(narrowed))
+    geared = replace(named.drive, azimuth=replace(named.drive.azimuth, gear_ratio=60.0))
+    await plant.ask(ConfigureTracker(replace(narrowed, drive=geared)))
+    assert plant.site.model.tracker("T1").config.drive == geared
+    await plant.close()
+
+
 class Answering(Checks):
     """A connection test that always finds the drive."""
 

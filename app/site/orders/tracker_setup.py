@@ -77,18 +77,19 @@ async def configure(model: SiteModel, config: TrackerConfig, actor: str) -> tupl
     refuse_while_busy(model, loop)
     _refuse_unsafe_limits(loop, config)
     _refuse_shared_drive(model, config)
-    model.check_drive(config)
-    if config.drive != loop.config.drive:
+    old = loop.config
+    rebuilt = _machine(old) != _machine(config)
+    if rebuilt:
+        model.check_drive(config)
+    if config.drive != old.drive:
         refuse_starved_drive(model, config)
     event = model.event(
         EventKind.TRACKER_CHANGED,
         say("The configuration of {name} was changed.", name=config.name),
         actor,
         config.tracker_id,
-        changed=_changed(loop.config, config),
+        changed=_changed(old, config),
     )
-    old = loop.config
-    rebuilt = _machine(old) != _machine(config)
     at = model.now()
     memory = _memory_for(loop.memory, old, config, at) if rebuilt else loop.memory
     await model.ledger.save_tracker(TrackerState(config, memory), (event,))
