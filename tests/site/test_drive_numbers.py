@@ -191,8 +191,10 @@ async def test_gear_left_at_one_is_a_fault_that_names_the_register_and_can_be_re
     assert seen.activity is ActivityName.FAULTED
     assert seen.fault is not None
     assert seen.fault.code == "command_refused"
-    assert "1000000 does not fit into register path_acceleration (25092), which holds 0 to 65535" in (
-        seen.fault.message
+    assert seen.fault.message == (
+        "The drive of Tracker was not given its command: 1000000 does not fit into register "
+        "path_acceleration (25092), which holds 0 to 65535 ms/1000rpm. Change the acceleration or the gear "
+        "ratio of the azimuth axis."
     )
     await plant.ask(ResetFault())
     await plant.forward(seconds=2)

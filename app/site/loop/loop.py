@@ -10,7 +10,7 @@ from typing import Protocol
 from app.base.clock import Clock
 from app.base.logs import get_logger
 from app.base.message import N_, NOTHING, say, told_by
-from app.drives.drive import Drive, answers_at_once, line_turn
+from app.drives.drive import Drive, answers_at_once, check_fit, line_turn
 from app.drives.register import ValueMisfit
 from app.modbus.errors import DriveError, DriveRefused
 from app.site.loop.line_pace import LinePace
@@ -287,7 +287,7 @@ class TrackerLoop:
             self._trouble = _trouble(error)
             if self._was_read and isinstance(error, DriveRefused):
                 times = MOST_REFUSALS if isinstance(error, ValueMisfit) else 1
-                refusals = (*self._refusals, *[_refused(self.config, error)] * times)
+                refusals = (*self._refusals, *[_refused(self.config, _advised(self.drive, error))] * times)
                 self._refusals = refusals[-MOST_REFUSALS:]
 
     async def _break_off(self, error: Exception) -> None:
@@ -321,6 +321,16 @@ def _still(axis: AxisCommand) -> AxisCommand:
 
 def _moves(command: DriveCommand) -> bool:
     return any(axis not in (HALT, STANDSTILL) for axis in (command.azimuth, command.elevation))
+
+
+def _advised(drive: Drive, refusal: DriveRefused) -> DriveRefused:
+    """Return a refusal with what to change in the settings where a number of theirs does not fit."""
+    if isinstance(refusal, ValueMisfit):
+        try:
+            check_fit(drive)
+        except ValueMisfit as misfit:
+            return misfit
+    return refusal
 
 
 def _refused(config: TrackerConfig, error: DriveRefused) -> Reason:
