@@ -73,8 +73,8 @@ class Passwords:
         return self.hash_again(password)
 
     def hash_again(self, password: str) -> str:
-        """Return the hash of a password that was right under another one."""
-        return self._hasher.hash(prepared(password))
+        """Return the hash of a password that was right under another one, of as much as is compared."""
+        return self._hasher.hash(prepared(password)[: LONGEST + 1])
 
     def hash_pin(self, pin: str) -> str:
         """Return the hash of a cabinet panel's PIN, or raise `AccessRefused`."""

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from app.access.accounts import TokenWish
-from app.access.passwords import Argon, Passwords, prepared, weakness
+from app.access.passwords import LONGEST, Argon, Passwords, prepared, weakness
 from app.access.roles import Role
 from app.access.sessions import digest_of
 from app.access.sign_in_errors import WrongPassword
@@ -164,6 +164,15 @@ async def test_a_hash_from_before_takes_the_other_form_at_once(
         assert (await TYPED["the page to sign in"](browser, typed)).status_code == 303
     assert hash_of(office) == FakeHasher().hash(COMPOSED)
     assert office.keeper.book.users[NAME].roles == roles
+
+
+async def test_a_hash_from_before_of_letters_that_grow_still_works_twice(office: Office) -> None:
+    text = "\N{DEVANAGARI LETTER QA}" * LONGEST
+    assert len(prepared(text)) == 2 * LONGEST
+    await as_before(office, text)
+    async with office.browser() as browser:
+        for _ in range(2):
+            assert (await TYPED["the page to sign in"](browser, text)).status_code == 303
 
 
 @pytest.mark.parametrize("typed", [PASSWORD + "x", COMPOSED, DECOMPOSED])
