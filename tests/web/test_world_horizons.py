@@ -94,3 +94,11 @@ def test_the_smallest_negative_azimuth_is_north() -> None:
 def test_the_page_shows_what_it_reads_again() -> None:
     horizon = Horizon(tuple((azimuth / 3, azimuth / 20) for azimuth in range(MOST_POINTS)))
     assert read(written(horizon)).horizon == horizon
+
+
+async def test_the_page_takes_what_the_api_stored(panel: httpx.AsyncClient, machine: FakeMachine) -> None:
+    point = {"azimuth_deg": 359.96, "elevation_deg": 89.96}
+    assert (await panel.put(API, json={"points": [point]})).status_code == 200
+    stored = machine.site.horizon
+    assert (await panel.post(PAGE, data={"points": written(stored)})).status_code == 303
+    assert machine.site.horizon == stored

@@ -18,7 +18,7 @@ from app.web.shell.forms import Unreadable, number
 PVGIS_HEAD = ["A", "H_hor"]
 AZIMUTH = re.compile(r"az\w*", re.IGNORECASE)
 ELEVATION = re.compile(r"(?:el|height|horizon|alt)\w*", re.IGNORECASE)
-UNIT = re.compile(r"\([^)]*\)|\[[^\]]*\]|°")
+UNIT = re.compile(r"\([^()]*\)|\[[^\[\]]*\]|°")
 EMPTY = " ;,\t"
 
 Line = tuple[int, str]
@@ -138,4 +138,4 @@ def _point(row: int, words: list[str], most_deg: float = 360.0) -> tuple[float, 
     azimuth, elevation = (word.rstrip("°") for word in words)
     least_deg = -180.0 if with_minus(azimuth).startswith("-") else 0.0
     azimuth_deg = number(azimuth, say("Line {row}, azimuth", row=row), least_deg, most_deg)
-    return azimuth_deg, number(elevation, say("Line {row}, elevation", row=row), 0, 89.9)
+    return azimuth_deg, number(elevation, say("Line {row}, elevation", row=row), 0, 90)
