@@ -7,6 +7,8 @@ from app.base.message import Message, say
 
 LONGEST_TYPED = 300
 """How long a name may be as it is typed, before it is tidy."""
+LONGEST_COMPOSED = 5000
+"""Composing takes time by the square of a text's marks; a longer text is too long for every field anyway."""
 SOFT_HYPHEN = "\N{SOFT HYPHEN}"
 JOINERS = "\N{ZERO WIDTH NON-JOINER}\N{ZERO WIDTH JOINER}"
 """Persian and Indian scripts and emoji need them between letters."""
@@ -21,7 +23,12 @@ IDLE = re.compile(rf"(?<!{JOINED})[{JOINERS}]|[{JOINERS}](?!{JOINED})")
 
 
 def tidy(text: str) -> str:
-    """Return a text as it is stored: composed, with plain spaces, without soft hyphens and idle joiners."""
+    """Return a text as it is stored: composed, with plain spaces, without soft hyphens and idle joiners.
+
+    One that is too long to be stored anywhere is returned as it is.
+    """
+    if len(text) > LONGEST_COMPOSED:
+        return text
     spaced = "".join(" " if category(letter) == "Zs" else letter for letter in text)
     composed = normalize("NFC", spaced.replace(SOFT_HYPHEN, ""))
     return IDLE.sub("", REPEATED.sub(r"\1", composed)).strip()

@@ -295,3 +295,10 @@ async def test_a_reason_to_take_control_has_one_spelling(desk: Desk) -> None:
 def test_regions_from_before_are_read() -> None:
     corners = [{"azimuth_deg": 1, "elevation_deg": 2}] * 3
     assert TypeAdapter(Region).validate_python({"name": "a\u202eb", "corners": corners}).name == "a\u202eb"
+
+
+def test_a_text_that_is_too_long_to_be_stored_is_not_composed() -> None:
+    marks = "a" + "\N{COMBINING ACUTE ACCENT}\N{COMBINING DOT BELOW}" * 200_000
+    assert tidy(marks) == marks
+    with pytest.raises(ValidationError, match="at most 120 characters"):
+        NewStudy.model_validate({"date": "2026-06-21", "title": marks})
