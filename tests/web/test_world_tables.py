@@ -3,16 +3,17 @@
 from datetime import timedelta
 from html import unescape
 from itertools import pairwise
-from unicodedata import normalize
 
 import httpx
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from app.base.names import tidy, unseen
 from app.tracker.programs.step_table import from_table, to_table
 from app.tracker.settings.stepped import ProgramStep, StepFrame, StepProgram, TimeBase
 from app.tracker.settings.strategy import Stepped
+from app.tracker.values.file_table import read_table
 from app.tracker.weather.weather_day import read_steps
 from tests.fakes import FakeMachine
 from tests.golden.table import rows
@@ -132,12 +133,8 @@ async def test_a_program_is_exported_for_spreadsheets_and_comes_back(
     assert plain == file.removeprefix(b"\xef\xbb\xbf"), "programs are given the bare text, as documented"
 
 
-BLANK_LETTERS = "\u115f\u1160\u2800\u3164\uffa0"
-letters = st.characters(
-    categories=["L", "N", "P", "S"], include_characters=" ", exclude_characters=BLANK_LETTERS
-)
-names = st.text(letters, max_size=80).filter(
-    lambda name: name.isprintable() and normalize("NFC", " ".join(name.split())) == name != ""
+names = st.text(st.characters(categories=["L", "N", "P", "S", "Zs"]), min_size=1, max_size=80).filter(
+    lambda name: name == tidy(name) and unseen(name) is None
 )
 angles = st.floats(0.0, 90.0)
 angle_pairs = st.tuples(angles, st.none() | angles) | st.tuples(st.none(), angles)
@@ -158,3 +155,10 @@ def test_what_is_exported_is_imported_unchanged(
     assert [one.from_h for one in back.steps] == pytest.approx([one.from_h for one in steps], abs=1e-9)
     in_german = to_table(StepProgram("x", program.steps)).replace(",", ";").replace(".", ",")
     assert from_table(in_german).steps == back.steps
+
+
+@pytest.mark.parametrize(
+    "comment", ["# " + " " * 90_000 + "x", "#" + ";" * 90_000 + "x", '"#' + '""' * 45_000 + '"'], ids=len
+)
+def test_a_long_comment_is_read_in_time_by_its_length(comment: str) -> None:
+    assert read_table(f"{comment}\ntime\n").names == ("time",)

@@ -15,9 +15,9 @@ from app.tracker.values.minus import with_minus
 
 SEPARATORS = ";\t,"
 EXCELS_LINE = re.compile(r'\s*"?sep=([;,\t])"?[;,\t ]*', re.IGNORECASE)
-COMMENT = re.compile(r'\s*(?:#(?P<plain>.*?)|"#(?P<quoted>(?:[^"]|"")*)")[;,\t ]*')
+COMMENT = re.compile(r'\s*(?:#(?P<plain>.*)|"#(?P<quoted>(?:[^"]|"")*)"[;,\t ]*)')
 NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?", re.ASCII | re.IGNORECASE)
-DECIMAL = re.compile(r"[+-]?\d*([.,])\d+", re.ASCII)
+DECIMAL = re.compile(r"[+-]?\d*([.,])\d+(?:e[+-]?\d+)?", re.ASCII | re.IGNORECASE)
 TWO_WAYS = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}", re.ASCII)
 THOUSAND = 1000.0
 TURKISH_I = str.maketrans("\N{LATIN CAPITAL LETTER I WITH DOT ABOVE}\N{LATIN SMALL LETTER DOTLESS I}", "ii")
@@ -73,7 +73,7 @@ def read_table(text: str) -> FileTable:
         comment = COMMENT.fullmatch(line)
         if comment:
             quoted = (comment["quoted"] or "").replace('""', '"').removeprefix(" ")
-            comments.append((comment["plain"] or "").strip() or quoted)
+            comments.append((comment["plain"] or "").rstrip(SEPARATORS + " ").strip() or quoted)
         elif excels and not rows:
             separator = excels[1]
         elif line.strip(" ,;\t"):
