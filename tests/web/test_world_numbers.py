@@ -14,11 +14,12 @@ from hypothesis import strategies as st
 from app.base.adapter import adapter
 from app.sun.position import Location
 from app.tracker.mounts.usual import mounted
-from app.tracker.settings.config import AxisDrive, MountKind, TrackerConfig
+from app.tracker.settings.config import AxisDrive, MountKind, Rows, TrackerConfig
 from app.tracker.settings.declared import declared
+from app.tracker.settings.mechanics import Corner, Region
 from app.tracker.settings.mechanisms import alexandru_elevation
 from app.tracker.settings.strategy import Stepped
-from app.web.shell.forms import number
+from app.web.shell.forms import Unreadable, number
 from app.web.shell.setting_forms import put
 from app.web.shell.typed_numbers import written
 from tests.amount import amount
@@ -175,6 +176,7 @@ def awkward(found: TrackerConfig) -> TrackerConfig:
             put(document, path, one.of(found) // 1 + 0.125)
     taken = adapter(TrackerConfig).validate_python(document)
     odd = AxisDrive(None, 200.125, 1.125)
+    wall = Region("Wall", (Corner(170.12345, 1e-5), Corner(190.12345, 0.0), Corner(190.0, 30.0)))
     turned = replace(
         taken.elevation,
         minimum_deg=0.0,
@@ -190,6 +192,7 @@ def awkward(found: TrackerConfig) -> TrackerConfig:
         elevation=turned,
         park=replace(taken.park, elevation_deg=10.0),
         hybrid=replace(taken.hybrid, threshold_wm2=150.125, decay_s=60.125),
+        machine=replace(taken.machine, regions=(wall,)),
     )
 
 
@@ -223,6 +226,17 @@ async def test_numbers_are_stored_again_as_they_were(
     assert answer.status_code == 303, answer.text
     assert await filled(client, f"{T1}/{page}") == form
     assert replace(config(machine), elevation=before.elevation) == before
+
+
+async def test_a_mount_is_stored_again_as_it_was(machine: FakeMachine, client: httpx.AsyncClient) -> None:
+    turned = mounted(config(machine), MountKind.TILTED_SINGLE_AXIS, 45.0)
+    mount = replace(
+        turned.mount, axis_azimuth_deg=123.4567, axis_tilt_deg=12.34567, rows=Rows(0.4123456, 1e-5)
+    )
+    machine.trackers["T1"].config = replace(turned, mount=mount)
+    answer = await client.post(f"{T1}/mount", data=await filled(client, f"{T1}/mount"))
+    assert answer.status_code == 303, unescape(answer.text)
+    assert config(machine).mount == mount
 
 
 @given(st.integers(-999_999, 999_999).map(lambda found: found / 1000), st.sampled_from([999, 1000, 1e9]))
@@ -291,3 +305,11 @@ async def test_an_offset_that_is_no_number_is_refused(client: httpx.AsyncClient,
     answer = await client.post(action, data=await filled(client, STRATEGY, head, action=action))
     assert answer.status_code == 422
     assert "UTC offset: type hours" in answer.text
+
+
+@pytest.mark.parametrize(
+    "text", ["1" + " " * 100_000 + "m2x2", "1" * 100_000 + "x", "1" + ",000" * 25_000 + "x"], ids=len
+)
+def test_a_long_text_is_refused_in_time_by_its_length(text: str) -> None:
+    with pytest.raises(Unreadable):
+        number(text, "Length", 0, 1e6, "m")

@@ -36,7 +36,7 @@ NUMBER = re.compile(
     rf"(?:(?!(?P=apart)|(?P=lakh))[.,{POINT}](?P<part>\d*))?"
 )
 EITHER = re.compile(r"([+-]?) *([1-9]\d{0,2})[.,](\d{3})")
-WITH_UNIT = re.compile(r"(.*\d[.,]?) *([^\d.,]+(?:m\^?2)?)")
+WITH_UNIT = re.compile(r"(.*\d[.,]?) *([^\d., ][^\d.,]*(?:m\^?2)?)")
 
 
 def plain(text: str, unit: str = "") -> str:
@@ -70,7 +70,7 @@ def has_unit(number: str) -> bool:
     return with_unit is not None and value(with_unit[1]) is not None
 
 
-def written(number: float, most: float, digits: int | None = DIGITS) -> str:
+def written(number: float, most: float = 0.0, digits: int | None = DIGITS) -> str:
     """Return a number as its field shows it, with all of its digits for None; `most` ends its range."""
     text = format(Decimal(str(number) if digits is None else f"{number:.{digits}g}"), "f")
     text = text.rstrip("0").rstrip(".") if "." in text else text

@@ -25,6 +25,7 @@ from app.web.shell.forms import Typed
 from app.web.shell.orders import Press, PressDep
 from app.web.shell.render import go, page
 from app.web.shell.scene import scene_now
+from app.web.shell.typed_numbers import written
 from app.web.shell.wizard import tracker_of, wizard_frame
 
 router = page_router(prefix="/trackers/{tracker_id}/commissioning/mode")
@@ -97,7 +98,7 @@ async def orientation(request: Request, tracker_id: str, machine: MachineDep) ->
     detail = await machine.detail()
     tracker = tracker_of(detail, tracker_id)
     stored = tracker.state.memory.orientation
-    texts = {"azimuth": f"{stored.azimuth_deg:g}", "elevation": f"{stored.elevation_deg:g}"}
+    texts = {"azimuth": written(stored.azimuth_deg), "elevation": written(stored.elevation_deg)}
     return _orientation(request, detail, tracker, Typed(texts))
 
 

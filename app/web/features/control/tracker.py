@@ -23,6 +23,7 @@ from app.web.shell.frame import tracker_frame
 from app.web.shell.orders import PressDep
 from app.web.shell.render import page
 from app.web.shell.scene import scene_now
+from app.web.shell.typed_numbers import written
 from app.web.shell.without_zero import blocked_without_zero
 from app.web.shell.wizard import tracker_of
 
@@ -43,7 +44,7 @@ async def show(request: Request, tracker_id: str, machine: MachineDep) -> Respon
     detail = await machine.detail()
     tracker = tracker_of(detail, tracker_id)
     held = tracker.state.memory.orientation
-    typed = Typed({"azimuth": f"{held.azimuth_deg:g}", "elevation": f"{held.elevation_deg:g}"})
+    typed = Typed({"azimuth": written(held.azimuth_deg), "elevation": written(held.elevation_deg)})
     return _answer(request, detail, tracker, typed)
 
 

@@ -23,6 +23,7 @@ from app.web.shell import setting_forms
 from app.web.shell.contexts import SettingRow
 from app.web.shell.forms import Typed, Unreadable, clean_name
 from app.web.shell.setting_forms import below, field_name, rows
+from app.web.shell.typed_numbers import written
 
 REGIONS = "regions"
 SPARE = 1
@@ -63,7 +64,9 @@ def texts(config: MachineProtection) -> dict[str, str]:
     """Return a tracker's machine protections as the form shows them."""
     found = setting_forms.texts(config)
     for place, region in enumerate(config.regions):
-        corners = "; ".join(f"{one.azimuth_deg:g} {one.elevation_deg:g}" for one in region.corners)
+        corners = "; ".join(
+            f"{written(one.azimuth_deg)} {written(one.elevation_deg)}" for one in region.corners
+        )
         found |= {f"region{place}_name": region.name, f"region{place}_corners": corners}
     return found
 

@@ -37,13 +37,13 @@ def texts(config: TrackerConfig) -> dict[str, str]:
     mount = config.mount
     rows = mount.rows or Rows(0.4)
     found = {
-        "axis_azimuth": f"{mount.axis_azimuth_deg:g}",
-        "axis_tilt": f"{mount.axis_tilt_deg:g}",
-        "panel_tilt": f"{mount.panel_tilt_deg:g}",
+        "axis_azimuth": written(mount.axis_azimuth_deg),
+        "axis_tilt": written(mount.axis_tilt_deg),
+        "panel_tilt": written(mount.panel_tilt_deg),
         "least_incidence": "yes" if mount.least_incidence else "",
         "rows": "yes" if mount.rows else "",
-        "ratio": f"{rows.ground_coverage_ratio:g}",
-        "slope": f"{rows.cross_axis_tilt_deg:g}",
+        "ratio": written(rows.ground_coverage_ratio),
+        "slope": written(rows.cross_axis_tilt_deg),
     }
     for prefix, axis in AXES.items():
         found |= _actuator_texts(prefix, config.axis(axis).actuator)

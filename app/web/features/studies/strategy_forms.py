@@ -139,7 +139,7 @@ HEAD = ("program_name", "base", "offset", "angles")
 
 def strategy_texts(config: TrackerConfig) -> dict[str, str]:
     """Return a tracker's strategy as the form shows it."""
-    texts = USUAL | {"deadband": f"{config.deadband_deg:g}"}
+    texts = USUAL | {"deadband": written(config.deadband_deg)}
     strategy = config.strategy
     texts["kind"] = strategy.kind
     match strategy:
@@ -178,12 +178,12 @@ def hybrid_texts(hybrid: HybridConfig) -> dict[str, str]:
     return {
         "enabled": "yes" if hybrid.enabled else "",
         "threshold": written(hybrid.threshold_wm2, LIGHTEST_WM2),
-        "gain": f"{hybrid.gain_dps:g}",
-        "bound": f"{hybrid.bound_deg:g}",
+        "gain": written(hybrid.gain_dps),
+        "bound": written(hybrid.bound_deg),
         "decay": written(hybrid.decay_s, A_DAY_S),
-        "azimuth_off": f"{hybrid.simulated.azimuth_deg:g}",
-        "elevation_off": f"{hybrid.simulated.elevation_deg:g}",
-        "cloud": f"{hybrid.simulated.cloud * 100.0:g}",
+        "azimuth_off": written(hybrid.simulated.azimuth_deg),
+        "elevation_off": written(hybrid.simulated.elevation_deg),
+        "cloud": written(hybrid.simulated.cloud * 100.0),
     }
 
 
@@ -217,7 +217,7 @@ def shown_program(program: StepProgram | None, *, note: str = "") -> ProgramTabl
     head = {
         "program_name": program.name,
         "base": program.time_base.value,
-        "offset": f"{program.utc_offset_h:g}",
+        "offset": written(program.utc_offset_h),
         "angles": program.frame.value,
     }
     return ProgramTable(Typed(head).form(HEAD), rows, ANGLES[program.frame], note=note)
