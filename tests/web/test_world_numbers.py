@@ -313,3 +313,12 @@ async def test_an_offset_that_is_no_number_is_refused(client: httpx.AsyncClient,
 def test_a_long_text_is_refused_in_time_by_its_length(text: str) -> None:
     with pytest.raises(Unreadable):
         number(text, "Length", 0, 1e6, "m")
+
+
+@pytest.mark.parametrize("text", ["1" + " " * 100_000 + "x", " " * 50_000 + "1" + " " * 50_000], ids=len)
+async def test_a_long_corner_is_refused_in_time_by_its_length(client: httpx.AsyncClient, text: str) -> None:
+    page = f"{T1}/machine"
+    form = await filled(client, page, {"region0_name": "Wall", "region0_corners": text})
+    answer = await client.post(page, data=form)
+    assert answer.status_code == 422
+    assert 'id="region0_corners-error"' in answer.text

@@ -28,7 +28,7 @@ from app.web.shell.typed_numbers import written
 REGIONS = "regions"
 SPARE = 1
 ANGLE = r"([+-]?\d+(?:[.,]\d+)?)"
-CORNER = re.compile(rf"\s*{ANGLE}\s*°?\s*[/\s]\s*{ANGLE}\s*°?\s*")
+CORNER = re.compile(rf"\s*{ANGLE}(?:\s*°)?(?:\s*/\s*|\s+){ANGLE}(?:\s*°)?\s*")
 HOW = N_("Corners: type each as azimuth and elevation, such as 170 0; 190 0; 190 30; 170 30.")
 
 
