@@ -35,7 +35,8 @@ MORE = (
 )
 DATA = re.compile(
     r"Deutsch|A simulated$|A simulated(?= ,)|Summer solstice in minutes|broker\.example|Connection refused"
-    r"|none|_SUNSPEC_SERIAL_PORT|drive_lost|drive_fault|home_lost|disk_full|heliopanel tls init"
+    r"|none|_SUNSPEC_SERIAL_PORT|drive_lost|drive_fault|home_lost|disk_full|certificate_invalid"
+    r"|heliopanel tls init"
     r"|(GET|PATCH) /api/v|/trackers/( id mount|T)|/mounts|/mast"
     r"|Samsun solar field|T[12] (North|South) field|North field|Heliopanel( [\d.]+)?|UTC([+−]\d+)?"
     r"|simulated-plc|SunSpec( over Modbus (TCP|RTU))?|Modbus TCP|JSON|CSV|Parquet|https?(://\S+)?"
