@@ -454,7 +454,12 @@ def test_a_maintenance_lock_forbids_the_stow_too_and_outlives_a_restart() -> Non
 
 @pytest.mark.parametrize(
     ("name", "why"),
-    [("", "requires a name"), ("   ", "requires a name"), ("x" * 61, "requires a name"), ("a\nb", "invisible")],
+    [
+        ("", "requires a name"),
+        ("   ", "requires a name"),
+        ("x" * 61, "requires a name"),
+        ("a\nb", "invisible"),
+    ],
 )
 def test_a_lock_bears_a_name(name: str, why: str) -> None:
     plant = Plant(READY).forward(1)
