@@ -10,7 +10,10 @@ LONGEST_PATH = 100
 
 
 def socket_path(wanted: Path) -> Path:
-    """Return the path itself, or a short one that stands for it, as the system limits the length; one in /tmp always fits."""
+    """Return the path itself, or a short one that stands for it, as the system limits the length.
+
+    One in `/tmp` always fits.
+    """
     name = f"heliopanel-{hashlib.sha256(os.fsencode(wanted)).hexdigest()[:16]}.sock"
     short = (wanted, Path(tempfile.gettempdir()) / name)
     fits = (one for one in short if len(os.fsencode(one)) <= LONGEST_PATH)
