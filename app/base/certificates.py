@@ -62,10 +62,13 @@ class Certified:
 
 
 def init(folder: Path, names: Iterable[str], now: datetime) -> Certified:
-    """Write a new certificate of the panel for these names; the authority that signs it, too, if missing."""
+    """Write a new certificate of the panel for these names; the authority that signs it, too, if missing.
+
+    Its key stays, so that the two fit at every instant: a panel that starts in between is served.
+    """
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     authority, signing = _authority(folder, now)
-    key = ec.generate_private_key(ec.SECP256R1())
+    key = _kept_key(folder / SERVER_KEY) or ec.generate_private_key(ec.SECP256R1())
     _write_private(folder / SERVER_KEY, _pem_of_key(key))
     return _certify(folder, authority, signing, key, tuple(dict.fromkeys(names)), now)
 
@@ -114,6 +117,14 @@ def _key(path: Path) -> Key:
     if not isinstance(key, ec.EllipticCurvePrivateKey):
         raise ValueError(f"{path} is not a key that `heliopanel tls init` made. Remove {path.parent}.")
     return key
+
+
+def _kept_key(path: Path) -> Key | None:
+    """Return a key that can be used, None where there is none."""
+    try:
+        return _key(path)
+    except (OSError, ValueError, TypeError):
+        return None
 
 
 def _stored_authority(folder: Path) -> tuple[x509.Certificate, Key]:

@@ -2,9 +2,11 @@
 
 import ssl
 import threading
+from contextlib import suppress
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import Any
 
 import pytest
 from cryptography import x509
@@ -203,6 +205,37 @@ async def test_the_context_of_new_connections_is_changed_where_they_are_made(tmp
     init(tmp_path / "tls", NAMES, NOON + timedelta(days=1))
     await panel.later()
     assert threads == [threading.current_thread()]
+
+
+@pytest.mark.parametrize("writes", range(3))
+def test_a_panel_is_served_wherever_a_new_certificate_was_broken_off(
+    tmp_path: Path, writes: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    init(tmp_path, NAMES, NOON)
+    (tmp_path / SERVER_KEY).chmod(0o644)
+    left = iter(range(writes))
+
+    def finish(*given: Any) -> None:
+        if next(left, None) is None:
+            raise OSError("no space is left")
+        finishing(*given)
+
+    finishing = certificates._finish
+    monkeypatch.setattr(certificates, "_finish", finish)
+    with suppress(OSError):
+        init(tmp_path, NAMES, NOON + timedelta(days=1))
+    ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(tmp_path / SERVER, tmp_path / SERVER_KEY)
+    assert (tmp_path / SERVER_KEY).stat().st_mode & 0o777 == (0o600 if writes else 0o644)
+
+
+@pytest.mark.parametrize(
+    "kept", [b"", b"no key", b"-----BEGIN PRIVATE KEY-----\nMIG\n-----END PRIVATE KEY-----\n"]
+)
+def test_a_key_that_cannot_be_used_is_made_anew(tmp_path: Path, kept: bytes) -> None:
+    init(tmp_path, NAMES, NOON)
+    (tmp_path / SERVER_KEY).write_bytes(kept)
+    init(tmp_path, NAMES, NOON)
+    ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(tmp_path / SERVER, tmp_path / SERVER_KEY)
 
 
 def test_no_wrong_clock_makes_an_authority_that_is_not_valid(tmp_path: Path) -> None:
