@@ -152,7 +152,7 @@ async def test_a_recording_is_replayed_behind_the_horizon_of_its_time(
     [
         ("100", "Line 1: type azimuth and elevation with a space between, such as 135 8."),
         ("100 5\nx 5", "Line 2, azimuth: type a number, such as 0."),
-        ("100 95", "Line 1, elevation must be between 0 and 89.9."),
+        ("100 95", "Line 1, elevation must be between 0 and 90."),
         ("100 5\n100 6", "each azimuth only once"),
         ("\n".join(f"{one / 2:g} 1" for one in range(361)), "at most 360 points"),
     ],
