@@ -19,9 +19,9 @@ from app.tracker.settings.declared import declared
 from app.tracker.settings.mechanics import Corner, Region
 from app.tracker.settings.mechanisms import alexandru_elevation
 from app.tracker.settings.strategy import Stepped
+from app.tracker.values.typed_numbers import written
 from app.web.shell.forms import Unreadable, number
 from app.web.shell.setting_forms import put
-from app.web.shell.typed_numbers import written
 from tests.amount import amount
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.golden.table import rows

@@ -9,9 +9,9 @@ from pydantic import ValidationError
 from app.base.adapter import adapter
 from app.base.message import say, told_of_value, word
 from app.tracker.settings.declared import Declared, declared
+from app.tracker.values.typed_numbers import written
 from app.web.shell.contexts import SettingRow
 from app.web.shell.forms import Typed, Unreadable, clean_name
-from app.web.shell.typed_numbers import written
 
 T = TypeVar("T")
 CHECKED = "yes"

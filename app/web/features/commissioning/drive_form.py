@@ -8,9 +8,9 @@ from app.base.message import N_, plain, say, word
 from app.tracker.memory.drive_check import DriveChoices
 from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import AxisDrive, DriveConfig, DriveKind, Parity, SerialConfig
+from app.tracker.values.typed_numbers import written
 from app.web.features.commissioning.drive_contexts import Options
 from app.web.shell.forms import Typed, Unreadable
-from app.web.shell.typed_numbers import written
 
 Word = TypeVar("Word", DriveKind, Parity)
 KINDS: Options = (

@@ -15,6 +15,7 @@ from app.tracker.memory.memory import StepName
 from app.tracker.mounts.capabilities import abilities, axis_title
 from app.tracker.settings.config import MountKind, Orientation, TrackerConfig
 from app.tracker.values.mode import Mode
+from app.tracker.values.typed_numbers import written
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
@@ -25,7 +26,6 @@ from app.web.shell.forms import Typed
 from app.web.shell.orders import Press, PressDep
 from app.web.shell.render import go, page
 from app.web.shell.scene import scene_now
-from app.web.shell.typed_numbers import written
 from app.web.shell.wizard import tracker_of, wizard_frame
 
 router = page_router(prefix="/trackers/{tracker_id}/commissioning/mode")

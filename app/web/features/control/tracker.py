@@ -12,6 +12,7 @@ from app.base.permission import Permission
 from app.link.messages import SiteDetail, TrackerDetail
 from app.tracker.commands.commands import Move, Park, ResetFault, Stop, Track
 from app.tracker.settings.config import Orientation
+from app.tracker.values.typed_numbers import written
 from app.web.charts.sunpath import diagram
 from app.web.features.control.mode import choice, limits_text
 from app.web.http.late_routes import page_router
@@ -23,7 +24,6 @@ from app.web.shell.frame import tracker_frame
 from app.web.shell.orders import PressDep
 from app.web.shell.render import page
 from app.web.shell.scene import scene_now
-from app.web.shell.typed_numbers import written
 from app.web.shell.without_zero import blocked_without_zero
 from app.web.shell.wizard import tracker_of
 

@@ -13,8 +13,8 @@ import orjson
 from sqlalchemy import make_url
 
 from app.base.build import VERSION
-from app.base.masking import without_secrets
 from app.base.settings import Settings
+from app.base.text.masking import without_secrets
 from app.link.messages import Machine
 from app.store.store import JournalFilter, Reader
 from app.web.services.counting import counted

@@ -17,13 +17,13 @@ from app.tracker.settings.mechanics import (
     Region,
 )
 from app.tracker.values.minus import with_minus
+from app.tracker.values.typed_numbers import written
 from app.web.features.setup.protection_contexts import FaultRow
 from app.web.features.setup.protection_forms import group_of
 from app.web.shell import setting_forms
 from app.web.shell.contexts import SettingRow
 from app.web.shell.forms import Typed, Unreadable, clean_name
 from app.web.shell.setting_forms import below, field_name, rows
-from app.web.shell.typed_numbers import written
 
 REGIONS = "regions"
 SPARE = 1

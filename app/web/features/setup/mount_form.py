@@ -11,8 +11,8 @@ from app.tracker.settings.axes import Axis, AxisConfig
 from app.tracker.settings.config import MountConfig, MountKind, Orientation, Rows, TrackerConfig
 from app.tracker.settings.mechanisms import MECHANISMS
 from app.tracker.settings.transmission import LinearActuator, Point
+from app.tracker.values.typed_numbers import written
 from app.web.shell.forms import Typed, Unreadable
-from app.web.shell.typed_numbers import written
 
 NO_ACTUATOR, OWN_POINTS = "none", "own"
 AXES = {"first": Axis.AZIMUTH, "second": Axis.ELEVATION}

@@ -15,6 +15,7 @@ from app.store.store import Reader
 from app.sun.position import Algorithm
 from app.tracker.memory.recording import RecordingInfo, RecordingKind
 from app.tracker.settings.axes import AZIMUTH_DEFAULT, ELEVATION_DEFAULT
+from app.tracker.values.typed_numbers import written
 from app.web.charts.sunpath import diagram_of, sector
 from app.web.features.shows.show_plan import LONGEST_MIN
 from app.web.http.late_routes import page_router
@@ -26,7 +27,6 @@ from app.web.shell.frame import site_frame
 from app.web.shell.orders import PressDep
 from app.web.shell.render import go, page
 from app.web.shell.scene import scene_recorded
-from app.web.shell.typed_numbers import written
 
 router = page_router(prefix="/recordings")
 SHOWN = 200

@@ -15,6 +15,7 @@ from app.link.messages import SavePlan, SiteDetail
 from app.tracker.commands.commands import CommandRejected, GoToStart, PauseShow, ResumeShow, RunShow, StopShow
 from app.tracker.programs.show import ShowPlan
 from app.tracker.values.reason import Reason
+from app.tracker.values.typed_numbers import written
 from app.web.charts.sunpath import diagram_of, outline
 from app.web.features.shows.show_contexts import ShowPlanPage, ShowRunPage
 from app.web.features.shows.show_plan import LONGEST_MIN, NAMES, Place, ShowForm, planned, presets
@@ -28,7 +29,6 @@ from app.web.shell.frame import snapshot_of, tracker_frame
 from app.web.shell.orders import PressDep
 from app.web.shell.render import go, page
 from app.web.shell.scene import scene_on
-from app.web.shell.typed_numbers import written
 from app.web.shell.wizard import tracker_of
 
 router = page_router(prefix="/trackers/{tracker_id}")

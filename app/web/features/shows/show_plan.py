@@ -21,13 +21,13 @@ from app.tracker.programs.usual import in_usual_time
 from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import TrackerConfig
 from app.tracker.values.reason import Reason
+from app.tracker.values.typed_numbers import written
 from app.web.charts.daychart import chart
 from app.web.features.control.mode import choice
 from app.web.features.shows.show_contexts import Preset, Verdict
 from app.web.shell.contexts import Link
 from app.web.shell.formats import ISO_DATE, duration, local, read_local
 from app.web.shell.forms import Typed
-from app.web.shell.typed_numbers import written
 
 NAMES = ("date", "start", "end", "minutes")
 LONGEST_MIN = 1440

@@ -19,6 +19,7 @@ from app.sun.events import PolarDay, SunEvents, day_events
 from app.sun.position import InstantRefused, Location, sun_position
 from app.tracker.memory.memory import SiteState, StepName
 from app.tracker.settings.config import TrackerConfig
+from app.tracker.values.typed_numbers import written
 from app.web.features.site.place import place_doubts, swapped, zone_at
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
@@ -31,7 +32,6 @@ from app.web.shell.formats import compass, decimals, formatted, local
 from app.web.shell.forms import Typed
 from app.web.shell.orders import PressDep
 from app.web.shell.render import go, page
-from app.web.shell.typed_numbers import written
 from app.web.shell.wizard import tracker_of, wizard_frame
 
 router = page_router(prefix="/trackers/{tracker_id}/commissioning/location")

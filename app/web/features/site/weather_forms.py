@@ -4,10 +4,10 @@ from typing import Any
 
 from app.base.message import N_, say, with_format
 from app.tracker.memory.memory import MetStation
+from app.tracker.values.typed_numbers import written
 from app.tracker.weather.simulated_weather import MOST_SEED, SPANS, Scenario, SimulatedStation
 from app.tracker.weather.weather_windows import LIMITS, WeatherWindows
 from app.web.shell.forms import Typed, Unreadable
-from app.web.shell.typed_numbers import written
 
 STATION_NAMES = ("host", "port", "unit")
 SIMULATION_NAMES = ("scenario", "seed", *SPANS)

@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import BaseModel
 
 from app.base.message import N_, say, told_by
-from app.base.names import tidy
+from app.base.text.names import tidy
 from app.tracker.programs.step_table import (
     COLUMNS,
     TableWrong,
@@ -27,11 +27,11 @@ from app.tracker.settings.strategy import (
     Stepped,
     Strategy,
 )
+from app.tracker.values import typed_numbers
+from app.tracker.values.typed_numbers import written
 from app.web.features.studies.strategy_contexts import ProgramRow, ProgramTable, StrategyChoice
 from app.web.http.whole_forms import MAY_BE_ABSENT
-from app.web.shell import typed_numbers
 from app.web.shell.forms import Typed, Unreadable, number
-from app.web.shell.typed_numbers import written
 
 CHOICES = (
     StrategyChoice(

@@ -24,6 +24,7 @@ from app.studies.request import (
     StudyStrategy,
 )
 from app.studies.result import MODE_NAMES, STRATEGY_NAMES
+from app.tracker.values.typed_numbers import written
 from app.web.features.studies.study_contexts import Choice, Options, StudiesPage, StudyOptions
 from app.web.features.studies.study_orders import NewStudy
 from app.web.http.errors import NotAcceptable
@@ -35,7 +36,6 @@ from app.web.shell.deps import MachineDep, PanelDep
 from app.web.shell.forms import Typed, clean_name
 from app.web.shell.frame import site_frame
 from app.web.shell.render import go, page
-from app.web.shell.typed_numbers import written
 
 router = page_router(prefix="/studies")
 

@@ -1,0 +1,1 @@
+"""Texts that people and other programs write: names, addresses, topics, files."""
