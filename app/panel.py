@@ -6,14 +6,15 @@ from app.base.errors import Foreseen
 from app.base.settings import Settings, read_settings
 from app.base.startup import hurry, late
 from app.machine.process import raise_priority_of_panel
-from app.machine.starting import as_service, check_data_dir, check_port
+from app.machine.starting import as_service, check_certificate, check_data_dir, check_port
 from app.machine.supervised import end_with_supervisor, tell_ready
 
 
 def serve(settings: Settings) -> None:
-    """Run the panel until it is told to end; raises `SettingsWrong` for what keeps it from starting."""
+    """Run the panel until it is told to end; raises `Foreseen` for what keeps it from starting."""
     check_data_dir(settings.data_dir)
     check_port(settings)
+    check_certificate(settings)
     with as_service():
         late("app.web.main").run(settings, on_answer=_answers)
 

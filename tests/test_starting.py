@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from app.base.build import VERSION
+from app.base.certificates import SERVER, SERVER_KEY, init
 from app.base.errors import Foreseen
 from app.base.settings import SettingsWrong
 from app.machine import starting
@@ -20,6 +21,7 @@ from app.store.migrations import upgrade
 from app.store.store import StoreFailed
 from tests.command_line import Run, run
 from tests.e2e.product import COMMAND
+from tests.fake_data import NOON
 from tests.ports import free_port
 
 __all__ = ["run"]
@@ -65,6 +67,28 @@ def test_what_belongs_to_another_user_is_named(
     with pytest.raises(SettingsWrong, match=r"cannot be written\. Give it to the user") as refused:
         check_data_dir(tmp_path)
     assert str(tmp_path / forbidden) in str(refused.value)
+
+
+@pytest.mark.usefixtures("never_served")
+@pytest.mark.parametrize("broken", [SERVER, SERVER_KEY])
+@pytest.mark.parametrize("content", [b"", b"no certificate", None], ids=["empty", "text", "of another pair"])
+def test_a_certificate_that_cannot_be_served_is_one_sentence(
+    run: Run, data: Path, broken: str, content: bytes | None
+) -> None:
+    """It may be put right while the controller runs, so the web process is started again: exit code 1."""
+    init(data / "tls", ("heliopanel.local",), NOON)
+    if content is None:
+        init(data / "other", ("heliopanel.local",), NOON)
+        content = (data / "other" / broken).read_bytes()
+    (data / "tls" / broken).write_bytes(content)
+    code, out, err = run("web")
+    assert (code, out) == (1, "")
+    assert err.startswith(
+        f"The certificate {data}/tls/{SERVER} and the key {data}/tls/{SERVER_KEY} cannot be"
+    )
+    assert "cannot be used: " in err
+    assert "Run heliopanel tls init" in err
+    assert err.count("\n") == 1
 
 
 @pytest.mark.usefixtures("data", "never_served")

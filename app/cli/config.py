@@ -10,7 +10,7 @@ import typer
 from app.base.settings import FILE_VARIABLE, PREFIX, Settings, SettingsWrong
 from app.cli.options import Config, DataDir, Host, Port, settle
 from app.machine.lock import holder
-from app.machine.starting import check_data_dir, check_port
+from app.machine.starting import check_certificate, check_data_dir, check_port
 from app.store.connections import reading_engine, revision_of, transaction
 from app.store.connections import sqlite_path as file_of
 from app.store.tables import REVISION
@@ -34,6 +34,7 @@ def check(config: Config = None, data_dir: DataDir = None, host: Host = None, po
     _check_folder(settings.data_dir)
     if holder(settings.data_dir) is None:
         check_port(settings)
+    check_certificate(settings)
     typer.echo(_database(settings))
     typer.echo("The settings are right.")
 

@@ -25,7 +25,8 @@ def make(name: Names = None) -> None:
     typer.echo(
         f"The panel's certificate is valid until {made.not_after:%Y-%m-%d} for {', '.join(made.names)}.\n"
         f"The authority's fingerprint (SHA-256) is {read(settings.tls_dir / AUTHORITY).fingerprint}.\n"
-        "Start the panel again, then open /certificate on each tablet and install the authority there."
+        "A panel that serves https uses it within 10 s; start any other again. Then open /certificate on "
+        "each tablet and install the authority there."
     )
     if settings.tls is False:
         typer.echo(

@@ -8,9 +8,10 @@ from pathlib import Path
 
 from app.alarms.conditions import SITE, Condition
 from app.base.clock import Clock
-from app.base.message import say, with_format
+from app.base.message import say, told_by, with_format
 from app.base.settings import Settings, SettingsWrong
 from app.base.startup import late
+from app.machine.starting import CertificateUnusable, check_certificate
 from app.site.site import Site
 
 LOOK_EVERY = timedelta(seconds=20)
@@ -43,13 +44,18 @@ class CertificateWatch:
     def _found(self, now: datetime) -> list[Condition]:
         try:
             return list(conditions(self._settings(), now))
-        except (OSError, ValueError, SettingsWrong):
+        except SettingsWrong:
             return []
 
 
 def conditions(settings: Settings, now: datetime) -> Iterator[Condition]:
     """Yield what is to be told of the certificate that is served, and of the authority behind it."""
     if settings.certificate is None:
+        return
+    try:
+        check_certificate(settings)
+    except CertificateUnusable as error:
+        yield Condition("certificate_invalid", None, SITE, told_by(error))
         return
     certificates = late("app.base.certificates")
     if settings.tls_cert_file is None and certificates.is_own(settings.tls_dir):

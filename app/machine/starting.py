@@ -8,11 +8,17 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from app.base.errors import AT_RUN_TIME
+from app.base.errors import AT_RUN_TIME, Foreseen
+from app.base.message import say
 from app.base.settings import Settings, SettingsWrong
+from app.base.startup import late
 
 WRITTEN = ("*.db", "machine.*")
 """What both processes write in the data folder; somebody who ran one as root left files that are root's."""
+
+
+class CertificateUnusable(Foreseen):
+    """Https cannot be served now; it can once the files are right, so the panel is started again."""
 
 
 @contextmanager
@@ -58,3 +64,23 @@ def check_port(settings: Settings) -> None:
                 "Stop the program that uses it, or choose another address or port (--host, --port, "
                 "HELIOPANEL_HOST, HELIOPANEL_PORT)."
             ) from error
+
+
+def check_certificate(settings: Settings) -> None:
+    """Raise `CertificateUnusable` if the certificate and its key cannot be read, or do not go together."""
+    if settings.certificate is None:
+        return
+    certificate, key = settings.certificate
+    ssl = late("ssl")
+    try:
+        ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(certificate, key, password="")
+    except OSError as error:
+        raise CertificateUnusable(
+            say(
+                "The certificate {certificate} and the key {key} cannot be used: {error}. Run heliopanel tls "
+                "init if they are Heliopanel's own; otherwise replace both files.",
+                certificate=certificate,
+                key=key,
+                error=error,
+            )
+        ) from error

@@ -92,3 +92,20 @@ async def test_nothing_is_told_without_https_or_by_a_clock_that_may_be_wrong(
         "certificate_invalid"
     ]
     assert await told(plant, Settings(data_dir=tmp_path), timedelta(days=50700)) == {}
+
+
+@pytest.mark.parametrize("broken", [SERVER, SERVER_KEY])
+@pytest.mark.parametrize("content", [b"", b"no certificate", None], ids=["empty", "text", "of another pair"])
+async def test_a_certificate_that_cannot_be_served_is_an_alarm_until_it_can(
+    plant: Plant, tmp_path: Path, broken: str, content: bytes | None
+) -> None:
+    init(tmp_path / "tls", NAMES, SUMMER_NOON)
+    if content is None:
+        init(tmp_path / "other", NAMES, SUMMER_NOON)
+        content = (tmp_path / "other" / broken).read_bytes()
+    (tmp_path / "tls" / broken).write_bytes(content)
+    found = await told(plant, Settings(data_dir=tmp_path), timedelta())
+    assert list(found) == ["certificate_invalid"]
+    assert "cannot be used" in found["certificate_invalid"]
+    init(tmp_path / "tls", NAMES, SUMMER_NOON)
+    assert await told(plant, Settings(data_dir=tmp_path), timedelta()) == {}
