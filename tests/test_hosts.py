@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 from pydantic import ValidationError
 
+from app.base.hosts import checked_host, host_fault
 from app.base.settings import Settings
-from app.base.text.hosts import checked_host, host_fault
 from app.link.alarm_orders import SetNotifications
 from app.link.messages import CheckConnection, ConfigureTracker
 from app.link.weather_orders import SetMetStation

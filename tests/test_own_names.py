@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from app.base.addresses.own_names import ALWAYS, own_names
 from app.base.certificates import init
-from app.base.own_names import ALWAYS, own_names
 
 
 @pytest.mark.parametrize("name", ["nowhere.invalid", "x" * 64])

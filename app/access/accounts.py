@@ -18,7 +18,7 @@ from app.access.users import (
     keep_an_administrator,
 )
 from app.base.message import N_, say
-from app.base.text.names import tidy, unseen
+from app.base.names import tidy, unseen
 
 LONGEST_TOKEN_NAME = 64
 

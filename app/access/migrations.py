@@ -7,10 +7,10 @@ from pathlib import Path
 from sqlalchemy import Connection, Engine, column, select, table
 
 from app.access.tables import REVISION, VERSION_TABLE, meta, metadata
+from app.base.addresses.sqlite_url import sqlite_url
 from app.base.build import VERSION
 from app.base.message import say
 from app.base.own import own_folder
-from app.base.sqlite_url import sqlite_url
 from app.base.startup import late
 from app.store.connections import revision_of, sharing_engine, transaction
 from app.store.files import copy_sqlite

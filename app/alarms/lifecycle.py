@@ -12,7 +12,7 @@ from app.alarms.alarm import Alarm, Shelf
 from app.alarms.catalogue import FLOOD
 from app.alarms.conditions import SITE, Condition
 from app.base.message import N_, NOTHING, say
-from app.base.text.names import clean
+from app.base.names import clean
 from app.tracker.values.alarm_words import AlarmState
 
 LONGEST_SHELF = timedelta(hours=24)

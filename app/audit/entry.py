@@ -8,7 +8,7 @@ from datetime import datetime
 from typing import Any
 
 from app.audit.chain import Link, canonical, link
-from app.base.text.masking import without_secrets
+from app.base.addresses.masking import without_secrets
 
 DONE = "done"
 LONGEST = 8192

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from app.base.text.file_text import toml_of
+from app.base.file_text import toml_of
 
 FILE_NAME = "network.toml"
 PRIVATE = 0o600

@@ -14,13 +14,13 @@ from pydantic_settings import (
     SettingsConfigDict,
 )
 
+from app.base.addresses.socket_path import socket_path
+from app.base.addresses.sqlite_url import sqlite_url
+from app.base.addresses.topics import checked_name, checked_topic
 from app.base.errors import WRONG, Foreseen
+from app.base.file_text import toml_of
+from app.base.hosts import checked_host
 from app.base.network import FILE_NAME, NETWORK_FIELDS, Network, read_network
-from app.base.socket_path import socket_path
-from app.base.sqlite_url import sqlite_url
-from app.base.text.file_text import toml_of
-from app.base.text.hosts import checked_host
-from app.base.text.topics import checked_name, checked_topic
 
 PREFIX = "HELIOPANEL_"
 FILE_VARIABLE = "HELIOPANEL_CONFIG"

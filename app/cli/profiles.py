@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from app.base.clock import SystemClock
-from app.base.text.file_text import utf8_of
+from app.base.file_text import utf8_of
 from app.cli.drives import BaudRate, ParityBit, StopBits
 from app.cli.drives import drive as drive
 from app.drives.connections.adapters import drive_on

@@ -4,9 +4,9 @@ from typing import Annotated
 
 import typer
 
+from app.base.addresses.own_names import own_names
 from app.base.certificates import AUTHORITY, SERVER, init, read
 from app.base.clock import SystemClock
-from app.base.own_names import own_names
 from app.base.settings import SettingsWrong, read_settings
 
 tls = typer.Typer(name="tls", help="The panel's certificate.", no_args_is_help=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
-from app.base.text.file_text import TextRefused, utf8_of
+from app.base.file_text import TextRefused, utf8_of
 from app.drives.profile_rules import (
     LAST_ADDRESS,
     check_bits,

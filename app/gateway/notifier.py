@@ -5,11 +5,11 @@ from collections.abc import Callable
 from datetime import timedelta
 
 from app.alarms.conditions import SITE, Condition
+from app.base.addresses.masking import masked
 from app.base.clock import Clock
 from app.base.logs import get_logger
 from app.base.message import N_, NOTHING, Message, plain, say, told_by
 from app.base.settings import Settings
-from app.base.text.masking import masked
 from app.gateway.notices import NotDelivered
 from app.gateway.outbox import Outbox
 from app.gateway.ports import Door

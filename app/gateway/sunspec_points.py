@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-from app.base.text.names import JOINERS
+from app.base.names import JOINERS
 
 
 class PointType(StrEnum):

@@ -8,11 +8,11 @@ from pathlib import Path
 from uuid import uuid4
 
 from app.alarms.conditions import SITE, Condition
+from app.base.addresses.sqlite_url import sqlite_url
 from app.base.clock import Clock, SystemClock
 from app.base.logs import get_logger
 from app.base.message import N_, say
 from app.base.settings import Settings
-from app.base.sqlite_url import sqlite_url
 from app.link.server import LinkServer
 from app.machine.drive_factory import DriveFactory
 from app.machine.process import on_signals, raise_priority

@@ -8,8 +8,8 @@ from pydantic import ValidationError
 
 from app.audit.difference import difference
 from app.base.adapter import adapter
+from app.base.addresses.masking import SECRET_NAMES, masked, without_secrets
 from app.base.message import N_, Message, plain, told_of_value
-from app.base.text.masking import SECRET_NAMES, masked, without_secrets
 from app.tracker.memory.memory import RejectedSetting, SiteState, TrackerMemory, TrackerState
 from app.tracker.settings.config import TrackerConfig
 

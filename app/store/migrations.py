@@ -12,8 +12,8 @@ from typing import Any
 
 from sqlalchemy import Connection
 
+from app.base.addresses.sqlite_url import sqlite_url
 from app.base.own import own_folder, own_process
-from app.base.sqlite_url import sqlite_url
 from app.base.startup import late
 from app.store.connections import revision_of, sqlite_path, transaction, writing_engine
 from app.store.files import copy_sqlite, keep_private, make_folder

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Final
 
 from app.base.message import N_, join, say
-from app.base.text.names import tidy, unseen
+from app.base.names import tidy, unseen
 from app.energy.motion import DriveCosts
 from app.energy.plane import Around
 from app.sun.position import Location

@@ -11,8 +11,8 @@ import numpy as np
 import pandas as pd
 from pvlib.iotools import read_epw, read_pvgis_hourly, read_pvgis_tmy, read_tmy3
 
+from app.base.file_text import TextRefused, text_of
 from app.base.message import N_, Message, join, say
-from app.base.text.file_text import TextRefused, text_of
 from app.studies.weather_columns import EPW_MARKS, TMY3_MARKS, WeatherRefused, column
 from app.sun.position import Algorithm, Location, sun_path
 from app.sun.trigonometry import PER_DEGREE, Array

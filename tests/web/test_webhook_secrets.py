@@ -11,7 +11,7 @@ from app.access.accounts import TokenWish
 from app.access.roles import Role
 from app.access.tokens import Scope
 from app.audit.entry import told
-from app.base.text.masking import masked
+from app.base.addresses.masking import masked
 from app.tracker.values.notifications import Notifications
 from tests.fault_result import FaultResult
 from tests.web.desk import Desk

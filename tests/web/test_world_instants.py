@@ -9,8 +9,8 @@ import httpx
 import pytest
 from starlette.routing import BaseRoute
 
+from app.base.addresses.sqlite_url import sqlite_url
 from app.base.own import own_folder
-from app.base.sqlite_url import sqlite_url
 from app.link.messages import SetClock
 from app.store.engine import open_reader
 from app.store.migrations import upgrade

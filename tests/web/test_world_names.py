@@ -16,7 +16,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from app.base.logs import _on_one_line
 from app.base.message import told_of_value
-from app.base.text.names import JOINERS, clean, tidy, unseen
+from app.base.names import JOINERS, clean, tidy, unseen
 from app.gateway.sunspec_points import _text_words
 from app.tracker.settings.mechanics import Region
 from app.web.features.records.photos import PhotoRefused

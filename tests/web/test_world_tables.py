@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from app.base.text.names import tidy, unseen
+from app.base.names import tidy, unseen
 from app.tracker.programs.step_table import from_table, to_table
 from app.tracker.settings.stepped import ProgramStep, StepFrame, StepProgram, TimeBase
 from app.tracker.settings.strategy import Stepped

@@ -7,7 +7,7 @@ from datetime import timedelta
 
 from app.base.logs import get_logger
 from app.base.message import N_, Message, join, say
-from app.base.text.names import clean
+from app.base.names import clean
 from app.link.messages import AnswerControl, Order, ReleaseControl, RenewControl, RequestControl
 from app.site.loop.loop import TrackerLoop
 from app.site.orders import tracker_orders

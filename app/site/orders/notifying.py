@@ -3,8 +3,8 @@
 from dataclasses import replace
 from urllib.parse import urlsplit
 
+from app.base.hosts import checked_host
 from app.base.message import N_, Message, join, say
-from app.base.text.hosts import checked_host
 from app.link.alarm_orders import SetNotifications, TestNotification
 from app.site.state.model import SiteModel
 from app.tracker.commands.commands import CommandRejected

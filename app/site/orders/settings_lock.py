@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from app.base.message import N_, say
-from app.base.text.names import clean
+from app.base.names import clean
 from app.link.messages import (
     SetLocation,
     SiteCommand,

@@ -3,8 +3,8 @@
 from dataclasses import replace
 from datetime import datetime
 
+from app.base.hosts import checked_host
 from app.base.message import N_, Message, say
-from app.base.text.hosts import checked_host
 from app.link.weather_orders import (
     ReportWeather,
     SetMetStation,

@@ -5,9 +5,9 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import assert_never
 
+from app.base.hosts import host_fault
 from app.base.message import N_, join, say, told_by
-from app.base.text.hosts import host_fault
-from app.base.text.names import clean
+from app.base.names import clean
 from app.base.zones import shown_zone, zones_missing
 from app.drives.scaled import check_ratio
 from app.tracker.settings.axes import AxisConfig

@@ -8,8 +8,8 @@ from urllib.parse import quote
 
 from sqlalchemy import Connection, func, insert, inspect, select, text
 
+from app.base.addresses.sqlite_url import sqlite_url
 from app.base.message import say, told_by
-from app.base.sqlite_url import sqlite_url
 from app.store import tables
 from app.store.connections import (
     reading_engine,

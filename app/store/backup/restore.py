@@ -11,8 +11,8 @@ from pathlib import Path
 from sqlalchemy import Connection, func, select
 
 from app.audit.entry import Entry, told
+from app.base.addresses.sqlite_url import sqlite_url
 from app.base.message import N_
-from app.base.sqlite_url import sqlite_url
 from app.store import tables
 from app.store.auditing import append
 from app.store.backup.backup import BackupInfo, audit_head, backup, copy_database, inspect_backup

@@ -3,7 +3,7 @@
 from datetime import timedelta
 
 from app.base.message import N_, say, with_format
-from app.base.text.names import tidy
+from app.base.names import tidy
 from app.tracker.access.interlocks import Action, demand
 from app.tracker.access.maintenance_inhibit import named
 from app.tracker.commands.commands import BeginServiceMode

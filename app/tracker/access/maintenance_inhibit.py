@@ -1,7 +1,7 @@
 """The maintenance lock: while somebody works on the machine, nothing but their own hand moves it."""
 
 from app.base.message import N_, say
-from app.base.text.names import tidy, unseen
+from app.base.names import tidy, unseen
 from app.tracker.access.interlocks import Action, demand
 from app.tracker.commands.commands import SetInhibit
 from app.tracker.protections.words import MaintenanceLock

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from io import StringIO
 
 from app.base.message import N_, join, say, told_by
-from app.base.text.names import tidy
+from app.base.names import tidy
 from app.tracker.settings.stepped import (
     MOST_STEPS,
     ProgramStep,

@@ -7,7 +7,7 @@ from typing import Annotated
 from annotated_types import Ge, Le, MaxLen
 
 from app.base.message import N_, say
-from app.base.text.names import tidy
+from app.base.names import tidy
 from app.tracker.settings.declared import Setting, check
 
 MOST_REGIONS = 20

@@ -14,7 +14,7 @@ from itertools import pairwise
 from math import isfinite
 
 from app.base.message import N_, join, say, with_format
-from app.base.text.names import tidy, unseen
+from app.base.names import tidy, unseen
 
 HOURS_A_DAY = 24.0
 MOST_STEPS = 288

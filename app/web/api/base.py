@@ -9,7 +9,7 @@ from fastapi.routing import APIRoute
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ModelWrapValidatorHandler, model_validator
 
 from app.base.instants import Instant
-from app.base.text.names import clean
+from app.base.names import clean
 from app.link.order_models import Azimuth as Azimuth
 from app.link.order_models import Elevation as Elevation
 from app.tracker.values.reason import Reason

@@ -4,8 +4,8 @@ import ipaddress
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
+from app.base.addresses.own_names import own_names
 from app.base.logs import get_logger
-from app.base.own_names import own_names
 from app.base.settings import Settings, SettingsWrong
 
 log = get_logger()

@@ -10,9 +10,9 @@ from datetime import datetime
 
 from pydantic import ValidationError
 
+from app.base.addresses.own_names import own_names
 from app.base.message import N_, Message, join, say, told_by, told_of_value
 from app.base.network import Network
-from app.base.own_names import own_names
 from app.base.settings import LOOPBACK, PREFIX, Settings
 from app.base.startup import late
 

@@ -9,7 +9,7 @@ from typing import TypeVar
 from starlette.requests import Request
 
 from app.base.message import Message, say, told_by, with_format, word
-from app.base.text.names import clean
+from app.base.names import clean
 from app.base.zones import zone_of
 from app.sun.accuracy import FIRST_YEAR, LAST_YEAR
 from app.tracker.values import typed_numbers

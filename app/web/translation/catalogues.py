@@ -22,7 +22,7 @@ from babel.messages.frontend import parse_mapping_cfg
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
 
-from app.base.text.file_text import utf8_of
+from app.base.file_text import utf8_of
 from app.web.languages.catalogue import GAP
 from app.web.languages.known import LOCALE, TRANSLATED
 

@@ -9,8 +9,8 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.base.message import N_
+from app.base.names import tidy
 from app.base.permission import Permission
-from app.base.text.names import tidy
 from app.base.zones import zone_of
 from app.store.store import JournalFilter
 from app.tracker.state.snapshot import EventKind

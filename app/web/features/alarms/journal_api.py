@@ -7,8 +7,8 @@ from fastapi import Depends, Query
 from starlette.responses import Response
 
 from app.base.instants import Instant
+from app.base.names import tidy
 from app.base.permission import Permission
-from app.base.text.names import tidy
 from app.store.store import JournalEntry, JournalFilter
 from app.tracker.state.snapshot import EventKind
 from app.web.api.base import Cursor, Limit, Page, Responses, api_router, before, following

@@ -5,9 +5,9 @@ from dataclasses import replace
 from pydantic import Field
 
 from app.access.principal import Principal
+from app.base.addresses.masking import masked
 from app.base.message import told_by
 from app.base.permission import Permission
-from app.base.text.masking import masked
 from app.link.alarm_orders import SetNotifications, TestNotification
 from app.tracker.values.notifications import Channel, Notifications
 from app.web.api.base import CHANGED, REFUSED, TAGGED, Input, api_router

@@ -8,8 +8,8 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.base.message import N_, Message, say
+from app.base.names import LONGEST_TYPED, tidy, unseen
 from app.base.permission import Permission
-from app.base.text.names import LONGEST_TYPED, tidy, unseen
 from app.link.messages import AddTracker, RenameSite, SiteDetail, StopAll
 from app.tracker.commissioning.steps import StepStatus
 from app.tracker.settings.config import LONGEST_NAME, TrackerConfig

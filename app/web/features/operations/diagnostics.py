@@ -12,9 +12,9 @@ from typing import Any
 import orjson
 from sqlalchemy import make_url
 
+from app.base.addresses.masking import without_secrets
 from app.base.build import VERSION
 from app.base.settings import Settings
-from app.base.text.masking import without_secrets
 from app.link.messages import Machine
 from app.store.store import JournalFilter, Reader
 from app.web.services.counting import counted

@@ -6,7 +6,7 @@ from collections.abc import Awaitable, Callable, Sequence
 from starlette.concurrency import run_in_threadpool
 
 from app.base.message import N_, say, told_by
-from app.base.text.names import clean
+from app.base.names import clean
 from app.link.messages import UnknownTracker
 from app.link.record_orders import AddRecordPhoto, RecordOrder, RemoveRecordPhoto, SignRecord
 from app.store.store import Photo, Reader, RecordHead, SignedRecord, StoreFailed

@@ -9,8 +9,8 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.base.message import N_, say, told_by
+from app.base.names import clean
 from app.base.permission import Permission
-from app.base.text.names import clean
 from app.link.record_orders import RecordOrder
 from app.web.features.control.mode import choice
 from app.web.features.records.photos import LARGEST_UPLOAD, PhotoRefused

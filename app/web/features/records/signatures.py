@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 from app.base.message import N_, Message, say
-from app.base.text.names import tidy, unseen
+from app.base.names import tidy, unseen
 from app.store.documents import plain
 
 WIDTH, HEIGHT = 1000, 300

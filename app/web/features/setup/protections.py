@@ -8,8 +8,8 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.base.message import N_
+from app.base.names import LONGEST_TYPED
 from app.base.permission import Permission
-from app.base.text.names import LONGEST_TYPED
 from app.link.messages import ConfigureTracker, TrackerDetail
 from app.tracker.commands.commands import ReleaseInhibit, Resume, SetInhibit, Stow
 from app.tracker.settings.protections import ProtectionConfig, StowName

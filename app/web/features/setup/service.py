@@ -7,8 +7,8 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.base.message import N_
+from app.base.names import LONGEST_TYPED
 from app.base.permission import Permission
-from app.base.text.names import LONGEST_TYPED
 from app.tracker.commands.commands import BeginServiceMode, ConfirmAreaClear, EndServiceMode
 from app.web.features.setup.protection_contexts import ServicePage
 from app.web.http.errors import NotAcceptable

@@ -10,10 +10,10 @@ from pydantic import Field, WrapValidator
 from starlette.requests import Request
 
 from app.base.adapter import adapter
+from app.base.file_text import TextRefused, text_of
 from app.base.instants import Day
 from app.base.message import N_, told_by
 from app.base.permission import Permission
-from app.base.text.file_text import TextRefused, text_of
 from app.base.zones import day_in
 from app.link.messages import ConfigureTracker
 from app.show.strategy_told import StrategyDay

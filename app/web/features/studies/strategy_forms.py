@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import BaseModel
 
 from app.base.message import N_, say, told_by
-from app.base.text.names import tidy
+from app.base.names import tidy
 from app.tracker.programs.step_table import (
     COLUMNS,
     TableWrong,

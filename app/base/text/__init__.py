@@ -1,1 +1,0 @@
-"""Texts that people and other programs write: names, addresses, topics, files."""
