@@ -69,7 +69,7 @@ setup: $(VENV)/.runtime ## Make .venv with the command heliopanel
 	@echo "Ready: $(BIN)/heliopanel --help"
 
 dist: $(VENV)/.runtime ## Build the sdist, and the wheel from it, into dist/ (with the manual where zensical is there)
-	@test ! -x $(BIN)/zensical || $(BIN)/python -m tests.manual
+	@test ! -x $(BIN)/zensical || $(BIN)/python -m tools.manual
 	@$(BIN)/python -c "from setuptools.build_meta import build_sdist; build_sdist('dist')" >/dev/null
 	@$(BIN)/python -m pip wheel --quiet --disable-pip-version-check --no-index --no-build-isolation --no-deps -w dist \
 		dist/heliopanel-$$($(BIN)/heliopanel version).tar.gz
@@ -80,10 +80,10 @@ release: $(VENV)/.dev ## Release VERSION=x.y.z: raise it, build all into dist/, 
 	@$(BIN)/python -m release $(VERSION) $(if $(DRY),--dry-run)
 
 docs: $(VENV)/.dev ## Build the site of the documents into manual/; a broken link or anchor fails
-	@$(BIN)/python -m tests.manual
+	@$(BIN)/python -m tools.manual
 
 reference: $(VENV)/.test ## Renew the pages of Reference that are made of the code
-	@$(BIN)/python -m tests.manual.made
+	@$(BIN)/python -m tools.manual.made
 
 fast: $(VENV)/.runtime ## Add the compiled loops (numba) that make studies and comparisons quick
 	@$(BIN)/python $(LOCKED) requirements-fast.txt
@@ -93,21 +93,21 @@ run: setup ## Serve the panel with a simulated tracker at http://127.0.0.1:8000
 	@$(BIN)/heliopanel serve
 
 system-packages:
-	@sh tests/system-packages.sh
+	@sh tools/system-packages.sh
 
 test: ## Set up what tests need and run them, browser tests included
 	@$(MAKE) --no-print-directory --jobs=2 system-packages $(VENV)/.test
-	@$(BIN)/python -m tests.gate -n $(WORKERS) --dist loadfile --no-loadscope-reorder $(IN_ORDER) \
+	@$(BIN)/python -m tools.gate -n $(WORKERS) --dist loadfile --no-loadscope-reorder $(IN_ORDER) \
 		--ignore=tests/soak --ignore=tests/looks
 
 looks: $(VENV)/.test system-packages ## Look at the pages that changed, in all sizes, languages, and themes; ALL=1 at every page
 	@$(BIN)/python -m tests.looks $(if $(ALL),--all)
 
 gate: ## Run .ci/run in a clone of the last commit; build/green says which commit passed, and how long it took
-	@$(PYTHON) -m tests.clean_gate
+	@$(PYTHON) -m tools.clean_gate
 
 fresh: ## Run the README's two commands on pristine Debian machines; DEBIAN=13 WHO=user ONLY=run does a part
-	@python3 -m tests.fresh $(DEBIAN:%=--debian %) $(WHO:%=--who %) $(ONLY:%=--only %) \
+	@python3 -m tools.fresh $(DEBIAN:%=--debian %) $(WHO:%=--who %) $(ONLY:%=--only %) \
 		$(if $(filter file,$(origin PYTHON)),,--python $(PYTHON))
 
 soak: $(VENV)/.dev $(VENV)/.client system-packages ## Run what make test leaves out; PART=timing, built or long (hours) does a part
@@ -128,7 +128,7 @@ soak-long:
 	@HELIOPANEL_TEST_KILLS=30 HELIOPANEL_TEST_TRACKERS=100 $(BIN)/python -m pytest -s tests/soak/timing/test_storm_kill.py
 
 mutants: $(VENV)/.dev ## Change what guards and limits place by place, in a copy, and count what tests notice
-	@$(BIN)/python -m tests.mutants $(ONLY)
+	@$(BIN)/python -m tools.mutants $(ONLY)
 
 browser: $(VENV)/.test system-packages ## Run the browser tests alone; screenshots go to build/screens
 	@HELIOPANEL_SCREENS=1 $(BIN)/python -m pytest tests/browser
@@ -156,7 +156,7 @@ check-imports:
 check-secrets:
 	@$(BIN)/python -m checks secrets
 check-clocks:
-	@$(BIN)/python -m tests.no_clock
+	@$(BIN)/python -m checks clocks
 check-vendored:
 	@$(BIN)/python static/vendor/vendor.py check
 check-migrations:
@@ -173,7 +173,7 @@ translations: $(VENV)/.test ## Bring catalogues, and fonts cut for them, up to d
 	@$(BIN)/python static/vendor/vendor.py letters
 
 fuzz: $(VENV)/.test ## Send 10,000 bad requests to the API, and hostile values into every form
-	@$(BIN)/python -m tests.fuzz
+	@$(BIN)/python -m tools.fuzz
 
 bench: $(VENV)/.dev system-packages ## Measure, as ratios against peers in the same run, and write docs/develop/benchmarks.md
 	@$(BIN)/python -m bench

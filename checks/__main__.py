@@ -4,7 +4,7 @@ import sys
 from collections.abc import Callable, Iterator
 from importlib import import_module
 
-NAMES = ("documents", "generated", "sources", "texts", "api")
+NAMES = ("clocks", "documents", "generated", "sources", "texts", "api")
 
 
 def main(names: list[str]) -> int:

@@ -14,8 +14,8 @@ from app.base.settings import FILE_VARIABLE, PREFIX, Settings
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md")])
-NAMED = re.compile(r"`((?:app|bench|tests)/[\w/]+\.py):([\w.]+)`")
-PLACES = re.compile(r"`((?:app|templates|static|tests|alembic|deploy|docs|bench|checks)/[\w./-]*)`")
+NAMED = re.compile(r"`((?:app|bench|tests|tools)/[\w/]+\.py):([\w.]+)`")
+PLACES = re.compile(r"`((?:app|templates|static|tests|alembic|deploy|docs|bench|checks|tools)/[\w./-]*)`")
 LINKS = re.compile(r"\]\((?!https?:|#|mailto:)([^)#\s]+)")
 VARIABLE = re.compile(rf"\b{PREFIX}[A-Z_]+[A-Z]\b(?!_)")
 OF_OTHERS = re.compile(rf"{PREFIX}(TEST_\w+|DOCS|SCREENS|SOAK|NAME)")

@@ -11,8 +11,8 @@ from app.research.library import papers
 from app.web.documented import written
 from app.web.openapi import DOCUMENT
 from tests.fakes import fake_app
-from tests.fault_table import proofs, rows
-from tests.manual.made.pages import REFERENCE, pages
+from tools.fault_table import proofs, rows
+from tools.manual.made.pages import REFERENCE, pages
 
 ROOT = Path(__file__).resolve().parents[1]
 NUMBER = re.compile(r"\d+(?:\.\d+)?")

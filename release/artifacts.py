@@ -29,7 +29,7 @@ def build(sources: Path, into: Path, version: str, made_at: datetime) -> list[st
     into.mkdir(parents=True)
     before = os.umask(SHARED)
     try:
-        _run(sources, made_at, sys.executable, "-m", "tests.manual")
+        _run(sources, made_at, sys.executable, "-m", "tools.manual")
         sdist = _sdist(sources, into, version, int(made_at.timestamp()))
         _run(sources, made_at, sys.executable, "-m", *PIP_WHEEL, "--no-deps", "-w", str(into), str(sdist))
     finally:

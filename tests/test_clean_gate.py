@@ -35,7 +35,7 @@ def committed(project: Path, run: str) -> str:
 
 
 def gate(project: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "tests.clean_gate"]
+    command = [sys.executable, "-m", "tools.clean_gate"]
     given = {"PYTHONPATH": str(ROOT), "VIRTUAL_ENV": "/of/the/caller", "PATH": "/usr/bin:/bin"}
     return subprocess.run(command, cwd=project, env=given, capture_output=True, text=True, check=False)
 

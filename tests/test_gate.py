@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.gate import FLAKY, MOST
+from tools.gate import FLAKY, MOST
 
 ROOT = Path(__file__).resolve().parents[1]
 TESTS = """
@@ -54,7 +54,7 @@ def gate(folder: Path, tests: str, *more: str) -> subprocess.CompletedProcess[st
     """Run the gate on a file of tests in a folder of its own."""
     (folder / "pytest.ini").write_text("[pytest]\njunit_family = xunit1\naddopts = -p xdist\n")
     (folder / "test_small.py").write_text(TESTS + tests)
-    command = [sys.executable, "-m", "tests.gate", *more]
+    command = [sys.executable, "-m", "tools.gate", *more]
     environment = {"PYTHONPATH": str(ROOT), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 import uvloop
 
-from tests.alone import INSIDE, UNSHARE, begin_alone, may_be_alone
+from tools.alone import INSIDE, UNSHARE, begin_alone, may_be_alone
 
 ELSEWHERE = ("192.0.2.1", 9)
 """An address of TEST-NET-1, which no network has."""
@@ -79,7 +79,7 @@ def test_where_no_network_of_its_own_is_allowed_a_program_says_so(
 ) -> None:
     monkeypatch.delenv(INSIDE, raising=False)
     monkeypatch.setattr(shutil, "which", lambda program: None)
-    begin_alone("tests.fuzz")
+    begin_alone("tools.fuzz")
     assert capsys.readouterr().out.startswith("No network namespace is allowed here: every Python process")
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.manual.links import faults
-from tests.manual.site import finish
+from tools.manual.links import faults
+from tools.manual.site import finish
 
 WHOLE = '<h1 id="top">A</h1><a href="#top">up</a><a href="https://doi.org/1">paper</a><img src="a.png">'
 

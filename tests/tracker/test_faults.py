@@ -1,7 +1,7 @@
 """Rows of the fault table that happen at the machine: noticed in time, answered as the table says, and told.
 
 `witnessed` measures on the virtual clock from the fault to the first word of it, and hands time and sentence
-to the table of faults (`python -m tests.fault_table`).
+to the table of faults (`python -m tools.fault_table`).
 """
 
 from collections.abc import Callable

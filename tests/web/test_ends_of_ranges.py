@@ -12,8 +12,8 @@ from app.web.services.studies import Studies
 from tests.amount import SOAK
 from tests.fakes import PORT, fake_app
 from tests.fault_result import FaultResult
-from tests.fuzz import LastingMachine
 from tests.web.ends import Case, Document
+from tools.fuzz import LastingMachine
 
 DOCUMENT = Document(json.loads(KEPT.read_text()), {"tracker_id": "T1", "recording_id": "show-1"})
 ENDLESS = "/api/v1/stream"

@@ -8,8 +8,8 @@ from playwright.sync_api import Browser, expect
 
 from tests.browser.conftest import Plant, Served, browser, listen, running
 from tests.fakes import FakeMachine
-from tests.manual.site import build
 from tests.web.test_manual import app_with
+from tools.manual.site import build
 
 __all__ = ["browser"]
 

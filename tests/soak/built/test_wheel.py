@@ -47,7 +47,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
             shutil.copytree(ROOT / name, sources / name, ignore=shutil.ignore_patterns("__pycache__"))
         else:
             shutil.copy2(ROOT / name, sources / name)
-    run(sys.executable, "-m", "tests.manual", str(sources / "manual"), cwd=ROOT)
+    run(sys.executable, "-m", "tools.manual", str(sources / "manual"), cwd=ROOT)
     (sources / "build" / "lib" / "app").mkdir(parents=True)
     (sources / "build" / "lib" / "app" / "gone.py").touch()
     run(sys.executable, "-c", BUILD_SDIST, str(wheels), cwd=sources)

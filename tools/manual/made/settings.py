@@ -8,7 +8,7 @@ from pydantic import SecretStr
 from pydantic.fields import FieldInfo
 
 from app.base.settings import FILE_VARIABLE, PREFIX, Settings
-from tests.manual.made.markdown import code, page, table
+from tools.manual.made.markdown import code, page, table
 
 INTRODUCTION = f"""Settings come from options of the command line, then from the environment, then from
 what the page *Network* has set, then from the TOML file that `{FILE_VARIABLE}` names; what comes first

@@ -17,7 +17,7 @@ from xml.etree import ElementTree
 import pytest
 
 LAST_FAILED = Path(".pytest_cache/v/cache/lastfailed")
-TESTS, BUILD = Path("tests"), Path("build")
+BUILD = Path("build")
 FLAKY = BUILD / "flaky.txt"
 REPORT, REPORT_ALONE = BUILD / "junit.xml", BUILD / "junit-alone.xml"
 MOST = 25
@@ -52,16 +52,8 @@ def _first_line(why: ElementTree.Element) -> str:
     return said.partition("\n")[0][:LONGEST_REASON]
 
 
-def compile_once(arguments: Sequence[str]) -> None:
-    """Have one process compile the tests of a new clone, which each worker would do for itself."""
-    if TESTS.exists() and next(TESTS.rglob("*-pytest-*.pyc"), None) is None:
-        command = [sys.executable, "-m", "pytest", "--collect-only", *arguments]
-        subprocess.run(command, check=False, stdout=subprocess.DEVNULL)
-
-
 def judged(arguments: Sequence[str]) -> int:
     """Return 0 if each test passed, together with the others or alone."""
-    compile_once(arguments)
     code = ran(REPORT, "--cache-clear", *arguments)
     again = failed()
     if code != pytest.ExitCode.TESTS_FAILED or not again:

@@ -6,8 +6,8 @@ from typing import Any
 import orjson
 
 from app.web.documented import DOCUMENT
-from tests.manual.made.markdown import code, page, table, text
 from tests.web.route_table import ROUTES
+from tools.manual.made.markdown import code, page, table, text
 
 INTRODUCTION = """Every call, with the permission that it needs; [permissions and
 roles](../operate/operators-guide.md#users) are the operator's guide's, and [the integrator's

@@ -1,9 +1,9 @@
-"""`python -m tests.manual [FOLDER]` builds the site of the documents, into `manual` by default."""
+"""`python -m tools.manual [FOLDER]` builds the site of the documents, into `manual` by default."""
 
 import sys
 from pathlib import Path
 
-from tests.manual.site import ROOT, BrokenSite, build
+from tools.manual.site import ROOT, BrokenSite, build
 
 
 def main(words: list[str]) -> int:

@@ -16,7 +16,7 @@ from app.web.http.gate import MOST_STOPS
 from app.web.http.limits import MOST_STREAMS, MOST_STREAMS_A_CLIENT
 from app.web.http.security import LARGEST_BODY, LARGEST_UPLOAD
 from app.web.live.hub import MOST_VIEWERS
-from tests.manual.made.markdown import code, page, table
+from tools.manual.made.markdown import code, page, table
 
 INTRODUCTION = """What one Heliopanel takes and keeps. What it needs for that in time, memory, and disk
 is measured: see [benchmarks](../develop/benchmarks.md)."""

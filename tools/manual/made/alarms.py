@@ -3,7 +3,7 @@
 from datetime import timedelta
 
 from app.alarms.catalogue import ENTRIES, Entry
-from tests.manual.made.markdown import code, page, table, text
+from tools.manual.made.markdown import code, page, table, text
 
 INTRODUCTION = """Priority comes from the consequence without a response and from the time to respond
 (ISA-18.2): 1 within a minute or two, 2 within 10 minutes, 3 within hours, 4 within days. *On* is how

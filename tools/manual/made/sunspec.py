@@ -1,7 +1,7 @@
 """The SunSpec map of a site of two trackers, as the server builds it."""
 
 from app.gateway.sunspec_map import map_table, sunspec_map
-from tests.manual.made.markdown import page
+from tools.manual.made.markdown import page
 
 INTRODUCTION = """The registers of a site of two trackers, `T1` and `T2`, with weather. Every further
 tracker adds as many words as `T2` has, and the addresses after them move. `heliopanel sunspec-map` prints the

@@ -1,7 +1,7 @@
 """The table of faults: every row with its tests, what they measured, and the page made of their results.
 
-python -m tests.fault_table             run every test that proves a row, and write docs/reference/faults.md
-python -m tests.fault_table PART PARTS  run one of so many parts; the page is written once all have passed
+python -m tools.fault_table             run every test that proves a row, and write docs/reference/faults.md
+python -m tools.fault_table PART PARTS  run one of so many parts; the page is written once all have passed
 """
 
 import ast
@@ -17,7 +17,7 @@ import pytest
 
 from tests.fault_result import VIRTUAL
 
-TESTS = Path(__file__).parent
+TESTS = Path(__file__).parents[1] / "tests"
 GOLDEN = TESTS / "golden" / "fault_table.csv"
 PAGE = TESTS.parent / "docs" / "reference" / "faults.md"
 PARTS = TESTS.parent / "build" / "faults"
@@ -25,7 +25,7 @@ PARTS = TESTS.parent / "build" / "faults"
 HEAD = """# What can go wrong
 
 Every row of the fault table with what notices it, what follows, what the operator reads and how it ends.
-Made by `python -m tests.fault_table` from the results of the tests that each row names; change those, not
+Made by `python -m tools.fault_table` from the results of the tests that each row names; change those, not
 this page. Fault, detection and reaction are the design's; the rest is what the tests measured and saw.
 
 *Noticed after* is the time from the fault to its first sign, the longest of several tests: on the virtual

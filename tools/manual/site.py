@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tests.manual.links import faults
+from tools.manual.links import faults
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIG = "zensical.toml"

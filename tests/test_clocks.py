@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests import no_clock
+from checks import clocks
 
 OFFENCES = (
     "time.monotonic()", "from time import perf_counter", "loop.time()", "page.wait_for_timeout(5)",
@@ -21,17 +21,17 @@ HARMLESS = (
 def test_what_goes_by_the_real_clock_is_found(
     line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(no_clock, "TESTS", tmp_path)
+    monkeypatch.setattr(clocks, "TESTS", tmp_path)
     file = tmp_path / "test_one.py"
     file.write_text(f"{line}\n")
-    assert bool(no_clock.offences(file)) is (line in OFFENCES)
+    assert bool(clocks.offences(file)) is (line in OFFENCES)
 
 
 def test_on_the_patient_loop_the_loop_may_sleep_and_the_computer_may_not(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(no_clock, "TESTS", tmp_path)
+    monkeypatch.setattr(clocks, "TESTS", tmp_path)
     file = tmp_path / "drives" / "test_one.py"
     file.parent.mkdir()
     file.write_text("asyncio.sleep(3600)\ntime.sleep(1)\n")
-    assert no_clock.offences(file) == [(2, "time.sleep(1)")]
+    assert clocks.offences(file) == [(2, "time.sleep(1)")]

@@ -11,7 +11,7 @@ from app.gateway.mqtt_discovery import announcements
 from app.gateway.mqtt_messages import Topics, columns_payload, site_payload, tracker_payload
 from app.tracker.state.snapshot import SiteSnapshot
 from tests.fakes import FakeMachine
-from tests.manual.made.markdown import code, page, table
+from tools.manual.made.markdown import code, page, table
 
 INTRODUCTION = """Topics are below `HELIOPANEL_MQTT_BASE_TOPIC`, here `heliopanel`; `T1` stands for the id of
 a tracker. Payloads are JSON. Units are in the names, instants are ISO 8601, and unknown values are

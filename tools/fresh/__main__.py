@@ -14,7 +14,7 @@ import urllib.request
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.fresh.machine import BUILD, INTERPRETER, USER, Machine, machine, stop
+from tools.fresh.machine import BUILD, INTERPRETER, USER, Machine, machine, stop
 
 ANSWERS_WITHIN_S = 1200
 STOPS_WITHIN_S = 30

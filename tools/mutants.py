@@ -1,8 +1,8 @@
 """Changes the program place by place, in a copy, and counts what its tests notice.
 
-`python -m tests.mutants` does every area, `python -m tests.mutants access drives` two of them. mutmut makes
+`python -m tools.mutants` does every area, `python -m tools.mutants access drives` two of them. mutmut makes
 all changes in one copy, `mutants/`; which of them is in force a process says for itself. Each is tried in a
-fork of a process that has loaded the tests of its area (`tests/mutant_runs.py`): mutmut's own way takes ten
+fork of a process that has loaded the tests of its area (`tools/mutant_runs.py`): mutmut's own way takes ten
 times as long, most of it for reports of failures that nobody reads.
 """
 
@@ -117,7 +117,7 @@ def _area(name: str) -> int:
     RESULTS.mkdir(parents=True, exist_ok=True)
     result = (RESULTS / f"{name}.json").resolve()
     environment = os.environ | {"MUTANT_UNDER_TEST": ""}
-    running = (sys.executable, "-m", "tests.mutant_runs", name, str(result))
+    running = (sys.executable, "-m", "tools.mutant_runs", name, str(result))
     log = (RESULTS / f"{name}.log").resolve()
     with log.open("wb") as written:
         done = subprocess.run(running, cwd=COPY, env=environment, stdout=written, stderr=written)

@@ -7,7 +7,7 @@ from typer.core import TyperGroup
 from typer.main import get_command
 
 from app.cli import cli
-from tests.manual.made.markdown import code, page, table, text
+from tools.manual.made.markdown import code, page, table, text
 
 INTRODUCTION = """Exit code 0: done. Exit code 1: it failed, and may work another time. Exit code 2: what
 was asked or set is wrong.

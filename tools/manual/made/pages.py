@@ -1,14 +1,14 @@
 """Which pages are made of the code."""
 
-from tests.manual.made.alarms import alarms_page
-from tests.manual.made.api import api_page
-from tests.manual.made.commands import commands_page
-from tests.manual.made.errors import errors_page
-from tests.manual.made.mqtt import mqtt_page
-from tests.manual.made.settings import settings_page
-from tests.manual.made.sizing import sizing_page
-from tests.manual.made.sunspec import sunspec_page
-from tests.manual.site import ROOT
+from tools.manual.made.alarms import alarms_page
+from tools.manual.made.api import api_page
+from tools.manual.made.commands import commands_page
+from tools.manual.made.errors import errors_page
+from tools.manual.made.mqtt import mqtt_page
+from tools.manual.made.settings import settings_page
+from tools.manual.made.sizing import sizing_page
+from tools.manual.made.sunspec import sunspec_page
+from tools.manual.site import ROOT
 
 REFERENCE = ROOT / "docs" / "reference"
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
-from tests.fresh import host
+from tools.fresh import host
 
 BUILD = Path("build/fresh")
 USER = "tester"

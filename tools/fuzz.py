@@ -1,4 +1,4 @@
-"""`python -m tests.fuzz`: at least 10,000 cases against the whole API, and hostile values for every form.
+"""`python -m tools.fuzz`: at least 10,000 cases against the whole API, and hostile values for every form.
 
 Each text that the API takes is given texts of the world as well, and tables as files have them.
 
@@ -25,10 +25,10 @@ from app.store.migrations import upgrade
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.state.snapshot import SiteSnapshot
 from app.tracker.values.reason import Reason
-from tests.alone import begin_alone
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.web.api_texts import send_texts
 from tests.web.test_forms import fuzz
+from tools.alone import begin_alone
 
 EXAMPLES = 125
 FORM_ROUNDS = 60
@@ -106,13 +106,13 @@ async def _texts() -> int:
 
 def main() -> int:
     """Run what was asked for, without a name both, and return the exit code."""
-    arguments = argparse.ArgumentParser(prog="python -m tests.fuzz", description=__doc__)
+    arguments = argparse.ArgumentParser(prog="python -m tools.fuzz", description=__doc__)
     arguments.add_argument("part", nargs="?", choices=("api", "forms", "texts", "all"), default="all")
     arguments.add_argument("--only", help="regular expression of the API's paths")
     arguments.add_argument("--without", default=LEFT_OUT, help="regular expression of paths left out")
     arguments.add_argument("--examples", type=int, default=EXAMPLES, help="cases for each operation")
     given = arguments.parse_args()
-    begin_alone("tests.fuzz", *sys.argv[1:])
+    begin_alone("tools.fuzz", *sys.argv[1:])
     if given.part in ("forms", "all"):
         _forms()
     if given.part in ("texts", "all"):

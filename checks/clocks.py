@@ -1,16 +1,15 @@
-"""`python -m tests.no_clock`: no test of the gate reads the real clock, sleeps, or has a bound of its own.
+"""No test of the gate reads the real clock, sleeps, or has a bound of its own.
 
 What judges time stands in `tests/soak`. A wait takes `PATIENCE_S` of `tests/patience.py`, which only ends a
 hang; time is a virtual clock, the patient loop, or the page's clock. An exception that has none fails too.
 """
 
 import ast
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-TESTS = Path(__file__).parent
-JUDGE_TIME = ("soak", "looks", "fresh")
+TESTS = Path(__file__).parents[1] / "tests"
+JUDGE_TIME = ("soak", "looks")
 """Folders that the gate does not run."""
 CLOCKS = {"monotonic", "perf_counter", "monotonic_ns", "perf_counter_ns"}
 SLEEPS = {"time.sleep", "asyncio.sleep"}
@@ -36,19 +35,14 @@ PATIENT = {
     "site/test_waiting.py": "the patient loop (tests/site/conftest.py)",
 }
 EXCEPTIONS = {
-    "clean_gate.py": "says how long the gate took",
-    "gate.py": "says how long the tests took",
     "drives/test_modbus_server.py": "pymodbus is silent for so long where no reply is wanted",
     "e2e/chromium.py": "tells the soak when it clicked",
     "e2e/product.py": "tells the soak when it sent a signal",
     "e2e/proxy.py": "tells the soak when it cut the cable",
     "e2e/socket_page.py": "its heartbeats carry the time, as those of a page do",
-    "fuzz.py": "no part of the gate: make fuzz",
     "machine/lives.py": "tells the soak when it killed",
     "machine/service.py": "tells the soak after how long the axes rest",
     "machine/stories.py": "kills at an instant by chance, for the soak",
-    "manual/site.py": "no part of the gate: make docs",
-    "mutant_runs.py": "no part of the gate: make mutants",
     "peers/modbus_tk_server.py": "a process of its own that serves until it is killed",
     "patience.py": "the one bound of all waits, and the pause between two looks",
 }
@@ -107,27 +101,21 @@ def _is_number(value: ast.expr) -> bool:
     return isinstance(value, ast.Constant) and isinstance(value.value, int | float) and value.value > 0
 
 
-def main() -> int:
-    """Tell every offence, and every exception that has none; return the exit code."""
-    wrong = 0
+def faults() -> Iterator[str]:
+    """Yield every offence, and every exception that has none."""
+    wrong = False
     for path in sorted(TESTS.rglob("*.py")):
         name = path.relative_to(TESTS).as_posix()
         if name.partition("/")[0] in JUDGE_TIME:
             continue
         found, excused = offences(path), name in EXCEPTIONS or name in TO_BE_MOVED
         for line, told in () if excused else found:
-            sys.stderr.write(f"tests/{name}:{line}: {told.splitlines()[0][:90]}\n")
+            wrong = True
+            yield f"tests/{name}:{line}: {told.splitlines()[0][:90]}"
         if excused and not found:
-            sys.stderr.write(f"tests/{name} is clean: take it off the list in tests/no_clock.py.\n")
-        wrong += bool(found) is not excused
+            yield f"tests/{name} is clean: take it off the list in checks/clocks.py."
     for name in (*EXCEPTIONS, *TO_BE_MOVED):
         if not (TESTS / name).exists():
-            sys.stderr.write(f"tests/{name} is gone: take it off the list in tests/no_clock.py.\n")
-            wrong += 1
+            yield f"tests/{name} is gone: take it off the list in checks/clocks.py."
     if wrong:
-        sys.stderr.write(f"{SENTENCE}\n")
-    return int(wrong > 0)
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        yield SENTENCE

@@ -1,4 +1,4 @@
-"""Tries every change of an area, in the copy that `tests/mutants.py` made: each in a fork of this process."""
+"""Tries every change of an area, in the copy that `tools/mutants.py` made: each in a fork of this process."""
 
 import json
 import os
@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import mutmut.mutation.trampoline as trampoline
 import pytest
 
-from tests.mutants import AREAS, changes
+from tools.mutants import AREAS, changes
 
 AT_ONCE = os.cpu_count() or 1
 CPU_FACTOR, CPU_MORE_S = 5, 8

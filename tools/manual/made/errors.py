@@ -7,7 +7,7 @@ from pathlib import Path
 
 from app.base.own import PROGRAM
 from app.web.http.problems import ProblemCode, phrase
-from tests.manual.made.markdown import code, page, table, text
+from tools.manual.made.markdown import code, page, table, text
 
 INTRODUCTION = """Errors of the API are `application/problem+json` (RFC 9457). `code` is the kind of problem,
 with one status each, and `type` the address of its section on this page. `title` is the status in words, and
