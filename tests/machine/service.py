@@ -1,53 +1,57 @@
 """The whole service as real processes on free ports: started, killed, frozen and asked over its own link."""
 
 import asyncio
-import json
-import os
-import signal
-import sys
 from collections.abc import Callable
-from contextlib import suppress
-from dataclasses import dataclass, field
+from contextlib import closing
+from dataclasses import dataclass
 from pathlib import Path
+from signal import Signals
 
 from app.base.clock import SystemClock
 from app.drives.drive import Drive
 from app.link.client import LinkClient
 from app.link.codec import Answer, Request
-from app.link.messages import ConfigureTracker, MachineUnreachable, Order, SetClock, SetLocation, SiteCommand
+from app.link.messages import (
+    ConfigureTracker,
+    MachineUnreachable,
+    Order,
+    SetClock,
+    SetLocation,
+    SiteCommand,
+)
 from app.machine.drive_factory import DriveFactory
+from app.store.engine import open_reader
+from app.store.reader import DatabaseReader
+from app.store.store import JournalFilter
 from app.sun.position import Location
-from app.tracker.commands.commands import Command, SetHome
+from app.tracker.commands.commands import Command, SelectMode, SetHome, Stop, Track
 from app.tracker.settings.config import DriveConfig, DriveKind, TrackerConfig
-from app.tracker.state.snapshot import ActivityName, SiteSnapshot, Snapshot
+from app.tracker.state.snapshot import ActivityName, Event, EventKind, SiteSnapshot, Snapshot
+from app.tracker.values.alarm_words import AlarmState
+from app.tracker.values.mode import Mode
 from app.tracker.values.motion import Feedback
-from tests.e2e.product import DRIVE_SIM
+from tests.e2e.product import DriveSim, Product
 from tests.patience import PATIENCE_S, eventually, pause
-from tests.ports import free_port
-
-__all__ = ["SAMSUN", "DriveSimulator", "Service", "config_for", "end"]
 
 SAMSUN = Location(41.2867, 36.33, 4.0)
+GONE = (AlarmState.RETURNED, AlarmState.NORMAL)
 
 
 @dataclass
 class DriveSimulator:
     """`heliopanel drive-sim` as a process of its own, and a second pair of eyes on it."""
 
-    port: int
-    process: asyncio.subprocess.Process
+    sim: DriveSim
     eyes: Drive
 
     @classmethod
     async def start(cls) -> "DriveSimulator":
-        port = free_port()
-        process = await asyncio.create_subprocess_exec(
-            *DRIVE_SIM, "--tcp", f"127.0.0.1:{port}", stdout=asyncio.subprocess.PIPE
-        )
-        assert process.stdout is not None
-        async with asyncio.timeout(PATIENCE_S):
-            await process.stdout.readline()
-        return cls(port, process, DriveFactory(SystemClock()).make(config_for(port)))
+        sim = await asyncio.to_thread(DriveSim.start)
+        return cls(sim, DriveFactory(SystemClock()).make(config_for(sim.port)))
+
+    @property
+    def port(self) -> int:
+        return self.sim.port
 
     async def look(self) -> Feedback:
         return await self.eyes.read()
@@ -64,19 +68,12 @@ class DriveSimulator:
             await pause()
 
     async def stop(self) -> None:
-        # Not `close`, which would send a stop through a second master.
-        await end(self.process)
+        # The eyes are not closed, which would send a stop through a second master.
+        await asyncio.to_thread(self.sim.stop)
 
 
 def config_for(port: int) -> TrackerConfig:
     return TrackerConfig("T1", "Tracker 1", drive=DriveConfig(DriveKind.MODBUS_TCP, port=port))
-
-
-async def end(process: asyncio.subprocess.Process) -> int:
-    if process.returncode is None:
-        process.terminate()
-    async with asyncio.timeout(PATIENCE_S):
-        return await process.wait()
 
 
 class PatientLink(LinkClient):
@@ -90,57 +87,34 @@ class PatientLink(LinkClient):
 class Service:
     """`heliopanel serve` in a data folder of its own."""
 
-    data_dir: Path
-    port: int
-    process: asyncio.subprocess.Process
+    product: Product
     link: LinkClient
-    lines: list[dict[str, object]] = field(default_factory=list)
-    reading: asyncio.Task[None] | None = None
 
     @classmethod
     async def start(cls, data_dir: Path, *, tick_ms: int = 100) -> "Service":
-        port = free_port()
-        environment = os.environ | {
-            "HELIOPANEL_DATA_DIR": str(data_dir),
-            "HELIOPANEL_PORT": str(port),
-            "HELIOPANEL_LOG_FORMAT": "json",
-            "HELIOPANEL_TICK_MS": str(tick_ms),
-        }
-        process = await asyncio.create_subprocess_exec(
-            sys.executable, "-m", "app.cli", "serve",
-            env=environment, stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE,
-        )  # fmt: skip
-        service = cls(data_dir, port, process, PatientLink(data_dir / "machine.sock"))
-        service.reading = asyncio.create_task(service._read())
-        try:
-            await service.link.start()
-            await service.link.watch(frozenset({"T1"}))
-            await eventually(lambda: service.link.latest() is not None)
-        except BaseException:
-            await service.stop()
-            raise
+        product = await asyncio.to_thread(Product.start, data_dir, tick_ms=str(tick_ms))
+        service = cls(product, PatientLink(data_dir / "machine.sock"))
+        await service.link.start()
+        await service.link.watch(frozenset({"T1"}))
+        await eventually(lambda: service.link.latest() is not None)
         return service
 
-    async def _read(self) -> None:
-        assert self.process.stderr is not None
-        async for line in self.process.stderr:
-            with suppress(ValueError):
-                self.lines.append(json.loads(line))
+    @property
+    def data_dir(self) -> Path:
+        return self.product.data_dir
+
+    @property
+    def port(self) -> int:
+        return self.product.port
 
     def starts(self, child: str) -> list[int]:
-        """Return the process ids that a child has had."""
-        return [
-            int(str(line["process_id"]))
-            for line in self.lines
-            if line.get("event") == "child_started" and line.get("child") == child
-        ]
+        return self.product.starts(child)
 
     def deaths(self) -> list[str]:
-        """Return which child has died of what, in order: a code below 0 is the signal that killed it."""
-        return [f"{line['child']} {line['code']}" for line in self.lines if line.get("event") == "child_died"]
+        return self.product.deaths()
 
-    def signal(self, child: str, number: signal.Signals) -> None:
-        os.kill(self.starts(child)[-1], number)
+    def signal(self, child: str, number: Signals) -> None:
+        self.product.signal(child, number)
 
     async def ask(self, command: Command | SiteCommand, tracker_id: str = "T1") -> SiteSnapshot:
         """Give an order once."""
@@ -159,6 +133,25 @@ class Service:
         latest = self.link.latest()
         return None if latest is None else latest.trackers[0]
 
+    def boot_id(self) -> str:
+        latest = self.link.latest()
+        return "" if latest is None else latest.boot_id
+
+    def alarms(self) -> set[str]:
+        """Return the codes of what is wrong now."""
+        latest = self.link.latest()
+        return set() if latest is None else {one.code for one in latest.alarms if one.state not in GONE}
+
+    def reader(self) -> "closing[DatabaseReader]":
+        """Return what reads its database."""
+        return closing(open_reader(f"sqlite:///{self.data_dir / 'heliopanel.db'}"))
+
+    def journal(self, *kinds: EventKind) -> list[Event]:
+        """Return what the database tells of such events, newest first."""
+        with self.reader() as reader:
+            found = reader.journal(JournalFilter(limit=1000, kinds=kinds))
+            return [entry.event for entry in found]
+
     async def until(self, reached: Callable[[Snapshot], bool], *, within_s: float = PATIENCE_S) -> None:
         def is_so() -> bool:
             seen = self.tracker()
@@ -166,18 +159,36 @@ class Service:
 
         await eventually(is_so, within_s=within_s)
 
-    async def commission(self, drive: DriveSimulator, *, port: int | None = None) -> None:
-        """Point T1 at a drive, give it a place and a clock, and call where its axes stand zero."""
-        await self.ask(ConfigureTracker(config_for(port or drive.port)))
+    async def until_holding(self) -> None:
+        await self.until(lambda seen: seen.activity is ActivityName.HOLDING)
+
+    async def until_served(self) -> None:
+        """Return once the panel answers."""
+        await asyncio.to_thread(self.product.until_ready)
+
+    async def rest(self) -> None:
+        """Stop whatever it does."""
+        await self.ask_until_taken(Stop())
+        await self.until_holding()
+
+    async def commission(self, drive: DriveSimulator | None = None, *, port: int | None = None) -> None:
+        """Point T1 at a drive, if one is given, give it a place, a clock, and a zero where it stands."""
+        if drive is not None:
+            await self.ask(ConfigureTracker(config_for(port or drive.port)))
         await self.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
         await self.ask(SetClock("system"))
+        await self.home()
+
+    async def home(self) -> None:
+        """Call where the axes stand zero."""
         await self.until(lambda seen: not seen.actions["set_home"])
         await self.ask(SetHome())
         await self.until(lambda seen: seen.homed and seen.activity is ActivityName.HOLDING)
 
+    async def track(self) -> None:
+        await self.ask(SelectMode(Mode.DUAL))
+        await self.ask(Track())
+
     async def stop(self) -> int:
         await self.link.close()
-        code = await end(self.process)
-        if self.reading is not None:
-            await self.reading
-        return code
+        return await asyncio.to_thread(self.product.stop)

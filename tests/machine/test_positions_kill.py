@@ -52,7 +52,23 @@ def _stands(machine: Machine) -> float:
     return azimuth_deg(machine) or 0.0
 
 
-def _forget_memory(place: Path) -> None:
+async def test_after_a_kill_position_and_home_hold_and_after_a_power_cut_what_the_disk_says(
+    machine: Machine, runtime_directory: Path
+) -> None:
+    await moved(machine)
+    before_deg = _stands(machine)
+    machine.kill()
+    await next_life(machine)
+    assert _stands(machine) == pytest.approx(before_deg, abs=RESOLUTION_DEG)
+
+    on_disk_deg = await moved(machine)
+    machine.kill()
+    _lose_memory(runtime_directory)
+    await next_life(machine)
+    assert _stands(machine) == pytest.approx(on_disk_deg, abs=RESOLUTION_DEG)
+
+
+def _lose_memory(place: Path) -> None:
     """Lose what a computer without power loses."""
     for left in place.iterdir():
         shutil.rmtree(left)
@@ -63,21 +79,3 @@ async def next_life(machine: Machine) -> None:
     await machine.start()
     await eventually(lambda: azimuth_deg(machine) is not None)
     assert machine.tracker.homed, machine.log()
-
-
-async def test_killed_between_two_writes_position_and_home_hold(machine: Machine) -> None:
-    await moved(machine)
-    before_deg = _stands(machine)
-    machine.kill()
-    await next_life(machine)
-    assert _stands(machine) == pytest.approx(before_deg, abs=RESOLUTION_DEG)
-
-
-async def test_after_a_power_cut_the_panel_stands_where_the_disk_says(
-    machine: Machine, runtime_directory: Path
-) -> None:
-    on_disk_deg = await moved(machine)
-    machine.kill()
-    _forget_memory(runtime_directory)
-    await next_life(machine)
-    assert _stands(machine) == pytest.approx(on_disk_deg, abs=RESOLUTION_DEG)

@@ -51,9 +51,10 @@ def test_the_controller_is_in_real_time_and_of_the_panel_its_loop_alone(
     assert _seen(ask) == wanted
 
 
-@pytest.mark.parametrize("ask", ["raise_priority", "raise_priority_of_panel"])
-def test_where_it_is_switched_off_all_goes_on_as_it_was(ask: str) -> None:
-    assert set(_seen(ask, real_time=False).values()) == {_as_it_was()}
+def test_where_it_is_switched_off_all_goes_on_as_it_was() -> None:
+    imports = "from app.base.settings import Settings\nfrom app.machine.process import raise_priority\n"
+    first = f"{imports}raise_priority(Settings(real_time=False))\n"
+    assert set(_seen("raise_priority_of_panel", first, real_time=False).values()) == {_as_it_was()}
 
 
 def test_without_permission_it_goes_on() -> None:

@@ -1,9 +1,7 @@
 """That the real processes are wired: a button, a kill, a freeze, a cut cable. How soon: tests/soak."""
 
 import asyncio
-import os
 import signal
-import sys
 from collections.abc import AsyncIterator, Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -14,17 +12,19 @@ import pytest
 import pytest_asyncio
 
 from app.link.messages import ReleaseControl, RenameSite
+from app.machine import main
 from app.machine.marker import MARKER_NAME
-from app.store.engine import open_reader
-from app.store.store import JournalFilter
 from app.tracker.commands.commands import Stop
-from app.tracker.state.snapshot import ActivityName, Event, EventKind, Snapshot
+from app.tracker.state.snapshot import ActivityName, EventKind, Snapshot
+from tests.command_line import Run, run
 from tests.e2e.proxy import Network, network
 from tests.e2e.socket_page import LetGo, Page
 from tests.fault_result import FaultResult
 from tests.machine.service import DriveSimulator, Service
-from tests.machine.stories import until_served
+from tests.machine.stories import check_nothing_lost, kill_panel
 from tests.patience import PATIENCE_S, eventually, pause
+
+__all__ = ["run"]
 
 pytestmark = pytest.mark.asyncio(loop_scope="module")
 
@@ -46,28 +46,29 @@ def cable(drive: DriveSimulator) -> Iterator[Network]:
 async def running(
     tmp_path_factory: pytest.TempPathFactory, drive: DriveSimulator, cable: Network
 ) -> AsyncIterator[Service]:
-    """A service in front of the drive, behind a cable: what it leaves behind is judged when it has ended."""
+    """A service in front of the drive, behind a cable; at last its supervisor is killed: its children end
+    properly, so that the mark that they run is gone and the journal tells the end."""
     started = await Service.start(tmp_path_factory.mktemp("service") / "data")
     try:
         await started.commission(drive, port=cable.port)
         await started.ask(ReleaseControl("T1"))
         assert (started.data_dir / MARKER_NAME).exists()
         yield started
+        started.product.process.kill()
+        processes = [started.starts(child)[-1] for child in ("controller", "web")]
+        await eventually(lambda: not still_there(processes))
+        assert not (started.data_dir / MARKER_NAME).exists()
+        assert started.journal()[0].kind is EventKind.CONTROLLER_STOPPED
     finally:
-        code = await started.stop()
-    assert code == 0
-    assert not (started.data_dir / MARKER_NAME).exists()
-    assert not still_there([*started.starts("controller"), *started.starts("web")])
-    assert journal(started)[0].kind is EventKind.CONTROLLER_STOPPED
+        await started.stop()
 
 
 @pytest_asyncio.fixture(loop_scope="module")
 async def service(running: Service) -> AsyncIterator[Service]:
     """The service, which moves nothing when a story begins, and whose panel answers."""
-    await until_served(running.port)
+    await running.until_served()
     yield running
-    await running.ask_until_taken(Stop())
-    await running.until(lambda seen: seen.activity is ActivityName.HOLDING)
+    await running.rest()
 
 
 class Button:
@@ -140,13 +141,13 @@ async def test_a_killed_controller_stops_by_the_drive_and_nothing_is_lost_or_mov
     name = f"Run {uuid4().hex}"
     await service.ask(RenameSite(name))
     await move_far(service, drive)
-    before = _boot_id(service)
+    before = service.boot_id()
     service.signal("controller", signal.SIGKILL)
     await drive.rests()
-    await service.until(lambda _: _boot_id(service) not in {"", before})
-    await service.until(_is_at_rest)
-    await eventually(lambda: not journal(service, EventKind.CONTROLLER_STARTED)[0].data["clean"])
-    assert "unexpectedly" in journal(service, EventKind.CONTROLLER_STARTED)[0].message
+    await service.until(lambda _: service.boot_id() not in {"", before})
+    await service.until_holding()
+    await eventually(lambda: not service.journal(EventKind.CONTROLLER_STARTED)[0].data["clean"])
+    check_nothing_lost(service, name)
     assert (await service.link.detail()).site.name == name
     await drive.rests()
     assert service.deaths()[-1] == f"controller {-signal.SIGKILL}"
@@ -157,14 +158,12 @@ async def test_a_killed_controller_stops_by_the_drive_and_nothing_is_lost_or_mov
 async def test_a_killed_panel_ends_the_press_and_comes_back_and_the_controller_lives(
     service: Service, drive: DriveSimulator, button: Button, fault: FaultResult
 ) -> None:
-    before, panels = _boot_id(service), len(service.starts("web"))
+    before = service.boot_id()
     await button.turns()
-    service.signal("web", signal.SIGKILL)
+    await kill_panel(service)
     await drive.rests()
-    await service.until(_is_at_rest)
-    await eventually(lambda: len(service.starts("web")) > panels)
-    await until_served(service.port)
-    assert _boot_id(service) == before
+    await service.until_holding()
+    assert service.boot_id() == before
     fault.recovers("automatic: the web process is started again; tracking went on")
 
 
@@ -179,7 +178,7 @@ async def test_a_frozen_controller_catches_up_with_nothing(
     await eventually(lambda: service.link.latest() is None)
     service.signal("controller", signal.SIGCONT)
     await eventually(lambda: service.link.latest() is not None)
-    await service.until(_is_at_rest)
+    await service.until_holding()
     await service.ask_until_taken(Stop())
     assert (await drive.look()).azimuth.position_deg == pytest.approx(stood_deg, abs=0.1)
     fault.recovers("automatic: the motion is over; nothing is caught up")
@@ -193,45 +192,30 @@ async def test_a_cut_cable_leaves_a_drive_that_stops_itself_and_nothing_resumes(
     cable.freeze()
     await drive.rests()
     await service.until(lambda seen: "No communication" in seen.activity_text)
-    fault.shows(tracker(service).activity_text)
-    cable.thaw()
-    await service.until(lambda seen: seen.measured is not None and _is_at_rest(seen))
-    await eventually(lambda: journal(service, EventKind.DRIVE_FOUND))
-    assert tracker(service).homed
-    assert not (await drive.look()).azimuth.moving
-    fault.recovers("automatic: the drive is found again; the operator commands the next motion")
-
-
-def tracker(service: Service) -> Snapshot:
     seen = service.tracker()
     assert seen is not None
-    return seen
+    fault.shows(seen.activity_text)
+    cable.thaw()
+    await service.until(lambda seen: seen.measured is not None and _is_at_rest(seen))
+    await eventually(lambda: service.journal(EventKind.DRIVE_FOUND))
+    await service.until(lambda seen: seen.homed)
+    assert not (await drive.look()).azimuth.moving
+    fault.recovers("automatic: the drive is found again; the operator commands the next motion")
 
 
 def _is_at_rest(seen: Snapshot) -> bool:
     return seen.activity is ActivityName.HOLDING
 
 
-def journal(service: Service, *kinds: EventKind) -> list[Event]:
-    """Return what the database tells of such events, newest first."""
-    reader = open_reader(f"sqlite:///{service.data_dir / 'heliopanel.db'}")
-    found = [entry.event for entry in reader.journal(JournalFilter(limit=100, kinds=kinds))]
-    reader.close()
-    return found
-
-
 @pytest.mark.fault(47)
 async def test_a_second_machine_refuses_to_start_and_says_who_runs(
-    service: Service, fault: FaultResult
+    service: Service, run: Run, monkeypatch: pytest.MonkeyPatch, fault: FaultResult
 ) -> None:
-    environment = os.environ | {"HELIOPANEL_DATA_DIR": str(service.data_dir)}
-    second = await asyncio.create_subprocess_exec(
-        sys.executable, "-m", "app.cli", "controller", env=environment, stderr=asyncio.subprocess.PIPE
-    )
-    _, told = await second.communicate()
+    monkeypatch.setattr(main, "set_up_logs", lambda *_, **__: None)
+    code, _, told = run("controller", "--data-dir", str(service.data_dir))
 
-    assert second.returncode == 2
-    sentence = told.decode().strip()
+    assert code == 2
+    sentence = told.strip()
     assert sentence.startswith(f"The data folder {service.data_dir} is in use by process")
     assert str(service.starts("controller")[-1]) in sentence
     assert "\n" not in sentence
@@ -248,19 +232,3 @@ def still_there(processes: list[int]) -> list[int]:
             if Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z":
                 found.append(process)
     return found
-
-
-async def test_when_the_supervisor_is_killed_its_children_end_properly(tmp_path: Path) -> None:
-    service = await Service.start(tmp_path / "data")
-    service.process.kill()
-    processes = [service.starts(child)[0] for child in ("controller", "web")]
-
-    await eventually(lambda: not still_there(processes))
-
-    await service.stop()
-    assert not (service.data_dir / MARKER_NAME).exists()
-
-
-def _boot_id(service: Service) -> str:
-    latest = service.link.latest()
-    return "" if latest is None else latest.boot_id

@@ -12,11 +12,9 @@ from app.link.messages import RenameSite
 from app.store.backup.backup import backup
 from app.tracker.commands.commands import CommandRejected, Jog, Park, SetHome, Stop, Track
 from app.tracker.settings.axes import Axis
-from app.tracker.state.snapshot import ActivityName
 from tests.fault_result import FaultResult
 from tests.machine.field import noon_place, prepare
 from tests.machine.service import Service
-from tests.machine.stories import until_served
 from tests.patience import eventually
 
 PAGE_BYTES = 4096
@@ -51,8 +49,8 @@ async def test_a_damaged_database_moves_nothing_and_offers_the_backup(
     damage(data_dir, "trackers")
     service = await Service.start(data_dir)
     try:
-        await eventually(lambda: "store_damaged" in alarms(service))
-        await service.until(lambda seen: seen.activity is ActivityName.HOLDING)
+        await eventually(lambda: "store_damaged" in service.alarms())
+        await service.until_holding()
         for command in (Jog("hand", Axis.AZIMUTH, 1), Park(), Track(), SetHome()):
             with pytest.raises(CommandRejected) as refused:
                 await service.ask(command)
@@ -61,7 +59,7 @@ async def test_a_damaged_database_moves_nothing_and_offers_the_backup(
         with pytest.raises(CommandRejected, match=r"in safe mode.*is damaged.*Restore a backup"):
             await service.ask(RenameSite("Lost"))
         await service.ask(Stop())
-        await until_served(service.port)
+        await service.until_served()
         async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{service.port}") as client:
             page = await client.get("/restore")
             assert page.status_code == 200
@@ -75,14 +73,10 @@ async def test_a_damaged_database_moves_nothing_and_offers_the_backup(
         assert len(service.starts("controller")) == 2
         await service.ask(RenameSite("Goes on"))
     finally:
-        await service.stop()
-
-
-def alarms(service: Service) -> set[str]:
-    latest = service.link.latest()
-    return set() if latest is None else {alarm.code for alarm in latest.alarms}
+        code = await service.stop()
+    assert code == 0
 
 
 def restored(service: Service) -> bool:
     latest = service.link.latest()
-    return latest is not None and latest.site_name == "Field" and "store_damaged" not in alarms(service)
+    return latest is not None and latest.site_name == "Field" and "store_damaged" not in service.alarms()

@@ -10,7 +10,9 @@ from app.store import tables
 from app.store.connections import transaction, writing_engine
 from app.tracker.commands.commands import CommandRejected, Park
 from tests.fault_result import FaultResult
+from tests.machine.field import prepare
 from tests.machine.lives import Machine
+from tests.machine.service import SAMSUN
 from tests.patience import eventually
 
 UNFIT = {"no tracker": "[]", "no JSON": "{"}
@@ -30,8 +32,7 @@ async def test_a_tracker_that_nobody_can_read_leads_to_safe_mode(
     document: str, tmp_path: Path, fault: FaultResult
 ) -> None:
     machine = Machine.of(tmp_path / "data")
-    await machine.start()
-    await machine.stop()
+    prepare(machine.settings.data_dir, 1, SAMSUN)
     spoil(machine.settings.url, document)
     await machine.start()
     await eventually(lambda: "store_damaged" in codes(machine))

@@ -10,7 +10,6 @@ from app.store.migrations import upgrade
 from app.tracker.memory.memory import SiteState
 from tests.fault_result import FaultResult
 from tests.machine.service import SAMSUN, Service
-from tests.machine.stories import until_served
 from tests.patience import eventually
 
 WITHOUT_TZDATA = "import sys\nsys.modules['tzdata'] = None\n"
@@ -44,9 +43,8 @@ def data_dir(tmp_path: Path) -> Path:
 async def test_without_time_zones_it_starts_shows_utc_and_says_so(data_dir: Path, fault: FaultResult) -> None:
     service = await Service.start(data_dir)
     try:
-        await eventually(lambda: "zones_missing" in alarms(service))
+        await eventually(lambda: "zones_missing" in service.alarms())
         async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{service.port}") as client:
-            await until_served(service.port)
             page = await client.get("/")
             assert page.status_code == 200
             assert "Time zones are missing" in page.text
@@ -62,8 +60,3 @@ async def test_without_time_zones_it_starts_shows_utc_and_says_so(data_dir: Path
         assert len(service.starts("controller")) == 1
     finally:
         await service.stop()
-
-
-def alarms(service: Service) -> set[str]:
-    latest = service.link.latest()
-    return set() if latest is None else {alarm.code for alarm in latest.alarms}

@@ -4,7 +4,7 @@ import asyncio
 import os
 import random
 import signal
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from datetime import UTC, datetime, timedelta
 from functools import partial
 from pathlib import Path
@@ -14,7 +14,6 @@ import pytest_asyncio
 
 from app.link.messages import SetClock, SetLocation
 from app.site.startup import CUT_OFF
-from app.store.engine import open_reader
 from app.store.migrations import upgrade
 from app.tracker.memory.recording import RecordingInfo, RecordingKind
 from tests.amount import amount
@@ -44,11 +43,9 @@ async def service(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> AsyncItera
     os.umask(before)
 
 
-def days(service: Service) -> list[RecordingInfo]:
-    reader = open_reader(f"sqlite:///{service.data_dir / 'heliopanel.db'}")
-    found = reader.recordings(kind=RecordingKind.DAY)
-    reader.close()
-    return found
+def days(service: Service) -> Sequence[RecordingInfo]:
+    with service.reader() as reader:
+        return reader.recordings(kind=RecordingKind.DAY)
 
 
 def more_days(service: Service, than: int) -> bool:

@@ -9,12 +9,8 @@ import pytest
 from websockets import Origin
 from websockets.asyncio.client import connect
 
-from app.link.messages import SetClock, SetLocation
 from app.link.metrics import LATENESS_BOUNDS_MS
-from app.tracker.commands.commands import SelectMode, SetHome, Track
-from app.tracker.values.mode import Mode
-from tests.machine.service import SAMSUN, Service
-from tests.machine.stories import until_served
+from tests.machine.service import Service
 
 VIEWERS = 100
 WATCHED_S = float(os.environ.get("HELIOPANEL_TEST_WATCHED_S", "3600"))
@@ -47,13 +43,8 @@ def percentile_ms(counts: tuple[int, ...], share: float) -> float:
 async def test_ticks_come_on_time_while_100_pages_are_open(tmp_path: Path) -> None:
     service = await Service.start(tmp_path / "data")
     try:
-        await service.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
-        await service.ask(SetClock("system"))
-        await service.ask(SetHome())
-        await service.until(lambda seen: seen.homed)
-        await service.ask(SelectMode(Mode.DUAL))
-        await service.ask(Track())
-        await until_served(service.port)
+        await service.commission()
+        await service.track()
         before = (await service.link.metrics()).trackers["T1"]
         until = asyncio.get_running_loop().time() + WATCHED_S
         messages = await asyncio.gather(*(watch(service.port, until) for _ in range(VIEWERS)))

@@ -92,6 +92,12 @@ class Eyes:
         seen = self._since(at)
         return any(sight.is_apart(seen[0]) for sight in seen)
 
+    def stays(self, since: float, seconds: float) -> None:
+        """Fail if the panel turns within so many seconds after an instant."""
+        while self.now.at < since + seconds:
+            time.sleep(JUDGE_EVERY_S)
+        assert not self.moved_after(since + JUDGE_EVERY_S)
+
     def until_moving(self, *, within_s: float = 5.0) -> None:
         """Return once the panel turns."""
         begun = self.now

@@ -8,14 +8,10 @@ from pathlib import Path
 import pytest
 
 from app.base.build import BUILT_AT
-from app.link.messages import SetClock, SetLocation
-from app.store.engine import open_reader
-from app.store.store import JournalFilter
-from app.tracker.commands.commands import SelectMode, SetHome, Track
+from app.link.messages import SetClock
 from app.tracker.state.snapshot import ActivityName, EventKind
-from app.tracker.values.mode import Mode
 from tests.fault_result import FaultResult
-from tests.machine.service import SAMSUN, Service
+from tests.machine.service import Service
 from tests.patience import eventually
 
 LIBRARIES = sorted(Path("/usr/lib").glob("*/faketime/libfaketime.so.1"))
@@ -48,12 +44,8 @@ def tell(path: Path, shift: str) -> None:
 async def service(tmp_path: Path, shift: Path) -> AsyncIterator[Service]:
     started = await Service.start(tmp_path / "data")
     try:
-        await started.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
-        await started.ask(SetClock("system"))
-        await started.ask(SetHome())
-        await started.until(lambda seen: seen.homed)
-        await started.ask(SelectMode(Mode.DUAL))
-        await started.ask(Track())
+        await started.commission()
+        await started.track()
         yield started
     finally:
         await started.stop()
@@ -92,10 +84,8 @@ def has_jumped(service: Service, times: int) -> bool:
 
 def jumps(service: Service) -> list[float]:
     """Return the jumps that are journalled, seconds, the oldest first."""
-    reader = open_reader(f"sqlite:///{service.data_dir / 'heliopanel.db'}")
-    found = reader.journal(JournalFilter(kinds=(EventKind.CLOCK_JUMPED,)))
-    reader.close()
-    return [float(str(entry.event.data["seconds"])) for entry in reversed(found)]
+    found = service.journal(EventKind.CLOCK_JUMPED)
+    return [float(str(event.data["seconds"])) for event in reversed(found)]
 
 
 def shown_year(service: Service) -> int:

@@ -11,16 +11,12 @@ from pathlib import Path
 import pytest
 import pytest_asyncio
 
-from app.link.messages import RenameSite, SetClock, SetLocation
-from app.store.engine import open_reader
-from app.store.store import JournalFilter
-from app.tracker.commands.commands import CommandRejected, SelectMode, SetHome, Stop, Track
+from app.link.messages import RenameSite
+from app.tracker.commands.commands import CommandRejected, Stop, Track
 from app.tracker.state.snapshot import ActivityName
-from app.tracker.values.alarm_words import AlarmState
-from app.tracker.values.mode import Mode
 from tests.amount import amount
 from tests.fault_result import REAL, FaultResult
-from tests.machine.service import SAMSUN, Service
+from tests.machine.service import Service
 from tests.patience import eventually
 from tests.soak.rigs.failing_disk import DiskFault, failing, filled, small_disk
 
@@ -28,7 +24,6 @@ LATEST_TICK_S = 1.0
 WATCHED_S = 1.5
 LOCKED_ON_S = amount(0.0, 7.0)
 """How much longer than 3 s, for which a write waits, the database stays locked."""
-GONE = (AlarmState.RETURNED, AlarmState.NORMAL)
 
 pytestmark = pytest.mark.asyncio(loop_scope="module")
 
@@ -45,9 +40,8 @@ async def service(disk: Path) -> AsyncIterator[Service]:
     """A service whose simulated tracker tracks, for all stories of this module, one after the other."""
     started = await Service.start(disk / "data")
     try:
-        await started.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
-        await started.ask(SetClock("system"))
-        await begin_to_track(started)
+        await started.commission()
+        await started.track()
         yield started
     finally:
         await started.stop()
@@ -55,12 +49,9 @@ async def service(disk: Path) -> AsyncIterator[Service]:
 
 async def begin_to_track(service: Service) -> None:
     """Call the place where the axes stand zero, as often as the drive has lost it, and track."""
-    await service.ask_until_taken(Stop())
-    await service.until(lambda seen: not seen.actions["set_home"])
-    await service.ask(SetHome())
-    await service.until(lambda seen: seen.homed and seen.activity is ActivityName.HOLDING)
-    await service.ask(SelectMode(Mode.DUAL))
-    await service.ask(Track())
+    await service.rest()
+    await service.home()
+    await service.track()
 
 
 async def watch_ticks(service: Service) -> None:
@@ -80,22 +71,16 @@ async def eventually_after(service: Service, uptime_s: float) -> None:
     await asyncio.sleep(max(0.0, uptime_s - (await service.link.metrics()).uptime_s))
 
 
-def alarms(service: Service) -> set[str]:
-    latest = service.link.latest()
-    return set() if latest is None else {alarm.code for alarm in latest.alarms if alarm.state not in GONE}
-
-
 def check_database(service: Service, name: str) -> None:
     """Fail if the database is damaged, or holds half of a change."""
     path = service.data_dir / "heliopanel.db"
     with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as connection:
         assert connection.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
-    reader = open_reader(f"sqlite:///{path}")
-    site, journal = reader.site(), reader.journal(JournalFilter(limit=1000))
-    reader.close()
+    with service.reader() as reader:
+        site = reader.site()
     assert site is not None
     assert site.name == name
-    told = [entry.event.message for entry in journal if "The site is now called" in entry.event.message]
+    told = [event.message for event in service.journal() if "The site is now called" in event.message]
     assert told[0] == f"The site is now called {name}."
 
 
@@ -127,10 +112,10 @@ async def test_a_full_disk_stops_no_tracking_and_what_waited_is_stored_once_ther
         assert "The disk is full" in await refused(service, "Not stored")
         fault.noticed(time.monotonic() - began, REAL)
         await watch_ticks(service)
-        await eventually(lambda: "store_behind" in alarms(service))
+        await eventually(lambda: "store_behind" in service.alarms())
         await service.ask(Stop())
         check_database(service, "Before")
-    await eventually(lambda: "store_behind" not in alarms(service))
+    await eventually(lambda: "store_behind" not in service.alarms())
     await service.ask(RenameSite("After"))
     check_database(service, "After")
     await service.until(lambda seen: not seen.actions["track"])
@@ -171,7 +156,7 @@ async def test_a_database_that_is_locked_holds_up_no_tick_and_what_waited_is_sto
         await asyncio.sleep(LOCKED_ON_S)
         other.execute("ROLLBACK")
     check_database(service, "Free")
-    await eventually(lambda: "store_behind" not in alarms(service))
+    await eventually(lambda: "store_behind" not in service.alarms())
     await service.ask(RenameSite("Free again"))
     check_database(service, "Free again")
 
@@ -189,7 +174,7 @@ async def test_a_disk_that_fails_is_not_trusted_until_it_was_opened_and_checked_
         assert "Check the disk or card, then restart Heliopanel" in told
         fault.shows(told)
         await watch_ticks(service)
-        await eventually(lambda: "store_behind" in alarms(service))
+        await eventually(lambda: "store_behind" in service.alarms())
     await refused(service, "Still not stored")
     service.signal("controller", signal.SIGKILL)
     await begin_to_track(service)

@@ -3,7 +3,6 @@
 import asyncio
 import os
 import signal
-import sys
 from collections.abc import AsyncIterator
 from contextlib import suppress
 from pathlib import Path
@@ -15,14 +14,15 @@ import pytest_asyncio
 
 from app.drives.profile import load_profile
 from app.link.messages import MachineUnreachable, RenameSite
-from app.tracker.commands.commands import Jog, Move, SelectMode, Stop, Track
+from app.link.metrics import MachineMetrics
+from app.tracker.commands.commands import Jog, Move
 from app.tracker.settings.axes import Axis, JogSpeed
 from app.tracker.settings.config import Orientation
 from app.tracker.state.snapshot import ActivityName
-from app.tracker.values.mode import Mode
+from tests.e2e.product import COMMAND
 from tests.fault_result import REAL, FaultResult
 from tests.machine.service import DriveSimulator, Service
-from tests.machine.stories import WATCHDOG_AND_RAMP_S, kill_mid_show, kill_panel, until_served
+from tests.machine.stories import WATCHDOG_AND_RAMP_S, kill_mid_show, kill_panel
 
 KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "2"))
 PANEL_KILLS = 2
@@ -52,25 +52,27 @@ async def running(tmp_path_factory: pytest.TempPathFactory, drive: DriveSimulato
 @pytest_asyncio.fixture(loop_scope="module")
 async def service(running: Service) -> AsyncIterator[Service]:
     """The service, which moves nothing when a story begins, and whose panel answers."""
-    await until_served(running.port)
+    await running.until_served()
     yield running
-    await running.ask_until_taken(Stop())
-    await running.until(lambda seen: seen.activity is ActivityName.HOLDING)
+    await running.rest()
+
+
+async def misses_no_tick(service: Service, before: MachineMetrics) -> None:
+    """Fail unless the controller has ticked on since."""
+    after = await service.link.metrics()
+    assert after.boot_id == before.boot_id
+    ticks = after.trackers["T1"].ticks - before.trackers["T1"].ticks
+    assert ticks >= int((after.uptime_s - before.uptime_s) * 10) - 1
 
 
 @pytest.mark.fault(44)
 async def test_the_panel_may_die_and_the_tracker_tracks_on(service: Service, fault: FaultResult) -> None:
     await service.until(lambda seen: not seen.actions["set_home"])
-    await service.ask(SelectMode(Mode.DUAL))
-    await service.ask(Track())
+    await service.track()
     before = await service.link.metrics()
     for _ in range(PANEL_KILLS):
         await kill_panel(service)
-    after = await service.link.metrics()
-
-    ticks = after.trackers["T1"].ticks - before.trackers["T1"].ticks
-    assert after.boot_id == before.boot_id
-    assert ticks >= int((after.uptime_s - before.uptime_s) * 10) - 1
+    await misses_no_tick(service, before)
     seen = service.tracker()
     assert seen is not None
     assert seen.tracking_on
@@ -96,10 +98,7 @@ async def test_the_panel_moves_and_the_machine_misses_no_tick(service: Service) 
                 kept = (await browser.post("/api/v1/network/confirmation", json=ticket)).status_code
         foreign = {"host": "tracker.example"}
         assert (await browser.get("/health", headers=foreign)).status_code == 200
-    after = await service.link.metrics()
-    assert after.boot_id == before.boot_id
-    ticks = after.trackers["T1"].ticks - before.trackers["T1"].ticks
-    assert ticks >= int((after.uptime_s - before.uptime_s) * 10) - 1
+    await misses_no_tick(service, before)
     assert started(service) == processes
 
 
@@ -155,7 +154,8 @@ async def test_another_master_stops_the_move_and_is_named(
     service: Service, drive: DriveSimulator, fault: FaultResult
 ) -> None:
     await service.until(lambda seen: not seen.actions["move"])
-    await service.ask(Move(Orientation(300.0 if (await azimuth_deg(drive)) < 150.0 else 20.0, 20.0)))
+    there_deg = 300.0 if (await drive.look()).azimuth.position_deg < 150.0 else 20.0
+    await service.ask(Move(Orientation(there_deg, 20.0)))
     await service.until(lambda seen: seen.azimuth is not None and seen.azimuth.moving)
     loop = asyncio.get_running_loop()
     reader, writer = await asyncio.open_connection("127.0.0.1", drive.port)
@@ -172,10 +172,6 @@ async def test_another_master_stops_the_move_and_is_named(
     await service.until(lambda seen: not seen.tracking_on and seen.activity is ActivityName.HOLDING)
     await service.until(lambda seen: not seen.actions["move"])
     fault.recovers("automatic: once the other master is silent; the operator commands the next motion")
-
-
-async def azimuth_deg(drive: DriveSimulator) -> float:
-    return (await drive.look()).azimuth.position_deg
 
 
 def is_moving(service: Service) -> bool:
@@ -198,23 +194,14 @@ async def test_a_backup_is_restored_while_the_service_runs(service: Service, tmp
     await service.ask(RenameSite("Bafra"))
 
     assert await _command(service, "restore", str(kept)) == 0
-    await service.until(lambda _: _boot_id(service) not in {"", first.boot_id})
+    await service.until(lambda _: service.boot_id() not in {"", first.boot_id})
 
     assert (await service.link.detail()).site.name == "Samsun"
 
 
-def _boot_id(service: Service) -> str:
-    latest = service.link.latest()
-    return "" if latest is None else latest.boot_id
-
-
 async def _command(service: Service, *words: str) -> int:
+    environment = os.environ | {"HELIOPANEL_DATA_DIR": str(service.data_dir)}
     process = await asyncio.create_subprocess_exec(
-        sys.executable,
-        "-m",
-        "app.cli",
-        *words,
-        env=os.environ | {"HELIOPANEL_DATA_DIR": str(service.data_dir)},
-        stdout=asyncio.subprocess.DEVNULL,
+        COMMAND, *words, env=environment, stdout=asyncio.subprocess.DEVNULL
     )
     return await process.wait()

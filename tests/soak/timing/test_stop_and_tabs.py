@@ -2,15 +2,15 @@
 
 import signal
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import pytest
 
 from app.tracker.settings.axes import AZIMUTH_DEFAULT
-from tests.e2e.chromium import Chromium, Tab, chromium
+from tests.e2e.chromium import Chromium, Tab
 from tests.e2e.integrator import Integrator
 from tests.e2e.product import DriveSim, Product
-from tests.e2e.proxy import Network, network
+from tests.e2e.proxy import Network
 from tests.fault_result import REAL, FaultResult
 from tests.soak.rigs.eyes import Eyes
 
@@ -34,37 +34,11 @@ new MutationObserver(() => links.push([
 """
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Chromium]:
-    with chromium() as started:
-        yield started
-
-
-@pytest.fixture(scope="module")
-def ready(product: Product, drive: DriveSim) -> Product:
+@pytest.fixture(scope="module", autouse=True)
+def commissioned(product: Product, drive: DriveSim) -> None:
     calling = Integrator(product.url)
     calling.commission(drive.port)
     calling.close()
-    return product
-
-
-@pytest.fixture
-def opened(ready: Product, browser: Chromium) -> Iterator[Callable[..., Tab]]:
-    tabs: list[Tab] = []
-
-    def open_page(path: str, url: str = ready.url) -> Tab:
-        tabs.append(browser.tab(url + path))
-        return tabs[-1]
-
-    yield open_page
-    for tab in tabs:
-        tab.close()
-
-
-@pytest.fixture
-def cable(ready: Product) -> Iterator[Network]:
-    with network(ready.port) as laid:
-        yield laid
 
 
 def turn(integrator: Integrator, eyes: Eyes, *, by_deg: float) -> None:
@@ -120,21 +94,21 @@ def test_lost_process_is_shown_within_two_seconds(
     path: str,
     number: signal.Signals,
     opened: Callable[..., Tab],
-    ready: Product,
+    product: Product,
     fault: FaultResult,
 ) -> None:
     tab = opened(path)
     watch_link(tab)
     at_ms = time.time() * 1000
-    ready.signal(child, number)
+    product.signal(child, number)
     took_s = lost_after_s(tab, at_ms)
     if number is signal.SIGSTOP:
-        ready.signal(child, signal.SIGCONT)
+        product.signal(child, signal.SIGCONT)
     print(f"{child} {number.name}: shown after {took_s:.2f} s")
     assert took_s <= STALE_WITHIN_S
     fault.noticed(took_s, REAL)
     fault.shows(tab.evaluate("document.getElementById('link-banner').innerText"))
-    ready.until_ready()
+    product.until_ready()
     tab.until("document.documentElement.dataset.link === 'live'", "the page is live again")
     tab.until("document.getElementById('link-banner').hidden", "the banner is gone")
 
@@ -154,12 +128,6 @@ def press_key_shortly(tab: Tab) -> None:
     tab.mouse("mousePressed", at)
     time.sleep(0.3)
     tab.mouse("mouseReleased", at)
-
-
-def stays(eyes: Eyes, since: float, seconds: float) -> None:
-    while eyes.now.at < since + seconds:
-        time.sleep(0.02)
-    assert not eyes.moved_after(since)
 
 
 @pytest.mark.parametrize(
@@ -183,26 +151,26 @@ def test_frozen_link_is_shown_and_nothing_moves_late(
     print(f"frozen link: shown after {took_s:.2f} s")
     assert took_s <= STALE_WITHIN_S
     press(tab)
-    stays(eyes, at, TOO_OLD_S)
-    stays(eyes, cable.thaw(), 1.0)
+    eyes.stays(at, TOO_OLD_S)
+    eyes.stays(cable.thaw(), 1.0)
     tab.until("document.documentElement.dataset.link === 'live'", "the page is live again")
-    stays(eyes, at, eyes.now.at - at)
+    eyes.stays(at, eyes.now.at - at)
 
 
 def test_what_was_pressed_while_the_panel_was_dead_is_not_done_later(
-    opened: Callable[..., Tab], ready: Product, integrator: Integrator, eyes: Eyes
+    opened: Callable[..., Tab], product: Product, integrator: Integrator, eyes: Eyes
 ) -> None:
     integrator.until_allowed("move")
     tab = opened(LIVE)
     watch_link(tab)
     at_ms = time.time() * 1000
-    at = ready.signal("web", signal.SIGKILL)
+    at = product.signal("web", signal.SIGKILL)
     ask_for_motion(tab)
     lost_after_s(tab, at_ms)
     ask_for_motion(tab)
-    ready.until_ready()
+    product.until_ready()
     tab.until("document.documentElement.dataset.link === 'live'", "the page is live again")
-    stays(eyes, at, eyes.now.at - at + 1.0)
+    eyes.stays(at, eyes.now.at - at + 1.0)
     tab.until("!document.querySelector('#go-form button').disabled", "a motion may be asked for")
     ask_for_motion(tab)
     eyes.until_moving(within_s=15.0)
