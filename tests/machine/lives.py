@@ -3,18 +3,20 @@
 import multiprocessing
 import os
 import time
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from multiprocessing.context import ForkServerProcess
 from pathlib import Path
+from uuid import uuid4
 
 from app.base.settings import Settings
 from app.link.client import LinkClient
-from app.link.messages import Order, SiteCommand
+from app.link.messages import MachineUnreachable, Order, SiteCommand
 from app.machine.main import run
 from app.machine.supervised import end_with_parent
-from app.tracker.commands.commands import Command
+from app.tracker.commands.commands import Command, CommandRejected, Jog
 from app.tracker.state.snapshot import SiteSnapshot, Snapshot
-from tests.patience import PATIENCE_S, eventually
+from tests.patience import PATIENCE_S, eventually, pause
 
 FORKING = multiprocessing.get_context("forkserver")
 FORKING.set_forkserver_preload([__name__])
@@ -64,17 +66,49 @@ class Machine:
         """Wait until it is known that the machine has gone."""
         await eventually(lambda: self.link.latest() is None)
 
-    async def ask(self, command: Command | SiteCommand) -> SiteSnapshot:
+    async def ask(self, command: Command | SiteCommand, tracker_id: str = "T1") -> SiteSnapshot:
         """Give an order once."""
-        addressed = None if isinstance(command, SiteCommand) else "T1"
+        addressed = None if isinstance(command, SiteCommand) else tracker_id
         return await self.link.execute(Order(command, "technician", addressed))
+
+    async def until(
+        self, reached: Callable[[SiteSnapshot], object], what: str, *, within_s: float = PATIENCE_S
+    ) -> SiteSnapshot:
+        """Return what is known of the site once it is so, or fail."""
+
+        def is_so() -> bool:
+            latest = self.link.latest()
+            return latest is not None and bool(reached(latest))
+
+        try:
+            await eventually(is_so, within_s=within_s)
+        except TimeoutError as error:
+            raise AssertionError(f"{error} Waited for: {what}. {self.link.latest()}") from error
+        return self.site
+
+    async def hold(self, tracker_id: str, press: Jog) -> None:
+        """Hold a button until it is dead; where a busy computer renewed it too late, press it again."""
+        while self.lives[-1].is_alive():
+            try:
+                await self.ask(press, tracker_id)
+                press = replace(press, sequence=press.sequence + 1)
+            except CommandRejected:
+                press = replace(press, press_id=uuid4().hex, sequence=0)
+            except MachineUnreachable:
+                pass
+            await pause()
+
+    @property
+    def site(self) -> SiteSnapshot:
+        """Return what is known of the site now."""
+        latest = self.link.latest()
+        assert latest is not None, self.log()
+        return latest
 
     @property
     def tracker(self) -> Snapshot:
         """Return what is known of the tracker now."""
-        latest = self.link.latest()
-        assert latest is not None, self.log()
-        return latest.trackers[0]
+        return self.site.trackers[0]
 
     def log(self) -> str:
         """Return the end of what it wrote."""

@@ -9,7 +9,7 @@ import signal
 import socket
 import stat
 import threading
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
@@ -60,38 +60,21 @@ def test_a_life_that_did_not_end_properly_leaves_its_mark(tmp_path: Path) -> Non
     assert mark_running(tmp_path, NOW) is None
 
 
-def test_systemd_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_systemd_is_told_where_it_listens(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    notify("READY=1")
     path = tmp_path / "notify"
+    monkeypatch.setenv("NOTIFY_SOCKET", str(path))
+    notify("READY=1")
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as listener:
         listener.bind(str(path))
-        monkeypatch.setenv("NOTIFY_SOCKET", str(path))
         notify("READY=1")
 
         assert listener.recv(100) == b"READY=1"
 
 
-def test_without_systemd_nobody_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("NOTIFY_SOCKET", "/nowhere/notify")
-    notify("READY=1")
-    monkeypatch.delenv("NOTIFY_SOCKET")
-    notify("READY=1")
-
-
 async def test_the_kernel_is_asked_about_ntp() -> None:
     found = kernel_clock()
     assert found is None or abs(found.offset_s) <= 0.5
-
-
-class Ending:
-    """Takes the place of the process's end and remembers the exit code."""
-
-    def __init__(self) -> None:
-        self.code: int | None = None
-        self.ended = threading.Event()
-
-    def __call__(self, code: int) -> None:
-        self.code = code
-        self.ended.set()
 
 
 class Looks:
@@ -130,8 +113,14 @@ class Watched:
     broken: bool = False
     clock: VirtualClock = field(default_factory=lambda: VirtualClock(NOW))
     looks: Looks = field(default_factory=Looks)
-    ending: Ending = field(default_factory=Ending)
+    code: int | None = None
+    over: threading.Event = field(default_factory=threading.Event)
     stopped: int = 0
+
+    def end(self, code: int) -> None:
+        """Take the place of the process's end."""
+        self.code = code
+        self.over.set()
 
     async def stop_drives(self) -> None:
         self.stopped += 1
@@ -146,15 +135,15 @@ class Watched:
             await eventually(lambda: self.clock._sleepers)
 
     async def ended(self) -> int | None:
-        await asyncio.to_thread(self.ending.ended.wait, PATIENCE_S)
-        return self.ending.code
+        await asyncio.to_thread(self.over.wait, PATIENCE_S)
+        return self.code
 
 
 @asynccontextmanager
 async def watched(**how: bool) -> AsyncIterator[Watched]:
     found = Watched(**how)
     watchdog = LoopWatchdog(
-        found.clock, alive=lambda: found.alive, stop_drives=found.stop_drives, end=found.ending
+        found.clock, alive=lambda: found.alive, stop_drives=found.stop_drives, end=found.end
     )
     watchdog._over = found.looks  # type: ignore[assignment]
     watching = asyncio.create_task(watchdog.run())
@@ -163,14 +152,9 @@ async def watched(**how: bool) -> AsyncIterator[Watched]:
     await asyncio.gather(watching, return_exceptions=True)
 
 
-async def test_a_ticker_that_died_ends_the_machine_with_its_drives_stopped() -> None:
-    async with watched(alive=False) as found:
-        await asyncio.to_thread(found.looks.pass_by, DEAD_AFTER_LOOKS + 1)
-        assert (await found.ended(), found.stopped) == (EXIT_CODE, 1)
-
-
-async def test_drives_that_cannot_be_stopped_do_not_keep_a_dead_machine_alive() -> None:
-    async with watched(alive=False, broken=True) as found:
+@pytest.mark.parametrize("broken", [False, True], ids=["stopped", "cannot be stopped"])
+async def test_a_ticker_that_died_ends_the_machine_after_a_stop_of_its_drives(broken: bool) -> None:
+    async with watched(alive=False, broken=broken) as found:
         await asyncio.to_thread(found.looks.pass_by, DEAD_AFTER_LOOKS + 1)
         assert (await found.ended(), found.stopped) == (EXIT_CODE, 1)
 
@@ -181,10 +165,10 @@ async def test_a_loop_that_hangs_ends_the_machine() -> None:
         await found.beats(3)
         found.looks.pass_by(DEAD_AFTER_LOOKS)
         found.looks.seen()
-        assert found.ending.code is None
+        assert found.code is None
         found.looks.pass_by(1)
-        found.ending.ended.wait(PATIENCE_S)
-        assert (found.ending.code, found.stopped) == (EXIT_CODE, 0)
+        found.over.wait(PATIENCE_S)
+        assert (found.code, found.stopped) == (EXIT_CODE, 0)
 
 
 async def test_a_loop_that_lives_is_left_alone() -> None:
@@ -193,22 +177,17 @@ async def test_a_loop_that_lives_is_left_alone() -> None:
             await asyncio.to_thread(found.looks.pass_by, DEAD_AFTER_LOOKS - 1)
             await found.beats(1)
         await asyncio.to_thread(found.looks.seen)
-        assert found.ending.code is None
+        assert found.code is None
 
 
 @pytest.fixture
-def written(tmp_path: Path) -> Iterator[Path]:
+def written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with the modules that the supervisor's children run."""
     (tmp_path / "dies.py").write_text("import sys; sys.exit(3)")
     (tmp_path / "wrong.py").write_text(f"import sys; sys.exit({WRONG})")
     (tmp_path / "stays.py").write_text("import time; time.sleep(60)")
-    before = os.environ.get("PYTHONPATH")
-    os.environ["PYTHONPATH"] = str(tmp_path)
-    yield tmp_path
-    if before is None:
-        del os.environ["PYTHONPATH"]
-    else:
-        os.environ["PYTHONPATH"] = before
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    return tmp_path
 
 
 def waits(clock: VirtualClock, child: Child, pause: timedelta) -> bool:
@@ -243,71 +222,58 @@ async def test_wrong_settings_of_one_child_end_both() -> None:
     assert other.process.returncode == -signal.SIGTERM
 
 
+Logged = Callable[..., io.StringIO]
+
+
 @pytest.fixture
-def _logs_as_before() -> Iterator[None]:
-    """Begin with uvicorn's loggers as a new process has them: panels of other tests have set theirs."""
+def logged() -> Iterator[Logged]:
+    """What sets up the logs of a process; uvicorn's loggers are as a new process has them, and are again."""
     loggers = [logging.getLogger(name) for name in (None, "uvicorn", "uvicorn.error")]
     before = [(one, list(one.handlers), one.level, one.propagate) for one in loggers]
     for one in loggers[1:]:
         one.handlers[:], one.level, one.propagate = [], logging.NOTSET, True
-    yield
+
+    def set_up(log_format: Literal["json", "text"] = "json") -> io.StringIO:
+        stream = io.StringIO()
+        set_up_logs("web", log_format=log_format, log_level="info", stream=stream)
+        return stream
+
+    yield set_up
     for one, handlers, level, propagate in before:
         one.handlers[:], one.propagate = handlers, propagate
         one.setLevel(level)
     logging.getLogger("uvicorn.error").filters.clear()
 
 
-@pytest.mark.usefixtures("_logs_as_before")
-def test_logs_are_json_lines_with_the_process_in_them() -> None:
-    stream = io.StringIO()
-    set_up_logs("controller", log_format="json", log_level="info", stream=stream)
+def test_logs_are_json_lines_with_the_process_in_them_and_no_ticket_or_live_page(logged: Logged) -> None:
+    stream = logged()
     get_logger().info("tick_failed", tracker="T1")
-    logging.getLogger("y").warning("from a library")
     get_logger().debug("not shown")
+    servers = logging.getLogger("uvicorn.error")
+    servers.info('%s - "WebSocket %s" [accepted]', "192.0.2.7:51000", "/live")
+    servers.info("connection open")
+    servers.info('%s - "WebSocket %s" 403', "192.0.2.7:51000", "/live?tracker=T1&stop_ticket=MTc5.aW&x=1")
 
     lines = [json.loads(line) for line in stream.getvalue().splitlines()]
 
-    assert [line["event"] for line in lines] == ["tick_failed", "from a library"]
-    assert all(line["process"] == "controller" for line in lines)
+    masked = '192.0.2.7:51000 - "WebSocket /live?tracker=T1&stop_ticket=...&x=1" 403'
+    assert [line["event"] for line in lines] == ["tick_failed", masked]
+    assert all(line["process"] == "web" for line in lines)
     assert lines[0]["tracker"] == "T1"
 
 
-@pytest.mark.usefixtures("_logs_as_before")
-def test_tickets_in_logged_addresses_are_masked() -> None:
-    stream = io.StringIO()
-    set_up_logs("web", log_format="json", log_level="info", stream=stream)
-    logging.getLogger("uvicorn.error").info(
-        '%s - "WebSocket %s" 403', "192.0.2.7:51000", "/live?tracker=T1&stop_ticket=MTc5.aW&x=1"
-    )
-    told = json.loads(stream.getvalue())["event"]
-    assert told == '192.0.2.7:51000 - "WebSocket /live?tracker=T1&stop_ticket=...&x=1" 403'
-
-
-@pytest.mark.usefixtures("_logs_as_before")
 @pytest.mark.parametrize("log_format", ["json", "text"])
-def test_a_traceback_tells_no_values(log_format: Literal["json", "text"]) -> None:
+def test_a_traceback_tells_no_values(logged: Logged, log_format: Literal["json", "text"]) -> None:
     def fail(password: str) -> None:
         raise RuntimeError(f"a password of {len(password)} characters")
 
-    stream = io.StringIO()
-    set_up_logs("web", log_format=log_format, log_level="info", stream=stream)
+    stream = logged(log_format)
     try:
         fail("violet-" + "anvil")
     except RuntimeError:
         logging.getLogger("uvicorn.error").exception("Exception in ASGI application")
     assert "a password of 12 characters" in stream.getvalue()
     assert "violet-anvil" not in stream.getvalue()
-
-
-@pytest.mark.usefixtures("_logs_as_before")
-def test_live_pages_that_open_are_not_told_of() -> None:
-    stream = io.StringIO()
-    set_up_logs("web", log_format="json", log_level="info", stream=stream)
-    servers = logging.getLogger("uvicorn.error")
-    servers.info('%s - "WebSocket %s" [accepted]', "192.0.2.7:51000", "/live")
-    servers.info("connection open")
-    servers.info("Uvicorn running")
-    assert [json.loads(line)["event"] for line in stream.getvalue().splitlines()] == ["Uvicorn running"]
 
 
 def test_settings_come_from_the_environment_before_the_file(

@@ -1,16 +1,13 @@
 """A release, made in copies of these sources: one version everywhere, the same bytes twice, or nothing."""
 
 import json
-import os
 import re
-import shutil
 import subprocess
 import sys
 import tarfile
 import zipfile
-from collections.abc import Iterator
 from contextlib import closing
-from datetime import UTC, date, datetime, time
+from datetime import UTC, datetime, time
 from email.parser import HeaderParser
 from pathlib import Path
 
@@ -21,60 +18,13 @@ from pymodbus.client import ModbusTcpClient
 from app.store.connections import reading_engine, transaction
 from app.store.software import version_of
 from release import artifacts
-from release.__main__ import git, make, present_version
+from release.__main__ import git, present_version
 from tests.e2e.product import Product
-from tests.ports import free_port
+from tests.soak.built.conftest import DAY, NEWS, ROOT, VERSION
 
-ROOT = Path(__file__).resolve().parents[3]
-VERSION, DAY = "9.9.0", date(2030, 5, 17)
 pytestmark = pytest.mark.timeout(400)
 MADE_AT = datetime.combine(DAY, time(), UTC)
-NEWS = "- The panel whistles."
 HOSTS = re.compile(r"\b(?:https?|ftp)://(?!cyclonedx\.org/schema/)")
-
-
-def copied(to: Path) -> Path:
-    """Return a repository of its own with these sources, changed or not; it has news for a release."""
-    listed = subprocess.run(
-        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
-        cwd=ROOT, capture_output=True, text=True, check=True,
-    )  # fmt: skip
-    for name in {name for name in listed.stdout.split("\0") if name and (ROOT / name).is_file()}:
-        (to / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(ROOT / name, to / name)
-    changelog = to / "CHANGELOG.md"
-    changelog.write_text(
-        changelog.read_text().replace("## [Unreleased]", f"## [Unreleased]\n\n### Added\n\n{NEWS}")
-    )
-    # Its data folder takes a minute to write; tests/golden/databases/__main__.py is run for each release.
-    shutil.copytree(to / "tests/golden/databases/0.1.0", to / "tests/golden/databases" / VERSION)
-    git(to, "init", "--quiet", "--initial-branch=main")
-    for setting, value in (
-        ("user.name", "Ada"),
-        ("user.email", "ada@localhost"),
-        ("commit.gpgsign", "false"),
-    ):
-        git(to, "config", setting, value)
-    git(to, "add", "--all")
-    git(to, "commit", "--quiet", "-m", "before")
-    return to
-
-
-@pytest.fixture(scope="module")
-def sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a copy in which the release was made."""
-    copy = copied(tmp_path_factory.mktemp("sources"))
-    with pytest.MonkeyPatch.context() as patch:
-        # Whatever builds images fetches their base from elsewhere.
-        patch.setattr(artifacts, "ENGINES", ())
-        make(copy, VERSION, DAY, dry_run=False)
-    return copy
-
-
-@pytest.fixture(scope="module")
-def made(sources: Path) -> Path:
-    """Return the folder of what the release consists of."""
-    return sources / "dist" / VERSION
 
 
 def test_it_is_committed_and_tagged_and_nothing_else_changed(sources: Path) -> None:
@@ -118,31 +68,6 @@ def test_the_same_sources_make_the_same_bytes(
             assert one.read_bytes() == (made / one.name).read_bytes(), one.name
     assert len(left_out) == 1
     assert left_out[0].startswith("The image is left out: ")
-
-
-@pytest.fixture(scope="module")
-def installed(made: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return where the wheel of the release is installed."""
-    target = tmp_path_factory.mktemp("installed")
-    command = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-index"]
-    wheel = made / f"heliopanel-{VERSION}-py3-none-any.whl"
-    subprocess.run(
-        [*command, "--no-deps", "--target", str(target), str(wheel)], check=True, capture_output=True
-    )
-    return target
-
-
-@pytest.fixture(scope="module")
-def served(installed: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Product, int]]:
-    """Serve what is installed; return it with the port of its SunSpec server."""
-    port = free_port()
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PYTHONPATH", os.pathsep.join([str(installed), os.environ.get("PYTHONPATH", "")]))
-        patch.chdir(tmp_path_factory.mktemp("elsewhere"))
-        command = (sys.executable, "-P", "-m", "app.cli")
-        running = Product.start(Path("data").resolve(), command=command, sunspec_port=str(port))
-        yield running, port
-        assert running.stop() == 0
 
 
 def test_the_one_version_is_told_everywhere(served: tuple[Product, int], tmp_path: Path) -> None:
@@ -191,7 +116,7 @@ def test_no_other_place_of_the_program_says_a_version(sources: Path) -> None:
         "app/base/build.py",
         "CHANGELOG.md",
         "docs/openapi.json",
-        "tests/soak/built/test_release.py",
+        "tests/soak/built/conftest.py",
     }
     before = present_version(ROOT)
     found = git(

@@ -3,7 +3,7 @@
 import asyncio
 import signal
 import tempfile
-from collections.abc import AsyncIterator, Awaitable, Callable, Collection
+from collections.abc import AsyncIterator, Collection
 from contextlib import AsyncExitStack, asynccontextmanager, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
@@ -87,9 +87,6 @@ class Trial:
         assert not SOAK or self.found.ticks >= 10_000
 
 
-Done = tuple[str, float, str, float]
-
-
 class Fieldwork:
     """One running field: what is done to it, and what comes of it."""
 
@@ -143,18 +140,20 @@ class Fieldwork:
         await eventually(lambda: len(first()) == len(names), within_s=LIMIT_S)
         return sorted(first().values(), key=lambda event: event.at)
 
-    async def through(self, act: Callable[[], Awaitable[Done]]) -> Trial:
-        """Do something; return what came of it and how punctual ticks were, of enough of them."""
-        before = await self.metrics()
-        what, took_s, shown, back_s = await act()
+    async def trial(self, what: str, took_s: float, shown: str = "", back_s: float = 0.0) -> Trial:
+        """Return what came of it and how punctual ticks were since it began, of enough of them."""
         ticks = 0
         async with asyncio.timeout(LIMIT_S):
             while ticks < self.size.ticks:
                 await asyncio.sleep(self.size.lasts_s / 10.0)
-                found = Punctuality.between(before, await self.metrics())
+                found = Punctuality.between(self.before, await self.metrics())
                 ticks = found.ticks
         assert not [death for death in self.service.deaths() if not death.startswith("web")]
         return Trial(what, took_s, shown, found, back_s)
+
+    async def begin(self) -> None:
+        """Count ticks from now on."""
+        self.before = await self.metrics()
 
     async def metrics(self) -> MachineMetrics:
         """Return the controller's counters."""
@@ -206,14 +205,11 @@ async def stop_all(size: Size) -> Trial:
 async def _by_all(size: Size, kind: EventKind, order: SiteCommand, done: str) -> Trial:
     """Give an order; what it took is until the last tracker says that it does it."""
     async with field(size, noon_place(datetime.now(UTC))) as (work, _):
-
-        async def act() -> Done:
-            took_s = await last_of(work.service, kind, order, size.trackers, within_s=LIMIT_S)
-            await eventually(lambda: not doing(work.latest, ActivityName.TRACKING))
-            assert order is not STORM or sheltered(work.latest) == size.trackers
-            return f"all {done} after {took_s:.2f} s", took_s, "", 0.0
-
-        return await work.through(act)
+        await work.begin()
+        took_s = await last_of(work.service, kind, order, size.trackers, within_s=LIMIT_S)
+        await eventually(lambda: not doing(work.latest, ActivityName.TRACKING))
+        assert order is not STORM or sheltered(work.latest) == size.trackers
+        return await work.trial(f"all {done} after {took_s:.2f} s", took_s)
 
 
 async def open_pages(size: Size) -> Trial:
@@ -224,16 +220,13 @@ async def open_pages(size: Size) -> Trial:
             base_url=f"http://127.0.0.1:{work.service.port}", timeout=LIMIT_S, follow_redirects=True
         ) as panel,
     ):
-
-        async def act() -> Done:
-            took_s = []
-            for page in PAGES * 3:
-                answer = await panel.get(page)
-                assert answer.status_code == httpx.codes.OK
-                took_s.append(answer.elapsed.total_seconds())
-            return f"the slowest page took {max(took_s):.2f} s", max(took_s), "", 0.0
-
-        return await work.through(act)
+        await work.begin()
+        took_s = []
+        for page in PAGES * 3:
+            answer = await panel.get(page)
+            assert answer.status_code == httpx.codes.OK
+            took_s.append(answer.elapsed.total_seconds())
+        return await work.trial(f"the slowest page took {max(took_s):.2f} s", max(took_s))
 
 
 async def sunrise(size: Size, *, ahead_s: float) -> Trial:
@@ -247,14 +240,11 @@ async def sunrise(size: Size, *, ahead_s: float) -> Trial:
         await work.service.ask(SetLocation(dawn_place(sunrise_at), "UTC"))
         for name in work.names:
             await work.service.ask(Track(), name)
-
-        async def act() -> Done:
-            assert not [one for one in work.events if WAKES in one.message], "nobody is awake before"
-            woken = await work.said(EventKind.MOTION_ANNOUNCED, work.names, begun, WAKES)
-            took_s = (woken[-1].at - woken[0].at).total_seconds()
-            return f"all awake within {took_s:.2f} s", took_s, woken[0].message, 0.0
-
-        return await work.through(act)
+        await work.begin()
+        assert not [one for one in work.events if WAKES in one.message], "nobody is awake before"
+        woken = await work.said(EventKind.MOTION_ANNOUNCED, work.names, begun, WAKES)
+        took_s = (woken[-1].at - woken[0].at).total_seconds()
+        return await work.trial(f"all awake within {took_s:.2f} s", took_s, woken[0].message)
 
 
 def gateway(drives: int, folder: Path, kind: DriveKind, *, watchdog_ms: int = 500) -> Line:
@@ -272,24 +262,21 @@ async def loss_of_a_line(size: Size, line: Line) -> Trial:
     """Silence a line for a while: how long until all its trackers say so, and until all are back."""
     names = [f"T{unit + 1}" for unit in range(line.drives)]
     async with _on_a_line(size, line) as (work, simulator):
-
-        async def act() -> Done:
-            lost_at = datetime.now(UTC)
-            simulator.send_signal(signal.SIGSTOP)
-            lost = await work.said(EventKind.DRIVE_LOST, names, lost_at)
-            took_s = (lost[-1].at - lost_at).total_seconds()
-            await asyncio.sleep(max(0.0, SILENT_S - took_s))
-            held = [one for one in _on(work, names) if one.activity is ActivityName.HOLDING]
-            assert len(held) == line.drives, "a tracker without contact holds"
-            back_at = datetime.now(UTC)
-            simulator.send_signal(signal.SIGCONT)
-            back = await work.said(EventKind.DRIVE_FOUND, names, back_at)
-            back_s = (back[-1].at - back_at).total_seconds()
-            await eventually(lambda: all((one.position_age_s or 0.0) < FRESH_S for one in _on(work, names)))
-            what = f"all {line.drives} say so after {took_s:.2f} s and are back after {back_s:.2f} s"
-            return what, took_s, lost[-1].message, back_s
-
-        return await work.through(act)
+        await work.begin()
+        lost_at = datetime.now(UTC)
+        simulator.send_signal(signal.SIGSTOP)
+        lost = await work.said(EventKind.DRIVE_LOST, names, lost_at)
+        took_s = (lost[-1].at - lost_at).total_seconds()
+        await asyncio.sleep(max(0.0, SILENT_S - took_s))
+        held = [one for one in _on(work, names) if one.activity is ActivityName.HOLDING]
+        assert len(held) == line.drives, "a tracker without contact holds"
+        back_at = datetime.now(UTC)
+        simulator.send_signal(signal.SIGCONT)
+        back = await work.said(EventKind.DRIVE_FOUND, names, back_at)
+        back_s = (back[-1].at - back_at).total_seconds()
+        await eventually(lambda: all((one.position_age_s or 0.0) < FRESH_S for one in _on(work, names)))
+        what = f"all {line.drives} say so after {took_s:.2f} s and are back after {back_s:.2f} s"
+        return await work.trial(what, took_s, lost[-1].message, back_s)
 
 
 def _on(work: Fieldwork, names: Collection[str]) -> list[Snapshot]:
@@ -325,26 +312,23 @@ async def web_restart(size: Size, *, viewers: int) -> Trial:
         for one in watching:
             await pages.enter_async_context(one.open())
         await eventually(lambda: all(one.told for one in watching), within_s=LIMIT_S)
-
-        async def act() -> Done:
-            stowing = asyncio.create_task(
-                last_of(work.service, EventKind.STOW_STARTED, STORM, size.trackers, within_s=LIMIT_S)
-            )
-            loop = asyncio.get_running_loop()
-            killed_s = loop.time()
-            lives = [one.lives for one in watching]
-            work.service.signal("web", signal.SIGKILL)
-            took_s = await stowing
-            await eventually(
-                lambda: all(one.lives > was and one.told for one, was in zip(watching, lives, strict=True)),
-                within_s=LIMIT_S,
-            )
-            back_s = loop.time() - killed_s
-            assert sheltered(work.latest) == size.trackers
-            what = f"all stowing after {took_s:.2f} s, {viewers} viewers back after {back_s:.1f} s"
-            return what, took_s, "", back_s
-
-        return await work.through(act)
+        await work.begin()
+        stowing = asyncio.create_task(
+            last_of(work.service, EventKind.STOW_STARTED, STORM, size.trackers, within_s=LIMIT_S)
+        )
+        loop = asyncio.get_running_loop()
+        killed_s = loop.time()
+        lives = [one.lives for one in watching]
+        work.service.signal("web", signal.SIGKILL)
+        took_s = await stowing
+        await eventually(
+            lambda: all(one.lives > was and one.told for one, was in zip(watching, lives, strict=True)),
+            within_s=LIMIT_S,
+        )
+        back_s = loop.time() - killed_s
+        assert sheltered(work.latest) == size.trackers
+        what = f"all stowing after {took_s:.2f} s, {viewers} viewers back after {back_s:.1f} s"
+        return await work.trial(what, took_s, back_s=back_s)
 
 
 class Viewer:
@@ -379,8 +363,5 @@ class Viewer:
 async def start(size: Size) -> tuple[Trial, float]:
     """Start a field; return how it ticks, and after how long panel and controller were ready."""
     async with field(size, noon_place(datetime.now(UTC))) as (work, ready_s):
-
-        async def act() -> Done:
-            return "steady", ready_s, "", 0.0
-
-        return await work.through(act), ready_s
+        await work.begin()
+        return await work.trial("steady", ready_s), ready_s

@@ -5,54 +5,33 @@ import random
 import shutil
 import time
 from collections import Counter
-from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from enum import StrEnum
 from pathlib import Path
 from uuid import uuid4
 
-from app.base.settings import Settings
-from app.link.messages import MachineUnreachable, Order
+from app.link.messages import MachineUnreachable, SiteCommand
 from app.link.weather_orders import ReportWeather
-from app.simulation.kept_positions import KeptPositions
-from app.simulation.position_memory import AxisMemory, Memory, PositionFile, PositionMemory
-from app.store.engine import open_writer
-from app.store.migrations import upgrade
-from app.tracker.commands.commands import GoToStart, Jog, RunShow
-from app.tracker.memory.memory import (
-    ClockSetting,
-    Confirmation,
-    HomeTrust,
-    SiteState,
-    StepName,
-    TrackerMemory,
-    TrackerState,
-)
+from app.tracker.commands.commands import Command, GoToStart, Jog, Park, RunShow, Stop
 from app.tracker.programs.show import ShowPlan
 from app.tracker.settings.axes import Axis, JogSpeed
-from app.tracker.settings.config import DriveConfig, DriveKind, TrackerConfig
-from app.tracker.settings.protections import StowName
+from app.tracker.settings.config import TrackerConfig
 from app.tracker.state.snapshot import ActivityName, ShowPhase, SiteSnapshot, Snapshot
-from app.tracker.values.mode import Mode
 from app.tracker.weather.weather import Weather
+from tests.machine.field import SHELTERED, Line, noon_place, prepare
 from tests.machine.lives import Machine
-from tests.machine.service import SAMSUN
-from tests.patience import eventually
 
-NOON = datetime(2027, 6, 21, 9, 40, tzinfo=UTC)
-SHOW = ShowPlan("morning", NOON, NOON + timedelta(minutes=90), timedelta(seconds=20), SAMSUN)
 CALM, STORM = Weather(wind_mps=4.0), Weather(wind_mps=28.0)
 STOWS_WITHIN_S = 5.0
-NEAR = AxisMemory(176.0, 0.0, homed=True), AxisMemory(68.0, 0.0, homed=True)
-FAR = AxisMemory(90.0, 0.0, homed=True), AxisMemory(20.0, 0.0, homed=True)
-"""Where a panel stands at first: beside the sun, or half a minute away from it."""
 LONGEST_COAST_S = 0.5 + 0.5 + 1.2
 """From what was last told of a drive to its rest: the pause between two publications, watchdog and ramp."""
 USUAL = TrackerConfig("T", "T")
-PUSH_S = 0.06
-STOWS = (ActivityName.STOWING, ActivityName.STOWED)
+LATEST_KILL_S = {"before": 0.3, "during": 0.01, "after": 1.0}
+"""When the controller is killed: before the wind is reported, while it is, or afterwards."""
+AT_ONCE = 0.3
+"""How often it is killed at the first instant."""
 
 
 class Left(StrEnum):
@@ -60,9 +39,7 @@ class Left(StrEnum):
 
     TRACKING = "tracking"
     PARKED = "parked"
-    STOWED = "stowed by command"
     SHOW = "running a show"
-    TO_START = "on the way to a show"
     STOPPED = "stopped by a person"
     JOGGED = "moved by hand"
 
@@ -72,171 +49,88 @@ class Left(StrEnum):
         return self not in (Left.STOPPED, Left.JOGGED)
 
 
-class When(StrEnum):
-    """When the controller is killed: before the wind is reported, while it is, or afterwards."""
-
-    BEFORE = "before"
-    DURING = "during"
-    AFTER = "after"
-
-
-LATEST_KILL_S = {When.BEFORE: 0.3, When.DURING: 0.01, When.AFTER: 1.0}
-AT_ONCE = 0.3
-"""How often it is killed at the first instant."""
-
-
-@dataclass
-class Field:
-    """Trackers that differ in what they were doing; the first ones hang on drives of another process."""
-
-    lefts: dict[str, Left]
-    port: int
-    drives: int
-
-    @classmethod
-    def of(cls, size: int, *, port: int, drives: int) -> "Field":
-        """Return a field most of whose trackers track; the last six are something else."""
-        others = [one for one in Left if one is not Left.TRACKING]
-        names = [f"T{number}" for number in range(1, size + 1)]
-        kinds = [Left.TRACKING] * (size - len(others)) + others
-        return cls(dict(zip(names, kinds, strict=True)), port, drives)
-
-    def seed(self, folder: Path) -> None:
-        """Store a site whose trackers were commissioned, and homed drives."""
-        settings = Settings(data_dir=folder)
-        folder.mkdir(parents=True)
-        upgrade(settings.url)
-        writer, positions = open_writer(settings.url), KeptPositions(folder / "drives")
-        now = datetime.now(UTC)
-        clock = ClockSetting("manual", (NOON - now).total_seconds(), now, "technician")
-        writer.save_site(SiteState("Storm", SAMSUN, 1, "Europe/Istanbul", clock))
-        for number, (name, left) in enumerate(self.lefts.items()):
-            writer.save_tracker(TrackerState(self._config(number, name), _memory(left, now)))
-            far = left is Left.TO_START or (left is Left.TRACKING and number % 2)
-            home(positions.of(name), FAR if far else NEAR)
-        writer.close()
-
-    def _config(self, number: int, name: str) -> TrackerConfig:
-        drive = DriveConfig()
-        if number < self.drives:
-            drive = DriveConfig(DriveKind.MODBUS_TCP, port=self.port, unit=number + 1)
-        return TrackerConfig(name, name, drive=drive)
-
-
-def home(memory: Memory, stands: tuple[AxisMemory, AxisMemory]) -> None:
-    """Make a drive know where it stands."""
-    memory.keep(PositionMemory(*stands, boot_count=1, trusted=True))
-
-
-def drive_memories(folder: Path, drives: int) -> Path:
-    """Return the memory of `drive-sim` with homed drives at units from 1 on."""
-    first = folder / "sim.json"
-    for unit in range(1, drives + 1):
-        home(PositionFile(first if unit == 1 else first.with_name(f"sim-{unit}.json")), NEAR)
-    return first
-
-
-def _memory(left: Left, now: datetime) -> TrackerMemory:
-    saved = Confirmation(now, "technician", 1)
-    return TrackerMemory(
-        mode=Mode.DUAL,
-        tracking_on=left is Left.TRACKING,
-        home=HomeTrust(now, "technician", "set", 1),
-        confirmations={StepName.HOMING: saved, StepName.MODE: saved},
-        stow={Left.PARKED: StowName.PARK, Left.STOWED: StowName.CLEANING}.get(left),
-    )
-
-
 @dataclass
 class Storm:
-    """Kills one field again and again, each time in a storm of its own."""
+    """Kills one field again and again, each time in a storm of its own; most of its trackers track."""
 
-    plot: Field
-    seed: Path
     folder: Path
+    trackers: int
+    line: Line
     dice: random.Random
     counted: Counter[str] = field(default_factory=Counter)
     slowest_s: float = 0.0
     text: str = ""
 
+    def __post_init__(self) -> None:
+        self.place, now = noon_place(datetime.now(UTC)), datetime.now(UTC)
+        self.show = ShowPlan("noon", now, now + timedelta(minutes=90), timedelta(seconds=20), self.place)
+        others = [one for one in Left if one is not Left.TRACKING]
+        kinds = [Left.TRACKING] * (self.trackers - len(others)) + others
+        self.lefts = {f"T{number}": left for number, left in enumerate(kinds, 1)}
+
     async def kill(self, number: int) -> None:
         """Live through one storm and one kill; fail if a tracker does not do what it has to."""
-        machine = self._machine(number)
+        machine = Machine.of(self.folder / f"storm-{number}")
+        prepare(machine.settings.data_dir, self.trackers, self.place, self.line)
         try:
-            await self._kill(machine, list(When)[number % len(When)])
+            await self._kill(machine, [*LATEST_KILL_S][number % len(LATEST_KILL_S)])
         finally:
             await machine.stop()
             shutil.rmtree(machine.settings.data_dir)
 
-    def _machine(self, number: int) -> Machine:
-        machine = Machine.of(self.folder / f"storm-{number}")
-        shutil.rmtree(machine.settings.data_dir)
-        shutil.copytree(self.seed, machine.settings.data_dir)
-        return machine
-
-    async def _kill(self, machine: Machine, when: When) -> None:
+    async def _kill(self, machine: Machine, when: str) -> None:
         self.counted[when] += 1
         pressing = await self._begin(machine)
-        before = latest(machine)
+        before = machine.site
         acknowledged = await self._storm(machine, when)
-        await _over(pressing)
+        pressing.cancel()
+        await asyncio.gather(pressing, return_exceptions=True)
         before = machine.link.latest() or before
         await machine.forget()
         at = time.monotonic()
         await machine.start()
-        await self._stowed(machine, at, acknowledged=acknowledged)
-        self._check(before, latest(machine), acknowledged=acknowledged)
+        if not acknowledged:
+            await machine.ask(ReportWeather(STORM))
+        await machine.until(self._all_stow, "all stow", within_s=STOWS_WITHIN_S)
+        self.slowest_s = max(self.slowest_s, time.monotonic() - at)
+        assert time.monotonic() - at <= STOWS_WITHIN_S
+        self._check(before, machine.site, acknowledged=acknowledged)
 
     async def _begin(self, machine: Machine) -> "asyncio.Task[None]":
-        """Start it in calm weather, and set going what does not go by itself."""
+        """Start it in calm weather, and have each tracker do what the storm finds it doing."""
         await machine.start()
-        await begin(machine, ReportWeather(CALM), None)
-        await until(machine, lambda seen: all(one.homed for one in seen.trackers))
-        for name, left in self.plot.lefts.items():
-            if left is Left.TO_START:
-                await begin(machine, GoToStart(SHOW), name)
-            elif left is Left.SHOW:
-                await self._run_show(machine, name)
-        jogged = next(name for name, left in self.plot.lefts.items() if left is Left.JOGGED)
-        await until(machine, lambda seen: all(map(self._is_under_way, seen.trackers)))
-        return asyncio.create_task(_hold(machine, jogged))
-
-    async def _run_show(self, machine: Machine, name: str) -> None:
-        await begin(machine, GoToStart(SHOW), name)
-        await until(machine, lambda seen: _is_ready(tracker(seen, name)))
-        await begin(machine, RunShow(SHOW), name)
+        await _told(machine, ReportWeather(CALM))
+        await machine.until(lambda seen: all(map(_is_read, seen.trackers)), "every drive is read")
+        name = {left: name for name, left in self.lefts.items()}
+        await _told(machine, Park(), name[Left.PARKED])
+        await _told(machine, Stop(), name[Left.STOPPED])
+        await _told(machine, Stop(), name[Left.JOGGED])
+        await _told(machine, GoToStart(self.show), name[Left.SHOW])
+        await machine.until(lambda seen: _is_ready(_one(seen, name[Left.SHOW])), "the show is ready")
+        await _told(machine, RunShow(self.show), name[Left.SHOW])
+        await machine.until(lambda seen: all(map(self._is_under_way, seen.trackers)), "all are under way")
+        press = Jog(uuid4().hex, Axis.AZIMUTH, 1, JogSpeed.SLOW)
+        return asyncio.create_task(machine.hold(name[Left.JOGGED], press))
 
     def _is_under_way(self, seen: Snapshot) -> bool:
-        left = self.plot.lefts[seen.tracker_id]
-        if left in (Left.SHOW, Left.TO_START):
-            return seen.activity is ActivityName.SHOWING
-        return left is not Left.TRACKING or seen.activity is ActivityName.TRACKING
+        doing = {Left.SHOW: ActivityName.SHOWING, Left.TRACKING: ActivityName.TRACKING}
+        wanted = doing.get(self.lefts[seen.tracker_id])
+        return wanted is None or seen.activity is wanted
 
-    async def _storm(self, machine: Machine, when: When) -> bool:
+    async def _storm(self, machine: Machine, when: str) -> bool:
         """Report the wind and kill; return whether the report was acknowledged."""
-        reporting = asyncio.create_task(_report(machine)) if when is not When.BEFORE else None
-        if when is When.AFTER and reporting is not None:
+        reporting = asyncio.create_task(_told(machine, ReportWeather(STORM))) if when != "before" else None
+        if when == "after" and reporting is not None:
             await reporting
         at_once = self.dice.random() < AT_ONCE
         await asyncio.sleep(0.0 if at_once else self.dice.uniform(0.0, LATEST_KILL_S[when]))
         machine.kill()
         return reporting is not None and await reporting
 
-    async def _stowed(self, machine: Machine, at: float, *, acknowledged: bool) -> None:
-        """Fail unless all that move by themselves go to their stow positions in time after the restart.
-
-        What was not acknowledged is reported again, as a weather station does.
-        """
-        if not acknowledged:
-            await ask(machine, ReportWeather(STORM), None)
-        await until(machine, self._all_stow, within_s=STOWS_WITHIN_S)
-        self.slowest_s = max(self.slowest_s, time.monotonic() - at)
-        assert time.monotonic() - at <= STOWS_WITHIN_S
-
     def _all_stow(self, seen: SiteSnapshot) -> bool:
         """Return whether all stow, and every drive was read in this very snapshot: a late one is unknown."""
         return all(map(_is_read, seen.trackers)) and all(
-            one.activity in STOWS for one in seen.trackers if self.plot.lefts[one.tracker_id].by_itself
+            one.activity in SHELTERED for one in seen.trackers if self.lefts[one.tracker_id].by_itself
         )
 
     def _check(self, before: SiteSnapshot, after: SiteSnapshot, *, acknowledged: bool) -> None:
@@ -246,97 +140,45 @@ class Storm:
         assert (weather.readings.wind_mps, weather.simulated) == (STORM.wind_mps, False)
         assert weather.before_restart is weather.stale
         assert weather.before_restart or not acknowledged
-        assert weather.age_s <= STOWS_WITHIN_S + LATEST_KILL_S[When.AFTER]
-        protection = tracker(after, "T1").protection
+        assert weather.age_s <= STOWS_WITHIN_S + LATEST_KILL_S["after"]
+        protection = _one(after, "T1").protection
         assert protection is not None
         self.text = protection.reason.message
-        assert "The wind at T1" in self.text
+        assert "The wind at Tracker 1" in self.text
         for one in after.trackers:
-            left = self.plot.lefts[one.tracker_id]
+            left = self.lefts[one.tracker_id]
             assert one.homed, one
             assert left.by_itself or one.activity is ActivityName.HOLDING, one
             assert left.by_itself or one.protection is not None, one
-            _check_place(tracker(before, one.tracker_id), one)
+            _check_place(_one(before, one.tracker_id), one)
 
 
 def _check_place(before: Snapshot, after: Snapshot) -> None:
     """Fail if an axis stands farther from where it was seen last than it can have coasted."""
-    for axis, config in ((Axis.AZIMUTH, USUAL.azimuth), (Axis.ELEVATION, USUAL.elevation)):
-        away_deg = abs(_place_deg(after, axis) - _place_deg(before, axis))
-        assert away_deg <= config.speed_dps * LONGEST_COAST_S, (axis, before, after)
+    places = zip(_places_deg(before), _places_deg(after), (USUAL.azimuth, USUAL.elevation), strict=True)
+    for before_deg, after_deg, config in places:
+        assert abs(after_deg - before_deg) <= config.speed_dps * LONGEST_COAST_S, (before, after)
 
 
 def _is_read(seen: Snapshot) -> bool:
-    axes = (seen.azimuth, seen.elevation)
-    return all(axis is not None and axis.position_deg is not None for axis in axes)
+    return None not in _places_deg(seen)
 
 
-def _place_deg(seen: Snapshot, axis: Axis) -> float:
-    state = seen.azimuth if axis is Axis.AZIMUTH else seen.elevation
-    assert state is not None, seen
-    assert state.position_deg is not None, seen
-    return state.position_deg
-
-
-async def _report(machine: Machine) -> bool:
-    try:
-        await ask(machine, ReportWeather(STORM), None)
-    except MachineUnreachable:
-        return False
-    return True
-
-
-async def ask(machine: Machine, command: object, tracker_id: str | None) -> SiteSnapshot:
-    """Give an order once."""
-    return await machine.link.execute(Order(command, "technician", tracker_id))  # type: ignore[arg-type]
-
-
-async def begin(machine: Machine, command: object, tracker_id: str | None) -> None:
-    """Give an order before the storm; one that is answered too late is carried out all the same."""
-    with suppress(MachineUnreachable):
-        await ask(machine, command, tracker_id)
-
-
-async def _hold(machine: Machine, name: str) -> None:
-    """Hold a button until the machine is dead."""
-    press = Jog(uuid4().hex, Axis.AZIMUTH, 1, JogSpeed.SLOW)
-    with suppress(MachineUnreachable):
-        while machine.lives[-1].is_alive():
-            await ask(machine, press, name)
-            press = replace(press, sequence=press.sequence + 1)
-            await asyncio.sleep(PUSH_S)
-
-
-async def until(machine: Machine, reached: Callable[[SiteSnapshot], bool], *, within_s: float = 40.0) -> None:
-    """Return once what is known of the site is so, or fail and say what is."""
-
-    def is_so() -> bool:
-        seen = machine.link.latest()
-        return seen is not None and reached(seen)
-
-    try:
-        await eventually(is_so, within_s=within_s)
-    except TimeoutError as error:
-        told = Counter((one.activity, one.activity_text) for one in latest(machine).trackers)
-        raise AssertionError(f"{error} {told}") from error
-
-
-def latest(machine: Machine) -> SiteSnapshot:
-    """Return what is known of the site."""
-    seen = machine.link.latest()
-    assert seen is not None, machine.log()
-    return seen
-
-
-def tracker(seen: SiteSnapshot, name: str) -> Snapshot:
-    """Return one tracker."""
-    return next(one for one in seen.trackers if one.tracker_id == name)
+def _places_deg(seen: Snapshot) -> tuple[float | None, float | None]:
+    return tuple(None if axis is None else axis.position_deg for axis in (seen.azimuth, seen.elevation))
 
 
 def _is_ready(seen: Snapshot) -> bool:
     return seen.show is not None and seen.show.phase is ShowPhase.READY
 
 
-async def _over(pressing: "asyncio.Task[None]") -> None:
-    pressing.cancel()
-    await asyncio.gather(pressing, return_exceptions=True)
+def _one(seen: SiteSnapshot, name: str) -> Snapshot:
+    return next(one for one in seen.trackers if one.tracker_id == name)
+
+
+async def _told(machine: Machine, command: Command | SiteCommand, tracker_id: str = "T1") -> bool:
+    """Give an order once; return whether it was acknowledged. One answered too late is carried out, too."""
+    with suppress(MachineUnreachable):
+        await machine.ask(command, tracker_id)
+        return True
+    return False

@@ -1,10 +1,13 @@
-"""A frozen drive, a cut cable, a killed drive: it stops by itself, the page says why, and nothing resumes.
+"""A cut cable, a killed drive: it stops by itself, the page says why, and nothing resumes.
 
 The simulated drive is a process of its own; homing is doubted exactly when it lost power in motion or forgot.
 """
 
+import asyncio
 import os
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,10 +15,13 @@ from typing import Any
 
 import pytest
 
+from app.base.clock import SystemClock
+from app.machine.drive_factory import DriveFactory
 from tests.e2e.integrator import Integrator
 from tests.e2e.product import DriveSim
 from tests.e2e.proxy import network
 from tests.fault_result import REAL, FaultResult
+from tests.machine.service import config_for
 from tests.patience import until as eventually
 from tests.soak.rigs.eyes import Eyes
 from tests.soak.rigs.killing_product import LATEST_FEED_S, RAMP_S, WATCHDOG_S
@@ -71,29 +77,6 @@ def assert_still(calling: Integrator, seen: dict[str, Any]) -> None:
         assert abs(later["measured"][axis] - seen["measured"][axis]) < STEP_DEG
 
 
-def test_a_frozen_drive_stops_by_its_watchdog_and_keeps_its_zero(
-    integrator: Integrator, sim: DriveSim
-) -> None:
-    integrator.commission(sim.port)
-    turn_away(integrator)
-    before = integrator.snapshot()["measured"]["azimuth_deg"]
-    sim.process.send_signal(signal.SIGSTOP)
-    lost(integrator, "did not answer in time")
-    time.sleep(1.0)
-    sim.process.send_signal(signal.SIGCONT)
-    seen = back(integrator, "its watchdog")
-    assert seen["homed"] is True
-    assert seen["measured"]["azimuth_deg"] - before < 6.0 * (WATCHDOG_S + LATEST_FEED_S + RAMP_S + 0.2)
-    assert_still(integrator, seen)
-    page = integrator.http.get("/trackers/T1/drive-tests").text
-    assert "answers again" in page
-    integrator.command("move", azimuth_deg=20.0, elevation_deg=10.0)
-    assert "watchdog" not in told(integrator.snapshot())
-    integrator.post("/stop")
-    integrator.until(lambda seen: seen["activity"] == "holding", "the panel is at rest")
-    integrator.until(lambda seen: seen["activity"] == "holding", "the axes rest")
-
-
 @pytest.mark.fault(1)
 def test_a_cut_cable_leaves_a_drive_that_stops_itself(
     integrator: Integrator, sim: DriveSim, fault: FaultResult
@@ -111,13 +94,30 @@ def test_a_cut_cable_leaves_a_drive_that_stops_itself(
         cable.thaw()
         seen = back(integrator, "its watchdog")
         assert seen["homed"] is True
+        assert "answers again" in integrator.http.get("/trackers/T1/drive-tests").text
         assert_still(integrator, seen)
         assert not eyes.moved_after(time.monotonic() - 0.5)
         eyes.close()
         events = {event["data"].get("code") for event in integrator.journal("drive_found")}
         assert events & {"watchdog_tripped", "stopped_meanwhile"}
     print(f"at rest {rested_s:.2f} s after the cable was cut")
+    integrator.command("move", azimuth_deg=20.0, elevation_deg=10.0)
+    assert "watchdog" not in told(integrator.snapshot())
+    integrator.post("/stop")
     fault.recovers("automatic: the drive is found again; the operator commands the next motion")
+
+
+def test_a_drive_is_simulated_with_faults_from_the_start() -> None:
+    program = "from app.simulation.servers.sim_server import Doors, run_drive_sim\n"
+    program += "run_drive_sim(Doors('127.0.0.1:0'), 'simulated-plc', inject=['drive_fault::12'])\n"
+    with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        line = process.stdout.readline().decode()
+        port = int(line.split("127.0.0.1:")[1].split(",")[0])
+        drive = DriveFactory(SystemClock()).make(config_for(port))
+        assert asyncio.run(drive.read()).fault_code == 12
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(10.0) == 0
 
 
 def test_a_killed_drive_loses_its_zero_exactly_when_it_lost_its_place(

@@ -3,13 +3,17 @@
 import os
 import random
 from collections.abc import Iterator
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
 
+from app.tracker.settings.config import DriveKind
 from tests.e2e.product import DriveSim
 from tests.fault_result import BY_ITSELF, REAL, FaultResult
-from tests.soak.rigs.storm import Field, Storm, drive_memories
+from tests.machine.field import noon_place, prepare
+from tests.soak.rigs.fieldwork import gateway
+from tests.soak.rigs.storm import Storm
 
 KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "3"))
 TRACKERS = int(os.environ.get("HELIOPANEL_TEST_TRACKERS", "12"))
@@ -19,10 +23,10 @@ ON_A_DRIVE = 2
 
 @pytest.fixture
 def storm(tmp_path: Path) -> Iterator[Storm]:
-    drive = DriveSim.start(memory=drive_memories(tmp_path, ON_A_DRIVE), units=ON_A_DRIVE)
-    field = Field.of(TRACKERS, port=drive.port, drives=ON_A_DRIVE)
-    field.seed(tmp_path / "seed")
-    yield Storm(field, tmp_path / "seed", tmp_path, random.Random(SEED))
+    line = gateway(ON_A_DRIVE, tmp_path, DriveKind.MODBUS_TCP)
+    prepare(tmp_path / "unused", 0, noon_place(datetime.now(UTC)), line)
+    drive = DriveSim.start(line.drive.port, line.memory, ON_A_DRIVE)
+    yield Storm(tmp_path, TRACKERS, line, random.Random(SEED))
     drive.stop()
 
 

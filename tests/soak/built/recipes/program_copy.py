@@ -11,8 +11,19 @@ Edits = Mapping[str, tuple[tuple[str, str], ...]]
 """What stands in a file instead of what: each occurs there."""
 
 
-def followed(folder: Path, edits: Edits, new: Mapping[str, str], proof: str) -> list[str]:
-    """Copy the program into a folder, change it there, and return the words that the proof prints."""
+PROVEN = """import app
+print(app.__path__[0])
+import asyncio
+from tests.fakes import FakeMachine, FakeReader, fake_app, serving
+
+{proof}
+if "seen" in globals():
+    asyncio.run(seen())
+"""
+
+
+def followed(folder: Path, edits: Edits, new: Mapping[str, str], proof: str) -> None:
+    """Copy the program into a folder, change it there, and fail unless the proof runs there."""
     shutil.copytree(ROOT / "app", folder / "app", ignore=shutil.ignore_patterns("__pycache__", "locale"))
     touched = frozenset(folder / name for name in (*edits, *new))
     for name in ("docs", "static", "templates", "tests", "alembic", "app/web/locale"):
@@ -27,13 +38,11 @@ def followed(folder: Path, edits: Edits, new: Mapping[str, str], proof: str) -> 
             text = text.replace(before, after, 1)
         (folder / name).write_text(text)
     told = subprocess.run(
-        (sys.executable, "-c", f"import app\nprint(app.__path__[0])\n{proof}"),
+        (sys.executable, "-c", PROVEN.replace("{proof}", proof)),
         cwd=folder, capture_output=True, text=True, check=False,
     )  # fmt: skip
-    words = told.stdout.split()
-    assert words[:1] == [str(folder / "app")], told.stderr
+    assert told.stdout.split()[:1] == [str(folder / "app")], told.stderr
     assert told.returncode == 0, told.stderr
-    return words[1:]
 
 
 def _link(source: Path, target: Path, touched: frozenset[Path]) -> None:

@@ -1,8 +1,4 @@
-"""The recipe of a language in docs/develop/contributing.md, followed in a copy: three files are enough."""
-
-from pathlib import Path
-
-from tests.soak.built.recipes.program_copy import followed
+"""A language: what its recipe changes and adds, and the proof that it works."""
 
 ITALIAN = """        Language(
             "it",
@@ -30,11 +26,9 @@ EDITS = {
 }
 NEW = {"app/web/locale/it/LC_MESSAGES/heliopanel.po": CATALOGUE}
 PROOF = """
-import asyncio
 
 from app.web.languages.known import LANGUAGES, TRANSLATED
 from app.web.translation.catalogues import mo_bytes, path_of, read
-from tests.fakes import FakeMachine, FakeReader, fake_app, serving
 from tests.web.languages.test_catalogues import PLURAL_FORMS
 
 path_of("it", "mo").write_bytes(mo_bytes(read("it")))
@@ -50,12 +44,4 @@ async def seen():
         assert "Salva le protezioni" in page and 'lang="it"' in page, page
         english = (await client.get(path)).text
         assert "Save protections" in english and "Italiano" in english, "the list of languages"
-
-
-asyncio.run(seen())
 """
-
-
-def test_a_language_is_added_in_three_files(tmp_path: Path) -> None:
-    assert len({*EDITS, *NEW}) == 3
-    followed(tmp_path, EDITS, NEW, PROOF)
