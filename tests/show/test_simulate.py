@@ -47,7 +47,7 @@ SITES = {
         TrackerConfig("T1", "Line", azimuth=HALF_TURN_EACH_WAY),
     ),
 }
-AT_SITES = pytest.mark.parametrize("site", amount(["Adelaide"], [*SITES]))
+AT_SITES = pytest.mark.parametrize("site", amount(["Samsun"], [*SITES]))
 HELD = Orientation(180.0, 45.0)
 BEGIN = datetime(2026, 6, 21, 8, tzinfo=UTC)
 

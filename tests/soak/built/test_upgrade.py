@@ -158,13 +158,3 @@ def test_a_program_whose_migrations_end_earlier_refuses_it(data: Path, tmp_path:
     with pytest.raises(StoreUnfit, match=f"newer version .*revision {REVISION}; this version supports up to"):
         upgrade(url_of(data), scripts=tmp_path / "older")
     assert (data / "heliopanel.db").read_bytes() == before
-
-
-def test_what_is_lost_is_told() -> None:
-    before = {"a": [{"n": 1, "x": 0.1 + 0.2}, {"n": 2}], "b": [1.0, None], "c": "d"}
-    after = {"a": [{"n": 3}, {"n": 2, "more": 1}, {"n": 1, "x": 0.3}], "b": [1, None], "c": "d", "e": 1}
-    assert lost(before, after) == []
-    assert lost(before, {**after, "a": after["a"][:2]}) == ["/a[0]"]
-    assert lost(before, {**after, "b": [1]}) == ["/b"]
-    assert lost(before, {**after, "b": [2, None]}) == ["/b[0]"]
-    assert lost(before, {"a": after["a"]}) == ["/b", "/c"]
