@@ -53,8 +53,8 @@ def until(reached: Callable[[Any], object]) -> Any:
     return seen
 
 
-def is_allowed(action: str) -> Callable[[Any], bool]:
-    return lambda seen: seen.actions[action] == []
+def until_allowed(action: str) -> None:
+    until(lambda seen: seen.actions[action] == [])
 
 
 def command(body: Any, **more: Any) -> Any:
@@ -75,7 +75,7 @@ def configure() -> None:
     )
     changed = call(m.TrackerConfig, "change_tracker", T1, body=m.TrackerConfigChange(drive=drive))
     assert changed.drive.port == DRIVE_PORT
-    until(is_allowed("jog"))
+    until_allowed("jog")
 
 
 def place_and_time() -> None:
@@ -89,21 +89,18 @@ def place_and_time() -> None:
 
 
 def home_and_track() -> None:
-    until(is_allowed("set_home"))
+    until_allowed("set_home")
     command(m.SetHomeCommand(type_="set_home", confirmed=True))
     until(lambda seen: seen.homed)
     command(m.SetModeCommand(type_="set_mode", mode=m.Mode("dual")))
     steps = call(m.StepPage, "read_steps", T1).items
-    assert {one.name.value for one in steps if one.status.value == "done"} == {
-        "location",
-        "clock",
-        "homing",
-        "mode",
-    }
+    done = {one.name.value for one in steps if one.status.value == "done"}
+    assert done == {"location", "clock", "homing", "mode"}
     command(m.TrackCommand(type_="track"))
     until(lambda seen: seen.tracking_on and seen.measured is not None)
     call(m.Snapshot, "stop_tracker", T1)
-    until(lambda seen: not seen.tracking_on and is_allowed("set_home")(seen))
+    until(lambda seen: not seen.tracking_on)
+    until_allowed("set_home")
 
 
 def reuse_a_key() -> None:

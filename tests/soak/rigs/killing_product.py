@@ -106,7 +106,7 @@ class Killing:
         self.product.process.send_signal(signal.SIGSTOP)
         try:
             at = self.product.signal("controller", signal.SIGKILL)
-            return self.eyes.first_rest_after(at)
+            return self.eyes.rest_after(at)
         finally:
             self.product.process.send_signal(signal.SIGCONT)
 

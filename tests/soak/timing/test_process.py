@@ -23,19 +23,15 @@ from tests.e2e.product import COMMAND
 from tests.fault_result import REAL, FaultResult
 from tests.machine.service import DriveSimulator, Service
 from tests.machine.stories import WATCHDOG_AND_RAMP_S, kill_mid_show, kill_panel
+from tests.machine.test_process import drive, service
 
 KILLS = int(os.environ.get("HELIOPANEL_TEST_KILLS", "2"))
 PANEL_KILLS = 2
 SETPOINT = load_profile("simulated-plc").registers["azimuth_setpoint"].address
 
+__all__ = ["drive", "service"]
+
 pytestmark = pytest.mark.asyncio(loop_scope="module")
-
-
-@pytest_asyncio.fixture(scope="module", loop_scope="module")
-async def drive() -> AsyncIterator[DriveSimulator]:
-    simulator = await DriveSimulator.start()
-    yield simulator
-    await simulator.stop()
 
 
 @pytest_asyncio.fixture(scope="module", loop_scope="module")
@@ -47,14 +43,6 @@ async def running(tmp_path_factory: pytest.TempPathFactory, drive: DriveSimulato
         yield started
     finally:
         await started.stop()
-
-
-@pytest_asyncio.fixture(loop_scope="module")
-async def service(running: Service) -> AsyncIterator[Service]:
-    """The service, which moves nothing when a story begins, and whose panel answers."""
-    await running.until_served()
-    yield running
-    await running.rest()
 
 
 async def misses_no_tick(service: Service, before: MachineMetrics) -> None:
