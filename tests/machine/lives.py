@@ -11,11 +11,12 @@ from uuid import uuid4
 
 from app.base.settings import Settings
 from app.link.client import LinkClient
-from app.link.messages import MachineUnreachable, Order, SiteCommand
+from app.link.messages import MachineUnreachable
 from app.machine.main import run
 from app.machine.supervised import end_with_parent
-from app.tracker.commands.commands import Command, CommandRejected, Jog
-from app.tracker.state.snapshot import SiteSnapshot, Snapshot
+from app.tracker.commands.commands import CommandRejected, Jog
+from app.tracker.state.snapshot import SiteSnapshot
+from tests.machine.service import Linked
 from tests.patience import PATIENCE_S, eventually, pause
 
 FORKING = multiprocessing.get_context("forkserver")
@@ -31,18 +32,19 @@ def live(settings: Settings) -> None:
 
 
 @dataclass
-class Machine:
+class Machine(Linked):
     """The controller service in one data folder, without a panel, started and killed again and again."""
 
     settings: Settings
     link: LinkClient
+    data_dir: Path
     lives: list[ForkServerProcess] = field(default_factory=list)
 
     @classmethod
     def of(cls, data_dir: Path) -> "Machine":
         data_dir.mkdir(parents=True)
         settings = Settings(data_dir=data_dir, log_format="json")
-        return cls(settings, LinkClient(settings.link_path))
+        return cls(settings, LinkClient(settings.link_path), data_dir)
 
     async def start(self) -> None:
         """Begin the next life; return once it answers."""
@@ -66,12 +68,7 @@ class Machine:
         """Wait until it is known that the machine has gone."""
         await eventually(lambda: self.link.latest() is None)
 
-    async def ask(self, command: Command | SiteCommand, tracker_id: str = "T1") -> SiteSnapshot:
-        """Give an order once."""
-        addressed = None if isinstance(command, SiteCommand) else tracker_id
-        return await self.link.execute(Order(command, "technician", addressed))
-
-    async def until(
+    async def until_site(
         self, reached: Callable[[SiteSnapshot], object], what: str, *, within_s: float = PATIENCE_S
     ) -> SiteSnapshot:
         """Return what is known of the site once it is so, or fail."""
@@ -105,14 +102,9 @@ class Machine:
         assert latest is not None, self.log()
         return latest
 
-    @property
-    def tracker(self) -> Snapshot:
-        """Return what is known of the tracker now."""
-        return self.site.trackers[0]
-
     def log(self) -> str:
         """Return the end of what it wrote."""
-        return (self.settings.data_dir / "machine.log").read_text()[-2000:]
+        return (self.data_dir / "machine.log").read_text()[-2000:]
 
     async def stop(self) -> None:
         """End it properly."""

@@ -83,38 +83,11 @@ class PatientLink(LinkClient):
         return await super()._ask(request, PATIENCE_S)
 
 
-@dataclass
-class Service:
-    """`heliopanel serve` in a data folder of its own."""
+class Linked:
+    """A controller in a data folder, asked over its own link, and what its database tells."""
 
-    product: Product
     link: LinkClient
-
-    @classmethod
-    async def start(cls, data_dir: Path, *, tick_ms: int = 100) -> "Service":
-        product = await asyncio.to_thread(Product.start, data_dir, tick_ms=str(tick_ms))
-        service = cls(product, PatientLink(data_dir / "machine.sock"))
-        await service.link.start()
-        await service.link.watch(frozenset({"T1"}))
-        await eventually(lambda: service.link.latest() is not None)
-        return service
-
-    @property
-    def data_dir(self) -> Path:
-        return self.product.data_dir
-
-    @property
-    def port(self) -> int:
-        return self.product.port
-
-    def starts(self, child: str) -> list[int]:
-        return self.product.starts(child)
-
-    def deaths(self) -> list[str]:
-        return self.product.deaths()
-
-    def signal(self, child: str, number: Signals) -> None:
-        self.product.signal(child, number)
+    data_dir: Path
 
     async def ask(self, command: Command | SiteCommand, tracker_id: str = "T1") -> SiteSnapshot:
         """Give an order once."""
@@ -158,6 +131,37 @@ class Service:
             return seen is not None and bool(seen.actions) and reached(seen)
 
         await eventually(is_so, within_s=within_s)
+
+
+@dataclass
+class Service(Linked):
+    """`heliopanel serve` in a data folder of its own."""
+
+    product: Product
+    link: LinkClient
+    data_dir: Path
+
+    @classmethod
+    async def start(cls, data_dir: Path, *, tick_ms: int = 100) -> "Service":
+        product = await asyncio.to_thread(Product.start, data_dir, tick_ms=str(tick_ms))
+        service = cls(product, PatientLink(data_dir / "machine.sock"), data_dir)
+        await service.link.start()
+        await service.link.watch(frozenset({"T1"}))
+        await eventually(lambda: service.link.latest() is not None)
+        return service
+
+    @property
+    def port(self) -> int:
+        return self.product.port
+
+    def starts(self, child: str) -> list[int]:
+        return self.product.starts(child)
+
+    def deaths(self) -> list[str]:
+        return self.product.deaths()
+
+    def signal(self, child: str, number: Signals) -> None:
+        self.product.signal(child, number)
 
     async def until_holding(self) -> None:
         await self.until(lambda seen: seen.activity is ActivityName.HOLDING)

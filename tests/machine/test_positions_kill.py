@@ -21,7 +21,7 @@ RESOLUTION_DEG = 0.05
 @pytest.fixture
 async def machine(tmp_path: Path) -> AsyncIterator[Machine]:
     machine = Machine.of(tmp_path / "data")
-    prepare(machine.settings.data_dir, 1, noon_place(datetime.now(UTC)))
+    prepare(machine.data_dir, 1, noon_place(datetime.now(UTC)))
     await machine.start()
     yield machine
     await machine.stop()
@@ -41,8 +41,8 @@ async def moved(machine: Machine) -> float:
     assert begun_deg is not None
     aside_deg = begun_deg + (AWAY_DEG if begun_deg < 180.0 else -AWAY_DEG)
     await machine.ask(Move(Orientation(aside_deg, 45.0)))
-    await eventually(lambda: machine.tracker.in_position and abs(_stands(machine) - aside_deg) < 0.5)
-    kept = KeptPositions(machine.settings.data_dir / "drives").of("T1").recall()
+    await eventually(lambda: machine.site.trackers[0].in_position and abs(_stands(machine) - aside_deg) < 0.5)
+    kept = KeptPositions(machine.data_dir / "drives").of("T1").recall()
     assert kept is not None
     assert abs(kept.azimuth.true_deg - aside_deg) > AWAY_DEG / 2.0
     return kept.azimuth.true_deg
@@ -78,4 +78,4 @@ async def next_life(machine: Machine) -> None:
     await machine.forget()
     await machine.start()
     await eventually(lambda: azimuth_deg(machine) is not None)
-    assert machine.tracker.homed, machine.log()
+    assert machine.site.trackers[0].homed, machine.log()

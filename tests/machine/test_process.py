@@ -1,6 +1,7 @@
 """That the real processes are wired: a button, a kill, a freeze, a cut cable. How soon: tests/soak."""
 
 import asyncio
+import os
 import signal
 from collections.abc import AsyncIterator, Iterator
 from contextlib import suppress
@@ -55,11 +56,12 @@ async def running(
         assert (started.data_dir / MARKER_NAME).exists()
         yield started
         started.product.process.kill()
-        processes = [started.starts(child)[-1] for child in ("controller", "web")]
-        await eventually(lambda: not still_there(processes))
+        await eventually(lambda: not still_there(processes(started)))
         assert not (started.data_dir / MARKER_NAME).exists()
         assert started.journal()[0].kind is EventKind.CONTROLLER_STOPPED
     finally:
+        for left in still_there(processes(started)):
+            os.kill(left, signal.SIGTERM)
         await started.stop()
 
 
@@ -222,6 +224,10 @@ async def test_a_second_machine_refuses_to_start_and_says_who_runs(
     fault.prevented("it does not start")
     fault.shows(sentence.replace(str(service.data_dir), "DIR"))
     fault.recovers("nothing was lost: the first one runs on")
+
+
+def processes(service: Service) -> list[int]:
+    return [service.starts(child)[-1] for child in ("controller", "web")]
 
 
 def still_there(processes: list[int]) -> list[int]:

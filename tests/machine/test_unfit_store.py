@@ -32,10 +32,10 @@ async def test_a_tracker_that_nobody_can_read_leads_to_safe_mode(
     document: str, tmp_path: Path, fault: FaultResult
 ) -> None:
     machine = Machine.of(tmp_path / "data")
-    prepare(machine.settings.data_dir, 1, SAMSUN)
+    prepare(machine.data_dir, 1, SAMSUN)
     spoil(machine.settings.url, document)
     await machine.start()
-    await eventually(lambda: "store_damaged" in codes(machine))
+    await eventually(lambda: "store_damaged" in machine.alarms())
     with pytest.raises(CommandRejected, match=r"in safe mode.*cannot start with what is stored") as refused:
         await machine.ask(Park())
     await machine.ask(StopAll())
@@ -43,8 +43,3 @@ async def test_a_tracker_that_nobody_can_read_leads_to_safe_mode(
     fault.prevented("safe mode from the start")
     fault.shows(str(refused.value))
     fault.recovers("a backup is restored")
-
-
-def codes(machine: Machine) -> set[str]:
-    latest = machine.link.latest()
-    return set() if latest is None else {one.code for one in latest.alarms}

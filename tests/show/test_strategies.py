@@ -155,20 +155,29 @@ def test_a_sparing_simulation_tells_the_same_day(strategy: Strategy) -> None:
     assert runs[0] > 8
 
 
-def test_in_polar_day_intervals_go_on_all_night() -> None:
-    told = day(Interval(60), TROMSO, datetime(2026, 6, 20, 20, tzinfo=UTC), hours=6.0)
-    assert 6 <= told.moves <= 7
-    assert told.largest_error_deg is not None
-    assert told.largest_error_deg < 8.0
-
-
-def test_under_the_tropic_sun_the_axes_do_not_race_between_intervals() -> None:
-    told = day(Interval(30), NAIROBI, datetime(2026, 9, 23, 7, tzinfo=UTC), hours=4.0)
-    assert 7 <= told.moves <= 9
+@pytest.mark.parametrize(
+    ("minutes", "place", "begin", "hours", "fewest", "mean_deg", "bound_deg"),
+    [
+        pytest.param(60, TROMSO, datetime(2026, 6, 20, 20, tzinfo=UTC), 6.0, 6, 4.0, 8.0, id="polar day"),
+        pytest.param(30, NAIROBI, datetime(2026, 9, 23, 7, tzinfo=UTC), 4.0, 7, 1.95, 7.0, id="tropic sun"),
+    ],
+)
+def test_intervals_go_on_all_night_and_do_not_race_below_the_zenith(
+    minutes: int,
+    place: Location,
+    begin: datetime,
+    hours: float,
+    fewest: int,
+    mean_deg: float,
+    bound_deg: float,
+) -> None:
+    """Under the tropic sun the azimuth axis turns round once, for half a minute."""
+    told = day(Interval(minutes), place, begin, hours)
+    assert fewest <= told.moves <= fewest + 2
     assert told.largest_error_deg is not None
     assert told.mean_error_deg is not None
-    assert told.mean_error_deg < 1.95
-    assert told.largest_error_deg < 7.0, "the azimuth axis turns round once, for half a minute"
+    assert told.mean_error_deg < mean_deg
+    assert told.largest_error_deg < bound_deg
 
 
 def test_alexandrus_program_moves_at_its_times_and_stands_at_its_angles() -> None:

@@ -1,11 +1,15 @@
 """The disk fails under a running service: tracking goes on, everybody is told, nothing is half written."""
 
 import asyncio
+import os
+import shutil
 import signal
 import sqlite3
+import subprocess
 import time
 from collections.abc import AsyncIterator, Iterator
-from contextlib import asynccontextmanager, closing
+from contextlib import asynccontextmanager, closing, contextmanager, suppress
+from enum import StrEnum
 from pathlib import Path
 
 import pytest
@@ -18,7 +22,70 @@ from tests.amount import amount
 from tests.fault_result import REAL, FaultResult
 from tests.machine.service import Service
 from tests.patience import eventually
-from tests.soak.rigs.failing_disk import DiskFault, failing, filled, small_disk
+
+
+class DiskFault(StrEnum):
+    """What the calls of the writing thread suffer, as strace has it."""
+
+    FULL = "pwrite64:error=ENOSPC"
+    READ_ONLY = "pwrite64:error=EROFS"
+    NO_SYNC = "fdatasync:error=EIO"
+    STALLED = "fdatasync:delay_enter=2000000"
+
+
+SMALL_DISK = "size=96m,mode=0700"
+BLOCK = bytes(1 << 20)
+
+
+@contextmanager
+def small_disk(folder: Path) -> Iterator[Path]:
+    """Yield a folder that is a disk of 96 MB where one can be mounted, else the folder as it is."""
+    mounted = os.geteuid() == 0 and _run("mount", "-t", "tmpfs", "-o", SMALL_DISK, "tmpfs", str(folder))
+    try:
+        yield folder
+    finally:
+        if mounted:
+            _run("umount", "--lazy", str(folder))
+
+
+@contextmanager
+def filled(disk: Path) -> Iterator[None]:
+    """Have a disk full to the last byte while the block runs."""
+    filler = disk / "filler"
+    try:
+        with filler.open("wb", buffering=0) as file, suppress(OSError):
+            while file.write(BLOCK):
+                pass
+        yield
+    finally:
+        filler.unlink()
+
+
+def _run(*words: str) -> bool:
+    return subprocess.run(words, capture_output=True, check=False).returncode == 0
+
+
+@asynccontextmanager
+async def failing(process_id: int, fault: DiskFault, log: Path) -> AsyncIterator[None]:
+    """Have the calls of a process fail while the block runs."""
+    assert shutil.which("strace"), "Install strace to make calls fail: apt-get install strace."
+    call = fault.partition(":")[0]
+    tracer = await asyncio.create_subprocess_exec(
+        "strace", "-f", "-p", str(process_id), "-o", str(log), "-e", f"trace={call}", "-e", f"inject={fault}",
+        stderr=asyncio.subprocess.PIPE,
+    )  # fmt: skip
+    assert tracer.stderr is not None
+    async with asyncio.timeout(10):
+        told = (await tracer.stderr.readline()).decode()
+    if "attached" not in told:
+        await tracer.wait()
+        pytest.fail(f"This computer lets no process be traced: {told.strip()}")
+    try:
+        yield
+    finally:
+        tracer.send_signal(signal.SIGINT)
+        await tracer.communicate()
+
 
 LATEST_TICK_S = 1.0
 WATCHED_S = 1.5
