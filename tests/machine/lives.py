@@ -16,7 +16,7 @@ from app.machine.main import run
 from app.machine.supervised import end_with_parent
 from app.tracker.commands.commands import CommandRejected, Jog
 from app.tracker.state.snapshot import SiteSnapshot
-from tests.machine.service import Linked
+from tests.machine.service import Linked, PatientLink
 from tests.patience import PATIENCE_S, eventually, pause
 
 FORKING = multiprocessing.get_context("forkserver")
@@ -44,7 +44,7 @@ class Machine(Linked):
     def of(cls, data_dir: Path) -> "Machine":
         data_dir.mkdir(parents=True)
         settings = Settings(data_dir=data_dir, log_format="json")
-        return cls(settings, LinkClient(settings.link_path), data_dir)
+        return cls(settings, PatientLink(settings.link_path), data_dir)
 
     async def start(self) -> None:
         """Begin the next life; return once it answers."""
