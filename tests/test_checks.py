@@ -9,7 +9,7 @@ import pytest
 from checks.documents import faults_of
 from checks.generated import alike
 from checks.secrets import findings
-from checks.texts import english_values, marked, ruled_out, sentences
+from checks.texts import english_values, ruled_out
 
 WORDS = ruled_out()
 
@@ -26,10 +26,6 @@ def test_a_word_that_is_ruled_out_is_found(text: str, found: list[str]) -> None:
     assert WORDS.findall(text) == found
 
 
-def test_a_block_of_code_is_not_a_sentence() -> None:
-    assert [number for number, _ in sentences("A tracker.\n```\nmachine\n```\nThe machine.")] == [1, 5]
-
-
 @pytest.mark.parametrize(
     "source",
     [
@@ -41,11 +37,6 @@ def test_a_block_of_code_is_not_a_sentence() -> None:
 )
 def test_english_words_among_values_are_found(source: str) -> None:
     assert list(english_values(ast.parse(f"def f():\n    {source}")))
-
-
-def test_marked_texts_are_read() -> None:
-    source = "a = f'{say(\"one\")}'; b = N_('two'); c = other('three')"
-    assert sorted(marked(ast.parse(source))) == ["one", "two"]
 
 
 def test_what_a_document_names_and_is_not_there_is_told(tmp_path: Path) -> None:

@@ -55,19 +55,6 @@ def test_an_exception_is_told_with_what_it_came_from_and_where() -> None:
     assert [one[0]["exc_value"] for one in both["exceptions"]] == ["disk", "number"]
 
 
-def test_an_exception_that_another_hides_is_not_told() -> None:
-    stream = told_by("json")
-    try:
-        try:
-            raise KeyError("hidden")
-        except KeyError:
-            raise OSError("shown") from None
-    except OSError as error:
-        get_logger().critical("stopped", exc_info=error)
-    line = json.loads(stream.getvalue())
-    assert (line["level"], [one["exc_value"] for one in line["exception"]]) == ("critical", ["shown"])
-
-
 def test_a_line_for_people_is_one_line() -> None:
     stream = told_by("text")
     get_logger().warning("link_dropped", reason="two\nlines", code=3)
