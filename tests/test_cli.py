@@ -2,6 +2,7 @@
 
 import csv
 import json
+from dataclasses import asdict
 from datetime import UTC, datetime
 from functools import cache
 from pathlib import Path
@@ -28,11 +29,8 @@ def test_the_sun_as_json_has_full_precision(run: Run, algorithm: Algorithm) -> N
     )
     told = json.loads(out)
     expected = sun_position(algorithm, Location(41.2867, 36.33), datetime(2026, 6, 21, 9, tzinfo=UTC))
-
     assert code == 0
-    assert told["azimuth_deg"] == expected.azimuth_deg
-    assert told["elevation_deg"] == expected.elevation_deg
-    assert told["apparent_elevation_deg"] == expected.apparent_elevation_deg
+    assert told.items() >= asdict(expected).items()
     assert told["algorithm"] == algorithm.value
     assert (told["latitude_deg"], told["longitude_deg"]) == (41.2867, 36.33)
     assert datetime.fromisoformat(told["at"]) == datetime(2026, 6, 21, 9, tzinfo=UTC)
@@ -44,10 +42,7 @@ def test_accuracy_as_a_table_and_as_json(run: Run) -> None:
     assert code == 0
     assert "psa-plus" in out
     code, out, _ = run("accuracy", "--globe", *years, "--json")
-    assert code == 0
-    assert json.loads(out)["location"] is None
-    code, out, _ = run("accuracy", *years)
-    assert (code, "latitude -65 to 65" in out) == (0, True)
+    assert (code, json.loads(out)["location"]) == (0, None)
     code, _, err = run("accuracy", "--lat", "41.28")
     assert (code, "both --lat and --lon" in err) == (2, True)
 
@@ -56,19 +51,10 @@ def test_a_paper_as_text_and_as_json(run: Run) -> None:
     code, out, _ = run("papers", "--paper", "xia")
     assert code == 0
     assert "3 of 4 published figures come out." in out
-    code, out, _ = run("papers", "--paper", "xia", "--json")
-    assert [paper["key"] for paper in json.loads(out)] == ["xia"]
     code, out, _ = run("papers", "--paper", "xia", "--markdown")
     assert (code, "## Xia et al. (2015)\n" in out) == (0, True)
     code, _, err = run("papers", "--paper", "none")
     assert (code, "choose one of" in err) == (2, True)
-
-
-def test_the_sun_now_in_words(run: Run) -> None:
-    code, out, _ = run("sun", *SAMSUN)
-
-    assert code == 0
-    assert "azimuth" in out
 
 
 @pytest.mark.parametrize(
@@ -94,6 +80,7 @@ def test_what_is_wrong_is_one_sentence(
 
 def test_the_version_is_told(run: Run) -> None:
     assert run("version") == (0, f"{VERSION}\n", "")
+    assert run("--version") == (0, f"Heliopanel {VERSION}\n", "")
 
 
 def test_a_simulated_day_as_csv_and_parquet(
@@ -152,20 +139,3 @@ def _name(url: str, name: str) -> None:
     writer = open_writer(url)
     writer.save_site(SiteState(name=name))
     writer.close()
-
-
-def test_help_names_every_command(run: Run) -> None:
-    _, out, _ = run("--help")
-
-    for command in (
-        "serve",
-        "controller",
-        "web",
-        "sun",
-        "simulate",
-        "drive-sim",
-        "backup",
-        "restore",
-        "version",
-    ):
-        assert command in out

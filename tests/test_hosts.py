@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from pydantic import ValidationError
 
-from app.base.hosts import checked_host, host_fault
+from app.base.hosts import checked_host
 from app.base.settings import Settings
 from app.link.alarm_orders import SetNotifications
 from app.link.messages import CheckConnection, ConfigureTracker
@@ -40,54 +40,36 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize("host", GOOD)
-def test_a_host_is_taken_as_it_is(host: str) -> None:
-    assert checked_host(host) == host
+def test_a_host_is_taken_as_it_is() -> None:
+    assert [checked_host(host) for host in GOOD] == list(GOOD)
 
 
 @pytest.mark.parametrize("host", BAD, ids=BAD.values())
-def test_what_can_be_no_host_is_refused_with_a_sentence(host: str) -> None:
-    with pytest.raises(ValueError, match=r"is not a valid host name or address\. Enter the host only"):
+def test_what_can_be_no_host_is_refused_with_a_printable_sentence(host: str) -> None:
+    with pytest.raises(
+        ValueError, match=r"is not a valid host name or address\. Enter the host only"
+    ) as told:
         checked_host(host)
-    told = host_fault(host)
-    assert told is not None
-    assert told.isascii()
-    assert told.isprintable()
-    assert len(told) < 250
+    assert str(told.value).isascii()
+    assert str(told.value).isprintable()
+    assert len(str(told.value)) < 250
 
 
-@pytest.mark.parametrize("host", ["http://x", "127.0.0.1;rm", "127.0.0.1\n"])
-async def test_every_order_that_names_a_host_refuses_what_is_none(host: str) -> None:
+async def test_every_order_that_names_a_host_refuses_what_is_none() -> None:
     plant = make_plant()
     await plant.start()
-    config = plant.site.model.tracker("T1").config
-    drive = DriveConfig(DriveKind.MODBUS_TCP, "simulated-plc", host=host)
+    drive = DriveConfig(DriveKind.MODBUS_TCP, "simulated-plc", host="127.0.0.1;rm")
     orders = [
-        SetMetStation(MetStation(host)),
-        ConfigureTracker(replace(config, drive=drive)),
+        SetMetStation(MetStation("127.0.0.1;rm")),
+        ConfigureTracker(replace(plant.site.model.tracker("T1").config, drive=drive)),
         CheckConnection("T1", drive),
+        SetNotifications(Notifications("https://127.0.0.1;rm/alarms")),
+        SetNotifications(Notifications("https://:8443/alarms")),
+        SetNotifications(Notifications(mail_to=("name@example..org",))),
     ]
     for order in orders:
         with pytest.raises(ValueError, match="is not a valid host name or address"):
             await plant.ask(order)
-    await plant.close()
-
-
-@pytest.mark.parametrize(
-    "where",
-    [
-        Notifications("https://127.0.0.1;rm/alarms"),
-        Notifications("https://:8443/alarms"),
-        Notifications("https://plc\x00/alarms"),
-        Notifications(mail_to=("name@example..org",)),
-        Notifications(mail_to=("name@http://x",)),
-    ],
-)
-async def test_alarms_are_sent_to_no_host_that_is_none(where: Notifications) -> None:
-    plant = make_plant()
-    await plant.start()
-    with pytest.raises(ValueError, match="is not a valid host name or address"):
-        await plant.ask(SetNotifications(where))
     await plant.close()
 
 

@@ -93,11 +93,6 @@ def test_template_and_values_cross_the_link() -> None:
     assert told.problem.message.values["name"] == "Row 6"
 
 
-def test_programs_that_read_the_api_get_the_english_text() -> None:
-    told = TypeAdapter(Reason).dump_python(Reason("why", INNER), mode="json")
-    assert told == {"code": "why", "message": "The drive of Stop does not answer.", "hint": ""}
-
-
 def test_a_message_in_the_place_of_a_plain_text_does_not_end_the_connection() -> None:
     problem = Problem(ProblemKind.REJECTED, plain("Not now."), (Reason(INNER, plain("Not now.")),))
     told = decode_telling(encode_telling(Refused(1, problem))[4:])

@@ -1,6 +1,5 @@
 """By which names this computer may be called, also where its own name is none that a name server knows."""
 
-import ipaddress
 import socket
 from datetime import UTC, datetime
 from pathlib import Path
@@ -21,9 +20,3 @@ def test_a_name_that_nobody_can_look_up_is_told_and_certified(
     assert name in found
     made = init(tmp_path / "tls", found, datetime(2026, 6, 21, tzinfo=UTC))
     assert name in made.names
-
-
-def test_addresses_have_no_zone() -> None:
-    addresses = [one for one in own_names() if one[0].isdigit() or ":" in one]
-    assert "127.0.0.1" in addresses
-    assert all(ipaddress.ip_address(one) for one in addresses)

@@ -26,11 +26,8 @@ def test_the_newest_of_every_record_is_read_again(tmp_path: Path) -> None:
     assert path.stat().st_mode & 0o777 == 0o600
 
 
-def test_nothing_is_there_before_the_first(tmp_path: Path) -> None:
-    assert Twins(tmp_path / "kept", ROOM).read() == []
-
-
 def test_what_cannot_be_read_is_as_if_it_were_not_there(tmp_path: Path) -> None:
+    assert Twins(tmp_path / "none", ROOM).read() == []
     (tmp_path / "kept").mkdir()
     assert Twins(tmp_path / "kept", ROOM).read() == []
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from app.link.client import LinkClient
@@ -112,6 +112,7 @@ acts = st.one_of(changes, st.sampled_from(("hear", "lose", "again")))
 
 
 @given(st.lists(acts, max_size=40), st.integers(0, 8))
+@example([], 3 * MOST_TRACKERS_AT_ONCE + 1)
 def test_the_far_end_has_the_whole_and_every_event_that_was_not_lost(life: list[object], size: int) -> None:
     field = Field(size)
     field.tell(())
@@ -134,18 +135,6 @@ def test_the_far_end_has_the_whole_and_every_event_that_was_not_lost(life: list[
     assert far.numbers == sorted(far.numbers)
     if is_whole:
         assert far.numbers == list(range(field.events))
-
-
-def test_very_many_trackers_come_in_handfuls_and_are_shown_when_all_are_there() -> None:
-    field = Field(3 * MOST_TRACKERS_AT_ONCE + 1)
-    field.tell(("T1",))
-    far = FarEnd(field)
-    for _ in range(3):
-        assert far.hear()
-        assert far.whole.snapshot is None
-    assert far.hear()
-    assert far.whole.snapshot == field.site
-    assert not far.hear()
 
 
 def test_an_update_is_encoded_once_and_holds_what_changed() -> None:

@@ -40,7 +40,7 @@ def sent_over(sent: Sent, received: Received, detail: SiteDetail) -> tuple[SiteD
     return received.whole(answered), sizes
 
 
-@pytest.mark.parametrize("count", [0, 1, MOST_AT_ONCE, MOST_AT_ONCE + 1, 3 * MOST_AT_ONCE])
+@pytest.mark.parametrize("count", [0, MOST_AT_ONCE, MOST_AT_ONCE + 1])
 def test_a_field_is_sent_whole_in_small_parts_and_then_only_what_changed(count: int) -> None:
     sent, received, detail = Sent(), Received(), field_of(count)
 
@@ -56,9 +56,9 @@ def test_a_field_is_sent_whole_in_small_parts_and_then_only_what_changed(count: 
 
 def test_whatever_changes_comes_or_goes_the_far_end_has_the_whole() -> None:
     dice, sent, received = Random(13), Sent(), Received()
-    detail = field_of(60)
+    detail = field_of(40)
     sent_over(sent, received, detail)
-    for step in range(200):
+    for step in range(60):
         trackers = dict(detail.trackers)
         changed = dice.sample(sorted(trackers), k=min(len(trackers), dice.randrange(4)))
         for name in changed:
@@ -96,19 +96,6 @@ class Detailing(ScriptedMachine):
         return self.told
 
 
-async def test_an_answer_from_before_the_link_was_down_is_none(tmp_path: Path) -> None:
-    machine, path = Detailing(), tmp_path / "machine.sock"
-    machine.outlet.publish(snapshot(1))
-    server = LinkServer(machine, path)
-    await server.start()
-    async with LinkClient(path) as client:
-        await Link(machine, server, client, path).until_up()
-        client._details = Fresh()
-        with pytest.raises(MachineUnreachable, match="in time"):
-            await client.detail()
-    await server.close()
-
-
 async def test_over_the_socket_every_question_gets_the_whole_also_after_a_restart(tmp_path: Path) -> None:
     machine, path = Detailing(), tmp_path / "machine.sock"
     machine.outlet.publish(snapshot(1))
@@ -127,4 +114,7 @@ async def test_over_the_socket_every_question_gets_the_whole_also_after_a_restar
         await server.start()
         await link.until_up()
         assert await client.detail() == machine.told
+        client._details = Fresh()
+        with pytest.raises(MachineUnreachable, match="in time"):
+            await client.detail()
     await server.close()
