@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.access.door import Door
 from tests.store.postgres import fresh_database, running_postgres
 
 
@@ -20,3 +21,11 @@ def database(request: pytest.FixtureRequest) -> str | None:
     if request.param == "sqlite":
         return None
     return fresh_database(request.getfixturevalue("postgres_folder"))
+
+
+@pytest.fixture
+def door(tmp_path: Path) -> Iterator[Door]:
+    """A door whose users are kept in a file."""
+    door = Door(tmp_path)
+    yield door
+    door.keeper.close()

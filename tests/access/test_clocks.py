@@ -47,7 +47,7 @@ def cabinet(stepped: timedelta) -> Session:
 
 
 @settings(
-    deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=amount(40, 80)
+    deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=amount(12, 80)
 )
 @given(errors, errors, errors, errors, errors, counts, laters)
 @example(NONE, NONE, NONE, NONE, NONE, 4, NONE)

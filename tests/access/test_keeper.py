@@ -2,7 +2,6 @@
 
 import asyncio
 import os
-from collections.abc import Iterator
 from datetime import timedelta
 from pathlib import Path
 
@@ -10,7 +9,6 @@ import pytest
 from click.testing import Result
 from typer.testing import CliRunner
 
-from app.access.accounts import TokenWish
 from app.access.authenticator import Credentials
 from app.access.events import chained
 from app.access.opening import open_store
@@ -18,21 +16,13 @@ from app.access.principal import Via
 from app.access.roles import Role
 from app.access.setup import CODE_FILE, RESET_FILE
 from app.access.sign_in_errors import Throttled, WrongPassword
-from app.access.users import AccessRefused
 from app.audit.chain import FIRST
 from app.base.permission import Permission
 from app.cli.users import users
-from tests.access.door import ADDRESS, HERE, PASSWORD, Door
+from tests.access.door import ADDRESS, PASSWORD, Door
+from tests.amount import amount
 from tests.fault_result import FaultResult
 from tests.patience import PATIENCE_S
-
-
-@pytest.fixture
-def door(tmp_path: Path, database: str | None) -> Iterator[Door]:
-    """A door on each of the databases."""
-    door = Door(tmp_path, database)
-    yield door
-    door.keeper.close()
 
 
 async def test_without_users_this_computer_may_everything_and_nothing_is_written(
@@ -47,12 +37,6 @@ async def test_without_users_this_computer_may_everything_and_nothing_is_written
     assert os.listdir(tmp_path) == []
 
 
-async def test_with_users_this_computer_signs_in_too(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
-    assert door.keeper.identify(Credentials("127.0.0.1")).via is Via.NOBODY
-    assert door.via(await door.tries("ADA", PASSWORD)) is Via.SESSION
-
-
 async def test_the_file_of_users_is_private_and_holds_no_secret(tmp_path: Path) -> None:
     door = Door(tmp_path)
     await door.add("ada", Role.ADMINISTRATOR)
@@ -64,30 +48,19 @@ async def test_the_file_of_users_is_private_and_holds_no_secret(tmp_path: Path) 
     door.keeper.close()
 
 
-async def test_the_first_user_and_the_last_administrator_are_administrators(door: Door) -> None:
-    with pytest.raises(AccessRefused, match="first user"):
-        await door.add("olga", Role.OPERATOR)
-    await door.add("ada", Role.ADMINISTRATOR)
-    await door.add("olga", Role.OPERATOR)
-    now = door.clock.now()
-    with pytest.raises(AccessRefused, match="at least one administrator"):
-        await door.keeper.do(lambda: door.keeper.accounts.remove(HERE, "ada", now))
-    with pytest.raises(AccessRefused, match="at least one administrator"):
-        await door.keeper.do(lambda: door.keeper.accounts.set_roles(HERE, "ada", {Role.VIEWER}, now))
-
-
 @pytest.mark.fault(64)
-async def test_a_thousand_guesses_get_nowhere_and_lock_nobody_out(door: Door, fault: FaultResult) -> None:
+async def test_many_guesses_get_nowhere_and_lock_nobody_out(door: Door, fault: FaultResult) -> None:
+    guesses = amount(250, 1000)
     await door.add("ada", Role.ADMINISTRATOR)
     at_home = await door.tries("ada", PASSWORD, "10.0.0.2")
     looked_at, longest_s = door.hasher.checked, 0.0
-    for number in range(1000):
+    for number in range(guesses):
         with pytest.raises((Throttled, WrongPassword)) as refused:
             await door.tries("ada", f"guess number {number}", "10.0.0.66")
         if isinstance(refused.value, Throttled):
             longest_s = max(longest_s, refused.value.wait.total_seconds())
         door.clock.advance(timedelta(seconds=1))
-    assert 30 <= door.hasher.checked - looked_at <= 45
+    assert guesses // 33 <= door.hasher.checked - looked_at <= guesses // 30 + 12
     assert door.via(at_home) is Via.SESSION
     assert await door.tries("ada", PASSWORD, "10.0.0.2")
     assert await door.tries("ada", PASSWORD, "10.0.0.77")
@@ -98,8 +71,9 @@ async def test_a_thousand_guesses_get_nowhere_and_lock_nobody_out(door: Door, fa
 
 
 async def test_the_wait_survives_a_restart_and_is_told_in_seconds(
-    door: Door, tmp_path: Path, database: str | None
+    tmp_path: Path, database: str | None
 ) -> None:
+    door = Door(tmp_path, database)
     await door.add("ada", Role.ADMINISTRATOR)
     for _ in range(6):
         with pytest.raises(WrongPassword):
@@ -113,6 +87,7 @@ async def test_the_wait_survives_a_restart_and_is_told_in_seconds(
     again.clock.advance(timedelta(seconds=30))
     assert await again.tries("ada", PASSWORD)
     again.keeper.close()
+    door.keeper.close()
 
 
 async def test_an_unknown_name_is_hashed_like_a_known_one(door: Door) -> None:
@@ -127,16 +102,8 @@ async def test_an_unknown_name_is_hashed_like_a_known_one(door: Door) -> None:
     assert (door.hasher.made - made, door.hasher.checked - checked) == (0, 2)
 
 
-async def test_a_new_password_ends_the_sessions_of_its_user(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
-    session, now = await door.tries("ada", PASSWORD), door.clock.now()
-    other = "quiet-lantern-meadow-4"
-    await door.keeper.do(lambda: door.keeper.accounts.set_password(HERE, "ada", other, now))
-    assert door.via(session) is Via.NOBODY
-    assert await door.tries("ada", other)
-
-
-async def test_what_another_process_revokes_ends_here(door: Door) -> None:
+async def test_what_another_process_revokes_ends_here(tmp_path: Path, database: str | None) -> None:
+    door = Door(tmp_path, database)
     await door.add("ada", Role.ADMINISTRATOR)
     session = await door.tries("ada", PASSWORD)
     who = door.keeper.identify(Credentials("10.0.0.9", session))
@@ -149,25 +116,7 @@ async def test_what_another_process_revokes_ends_here(door: Door) -> None:
     async with asyncio.timeout(PATIENCE_S):
         await waiting
     assert door.via(session) is Via.NOBODY
-
-
-async def test_a_cabinet_views_and_operates_for_five_minutes_after_its_pin(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
-    wish, now = TokenWish("gate 3", pin="270441"), door.clock.now()
-    token = await door.keeper.do(lambda: door.keeper.accounts.mint(HERE, wish, now))
-    session = await door.keeper.log_in_kiosk(token, "10.0.0.9", "panel")
-    asked = Credentials("10.0.0.9", session)
-    door.clock.advance(timedelta(days=30))
-    who = door.keeper.identify(asked)
-    assert (who.via, who.may(Permission.STOP), who.may(Permission.OPERATE)) == (Via.KIOSK, True, False)
-    with pytest.raises(WrongPassword):
-        await door.keeper.step_up(who, "270442")
-    await door.keeper.step_up(who, "270441")
-    assert door.keeper.identify(asked).may(Permission.OPERATE)
-    door.clock.advance(timedelta(minutes=5))
-    assert not door.keeper.identify(asked).may(Permission.OPERATE)
-    door.clock.advance(timedelta(days=61))
-    assert door.via(session) is Via.NOBODY
+    door.keeper.close()
 
 
 async def test_a_panel_that_others_reach_is_set_up_with_the_code_of_its_console(
@@ -191,8 +140,9 @@ async def test_a_panel_that_others_reach_is_set_up_with_the_code_of_its_console(
 
 
 async def test_a_file_in_the_data_folder_resets_access_and_the_events_stay_chained(
-    door: Door, tmp_path: Path, database: str | None
+    tmp_path: Path, database: str | None
 ) -> None:
+    door = Door(tmp_path, database)
     await door.add("ada", Role.ADMINISTRATOR)
     (tmp_path / RESET_FILE).touch()
     again = Door(tmp_path, database)
@@ -208,6 +158,7 @@ async def test_a_file_in_the_data_folder_resets_access_and_the_events_stay_chain
         previous = own
     store.close()
     again.keeper.close()
+    door.keeper.close()
 
 
 def test_the_command_line_adds_lists_and_removes(tmp_path: Path) -> None:

@@ -23,14 +23,7 @@ def test_the_oldest_of_more_than_a_thousand_one_shot_tickets_is_forgotten() -> N
     assert len(set(issued)) == 1001
     assert all(len(ticket) == 43 for ticket in issued), "32 random bytes each"
     assert shots.redeem(issued[0], NOW) is None
-    assert shots.redeem(issued[1], NOW) == ANA
-    assert shots.redeem(issued[-1], NOW) == ANA
-
-
-def test_a_thousand_one_shot_tickets_are_all_kept() -> None:
-    shots = OneShots()
-    issued = [shots.issue(ANA, NOW) for _ in range(1000)]
-    assert all(shots.redeem(ticket, NOW) == ANA for ticket in issued)
+    assert all(shots.redeem(ticket, NOW) == ANA for ticket in issued[1:])
 
 
 def test_a_one_shot_ticket_ends_at_5_s_and_with_its_first_use() -> None:
@@ -63,6 +56,9 @@ def test_a_stop_ticket_with_rubbish_in_it_is_none() -> None:
         ticket[:-1],
         "",
         ".",
+        "a.b",
+        "é.é",
+        "AAAA.AAAA",
     ):
         assert read_stop_ticket(KEY, spoiled, NOW) is None, spoiled
 
@@ -78,16 +74,8 @@ def test_a_page_that_was_open_over_an_update_can_still_stop_and_send() -> None:
 
 def test_a_token_needs_its_own_text_and_ends_when_it_expires() -> None:
     token_id, text = mint()
-    token = Token(
-        token_id,
-        "script",
-        "ana",
-        digest_of(text),
-        frozenset({Scope.READ}),
-        None,
-        NOW,
-        NOW + timedelta(days=1),
-    )
+    end = NOW + timedelta(days=1)
+    token = Token(token_id, "script", "ana", digest_of(text), frozenset({Scope.READ}), None, NOW, end)
     _, other = mint()
     assert is_valid(token, text, token.expires_at - timedelta(microseconds=1))
     assert not is_valid(token, text, token.expires_at)
