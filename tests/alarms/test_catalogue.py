@@ -3,9 +3,7 @@
 import ast
 from pathlib import Path
 
-import pytest
-
-from app.alarms.catalogue import ENTRIES, Entry
+from app.alarms.catalogue import ENTRIES
 from app.tracker.protections.fault_classes import CLASSES
 from app.tracker.settings.mechanics import FaultClass
 
@@ -23,11 +21,12 @@ EVENTS_ONLY = {"drive_back", "not_homed", "at_limit_switch"}
 into by `limit_switch`: that one is on says which way is free."""
 
 
-@pytest.mark.parametrize("entry", ENTRIES, ids=lambda one: one.code)
-def test_every_alarm_has_its_entry_in_the_operators_guide(entry: Entry) -> None:
-    row = next(line for line in GUIDE.splitlines() if f'id="alarm-{entry.code}"' in line)
-    for said in (entry.title, f"| {entry.priority} |", entry.consequence, entry.do):
-        assert said in row
+def test_every_alarm_has_its_entry_in_the_operators_guide() -> None:
+    for entry in ENTRIES:
+        row = next(line for line in GUIDE.splitlines() if f'id="alarm-{entry.code}"' in line)
+        for said in (entry.title, f"| {entry.priority} |", entry.consequence, entry.do):
+            assert said in row
+        assert entry.priority > 1 or not entry.suppressed_by
 
 
 def test_every_fault_of_the_guards_is_an_alarm() -> None:

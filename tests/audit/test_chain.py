@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.audit.chain import FIRST, Link, first_break, link
+from app.audit.chain import FIRST, Link, first_break
 from app.audit.difference import difference
 from app.audit.entry import LONGEST, Entry, Sealed, seal, told
 
@@ -34,13 +34,6 @@ def links(sealed: list[Sealed]) -> list[Link]:
     return [one.link() for one in sealed]
 
 
-def test_a_hash_is_sha256_over_canonical_json() -> None:
-    text = json.dumps(
-        {"b": "ş", "a": 1, "prev_hash": FIRST}, sort_keys=True, separators=(",", ":"), ensure_ascii=False
-    )
-    assert link(FIRST, {"b": "ş", "a": 1}) == hashlib.sha256(text.encode()).hexdigest()
-
-
 def test_an_untouched_chain_holds() -> None:
     assert first_break(links(chain(20))) is None
     assert first_break([]) is None
@@ -48,14 +41,7 @@ def test_an_untouched_chain_holds() -> None:
 
 @pytest.mark.parametrize(
     "values",
-    [
-        {"actor": "eve"},
-        {"result": "refused"},
-        {"utc": NOON},
-        {"mono_ms": 5},
-        {"before": "[]"},
-        {"address": ""},
-    ],
+    [{"actor": "eve"}, {"utc": NOON}, {"mono_ms": 5}, {"before": "[]"}],
     ids=str,
 )
 def test_a_changed_value_is_named(values: dict[str, object]) -> None:

@@ -21,29 +21,27 @@ def test_systemd_finds_little_exposed(unit: str) -> None:
     assert float(level[1]) < MOST_EXPOSED
 
 
-@pytest.mark.parametrize("unit", UNITS)
-def test_both_use_the_same_user_data_and_settings(unit: str) -> None:
-    lines = (DEPLOY / f"{unit}.service").read_text().splitlines()
-    for line in (
-        "User=heliopanel",
-        "StateDirectory=heliopanel",
-        "UMask=0077",
-        "CapabilityBoundingSet=",
-        "Environment=HELIOPANEL_DATA_DIR=/var/lib/heliopanel",
-        "Environment=HELIOPANEL_CONFIG=/etc/heliopanel/heliopanel.toml",
-        "RestartPreventExitStatus=2",
-    ):
-        assert line in lines
+BOTH = {
+    "User=heliopanel",
+    "StateDirectory=heliopanel",
+    "UMask=0077",
+    "CapabilityBoundingSet=",
+    "Environment=HELIOPANEL_DATA_DIR=/var/lib/heliopanel",
+    "Environment=HELIOPANEL_CONFIG=/etc/heliopanel/heliopanel.toml",
+    "RestartPreventExitStatus=2",
+}
+CONTROLLER = {
+    "SupplementaryGroups=dialout",
+    "DeviceAllow=char-tty* rw",
+    "RuntimeDirectory=heliopanel",
+    "RuntimeDirectoryMode=0700",
+    "RuntimeDirectoryPreserve=yes",
+}
 
 
-def test_serial_ports_are_the_controllers_alone() -> None:
-    machine, web = ((DEPLOY / f"{unit}.service").read_text() for unit in UNITS)
-    assert "SupplementaryGroups=dialout\n" in machine
-    assert "DeviceAllow=char-tty* rw\n" in machine
-    assert "PrivateDevices=yes\n" in web
-
-
-def test_what_is_kept_in_memory_is_the_controllers_and_outlives_it() -> None:
-    lines = (DEPLOY / "heliopanel-controller.service").read_text().splitlines()
-    for line in ("RuntimeDirectory=heliopanel", "RuntimeDirectoryMode=0700", "RuntimeDirectoryPreserve=yes"):
-        assert line in lines
+def test_each_has_the_lines_that_others_rely_on() -> None:
+    """Serial ports, and what is kept in memory and outlives its process, are the controller's alone."""
+    controller, web = (set((DEPLOY / f"{unit}.service").read_text().splitlines()) for unit in UNITS)
+    assert controller >= BOTH | CONTROLLER
+    assert web >= BOTH | {"PrivateDevices=yes"}
+    assert not web & CONTROLLER
