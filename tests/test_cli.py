@@ -100,20 +100,6 @@ def test_a_simulated_day_as_csv_and_parquet(
     assert (code, "name it .csv or .parquet" in err) == (2, True)
 
 
-def test_a_simulated_show_of_a_day_and_one_that_is_too_fast(run: Run, tmp_path: Path) -> None:
-    day = [*SAMSUN, "--date", "2026-06-21", "--time-zone", "Europe/Istanbul"]
-    table = tmp_path / "show.csv"
-
-    assert run("simulate", *day, "--show-minutes", "3", "--out", str(table))[0] == 0
-    code, _, err = run("simulate", *day, "--show-minutes", "0.3", "--out", str(tmp_path / "fast.csv"))
-
-    with table.open(encoding="utf-8", newline="") as file:
-        assert len(list(csv.DictReader(file))) == 1800
-    assert code == 2
-    assert "too fast" in err
-    assert not (tmp_path / "fast.csv").exists()
-
-
 def test_backup_and_restore_bring_a_site_back(
     run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -123,14 +123,9 @@ def test_a_library_that_is_not_locked_is_found() -> None:
     text, known = (ROOT / "requirements.txt").read_text(), installed("requirements.txt")
     computer = next(computers())
     whole = locked(text, computer)
-    for left_out in ("psycopg-binary", "starlette", "numpy"):
-        lock = {name: version for name, version in whole.items() if name != left_out}
-        unmet, _ = missing(RUNTIME, lock, known, computer)
-        assert unmet
-        assert all(f"requires {left_out}" in one for one in unmet), unmet
+    lock = {name: version for name, version in whole.items() if name != "psycopg-binary"}
+    unmet, _ = missing(RUNTIME, lock, known, computer)
+    assert unmet
+    assert all("requires psycopg-binary" in one for one in unmet), unmet
     unmet, _ = missing(RUNTIME, whole | {"starlette": "0.1"}, known, computer)
     assert [one for one in unmet if one.startswith("fastapi requires starlette")]
-
-
-def test_every_lock_of_the_project_is_known() -> None:
-    assert {path.name for path in ROOT.glob("requirements*.txt")} == LOCKS.keys()

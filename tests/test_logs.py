@@ -9,7 +9,6 @@ from typing import Literal
 import pytest
 
 from app.base.logs import get_logger, set_up_logs
-from tests.captured_logs import capture_logs
 
 
 @pytest.fixture(autouse=True)
@@ -68,13 +67,3 @@ def test_what_json_does_not_know_is_told_as_python_writes_it() -> None:
     stream = told_by("json")
     get_logger().info("seen", at=frozenset({1}))
     assert json.loads(stream.getvalue())["at"] == "frozenset({1})"
-
-
-def test_only_what_the_level_asks_for_is_told() -> None:
-    stream = told_by("text")
-    get_logger().debug("detail")
-    get_logger().error("fault")
-    assert ["fault" in line for line in stream.getvalue().splitlines()] == [True]
-    with capture_logs() as lines:
-        get_logger().debug("detail", value=1)
-    assert lines == [{"event": "detail", "log_level": "debug", "value": 1}]

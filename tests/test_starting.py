@@ -12,13 +12,10 @@ import pytest
 
 from app.base.build import VERSION
 from app.base.certificates import SERVER, SERVER_KEY, init
-from app.base.errors import Foreseen
 from app.base.settings import SettingsWrong
 from app.machine import starting
 from app.machine.starting import as_service, check_data_dir
-from app.store.connections import parse_url
 from app.store.migrations import upgrade
-from app.store.store import StoreFailed
 from tests.command_line import Run, run
 from tests.e2e.product import COMMAND
 from tests.fake_data import NOON
@@ -191,13 +188,3 @@ def test_a_fault_of_a_running_service_is_no_wrong_setting(
         raise fault
     assert ended.value.code == 1
     assert str(fault) in capsys.readouterr().err
-
-
-def test_a_database_that_is_away_may_come_back_and_one_that_is_none_may_not() -> None:
-    def code_of(failing: Foreseen) -> int:
-        return failing.exit_code
-
-    with pytest.raises(StoreFailed) as refused:
-        parse_url("nonsense")
-    assert code_of(refused.value) == 2
-    assert code_of(StoreFailed("It cannot be reached.")) == 1
