@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from app.access.roles import Role
 from tests.access.door import Door
 from tests.store.postgres import fresh_database, running_postgres
 
@@ -24,8 +25,15 @@ def database(request: pytest.FixtureRequest) -> str | None:
 
 
 @pytest.fixture
-def door(tmp_path: Path) -> Iterator[Door]:
-    """A door whose users are kept in a file."""
+def new_door(tmp_path: Path) -> Iterator[Door]:
+    """A door without users; they will be kept in a file."""
     door = Door(tmp_path)
     yield door
     door.keeper.close()
+
+
+@pytest.fixture
+async def door(new_door: Door) -> Door:
+    """A door with one user: ada, an administrator."""
+    await new_door.add("ada", Role.ADMINISTRATOR)
+    return new_door

@@ -3,12 +3,15 @@
 from datetime import UTC, datetime
 from pathlib import Path
 
+import pytest
+
 from app.access.accounts import TokenWish
 from app.access.authenticator import Credentials, Keeper
 from app.access.events import AccessEvent
 from app.access.opening import open_keeper
 from app.access.principal import Principal, Via, this_computer
 from app.access.roles import Role
+from app.access.sign_in_errors import WrongPassword
 from app.base.clock import VirtualClock
 from app.base.settings import Settings
 from tests.access.fake_hasher import FakeHasher
@@ -41,6 +44,11 @@ class Door:
 
     async def tries(self, name: str, password: str, address: str = ADDRESS) -> str:
         return await self.keeper.log_in(name, password, address, "test")
+
+    async def fails(self, name: str, address: str = ADDRESS) -> None:
+        """Try a wrong password, and be told that it is wrong."""
+        with pytest.raises(WrongPassword):
+            await self.tries(name, "wrong wrong wrong", address)
 
     def via(self, session_id: str) -> Via:
         return self.keeper.identify(Credentials(ADDRESS, session_id)).via

@@ -25,7 +25,6 @@ def said(event: AccessEvent) -> tuple[str, str, str, str, str, str]:
 
 async def test_every_change_is_recorded_with_who_when_and_what(door: Door) -> None:
     accounts, clock = door.keeper.accounts, door.clock
-    await door.add("Ada", Role.ADMINISTRATOR)
     await door.add("olga", Role.OPERATOR, Role.VIEWER)
     session = await door.tries("olga", PASSWORD)
     clock.advance(timedelta(minutes=1))
@@ -61,7 +60,6 @@ async def test_every_change_is_recorded_with_who_when_and_what(door: Door) -> No
 
 
 async def test_what_is_recorded_is_cut_to_what_its_columns_hold(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     door.keeper.accounts.record(FAR, "network_changed", "c" * 200, START)
     text = door.keeper.accounts.mint(FAR, TokenWish("d" * 64, frozenset(Scope)), START)
     cut, made = (await door.recorded())[-2:]
@@ -72,7 +70,6 @@ async def test_what_is_recorded_is_cut_to_what_its_columns_hold(door: Door) -> N
 
 
 async def test_other_roles_count_at_once_and_nothing_else_of_the_user_changes(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     await door.add("olga", Role.OPERATOR)
     before, session = door.keeper.book.users["olga"], await door.tries("olga", PASSWORD)
     assert (before.created_at, before.changed_at) == (START, START)
@@ -88,7 +85,6 @@ async def test_other_roles_count_at_once_and_nothing_else_of_the_user_changes(do
 
 
 async def test_a_password_that_is_made_of_the_users_name_is_refused_however_it_is_typed(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     await door.add("mirabelle", Role.VIEWER)
     for typed in ("mirabelle", "MIRABELLE"):
         with pytest.raises(AccessRefused, match="is easy to guess"):
@@ -98,7 +94,6 @@ async def test_a_password_that_is_made_of_the_users_name_is_refused_however_it_i
 
 
 async def test_a_new_password_keeps_the_session_that_it_was_changed_in(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     here, elsewhere = await door.tries("ada", PASSWORD), await door.tries("ada", PASSWORD)
     door.clock.advance(timedelta(minutes=2))
     await door.keeper.change_own_password(door.who(here), PASSWORD, OTHER)
@@ -113,13 +108,13 @@ async def test_a_new_password_keeps_the_session_that_it_was_changed_in(door: Doo
 
 
 async def test_the_first_user_is_an_administrator_and_the_last_one_stays(
-    door: Door,
+    new_door: Door,
 ) -> None:
-    accounts = door.keeper.accounts
+    accounts = new_door.keeper.accounts
     with pytest.raises(AccessRefused, match="first user"):
-        await door.add("olga", Role.OPERATOR)
-    await door.add("ada", Role.ADMINISTRATOR)
-    await door.add("olga", Role.OPERATOR)
+        await new_door.add("olga", Role.OPERATOR)
+    await new_door.add("ada", Role.ADMINISTRATOR)
+    await new_door.add("olga", Role.OPERATOR)
     with pytest.raises(AccessRefused, match="at least one administrator"):
         accounts.set_roles(HERE, "ada", {Role.VIEWER}, START)
     with pytest.raises(AccessRefused, match="at least one administrator"):
@@ -127,14 +122,13 @@ async def test_the_first_user_is_an_administrator_and_the_last_one_stays(
     accounts.remove(HERE, "olga", START)
     with pytest.raises(AccessRefused, match="at least one administrator"):
         accounts.remove(HERE, "ada", START)
-    await door.keeper.do(lambda: accounts.remove(HERE, "ada", START, last=True))
-    assert not door.keeper.book.users
+    await new_door.keeper.do(lambda: accounts.remove(HERE, "ada", START, last=True))
+    assert not new_door.keeper.book.users
     with pytest.raises(AccessRefused, match="There is no user ada"):
         accounts.remove(HERE, "ada", START)
 
 
 async def test_a_removed_user_leaves_no_session_and_no_token(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     await door.add("olga", Role.ENGINEER)
     session = await door.tries("olga", PASSWORD)
     text = await door.mint(TokenWish("hers", READ), door.who(session))
@@ -149,7 +143,6 @@ async def test_a_removed_user_leaves_no_session_and_no_token(door: Door) -> None
     [("a", timedelta(hours=1)), ("a" * 64, timedelta(days=366)), ("  scada  ", timedelta(days=1))],
 )
 async def test_a_token_is_stored_as_it_was_wished(door: Door, name: str, lifetime: timedelta) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     text = await door.mint(TokenWish(name, READ, frozenset({"T1", "T2"}), lifetime))
     token = door.keeper.book.tokens[token_id_of(text) or ""]
     assert (token.name, token.owner, token.digest) == (name.strip(), "local user", digest_of(text))
@@ -177,14 +170,12 @@ async def test_a_token_is_stored_as_it_was_wished(door: Door, name: str, lifetim
 async def test_a_token_that_cannot_be_is_refused_and_not_stored(
     door: Door, wish: TokenWish, why: str
 ) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     with pytest.raises(AccessRefused, match=why):
         await door.mint(wish)
     assert not door.keeper.book.tokens
 
 
 async def test_a_token_ends_when_it_is_revoked_and_when_its_time_is_over(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     texts = [await door.mint(TokenWish(name, READ, lifetime=timedelta(hours=1))) for name in ("one", "two")]
     one, two = (door.keeper.identify(Credentials(ADDRESS, bearer=text)) for text in texts)
     assert door.keeper.current(one) == one

@@ -27,13 +27,11 @@ PIN = "270441"
 
 async def cabinet(door: Door, trackers: frozenset[str] | None = None) -> str:
     """Return the session of a cabinet's panel."""
-    await door.add("ada", Role.ADMINISTRATOR)
     token = await door.mint(TokenWish("gate 3", trackers=trackers, pin=PIN))
     return await door.keeper.log_in_kiosk(f" {token} ", ADDRESS, "panel")
 
 
 async def test_a_person_who_is_let_in_is_known_with_everything_about_them(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     session = await door.keeper.log_in(" ADA ", PASSWORD, "c" * 80, "browser " * 30)
     who, kept = door.who(session), door.keeper.book.sessions[digest_of(session)]
     assert (who.name, who.roles, who.via, who.address) == ("ada", {Role.ADMINISTRATOR}, Via.SESSION, ADDRESS)
@@ -44,7 +42,6 @@ async def test_a_person_who_is_let_in_is_known_with_everything_about_them(door: 
 
 
 async def test_a_session_that_ended_is_nobody_at_the_same_address(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     session = await door.tries("ada", PASSWORD)
     who = door.who(session)
     assert door.keeper.current(who) == who
@@ -57,7 +54,6 @@ async def test_a_session_that_ended_is_nobody_at_the_same_address(door: Door) ->
 
 
 async def test_logging_out_of_no_session_changes_nothing(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     before = len(await door.recorded())
     text = await door.mint(TokenWish("scada", frozenset({Scope.READ})))
     await door.keeper.log_out(door.keeper.identify(Credentials(ADDRESS, bearer=text)))
@@ -66,7 +62,6 @@ async def test_logging_out_of_no_session_changes_nothing(door: Door) -> None:
 
 
 async def test_everybody_sees_and_ends_their_own_sessions_alone(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     await door.add("olga", Role.OPERATOR)
     first = await door.tries("olga", PASSWORD)
     door.clock.advance(timedelta(seconds=1))
@@ -83,7 +78,6 @@ async def test_everybody_sees_and_ends_their_own_sessions_alone(door: Door) -> N
 
 
 async def test_a_program_of_a_persons_name_has_none_of_their_sessions(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     session = await door.tries("ada", PASSWORD)
     text = await door.mint(TokenWish("ada", frozenset({Scope.CONFIG})))
     program = door.keeper.identify(Credentials(ADDRESS, bearer=text))
@@ -94,7 +88,6 @@ async def test_a_program_of_a_persons_name_has_none_of_their_sessions(door: Door
 
 
 async def test_the_password_is_fresh_for_five_minutes_and_typed_again_for_five_more(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     session = await door.tries("ada", PASSWORD)
     assert not is_proven(door.who(session).proven_at, START + PROOF)
     assert door.who(session).may(Permission.ADMINISTER)
@@ -109,7 +102,6 @@ async def test_the_password_is_fresh_for_five_minutes_and_typed_again_for_five_m
 
 async def test_mistakes_in_a_session_are_counted_for_it_alone(door: Door) -> None:
     """So nobody elsewhere waits for them, and they do not wait for mistakes elsewhere."""
-    await door.add("ada", Role.ADMINISTRATOR)
     session = await door.tries("ada", PASSWORD)
     for _ in range(3):
         with pytest.raises(WrongPassword):
@@ -126,7 +118,6 @@ async def test_mistakes_in_a_session_are_counted_for_it_alone(door: Door) -> Non
 
 
 async def test_activity_is_noted_once_a_minute_of_people_who_do_not_rest(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     session = await door.tries("ada", PASSWORD)
 
     def noted() -> timedelta:
@@ -159,10 +150,8 @@ async def test_the_panel_of_a_cabinet_is_its_token(door: Door) -> None:
     door.clock.advance(timedelta(minutes=5) - timedelta(microseconds=1))
     assert door.who(session).may(Permission.OPERATE)
     door.clock.advance(timedelta(microseconds=1))
-    assert (door.who(session).may(Permission.STOP), door.who(session).may(Permission.OPERATE)) == (
-        True,
-        False,
-    )
+    assert door.who(session).may(Permission.STOP)
+    assert not door.who(session).may(Permission.OPERATE)
     door.clock.move_to(START + timedelta(days=90) - timedelta(microseconds=1))
     assert door.via(session) is Via.KIOSK
     assert door.keeper.current(who).via is Via.KIOSK
@@ -172,7 +161,6 @@ async def test_the_panel_of_a_cabinet_is_its_token(door: Door) -> None:
 
 
 async def test_what_is_no_token_of_a_cabinet_opens_none(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     lifetime = timedelta(hours=1)
     program = await door.mint(TokenWish("scada", frozenset({Scope.READ})))
     panel = await door.mint(TokenWish("gate 3", lifetime=lifetime, pin=PIN))
@@ -193,7 +181,6 @@ async def test_what_is_no_token_of_a_cabinet_opens_none(door: Door) -> None:
 
 async def test_an_old_secret_of_a_token_with_the_same_id_opens_nothing(door: Door) -> None:
     """Its checksum is right: only the digest tells."""
-    await door.add("ada", Role.ADMINISTRATOR)
     panel = await door.mint(TokenWish("gate 3", pin=PIN))
     book = door.keeper.book
     (token,) = book.tokens.values()
@@ -224,14 +211,12 @@ async def test_wrong_pins_make_the_panel_wait_and_the_right_one_forgives_them(do
 
 
 async def test_a_person_has_no_pin(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     session = await door.tries("ada", PASSWORD)
     with pytest.raises(AccessRefused, match="A PIN works only on a cabinet display"):
         await door.keeper.step_up(door.who(session), PIN)
 
 
 async def test_a_page_of_whoever_was_there_can_still_stop(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     session = await door.tries("ada", PASSWORD)
     ticket = door.keeper.stop_ticket(door.who(session))
     found = door.keeper.identify(Credentials("10.0.0.7", stop_ticket=ticket))
@@ -245,7 +230,6 @@ async def test_a_page_of_whoever_was_there_can_still_stop(door: Door) -> None:
 
 
 async def test_a_one_shot_ticket_stands_for_whom_it_was_given(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     who = door.who(await door.tries("ada", PASSWORD))
     ticket = door.keeper.ticket(who)
     assert door.keeper.identify(Credentials("10.0.0.7", ticket=ticket)) == who
@@ -253,13 +237,13 @@ async def test_a_one_shot_ticket_stands_for_whom_it_was_given(door: Door) -> Non
 
 
 @pytest.mark.parametrize("address", ["127.0.0.1", "::1"])
-async def test_this_computer_leaves_with_the_first_user(door: Door, address: str) -> None:
-    here = door.keeper.identify(Credentials(address))
+async def test_this_computer_leaves_with_the_first_user(new_door: Door, address: str) -> None:
+    here = new_door.keeper.identify(Credentials(address))
     assert (here.via, here.address) == (Via.LOOPBACK, address)
-    assert door.keeper.current(here) == here
-    await door.add("ada", Role.ADMINISTRATOR)
-    assert door.keeper.current(here) == nobody(address)
-    assert door.keeper.identify(Credentials(address)) == nobody(address)
+    assert new_door.keeper.current(here) == here
+    await new_door.add("ada", Role.ADMINISTRATOR)
+    assert new_door.keeper.current(here) == nobody(address)
+    assert new_door.keeper.identify(Credentials(address)) == nobody(address)
 
 
 async def test_wrong_set_up_codes_make_their_address_wait(tmp_path: Path) -> None:
@@ -281,7 +265,6 @@ async def test_wrong_set_up_codes_make_their_address_wait(tmp_path: Path) -> Non
 
 
 async def test_guesses_are_recorded_one_by_one_until_there_are_too_many(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     for number in range(WRONG_AT_ONCE + 1):
         with pytest.raises(WrongPassword):
             await door.tries(f"user{number}", "wrong wrong wrong", f"10.1.{number // 200}.{number % 200}")
@@ -291,13 +274,11 @@ async def test_guesses_are_recorded_one_by_one_until_there_are_too_many(door: Do
     (left_out,) = door.keeper.refusals.take(door.clock.now())
     assert left_out.result == "1 refusals were not recorded individually."
     door.clock.advance(timedelta(minutes=1))
-    with pytest.raises(WrongPassword):
-        await door.tries("ada", "wrong wrong wrong", "10.2.0.1")
+    await door.fails("ada", "10.2.0.1")
     assert (await door.recorded())[-1].address == "10.2.0.1", "one more a minute"
 
 
 async def test_twenty_may_wait_to_sign_in_and_one_more_is_told_so(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     waiting = [asyncio.create_task(door.tries("ada", PASSWORD)) for _ in range(MOST_WAITING + 1)]
     ends = await asyncio.gather(*waiting, return_exceptions=True)
     assert [type(end) for end in ends] == [str] * MOST_WAITING + [TooManyAtOnce]
@@ -305,7 +286,6 @@ async def test_twenty_may_wait_to_sign_in_and_one_more_is_told_so(door: Door) ->
 
 
 async def test_refusals_and_what_others_wrote_are_looked_at_twice_a_second(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     running = asyncio.create_task(door.keeper.run())
     await asyncio.sleep(0)
     door.keeper.refusals.note("refused", nobody(ADDRESS), "POST /x", "No.", door.clock.now())
@@ -332,7 +312,6 @@ async def _changed(door: Door) -> None:
 
 
 async def test_events_are_told_in_pages_the_newest_first(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     for number in range(5):
         door.keeper.accounts.record(HERE, "network_changed", str(number), START)
     newest = await door.keeper.events(None, 2)
@@ -344,24 +323,19 @@ async def test_events_are_told_in_pages_the_newest_first(door: Door) -> None:
 async def test_guesses_of_many_names_make_their_address_wait_and_of_one_name_every_address(
     door: Door,
 ) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     for name in ("bo", "cy", "di"):
-        with pytest.raises(WrongPassword):
-            await door.tries(name, "wrong wrong wrong", "10.0.0.66")
+        await door.fails(name, "10.0.0.66")
     with pytest.raises(Throttled):
         await door.tries("ed", "wrong wrong wrong", "10.0.0.66")
     for number in (1, 2, 3):
-        with pytest.raises(WrongPassword):
-            await door.tries("ada", "wrong wrong wrong", f"10.0.1.{number}")
-    with pytest.raises(WrongPassword):
-        await door.tries("ada", "wrong wrong wrong", "10.0.2.1")
+        await door.fails("ada", f"10.0.1.{number}")
+    await door.fails("ada", "10.0.2.1")
     with pytest.raises(Throttled):
         await door.tries("ada", PASSWORD, "10.0.2.1")
     assert await door.tries("ada", PASSWORD, "10.0.2.2"), "a first try is always looked at"
 
 
 async def test_a_browser_that_holds_a_session_waits_for_its_own_mistakes_alone(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     held = await door.tries("ada", PASSWORD)
     for _ in range(3):
         with pytest.raises(WrongPassword):
@@ -372,7 +346,6 @@ async def test_a_browser_that_holds_a_session_waits_for_its_own_mistakes_alone(d
 
 
 async def test_who_was_let_in_is_judged_by_what_they_may_now(door: Door) -> None:
-    await door.add("ada", Role.ADMINISTRATOR)
     await door.add("olga", Role.OPERATOR)
     who = door.who(await door.tries("olga", PASSWORD))
     staying = asyncio.create_task(door.keeper.until_gone(who))
