@@ -71,8 +71,12 @@ class Desk:
         self.changes.extend(turned[1])
 
 
-def test_an_alarm_is_raised_seen_and_over() -> None:
-    desk = Desk()
+@pytest.fixture
+def desk() -> Desk:
+    return Desk()
+
+
+def test_an_alarm_is_raised_seen_and_over(desk: Desk) -> None:
     desk.see(of("drive_fault"))
     assert desk.state("drive_fault@T1") is AlarmState.UNACKNOWLEDGED
     assert desk.book.alarms["drive_fault@T1"].raised_at == desk.at
@@ -84,8 +88,7 @@ def test_an_alarm_is_raised_seen_and_over() -> None:
     assert desk.happened("drive_fault@T1") == [Happened.RAISED, Happened.ACKNOWLEDGED, Happened.RETURNED]
 
 
-def test_one_that_returns_unseen_waits_to_be_acknowledged() -> None:
-    desk = Desk()
+def test_one_that_returns_unseen_waits_to_be_acknowledged(desk: Desk) -> None:
     desk.see(of("drive_fault"))
     desk.see(for_s=4)
     assert desk.state("drive_fault@T1") is AlarmState.RETURNED
@@ -97,8 +100,7 @@ def test_one_that_returns_unseen_waits_to_be_acknowledged() -> None:
     assert desk.state("drive_fault@T1") is AlarmState.NORMAL
 
 
-def test_it_lasts_for_its_delay_before_it_is_raised_and_before_it_returns() -> None:
-    desk = Desk()
+def test_it_lasts_for_its_delay_before_it_is_raised_and_before_it_returns(desk: Desk) -> None:
     desk.see(of("drive_lost"), for_s=3)
     assert desk.state("drive_lost@T1") is AlarmState.NORMAL
     desk.see(for_s=0.5)
@@ -112,8 +114,7 @@ def test_it_lasts_for_its_delay_before_it_is_raised_and_before_it_returns() -> N
     assert desk.happened("drive_lost@T1") == [Happened.RAISED]
 
 
-def test_a_shelved_alarm_comes_back_by_itself() -> None:
-    desk = Desk()
+def test_a_shelved_alarm_comes_back_by_itself(desk: Desk) -> None:
     desk.see(of("disk_full", None), for_s=4)
     desk.shelve("disk_full", "Gu\u0308nes\u0327\u00a0K.", timedelta(minutes=1))
     shelf = desk.book.alarms["disk_full"].shelf
@@ -139,15 +140,15 @@ def test_a_shelved_alarm_comes_back_by_itself() -> None:
         ("drive_fault", "known", timedelta(seconds=59), "1 minute to 24 hours"),
     ],
 )
-def test_not_everything_is_shelved(code: str, reason: str, duration: timedelta, words: str) -> None:
-    desk = Desk()
+def test_not_everything_is_shelved(
+    desk: Desk, code: str, reason: str, duration: timedelta, words: str
+) -> None:
     desk.see(of(code), for_s=4)
     with pytest.raises(ValueError, match=words):
         desk.shelve(f"{code}@T1", reason, duration)
 
 
-def test_what_its_cause_explains_is_suppressed_and_announced_if_it_outlasts_it() -> None:
-    desk = Desk()
+def test_what_its_cause_explains_is_suppressed_and_announced_if_it_outlasts_it(desk: Desk) -> None:
     both = (of("drive_lost"), of("operator_needed"))
     desk.see(*both, for_s=5)
     assert desk.state("drive_lost@T1") is AlarmState.UNACKNOWLEDGED
@@ -182,16 +183,14 @@ def marked(desk: Desk) -> set[str]:
     return {one.alarm_id for one in shown(desk)[0] if one.first_out}
 
 
-def test_an_alarm_is_shown_as_the_first_only_where_others_followed() -> None:
-    desk = Desk()
+def test_an_alarm_is_shown_as_the_first_only_where_others_followed(desk: Desk) -> None:
     desk.see(of("encoder_jump"), of("drive_fault", "T2"))
     assert marked(desk) == set(), "of one alarm there is no first"
     desk.see(of("encoder_jump"), of("following_error"), of("drive_fault", "T2"))
     assert marked(desk) == {"encoder_jump@T1"}
 
 
-def test_what_keeps_a_panel_from_its_stow_is_first_and_not_stowed_follows_it() -> None:
-    desk = Desk()
+def test_what_keeps_a_panel_from_its_stow_is_first_and_not_stowed_follows_it(desk: Desk) -> None:
     stuck, unstowed = of("limit_switch"), of("not_stowed")
     desk.see(stuck)
     desk.see(stuck, unstowed, of("not_stowed", "T2"), for_s=4)
@@ -199,8 +198,7 @@ def test_what_keeps_a_panel_from_its_stow_is_first_and_not_stowed_follows_it() -
     assert marked(desk) == {"limit_switch@T1"}
 
 
-def test_a_flood_is_one_more_alarm_and_puts_the_lesser_behind() -> None:
-    desk = Desk()
+def test_a_flood_is_one_more_alarm_and_puts_the_lesser_behind(desk: Desk) -> None:
     many = [of("drive_restarted", f"T{number}") for number in range(11)]
     urgent = [of("not_stowed", f"T{number}") for number in range(60)]
     desk.see(*many[:10])
@@ -222,8 +220,7 @@ def test_a_flood_is_one_more_alarm_and_puts_the_lesser_behind() -> None:
     assert [one.collapsed for one in listed] == [False, *[True] * 11]
 
 
-def test_a_flood_is_over_when_it_has_been_quiet() -> None:
-    desk = Desk()
+def test_a_flood_is_over_when_it_has_been_quiet(desk: Desk) -> None:
     many = [of("drive_restarted", f"T{number}") for number in range(11)]
     desk.see(*many, for_s=2)
     assert desk.book.flood
@@ -233,8 +230,7 @@ def test_a_flood_is_over_when_it_has_been_quiet() -> None:
     assert desk.state("alarm_flood") is AlarmState.RETURNED
 
 
-def test_a_restart_keeps_what_stood_and_forgets_nothing_too_early() -> None:
-    desk = Desk()
+def test_a_restart_keeps_what_stood_and_forgets_nothing_too_early(desk: Desk) -> None:
     desk.see(of("drive_fault"), of("disk_full", None), for_s=4)
     desk.acknowledge("drive_fault@T1")
     again = Desk(now=desk.now + timedelta(minutes=5), book=pages.restored(desk.book.alarms.values()))
@@ -248,8 +244,7 @@ def test_a_restart_keeps_what_stood_and_forgets_nothing_too_early() -> None:
     assert again.happened("drive_fault@T1") == []
 
 
-def test_only_what_lasts_is_kept() -> None:
-    desk = Desk()
+def test_only_what_lasts_is_kept(desk: Desk) -> None:
     desk.see(of("drive_fault"))
     before = desk.book
     desk.see(replace(of("drive_fault"), message="Now it is 7."))
