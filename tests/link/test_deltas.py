@@ -1,6 +1,5 @@
 """Deltas over the link: whatever is gathered, lost or late, the far end has the whole and every event."""
 
-import asyncio
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -8,15 +7,10 @@ from pathlib import Path
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from app.link.client import LinkClient
 from app.link.codec import (
-    Done,
-    Execute,
     Told,
     decode_telling,
-    encode_request,
     encode_telling,
-    read_body,
     told,
 )
 from app.link.messages import Order
@@ -29,7 +23,8 @@ from app.tracker.state.snapshot import ActivityName, ClockState, Event, EventKin
 from app.tracker.values.alarm_words import AlarmCounts, AlarmNow, AlarmState
 from app.tracker.values.mode import Mode
 from app.tracker.values.reason import Reason
-from tests.link.test_link import Link, ScriptedMachine
+from tests.link.test_link import ScriptedMachine, linked
+from tests.patience import eventually
 
 NOON = datetime(2026, 6, 21, 12, tzinfo=UTC)
 CLOCK = ClockState("system", 0.0, True, True, NOON)
@@ -137,29 +132,6 @@ def test_the_far_end_has_the_whole_and_every_event_that_was_not_lost(life: list[
         assert far.numbers == list(range(field.events))
 
 
-def test_an_update_is_encoded_once_and_holds_what_changed() -> None:
-    field = Field(400)
-    field.tell(())
-    near, other = field.outlet.listen(), field.outlet.listen()
-    for listener in (near, other):
-        while listener.take():
-            pass
-    field.tell(("T7",))
-    update = near.take()
-    assert update is other.take(), "the same for all who are not behind, so that it is encoded once"
-    assert update is not None
-    assert [one.tracker_id for one in update.changed] == ["T7"]
-    alone = Field(1)
-    alone.tell(())
-    alone.tell(("T0",))
-    waiting = alone.outlet.listen()
-    assert waiting.take()
-    alone.tell(("T0",))
-    least = waiting.take()
-    assert least is not None
-    assert len(encode_telling(told(update))) <= len(encode_telling(told(least))) + 8
-
-
 @dataclass
 class FieldMachine(ScriptedMachine):
     """A field behind the link; an order changes its tracker and tells nobody before it is answered."""
@@ -180,59 +152,26 @@ async def test_what_an_order_did_is_there_when_it_is_answered_and_its_answer_has
 ) -> None:
     field = Field(200)
     field.tell(())
-    machine = FieldMachine(outlet=field.outlet, field=field)
-    path = tmp_path / "machine.sock"
-    server = LinkServer(machine, path)
-    await server.start()
-    async with LinkClient(path) as client:
-        await Link(machine, server, client, path).until_up()
+    async with linked(FieldMachine(outlet=field.outlet, field=field), tmp_path) as link:
         for number in range(40):
-            answer = await client.execute(Order(Track(), "technician", f"T{number}"))
-            latest = client.latest()
+            answer = await link.client.execute(Order(Track(), "technician", f"T{number}"))
+            latest = link.client.latest()
             assert latest == field.site
             (mine,) = [one for one in answer.trackers if one.tracker_id == f"T{number}"]
             assert mine.actions["track"]
             assert not any(one.actions for one in latest.trackers)
-    await server.close()
-
-
-async def test_what_an_order_changed_is_sent_before_its_answer(tmp_path: Path) -> None:
-    field = Field(1)
-    field.tell(())
-    machine = FieldMachine(outlet=field.outlet, field=field)
-    server = LinkServer(machine, tmp_path / "machine.sock")
-    await server.start()
-    reader, writer = await asyncio.open_unix_connection(tmp_path / "machine.sock")
-    assert isinstance(decode_telling(await read_body(reader)), Told)
-    good_until_s = asyncio.get_running_loop().time() + 10.0
-    writer.write(encode_request(Execute(1, Track(), "technician", "T0", None, None, good_until_s)))
-    effect = decode_telling(await read_body(reader))
-    answer = decode_telling(await read_body(reader))
-    assert isinstance(effect, Told)
-    assert effect.site.trackers == tuple(field.trackers.values())
-    assert isinstance(answer, Done)
-    assert answer.tracker is not None
-    writer.close()
-    await server.close()
 
 
 async def test_who_is_watched_is_told_to_the_machine_again_after_the_link_was_down(tmp_path: Path) -> None:
     machine = ScriptedMachine()
     machine.outlet.publish(Field(1).site)
-    path = tmp_path / "machine.sock"
-    server = LinkServer(machine, path)
-    await server.start()
-    async with LinkClient(path) as client:
-        await Link(machine, server, client, path).until_up()
-        await client.watch(frozenset({"T1"}))
-        await client.ping()
-        await server.close()
-        async with asyncio.timeout(3):
-            async for _ in client.updates():
-                pass
-        again = LinkServer(machine, path)
-        await again.start()
-        await Link(machine, again, client, path).until_up()
-        await client.ping()
-    await again.close()
+    async with linked(machine, tmp_path) as link:
+        await link.client.watch(frozenset({"T1"}))
+        await link.client.ping()
+        await link.server.close()
+        await eventually(lambda: link.client.latest() is None)
+        link.server = LinkServer(machine, link.path)
+        await link.server.start()
+        await link.until_up()
+        await link.client.ping()
     assert machine.watched == [frozenset({"T1"}), frozenset(), frozenset({"T1"}), frozenset()]

@@ -7,14 +7,13 @@ from random import Random
 
 import pytest
 
-from app.link.client import LinkClient
 from app.link.codec import Detailed, Details, decode_telling, encode_telling
 from app.link.details import MOST_AT_ONCE, Received, Sent, answer
 from app.link.messages import MachineUnreachable, SiteDetail, TrackerDetail
 from app.link.server import LinkServer
 from app.tracker.memory.memory import SiteState, TrackerMemory, TrackerState
 from app.tracker.settings.config import TrackerConfig
-from tests.link.test_link import Link, ScriptedMachine, snapshot
+from tests.link.test_link import ScriptedMachine, linked, snapshot
 from tests.patience import eventually
 
 
@@ -97,24 +96,20 @@ class Detailing(ScriptedMachine):
 
 
 async def test_over_the_socket_every_question_gets_the_whole_also_after_a_restart(tmp_path: Path) -> None:
-    machine, path = Detailing(), tmp_path / "machine.sock"
+    machine = Detailing()
     machine.outlet.publish(snapshot(1))
-    server = LinkServer(machine, path)
-    await server.start()
-    async with LinkClient(path) as client:
-        link = Link(machine, server, client, path)
-        await link.until_up()
+    async with linked(machine, tmp_path) as link:
+        client = link.client
         both = await asyncio.gather(client.detail(), client.detail())
         assert both == [machine.told] * 2
         machine.told = replace(machine.told, trackers=machine.told.trackers | {"T7": tracker("T7", "Seven")})
         assert await client.detail() == machine.told
-        await server.close()
+        await link.server.close()
         await eventually(lambda: client.latest() is None)
-        link.server = server = LinkServer(machine, path)
-        await server.start()
+        link.server = LinkServer(machine, link.path)
+        await link.server.start()
         await link.until_up()
         assert await client.detail() == machine.told
         client._details = Fresh()
         with pytest.raises(MachineUnreachable, match="in time"):
             await client.detail()
-    await server.close()
