@@ -2,6 +2,9 @@
 
 from datetime import UTC, datetime, timedelta
 
+from sqlalchemy import text
+
+from app.store.connections import transaction, writing_engine
 from app.sun.position import Location
 from app.tracker.memory.memory import (
     ClockSetting,
@@ -60,3 +63,14 @@ def event(
 ) -> Event:
     data = {"step": "homing", "number": number, "nested": {"angles_deg": [1.5, None]}}
     return Event(NOON + timedelta(seconds=number), kind, tracker_id, f"Event {number}.", "Ayşe", data)
+
+
+def execute(url: str, statement: str) -> object:
+    """Run one statement on a database; return the first value that it found."""
+    engine = writing_engine(url)
+    try:
+        with transaction(engine) as connection:
+            done = connection.execute(text(statement))
+            return done.scalar_one_or_none() if done.returns_rows else None
+    finally:
+        engine.dispose()

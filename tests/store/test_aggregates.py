@@ -4,7 +4,7 @@ from dataclasses import replace
 from datetime import timedelta
 
 import pytest
-from sqlalchemy import insert, text
+from sqlalchemy import insert
 
 from app.base.message import say
 from app.store import documents, tables
@@ -15,33 +15,22 @@ from app.store.writer import SHOWS_KEPT, DatabaseWriter
 from app.tracker.memory.memory import SiteState, TrackerMemory
 from app.tracker.state.snapshot import EventKind
 from app.tracker.weather.simulated_weather import SimulatedStation
-from tests.store.samples import NOON, SITE, event, plan, tracker
+from tests.store.samples import NOON, SITE, event, execute, plan, tracker
 
 ALL = JournalFilter()
 
 
-def test_an_empty_store_has_no_site_and_no_trackers(reader: DatabaseReader) -> None:
-    assert reader.site() is None
-    assert reader.trackers() == []
-    assert reader.journal(ALL) == []
-    assert reader.show("nowhere") is None
-    assert reader.recordings() == []
-
-
-def test_the_site_comes_back_as_it_was(writer: DatabaseWriter, reader: DatabaseReader) -> None:
-    writer.save_site(SiteState())
-    writer.save_site(SITE)
-    assert reader.site() == SITE
-
-
-def test_trackers_come_back_in_the_order_they_were_added(
+def test_site_and_trackers_come_back_in_the_order_they_were_added(
     writer: DatabaseWriter, reader: DatabaseReader
 ) -> None:
+    writer.save_site(SiteState())
+    writer.save_site(SITE)
     for name in ("T2", "T1", "T3"):
         writer.save_tracker(tracker(name))
     changed = replace(tracker("T2"), memory=TrackerMemory())
     writer.save_tracker(changed)
     assert reader.trackers() == [changed, tracker("T1"), tracker("T3")]
+    assert reader.site() == SITE
 
 
 def test_a_removed_tracker_leaves_its_journal(writer: DatabaseWriter, reader: DatabaseReader) -> None:
@@ -51,15 +40,9 @@ def test_a_removed_tracker_leaves_its_journal(writer: DatabaseWriter, reader: Da
     assert [entry.event.kind for entry in reader.journal(ALL)] == ["tracker_removed", "tracker_added"]
 
 
-def test_a_show_is_found_and_replaced_by_its_id(writer: DatabaseWriter, reader: DatabaseReader) -> None:
-    writer.save_show(PlannedShow("T1", plan()))
-    slower = replace(plan(), duration=timedelta(minutes=10))
-    writer.save_show(PlannedShow("T2", slower))
-    assert reader.show("show-1") == PlannedShow("T2", slower)
-
-
 def test_the_oldest_shows_are_forgotten(url: str, writer: DatabaseWriter, reader: DatabaseReader) -> None:
     writer.save_show(PlannedShow("T1", plan("show-0")))
+    writer.save_show(PlannedShow("T2", plan("show-0")))
     engine = writing_engine(url)
     with transaction(engine) as connection:
         others = [
@@ -68,7 +51,7 @@ def test_the_oldest_shows_are_forgotten(url: str, writer: DatabaseWriter, reader
         ]
         connection.execute(insert(tables.shows), others)
     engine.dispose()
-    assert reader.show("show-0") is not None
+    assert reader.show("show-0") == PlannedShow("T2", plan("show-0")), "replaced by its id"
     writer.save_show(PlannedShow("T1", plan("newest")))
     assert reader.show("show-0") is None
     assert reader.show("newest") == PlannedShow("T1", plan("newest"))
@@ -118,22 +101,6 @@ def test_filters_narrow_the_journal(
     assert [entry.event.data["number"] for entry in reader.journal(wanted)] == numbers
 
 
-@pytest.mark.parametrize("statement", ["UPDATE events SET message = 'x'", "DELETE FROM events"])
-def test_the_journal_cannot_be_changed(url: str, writer: DatabaseWriter, statement: str) -> None:
-    writer.append_events([event()])
-    engine = writing_engine(url)
-    with pytest.raises(StoreFailed, match="only ever appended to"), transaction(engine) as connection:
-        connection.execute(text(statement))
-    engine.dispose()
-    assert [entry.event for entry in writer.journal(ALL)] == [event()]
-
-
-def test_text_that_no_database_holds_is_made_plain(writer: DatabaseWriter, reader: DatabaseReader) -> None:
-    writer.append_events([replace(event(), message="before\x00after \ud800", actor="a\x00")])
-    (entry,) = reader.journal(ALL)
-    assert entry.event.message == "before\N{REPLACEMENT CHARACTER}after ?"
-
-
 @pytest.mark.parametrize(("name", "values"), [("Row 6", {"name": "Row 6"}), ("a\x00 \ud800", {})])
 def test_the_journal_keeps_template_and_values_of_a_message(
     writer: DatabaseWriter, reader: DatabaseReader, name: str, values: dict[str, str]
@@ -153,7 +120,6 @@ def test_the_journal_keeps_template_and_values_of_a_message(
             "UPDATE site SET document = '{\"name\": 5}'",
             r"stored site cannot be read \(name: .*Restore a backup",
         ),
-        ("UPDATE site SET document = 'not json'", "stored site cannot be read"),
         ("UPDATE trackers SET document = '{}'", "stored tracker 'T1' cannot be read"),
     ],
 )
@@ -163,45 +129,20 @@ def test_a_document_that_does_not_fit_is_named(
 ) -> None:
     writer.save_site(SITE)
     writer.save_tracker(tracker())
-    engine = writing_engine(url)
-    with transaction(engine) as connection:
-        connection.execute(text(statement))
-    engine.dispose()
+    execute(url, statement)
     with pytest.raises(StoreFailed, match=sentence):
-        _read_all(writer)
+        print(writer.site(), writer.trackers())
 
 
 def test_what_former_versions_called_the_controller_is_found_as_the_controller(
     url: str, writer: DatabaseWriter
 ) -> None:
-    engine = writing_engine(url)
-    with transaction(engine) as connection:
-        connection.execute(
-            text(
-                "INSERT INTO events (at, kind, actor, message, data) "
-                "VALUES (0, 'stopped', 'machine', 'x', '{}')"
-            )
-        )
-    engine.dispose()
+    execute(
+        url, "INSERT INTO events (at, kind, actor, message, data) VALUES (0, 'stopped', 'machine', 'x', '{}')"
+    )
     writer.append_events([event(1, kind=EventKind.STOPPED)])
     found = writer.journal(JournalFilter(actor="controller"))
     assert [entry.event.actor for entry in found] == ["controller"]
-
-
-def test_an_unknown_kind_of_event_is_named(url: str, writer: DatabaseWriter) -> None:
-    engine = writing_engine(url)
-    with transaction(engine) as connection:
-        connection.execute(
-            text("INSERT INTO events (at, kind, actor, message, data) VALUES (0, 'sang', 'm', 'x', '{}')")
-        )
-    engine.dispose()
-    with pytest.raises(StoreFailed, match="Entry 1 of the journal is of the unknown kind 'sang'"):
-        writer.journal(ALL)
-
-
-def _read_all(reader: DatabaseReader) -> None:
-    reader.site()
-    reader.trackers()
 
 
 def test_a_site_that_named_irradiance_light_is_read() -> None:

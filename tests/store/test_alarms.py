@@ -4,13 +4,12 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 import pytest
-from sqlalchemy import text
 
 from app.alarms.alarm import Alarm
-from app.store.connections import transaction, writing_engine
 from app.store.store import AlarmFilter, JournalFilter, KeptAlarm, StoreFailed
 from app.store.writer import DatabaseWriter
 from app.tracker.state.snapshot import Event, EventKind
+from tests.store.samples import execute
 
 NOON = datetime(2027, 6, 21, 9, 0, tzinfo=UTC)
 RAISED = Alarm(
@@ -57,14 +56,9 @@ def test_retention_takes_the_oldest_and_says_so(writer: DatabaseWriter) -> None:
 def test_nothing_young_leaves_the_journal_and_nothing_is_changed(writer: DatabaseWriter, url: str) -> None:
     writer.append_events(events(6))
     writer.prune_history(NOON + timedelta(days=3), note)
-    engine = writing_engine(url)
     for statement in ("DELETE FROM events", "UPDATE events SET message = 'nothing'"):
-        with (
-            pytest.raises(StoreFailed, match=r"only ever appended|refused"),
-            transaction(engine) as connection,
-        ):
-            connection.execute(text(statement))
-    engine.dispose()
+        with pytest.raises(StoreFailed, match=r"only ever appended|refused"):
+            execute(url, statement)
     assert len(writer.journal(JournalFilter())) == 4
 
 

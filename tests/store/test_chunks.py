@@ -19,7 +19,6 @@ from app.store.chunks import (
     decode_all,
     encode,
     encode_all,
-    join,
 )
 from app.tracker.memory.recording import COLUMNS, Frames
 from tests.store.tracked_day import tracked_day
@@ -39,17 +38,13 @@ some_frames = st.integers(1, 40).flatmap(
 
 @given(some_frames)
 def test_frames_come_back_to_the_stated_resolution(values: NDArray[np.float64]) -> None:
-    back = decode(encode(Frames(values))).values
+    chunk = encode(Frames(values))
+    back = decode(chunk).values
     known = np.isfinite(values)
     assert np.array_equal(np.isfinite(back), known)
     off = np.abs(back - values) * SCALE
     assert off[known].max(initial=0.0) <= 0.5 + WIDEST_ROUNDING * 1e3
-
-
-@given(some_frames)
-def test_packing_again_changes_nothing(values: NDArray[np.float64]) -> None:
-    chunk = encode(Frames(values))
-    assert encode(decode(chunk)) == chunk
+    assert encode(Frames(back)) == chunk, "packing again changes nothing"
 
 
 def test_a_day_is_split_into_full_chunks_and_comes_back() -> None:
@@ -60,14 +55,8 @@ def test_a_day_is_split_into_full_chunks_and_comes_back() -> None:
 
 
 def test_a_typical_tracked_day_takes_at_most_two_bytes_a_value() -> None:
-    frames = tracked_day()
+    frames = tracked_day(9000, begin_s=30_000.0)
     assert sum(map(len, encode_all(frames))) <= MOST_BYTES_A_VALUE * frames.values.size
-
-
-def test_random_numbers_still_come_back() -> None:
-    values = np.random.default_rng(3).uniform(-4e12, 4e12, (CHUNK_FRAMES, len(COLUMNS)))
-    values[:, -1] = 3.0
-    np.testing.assert_allclose(decode(encode(Frames(values))).values, values, atol=0.00051, rtol=1e-15)
 
 
 @pytest.mark.parametrize("rows", [0, CHUNK_FRAMES + 1])
@@ -81,11 +70,6 @@ def test_a_number_out_of_all_proportion_is_refused() -> None:
     values[1, 4] = 1e300
     with pytest.raises(ValueError, match="too large to be stored"):
         encode(Frames(values))
-
-
-def test_nothing_joined_is_empty() -> None:
-    assert len(join([])) == 0
-    assert len(decode_all([])) == 0
 
 
 def _packed(body: bytes) -> bytes:

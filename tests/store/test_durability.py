@@ -4,7 +4,7 @@ import multiprocessing
 import random
 import sqlite3
 from collections.abc import Iterator
-from contextlib import closing, contextmanager, suppress
+from contextlib import closing, suppress
 from dataclasses import replace
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -13,17 +13,17 @@ import pytest
 
 from app.store.connections import sqlite_path
 from app.store.engine import open_reader, open_writer
-from app.store.integrity import FIRST_SAFE_SQLITE, sqlite_notice
 from app.store.migrations import upgrade
 from app.store.store import JournalFilter, StoreFailed
 from app.store.writer import DatabaseWriter
+from tests.amount import amount
 from tests.fault_result import FaultResult
 from tests.patience import PATIENCE_S
 from tests.store.samples import SITE, event
 from tests.store.tracked_day import day_info, tracked_day
 
 FORK = multiprocessing.get_context("fork")
-KILLS = {"sqlite": 30, "postgresql": 5}
+KILLS = {"sqlite": amount(6, 30), "postgresql": 3}
 FRAMES_A_COMMIT = 7
 EVERYTHING = JournalFilter(limit=100_000)
 
@@ -75,11 +75,10 @@ def test_no_acknowledged_commit_is_lost_when_the_process_is_killed(url: str) -> 
         assert acknowledged <= in_frames
 
 
-@contextmanager
-def limited(writer: DatabaseWriter, pragma: str) -> Iterator[None]:
+def ask(writer: DatabaseWriter, pragma: str) -> object:
+    """Set or read a pragma on the connection that the writer keeps."""
     with writer._writing.connect() as connection:
-        connection.exec_driver_sql(f"PRAGMA {pragma}")
-    yield
+        return connection.exec_driver_sql(f"PRAGMA {pragma}").scalar()
 
 
 @pytest.fixture
@@ -96,20 +95,18 @@ def test_a_full_disk_is_told_and_nothing_is_half_written(
 ) -> None:
     on_sqlite.save_site(SITE, [event(1)])
     on_sqlite.begin_recording(day_info())
-    with limited(on_sqlite, "max_page_count = 1"):
-        large = replace(SITE, name="x" * 100_000)
-        with pytest.raises(
-            StoreFailed, match=r"The disk is full: nothing was stored\. Free some space"
-        ) as told:
-            on_sqlite.save_site(large, [event(2)])
-        fault.shows(str(told.value))
-        with pytest.raises(StoreFailed, match="The disk is full"):
-            on_sqlite.append_frames("day-1", tracked_day(80_000))
+    ask(on_sqlite, "max_page_count = 1")
+    large = replace(SITE, name="x" * 100_000)
+    with pytest.raises(StoreFailed, match=r"The disk is full: nothing was stored\. Free some space") as told:
+        on_sqlite.save_site(large, [event(2)])
+    fault.shows(str(told.value))
+    with pytest.raises(StoreFailed, match="The disk is full"):
+        on_sqlite.append_frames("day-1", tracked_day(8_000))
     assert on_sqlite.site() == SITE
     assert [entry.event for entry in on_sqlite.journal(EVERYTHING)] == [event(1)]
     assert len(on_sqlite.frames("day-1")) == 0
-    with limited(on_sqlite, "max_page_count = 1000000"):
-        on_sqlite.save_site(large, [event(2)])
+    ask(on_sqlite, "max_page_count = 1000000")
+    on_sqlite.save_site(large, [event(2)])
     assert on_sqlite.site() == large
     fault.recovers("automatic: what waited is stored once there is room")
 
@@ -118,10 +115,8 @@ def test_a_full_disk_is_told_and_nothing_is_half_written(
 def test_a_locked_database_is_told_and_works_again(
     sqlite_url: str, on_sqlite: DatabaseWriter, fault: FaultResult
 ) -> None:
-    with (
-        limited(on_sqlite, "busy_timeout = 20"),
-        closing(sqlite3.connect(str(sqlite_path(sqlite_url)), isolation_level=None)) as other,
-    ):
+    ask(on_sqlite, "busy_timeout = 20")
+    with closing(sqlite3.connect(str(sqlite_path(sqlite_url)), isolation_level=None)) as other:
         other.execute("BEGIN IMMEDIATE")
         with pytest.raises(StoreFailed, match="locked by another program: nothing was stored") as told:
             on_sqlite.save_site(SITE)
@@ -157,21 +152,6 @@ def test_a_damaged_file_is_told_at_the_start(
     fault.shows(str(told.value))
 
 
-def test_a_damaged_table_is_named_at_the_start(sqlite_url: str, on_sqlite: DatabaseWriter) -> None:
-    on_sqlite.append_events([event(1), event(2)])
-    on_sqlite.close()
-    path = Path(str(sqlite_path(sqlite_url)))
-    with closing(sqlite3.connect(path)) as connection:
-        (page,) = connection.execute("SELECT rootpage FROM sqlite_master WHERE name = 'events'").fetchone()
-    with path.open("r+b") as file:
-        file.seek((page - 1) * 4096 + 8)
-        places = file.read(4)
-        file.seek(-4, 1)
-        file.write(places[2:] + places[:2])
-    with pytest.raises(StoreFailed, match=r"is damaged \(table events\)\. Restore a backup"):
-        open_writer(sqlite_url)
-
-
 def test_a_file_that_is_no_database_is_told_at_the_start(sqlite_url: str) -> None:
     Path(str(sqlite_path(sqlite_url))).write_bytes(b"This is not a database at all. " * 400)
     for opening in (open_writer, upgrade):
@@ -191,13 +171,9 @@ def test_after_damage_nothing_more_is_written(sqlite_url: str, on_sqlite: Databa
         on_sqlite.append_events([])
 
 
-@pytest.mark.parametrize(
-    ("pragma", "value"),
-    [("journal_mode", "wal"), ("synchronous", 2), ("foreign_keys", 1), ("busy_timeout", 3000)],
-)
-def test_the_writer_is_set_up_for_power_cuts(on_sqlite: DatabaseWriter, pragma: str, value: object) -> None:
-    with on_sqlite._writing.connect() as connection:
-        assert connection.exec_driver_sql(f"PRAGMA {pragma}").scalar_one() == value
+def test_the_writer_is_set_up_for_power_cuts(on_sqlite: DatabaseWriter) -> None:
+    wanted = {"journal_mode": "wal", "synchronous": 2, "foreign_keys": 1, "busy_timeout": 3000}
+    assert {pragma: ask(on_sqlite, pragma) for pragma in wanted} == wanted
 
 
 def test_a_reader_cannot_write(sqlite_url: str, on_sqlite: DatabaseWriter) -> None:
@@ -205,9 +181,3 @@ def test_a_reader_cannot_write(sqlite_url: str, on_sqlite: DatabaseWriter) -> No
     with reader._reading.connect() as connection, pytest.raises(Exception, match="readonly database"):
         connection.exec_driver_sql("INSERT INTO site VALUES (9, '{}')")
     reader.close()
-
-
-def test_an_old_sqlite_is_worth_a_line_in_the_log() -> None:
-    notice = sqlite_notice()
-    assert (notice is None) == (sqlite3.sqlite_version_info >= FIRST_SAFE_SQLITE)
-    assert notice is None or "writes through one connection only" in notice
