@@ -130,6 +130,15 @@ def test_a_shelved_alarm_comes_back_by_itself(desk: Desk) -> None:
     assert desk.state("disk_full") is AlarmState.NORMAL, "its cause went meanwhile"
 
 
+def test_one_taken_back_from_the_shelf_is_announced_anew(desk: Desk) -> None:
+    desk.see(of("drive_fault"))
+    desk.acknowledge("drive_fault@T1")
+    desk.shelve("drive_fault@T1")
+    desk.unshelve("drive_fault@T1")
+    desk.see(of("drive_fault"))
+    assert desk.state("drive_fault@T1") is AlarmState.UNACKNOWLEDGED
+
+
 @pytest.mark.parametrize(
     ("code", "reason", "duration", "words"),
     [

@@ -62,3 +62,13 @@ def test_place_by_place_the_books_become_what_one_book_becomes(
         assert sorted(parts, key=str) == sorted(changes, key=str)
         assert (books.of(None).flood, books.of(None).raised) == (whole.flood, whole.raised)
         assert books.shown(now, now) == shown(whole, now, now)
+
+
+def test_a_set_clock_moves_the_end_of_a_shelf() -> None:
+    books = Books((), NOON, NOON)
+    books.put("T1", books.look("T1", (condition("encoder_jump", "T1"),), NOON, NOON)[0], NOON, NOON)
+    shelved, _ = pages.shelve(books.of("T1"), "encoder_jump@T1", "ayse", "known", timedelta(minutes=30), NOON)
+    books.put("T1", shelved, NOON, NOON)
+    assert books.shown(NOON, NOON)[0][0].shelved_until == NOON + timedelta(minutes=30)
+    ahead = NOON + timedelta(hours=1)
+    assert books.shown(ahead, NOON)[0][0].shelved_until == ahead + timedelta(minutes=30)

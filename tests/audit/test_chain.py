@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.audit.chain import FIRST, Link, first_break
+from app.audit.chain import FIRST, Link, first_break, link
 from app.audit.difference import difference
 from app.audit.entry import LONGEST, Entry, Sealed, seal, told
 
@@ -32,6 +32,13 @@ def chain(length: int) -> list[Sealed]:
 
 def links(sealed: list[Sealed]) -> list[Link]:
     return [one.link() for one in sealed]
+
+
+def test_a_hash_is_sha256_over_canonical_json() -> None:
+    text = json.dumps(
+        {"b": "ş", "a": 1, "prev_hash": FIRST}, sort_keys=True, separators=(",", ":"), ensure_ascii=False
+    )
+    assert link(FIRST, {"b": "ş", "a": 1}) == hashlib.sha256(text.encode()).hexdigest()
 
 
 def test_an_untouched_chain_holds() -> None:

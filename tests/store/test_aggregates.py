@@ -145,6 +145,12 @@ def test_what_former_versions_called_the_controller_is_found_as_the_controller(
     assert [entry.event.actor for entry in found] == ["controller"]
 
 
+def test_an_unknown_kind_of_event_is_named(url: str, writer: DatabaseWriter) -> None:
+    execute(url, "INSERT INTO events (at, kind, actor, message, data) VALUES (0, 'sang', 'm', 'x', '{}')")
+    with pytest.raises(StoreFailed, match="Entry 1 of the journal is of the unknown kind 'sang'"):
+        writer.journal(ALL)
+
+
 def test_a_site_that_named_irradiance_light_is_read() -> None:
     site = SiteState(simulated_weather=SimulatedStation(irradiance_wm2=300.0))
     former = documents.SITE.write(site).replace("irradiance_wm2", "light_wm2")

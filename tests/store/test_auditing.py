@@ -72,6 +72,14 @@ def test_without_a_change_nothing_more_is_recorded(writer: DatabaseWriter) -> No
     assert writer.audit(AuditFilter()) == []
 
 
+def test_removing_tells_what_was_there(audited: DatabaseWriter) -> None:
+    with audited.audited(replace(ENTRY, action="remove_tracker")):
+        audited.remove_tracker("T0", ())
+    newest = audited.audit(AuditFilter(limit=1))[0].entry
+    assert json.loads(newest.before)["config"]["tracker_id"] == "T0"
+    assert newest.after == "{}"
+
+
 def test_entries_form_a_chain_and_are_found(audited: DatabaseWriter) -> None:
     everything = audited.audit(AuditFilter(after=0))
     assert [one.seq for one in everything] == [1, 2, 3, 4, 5]

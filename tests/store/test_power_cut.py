@@ -12,12 +12,11 @@ from app.store.migrations import upgrade
 from tests.amount import amount
 from tests.fault_result import FaultResult
 from tests.store.committing import ACKNOWLEDGED, RECORDINGS, check
-from tests.store.power_cut import Call, Disk, Recording, record
+from tests.store.power_cut import Disk, Recording, record
 from tests.store.tracked_day import day_info
 
-CUTS = amount(12, 300)
-COMMITS = 60
-PAGE = 4096
+CUTS = amount(8, 300)
+COMMITS = amount(30, 60)
 AS_SHIPPED, OFTEN = 1000, 6
 """Pages after which the log is folded into the file: SQLite's own rule, and often enough to be cut in it."""
 
@@ -77,20 +76,3 @@ def test_the_same_cuts_find_the_loss_of_a_database_that_does_not_sync_every_comm
     lost = lost_after_cuts(recording, tmp_path, CUTS)
     assert sum(count > 0 for count in lost) > CUTS // 3
     print(f"{sum(count > 0 for count in lost)} of {CUTS} cuts lost up to {max(lost)} commits")
-
-
-def test_a_disk_keeps_what_was_synced_and_any_part_of_the_rest() -> None:
-    disk = Disk({"a": b""})
-    disk.do(Call("write", "a", 0, b"1" * PAGE))
-    disk.do(Call("sync", "a"))
-    disk.do(Call("write", "a", 0, b"2" * PAGE))
-    disk.do(Call("create", "b"))
-    chance = Random(1)
-    seen = [disk.cut(chance) for _ in range(200)]
-    assert {"b" in files for files in seen} == {True, False}
-    assert {len(files["a"]) for files in seen} == {PAGE}
-    assert {files["a"][0:1] + files["a"][-1:] for files in seen} == {b"11", b"12", b"21", b"22"}
-    disk.do(Call("sync_folder", ""))
-    disk.do(Call("truncate", "a", 1))
-    disk.do(Call("sync", "a"))
-    assert disk.cut(chance) == {"a": b"2", "b": b""}

@@ -8,7 +8,7 @@ import pytest
 
 from app.access.store import AccessStore
 from app.store.backup.backup import backup
-from app.store.backup.restore import Restored, RestorePending, request_restore
+from app.store.backup.restore import Restored, request_restore
 from app.store.engine import open_reader, open_writer
 from app.store.files import copy_sqlite, keep_all_private
 from app.store.migrations import upgrade
@@ -31,12 +31,14 @@ def rights(folder: Path) -> dict[str, str]:
     }
 
 
-def test_a_new_database_and_its_copies_are_private(sqlite_url: str, tmp_path: Path) -> None:
+def test_a_new_database_its_copies_and_what_a_restore_leaves_are_private(
+    sqlite_url: str, tmp_path: Path
+) -> None:
     upgrade(sqlite_url)
     writer, reader = open_writer(sqlite_url), open_reader(sqlite_url)
     writer.save_site(SITE)
     assert reader.site() == SITE
-    backup(sqlite_url, tmp_path / "backups" / "a.backup")
+    made = backup(sqlite_url, tmp_path / "backups" / "a.backup")
     copy_sqlite(tmp_path / "heliopanel.db", tmp_path / "heliopanel.db.before-0009")
     with AccessStore(f"sqlite:///{tmp_path / 'access.db'}", b"key").writing():
         pass
@@ -45,16 +47,9 @@ def test_a_new_database_and_its_copies_are_private(sqlite_url: str, tmp_path: Pa
     names = {"heliopanel.db", "heliopanel.db-wal", "heliopanel.db-shm", "backups/a.backup", "access.db"}
     assert found.keys() >= {*names, "heliopanel.db.before-0009"}
     assert set(found.values()) == {"600"}
-
-
-def test_what_a_restore_leaves_is_private(sqlite_url: str, tmp_path: Path) -> None:
-    upgrade(sqlite_url)
-    backup(sqlite_url, tmp_path / "a.backup")
-    done = request_restore(tmp_path / "a.backup", sqlite_url, tmp_path, NOON)
-    assert isinstance(done, Restored)
+    assert isinstance(request_restore(made.path, sqlite_url, tmp_path, NOON), Restored)
     (tmp_path / "machine.lock").unlink()
     assert set(rights(tmp_path).values()) == {"600"}
-    assert not isinstance(done, RestorePending)
 
 
 def test_files_of_an_older_version_are_made_private(sqlite_url: str, tmp_path: Path) -> None:

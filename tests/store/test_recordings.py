@@ -14,6 +14,7 @@ from app.store.reader import DatabaseReader
 from app.store.store import StoreFailed
 from app.store.writer import DatabaseWriter
 from app.tracker.memory.recording import COLUMNS, Frames, RecordingInfo, RecordingKind
+from tests.store.samples import execute
 from tests.store.tracked_day import MIDNIGHT, day_info, tracked_day
 
 RESOLUTION = 0.00051
@@ -112,6 +113,13 @@ def test_what_a_crash_left_open_ends_at_its_last_frame(
     assert {info.outcome for info in closed.values()} == {"cut off"}
     assert reader.recording("with frames") == closed["with frames"]
     assert writer.close_open_recordings(restart, "cut off") == []
+
+
+def test_a_deleted_recording_takes_its_frames_with_it(url: str, writer: DatabaseWriter) -> None:
+    writer.save_recording(finished("a", days=0), encode_all(tracked_day(1000)))
+    writer.delete_recording("a")
+    assert execute(url, "SELECT count(*) FROM chunks") == 0
+    assert writer.recording("a") is None
 
 
 def test_retention_keeps_young_days_and_the_newest_others(

@@ -3,12 +3,10 @@
 from datetime import UTC, datetime
 
 import pytest
-from sqlalchemy import text
 
-from app.store.connections import transaction, writing_engine
 from app.store.store import JournalFilter, Photo, RecordHead, StoreFailed
 from app.store.writer import DatabaseWriter
-from tests.store.samples import event
+from tests.store.samples import event, execute
 
 NOON = datetime(2027, 6, 21, 9, 0, tzinfo=UTC)
 
@@ -64,8 +62,6 @@ def test_what_was_signed_can_neither_be_changed_nor_removed(
     writer.add_photo(photo())
     writer.sign_record(head("a" * 64), "{}", [writer.waiting_photos("T1")[0].number], [])
     writer.remove_photo(1)
-    engine = writing_engine(url)
-    with pytest.raises(StoreFailed, match=r"stays as it is|refused"), transaction(engine) as connection:
-        connection.execute(text(statement))
-    engine.dispose()
+    with pytest.raises(StoreFailed, match=r"stays as it is|refused"):
+        execute(url, statement)
     assert len(writer.photos_of(1)) == 1
