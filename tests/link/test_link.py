@@ -129,7 +129,8 @@ class Link:
 
     async def until_up(self) -> None:
         async with asyncio.timeout(3):
-            await anext(aiter(self.client.updates()))
+            async for _ in self.client.updates():
+                return
 
 
 @asynccontextmanager
@@ -290,6 +291,28 @@ async def test_a_mistake_with_what_was_heard_is_logged_and_the_link_comes_back(
         await eventually(lambda: link.client.latest() is None)
         await eventually(lambda: link.client.latest() == snapshot(2))
     assert [line["event"] for line in logs if line["log_level"] == "error"] == ["link_dropped"]
+
+
+async def test_what_cannot_be_told_is_logged_and_the_panel_begins_anew(
+    link: Link, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    encode = link.server._encode
+    mistakes = iter([TypeError("no JSON")])
+
+    def encode_or_fail(update: Update) -> bytes:
+        for mistake in mistakes:
+            raise mistake
+        return encode(update)
+
+    monkeypatch.setattr(LinkServer, "_encode", lambda self, update: encode_or_fail(update))
+    again = LinkServer(link.machine, link.path)
+    with capture_logs() as logs:
+        await link.server.close()
+        await again.start()
+        await link.until_up()
+        await eventually(lambda: link.client.latest() == snapshot(1))
+    assert [line["event"] for line in logs if line["log_level"] == "error"] == ["link_not_told"]
+    await again.close()
 
 
 async def test_stops_of_one_person_never_pile_up_and_those_of_another_wait_for_none(link: Link) -> None:
