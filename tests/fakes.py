@@ -168,12 +168,7 @@ class FakeMachine:
             self._tracker(order.tracker_id).handle(order.command, now, order.actor)  # type: ignore[arg-type]
         else:
             self._site_command(order, now)
-        kinds = {
-            "stop": EventKind.STOPPED,
-            "stop_all": EventKind.STOPPED,
-            "set_location": EventKind.LOCATION_SET,
-        }
-        kind = kinds.get(order.command.kind, EventKind.TRACKER_CHANGED)
+        kind = KINDS.get(order.command.kind, EventKind.TRACKER_CHANGED)
         return Event(now, kind, order.tracker_id, f"Done: {order.command.kind}.", order.actor)
 
     def _site_command(self, order: Order, now: datetime) -> None:  # noqa: C901 - one flat table of cases
