@@ -14,15 +14,15 @@ from tests.store.tracked_day import MIDNIGHT, day_info, tracked_day
 
 
 def a_recording() -> Frames:
-    frames = tracked_day(5_000)
-    assert np.isnan(frames.values[2500]).any()
+    frames = tracked_day(12_000)
+    assert np.isnan(frames.values[6000]).any()
     return frames
 
 
 def test_csv_reads_back() -> None:
     frames = a_recording()
     pieces = list(to_csv(day_info(), frames))
-    assert len(pieces) == 3
+    assert len(pieces) == 4
     rows = list(csv.DictReader(io.StringIO(b"".join(pieces).decode())))
     assert list(rows[0]) == ["time_utc", "sun_time_utc", *COLUMNS]
     assert len(rows) == len(frames)
@@ -32,7 +32,7 @@ def test_csv_reads_back() -> None:
     assert {row["activity"] for row in rows} == {"holding", "tracking"}
     first = datetime.fromisoformat(rows[0]["time_utc"])
     assert abs(first - MIDNIGHT) < timedelta(milliseconds=10)
-    assert rows[2500]["measured_azimuth_deg"] == ""
+    assert rows[6000]["measured_azimuth_deg"] == ""
 
 
 def test_what_is_not_known_is_empty() -> None:
@@ -50,8 +50,8 @@ def test_parquet_reads_back_with_its_head() -> None:
     assert table["measured_azimuth_deg"].null_count == 60
     assert RECORDING.read(table.schema.metadata[HEAD_KEY].decode()) == day_info()
     assert file.metadata.row_group(0).column(0).compression == "ZSTD"
-    noon = table["time_utc"][2500].as_py()
-    assert abs(noon - MIDNIGHT - timedelta(seconds=2500)) < timedelta(milliseconds=10)
+    noon = table["time_utc"][6000].as_py()
+    assert abs(noon - MIDNIGHT - timedelta(seconds=6000)) < timedelta(milliseconds=10)
     assert noon.tzinfo is not None
     assert noon.utcoffset() == timedelta(0)
     assert set(table["activity"].to_pylist()) == {"holding", "tracking"}
