@@ -183,21 +183,21 @@ def newer(path: Path) -> None:
         (lambda path: path.unlink(), "There is no file"),
     ],
 )
+@pytest.mark.parametrize("kind", ["sqlite"])
 @pytest.mark.fault(72)
 def test_what_is_not_a_good_backup_is_refused(
-    sqlite_url: str, tmp_path: Path, spoil: Callable[[Path], None], sentence: str, fault: FaultResult
+    url: str, tmp_path: Path, spoil: Callable[[Path], None], sentence: str, fault: FaultResult
 ) -> None:
-    upgrade(sqlite_url)
-    before = fill(sqlite_url)
-    made = backup(sqlite_url, tmp_path / "backup.db")
+    before = fill(url)
+    made = backup(url, tmp_path / "backup.db")
     spoil(made.path)
     with pytest.raises(StoreFailed, match=sentence) as refused:
-        restore(made.path, sqlite_url, MIDNIGHT)
+        restore(made.path, url, MIDNIGHT)
     fault.prevented("refused before anything is replaced")
     fault.shows(str(refused.value).replace(str(made.path), "FILE"))
     with pytest.raises(StoreFailed, match=sentence):
-        request_restore(made.path, sqlite_url, tmp_path, MIDNIGHT)
-    assert content(sqlite_url) == before
+        request_restore(made.path, url, tmp_path, MIDNIGHT)
+    assert content(url) == before
     assert list(tmp_path.glob("*restoring*")) == []
     assert not (tmp_path / PENDING_NAME).exists()
     fault.recovers("with a good backup")
