@@ -54,20 +54,18 @@ def test_nothing_is_done_at_first() -> None:
     ]
 
 
-def test_the_walk_from_a_blank_tracker_to_tracking() -> None:
-    plant = Plant()
-    plant.tick()
-    assert of(plant) == [DONE, DONE, TO_DO, TO_DO, TO_DO]
-    plant.ask(SetHome())
-    plant.forward(1.0)
-    assert of(plant) == [DONE, DONE, DONE, TO_DO, TO_DO]
-    plant.ask(SelectMode(Mode.AZIMUTH, Orientation(0.0, 5.0)))
-    assert of(plant) == [DONE, DONE, DONE, TO_DO, TO_DO]
-    plant.ask(Move(Orientation(0.0, 5.0)))
-    plant.forward(10.0)
-    assert of(plant) == [DONE, DONE, DONE, DONE, TO_DO]
-    plant.ask(Track())
-    assert of(plant) == [DONE] * 5
+def test_the_walk_from_a_blank_tracker_to_tracking(blank: Plant) -> None:
+    assert of(blank) == [DONE, DONE, TO_DO, TO_DO, TO_DO]
+    blank.ask(SetHome())
+    blank.forward(1.0)
+    assert of(blank) == [DONE, DONE, DONE, TO_DO, TO_DO]
+    blank.ask(SelectMode(Mode.AZIMUTH, Orientation(0.0, 5.0)))
+    assert of(blank) == [DONE, DONE, DONE, TO_DO, TO_DO]
+    blank.ask(Move(Orientation(0.0, 5.0)))
+    blank.forward(10.0)
+    assert of(blank) == [DONE, DONE, DONE, DONE, TO_DO]
+    blank.ask(Track())
+    assert of(blank) == [DONE] * 5
 
 
 def test_a_running_show_is_running_and_a_show_that_waits_is_not() -> None:

@@ -10,23 +10,21 @@ from app.tracker.settings.config import Orientation
 from app.tracker.state.snapshot import ActivityName, EventKind
 from app.tracker.values.mode import Mode
 from app.tracker.values.motion import DriveCommand, Velocity
-from tests.tracker.plant import READY, Plant
+from tests.tracker.plant import Plant
 from tests.tracker.scripted import Scripted
 
 STANDSTILL = DriveCommand(Velocity(0.0), Velocity(0.0))
 
 
-def test_a_drive_that_is_lost_while_it_searches_is_told_to_end_the_search() -> None:
-    script = Scripted()
-    script.tick()
-    script.ask(Home())
-    assert script.reading is not None
-    script.reading = replace(script.reading, homing=True)
-    script.forward(1.0)
-    script.reading = None
-    script.forward(1.0)
-    assert script.happened(EventKind.DRIVE_LOST)
-    assert script.told == STANDSTILL, "a halt alone lets the search go on"
+def test_a_drive_that_is_lost_while_it_searches_is_told_to_end_the_search(blank_script: Scripted) -> None:
+    blank_script.ask(Home())
+    assert blank_script.reading is not None
+    blank_script.reading = replace(blank_script.reading, homing=True)
+    blank_script.forward(1.0)
+    blank_script.reading = None
+    blank_script.forward(1.0)
+    assert blank_script.happened(EventKind.DRIVE_LOST)
+    assert blank_script.told == STANDSTILL, "a halt alone lets the search go on"
 
 
 @pytest.mark.parametrize(
@@ -39,10 +37,8 @@ def test_a_drive_that_is_lost_while_it_searches_is_told_to_end_the_search() -> N
     ],
 )
 def test_a_drive_that_answers_again_tells_what_can_be_known_and_no_more(
-    homed: bool, moved_deg: float, boots: int, code: str, words: str
+    script: Scripted, homed: bool, moved_deg: float, boots: int, code: str, words: str
 ) -> None:
-    script = Scripted(READY)
-    script.tick()
     seen = script.reading
     assert seen is not None
     both = {axis: replace(getattr(seen, axis), homed=True) for axis in ("azimuth", "elevation")}
@@ -60,18 +56,14 @@ def test_a_drive_that_answers_again_tells_what_can_be_known_and_no_more(
     assert code not in {notice.code for notice in script.snapshot.notices}, "it is gone again"
 
 
-def test_an_old_reading_confirms_no_orientation() -> None:
-    script = Scripted(READY)
-    script.tick()
+def test_an_old_reading_confirms_no_orientation(script: Scripted) -> None:
     script.reading = None
     script.forward(1.0)
     script.ask(SelectMode(Mode.FIXED, Orientation(0.0, 0.0)))
     assert StepName.MODE not in script.controller.memory.confirmations
 
 
-def test_a_move_that_another_order_replaces_says_that_it_ended() -> None:
-    plant = Plant(READY)
-    plant.tick()
+def test_a_move_that_another_order_replaces_says_that_it_ended(plant: Plant) -> None:
     plant.ask(Move(Orientation(120.0, 40.0)))
     orders: tuple[Command, ...] = (Move(Orientation(60.0, 30.0)), Park(), Track())
     for number, order in enumerate(orders, start=1):

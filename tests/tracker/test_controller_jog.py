@@ -5,7 +5,6 @@ from datetime import timedelta
 
 import pytest
 
-from app.simulation.faults import Fault, FaultKind
 from app.tracker.commands.commands import CommandRejected, EndJog, Jog, Move, SelectMode, Step, Stop, Track
 from app.tracker.settings.axes import Axis, JogSpeed
 from app.tracker.settings.config import Orientation
@@ -33,129 +32,104 @@ def refusal(plant: Plant, command: Jog) -> list[str]:
     return [reason.code for reason in refused.value.reasons]
 
 
-def test_a_held_key_turns_the_axis_before_any_homing_and_a_released_one_stops_it() -> None:
-    plant = Plant()
-    plant.tick()
-    begun_deg = plant.azimuth_deg
-    hold(plant, "p1", 2.0)
-    assert plant.activity is ActivityName.JOGGING
-    assert plant.azimuth_deg - begun_deg > 4.0
-    assert plant.snapshot.activity_text == "Jogging azimuth east (clockwise), fast"
-    assert "no_soft_limits" in {notice.code for notice in plant.snapshot.notices}
-    assert plant.ask(EndJog("p1")) == [EventKind.JOG_ENDED]
-    assert plant.told.azimuth == HALT
-    plant.forward(1.5)
-    at_rest_deg = plant.azimuth_deg
-    plant.forward(1.0)
-    assert plant.azimuth_deg == at_rest_deg
+def test_a_held_key_turns_the_axis_before_any_homing_and_a_released_one_stops_it(blank: Plant) -> None:
+    begun_deg = blank.azimuth_deg
+    hold(blank, "p1", 2.0)
+    assert blank.activity is ActivityName.JOGGING
+    assert blank.azimuth_deg - begun_deg > 4.0
+    assert blank.snapshot.activity_text == "Jogging azimuth east (clockwise), fast"
+    assert "no_soft_limits" in {notice.code for notice in blank.snapshot.notices}
+    assert blank.ask(EndJog("p1")) == [EventKind.JOG_ENDED]
+    assert blank.told.azimuth == HALT
+    blank.forward(1.5)
+    at_rest_deg = blank.azimuth_deg
+    blank.forward(1.0)
+    assert blank.azimuth_deg == at_rest_deg
 
 
-def test_the_lease_ends_by_itself_and_the_deadline_tells_when() -> None:
-    plant = Plant()
-    plant.tick()
-    plant.ask(press("p1"))
-    assert plant.controller.deadline() == plant.clock.now() + timedelta(milliseconds=240)
-    plant.clock.advance(timedelta(milliseconds=239))
-    plant.tick()
-    assert plant.told.azimuth != HALT
-    plant.clock.advance(timedelta(milliseconds=1))
-    plant.tick()
-    assert plant.told.azimuth == HALT
-    assert plant.controller.deadline() is None
-    assert plant.happened(EventKind.JOG_ENDED)[0].data == {"outcome": "expired"}
+def test_the_lease_ends_by_itself_and_the_deadline_tells_when(blank: Plant) -> None:
+    blank.ask(press("p1"))
+    assert blank.controller.deadline() == blank.clock.now() + timedelta(milliseconds=240)
+    blank.clock.advance(timedelta(milliseconds=239))
+    blank.tick()
+    assert blank.told.azimuth != HALT
+    blank.clock.advance(timedelta(milliseconds=1))
+    blank.tick()
+    assert blank.told.azimuth == HALT
+    assert blank.controller.deadline() is None
+    assert blank.happened(EventKind.JOG_ENDED)[0].data == {"outcome": "expired"}
 
 
-def test_a_lease_is_never_longer_than_240_ms_and_may_be_shorter() -> None:
-    plant = Plant()
-    plant.tick()
-    plant.ask(replace(press("p1"), lease=timedelta(hours=1)))
-    assert plant.controller.deadline() == plant.clock.now() + timedelta(milliseconds=240)
-    plant.ask(replace(press("p1", 1), lease=timedelta(milliseconds=50)))
-    assert plant.controller.deadline() == plant.clock.now() + timedelta(milliseconds=50)
+def test_a_lease_is_never_longer_than_240_ms_and_may_be_shorter(blank: Plant) -> None:
+    blank.ask(replace(press("p1"), lease=timedelta(hours=1)))
+    assert blank.controller.deadline() == blank.clock.now() + timedelta(milliseconds=240)
+    blank.ask(replace(press("p1", 1), lease=timedelta(milliseconds=50)))
+    assert blank.controller.deadline() == blank.clock.now() + timedelta(milliseconds=50)
 
 
-def test_only_a_growing_sequence_renews() -> None:
-    plant = Plant()
-    plant.tick()
-    plant.ask(press("p1", 0))
-    plant.forward(0.1)
-    plant.ask(press("p1", 0))
-    plant.forward(0.1)
-    assert plant.activity is ActivityName.JOGGING
-    plant.forward(0.1)
-    assert plant.activity is ActivityName.HOLDING
+def test_only_a_growing_sequence_renews(blank: Plant) -> None:
+    blank.ask(press("p1", 0))
+    blank.forward(0.1)
+    blank.ask(press("p1", 0))
+    blank.forward(0.1)
+    assert blank.activity is ActivityName.JOGGING
+    blank.forward(0.1)
+    assert blank.activity is ActivityName.HOLDING
 
 
 @pytest.mark.parametrize("ending", ["release", "expiry", "stop", "drive"])
-def test_a_press_that_ended_never_moves_the_axis_again(ending: str) -> None:
-    plant = Plant()
-    plant.tick()
-    plant.ask(press("p1"))
+def test_a_press_that_ended_never_moves_the_axis_again(blank: Plant, ending: str) -> None:
+    blank.ask(press("p1"))
     match ending:
         case "release":
-            plant.ask(EndJog("p1"))
+            blank.ask(EndJog("p1"))
         case "expiry":
-            plant.forward(0.4)
+            blank.forward(0.4)
         case "stop":
-            plant.ask(Stop())
+            blank.ask(Stop())
         case _:
-            plant.cut = True
-            plant.forward(0.3)
-            plant.cut = False
-    plant.forward(2.0)
-    stood_deg = plant.azimuth_deg
-    assert refusal(plant, press("p1", 5)) == ["press_dead"]
-    assert refusal(plant, press("p1", 0)) == ["press_dead"]
-    plant.forward(0.5)
-    assert plant.azimuth_deg == stood_deg
+            blank.cut = True
+            blank.forward(0.3)
+            blank.cut = False
+    blank.forward(2.0)
+    stood_deg = blank.azimuth_deg
+    assert refusal(blank, press("p1", 5)) == ["press_dead"]
+    assert refusal(blank, press("p1", 0)) == ["press_dead"]
+    blank.forward(0.5)
+    assert blank.azimuth_deg == stood_deg
 
 
-def test_a_renewal_after_the_lease_comes_too_late_even_before_a_tick_has_seen_it() -> None:
-    plant = Plant()
-    plant.tick()
-    plant.ask(press("p1"))
-    plant.clock.advance(timedelta(milliseconds=300))
-    assert refusal(plant, press("p1", 1)) == ["press_dead"]
-    plant.tick()
-    assert plant.told.azimuth == HALT
+def test_a_renewal_after_the_lease_comes_too_late_even_before_a_tick_has_seen_it(blank: Plant) -> None:
+    blank.ask(press("p1"))
+    blank.clock.advance(timedelta(milliseconds=300))
+    assert refusal(blank, press("p1", 1)) == ["press_dead"]
+    blank.tick()
+    assert blank.told.azimuth == HALT
 
 
-def test_a_heartbeat_of_a_press_that_began_before_a_restart_moves_nothing() -> None:
-    plant = Plant()
-    plant.tick()
-    assert refusal(plant, press("held since yesterday", 57)) == ["press_dead"]
+def test_a_press_that_is_not_known_is_dead(blank: Plant) -> None:
+    assert refusal(blank, press("held since before a restart", 57)) == ["press_dead"]
+    assert blank.ask(EndJog("p9")) == []
+    assert refusal(blank, press("p9")) == ["press_dead"]
 
 
-def test_ending_an_unknown_press_is_no_error_but_makes_it_dead() -> None:
-    plant = Plant()
-    plant.tick()
-    assert plant.ask(EndJog("p9")) == []
-    assert refusal(plant, press("p9")) == ["press_dead"]
+def test_one_owner_at_a_time_and_a_refused_press_stays_dead(blank: Plant) -> None:
+    blank.ask(press("p1"))
+    assert refusal(blank, press("p2", direction=-1)) == ["busy"]
+    blank.ask(press("p1", 1))
+    blank.ask(EndJog("p1"))
+    assert refusal(blank, press("p2", 1)) == ["press_dead"]
 
 
-def test_one_owner_at_a_time_and_a_refused_press_stays_dead() -> None:
-    plant = Plant()
-    plant.tick()
-    plant.ask(press("p1"))
-    assert refusal(plant, press("p2", direction=-1)) == ["busy"]
-    plant.ask(press("p1", 1))
-    plant.ask(EndJog("p1"))
-    assert refusal(plant, press("p2", 1)) == ["press_dead"]
+def test_a_press_keeps_its_direction(blank: Plant) -> None:
+    blank.ask(press("p1"))
+    assert refusal(blank, press("p1", 1, direction=-1)) == ["press_changed"]
+    blank.tick()
+    assert blank.told.azimuth == HALT
+    assert refusal(blank, press("p1", 2)) == ["press_dead"]
 
 
-def test_a_press_keeps_its_direction() -> None:
-    plant = Plant()
-    plant.tick()
-    plant.ask(press("p1"))
-    assert refusal(plant, press("p1", 1, direction=-1)) == ["press_changed"]
-    plant.tick()
-    assert plant.told.azimuth == HALT
-    assert refusal(plant, press("p1", 2)) == ["press_dead"]
-
-
-def test_a_homed_axis_comes_to_rest_at_its_soft_limit() -> None:
-    plant = Plant(READY)
-    plant.tick()
+def test_a_homed_axis_comes_to_rest_at_its_soft_limit(plant: Plant) -> None:
     hold(plant, "down", 1.0, axis=Axis.AZIMUTH, direction=1)
     plant.forward(2.0)
     hold(plant, "back", 4.0, axis=Axis.AZIMUTH, direction=-1)
@@ -165,17 +139,15 @@ def test_a_homed_axis_comes_to_rest_at_its_soft_limit() -> None:
     plant.ask(press("away", direction=1))
 
 
-def test_an_unhomed_axis_is_stopped_by_its_limit_switch_and_may_only_move_away() -> None:
-    plant = Plant()
-    plant.tick()
+def test_an_unhomed_axis_is_stopped_by_its_limit_switch_and_may_only_move_away(blank: Plant) -> None:
     with pytest.raises(CommandRejected):
-        hold(plant, "down", 10.0, axis=Axis.ELEVATION, direction=-1)
-    assert plant.happened(EventKind.JOG_ENDED)[-1].data == {"outcome": "limit_switch"}
-    plant.forward(1.0)
-    assert refusal(plant, press("on", axis=Axis.ELEVATION, direction=-1)) == ["at_limit_switch"]
-    stood_deg = plant.elevation_deg
-    hold(plant, "away", 1.0, axis=Axis.ELEVATION, direction=1)
-    assert plant.elevation_deg > stood_deg
+        hold(blank, "down", 10.0, axis=Axis.ELEVATION, direction=-1)
+    assert blank.happened(EventKind.JOG_ENDED)[-1].data == {"outcome": "limit_switch"}
+    blank.forward(1.0)
+    assert refusal(blank, press("on", axis=Axis.ELEVATION, direction=-1)) == ["at_limit_switch"]
+    stood_deg = blank.elevation_deg
+    hold(blank, "away", 1.0, axis=Axis.ELEVATION, direction=1)
+    assert blank.elevation_deg > stood_deg
 
 
 def test_without_a_watchdog_in_the_drive_a_jog_is_made_of_bounded_steps() -> None:
@@ -186,13 +158,6 @@ def test_without_a_watchdog_in_the_drive_a_jog_is_made_of_bounded_steps() -> Non
     assert isinstance(told, Position)
     assert 0.0 < told.position_deg - plant.azimuth_deg < 2.0
     assert "no_watchdog" in {notice.code for notice in plant.snapshot.notices}
-
-
-def test_with_a_watchdog_a_jog_is_a_speed() -> None:
-    plant = Plant()
-    plant.tick()
-    plant.ask(replace(press("p1"), speed=JogSpeed.SLOW, direction=-1))
-    assert plant.told.azimuth == Velocity(-CONFIG.azimuth.jog_slow_dps)
 
 
 def test_no_jog_without_a_drive_nor_during_tracking_nor_while_stopping() -> None:
@@ -216,71 +181,38 @@ def test_a_jog_switches_waiting_tracking_off_and_says_so() -> None:
     assert not plant.controller.memory.tracking_on
 
 
-def test_one_lost_reading_does_not_stop_a_jog_but_two_do_and_the_lease_still_counts() -> None:
-    plant = Plant()
-    plant.tick()
-    plant.ask(press("p1"))
-    plant.cut = True
-    plant.forward(0.1)
-    assert isinstance(plant.told.azimuth, Velocity)
-    plant.forward(0.1)
-    assert plant.told.azimuth == HALT
-    plant.cut = False
-    plant.forward(2.0)
-    plant.ask(press("p2"))
-    plant.forward(0.2)
-    plant.cut = True
-    plant.forward(0.1)
-    assert plant.told.azimuth == HALT
-    assert plant.happened(EventKind.JOG_ENDED)[-1].data == {"outcome": "expired"}
+def test_a_lost_reading_does_not_lengthen_the_lease(blank: Plant) -> None:
+    blank.ask(press("p1"))
+    blank.forward(0.2)
+    assert blank.told.azimuth == Velocity(CONFIG.azimuth.jog_fast_dps)
+    blank.cut = True
+    blank.forward(0.1)
+    assert blank.told.azimuth == HALT
+    assert blank.happened(EventKind.JOG_ENDED)[-1].data == {"outcome": "expired"}
 
 
-def test_small_steps_go_before_homing_and_are_bounded() -> None:
-    plant = Plant()
-    plant.tick()
-    begun_deg = plant.elevation_deg
-    assert plant.ask(Step(Axis.ELEVATION, -1.0)) == [EventKind.MOVE_STARTED]
-    assert plant.snapshot.activity_text == "Moving by one increment"
-    plant.forward(3.0)
-    assert plant.elevation_deg == pytest.approx(begun_deg - 1.0, abs=0.05)
-    assert plant.activity is ActivityName.HOLDING
-    plant.ask(Step(Axis.AZIMUTH, 0.1))
-    assert plant.told.elevation == HALT
+def test_small_steps_go_before_homing_and_are_bounded(blank: Plant) -> None:
+    begun_deg = blank.elevation_deg
+    assert blank.ask(Step(Axis.ELEVATION, -1.0)) == [EventKind.MOVE_STARTED]
+    assert blank.snapshot.activity_text == "Moving by one increment"
+    blank.forward(3.0)
+    assert blank.elevation_deg == pytest.approx(begun_deg - 1.0, abs=0.05)
+    assert blank.activity is ActivityName.HOLDING
+    blank.ask(Step(Axis.AZIMUTH, 0.1))
+    assert blank.told.elevation == HALT
     with pytest.raises(CommandRejected, match="up to 5 degrees"):
-        plant.ask(Step(Axis.AZIMUTH, 5.5))
+        blank.ask(Step(Axis.AZIMUTH, 5.5))
     with pytest.raises(CommandRejected, match="up to 5 degrees"):
-        plant.ask(Step(Axis.AZIMUTH, float("nan")))
+        blank.ask(Step(Axis.AZIMUTH, float("nan")))
 
 
-def test_a_step_beyond_a_trusted_soft_limit_is_refused() -> None:
-    plant = Plant(READY)
-    plant.tick()
+def test_a_step_beyond_a_trusted_soft_limit_is_refused(plant: Plant) -> None:
     with pytest.raises(CommandRejected, match="beyond its soft limit"):
         plant.ask(Step(Axis.ELEVATION, -1.0))
     plant.ask(Step(Axis.ELEVATION, 1.0))
 
 
-def test_a_step_that_meets_a_switch_ends() -> None:
-    plant = Plant()
-    plant.tick()
-    plant.drive.inject(Fault(FaultKind.UPPER_LIMIT_STUCK, Axis.AZIMUTH))
-    happened = plant.ask(Step(Axis.AZIMUTH, 1.0))
-    assert happened == [EventKind.MOVE_STARTED, EventKind.LIMIT_REACHED, EventKind.MOVE_ENDED]
-    assert plant.told.azimuth == HALT
-
-
-def test_the_memory_of_dead_presses_is_bounded() -> None:
-    plant = Plant()
-    plant.tick()
-    for number in range(1200):
-        plant.controller.handle(EndJog(f"p{number}"), plant.clock.now())
-    assert refusal(plant, press("p1199")) == ["press_dead"]
-    assert refusal(plant, press("p0", 3)) == ["press_dead"]
-
-
-def test_a_mode_may_be_selected_and_a_move_refused_while_a_key_is_held() -> None:
-    plant = Plant(READY)
-    plant.tick()
+def test_a_mode_may_be_selected_and_a_move_refused_while_a_key_is_held(plant: Plant) -> None:
     plant.ask(press("p1"))
     plant.ask(SelectMode(Mode.DUAL))
     with pytest.raises(CommandRejected, match="being jogged"):

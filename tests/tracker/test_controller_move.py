@@ -1,12 +1,10 @@
 """Modes, orientations, moves and the park position."""
 
 from dataclasses import replace
-from datetime import timedelta
 
 import pytest
 
-from app.simulation.faults import Fault, FaultKind
-from app.tracker.commands.commands import CommandRejected, Home, Move, Park, SelectMode, Step, Stop, Track
+from app.tracker.commands.commands import CommandRejected, Move, Park, SelectMode, Step, Stop, Track
 from app.tracker.memory.memory import Pointing, StepName
 from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import Orientation
@@ -19,9 +17,7 @@ from tests.tracker.scripted import Scripted
 SOUTH = Orientation(180.0, 45.0)
 
 
-def test_a_move_ends_in_position_and_says_so() -> None:
-    plant = Plant(READY)
-    plant.tick()
+def test_a_move_ends_in_position_and_says_so(plant: Plant) -> None:
     assert plant.ask(Move(Orientation(30.0, 20.0))) == [EventKind.MOVE_STARTED]
     plant.forward(1.0)
     shown = plant.snapshot
@@ -40,20 +36,7 @@ def test_a_move_ends_in_position_and_says_so() -> None:
     assert plant.happened(EventKind.MOVE_ENDED)[0].data["outcome"] == "in_position"
 
 
-def test_a_move_can_be_given_another_target_on_its_way() -> None:
-    plant = Plant(READY)
-    plant.tick()
-    plant.ask(Move(Orientation(90.0, 20.0)))
-    plant.forward(2.0)
-    plant.ask(Move(Orientation(5.0, 5.0)))
-    plant.forward(20.0)
-    assert plant.azimuth_deg == pytest.approx(5.0, abs=0.05)
-    assert not plant.happened(EventKind.FAULT_RAISED)
-
-
-def test_parking_goes_to_the_park_position_and_switches_tracking_off() -> None:
-    plant = Plant(READY)
-    plant.tick()
+def test_parking_goes_to_the_park_position_and_switches_tracking_off(plant: Plant) -> None:
     plant.ask(Track())
     plant.forward(1.0)
     assert EventKind.TRACKING_ENDED in plant.ask(Park())
@@ -63,14 +46,12 @@ def test_parking_goes_to_the_park_position_and_switches_tracking_off() -> None:
     assert not plant.controller.memory.tracking_on
 
 
-def test_a_move_needs_a_trusted_zero_and_a_reachable_orientation_and_says_both() -> None:
-    plant = Plant()
-    plant.tick()
+def test_a_move_needs_a_trusted_zero_and_a_reachable_orientation_and_says_both(blank: Plant) -> None:
     with pytest.raises(CommandRejected) as refused:
-        plant.ask(Move(Orientation(10.0, -20.0)))
+        blank.ask(Move(Orientation(10.0, -20.0)))
     assert [reason.code for reason in refused.value.reasons] == ["tracker_not_homed", "beyond_limits"]
     with pytest.raises(CommandRejected, match="cannot face"):
-        plant.ask(Move(Orientation(float("nan"), 10.0)))
+        blank.ask(Move(Orientation(float("nan"), 10.0)))
 
 
 def test_a_correction_that_leads_a_hair_beyond_a_limit_does_not_forbid_an_orientation() -> None:
@@ -80,9 +61,7 @@ def test_a_correction_that_leads_a_hair_beyond_a_limit_does_not_forbid_an_orient
     assert plant.told.elevation == Position(90.0, CONFIG.elevation.speed_dps)
 
 
-def test_a_move_that_does_not_arrive_in_time_is_a_fault() -> None:
-    script = Scripted(READY)
-    script.tick()
+def test_a_move_that_does_not_arrive_in_time_is_a_fault(script: Scripted) -> None:
     script.ask(Move(Orientation(0.2, 0.0)))
     script.forward(6.0)
     assert script.controller.activity is ActivityName.FAULTED
@@ -114,10 +93,8 @@ def test_stop_ends_a_move_at_once_and_is_never_refused() -> None:
     ],
 )
 def test_a_mode_is_confirmed_once_the_panel_holds_what_it_holds(
-    mode: Mode, held: Orientation, there: Orientation
+    plant: Plant, mode: Mode, held: Orientation, there: Orientation
 ) -> None:
-    plant = Plant(READY)
-    plant.tick()
     assert plant.ask(SelectMode(mode, held)) == [EventKind.MODE_SELECTED]
     memory = plant.controller.memory
     assert (memory.mode, memory.orientation) == (mode, held)
@@ -129,20 +106,9 @@ def test_a_mode_is_confirmed_once_the_panel_holds_what_it_holds(
     assert StepName.MODE in plant.controller.memory.confirmations
 
 
-def test_dual_axis_holds_nothing_and_needs_no_move() -> None:
-    plant = Plant(READY)
-    plant.tick()
+def test_dual_axis_holds_nothing_and_needs_no_move(plant: Plant) -> None:
     plant.ask(SelectMode(Mode.DUAL))
     assert StepName.MODE in plant.controller.memory.confirmations
-
-
-def test_a_mode_selected_without_a_zero_is_kept_but_not_confirmed() -> None:
-    plant = Plant()
-    plant.ask(SelectMode(Mode.FIXED, SOUTH))
-    plant.tick()
-    plant.ask(SelectMode(Mode.FIXED, SOUTH))
-    assert plant.controller.memory.mode is Mode.FIXED
-    assert StepName.MODE not in plant.controller.memory.confirmations
 
 
 @pytest.mark.parametrize(
@@ -162,9 +128,7 @@ def test_an_orientation_beyond_the_limits_is_refused(mode: Mode, held: Orientati
     plant.ask(SelectMode(Mode.DUAL, held))
 
 
-def test_the_mode_cannot_change_under_a_tracker_that_tracks() -> None:
-    plant = Plant(READY)
-    plant.tick()
+def test_the_mode_cannot_change_under_a_tracker_that_tracks(plant: Plant) -> None:
     plant.ask(Track())
     with pytest.raises(CommandRejected, match="is tracking"):
         plant.ask(SelectMode(Mode.FIXED, SOUTH))
@@ -178,32 +142,7 @@ def test_the_arrival_of_a_move_without_a_mode_confirms_nothing() -> None:
     assert plant.controller.memory.confirmations == {}
 
 
-def test_no_move_during_a_search_for_the_origin() -> None:
-    script = Scripted(READY)
-    script.tick()
-    script.ask(Home())
-    with pytest.raises(CommandRejected) as refused:
-        script.ask(Move(SOUTH))
-    assert {reason.code for reason in refused.value.reasons} == {"tracker_not_homed", "busy_homing"}
-
-
-def test_a_blocked_axis_is_a_fault_that_is_latched_and_reset() -> None:
-    plant = Plant(READY)
-    plant.tick()
-    plant.ask(Move(SOUTH))
-    plant.forward(2.0)
-    plant.drive.inject(Fault(FaultKind.STALL, Axis.AZIMUTH))
-    plant.forward(5.0)
-    assert plant.controller.memory.fault_code == "following_error"
-    assert plant.snapshot.fault is not None
-    assert "does not follow" in plant.snapshot.fault.message
-    assert plant.clock.now() - plant.happened(EventKind.FAULT_RAISED)[0].at < timedelta(seconds=5)
-    assert plant.snapshot.homed
-
-
-def test_a_small_step_is_no_faster_than_a_jog() -> None:
-    plant = Plant(READY)
-    plant.tick()
+def test_a_small_step_is_no_faster_than_a_jog(plant: Plant) -> None:
     plant.ask(Step(Axis.AZIMUTH, 5.0))
     plant.forward(0.2)
     assert plant.told.azimuth == Position(pytest.approx(5.0), CONFIG.azimuth.jog_fast_dps)

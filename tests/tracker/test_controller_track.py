@@ -13,13 +13,9 @@ from app.tracker.settings.config import NightBehaviour, Orientation, TrackerConf
 from app.tracker.state.snapshot import ActivityName, EventKind, Snapshot
 from app.tracker.values.mode import Mode
 from app.tracker.values.motion import HALT
-from tests.amount import amount
 from tests.fault_result import FaultResult
 from tests.tracker.plant import BLANK, CONFIG, MORNING, READY, SAMSUN, Plant
 from tests.tracker.scripted import Scripted
-
-MINUTE = timedelta(minutes=1)
-EVENING = datetime(2026, 6, 21, 17, 0, tzinfo=UTC)
 
 
 def tracking(
@@ -37,44 +33,19 @@ def tracking(
     return plant.forward(120.0)
 
 
-def worst_off_sun_deg(plant: Plant, seconds: float) -> float:
-    worst = 0.0
-
-    def look() -> None:
-        nonlocal worst
-        worst = max(worst, plant.snapshot.off_sun_deg or 0.0)
-
-    plant.forward(seconds, look, every=10)
-    return worst
-
-
-@pytest.mark.parametrize("period_s", [0.1, 1.0])
-def test_the_panel_stays_within_the_deadband_of_the_sun(period_s: float) -> None:
+def test_the_panel_stays_within_the_deadband_of_the_sun_and_rests_between_its_moves() -> None:
     plant = tracking()
-    plant.period = timedelta(seconds=period_s)
-    assert 0.3 < worst_off_sun_deg(plant, amount(400.0, 1200.0)) < CONFIG.deadband_deg
-
-
-def test_within_the_deadband_the_axes_rest() -> None:
-    plant = tracking()
-    resting = 0
+    off_deg, resting = [], 0
 
     def look() -> None:
         nonlocal resting
+        off_deg.append(plant.snapshot.off_sun_deg or 0.0)
         resting += plant.told.azimuth == HALT and plant.told.elevation == HALT
 
-    plant.forward(600.0, look)
-    assert resting > 560
-    assert plant.snapshot.in_position
+    plant.forward(300.0, look)
+    assert 0.3 < max(off_deg) < CONFIG.deadband_deg
+    assert resting > 270
     assert plant.snapshot.activity_text.startswith("Tracking: next move")
-
-
-def test_a_whole_day_through_the_night_and_into_the_next_morning() -> None:
-    plant = tracking(at=EVENING)
-    plant.period = timedelta(seconds=amount(3, 1))
-    assert worst_off_sun_deg(plant, 12 * 3600.0) < CONFIG.deadband_deg
-    assert not plant.happened(EventKind.FAULT_RAISED)
-    assert plant.snapshot.sun_is_up
 
 
 def test_at_night_the_panel_turns_once_to_where_the_sun_will_rise() -> None:
@@ -88,17 +59,6 @@ def test_at_night_the_panel_turns_once_to_where_the_sun_will_rise() -> None:
     assert [reason.code for reason in shown.waiting] == ["sun_down"]
     assert shown.off_sun_deg is None
     assert not shown.sun_is_up
-
-
-def test_a_range_of_more_than_a_turn_unwinds_at_night_so_that_the_day_needs_none() -> None:
-    wide = replace(CONFIG, azimuth=replace(CONFIG.azimuth, minimum_deg=0.0, maximum_deg=540.0))
-    south = Location(-34.0, 150.0)
-    plant = tracking(config=wide, at=datetime(2026, 12, 21, 12, 0, tzinfo=UTC), location=south)
-    plant.forward(120.0)
-    assert plant.azimuth_deg > 360.0
-    plant.leap(datetime(2026, 12, 21, 17, 0, tzinfo=UTC))
-    plant.period = timedelta(seconds=amount(3, 1))
-    assert worst_off_sun_deg(plant, 16 * 3600.0) < CONFIG.deadband_deg
 
 
 def test_a_range_wound_up_by_day_is_unwound_although_the_panel_faces_the_same_way() -> None:
@@ -128,44 +88,13 @@ def test_other_nights(night: NightBehaviour) -> None:
     assert (plant.snapshot.target is None) == (night is NightBehaviour.HOLD)
 
 
-def test_in_the_polar_night_there_is_no_sunrise_to_turn_to() -> None:
-    plant = tracking(at=datetime(2026, 12, 21, 12, 0, tzinfo=UTC), location=Location(85.0, 20.0))
-    assert plant.dawn is None
-    assert plant.snapshot.activity_text == "Tracking: holding until sunrise"
-
-
-def test_in_the_polar_night_the_panel_parks_all_the_same() -> None:
-    park = replace(CONFIG, night=NightBehaviour.PARK)
-    at = datetime(2026, 12, 21, 12, 0, tzinfo=UTC)
-    plant = tracking(config=park, at=at, location=Location(85.0, 20.0))
-    assert plant.elevation_deg == pytest.approx(90.0, abs=0.05)
-
-
-def test_before_the_first_tick_of_tracking_there_is_no_next_move_yet() -> None:
-    plant = Plant(READY)
-    plant.tick()
-    plant.controller.handle(Track(), plant.clock.now())
-    assert plant.snapshot.activity_text == "Moving to the sun"
-
-
-def test_a_sunrise_in_an_unknown_place_is_approached_from_the_low_end() -> None:
-    script = Scripted(READY)
-    script.sun = SunPosition(10.0, -20.0, -20.0)
-    script.dawn = SunPosition(60.0, 0.0, 0.0)
-    script.tick()
-    script.ask(Track())
-    assert script.snapshot.setpoint is not None
-    assert script.snapshot.setpoint.azimuth_deg == pytest.approx(60.0)
-
-
 def test_azimuth_tracking_holds_its_elevation_and_fixed_tracks_nothing() -> None:
     plant = tracking(replace(READY, mode=Mode.AZIMUTH, orientation=Orientation(0.0, 25.0)))
     assert plant.elevation_deg == pytest.approx(25.0, abs=0.05)
     shown = plant.snapshot
     assert shown.sun is not None
     assert plant.azimuth_deg == pytest.approx(shown.sun.azimuth_deg, abs=CONFIG.deadband_deg)
-    plant = tracking(replace(READY, mode=Mode.FIXED, orientation=Orientation(40.0, 25.0)), at=EVENING)
-    plant.forward(4 * 3600.0)
+    plant = tracking(replace(READY, mode=Mode.FIXED, orientation=Orientation(40.0, 25.0)))
     assert (plant.azimuth_deg, plant.elevation_deg) == pytest.approx((40.0, 25.0), abs=0.05)
     assert plant.snapshot.activity_text == "Tracking: holding the fixed orientation"
 
@@ -187,7 +116,7 @@ def test_a_slow_azimuth_axis_says_that_it_passes_the_zenith(fault: FaultResult) 
     noon = datetime(2026, 6, 10, 11, 45, tzinfo=UTC)
     plant = tracking(config=slow, at=noon, location=Location(23.0, 0.0))
     seen: set[str] = set()
-    plant.forward(1500.0, lambda: seen.add(plant.snapshot.activity_text))
+    plant.forward(1500.0, lambda: seen.add(plant.snapshot.activity_text), every=30)
     assert "Tracking: passing the zenith as fast as the azimuth axis can" in seen
     assert not plant.happened(EventKind.FAULT_RAISED)
     fault.prevented("the aim is led or held within the speed of the axis")
@@ -216,12 +145,6 @@ def test_a_step_saved_for_a_former_location_has_to_be_confirmed_first() -> None:
     plant.tick()
     with pytest.raises(CommandRejected, match="location has changed since step 4, mode"):
         plant.ask(Track())
-
-
-def test_starting_twice_is_starting_once() -> None:
-    plant = tracking()
-    assert plant.ask(Track()) == []
-    assert len(plant.happened(EventKind.TRACKING_STARTED)) == 1
 
 
 def test_after_a_restart_tracking_goes_on_by_itself() -> None:
@@ -273,34 +196,6 @@ def test_rehoming_leaves_the_start_to_the_operator() -> None:
     assert plant.activity is ActivityName.TRACKING
 
 
-def test_a_doubted_clock_holds_the_panel_until_it_is_trusted_again() -> None:
-    plant = tracking()
-    plant.clock_trusted = False
-    plant.forward(3.0)
-    stands_deg = plant.azimuth_deg
-    plant.forward(3600.0)
-    shown = plant.snapshot
-    assert plant.azimuth_deg == stands_deg
-    assert plant.controller.memory.tracking_on
-    assert not shown.in_position
-    assert shown.waiting[0].code == "clock_untrusted"
-    assert "clock" in shown.activity_text
-    assert len(plant.happened(EventKind.TRACKING_INTERRUPTED)) == 1
-    plant.clock_trusted = True
-    plant.forward(60.0)
-    assert plant.snapshot.off_sun_deg is not None
-    assert plant.snapshot.off_sun_deg < plant.controller.config.deadband_deg
-
-
-def test_a_sun_that_is_not_known_holds_the_panel() -> None:
-    script = Scripted(READY)
-    script.tick()
-    script.ask(Track())
-    script.sun = None
-    script.tick()
-    assert script.snapshot.waiting[0].code == "sun_unknown"
-
-
 def test_a_run_that_does_not_arrive_is_a_fault() -> None:
     script = Scripted(READY)
     script.sun = SunPosition(0.9, 0.9, 0.9)
@@ -310,11 +205,13 @@ def test_a_run_that_does_not_arrive_is_a_fault() -> None:
     assert script.controller.memory.fault_code == "move_overdue"
 
 
-def test_stop_switches_tracking_off_for_good() -> None:
+def test_starting_twice_is_starting_once_and_stop_switches_tracking_off_for_good() -> None:
     plant = tracking()
+    assert plant.ask(Track()) == []
+    assert len(plant.happened(EventKind.TRACKING_STARTED)) == 1
     assert plant.ask(Stop()) == [EventKind.TRACKING_ENDED, EventKind.STOPPED]
     assert not plant.controller.memory.tracking_on
-    plant.forward(600.0)
+    plant.forward(30.0)
     assert plant.activity is ActivityName.HOLDING
     assert plant.snapshot.waiting == ()
 
@@ -338,4 +235,4 @@ def test_selecting_a_mode_without_an_orientation_keeps_the_one_there_was() -> No
     plant = Plant(READY)
     plant.ask(SelectMode(Mode.FIXED))
     assert plant.controller.memory.orientation == READY.orientation
-    assert plant.happened(EventKind.MODE_SELECTED)[0].at - MORNING < MINUTE
+    assert plant.happened(EventKind.MODE_SELECTED)[0].data

@@ -116,12 +116,13 @@ def test_a_drive_that_lost_its_power_has_lost_its_zero(witnessed: Witness) -> No
     assert plant.controller.memory.home is None
     assert "tracker_not_homed" in plant.reasons("track") & plant.reasons("stow") & plant.reasons("move")
     assert plant.reasons("jog") == set(), "slow hand motion is the way back"
+    assert [reason.code for reason in plant.snapshot.waiting] == ["drive_restarted"], "one cause, told once"
+    assert plant.controller.memory.tracking_on
+    assert plant.activity is ActivityName.HOLDING
 
 
 @pytest.mark.fault(4)
-def test_slow_replies_end_and_refuse_motion_by_a_held_key(witnessed: Witness) -> None:
-    plant = Plant(READY)
-    plant.tick()
+def test_slow_replies_end_and_refuse_motion_by_a_held_key(plant: Plant, witnessed: Witness) -> None:
     plant.link = LinkQuality(0.05, 0.08)
     plant.forward(0.1)
     assert plant.reasons("jog") == {"link_slow"}
@@ -153,9 +154,7 @@ def test_a_frozen_counter_is_told_from_an_axis_that_stands(witnessed: Witness) -
 
 
 @pytest.mark.fault(12)
-def test_an_axis_that_turns_the_wrong_way_asks_for_its_phases(witnessed: Witness) -> None:
-    plant = Plant(READY)
-    plant.tick()
+def test_an_axis_that_turns_the_wrong_way_asks_for_its_phases(plant: Plant, witnessed: Witness) -> None:
     hurt(plant, FaultKind.WRONG_DIRECTION)
     plant.ask(SOUTH)
     assert witnessed(plant, "wrong_direction", within_s=2.0) <= 2.0
@@ -198,9 +197,9 @@ def test_an_axis_that_creeps_is_told_until_it_rests(witnessed: Witness) -> None:
 
 
 @pytest.mark.fault(16)
-def test_an_axis_that_stops_too_late_is_slow_until_its_stops_are_short(witnessed: Witness) -> None:
-    plant = Plant(READY)
-    plant.tick()
+def test_an_axis_that_stops_too_late_is_slow_until_its_stops_are_short(
+    plant: Plant, witnessed: Witness
+) -> None:
     plant.ask(Move(Orientation(300.0, 45.0)))
     plant.forward(10.0)
     hurt(plant, FaultKind.LONG_STOP)
@@ -252,9 +251,9 @@ def test_one_switch_in_the_range_leaves_the_other_way_free(fault: FaultResult) -
 
 
 @pytest.mark.fault(18)
-def test_a_switch_that_stays_on_is_a_fault_after_the_axis_has_left_it(witnessed: Witness) -> None:
-    plant = Plant(READY)
-    plant.tick()
+def test_a_switch_that_stays_on_is_a_fault_after_the_axis_has_left_it(
+    plant: Plant, witnessed: Witness
+) -> None:
     plant.ask(Move(Orientation(100.0, 20.0)))
     plant.forward(30.0)
     hurt(plant, FaultKind.UPPER_LIMIT_STUCK)
@@ -279,29 +278,28 @@ def test_an_axis_whose_switch_never_comes_is_stopped_beyond_its_soft_limit(witne
 
 @pytest.mark.fault(19)
 def test_a_search_whose_switch_never_comes_ends_with_the_travel_and_says_whose(
+    blank: Plant,
     fault: FaultResult,
 ) -> None:
-    plant = Plant()
-    plant.tick()
-    hurt(plant, FaultKind.LIMIT_DEAD)
-    plant.ask(Home())
-    begun = plant.clock.now()
-    while not plant.happened(EventKind.HOMING_ENDED):
-        assert doing(plant) is ActivityName.HOMING
-        assert plant.clock.now() - begun < timedelta(seconds=120)
-        plant.forward(0.1)
-    (told,) = plant.happened(EventKind.HOMING_ENDED)
-    fault.noticed((plant.clock.now() - begun).total_seconds(), VIRTUAL)
+    hurt(blank, FaultKind.LIMIT_DEAD)
+    blank.ask(Home())
+    begun = blank.clock.now()
+    while not blank.happened(EventKind.HOMING_ENDED):
+        assert doing(blank) is ActivityName.HOMING
+        assert blank.clock.now() - begun < timedelta(seconds=120)
+        blank.forward(0.1)
+    (told,) = blank.happened(EventKind.HOMING_ENDED)
+    fault.noticed((blank.clock.now() - begun).total_seconds(), VIRTUAL)
     fault.shows(told.message)
     assert told.data == {"outcome": "failed"}
     assert "did not find the home switch of the azimuth axis" in told.message
-    assert stands(plant)
-    assert "home_lost" in shown(plant.snapshot)
-    assert "tracker_not_homed" in plant.reasons("track") & plant.reasons("move")
-    plant.drive.end_injected_faults()
-    plant.ask(Home())
-    plant.forward(120.0)
-    assert plant.snapshot.homed
+    assert stands(blank)
+    assert "home_lost" in shown(blank.snapshot)
+    assert "tracker_not_homed" in blank.reasons("track") & blank.reasons("move")
+    blank.drive.end_injected_faults()
+    blank.ask(Home())
+    blank.forward(120.0)
+    assert blank.snapshot.homed
     fault.recovers(HOME_AGAIN)
 
 
@@ -410,9 +408,7 @@ def test_the_word_that_the_area_is_clear_expires_in_mid_move() -> None:
         plant.ask(SOUTH)
 
 
-def test_service_bears_a_name_and_is_left_once() -> None:
-    plant = Plant(READY)
-    plant.tick()
+def test_service_bears_a_name_and_is_left_once(plant: Plant) -> None:
     with pytest.raises(CommandRejected, match="name of 1 to 60"):
         plant.ask(BeginServiceMode("  "))
     with pytest.raises(CommandRejected, match="not in service mode"):
@@ -489,9 +485,7 @@ def test_a_reading_of_the_supply_that_is_not_there_is_no_fault() -> None:
     assert plant.snapshot.fault is None
 
 
-def test_a_slow_key_stays_slow() -> None:
-    plant = Plant(READY)
-    plant.tick()
+def test_a_slow_key_stays_slow(plant: Plant) -> None:
     plant.ask(BeginServiceMode("Ada"))
     plant.forward(1.0)
     plant.ask(ConfirmAreaClear())

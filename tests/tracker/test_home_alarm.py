@@ -49,18 +49,14 @@ def test_undoing_it_raises_no_alarm(memory: object) -> None:
     assert plant.snapshot.homed == (memory is READY)
 
 
-def test_a_drive_that_restarts_raises_the_alarm_at_once() -> None:
-    script = Scripted(READY)
-    script.tick()
+def test_a_drive_that_restarts_raises_the_alarm_at_once(script: Scripted) -> None:
     assert not is_alarmed(script.snapshot)
     script.reading = replace(script.reading, boot_count=script.reading.boot_count + 1)
     script.tick()
     assert is_alarmed(script.snapshot)
 
 
-def test_a_drive_that_restarts_during_homing_raises_it_at_once() -> None:
-    script = Scripted(READY)
-    script.tick()
+def test_a_drive_that_restarts_during_homing_raises_it_at_once(script: Scripted) -> None:
     script.ask(Home())
     assert not is_alarmed(script.snapshot)
     script.reading = replace(script.reading, boot_count=script.reading.boot_count + 1)
@@ -68,9 +64,7 @@ def test_a_drive_that_restarts_during_homing_raises_it_at_once() -> None:
     assert is_alarmed(script.snapshot)
 
 
-def test_a_homing_that_fails_raises_it_at_once() -> None:
-    script = Scripted(READY)
-    script.tick()
+def test_a_homing_that_fails_raises_it_at_once(script: Scripted) -> None:
     script.ask(Home())
     request = script.told.request
     assert request is not None
@@ -80,9 +74,7 @@ def test_a_homing_that_fails_raises_it_at_once() -> None:
     assert is_alarmed(script.snapshot)
 
 
-def test_a_homing_that_is_stopped_raises_it() -> None:
-    script = Scripted(READY)
-    script.tick()
+def test_a_homing_that_is_stopped_raises_it(script: Scripted) -> None:
     script.ask(Home())
     script.ask(Stop())
     assert is_alarmed(script.snapshot)
