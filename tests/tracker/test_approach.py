@@ -11,10 +11,10 @@ from app.tracker.settings.protections import StowName
 from app.tracker.settings.strategy import Continuous, Strategy
 from app.tracker.state.snapshot import ActivityName
 from app.tracker.values.mode import Mode
-from tests.amount import amount
-from tests.tracker.plant import CONFIG, READY, Plant
+from tests.tracker.plant import CONFIG, MORNING, READY, Plant
 
 APPROACH = "Moving to the sun"
+NIGHT = datetime(2026, 6, 21, 20, 0, tzinfo=UTC)
 
 
 def told(plant: Plant) -> tuple[str, bool]:
@@ -30,7 +30,7 @@ def begun(strategy: Strategy | None = None) -> Plant:
     return plant
 
 
-@pytest.mark.parametrize("strategy", [None, Continuous()])
+@pytest.mark.parametrize("strategy", [None, Continuous()], ids=["deadband", "continuous"])
 def test_the_first_approach_is_no_tracking_yet(strategy: Strategy | None) -> None:
     plant = begun(strategy)
     assert plant.snapshot.off_sun_deg is not None
@@ -46,13 +46,13 @@ def test_the_first_approach_is_no_tracking_yet(strategy: Strategy | None) -> Non
         else:
             worst_tracking_deg = max(worst_tracking_deg, shown.off_sun_deg or 0.0)
 
-    plant.forward(120.0, look, every=2)
+    plant.forward(60.0, look, every=5)
     assert told(plant) == ("Tracking", False)
     assert worst_tracking_deg < CONFIG.deadband_deg
 
 
 def test_the_runs_of_every_few_minutes_are_tracking() -> None:
-    plant = begun().forward(120.0)
+    plant = begun().forward(60.0)
     moving = 0
 
     def look() -> None:
@@ -60,48 +60,42 @@ def test_the_runs_of_every_few_minutes_are_tracking() -> None:
         assert told(plant) == ("Tracking", False)
         moving += "moving to the sun" in plant.snapshot.activity_text
 
-    for _ in range(amount(12, 24)):
-        plant.forward(50.0, look, every=5)
+    plant.period = timedelta(seconds=1)
+    plant.forward(300.0, look)
     assert moving > 2
 
 
-def test_after_a_stow_the_way_back_is_an_approach() -> None:
-    plant = begun().forward(120.0)
-    plant.ask(Stow(StowName.WIND))
-    plant.forward(60.0)
-    assert not plant.snapshot.approaching
-    plant.ask(Track())
-    assert told(plant) == (APPROACH, True)
-    plant.forward(120.0)
-    assert told(plant) == ("Tracking", False)
-
-
-def test_after_a_stop_on_the_sun_it_tracks_at_once() -> None:
-    plant = begun().forward(120.0)
+def test_a_target_that_is_far_again_is_approached_anew_and_one_that_is_near_is_not() -> None:
+    plant = begun().forward(60.0)
     plant.ask(Stop())
     plant.forward(2.0)
     plant.ask(Track())
     assert told(plant) == ("Tracking", False)
-
-
-def test_a_target_that_leaps_away_is_approached_anew() -> None:
-    plant = begun().forward(120.0)
+    plant.ask(Stow(StowName.WIND))
+    plant.forward(30.0)
+    assert not plant.snapshot.approaching
+    plant.ask(Track())
+    assert told(plant) == (APPROACH, True)
+    plant.forward(60.0)
+    assert told(plant) == ("Tracking", False)
     plant.leap(plant.clock.now() + timedelta(hours=4))
     plant.forward(1.0)
     assert told(plant) == (APPROACH, True)
 
 
-def test_a_fixed_orientation_is_not_the_sun() -> None:
-    plant = Plant(replace(READY, mode=Mode.FIXED, orientation=Orientation(300.0, 20.0)), watchdog=None)
+@pytest.mark.parametrize(
+    ("mode", "at", "text"),
+    [
+        (Mode.FIXED, MORNING, "Tracking: moving to the fixed orientation"),
+        (Mode.DUAL, NIGHT, "Tracking: the sun is down, going to the night position"),
+    ],
+    ids=["fixed", "night"],
+)
+def test_neither_a_fixed_orientation_nor_the_night_position_is_the_sun(
+    mode: Mode, at: datetime, text: str
+) -> None:
+    plant = Plant(replace(READY, mode=mode, orientation=Orientation(300.0, 20.0)), at=at, watchdog=None)
     plant.tick()
     plant.ask(Track())
     assert not plant.snapshot.approaching
-    assert plant.snapshot.activity_text == "Tracking: moving to the fixed orientation"
-
-
-def test_the_night_position_is_not_the_sun() -> None:
-    plant = Plant(READY, at=datetime(2026, 6, 21, 20, 0, tzinfo=UTC), watchdog=None)
-    plant.tick()
-    plant.ask(Track())
-    assert not plant.snapshot.approaching
-    assert plant.snapshot.activity_text == "Tracking: the sun is down, going to the night position"
+    assert plant.snapshot.activity_text == text
