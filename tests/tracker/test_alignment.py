@@ -41,16 +41,13 @@ def sightings(day: datetime, hours: tuple[float, ...], pointing: Pointing) -> li
     return [sighting(day + timedelta(hours=hour), pointing) for hour in hours]
 
 
-def test_a_panel_on_the_sun_needs_no_explanation() -> None:
-    assert diagnose(sighting(MORNING), SAMSUN) == []
-
-
 @pytest.mark.parametrize(
     ("minutes", "words"), [(12, "12.0 minutes fast"), (-7, "7.0 minutes slow"), (60, "daylight saving")]
 )
 def test_a_wrong_clock_is_named_first_with_its_minutes(minutes: int, words: str) -> None:
     seen = sighting(MORNING, clock_fast=timedelta(minutes=minutes))
     first = diagnose(seen, SAMSUN)[0]
+    assert diagnose(sighting(MORNING), SAMSUN) == []
     assert first.mistake is Mistake.CLOCK
     assert words in first.message
     assert first.residual_deg < 0.01
@@ -92,24 +89,13 @@ def test_a_wrong_zero_is_named_first_with_its_degrees(
     assert words in first.message
 
 
-def test_two_wrong_zeros_are_offered_when_nothing_simpler_explains_it_all() -> None:
-    causes = {cause.mistake for cause in diagnose(sighting(MORNING, Pointing(-9.0, 5.0)), SAMSUN)}
-    assert Mistake.BOTH_ZEROS in causes
-
-
 def test_where_the_declination_is_known_a_compass_is_named_before_a_wrong_zero() -> None:
     seen = sighting(MORNING, Pointing(azimuth_offset_deg=-6.0))
     causes = [cause.mistake for cause in diagnose(seen, SAMSUN, magnetic_declination_deg=6.0)]
     assert causes[:2] == [Mistake.MAGNETIC_NORTH, Mistake.AZIMUTH_ZERO]
 
 
-def test_a_compass_is_not_named_where_the_declination_explains_nothing() -> None:
-    seen = sighting(MORNING, Pointing(azimuth_offset_deg=-6.0))
-    causes = {cause.mistake for cause in diagnose(seen, SAMSUN, magnetic_declination_deg=-6.0)}
-    assert Mistake.MAGNETIC_NORTH not in causes
-
-
-@settings(max_examples=amount(50, 200), deadline=None)
+@settings(max_examples=amount(20, 200), deadline=None)
 @given(
     azimuth_deg=st.floats(-180.0, 179.0),
     elevation_deg=st.floats(-3.0, 3.0),
@@ -148,21 +134,13 @@ def test_noisy_sightings_are_fitted_to_their_noise_and_point_well() -> None:
     assert separation_deg(*right, *to_axes(PLAIN, found, 200.0, 60.0, SCALAR)) < 0.1
 
 
-def test_three_sightings_of_a_short_winter_day_are_enough() -> None:
-    truth = Pointing(3.0, -1.0, 0.8, -0.5)
-    assert fit(sightings(DECEMBER, (6.0, 9.5, 12.5), truth)).lean_north_deg == pytest.approx(0.8, abs=1e-4)
-
-
-@pytest.mark.parametrize("hours", [(9.0, 9.1, 9.2), (5.0, 5.0, 5.0), (6.0, 6.5, 7.0, 7.5)])
+@pytest.mark.parametrize("hours", [(9.0, 9.1, 9.2), (6.0, 6.5, 7.0, 7.5)])
 def test_sightings_of_one_time_of_day_are_refused_with_what_more_to_take(hours: tuple[float, ...]) -> None:
+    with pytest.raises(CommandRejected, match="Three sightings are needed"):
+        fit(sightings(JUNE, hours[:2], Pointing()))
     with pytest.raises(CommandRejected, match="too close together") as refused:
         fit(sightings(JUNE, hours, Pointing(3.0)))
     assert "in the morning, around noon, and in the evening" in refused.value.reasons[0].hint
-
-
-def test_two_sightings_are_too_few() -> None:
-    with pytest.raises(CommandRejected, match="Three sightings are needed"):
-        fit(sightings(JUNE, (5.0, 12.0), Pointing()))
 
 
 def test_a_mast_that_seems_to_fall_over_is_refused() -> None:

@@ -99,15 +99,6 @@ def test_a_clock_that_is_doubted_is_to_be_confirmed_with_its_reasons(told: tuple
     assert clock.reasons[0].code == (told[0].code if told else "clock_untrusted")
 
 
-def test_a_lost_home_is_to_be_done_again_and_says_why() -> None:
-    lost = replace(
-        BLANK, home_lost="The drive of Tracker 1 has restarted.", confirmations={StepName.HOMING: SAVED}
-    )
-    homing = judge(lost, None)[StepName.HOMING]
-    assert homing.status is TO_DO
-    assert "has restarted" in homing.reasons[0].message
-
-
 def test_a_zero_that_cannot_be_read_back_is_not_done() -> None:
     memory = replace(READY, confirmations={StepName.HOMING: SAVED})
     assert judge(memory, None)[StepName.HOMING].reasons[0].code == "drive_unreachable"

@@ -13,7 +13,6 @@ from app.base.angles import separation_deg, wrap180
 from app.sun.position import SunPosition
 from app.sun.trigonometry import ARRAY, SCALAR
 from app.tracker.memory.memory import Pointing
-from app.tracker.mounts.capabilities import ABILITIES
 from app.tracker.mounts.kinematics import angles, direction, followed
 from app.tracker.mounts.mount import aim, mode_direction, sky, to_axes
 from app.tracker.settings.axes import AxisConfig
@@ -150,15 +149,6 @@ def test_an_equatorial_mount_turns_by_hour_angle_and_declination(
     assert found == pytest.approx((hour_angle_deg, declination_deg), abs=1e-6)
 
 
-def test_an_equatorial_mount_holds_the_declination_in_diurnal_tracking() -> None:
-    mount = MountConfig(MountKind.EQUATORIAL, 180.0, 45.0)
-    sun, held = sun_at(220.0, 50.0), Orientation(180.0, 40.0)
-    faced = mode_direction(Mode.AZIMUTH, held, sun, refraction=True, mount=mount)
-    first, second = angles(mount, faced.azimuth_deg, faced.elevation_deg, SCALAR)
-    assert first == pytest.approx(angles(mount, 220.0, 50.0, SCALAR)[0])
-    assert second == pytest.approx(-5.0)
-
-
 @pytest.mark.parametrize(
     ("azimuth_deg", "elevation_deg", "rotation_deg"),
     [(90.0, 30.0, -60.0), (270.0, 30.0, 60.0), (180.0, 20.0, 0.0), (135.0, 45.0, -35.26438968)],
@@ -168,13 +158,6 @@ def test_a_level_axis_to_the_south_rolls_from_east_to_west(
 ) -> None:
     found = angles(MountConfig(MountKind.HORIZONTAL_SINGLE_AXIS), azimuth_deg, elevation_deg, SCALAR)
     assert found == pytest.approx((rotation_deg, 0.0))
-
-
-def test_an_upright_axis_keeps_the_tilt_of_its_panel() -> None:
-    mount = MountConfig(MountKind.VERTICAL_SINGLE_AXIS, 180.0, panel_tilt_deg=30.0)
-    faced = mode_direction(Mode.AZIMUTH, HELD, sun_at(100.0, 12.0), refraction=True, mount=mount)
-    assert (faced.azimuth_deg, faced.elevation_deg) == pytest.approx((100.0, 60.0))
-    assert aim(tracker(mount), LEVEL, faced, 0.0).azimuth_deg == pytest.approx(-80.0)
 
 
 @given(st.floats(-170.0, 170.0), st.floats(1.0, 89.0), st.floats(0.0, 180.0))
@@ -208,18 +191,3 @@ def test_over_the_top_of_a_leaning_mast_the_azimuth_axis_does_not_turn_over(
     faced = sky(tracker(MountConfig()), lean, first_deg, second_deg)
     wanted = (azimuth_deg + 180.0, 180.0 - elevation_deg)
     assert separation_deg(*wanted, faced.azimuth_deg, faced.elevation_deg) < 1e-6
-
-
-def test_rows_belong_to_level_and_tilted_axes_only() -> None:
-    with pytest.raises(ValueError, match="remove the rows"):
-        MountConfig(MountKind.EQUATORIAL, rows=Rows(0.4))
-    with pytest.raises(ValueError, match="Ground coverage ratio must be"):
-        Rows(0.0)
-
-
-def test_the_table_of_abilities_agrees_with_the_mounts() -> None:
-    for kind, known in ABILITIES.items():
-        mount = MountConfig(kind)
-        assert (known.second is None) == mount.single_axis
-        assert (Mode.DUAL in known.modes) != mount.single_axis
-    assert set(ABILITIES) == set(MountKind)

@@ -44,13 +44,13 @@ def takes(plant: Plant, command: Command) -> bool:
 def test_no_random_move_enters_the_region(plant: Plant) -> None:
     chance = Random(25)
     refused = 0
-    for _ in range(40):
+    for _ in range(20):
         place = Orientation(chance.uniform(0.0, 120.0), chance.uniform(0.0, 90.0))
         refused += not takes(plant, Move(place))
         for _ in range(chance.choice([5, 20, 100])):
             plant.forward(0.1)
             assert not is_in(plant)
-    assert 5 < refused < 35, "some ways are free and some are not"
+    assert 2 < refused < 18, "some ways are free and some are not"
 
 
 @pytest.mark.fault(25)
@@ -84,10 +84,3 @@ def test_the_way_round_is_free(plant: Plant) -> None:
     plant.ask(Move(Orientation(110.0, 85.0)))
     plant.forward(40.0)
     assert plant.azimuth_deg == pytest.approx(110.0, abs=0.1)
-
-
-def test_a_region_needs_three_corners_and_a_name_of_its_own() -> None:
-    with pytest.raises(ValueError, match="3 to 20 corners"):
-        Region("line", (Corner(0.0, 0.0), Corner(1.0, 1.0)))
-    with pytest.raises(ValueError, match="needs a unique name"):
-        MachineProtection(regions=(WALL, WALL))

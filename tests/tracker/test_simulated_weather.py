@@ -41,18 +41,10 @@ def test_the_same_seed_makes_the_same_weather_and_another_one_another(scenario: 
 
 
 def test_gusts_by_hand_exceed_the_mean_by_at_most_the_gustiness() -> None:
-    winds = told(SimulatedStation(wind_mps=10.0, gustiness_pct=40.0), "wind_mps", of=range(3600))
+    winds = told(SimulatedStation(wind_mps=10.0, gustiness_pct=40.0), "wind_mps", of=range(900))
     assert mean(winds) == pytest.approx(10.0, abs=0.2)
     assert 12.5 < max(winds) <= 14.0
     assert 6.0 <= min(winds) < 7.5
-
-
-def test_a_value_that_is_set_by_hand_trembles_as_a_sensor_that_works_does() -> None:
-    station = SimulatedStation(wind_mps=8.0, gustiness_pct=0.0, irradiance_wm2=500.0)
-    winds, lights = (told(station, name, of=range(60)) for name in ("wind_mps", "irradiance_wm2"))
-    assert len(set(winds)) == len(set(lights)) == 60
-    assert max(abs(wind - 8.0) for wind in winds) <= 0.08
-    assert max(abs(light - 500.0) for light in lights) <= 5.0
 
 
 def test_a_storm_comes_and_goes() -> None:
@@ -71,10 +63,10 @@ def test_snow_falls_and_slides_off() -> None:
 
 def test_clouds_pass_and_a_dark_bank_covers_the_sun_for_twenty_minutes() -> None:
     clear_wm2 = clear_irradiance_wm2(60.0)
-    light = told(SimulatedStation(Scenario.CLOUDS), "irradiance_wm2", of=range(3600))
-    assert max(light[300:1800]) / min(light[300:1800]) > 1.8
-    assert max(light[1980:3180]) < 0.02 * clear_wm2
-    assert light[3500] > 0.4 * clear_wm2
+    light = told(SimulatedStation(Scenario.CLOUDS), "irradiance_wm2", of=range(360), step_s=10.0)
+    assert max(light[30:180]) / min(light[30:180]) > 1.8
+    assert max(light[198:318]) < 0.02 * clear_wm2
+    assert light[350] > 0.4 * clear_wm2
 
 
 def test_without_a_sun_light_is_not_made_up_unless_by_hand() -> None:

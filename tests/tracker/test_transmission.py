@@ -61,13 +61,6 @@ def test_nowhere_is_the_axis_slower_than_said(actuator: LinearActuator, share: f
     assert dps >= actuator.slowest_dps(low_deg, high_deg) - 1e-9
 
 
-def test_the_ranges_are_those_that_the_paper_names() -> None:
-    assert DIURNAL.range_deg == pytest.approx((-60.0, 60.0), abs=0.02)
-    lowest_deg, highest_deg = ELEVATION.range_deg
-    assert LATITUDE_DEG - highest_deg == pytest.approx(22.05, abs=0.01)
-    assert LATITUDE_DEG - lowest_deg == pytest.approx(68.95, abs=0.01)
-
-
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
