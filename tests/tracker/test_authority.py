@@ -90,21 +90,8 @@ def test_a_switch_that_is_on_local_when_the_drive_is_first_heard_is_told() -> No
     plant.forward(0.3)
     assert only(plant, EventKind.SWITCHED_TO_LOCAL)
     assert not plant.happened(EventKind.SWITCHED_TO_REMOTE)
-
-
-def test_a_switch_that_is_on_remote_is_not_told() -> None:
-    plant = Plant(READY)
-    plant.forward(1.0)
-    assert not plant.happened(EventKind.SWITCHED_TO_LOCAL) + plant.happened(EventKind.SWITCHED_TO_REMOTE)
-
-
-def test_the_switch_leaves_a_fault_a_fault() -> None:
-    plant = moving()
-    block_and_free(plant)
-    assert doing(plant) is ActivityName.FAULTED
-    turn_switch(plant, local=True)
-    plant.forward(1.0)
-    assert doing(plant) is ActivityName.FAULTED
+    remote = Plant(READY).forward(1.0)
+    assert not remote.happened(EventKind.SWITCHED_TO_LOCAL) + remote.happened(EventKind.SWITCHED_TO_REMOTE)
 
 
 def test_what_was_held_back_does_not_go_on_after_the_switch() -> None:
@@ -149,9 +136,14 @@ def test_a_key_that_is_held_ends_with_the_beginning_of_service() -> None:
     assert doing(plant) is ActivityName.STOPPING
 
 
-def test_service_mode_leaves_a_fault_a_fault() -> None:
+def test_neither_the_switch_nor_service_mode_leaves_a_fault() -> None:
     plant = moving()
     block_and_free(plant)
+    turn_switch(plant, local=True)
+    plant.forward(1.0)
+    assert doing(plant) is ActivityName.FAULTED
+    turn_switch(plant, local=False)
+    plant.forward(1.0)
     plant.ask(BeginServiceMode("Ada"))
     assert doing(plant) is ActivityName.FAULTED
     plant.ask(ResetFault())
@@ -211,3 +203,5 @@ def test_service_without_a_name_is_refused_with_what_bears_one() -> None:
     plant = ready()
     with pytest.raises(CommandRejected, match=r"^Service mode requires a name of 1 to 60 characters"):
         plant.ask(BeginServiceMode("  "))
+    with pytest.raises(CommandRejected, match="not in service mode"):
+        plant.ask(EndServiceMode())
