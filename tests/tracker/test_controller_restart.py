@@ -1,12 +1,12 @@
 """A tracker whose controller was started again: what the last life knew of the weather, and what it left."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
 
 from app.simulation.faults import Fault, FaultKind
 from app.tracker.commands.commands import (
+    Command,
     GoToStart,
     Jog,
     Park,
@@ -141,9 +141,7 @@ def test_its_time_counts_over_lives_that_heard_nothing(unheard_s: float, after_s
     ],
 )
 def test_what_is_set_for_a_bad_sensor_follows(
-    reaction: Reaction,
-    activity: ActivityName,
-    rests: bool,
+    reaction: Reaction, activity: ActivityName, *, rests: bool
 ) -> None:
     plant = reborn(TRACKED, known(4.0), wind(bad=reaction)).forward(62)
     assert doing(plant) is activity
@@ -204,92 +202,67 @@ def test_what_a_fault_of_the_drive_ended_waits_for_a_person() -> None:
     assert plant.happened(EventKind.NOT_STOWED)
 
 
-def _going(plant: Plant) -> None:
-    plant.ask(GoToStart(SOLSTICE))
-    plant.forward(1)
+LIVES: dict[str, tuple[Command | float, ...]] = {
+    "going": (GoToStart(SOLSTICE), 1.0),
+    "ready": (GoToStart(SOLSTICE), 30.0),
+    "running": (GoToStart(SOLSTICE), 30.0, RunShow(SOLSTICE), 1.0),
+    "paused": (GoToStart(SOLSTICE), 30.0, RunShow(SOLSTICE), 1.0, PauseShow()),
+    "stopped": (Track(), Stop(), 5.0),
+    "jogged": (Jog("one", Axis.AZIMUTH, 1),),
+    "parked": (Park(), 1.0),
+    "locked": (Track(), SetInhibit("Ayse", "bearing"), 5.0),
+}
+"""What was asked, and for how many seconds it went on, before the controller was killed."""
 
 
-def _ready(plant: Plant) -> None:
-    _going(plant)
-    while plant.snapshot.show is None or plant.snapshot.show.phase is not ShowPhase.READY:
-        plant.forward(1)
-
-
-def _running(plant: Plant) -> None:
-    _ready(plant)
-    plant.ask(RunShow(SOLSTICE))
-    plant.forward(1)
-
-
-def _paused(plant: Plant) -> None:
-    _running(plant)
-    plant.ask(PauseShow())
-
-
-def _stopped(plant: Plant) -> None:
-    plant.ask(Track())
-    plant.ask(Stop())
-    plant.forward(5)
-
-
-def _jogged(plant: Plant) -> None:
-    plant.ask(Jog("one", Axis.AZIMUTH, 1))
-
-
-def _parked(plant: Plant) -> None:
-    plant.ask(Park())
-    plant.forward(1)
-
-
-def _locked(plant: Plant) -> None:
-    plant.ask(Track())
-    plant.ask(SetInhibit("Ayse", "bearing"))
-    plant.forward(5)
-
-
-def left(do: Callable[[Plant], None]) -> TrackerMemory:
+def left(life: str) -> TrackerMemory:
     """Return what is stored when the controller is killed in the middle of something."""
     plant = Plant(READY).blow().forward(1)
-    do(plant)
+    for step in LIVES[life]:
+        if isinstance(step, float):
+            plant.forward(step)
+        else:
+            plant.ask(step)
+    ready = life == "ready"
+    assert ready == (plant.snapshot.show is not None and plant.snapshot.show.phase is ShowPhase.READY)
     return plant.controller.memory
 
 
 @pytest.mark.fault(83)
-@pytest.mark.parametrize("do", [_going, _running, _parked])
-def test_what_moved_by_itself_stows_and_stays(do: Callable[[Plant], None], fault: FaultResult) -> None:
-    memory = left(do)
-    plant = reborn(memory, known(STORM))
+@pytest.mark.parametrize("life", ["going", "running", "parked"])
+def test_what_moved_by_itself_stows_and_stays(life: str, fault: FaultResult) -> None:
+    plant = reborn(left(life), known(STORM))
     assert doing(plant) is ActivityName.STOWING
     plant.forward(60)
     assert doing(plant) is ActivityName.STOWED
     assert plant.controller.memory.show_moves is False
     plant.blow(3.0).forward(700)
-    if do is not _parked:
+    if life != "parked":
         assert doing(plant) is ActivityName.STOWED
         assert plant.controller.memory.stow is StowName.WIND
     fault.shows("Tracker 1 goes to its wind stow position.")
     fault.recovers("the operator resumes")
 
 
+@pytest.mark.parametrize("life", ["ready", "paused", "stopped", "jogged", "locked"])
+def test_what_a_person_had_stopped_stays_and_says_so(life: str) -> None:
+    plant = reborn(left(life), known(STORM)).forward(30)
+    assert doing(plant) is ActivityName.HOLDING
+    assert plant.happened(EventKind.NOT_STOWED)
+
+
 def test_a_storm_that_comes_after_a_show_was_cut_off_stows_too() -> None:
-    plant = reborn(left(_running), known(4.0)).forward(20)
+    plant = reborn(left("running"), known(4.0)).forward(20)
     assert doing(plant) is ActivityName.HOLDING
     plant.blow(STORM).forward(1)
     assert doing(plant) is ActivityName.STOWING
 
 
 def test_after_a_person_has_stopped_a_show_that_was_cut_off_nothing_moves() -> None:
-    plant = reborn(left(_running), known(4.0)).forward(5)
+    plant = reborn(left("running"), known(4.0)).forward(5)
     plant.ask(Stop())
     plant.blow(STORM).forward(20)
     assert doing(plant) is ActivityName.HOLDING
-
-
-@pytest.mark.parametrize("do", [_ready, _paused, _stopped, _jogged, _locked])
-def test_what_a_person_had_stopped_stays_and_says_so(do: Callable[[Plant], None]) -> None:
-    plant = reborn(left(do), known(STORM)).forward(30)
-    assert doing(plant) is ActivityName.HOLDING
-    assert plant.happened(EventKind.NOT_STOWED)
 
 
 def test_calm_from_before_the_restart_ends_no_storm() -> None:

@@ -20,22 +20,17 @@ AROUND = timedelta(seconds=15)
 SUN_AND_DEADBAND_DEG = 1.2
 """How far an axis may turn in half a minute: one run of the deadband."""
 SPITSBERGEN = Location(78.22, 15.65, 10.0)
-ZONES = {
-    "Europe/Berlin": (datetime(2027, 3, 28, 1, 0, tzinfo=UTC), datetime(2027, 10, 31, 1, 0, tzinfo=UTC)),
-    "America/New_York": (datetime(2027, 3, 14, 7, 0, tzinfo=UTC), datetime(2027, 11, 7, 6, 0, tzinfo=UTC)),
-    "Australia/Lord_Howe": (
-        datetime(2027, 10, 2, 15, 30, tzinfo=UTC),
-        datetime(2027, 4, 3, 15, 0, tzinfo=UTC),
-    ),
-    "Antarctica/Troll": (datetime(2027, 3, 28, 1, 0, tzinfo=UTC), datetime(2027, 10, 31, 1, 0, tzinfo=UTC)),
-}
-PLACES = {
-    "Europe/Berlin": Location(52.52, 13.4),
-    "America/New_York": Location(40.7, -74.0),
-    "Australia/Lord_Howe": Location(-31.55, 159.08),
-    "Antarctica/Troll": Location(-72.01, 2.53),
-}
-SWITCHES = [(zone, switch) for zone, pair in ZONES.items() for switch in pair]
+SWITCHES = [
+    ("Europe/Berlin", Location(52.52, 13.4), "2027-03-28T01:00", "2027-10-31T01:00"),
+    ("America/New_York", Location(40.7, -74.0), "2027-03-14T07:00", "2027-11-07T06:00"),
+    ("Australia/Lord_Howe", Location(-31.55, 159.08), "2027-10-02T15:30", "2027-04-03T15:00"),
+    ("Antarctica/Troll", Location(-72.01, 2.53), "2027-03-28T01:00", "2027-10-31T01:00"),
+]
+ENDS = ["2027-07-01", "2028-02-29", "2036-02-07T06:28:16", "2038-01-19T03:14:08", "2099-12-28"]
+
+
+def utc(text: str) -> datetime:
+    return datetime.fromisoformat(text).replace(tzinfo=UTC)
 
 
 def tracked_over(instant: datetime, location: Location) -> Plant:
@@ -55,14 +50,15 @@ def tracked_over(instant: datetime, location: Location) -> Plant:
 
 
 @pytest.mark.fault(29)
-@pytest.mark.parametrize(("zone", "switch"), SWITCHES)
+@pytest.mark.parametrize(("zone", "place", "on", "back"), SWITCHES)
 def test_the_hour_at_which_clocks_are_put_on_or_back_moves_nothing(
-    zone: str, switch: datetime, fault: FaultResult
+    zone: str, place: Location, on: str, back: str, fault: FaultResult
 ) -> None:
-    just_before, just_after = (switch + timedelta(seconds=s) for s in (-1, 1))
     local = ZoneInfo(zone)
-    assert just_before.astimezone(local).utcoffset() != just_after.astimezone(local).utcoffset()
-    tracked_over(switch, PLACES[zone])
+    for switch in (utc(on), utc(back)):
+        just_before, just_after = (switch + timedelta(seconds=s) for s in (-1, 1))
+        assert just_before.astimezone(local).utcoffset() != just_after.astimezone(local).utcoffset()
+        tracked_over(switch, place)
     fault.prevented("the controller reckons in UTC alone")
     fault.shows_nothing("local time changes on the page, with its offset beside it")
     fault.recovers("nothing was lost")
@@ -70,23 +66,9 @@ def test_the_hour_at_which_clocks_are_put_on_or_back_moves_nothing(
 
 @pytest.mark.fault(31)
 @pytest.mark.fault(32)
-@pytest.mark.parametrize(
-    "instant",
-    [
-        datetime(2027, 7, 1, 0, 0, tzinfo=UTC),
-        datetime(2028, 1, 1, 0, 0, tzinfo=UTC),
-        datetime(2028, 2, 29, 0, 0, tzinfo=UTC),
-        datetime(2028, 3, 1, 0, 0, tzinfo=UTC),
-        datetime(2036, 2, 7, 6, 28, 16, tzinfo=UTC),
-        datetime(2038, 1, 19, 3, 14, 8, tzinfo=UTC),
-        datetime(2096, 2, 29, 0, 0, tzinfo=UTC),
-        datetime(2099, 12, 28, 0, 0, tzinfo=UTC),
-    ],
-    ids=lambda instant: f"{instant:%Y-%m-%d}",
-)
-@pytest.mark.parametrize("location", [SAMSUN, Location(-33.9, 151.2)], ids=["Samsun", "Sydney"])
-def test_an_end_of_an_era_moves_nothing(instant: datetime, location: Location, fault: FaultResult) -> None:
-    tracked_over(instant, location)
+@pytest.mark.parametrize("instant", ENDS)
+def test_an_end_of_an_era_moves_nothing(instant: str, fault: FaultResult) -> None:
+    tracked_over(utc(instant), SAMSUN)
     fault.prevented("no counter of the product ends with the era")
     fault.shows_nothing("nothing happens that is worth telling")
     fault.recovers("nothing was lost")
@@ -99,7 +81,7 @@ def test_in_the_polar_night_nothing_moves_and_nothing_is_waited_for(fault: Fault
     plant.ask(Track())
     plant.forward(60.0)
     stood = (plant.azimuth_deg, plant.elevation_deg)
-    for hour in range(24):
+    for hour in range(0, 24, 2):
         plant.leap(datetime(2027, 12, 21, hour, 30, tzinfo=UTC))
         plant.forward(3.0)
         assert plant.activity is ActivityName.TRACKING
@@ -130,7 +112,7 @@ def test_the_midnight_sun_is_followed_all_around_within_the_limits(fault: FaultR
 @pytest.mark.fault(26)
 @pytest.mark.parametrize(
     "by",
-    [timedelta(hours=1), timedelta(hours=-1), timedelta(days=-1), timedelta(days=-365), timedelta(days=365)],
+    [timedelta(hours=1), timedelta(hours=-1), timedelta(days=-365), timedelta(days=365)],
     ids=str,
 )
 def test_a_clock_that_jumps_moves_nothing_until_it_is_trusted(by: timedelta, fault: FaultResult) -> None:
