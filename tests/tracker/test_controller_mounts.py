@@ -82,11 +82,9 @@ def test_a_single_axis_faces_the_sun_as_nearly_as_it_can(config: TrackerConfig) 
         shown = plant.snapshot
         assert shown.target is not None
         assert shown.measured is not None
+        target, measured = shown.target, shown.measured
         off_deg = separation_deg(
-            shown.target.azimuth_deg,
-            shown.target.elevation_deg,
-            shown.measured.azimuth_deg,
-            shown.measured.elevation_deg,
+            target.azimuth_deg, target.elevation_deg, measured.azimuth_deg, measured.elevation_deg
         )
         assert off_deg < CONFIG.deadband_deg
         assert shown.elevation is None

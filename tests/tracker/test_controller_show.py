@@ -22,7 +22,7 @@ from app.tracker.commands.commands import (
 from app.tracker.programs.show import ShowCourse, ShowPlan
 from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import Orientation
-from app.tracker.state.snapshot import ActivityName, EventKind, ShowPhase
+from app.tracker.state.snapshot import ActivityName, EventKind, Pair, ShowPhase
 from app.tracker.values.motion import HALT
 from tests.tracker.plant import CONFIG, READY, SAMSUN, Plant
 from tests.tracker.scripted import Scripted
@@ -39,6 +39,10 @@ PLAN = ShowPlan(
 def at_start(plant: Plant) -> Plant:
     plant.ask(GoToStart(PLAN))
     return plant.forward(30.0)
+
+
+def pair(place: Pair) -> tuple[float, float]:
+    return place.azimuth_deg, place.elevation_deg
 
 
 def outcome(plant: Plant) -> str:
@@ -63,14 +67,7 @@ def test_a_show_from_its_start_to_its_end(plant: Plant) -> None:
     def look() -> None:
         shown = plant.snapshot
         if shown.show is not None and shown.target is not None and shown.measured is not None:
-            off_deg.append(
-                separation_deg(
-                    shown.measured.azimuth_deg,
-                    shown.measured.elevation_deg,
-                    shown.target.azimuth_deg,
-                    shown.target.elevation_deg,
-                )
-            )
+            off_deg.append(separation_deg(*pair(shown.measured), *pair(shown.target)))
 
     plant.forward(179.0, look, every=10)
     show = plant.snapshot.show
@@ -79,6 +76,7 @@ def test_a_show_from_its_start_to_its_end(plant: Plant) -> None:
     assert show.sun_time == PLAN.begin_at + timedelta(seconds=show.elapsed_s) * PLAN.acceleration
     assert show.sun_is_up
     assert max(off_deg) < 1.0
+    assert max(off_deg[3:]) < 0.3, "once the axes have gathered speed"
     plant.forward(1.5)
     assert plant.activity is ActivityName.HOLDING
     assert outcome(plant) == "completed"
