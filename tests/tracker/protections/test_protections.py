@@ -8,11 +8,12 @@ from hypothesis import strategies as st
 
 from app.tracker.protections import low_light, snow, wind_stow
 from app.tracker.protections.guarding import OFF_GUARD, Guarding, latched, step
-from app.tracker.protections.low_light import AWAKE
-from app.tracker.protections.snow import CLEAR
+from app.tracker.protections.low_light import AWAKE, LowLight
+from app.tracker.protections.snow import CLEAR, Snow
 from app.tracker.protections.wind_stow import CALM, Wind, WindStow
 from app.tracker.protections.words import Protection
 from app.tracker.settings.protections import (
+    PROTECTED,
     LightProtection,
     ProtectionConfig,
     Reaction,
@@ -31,6 +32,11 @@ QUICK = ProtectionConfig(
     wind=WindProtection(resume_after_s=10.0, bad_after_s=3.0),
     snow=SnowProtection(hold_s=3.0),
     light=LightProtection(hold_s=5.0),
+)
+LIMITS = WindProtection(gust_mps=17.0, mean_mps=15.0, hysteresis_mps=2.0)
+LIGHT = LightProtection(threshold_wm2=50.0, hysteresis_wm2=10.0)
+CALM_AIR = Sensed(
+    Reading(3.0, Quality.GOOD, 0.0), Reading(0.0, Quality.GOOD, 0.0), Reading(600.0, Quality.GOOD, 0.0), 3.0
 )
 good = st.floats(0.0, 40.0).map(lambda value: Reading(value, Quality.GOOD, 0.0, "station"))
 bad = st.sampled_from([q for q in Quality if q is not Quality.GOOD]).map(
@@ -144,7 +150,7 @@ def test_darkness_is_counted_from_the_last_reading_that_was_not_dark() -> None:
 
 def test_snow_stays_until_it_is_known_to_be_off() -> None:
     limits = SnowProtection(hysteresis_kg=1.0)
-    state = snow.Snow(at(0))
+    state = Snow(at(0))
     assert snow.step(state, limits, None, at(1)) == state
     assert snow.step(state, limits, 3.5, at(1)) == state
     assert snow.step(state, limits, 2.9, at(1)).since is None
@@ -266,3 +272,92 @@ def test_settings_that_cannot_be_are_refused_with_a_sentence(make: object, words
     assert callable(make)
     with pytest.raises(ValueError, match=words):
         make()
+
+
+@pytest.mark.parametrize(
+    ("wind", "calm"),
+    [
+        (Wind(14.9, 12.9), True),
+        (Wind(15.0, 12.9), False),
+        (Wind(14.9, 13.0), False),
+        (Wind(14.9, None), True),
+        (Wind(None, 12.9), False),
+    ],
+)
+def test_wind_is_calm_below_its_limits_less_the_hysteresis(wind: Wind, *, calm: bool) -> None:
+    held = WindStow(BEGIN, BEGIN)
+    later = BEGIN + timedelta(seconds=601)
+    assert wind_stow.step(held, LIMITS, wind, later) == (CALM if calm else WindStow(BEGIN, later))
+
+
+def test_light_must_rise_by_the_hysteresis_once_it_was_too_dark() -> None:
+    dark = low_light.step(AWAKE, LIGHT, 49.9, BEGIN)
+    assert dark == LowLight(None, BEGIN, False)
+    assert low_light.step(AWAKE, LIGHT, 50.0, BEGIN).light_ok
+    assert not low_light.step(dark, LIGHT, 59.9, BEGIN).light_ok
+    assert low_light.step(dark, LIGHT, 60.0, BEGIN).light_ok
+
+
+def test_an_unknown_light_keeps_what_was_known_and_begins_the_delay_anew() -> None:
+    later = BEGIN + timedelta(seconds=300)
+    assert low_light.step(LowLight(None, BEGIN, False), LIGHT, None, later) == LowLight(None, later, False)
+    resting = LowLight(BEGIN, BEGIN, False)
+    assert low_light.step(resting, LIGHT, None, later) is resting
+
+
+def air(gust_mps: float | None, mean_mps: float | None) -> Sensed:
+    return Sensed(told(gust_mps), wind_mean_mps=mean_mps)
+
+
+def test_the_mean_wind_stows_too_but_only_while_the_sensor_is_well() -> None:
+    config = ProtectionConfig(wind=LIMITS)
+    for gust_mps, mean_mps, kind in (
+        (10.0, 15.0, Protection.WIND_STOW),
+        (10.0, 14.9, Protection.TRACK),
+        (10.0, None, Protection.TRACK),
+        (None, 15.0, Protection.TRACK),
+    ):
+        seen = air(gust_mps, mean_mps)
+        assert step(OFF_GUARD, config, seen, (), BEGIN, night=False).kind is kind
+
+
+def test_what_holds_is_known_since_it_began() -> None:
+    config, later = ProtectionConfig(wind=LIMITS), BEGIN + timedelta(seconds=5)
+    begun = step(OFF_GUARD, config, air(20.0, 5.0), (), BEGIN, night=False)
+    assert (begun.kind, begun.since) == (Protection.WIND_STOW, BEGIN)
+    assert step(begun, config, air(20.0, 5.0), (), later, night=False).since == BEGIN
+    over = later + timedelta(seconds=700)
+    ended = step(begun, config, air(3.0, 5.0), (), over, night=True)
+    assert (ended.kind, ended.since) == (Protection.NIGHT, over)
+
+
+def test_a_storm_that_held_holds_for_the_whole_delay_again() -> None:
+    state = latched(Protection.WIND_STOW, BEGIN)
+    assert state == Guarding(wind_stow=WindStow(BEGIN, BEGIN), kind=Protection.WIND_STOW, since=BEGIN)
+    assert state.stow is StowName.WIND
+    for seconds, holds in ((600.0, Protection.WIND_STOW), (600.1, Protection.TRACK)):
+        now = BEGIN + timedelta(seconds=seconds)
+        assert step(state, PROTECTED, CALM_AIR, (Quantity.WIND,), now, night=False).kind is holds
+
+
+def test_snow_that_held_holds_until_it_is_seen_gone() -> None:
+    state = latched(Protection.SNOW, BEGIN)
+    assert state == Guarding(snow=Snow(BEGIN), kind=Protection.SNOW, since=BEGIN)
+    assert state.stow is StowName.SNOW
+    assert step(state, PROTECTED, Sensed(), (), BEGIN, night=False).kind is Protection.SNOW
+    assert step(state, PROTECTED, CALM_AIR, (), BEGIN, night=False).kind is Protection.TRACK
+
+
+@pytest.mark.parametrize(
+    "kind", [None, Protection.NIGHT, Protection.WAIT, Protection.LOW_LIGHT_HOLD, Protection.TRACK]
+)
+def test_nothing_else_is_kept(kind: Protection | None) -> None:
+    assert latched(kind, BEGIN) is OFF_GUARD
+
+
+def test_the_earliest_end_is_known_only_while_it_holds() -> None:
+    ends = BEGIN + timedelta(seconds=600)
+    assert WindStow(BEGIN, BEGIN).earliest_end(PROTECTED.wind) == ends
+    assert CALM.earliest_end(PROTECTED.wind) is None
+    assert WindStow(None, BEGIN).earliest_end(PROTECTED.wind) is None
+    assert WindStow(BEGIN, None).earliest_end(PROTECTED.wind) is None
