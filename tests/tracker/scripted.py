@@ -43,6 +43,16 @@ class Scripted:
         self.events += happened
         return [event.kind for event in happened + self.tick()]
 
+    def sees(self, **changes: Any) -> None:
+        """Have the next tick read this from the drive."""
+        assert self.reading is not None
+        self.reading = replace(self.reading, **changes)
+
+    def answers(self, **changes: Any) -> None:
+        """Have the drive say that it has done what it was asked for."""
+        assert self.told.request is not None
+        self.sees(request_done=self.told.request.number, **changes)
+
     def tick(self) -> list[Event]:
         now = self.clock.now()
         seen = Observation(now, now, self.sun, self.dawn, self.reading, True, SAMSUN, 1)

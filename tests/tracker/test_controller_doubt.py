@@ -18,8 +18,7 @@ STANDSTILL = DriveCommand(Velocity(0.0), Velocity(0.0))
 
 def test_a_drive_that_is_lost_while_it_searches_is_told_to_end_the_search(blank_script: Scripted) -> None:
     blank_script.ask(Home())
-    assert blank_script.reading is not None
-    blank_script.reading = replace(blank_script.reading, homing=True)
+    blank_script.sees(homing=True)
     blank_script.forward(1.0)
     blank_script.reading = None
     blank_script.forward(1.0)

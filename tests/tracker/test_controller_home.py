@@ -50,7 +50,7 @@ def test_zero_needs_axes_at_rest_a_drive_and_an_axis() -> None:
     with pytest.raises(CommandRejected, match="No axis of this mount was selected for homing"):
         plant.ask(SetHome(()))
     script = Scripted()
-    script.reading = replace(script.reading, azimuth=replace(script.reading.azimuth, moving=True))
+    script.sees(azimuth=replace(script.reading.azimuth, moving=True))
     script.tick()
     with pytest.raises(CommandRejected, match="are still moving"):
         script.ask(SetHome())
@@ -71,7 +71,7 @@ def test_a_zero_that_does_not_read_back_fails_with_a_sentence(
     request = script.told.request
     assert request is not None
     assert request.kind is RequestKind.SET_HOME_AZIMUTH
-    script.reading = replace(script.reading, request_done=request.number, **answer)
+    script.answers(**answer)
     happened = [event.message for event in script.tick()]
     assert why in happened[0]
     assert not script.snapshot.homed
@@ -86,7 +86,7 @@ def test_a_drive_that_does_not_answer_a_request_is_not_waited_for_for_ever(blank
 
 def test_request_numbers_go_on_from_what_the_drive_has_answered_and_stay_within_16_bits() -> None:
     script = Scripted()
-    script.reading = replace(script.reading, request_done=30_000)
+    script.sees(request_done=30_000)
     script.tick()
     script.ask(SetHome())
     assert script.told.request is not None
@@ -139,10 +139,7 @@ def test_a_search_that_is_stopped_leaves_no_zero_and_the_drive_at_rest(
 )
 def test_a_search_that_fails_says_why(blank_script: Scripted, answer: dict[str, bool], why: str) -> None:
     blank_script.ask(Home())
-    assert blank_script.told.request is not None
-    blank_script.reading = replace(
-        blank_script.reading, request_done=blank_script.told.request.number, **answer
-    )
+    blank_script.answers(**answer)
     blank_script.tick()
     assert why in blank_script.happened(EventKind.HOMING_ENDED)[0].message
 
@@ -150,13 +147,10 @@ def test_a_search_that_fails_says_why(blank_script: Scripted, answer: dict[str, 
 @pytest.mark.fault(19)
 def test_a_search_waits_for_rest_and_ends_when_it_takes_too_long(blank_script: Scripted) -> None:
     blank_script.ask(Home())
-    assert blank_script.told.request is not None
-    blank_script.reading = replace(
-        blank_script.reading, request_done=blank_script.told.request.number, homing=True
-    )
+    blank_script.answers(homing=True)
     blank_script.tick()
     assert blank_script.controller.activity is ActivityName.HOMING
-    blank_script.reading = replace(blank_script.reading, request_done=0)
+    blank_script.sees(request_done=0)
     blank_script.period = timedelta(seconds=60)
     blank_script.forward(3600.0)
     assert "took too long" in blank_script.happened(EventKind.HOMING_ENDED)[0].message
@@ -164,7 +158,7 @@ def test_a_search_waits_for_rest_and_ends_when_it_takes_too_long(blank_script: S
 
 def test_a_search_that_the_drive_still_pursues_is_ended() -> None:
     script = Scripted()
-    script.reading = replace(script.reading, homing=True)
+    script.sees(homing=True)
     script.tick()
     assert script.told.azimuth != script.told.__class__().azimuth
 

@@ -116,7 +116,7 @@ def test_a_reset_that_the_drive_does_not_do_leaves_the_fault(*, answers: bool) -
     if answers:
         assert script.told.request is not None
         assert script.reading is not None
-        script.reading = replace(script.reading, request_done=script.told.request.number)
+        script.answers()
     script.forward(5.5)
     assert "still there" in script.happened(EventKind.FAULT_RAISED)[-1].message
     assert script.told.request is None

@@ -109,18 +109,17 @@ def test_a_gap_between_two_ticks_does_not_make_the_show_leap(plant: Plant) -> No
 
 
 def test_a_show_runs_only_from_its_start(plant: Plant) -> None:
+    for command in (PauseShow(), ResumeShow(), StopShow()):
+        with pytest.raises(CommandRejected, match="has no show under way"):
+            plant.ask(command)
     with pytest.raises(CommandRejected) as refused:
         plant.ask(RunShow(PLAN))
     assert [reason.code for reason in refused.value.reasons] == ["show_phase"]
     at_start(plant)
     with pytest.raises(CommandRejected, match="is not at the start of this show"):
         plant.ask(RunShow(replace(PLAN, show_id="another")))
-
-
-def test_a_tracker_that_tracks_does_not_begin_a_show_without_going_to_its_start(plant: Plant) -> None:
-    plant.ask(Track())
-    with pytest.raises(CommandRejected, match="no show under way"):
-        plant.ask(RunShow(PLAN))
+    later = replace(PLAN, show_id="s2", begin_at=PLAN.begin_at + timedelta(hours=2))
+    assert plant.ask(GoToStart(later)) == [EventKind.MOVE_STARTED]
 
 
 def test_a_show_may_be_run_by_a_panel_that_already_stands_at_its_start(plant: Plant) -> None:
@@ -141,6 +140,8 @@ def test_a_plan_that_is_too_fast_is_refused_with_its_reasons(plant: Plant) -> No
 def test_a_show_takes_over_from_tracking_and_says_so(plant: Plant) -> None:
     plant.ask(Track())
     plant.forward(1.0)
+    with pytest.raises(CommandRejected, match="no show under way"):
+        plant.ask(RunShow(PLAN))
     assert plant.ask(GoToStart(PLAN)) == [EventKind.TRACKING_ENDED, EventKind.MOVE_STARTED]
     assert not plant.controller.memory.tracking_on
     plant.forward(60.0)
@@ -148,12 +149,6 @@ def test_a_show_takes_over_from_tracking_and_says_so(plant: Plant) -> None:
     for command in (Track(), Move(Orientation(10.0, 10.0)), GoToStart(PLAN), SetHome()):
         with pytest.raises(CommandRejected, match="show"):
             plant.ask(command)
-
-
-def test_another_start_may_be_chosen_before_the_show_runs(plant: Plant) -> None:
-    at_start(plant)
-    later = replace(PLAN, show_id="s2", begin_at=PLAN.begin_at + timedelta(hours=2))
-    assert plant.ask(GoToStart(later)) == [EventKind.MOVE_STARTED]
 
 
 @pytest.mark.parametrize(
@@ -184,7 +179,7 @@ def test_a_start_that_is_not_reached_is_a_fault() -> None:
     assert script.reading is not None
     near = replace(script.reading.azimuth, position_deg=axis.azimuth_deg - 0.2)
     high = replace(script.reading.elevation, position_deg=axis.elevation_deg)
-    script.reading = replace(script.reading, azimuth=near, elevation=high)
+    script.sees(azimuth=near, elevation=high)
     script.tick()
     script.ask(GoToStart(PLAN))
     script.forward(8.0)
@@ -197,9 +192,3 @@ def test_a_show_that_a_restart_cut_off_is_told_once() -> None:
     ended = plant.happened(EventKind.SHOW_ENDED)
     assert [event.data for event in ended] == [{"outcome": "interrupted", "show_id": "s7"}]
     assert plant.controller.memory.showing is None
-
-
-def test_show_commands_without_a_show_are_refused(plant: Plant) -> None:
-    for command in (PauseShow(), ResumeShow(), StopShow()):
-        with pytest.raises(CommandRejected, match="has no show under way"):
-            plant.ask(command)

@@ -6,7 +6,7 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from app.sun.position import Location, SunPosition
-from app.tracker.commands.commands import CommandRejected, Move, SelectMode, SetHome, Stop, Track
+from app.tracker.commands.commands import CommandRejected, Move, SetHome, Stop, Track
 from app.tracker.memory.memory import Confirmation, StepName, TrackerMemory
 from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import NightBehaviour, Orientation, TrackerConfig
@@ -116,7 +116,8 @@ def test_a_slow_azimuth_axis_says_that_it_passes_the_zenith(fault: FaultResult) 
     noon = datetime(2026, 6, 10, 11, 45, tzinfo=UTC)
     plant = tracking(config=slow, at=noon, location=Location(23.0, 0.0))
     seen: set[str] = set()
-    plant.forward(1500.0, lambda: seen.add(plant.snapshot.activity_text), every=30)
+    plant.period = timedelta(seconds=3)
+    plant.forward(1500.0, lambda: seen.add(plant.snapshot.activity_text), every=10)
     assert "Tracking: passing the zenith as fast as the azimuth axis can" in seen
     assert not plant.happened(EventKind.FAULT_RAISED)
     fault.prevented("the aim is led or held within the speed of the axis")
@@ -229,10 +230,3 @@ def test_a_frame_is_the_tick_as_numbers() -> None:
     assert list(ActivityName)[int(row[-1])] is ActivityName.TRACKING
     empty = Plant(location=None)
     assert all(value != value for value in empty.controller.frame()[2:10])
-
-
-def test_selecting_a_mode_without_an_orientation_keeps_the_one_there_was() -> None:
-    plant = Plant(READY)
-    plant.ask(SelectMode(Mode.FIXED))
-    assert plant.controller.memory.orientation == READY.orientation
-    assert plant.happened(EventKind.MODE_SELECTED)[0].data

@@ -1,7 +1,5 @@
 """Giving up the home position by command raises no alarm; losing it does, and so does a homing that fails."""
 
-from dataclasses import replace
-
 import pytest
 
 from app.alarms.conditions import SiteHealth, of_tracker
@@ -47,16 +45,14 @@ def test_a_drive_that_restarts_raises_it_at_once(script: Scripted, during: Comma
     if during is not None:
         script.ask(during)
     assert not is_alarmed(script.snapshot)
-    script.reading = replace(script.reading, boot_count=script.reading.boot_count + 1)
+    script.sees(boot_count=script.reading.boot_count + 1)
     script.tick()
     assert is_alarmed(script.snapshot)
 
 
 def test_a_homing_that_fails_raises_it_at_once(script: Scripted) -> None:
     script.ask(Home())
-    request = script.told.request
-    assert request is not None
-    script.reading = replace(script.reading, request_done=request.number, request_failed=True)
+    script.answers(request_failed=True)
     script.tick()
     assert script.controller.activity is ActivityName.HOLDING
     assert is_alarmed(script.snapshot)

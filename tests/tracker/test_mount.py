@@ -54,12 +54,6 @@ def test_a_direction_midway_between_two_stops_goes_to_the_one_nearer_to_the_axis
     assert aim(with_range(90.0, 270.0), LEVEL, Orientation(0.0, 30.0), 100.0).azimuth_deg == 90.0
 
 
-def test_an_elevation_below_the_lower_limit_is_limited() -> None:
-    target = aim(PLAIN, LEVEL, Orientation(100.0, -0.5), 100.0)
-    assert target.elevation_deg == 0.0
-    assert target.limited
-
-
 def test_a_mast_that_leans_north_sees_the_north_higher_and_the_south_lower() -> None:
     lean = Pointing(lean_north_deg=2.0)
     assert aim(PLAIN, lean, Orientation(0.0, 40.0), 0.0).elevation_deg == pytest.approx(42.0)

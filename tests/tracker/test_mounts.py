@@ -85,15 +85,6 @@ def test_arrays_and_numbers_come_from_one_formula(
     assert many[1] == pytest.approx(np.full(3, one[1]), abs=1e-9)
 
 
-@given(mounts, azimuths, heights, azimuths, heights)
-def test_distances_are_the_same_in_axis_angles_as_in_the_sky(
-    mount: MountConfig, azimuth_a: float, height_a: float, azimuth_b: float, height_b: float
-) -> None:
-    a, b = angles(mount, azimuth_a, height_a, SCALAR), angles(mount, azimuth_b, height_b, SCALAR)
-    faced = (*direction(mount, *a, SCALAR), *direction(mount, *b, SCALAR))
-    assert separation_deg(*a, *b) == pytest.approx(separation_deg(*faced), abs=1e-6)
-
-
 @pytest.mark.parametrize(
     ("axis_azimuth_deg", "tilt_deg", "slope_deg", "ratio"),
     [
@@ -147,17 +138,6 @@ def test_an_equatorial_mount_turns_by_hour_angle_and_declination(
     mount = MountConfig(MountKind.EQUATORIAL, pole_azimuth_deg, abs(latitude_deg))
     found = angles(mount, azimuth_deg, elevation_deg, SCALAR)
     assert found == pytest.approx((hour_angle_deg, declination_deg), abs=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("azimuth_deg", "elevation_deg", "rotation_deg"),
-    [(90.0, 30.0, -60.0), (270.0, 30.0, 60.0), (180.0, 20.0, 0.0), (135.0, 45.0, -35.26438968)],
-)
-def test_a_level_axis_to_the_south_rolls_from_east_to_west(
-    azimuth_deg: float, elevation_deg: float, rotation_deg: float
-) -> None:
-    found = angles(MountConfig(MountKind.HORIZONTAL_SINGLE_AXIS), azimuth_deg, elevation_deg, SCALAR)
-    assert found == pytest.approx((rotation_deg, 0.0))
 
 
 @given(st.floats(-170.0, 170.0), st.floats(1.0, 89.0), st.floats(0.0, 180.0))

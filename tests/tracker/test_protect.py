@@ -99,7 +99,7 @@ def test_what_the_drive_did_is_forgotten_when_it_is_lost_again(script: Scripted)
 
 
 def test_a_fault_of_the_drive_is_told_with_the_trackers_name(script: Scripted) -> None:
-    script.reading = replace(reading(script), fault_code=7)
+    script.sees(fault_code=7)
     script.tick()
     assert script.controller.memory.fault_code == "drive_fault"
     assert "The drive of Tracker 1 reports fault code 7." in script.controller.memory.fault_text
@@ -149,7 +149,7 @@ def test_a_zero_of_another_life_of_the_drive_is_not_believed_from_the_first_read
 
 def test_a_drive_that_restarts_ends_a_jog_though_no_zero_is_lost() -> None:
     script = jogging(Scripted(BLANK))
-    script.reading = replace(reading(script), boot_count=2)
+    script.sees(boot_count=2)
     script.tick()
     assert script.controller.activity is ActivityName.HOLDING
     (ended,) = script.happened(EventKind.JOG_ENDED)
