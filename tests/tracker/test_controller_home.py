@@ -5,14 +5,15 @@ from datetime import timedelta
 
 import pytest
 
-from app.tracker.commands.commands import CommandRejected, Home, SetHome, Stop
+from app.alarms.conditions import SiteHealth, of_tracker
+from app.tracker.commands.commands import Command, CommandRejected, Home, SetHome, Stop, UndoHome
 from app.tracker.memory.memory import StepName
 from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import DriveConfig, DriveKind
-from app.tracker.state.snapshot import ActivityName, EventKind
+from app.tracker.state.snapshot import ActivityName, EventKind, Snapshot
 from app.tracker.values.motion import AxisFeedback, RequestKind
 from tests.fault_result import HOME_AGAIN, VIRTUAL, FaultResult
-from tests.tracker.plant import CONFIG, Plant
+from tests.tracker.plant import BLANK, CONFIG, READY, Plant
 from tests.tracker.scripted import Scripted
 
 NEEDS_HOME = ("move", "track", "park", "go_to_start", "run_show")
@@ -156,6 +157,13 @@ def test_a_search_waits_for_rest_and_ends_when_it_takes_too_long(blank_script: S
     assert "took too long" in blank_script.happened(EventKind.HOMING_ENDED)[0].message
 
 
+def test_a_drive_without_home_switches_searches_nothing() -> None:
+    script = Scripted(capabilities={"automatic_homing": False})
+    script.tick()
+    with pytest.raises(CommandRejected, match="no home switches"):
+        script.ask(Home())
+
+
 def test_a_search_that_the_drive_still_pursues_is_ended() -> None:
     script = Scripted()
     script.sees(homing=True)
@@ -175,3 +183,57 @@ def test_another_drive_is_another_zero(plant: Plant) -> None:
     assert not plant.snapshot.homed
     assert "another drive" in plant.happened(EventKind.HOME_LOST)[0].message
     assert plant.controller.config is other
+
+
+def is_alarmed(shown: Snapshot) -> bool:
+    return any(found.code == "home_lost" for found in of_tracker(shown, SiteHealth(), frozenset()))
+
+
+def alarmed_during(plant: Plant, command: Command, seconds: float) -> int:
+    """Return at how many looks the alarm was there, from the command on."""
+    plant.ask(command)
+    found = int(is_alarmed(plant.snapshot))
+
+    def look() -> None:
+        nonlocal found
+        found += is_alarmed(plant.snapshot)
+
+    plant.forward(seconds, look, every=5)
+    return found
+
+
+@pytest.mark.parametrize("command", [Home(), SetHome((Axis.AZIMUTH,))], ids=["search", "set"])
+@pytest.mark.parametrize("homed", [True, False])
+def test_giving_up_a_zero_by_command_and_undoing_it_raise_no_alarm(command: Command, *, homed: bool) -> None:
+    plant = Plant(READY if homed else BLANK)
+    plant.tick()
+    assert alarmed_during(plant, command, 60.0) == 0
+    assert plant.activity is ActivityName.HOLDING
+    if isinstance(command, SetHome):
+        assert plant.snapshot.can_undo_home
+        assert alarmed_during(plant, UndoHome(), 2.0) == 0
+        assert plant.snapshot.homed is homed
+
+
+@pytest.mark.parametrize("during", [None, Home()], ids=["at rest", "homing"])
+def test_a_drive_that_restarts_raises_it_at_once(script: Scripted, during: Command | None) -> None:
+    if during is not None:
+        script.ask(during)
+    assert not is_alarmed(script.snapshot)
+    script.sees(boot_count=script.reading.boot_count + 1)
+    script.tick()
+    assert is_alarmed(script.snapshot)
+
+
+def test_a_homing_that_fails_raises_it_at_once(script: Scripted) -> None:
+    script.ask(Home())
+    script.answers(request_failed=True)
+    script.tick()
+    assert script.controller.activity is ActivityName.HOLDING
+    assert is_alarmed(script.snapshot)
+
+
+def test_a_homing_that_is_stopped_raises_it(script: Scripted) -> None:
+    script.ask(Home())
+    script.ask(Stop())
+    assert is_alarmed(script.snapshot)

@@ -58,6 +58,14 @@ class Sunny:
         return shown.correction.azimuth_deg, shown.correction.elevation_deg
 
 
+def found(hybrid: HybridConfig = MISALIGNED) -> Sunny:
+    """Return a tracker whose sensors have found most of the misalignment."""
+    sunny = Sunny(hybrid)
+    sunny.forward(timedelta(minutes=10))
+    assert sunny.correction[0] > 0.8
+    return sunny
+
+
 @pytest.mark.parametrize("strategy", [Continuous(), Deadband()], ids=["continuous", "deadband"])
 def test_a_misalignment_is_found_in_sunlight(strategy: Strategy) -> None:
     sunny = Sunny(strategy=strategy)
@@ -77,8 +85,7 @@ def test_an_axis_that_arrives_first_does_not_take_the_way_of_the_other_for_an_er
 
 
 def test_in_cloud_the_correction_decays_and_in_sunlight_it_is_found_again() -> None:
-    sunny = Sunny()
-    sunny.forward(timedelta(minutes=10))
+    sunny = found()
     before_deg = sunny.correction[0]
     sunny.play(FaultKind.CLOUD, 1.0)
     sunny.forward(timedelta(minutes=15))
@@ -103,10 +110,8 @@ def test_a_stuck_sensor_is_doubted_and_its_correction_fades(stuck_wm2: float) ->
 
 @pytest.mark.parametrize("decay_s", [0.0, 900.0])
 def test_a_stop_lets_the_correction_decay_and_a_new_zero_or_pointing_forgets_it(decay_s: float) -> None:
-    sunny = Sunny(replace(MISALIGNED, decay_s=decay_s))
-    sunny.forward(timedelta(minutes=10))
+    sunny = found(replace(MISALIGNED, decay_s=decay_s))
     found_deg = sunny.correction[0]
-    assert found_deg > 0.8
     sunny.rehearsal.ask(Stop())
     sunny.forward(timedelta(minutes=15))
     sunny.rehearsal.ask(Track())
