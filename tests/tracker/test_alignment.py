@@ -67,13 +67,6 @@ def test_a_wrong_place_is_named_first(believed: Location, mistake: Mistake) -> N
     assert first.residual_deg < 0.01
 
 
-def test_a_longitude_that_can_be_no_latitude_is_not_suspected_of_being_swapped() -> None:
-    sydney = Location(-34.0, 151.0)
-    causes = [cause.mistake for cause in diagnose(sighting(MORNING, believed=sydney), sydney)]
-    assert Mistake.SWAPPED not in causes
-    assert Mistake.BOTH_ZEROS in causes
-
-
 @pytest.mark.parametrize(
     ("pointing", "mistake", "words"),
     [

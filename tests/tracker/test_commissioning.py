@@ -104,10 +104,3 @@ def test_a_zero_that_cannot_be_read_back_is_not_done() -> None:
     assert judge(memory, None)[StepName.HOMING].reasons[0].code == "drive_unreachable"
     silent = Plant(memory)
     assert judge(memory, silent.snapshot)[StepName.HOMING].status is CONFIRM
-
-
-def test_tracking_that_waits_says_for_what() -> None:
-    plant = Plant(replace(READY, tracking_on=True, mode=None))
-    plant.tick()
-    codes = {reason.code for reason in judge(plant.controller.memory, plant.snapshot)[StepName.RUN].reasons}
-    assert {"mode_not_selected", "not_running"} <= codes

@@ -18,13 +18,6 @@ from tests.tracker.scripted import Scripted
 SOUTH = Move(Orientation(180.0, 45.0))
 
 
-@pytest.fixture
-def plant() -> Plant:
-    plant = Plant(READY)
-    plant.tick()
-    return plant
-
-
 def test_a_lost_drive_ends_tracking_which_then_waits_for_the_operator(plant: Plant) -> None:
     plant.ask(Track())
     plant.forward(60.0)
@@ -110,12 +103,10 @@ def test_a_reset_clears_the_drive_too_and_nothing_moves_by_itself(plant: Plant) 
 @pytest.mark.parametrize("answers", [True, False])
 def test_a_reset_that_the_drive_does_not_do_leaves_the_fault(*, answers: bool) -> None:
     script = Scripted(READY)
-    script.reading = script.reading and replace(script.reading, fault_code=3)
+    script.sees(fault_code=3)
     script.tick()
     script.ask(ResetFault())
     if answers:
-        assert script.told.request is not None
-        assert script.reading is not None
         script.answers()
     script.forward(5.5)
     assert "still there" in script.happened(EventKind.FAULT_RAISED)[-1].message

@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from app.show.rehearsal import Rehearsal
 from app.simulation.faults import Fault, FaultKind
-from app.simulation.sunlight import Sunlight
-from app.sun.position import Location, SunPosition
+from app.sun.position import Location
 from app.tracker.commands.commands import SelectMode, Stop, Track
 from app.tracker.memory.memory import Pointing
 from app.tracker.motion.hybrid import AxisCorrection, HybridPhase, axis_correction
@@ -153,17 +152,3 @@ def test_whatever_the_sensors_say_the_correction_keeps_its_bound(
         if dark:
             assert correction.phase is HybridPhase.DARK
             assert abs(correction.degrees) <= abs(before.degrees)
-
-
-@given(st.floats(-60.0, 60.0), st.floats(5.0, 60.0), st.floats(-3.0, 3.0), st.floats(0.0, 1.0))
-def test_the_brighter_sensor_is_the_one_towards_the_sun(
-    off_noon_deg: float, height_deg: float, off_deg: float, cloud: float
-) -> None:
-    sun = SunPosition(180.0 + off_noon_deg, height_deg, height_deg)
-    light = Sunlight(
-        TrackerConfig("T1", "T1", hybrid=replace(EAGER, simulated=SimulatedLight(cloud=cloud))), lambda: sun
-    )
-    pair = light.reading(Orientation(sun.azimuth_deg - off_deg, height_deg)).azimuth
-    difference = pair.higher_wm2 - pair.lower_wm2
-    assert difference * off_deg >= -1e-6
-    assert min(pair.higher_wm2, pair.lower_wm2) > 0.0

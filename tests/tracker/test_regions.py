@@ -76,11 +76,3 @@ def test_a_held_key_and_steps_end_before_the_region(plant: Plant, fault: FaultRe
     plant.forward(4.0)
     assert plant.azimuth_deg < stood_deg - 4.0
     fault.recovers("the axis leaves, the way that it came")
-
-
-def test_the_way_round_is_free(plant: Plant) -> None:
-    plant.ask(Move(Orientation(20.0, 85.0)))
-    plant.forward(40.0)
-    plant.ask(Move(Orientation(110.0, 85.0)))
-    plant.forward(40.0)
-    assert plant.azimuth_deg == pytest.approx(110.0, abs=0.1)

@@ -13,7 +13,7 @@ from app.tracker.mounts.capabilities import abilities, default_mode
 from app.tracker.mounts.usual import mounted
 from app.tracker.programs.plan import ShowPlan
 from app.tracker.programs.show import check_show, schedule_of
-from app.tracker.programs.usual import MINUTES, in_usual_time
+from app.tracker.programs.usual import in_usual_time
 from app.tracker.settings.axes import AxisConfig
 from app.tracker.settings.config import MountKind, TrackerConfig
 from app.tracker.settings.strategy import Interval
@@ -81,15 +81,6 @@ def test_why_it_takes_longer_is_told_in_one_sentence(
     assert found.longer is not None
     assert found.longer.message.startswith("3 minutes are too short here: ")
     assert found.longer.message.endswith(why)
-
-
-def test_a_length_between_the_usual_ones_is_not_taken_unless_none_of_them_works() -> None:
-    found = in_usual_time(SOUTH, turning(3.0, 0.0, 360.0))
-    assert found.plan.duration / timedelta(minutes=1) in MINUTES
-    shortest = found.check.shortest
-    assert shortest is not None
-    usual = [timedelta(minutes=one) for one in MINUTES]
-    assert found.plan.duration == next(one for one in usual if one >= shortest)
 
 
 def test_where_no_length_works_the_first_is_returned_with_its_reasons() -> None:

@@ -47,25 +47,12 @@ def test_the_same_seed_makes_the_same_weather_and_another_one_another(scenario: 
     assert read(station, minutes=3.3) != read(SimulatedStation(scenario, seed=8), minutes=3.3)
 
 
-def test_gusts_by_hand_exceed_the_mean_by_at_most_the_gustiness() -> None:
-    winds = told(SimulatedStation(wind_mps=10.0, gustiness_pct=40.0), "wind_mps", of=range(900))
-    assert mean(winds) == pytest.approx(10.0, abs=0.2)
-    assert 12.5 < max(winds) <= 14.0
-    assert 6.0 <= min(winds) < 7.5
-
-
 def test_a_storm_comes_and_goes() -> None:
     storm = SimulatedStation(Scenario.STORM)
     assert max(told(storm, "wind_mps", of=range(120))) < 8.0
     assert max(told(storm, "wind_mps", of=range(360, 840))) > 22.0
     assert mean(told(storm, "wind_mps", of=range(360, 840))) == pytest.approx(20.0, abs=0.6)
     assert max(told(storm, "wind_mps", of=range(1500, 3600))) < 4.0
-
-
-def test_snow_falls_and_slides_off() -> None:
-    loads = told(SimulatedStation(Scenario.SNOWFALL), "snow_kg", of=range(30), step_s=60.0)
-    assert (loads[0], loads[14], loads[19], loads[25]) == (0.0, 8.0, 8.0, 0.0)
-    assert loads[:15] == sorted(loads[:15])
 
 
 def test_clouds_pass_and_a_dark_bank_covers_the_sun_for_twenty_minutes() -> None:
@@ -180,8 +167,3 @@ def test_a_scenario_waits_for_its_time_in_calm() -> None:
 def test_what_cannot_be_read_says_why(text: str, sentence: str) -> None:
     with pytest.raises(ValueError, match=sentence):
         stepped_day(read_steps(text), MIDNIGHT, ISTANBUL)
-
-
-def test_a_day_of_steps_is_no_scenario() -> None:
-    with pytest.raises(ValueError, match="given in steps"):
-        day_of_scenario(Scenario.MANUAL, "12:00", 1, MIDNIGHT, ISTANBUL)

@@ -46,14 +46,6 @@ def test_stroke_and_angle_lead_to_each_other(actuator: LinearActuator, angle_deg
     assert actuator.angle_deg(actuator.stroke_mm(angle_deg)) == pytest.approx(angle_deg, abs=1e-9)
 
 
-@given(actuators, st.floats(0.001, 0.999))
-def test_the_slope_is_that_of_the_stroke(actuator: LinearActuator, share: float) -> None:
-    low_deg, high_deg = actuator.range_deg
-    angle_deg = low_deg + share * (high_deg - low_deg)
-    rise_mm = actuator.length_mm(angle_deg + 1e-4) - actuator.length_mm(angle_deg - 1e-4)
-    assert actuator.mm_per_deg(angle_deg) == pytest.approx(rise_mm / 2e-4, abs=1e-5)
-
-
 @given(actuators, st.floats(0.0, 1.0))
 def test_nowhere_is_the_axis_slower_than_said(actuator: LinearActuator, share: float) -> None:
     low_deg, high_deg = actuator.range_deg
