@@ -7,13 +7,13 @@ import pytest
 
 from app.alarms.conditions import SiteHealth, of_tracker
 from app.tracker.commands.commands import Command, CommandRejected, Home, SetHome, Stop, UndoHome
-from app.tracker.memory.memory import StepName
+from app.tracker.memory.memory import Pointing, Sighting, StepName
 from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import DriveConfig, DriveKind
 from app.tracker.state.snapshot import ActivityName, EventKind, Snapshot
 from app.tracker.values.motion import AxisFeedback, RequestKind
 from tests.fault_result import HOME_AGAIN, VIRTUAL, FaultResult
-from tests.tracker.plant import BLANK, CONFIG, READY, Plant
+from tests.tracker.plant import BLANK, CONFIG, MORNING, READY, TRUST, Plant
 from tests.tracker.scripted import Scripted
 
 NEEDS_HOME = ("move", "track", "park", "go_to_start", "run_show")
@@ -169,6 +169,18 @@ def test_a_search_that_the_drive_still_pursues_is_ended() -> None:
     script.sees(homing=True)
     script.tick()
     assert script.told.azimuth != script.told.__class__().azimuth
+
+
+def test_sightings_and_pointing_are_kept_beside_the_zero(plant: Plant) -> None:
+    sighting = Sighting(MORNING, 90.0, 40.0, 91.0, 40.5)
+    plant.controller.set_sightings((sighting,))
+    plant.controller.set_pointing(Pointing(azimuth_offset_deg=1.0))
+    memory = plant.controller.memory
+    assert (memory.sightings, memory.home) == ((sighting,), TRUST)
+    assert memory.pointing.azimuth_offset_deg == 1.0
+    plant.tick()
+    plant.tick()
+    assert plant.controller.memory is memory
 
 
 def test_another_drive_is_another_zero(plant: Plant) -> None:

@@ -239,6 +239,19 @@ def test_a_drive_that_loses_power_in_the_link_loss_test_ends_it_and_its_zero() -
     assert plant.happened(EventKind.DRIVE_TEST_ENDED)[-1].data["outcome"] == "interrupted"
 
 
+def test_a_drive_whose_answer_to_silence_is_a_fault_is_recorded_with_its_code() -> None:
+    plant = standing(READY)
+    plant.ask(RunCommunicationLossTest(Axis.AZIMUTH))
+    plant.forward(1.3)
+    plant.drive.inject(Fault(FaultKind.DRIVE_FAULT, amount=17))
+    until_holding(plant)
+    proof = plant.controller.memory.proofs.link_loss
+    assert proof is not None
+    assert proof.fault_code == 17
+    plant.forward(0.2)
+    assert plant.activity is ActivityName.FAULTED
+
+
 def test_a_cut_link_ends_a_test_and_the_drive_stops_by_itself() -> None:
     plant = standing(READY)
     plant.ask(RunStopTest(Axis.AZIMUTH, StopSpeed.JOG))

@@ -47,6 +47,13 @@ def test_the_same_seed_makes_the_same_weather_and_another_one_another(scenario: 
     assert read(station, minutes=3.3) != read(SimulatedStation(scenario, seed=8), minutes=3.3)
 
 
+def test_gusts_by_hand_exceed_the_mean_by_at_most_the_gustiness() -> None:
+    winds = told(SimulatedStation(wind_mps=10.0, gustiness_pct=40.0), "wind_mps", of=range(900))
+    assert mean(winds) == pytest.approx(10.0, abs=0.2)
+    assert 12.5 < max(winds) <= 14.0
+    assert 6.0 <= min(winds) < 7.5
+
+
 def test_a_storm_comes_and_goes() -> None:
     storm = SimulatedStation(Scenario.STORM)
     assert max(told(storm, "wind_mps", of=range(120))) < 8.0
