@@ -18,7 +18,6 @@ from tests.amount import amount
 
 SAMSUN = Location(41.2867, 36.33)
 JUNE = datetime(2026, 6, 21, tzinfo=UTC)
-DECEMBER = datetime(2026, 12, 21, tzinfo=UTC)
 MORNING = JUNE + timedelta(hours=7)
 
 

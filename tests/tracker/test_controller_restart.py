@@ -29,7 +29,6 @@ from tests.tracker.plant import CONFIG, READY, Plant
 from tests.tracker.shows import SOLSTICE
 
 STORM = 28.0
-STOWS = (ActivityName.STOWING, ActivityName.STOWED)
 TRACKED = replace(READY, tracking_on=True, sensors=(Quantity.WIND,))
 
 
