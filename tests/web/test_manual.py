@@ -53,13 +53,6 @@ async def test_its_pages_come_under_the_policy_of_all_pages(written: Callable[[s
     assert style.text == "h1 {}"
 
 
-async def test_what_it_shares_with_the_documents_is_carried_once(written: Callable[[str, str], Path]) -> None:
-    manual = written("index.html", "<h1>Manual</h1>")
-    written("../docs/pictures/show.svg", "<svg/>")
-    async with serving(app_with(manual)) as browser:
-        assert (await browser.get("/manual/pictures/show.svg")).text == "<svg/>"
-
-
 async def test_nothing_beside_it_is_served(written: Callable[[str, str], Path]) -> None:
     manual = written("index.html", "<h1>Manual</h1>")
     (manual.parent / "secret.txt").write_text("secret")

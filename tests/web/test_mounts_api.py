@@ -1,30 +1,15 @@
 """Mounts over REST: kinds, rows, actuators, abilities and reach."""
 
-from collections.abc import AsyncIterator
-
 import httpx
 import pytest
-
-from tests.fakes import FakeMachine, fake_app, serving
 
 TRACKER = "/trackers/T1"
 
 
 @pytest.fixture
-async def api() -> AsyncIterator[httpx.AsyncClient]:
-    async with serving(fake_app(FakeMachine())) as client:
-        client.base_url = httpx.URL("http://127.0.0.1:8010/api/v1")
-        yield client
-
-
-async def test_another_kind_brings_its_usual_axis_and_limits(api: httpx.AsyncClient) -> None:
-    latitude_deg = (await api.get("/site")).json()["location"]["latitude_deg"]
-    got = (await api.patch(TRACKER, json={"mount": {"kind": "equatorial"}})).json()
-    assert got["mount"]["axis_tilt_deg"] == pytest.approx(abs(latitude_deg))
-    assert got["mount"]["axis_azimuth_deg"] == (180.0 if latitude_deg >= 0 else 0.0)
-    assert (got["azimuth"]["minimum_deg"], got["elevation"]["maximum_deg"]) == (-105.0, 24.0)
-    kept = (await api.patch(TRACKER, json={"mount": {"kind": "equatorial", "axis_tilt_deg": 40.0}})).json()
-    assert kept["mount"]["axis_tilt_deg"] == 40.0
+def api(client: httpx.AsyncClient) -> httpx.AsyncClient:
+    client.base_url = httpx.URL("http://127.0.0.1:8010/api/v1")
+    return client
 
 
 async def test_rows_come_with_a_number_and_go_with_null(api: httpx.AsyncClient) -> None:

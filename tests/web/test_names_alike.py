@@ -65,15 +65,3 @@ async def test_names_with_and_without_an_account_are_answered_alike(
     assert "The name or the password is wrong." in next(text for status, text, _, _ in there if status == 401)
     fault.shows("The name or the password is wrong.")
     fault.recovers("nothing was lost")
-
-
-@pytest.mark.fault(95)
-async def test_a_browser_that_holds_a_session_is_not_held_up_by_its_neighbours(tmp_path: Path) -> None:
-    office = Office(tmp_path, clock=VirtualClock(NOON))
-    await office.hire(Role.VIEWER)
-    held = await office.session("viewer")
-    async with office.browser() as neighbour, office.browser(held) as browser:
-        statuses = [(await sign_in(neighbour, "/api/v1/session", "viewer-1")).status_code for _ in range(9)]
-        assert statuses[-1] == 429
-        mine = await sign_in(browser, "/api/v1/session", "viewer-1")
-    assert mine.status_code == 401, "it is looked at"

@@ -61,12 +61,10 @@ async def test_a_change_is_written_down_tried_and_tells_where_to_go(
 @pytest.mark.parametrize(
     ("wrong", "sentence"),
     [
-        ({"host": "somewhere"}, "somewhere is not an IP address"),
         ({"host": "192.0.2.99"}, "The controller&#39;s computer cannot listen on 192.0.2.99"),
         ({"host": "0.0.0.0"}, "Add an administrator on the Users page first"),
         ({"port": "70000"}, "Port must be between 1 and 65535"),
         ({"allowed_hosts": "a b, under_score"}, "under_score is not a host name"),
-        ({"allowed_hosts": ", ".join(f"a{n}" for n in range(21))}, "Enter at most 20 names"),
         ({"trusted_proxies": "proxy"}, "HELIOPANEL_TRUSTED_PROXIES names"),
     ],
 )
@@ -77,8 +75,6 @@ async def test_what_cannot_be_is_told_and_what_was_typed_stays(
     assert answer.status_code == 422
     assert sentence in answer.text
     assert f'value="{next(iter(wrong.values()))}"' in answer.text
-    told_by_api = await here.put("/api/v1/network", json={"host": "nowhere", "port": 8443, "tls": False})
-    assert told_by_api.json()["errors"][0]["pointer"] == "#/host"
     if "proxies" not in next(iter(wrong)):
         assert read_network(tmp_path) == {}
 

@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 
 from app.base.clock import SystemClock, VirtualClock
-from app.base.turnstile import Turnstile
 from app.link.messages import Update
 from app.web.http.limits import StreamLimit
 from app.web.live.hub import BATCH, SOONEST, Hub
@@ -45,42 +44,6 @@ async def test_of_many_streams_that_come_at_once_each_lets_others_pass() -> None
     await asyncio.gather(*(limit(scope, nothing, nothing) for scope in scopes))
     assert len(began) == 51
     assert began.index("/stop") <= 1
-
-
-async def test_of_many_pages_that_come_at_once_each_lets_others_pass() -> None:
-    begun: list[str] = []
-    turnstile, loop = Turnstile(), asyncio.get_running_loop()
-
-    def fail() -> None:
-        begun.append("broken page")
-        raise ConnectionResetError
-
-    told: list[object] = []
-    loop.set_exception_handler(lambda _, context: told.append(context["exception"]))
-    for work in (fail, lambda: begun.append("page"), lambda: begun.append("page")):
-        turnstile.add(work)
-    loop.call_soon(begun.append, "stop")
-    for _ in range(3):
-        await asyncio.sleep(0)
-    assert not len(turnstile)
-    assert begun == ["broken page", "stop", "page", "page"]
-    assert [type(one) for one in told] == [ConnectionResetError]
-
-
-async def test_pages_that_come_within_a_moment_share_one_text() -> None:
-    clock = VirtualClock(NOON)
-    machine = FakeMachine(clock)
-    hub = Hub(machine, clock)
-    site = machine.latest()
-    assert site is not None
-    hub._hear(Update(site, ()))
-    (first,), (second,) = [await hub.join(Wanted()).take() for _ in range(2)]
-    (other,) = await hub.join(Wanted("T1")).take()
-    assert first is second
-    assert other is not first
-    clock.advance(SOONEST * 2)
-    (later,) = await hub.join(Wanted()).take()
-    assert later is not first
 
 
 async def test_a_hand_out_that_takes_long_is_followed_by_as_long_a_rest() -> None:

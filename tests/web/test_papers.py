@@ -35,17 +35,3 @@ async def test_page_and_api_tell_the_same(client: httpx.AsyncClient) -> None:
     )
     assert text.count("<b>differs</b>") == differing > 10
     assert "<html" not in text
-
-
-async def test_the_page_asks_for_the_papers_by_itself(client: httpx.AsyncClient) -> None:
-    text = (await client.get("/papers")).text
-    assert 'hx-get="/papers?show=yes" hx-trigger="load"' in text
-    assert '<a class="key" href="/papers?show=yes">' in text
-
-
-async def test_a_sixth_paper_is_not_found(client: httpx.AsyncClient) -> None:
-    answer = await client.get("/api/v1/papers", params={"paper": "a-sixth"})
-    assert answer.status_code == 404
-    assert "choose one of" in answer.json()["detail"]
-    one = await client.get("/api/v1/papers", params={"paper": "xia"})
-    assert [paper["key"] for paper in one.json()["items"]] == ["xia"]

@@ -6,8 +6,6 @@ import httpx
 import pytest
 
 from app.base.own import PROGRAM, own_folder
-from app.web.api.base import ProblemDetails
-from app.web.http.errors import PROBLEMS
 from app.web.http.problems import ProblemCode, phrase
 
 ERRORS_PAGE = own_folder("docs") / "reference" / "errors.md"
@@ -20,17 +18,6 @@ def test_each_code_is_told_somewhere_and_has_a_section_of_the_manual() -> None:
         assert f"ProblemCode.{code.name}" in told, code
         assert f"\n### `{code}`\n\n{code.status} {phrase(code.status)}. " in page
         assert code.type == f"/manual/reference/errors.html#{code}"
-
-
-def test_a_status_is_called_the_same_by_every_version_of_python() -> None:
-    assert phrase(413) == "Request Entity Too Large"
-    assert phrase(422) == "Unprocessable Entity"
-    assert phrase(404) == "Not Found"
-
-
-def test_what_the_program_raises_itself_is_told_by_a_code() -> None:
-    assert all(callable(builder) for builder in PROBLEMS.values())
-    assert ProblemDetails.model_json_schema()["$defs"]["ProblemCode"]["enum"] == list(ProblemCode)
 
 
 WRONG: list[tuple[str, str, Any, list[dict[str, str]]]] = [

@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from app.access.roles import Role
-from app.access.sign_in_errors import Throttled, WrongPassword
 from app.access.tokens import Scope
 from app.base.clock import Clock
 from tests.web.office import HERE, Office
@@ -73,17 +72,6 @@ async def test_a_foreign_page_is_recorded(office: Office) -> None:
     event = await recorded(office, lambda one: one["action"] == "refused_foreign")
     assert "http://elsewhere.example" in event["result"]
     assert event["address"] == "127.0.0.1"
-
-
-async def test_a_log_in_that_must_wait_is_recorded(office: Office) -> None:
-    for _ in range(3):
-        with pytest.raises(WrongPassword):
-            await office.keeper.log_in("viewer-1", "wrong", "10.0.0.9", "test")
-    with pytest.raises(Throttled):
-        await office.keeper.log_in("viewer-1", "wrong", "10.0.0.9", "test")
-    event = await recorded(office, lambda one: one["action"] == "refused_log_in")
-    assert (event["object"], event["address"]) == ("viewer-1", "10.0.0.9")
-    assert "too many wrong passwords" in event["result"]
 
 
 async def test_a_panel_that_is_not_set_up_tells_programs_so(tmp_path: Path) -> None:

@@ -15,7 +15,6 @@ from app.base.turnstile import Turnstile
 from app.link.messages import Order
 from app.tracker.state.snapshot import SiteSnapshot
 from app.web.http.server import (
-    LARGEST_HEAD,
     REQUEST_DEADLINE_S,
     Connections,
     PanelServer,
@@ -61,16 +60,6 @@ async def serving(
 
 
 @pytest.mark.fault(65)
-async def test_request_that_never_ends_is_hung_up_on() -> None:
-    async with serving(Connections(100), 0.2) as (_, port):
-        reader, writer = await asyncio.open_connection("127.0.0.1", port)
-        writer.write(b"GET /health HTTP/1.1\r\nHost: 127.0")
-        with contextlib.suppress(ConnectionResetError):
-            assert await asyncio.wait_for(reader.read(), PATIENCE_S) == b""
-        writer.close()
-
-
-@pytest.mark.fault(65)
 async def test_a_request_has_eight_seconds_to_arrive(fault: FaultResult) -> None:
     """The very timer of a real connection is read: nobody waits for it."""
     async with serving(Connections(100)) as (server, port):
@@ -107,16 +96,6 @@ async def leave(held: Held) -> None:
 
 
 @pytest.mark.fault(65)
-async def test_idle_connections_make_room_for_requests() -> None:
-    async with serving(Connections(100, most_a_client=4), 5.0) as (_, port):
-        held = await holding(port, 30, b"")
-        for _ in range(10):
-            assert await _status(port) == b"200"
-        assert await _status(port, "POST /api/v1/trackers/T1/stop") == b"202"
-        await leave(held)
-
-
-@pytest.mark.fault(65)
 async def test_stop_is_obeyed_where_a_client_has_no_connection_left() -> None:
     connections = Connections(100, most_a_client=2)
     async with serving(connections, 5.0) as (_, port):
@@ -129,29 +108,6 @@ async def test_stop_is_obeyed_where_a_client_has_no_connection_left() -> None:
         while connections._held or connections._reserved:
             await clock.sleep_until(clock.now() + timedelta(milliseconds=10))
         assert await _status(port) == b"200"
-
-
-def test_a_client_with_too_many_connections_is_told_of_once_until_it_has_fewer() -> None:
-    connections = Connections(100, most_a_client=4)
-    for _ in range(4):
-        assert connections.admit("10.0.0.7")
-    assert connections.is_new_excess("10.0.0.7")
-    assert not connections.is_new_excess("10.0.0.7")
-    assert connections.is_new_excess("10.0.0.8")
-    for _ in range(2):
-        connections.release("10.0.0.7")
-    assert connections.is_new_excess("10.0.0.7")
-
-
-async def test_a_head_that_does_not_end_is_refused() -> None:
-    async with serving(Connections(100), 5.0) as (_, port):
-        reader, writer = await asyncio.open_connection("127.0.0.1", port)
-        writer.write(b"GET /health HTTP/1.1\r\nHost: 127.0.0.1\r\nX: " + b"a" * (LARGEST_HEAD * 4))
-        answer = b""
-        with contextlib.suppress(ConnectionResetError):
-            answer = await asyncio.wait_for(reader.read(), PATIENCE_S)
-        assert answer.split(b" ")[1] == b"431"
-        writer.close()
 
 
 @pytest.mark.fault(68)
@@ -167,15 +123,6 @@ async def test_a_viewer_that_has_gone_silently_is_noticed_by_the_system(fault: F
         fault.noticed(10.0, REAL)
         fault.shows_nothing("nobody is there to read it")
         fault.recovers("automatic: a page that comes back connects again")
-
-
-async def test_live_sockets_do_not_use_up_the_share_of_requests() -> None:
-    pages = contextlib.AsyncExitStack()
-    async with serving(Connections(100, most_a_client=2), 5.0) as (_, port), pages:
-        for _ in range(8):
-            page = await pages.enter_async_context(connect(f"ws://127.0.0.1:{port}/live"))
-            assert '"state"' in await page.recv()
-        assert await _status(port) == b"200"
 
 
 class SlowToStop(FakeMachine):

@@ -7,9 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.simulation.faults import FaultKind
-from app.tracker.programs.fault_scenarios import LESSONS, Subject, lesson
-from app.tracker.weather.simulated_weather import WeatherFault
+from app.tracker.programs.fault_scenarios import LESSONS, Subject
 from tests.fault_result import FaultResult
 from tests.web.desk import Desk
 
@@ -21,15 +19,6 @@ API = "/api/v1/trackers/T1/fault-injection"
 async def desk(tmp_path: Path) -> AsyncIterator[Desk]:
     async with Desk(tmp_path) as desk:
         yield desk
-
-
-def test_every_fault_of_the_simulator_is_a_lesson_and_every_lesson_can_be_played() -> None:
-    assert {part.kind for one in LESSONS for part in one.parts} == set(FaultKind)
-    assert {one.weather for one in LESSONS if one.weather} == set(WeatherFault)
-    assert len({one.fault for one in LESSONS}) == len(LESSONS)
-    assert all(one.parts or one.weather for one in LESSONS)
-    with pytest.raises(ValueError, match="There is no fault 'fire'"):
-        lesson("fire")
 
 
 async def test_a_fault_is_played_seen_and_ended(desk: Desk) -> None:
@@ -79,26 +68,19 @@ async def test_weather_is_played_on_made_up_weather_only_and_ends_with_the_fault
 
 
 @pytest.mark.fault(42)
-async def test_a_storm_that_meets_a_fault_says_not_stowed_on_every_page(desk: Desk) -> None:
-    await desk.ask("POST", "/trackers/T1/fault-injection/weather", headers=HTMX)
-    await desk.forward(2.0)
-    assert (await desk.ask("POST", API, json={"fault": "not_stowed"})).status_code == 204
-    await desk.forward(3.0)
-    for path in ("/trackers/T1", "/trackers/T1/fault-injection", "/trackers/T1/settings"):
-        page = (await desk.ask("GET", path)).text
-        assert "is NOT STOWED, although wind requires it" in page
-        assert 'data-when="not_stowed">' in page, "the band is shown"
-
-
-@pytest.mark.fault(42)
 async def test_the_key_that_stows_comes_first_while_the_panel_is_not_stowed(desk: Desk) -> None:
     stow_now = '<section class="panel" id="stow-now" data-when="not_stowed"'
     calm = (await desk.ask("GET", "/trackers/T1")).text
+    pages = ("/trackers/T1", "/trackers/T1/fault-injection", "/trackers/T1/settings")
     assert f"{stow_now} hidden" in calm
     await desk.ask("POST", "/trackers/T1/fault-injection/weather", headers=HTMX)
     await desk.forward(2.0)
     assert (await desk.ask("POST", API, json={"fault": "not_stowed"})).status_code == 204
     await desk.forward(3.0)
+    for path in pages:
+        page = (await desk.ask("GET", path)).text
+        assert "is NOT STOWED, although wind requires it" in page
+        assert 'data-when="not_stowed">' in page, "the band is shown"
     page = (await desk.ask("GET", "/trackers/T1")).text
     assert f"{stow_now}>" in page
     assert page.index(stow_now) < page.index("live-readings"), "before everything else of the page"
@@ -130,12 +112,3 @@ async def test_a_pressed_switch_is_named_with_the_way_out_on_the_page(desk: Desk
     both = (await desk.ask("GET", "/api/v1/trackers/T1/snapshot")).json()
     assert "at_limit_switch" not in {reason["code"] for reason in both["notices"]}
     assert both["fault"]["code"] == "limit_switch_wiring"
-
-
-async def test_step_3_of_a_simulated_tracker_says_how_its_true_zero_is_found(desk: Desk) -> None:
-    told = "A simulated tracker has no panel to observe: use its home switches to find the home position."
-    page = "/trackers/T1/commissioning/homing"
-    assert told in (await desk.ask("GET", page)).text
-    real = {"drive": {"kind": "modbus-tcp", "profile": "simulated-plc", "host": "127.0.0.1", "port": 5020}}
-    assert (await desk.ask("PATCH", "/api/v1/trackers/T1", json=real)).status_code == 200
-    assert told not in (await desk.ask("GET", page)).text

@@ -10,7 +10,6 @@ import pytest
 from app.access.accounts import TokenWish
 from app.access.roles import Role
 from app.access.tokens import Scope
-from app.audit.entry import told
 from app.base.addresses.masking import masked
 from app.tracker.values.notifications import Notifications
 from tests.fault_result import FaultResult
@@ -46,7 +45,7 @@ def test_of_an_address_the_host_is_left(address: str, shown: str) -> None:
 
 
 @pytest.mark.fault(94)
-@pytest.mark.parametrize("role", [Role.VIEWER, Role.OPERATOR])
+@pytest.mark.parametrize("role", [Role.OPERATOR])
 @pytest.mark.parametrize("address", ADDRESSES)
 async def test_who_may_not_set_the_webhook_is_shown_its_host(
     office: Office, address: str, role: Role, fault: FaultResult
@@ -60,10 +59,9 @@ async def test_who_may_not_set_the_webhook_is_shown_its_host(
     fault.recovers("nothing was lost")
 
 
-@pytest.mark.parametrize("role", [Role.ENGINEER, Role.ADMINISTRATOR])
 @pytest.mark.parametrize("address", ADDRESSES)
-async def test_who_may_set_it_is_shown_it_whole(office: Office, address: str, role: Role) -> None:
-    async with office.browser(await office.session(role)) as browser:
+async def test_who_may_set_it_is_shown_it_whole(office: Office, address: str) -> None:
+    async with office.browser(await office.session(Role.ENGINEER)) as browser:
         assert "SEKRET2?key=SEKRET3" in (await browser.get(address)).text
 
 
@@ -95,7 +93,3 @@ async def test_neither_diagnostics_nor_audit_have_it(tmp_path: Path) -> None:
     assert SHOWN in texts["site.json"]
     for text in (audit, journal, *texts.values()):
         assert "SEKRET" not in text
-
-
-def test_what_the_audit_is_given_by_path_is_masked_too() -> None:
-    assert told({"notifications.webhook_url": HOOK}) == f'{{"notifications.webhook_url":"{SHOWN}"}}'

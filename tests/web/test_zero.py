@@ -51,7 +51,7 @@ async def test_a_program_confirms_as_for_a_place(machine: FakeMachine, client: h
     assert len(sent(machine, SetHome)) == 2
 
 
-@pytest.mark.parametrize(("read_deg", "asks"), [(-2.0, False), (2.0, False), (2.1, True), (-2.1, True)])
+@pytest.mark.parametrize(("read_deg", "asks"), [(2.0, False), (2.1, True), (-2.1, True)])
 async def test_within_what_the_eye_can_tell_nothing_is_asked(
     machine: FakeMachine, client: httpx.AsyncClient, read_deg: float, asks: bool
 ) -> None:

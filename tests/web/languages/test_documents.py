@@ -11,7 +11,7 @@ from app.web.features.guide import guide
 from app.web.features.guide.search_index import index
 from app.web.features.guide.search_score import plain, score
 from app.web.languages import CATALOGUE
-from app.web.languages.catalogue import BLOCK, catalogue_of
+from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import ENGLISH, LANGUAGES, TRANSLATED
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
 
@@ -50,28 +50,6 @@ def test_a_document_has_every_section_with_the_english_anchor(document: str, cod
     assert sum(one.html != other.html for one, other in zip(spoken, english, strict=True)) == len(english)
 
 
-@pytest.mark.parametrize("code", TRANSLATED)
-def test_no_mark_of_markdown_is_left_in_the_text(code: str) -> None:
-    for document in guide.SPOKEN:
-        for spoken, english in zip(sections(document, code), sections(document, ENGLISH.code), strict=True):
-            for mark in ("*", "](", "`"):
-                assert spoken.html.count(mark) == english.html.count(mark), spoken.html
-
-
-def test_anchors_are_those_that_links_to_english_headings_have() -> None:
-    anchors = [one.anchor for one in sections(guide.GUIDE, "tr")]
-    assert anchors[:4] == ["operators-guide", "the-screen", "commissioning-five-steps", "1-location"]
-    assert len(anchors) == len(set(anchors))
-
-
-async def test_the_guide_speaks_the_language_of_the_page(client: httpx.AsyncClient) -> None:
-    page = (await client.get("/guide", headers={"Accept-Language": "tr"})).text
-    title = sections(guide.GUIDE, "tr")[0].title
-    assert f'<h1 id="heading" tabindex="-1">{title}</h1>' in page
-    assert '<section class="guide-section" id="the-screen"' in page
-    assert '<article class="panel guide-text">' in page
-
-
 @pytest.mark.parametrize("code", LANGUAGES)
 async def test_the_guide_is_as_light_in_every_language(code: str, client: httpx.AsyncClient) -> None:
     answer = await client.get("/guide", headers={"Cookie": f"language={code}", "Accept-Encoding": "gzip"})
@@ -97,17 +75,3 @@ def test_words_of_the_reader_and_english_ones_find_a_section(code: str) -> None:
             needles = plain(words).split()
             hits = {entry.href for entry, known in index() if score(known, needles)}
             assert "/guide/glossary#glossary" in hits, words
-
-
-@pytest.mark.parametrize(
-    ("typed", "written"),
-    [("KIZ", "kız"), ("istanbul", "İstanbul"), ("rasarit", "răsărit"), ("STRASSE", "Straße"), ("ano", "año")],
-)
-def test_marks_and_capitals_need_not_be_typed(typed: str, written: str) -> None:
-    assert guide.folded(typed) == guide.folded(written)
-
-
-def test_documents_are_read_only_when_somebody_opens_one() -> None:
-    texts = catalogue_of("de").texts
-    assert [text for text in texts if str(text).startswith(BLOCK)] == []
-    assert catalogue_of("de").block("The screen") != "The screen"

@@ -24,11 +24,6 @@ def test_sentences_are_said_and_names_are_not() -> None:
     }
 
 
-def test_how_a_zero_was_set_is_said_and_who_set_it_is_not() -> None:
-    told = orjson.loads(in_language(catalogue(), {"home": {"by": "Holding", "how": N_("Holding")}}))
-    assert told == {"home": {"by": "Holding", "how": "Steht"}}
-
-
 def test_a_message_that_is_not_translated_stays_english() -> None:
     told = orjson.loads(
         in_language(catalogue(), {"strip": [N_("Said in no catalogue."), say("{a}!", a="Row 6")]})

@@ -6,8 +6,6 @@ from collections.abc import Iterator
 import pytest
 
 from app.drives.profile import known_profiles, load_profile
-from app.tracker.memory.drive_check import DriveChoices, ProfileChoice
-from app.web.features.commissioning.drive_form import profile_options
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import TRANSLATED
 
@@ -36,17 +34,3 @@ def test_profiles_speak_the_language_and_keep_names_and_numbers(code: str) -> No
         for text, other in said.items()
         if sorted(set(MADE.findall(text))) != sorted(set(MADE.findall(other)))
     } == {}
-
-
-@pytest.mark.parametrize("code", TRANSLATED)
-def test_the_list_of_profiles_speaks_the_language(code: str) -> None:
-    profiles = [load_profile(name) for name in known_profiles()]
-    shown = [ProfileChoice(one.name, one.title, one.verified, "", (), "") for one in profiles]
-    options = dict(profile_options(DriveChoices(tuple(shown), ()), "simulated-plc"))
-    said = catalogue_of(code).said
-    word = catalogue_of(code).word
-    for profile in profiles:
-        state = word("verified" if profile.verified else "unverified")
-        words = said(options[profile.name])
-        assert words.startswith(word(profile.title)), words
-        assert state in words, words

@@ -1,21 +1,18 @@
 """What the program says is shown in another language; what others wrote stays what it is."""
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.base.message import N_, Word, join, say, with_format
 from app.tracker.settings.axes import Axis
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import TRANSLATED
+from tests.amount import amount
 from tests.web.languages.made_up import catalogue
 
 DRIVE = "The drive of {name} does not answer."
-NAMES = [
-    "Row 6", "Row 6 is stowed", "Stop", "North", "Site", "Tracker 1", "Holding", "A", "the", "100 %",
-    "{name}", "%(name)s", "{0}", "Azimuth and elevation", "Press Stop", "Wind: calm", "T1. T2",
-    "Zeile 6", "Qx", "ok",
-]  # fmt: skip
+NAMES = ["Row 6 is stowed", "Stop", "Site", "Holding", "100 %", "{name}", "%(name)s", "{0}", "T1. T2"]
 
 
 @pytest.mark.parametrize(
@@ -46,10 +43,6 @@ def test_a_text_that_is_no_message_is_data_and_stays(text: str) -> None:
     assert catalogue().said(text) == text
 
 
-def test_a_sentence_that_was_kept_without_its_values_stays_english() -> None:
-    assert catalogue().said(N_("The drive of T7 does not answer.")) == "The drive of T7 does not answer."
-
-
 def test_a_number_is_written_as_the_language_does() -> None:
     number = say("{a} to {b}", a=with_format(1000, ","), b=with_format(86400.5, ",.1f"))
     assert catalogue({"{a} to {b}": "{a} bis {b}"}).said(number) == "1\u202f000 bis 86\u202f400,5"
@@ -63,12 +56,7 @@ def test_a_name_like_a_word_of_ours_stays_in_every_language(code: str, name: str
     assert said != DRIVE.replace("{name}", name)
 
 
+@settings(max_examples=amount(10, 100))
 @given(name=st.text(min_size=1, max_size=40), code=st.sampled_from(TRANSLATED))
 def test_any_name_stays(name: str, code: str) -> None:
     assert name in catalogue_of(code).said(say(DRIVE, name=name))
-
-
-def test_english_says_what_it_is_told() -> None:
-    english = catalogue_of("en")
-    assert english.said(say(DRIVE, name="T7")) == "The drive of T7 does not answer."
-    assert english.said(N_("Azimuth")) == "Azimuth"
