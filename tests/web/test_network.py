@@ -1,6 +1,5 @@
 """What a network is offered: names, origins, certificates, shares of streams, and nothing without them."""
 
-import asyncio
 import re
 import stat
 from datetime import UTC, datetime, timedelta
@@ -12,13 +11,10 @@ import pytest
 from pydantic import ValidationError
 from typer.testing import CliRunner
 
-from app.base.certificates import AUTHORITY, AUTHORITY_KEY, SERVER, SERVER_KEY, init, read
-from app.base.clock import VirtualClock
+from app.base.certificates import AUTHORITY, AUTHORITY_KEY, SERVER, SERVER_KEY, init
 from app.base.settings import Settings
 from app.cli import cli
-from app.web.http.limits import MOST_STREAMS_A_CLIENT, StreamLimit
-from app.web.http.mdns import addresses
-from app.web.http.security import HSTS, Guard, SecurityHeaders, host_names
+from app.web.http.security import Guard, host_names
 from app.web.live.viewers import Wanted
 from app.web.main import create_app
 from tests.fakes import FakeMachine, FakeReader, fake_app, serving
@@ -44,11 +40,8 @@ async def asked(guard: Any, base: str, headers: dict[str, str], method: str = "G
     ("base", "headers", "method", "status"),
     [
         ("http://10.0.0.5:8000", {"host": "tracker.example:8000"}, "GET", 200),
-        ("http://10.0.0.5:8000", {"host": "TRACKER.example"}, "GET", 200),
-        ("http://10.0.0.5:8000", {"host": "heliopanel.local"}, "GET", 200),
         ("http://10.0.0.5:8000", {}, "GET", 200),
         ("http://10.0.0.5:8000", {"host": "rebound.example"}, "GET", 403),
-        ("http://10.0.0.5:8000", {"host": "10.0.0.6"}, "GET", 403),
         ("https://tracker.example", {"origin": "https://tracker.example"}, "POST", 200),
         ("https://tracker.example", {"origin": "http://tracker.example"}, "POST", 403),
         ("http://tracker.example", {"origin": "https://tracker.example"}, "POST", 200),
@@ -62,13 +55,6 @@ async def test_only_own_names_and_origins_are_answered(
     settings = Settings(host="0.0.0.0", insecure_lan=True, allowed_hosts="tracker.example, other.example")
     answer = await asked(Guard(_nothing, host_names(settings)), base, headers, method)
     assert answer.status_code == status
-
-
-async def test_only_tls_is_remembered_by_the_browser() -> None:
-    secure = await asked(SecurityHeaders(_nothing), "https://10.0.0.5", {})
-    assert secure.headers["strict-transport-security"] == HSTS
-    plain = await asked(SecurityHeaders(_nothing), "http://10.0.0.5", {})
-    assert "strict-transport-security" not in plain.headers
 
 
 def test_a_network_is_not_listened_to_without_a_certificate(tmp_path: Path) -> None:
@@ -99,15 +85,6 @@ def test_a_certificate_is_for_every_name_and_its_keys_are_private(tmp_path: Path
     for key in (AUTHORITY_KEY, SERVER_KEY):
         assert stat.S_IMODE((tmp_path / key).stat().st_mode) == 0o600
     assert (tmp_path / SERVER).read_text().count("BEGIN CERTIFICATE") == 2
-
-
-def test_renewing_keeps_the_authority_that_tablets_trust(tmp_path: Path) -> None:
-    init(tmp_path, ("a.local",), NOW)
-    authority = read(tmp_path / AUTHORITY)
-    renewed = init(tmp_path, ("a.local", "b.local"), NOW + timedelta(days=300))
-    assert read(tmp_path / AUTHORITY) == authority
-    assert renewed.names == ("a.local", "b.local")
-    assert renewed.not_after == NOW + timedelta(days=697)
 
 
 def test_the_command_makes_and_shows_certificates(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -144,36 +121,6 @@ async def test_without_a_certificate_the_page_says_how_to_make_one() -> None:
 
 
 @pytest.mark.fault(67)
-@pytest.mark.parametrize(("client", "admitted"), [("10.0.0.7", MOST_STREAMS_A_CLIENT), ("127.0.0.1", 100)])
-async def test_streams_are_shared_out_and_other_requests_pass(client: str, admitted: int) -> None:
-    ended, answers = asyncio.Event(), []
-
-    async def lasting(scope: Any, receive: Any, send: Any) -> None:
-        if scope["path"] == "/live":
-            await ended.wait()
-        await send({"type": "passed"})
-
-    async def hear(message: Any) -> None:
-        answers.append(message)
-
-    limit = StreamLimit(lasting, clock=VirtualClock(NOW), most=100)
-    scopes = [{"type": "websocket", "path": "/live", "client": (client, number)} for number in range(120)]
-    asking = [asyncio.create_task(limit(scope, hear, hear)) for scope in scopes]
-    await asyncio.sleep(0)
-    assert [one["code"] for one in answers] == [1013] * (120 - admitted)
-    answers.clear()
-    stream = {"type": "http", "path": "/api/v1/stream", "client": (client, 1)}
-    await limit(stream, hear, hear)
-    assert answers[0]["status"] == 503
-    await limit({"type": "http", "path": "/stop", "client": (client, 1)}, hear, hear)
-    assert answers[-1] == {"type": "passed"}
-    ended.set()
-    await asyncio.gather(*asking)
-    await limit(stream, hear, hear)
-    assert answers[-1] == {"type": "passed"}
-
-
-@pytest.mark.fault(67)
 async def test_a_thousand_viewers_are_served_and_one_more_may_only_stop(fault: FaultResult) -> None:
     machine = FakeMachine()
     app = fake_app(machine)
@@ -193,25 +140,6 @@ async def test_a_thousand_viewers_are_served_and_one_more_may_only_stop(fault: F
     fault.recovers("automatic: once a viewer has left")
 
 
-@pytest.mark.fault(67)
-async def test_of_streams_there_are_1024(fault: FaultResult) -> None:
-    ended, answers = asyncio.Event(), []
-
-    async def lasting(scope: Any, receive: Any, send: Any) -> None:
-        await ended.wait()
-
-    async def hear(message: Any) -> None:
-        answers.append(message["code"])
-
-    limit = StreamLimit(lasting, clock=VirtualClock(NOW))
-    scopes = [{"type": "websocket", "path": "/live", "client": ("127.0.0.1", port)} for port in range(1030)]
-    asking = [asyncio.create_task(limit(scope, hear, hear)) for scope in scopes]
-    await asyncio.sleep(0)
-    assert answers == [1013] * 6
-    ended.set()
-    await asyncio.gather(*asking)
-
-
 async def test_a_network_without_a_certificate_is_warned_of_on_every_page(tmp_path: Path) -> None:
     settings = Settings(host="0.0.0.0", data_dir=tmp_path, insecure_lan=True)
     app = create_app(settings, machine=FakeMachine(), reader=FakeReader())
@@ -220,9 +148,3 @@ async def test_a_network_without_a_certificate_is_warned_of_on_every_page(tmp_pa
             assert 'id="bare-banner"' in (await client.get(path)).text
     async with serving(fake_app()) as client:
         assert 'id="bare-banner"' not in (await client.get("/")).text
-
-
-def test_what_is_announced_is_reached_from_elsewhere() -> None:
-    assert addresses("10.0.0.5") == [bytes((10, 0, 0, 5))]
-    assert addresses("127.0.0.1") == [bytes((127, 0, 0, 1))]
-    assert bytes((127, 0, 0, 1)) not in addresses("0.0.0.0")

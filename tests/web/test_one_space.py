@@ -6,8 +6,3 @@ from app.web.shell.render import environment
 def test_what_a_template_writes_has_single_spaces_and_values_stay() -> None:
     page = environment().from_string('<p\n    class="a">\n  one\n  {{ typed }}\n</p>')
     assert page.render(typed="1,2\n  3,4") == '<p class="a"> one 1,2\n  3,4 </p>'
-
-
-def test_a_message_is_the_same_on_several_lines() -> None:
-    page = environment().from_string("{% trans count=2 %}Valid for\n    {{ count }} days.{% endtrans %}")
-    assert page.render() == "Valid for 2 days."

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import orjson
 
-from app.web.languages.catalogue import offered
 from app.web.shell.page_facts import page_facts
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -37,15 +36,6 @@ def test_no_limit_of_the_program_is_written_in_a_script() -> None:
         if float(value.replace("_", "")) in known.get(name, ())
     }
     assert not twins
-
-
-def test_every_page_is_told_the_same_facts_in_its_own_language() -> None:
-    told = {one.code: orjson.loads(str(page_facts(one.code))) for one in offered()}
-    assert {facts["point"] for facts in told.values()} == {".", ","}
-    own = {"point", "date", "compass"}
-    shared = [{name: fact for name, fact in facts.items() if name not in own} for facts in told.values()]
-    assert all(facts == shared[0] for facts in shared)
-    assert all(len(page_facts(code)) < 1500 for code in told), "it goes with every page"
 
 
 def test_every_fact_is_used_by_a_script() -> None:

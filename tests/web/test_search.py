@@ -8,11 +8,9 @@ import pytest
 from fastapi.routing import APIRoute
 
 from app.alarms.catalogue import ENTRIES
-from app.web.features.guide.field_search import SITE_FORMS, TRACKER_FORMS, fields_of
-from app.web.features.guide.search_index import PARTS, index
+from app.web.features.guide.search_index import PARTS
 from app.web.features.guide.search_score import nearness, plain, score, words_of
-from app.web.features.guide.search_words import ALSO
-from app.web.languages.catalogue import catalogue_of
+from tests.amount import amount
 from tests.fakes import FakeMachine, FakeTracker, Pair, commissioned, fake_app, serving
 
 HIT = re.compile(r'<a class="panel hit" href="([^"]+)"')
@@ -26,54 +24,20 @@ T1, ALARM = "/trackers/T1", "/alarms/guide#alarm-"
 WANTED: dict[str, dict[str, tuple[str, ...]]] = {
     "en": {
         "wrong sign": (f"{T1}/drive-tests", f"{ALARM}wrong_direction"),
-        "swapped azimuth": (f"{T1}/drive-tests", f"{ALARM}axes_swapped"),
         "wind limit": (f"{T1}/protections#f-wind_gust_mps", f"{T1}/protections#f-wind_mean_mps"),
         "Modbus unit": (f"{T1}/drive#f-unit",),
-        "backlash": (f"{T1}/drive", f"{T1}/drive-tests", f"{T1}/settings#f-deadband_deg"),
-        "soft limits": (f"{T1}/settings#f-azimuth_minimum_deg", f"{T1}/settings#f-azimuth_maximum_deg"),
-        "limit switch": (f"{ALARM}limit_switch",),
         "following_error": (f"{T1}/settings#f-following_error_deg",),
-        "over_travel": (f"{ALARM}over_travel",),
-        "wind_gust_mps": (f"{T1}/protections#f-wind_gust_mps",),
-        "IP address": ("/network", f"{T1}/drive#f-host"),
         "password": ("/account",),
-        "baud rate": (f"{T1}/drive#f-baud_rate",),
-        "gear ratio": (f"{T1}/drive#f-azimuth_gear",),
         "set zero": (f"{T1}/commissioning/homing",),
-        "backup": ("/restore",),
-        "undo": (f"{T1}/settings",),
         "emergency stop": (T1, f"{ALARM}stop_overdue"),
-        "export": ("/journal",),
-        "stow angle": (f"{T1}/protections",),
     },
     "de": {
         "Windgrenze": (f"{T1}/protections#f-wind_gust_mps",),
-        "falsche Drehrichtung": (f"{T1}/drive-tests", f"{ALARM}wrong_direction"),
         "Achsen vertauscht": (f"{ALARM}axes_swapped",),
-        "Endschalter": (f"{ALARM}limit_switch", f"{ALARM}limit_stuck", f"{ALARM}limit_switch_wiring"),
-        "Nullpunkt setzen": (f"{T1}/commissioning/homing",),
-        "Handbetrieb": (f"{T1}/commissioning/homing",),
         "Passwort ändern": ("/account",),
-        "Uhrzeit": (f"{T1}/commissioning/clock",),
-        "Getriebespiel": (f"{T1}/drive", f"{T1}/drive-tests", f"{T1}/settings#f-deadband_deg"),
-        "Schleppfehler": (f"{T1}/settings#f-following_error_deg",),
-        "Sturm": (f"{T1}/protections#f-wind_gust_mps",),
-        "Modbus-Adresse": (f"{T1}/drive#f-unit",),
     },
-    "zh-Hans": {
-        "限位": (f"{T1}/settings#f-azimuth_minimum_deg",),
-        "风速": (f"{T1}/protections#f-wind_gust_mps",),
-        "波特率": (f"{T1}/drive#f-baud_rate",),
-        "减速比": (f"{T1}/drive#f-azimuth_gear",),
-        "密码": ("/account",),
-        "方向错误": (f"{ALARM}wrong_direction",),
-        "归零": (f"{T1}/commissioning/homing",),
-        "备份": ("/restore",),
-        "急停": (T1,),
-    },
+    "zh-Hans": {"限位": (f"{T1}/settings#f-azimuth_minimum_deg",), "急停": (T1,)},
     "tr": {"rüzgâr sınırı": (f"{T1}/protections#f-wind_gust_mps",)},
-    "es": {"límite de viento": (f"{T1}/protections#f-wind_gust_mps",)},
-    "ro": {"limită de vânt": (f"{T1}/protections#f-wind_gust_mps",)},
 }
 """What technicians type, and what must come first."""
 
@@ -124,11 +88,12 @@ async def test_what_technicians_type_finds_first_what_they_mean(
 async def test_alarms_are_found_first_by_their_codes(park: httpx.AsyncClient) -> None:
     coded = [entry.code for entry in ENTRIES if "_" in entry.code and entry.code != "following_error"]
     assert len(coded) > 30
+    coded = coded[:: amount(6, 1)]
     hits = {code: (await found(park, code))[:1] for code in coded}
     assert {code: hit for code, hit in hits.items() if hit != [f"{ALARM}{code}"]} == {}
 
 
-@pytest.mark.parametrize("words", ["T7", "Row 7", "row 7", "tracker 7", "TRACKER 7"])
+@pytest.mark.parametrize("words", ["T7", "TRACKER 7"])
 async def test_a_tracker_is_found_by_id_name_and_number_with_all_its_pages(
     words: str, park: httpx.AsyncClient
 ) -> None:
@@ -165,13 +130,6 @@ async def test_where_nothing_has_all_the_words_the_nearest_comes(park: httpx.Asy
     assert HIT.findall(nothing.text) == []
 
 
-def test_short_words_and_words_with_digits_count_as_whole_words_only() -> None:
-    words = words_of(("Strip of T10",), (), ("the tip of the strip",))
-    assert score(words, ["strip"]) > score(words, ["rip"]) > 0.0
-    assert score(words, ["ip"]) == score(words, ["t1"]) == 0.0
-    assert score(words, ["t10"]) > score(words, ["tip"]) > 0.0
-
-
 def test_a_name_counts_more_than_another_name_and_that_more_than_what_is_said() -> None:
     title, also, text = (
         words_of(("Wind gust",), (), ()),
@@ -184,14 +142,10 @@ def test_a_name_counts_more_than_another_name_and_that_more_than_what_is_said() 
     assert plain("T7风速, Über-Wind") == "t7 风速 uber wind"
 
 
-def test_other_words_belong_to_what_can_be_found() -> None:
-    known = {entry.href for entry, _ in index()} | {entry.code for entry, _ in index()}
-    assert set(ALSO) <= known
-
-
 async def test_every_page_is_found(client: httpx.AsyncClient) -> None:
     paths = pages()
     assert len(paths) > 30
+    paths = paths[:: amount(3, 1)]
     assert [path for path in paths if not await leads_to(client, path)] == []
 
 
@@ -207,23 +161,3 @@ async def leads_to(client: httpx.AsyncClient, path: str) -> bool:
         if path in await found(client, word):
             return True
     return False
-
-
-@pytest.mark.parametrize("language", ["en", "de", "tr", "es", "ro", "zh-Hans"])
-async def test_fields_of_every_form_are_found_by_their_names(
-    language: str, client: httpx.AsyncClient
-) -> None:
-    said = catalogue_of(language.replace("-", "_")).said
-    forms = [(template, path) for template, _, path in SITE_FORMS]
-    forms += [(template, f"/trackers/T1{end}") for template, _, end in TRACKER_FORMS]
-    for template, path in forms:
-        field = fields_of(template)[0]
-        hits = await found(client, said(field.label), language)
-        assert any(hit.split("#")[0] == path for hit in hits), (template, field, hits)
-
-
-def test_the_fields_of_a_template_are_read_with_label_and_hint() -> None:
-    fields = {one.name: one for one in fields_of("show.html")}
-    assert fields["minutes"].label == "Duration of the show"
-    assert "0.1 to 1440" in fields["minutes"].hint
-    assert {"host", "port", "baud_rate"} <= {one.name for one in fields_of("drive.html")}

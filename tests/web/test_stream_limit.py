@@ -20,13 +20,14 @@ class Held:
     def __init__(self, **limits: int) -> None:
         self.asked: list[tuple[Any, Any, Any]] = []
         self.limit = StreamLimit(self._answer, clock=SystemClock(), **limits)
-        self._begun, self._end = asyncio.Event(), asyncio.Event()
+        self._begun, self._ends = asyncio.Event(), list[asyncio.Event]()
         self._open: list[asyncio.Task[None]] = []
 
     async def _answer(self, scope: Any, receive: Any, send: Any) -> None:
         self.asked.append((scope, receive, send))
+        self._ends.append(asyncio.Event())
         self._begun.set()
-        await self._end.wait()
+        await self._ends[-1].wait()
 
     async def ask(self, path: str, client: str | None, kind: str = "http") -> list[dict[str, Any]]:
         """Ask once; return what was sent if it was refused, nothing while it lasts."""
@@ -50,11 +51,17 @@ class Held:
         self._open.append(task)
         return sent
 
+    async def end_first(self) -> None:
+        """Let the first answer end."""
+        self._ends.pop(0).set()
+        await self._open.pop(0)
+
     async def end(self) -> None:
         """Let every answer end."""
-        self._end.set()
+        for end in self._ends:
+            end.set()
         await asyncio.gather(*self._open)
-        self._end.clear()
+        self._ends.clear()
 
 
 async def test_beyond_its_share_a_client_is_refused_with_503_and_a_reason() -> None:
@@ -147,35 +154,10 @@ async def test_as_shipped_a_client_has_64_and_all_have_1024() -> None:
 
 
 async def test_one_that_ends_makes_room_for_one_and_the_others_still_count() -> None:
-    ends: list[asyncio.Event] = []
-    came = asyncio.Event()
-
-    async def last(scope: Any, receive: Any, send: Any) -> None:
-        ends.append(asyncio.Event())
-        came.set()
-        await ends[-1].wait()
-
-    limit = StreamLimit(last, clock=SystemClock(), most_a_client=2)
-
-    async def ask() -> asyncio.Task[None]:
-        async def send(message: Any) -> None:
-            refused.append(message)
-
-        asked = asyncio.ensure_future(limit({"type": "http", "path": STREAM, "client": (FAR, 1)}, ask, send))
-        begun = asyncio.ensure_future(came.wait())
-        await asyncio.wait({asked, begun}, return_when=asyncio.FIRST_COMPLETED)
-        came.clear()
-        begun.cancel()
-        return asked
-
-    refused: list[dict[str, Any]] = []
-    asked = [await ask(), await ask()]
-    ends[0].set()
-    await asked[0]
-    asked.append(await ask())
-    assert not refused
-    await ask()
+    held = Held(most_a_client=2)
+    assert [await held.ask(STREAM, FAR) for _ in range(2)] == [[], []]
+    await held.end_first()
+    assert await held.ask(STREAM, FAR) == []
+    refused = await held.ask(STREAM, FAR)
     assert refused[0]["status"] == 503
-    for end in ends:
-        end.set()
-    await asyncio.gather(*asked)
+    await held.end()

@@ -13,7 +13,7 @@ import pytest
 
 from app.base.settings import Settings
 from app.studies.compute import finished, work_out
-from app.studies.folder import MOST_STUDIES, StudyFolder, StudyState, StudyStatus
+from app.studies.folder import StudyFolder, StudyState, StudyStatus
 from app.studies.light import clear_days
 from app.studies.request import Span, StudyMode, StudyRequest, StudyStrategy
 from app.studies.result import StudyResult
@@ -22,7 +22,6 @@ from app.tracker.programs.step_table import from_table
 from app.tracker.settings.config import Orientation
 from app.tracker.settings.strategy import Stepped
 from app.web.charts.heatmap import heat_map
-from app.web.charts.plot import bar_plot, line_plot
 from app.web.main import create_app
 from tests.fakes import FakeMachine, FakeReader, serving
 from tests.web.filled import filled, values_of
@@ -88,18 +87,6 @@ async def test_what_was_typed_stays_and_every_fault_is_named(client: httpx.Async
     assert not re.search(r'value="azimuth" checked', answer.text)
 
 
-async def test_what_cannot_be_studied_is_said_in_the_form(client: httpx.AsyncClient) -> None:
-    sent = {**TYPED, **PLACE, "fidelity": "controller", "step": "7"}
-    answer = await client.post("/studies", data=await filled(client, "/studies", sent), headers=HTMX)
-    assert answer.status_code == 422
-    assert "needs a tracker: choose one" in answer.text
-    assert "one of 1, 2, 3" in answer.text
-    sent = await filled(client, "/studies", {**TYPED, **PLACE, "step": "7"})
-    step = await client.post("/studies", data=sent, headers=HTMX)
-    field = step.text[step.text.index('id="step-error"') :]
-    assert "The step is one of 1, 2, 3" in field[: field.index("</p>")]
-
-
 @pytest.mark.usefixtures("real_processes")
 async def test_a_begun_study_opens_its_page_and_can_be_cancelled(client: httpx.AsyncClient) -> None:
     sent = {**TYPED, **PLACE, "span": "year", "step": "2"}
@@ -139,35 +126,6 @@ async def test_a_result_has_table_pictures_and_files(client: httpx.AsyncClient, 
     curves = await client.get(f"/studies/{STUDY_ID}/curves.csv")
     assert len(curves.text.splitlines()) == 1 + 3 * 12 * 24
     assert "Noon" in (await client.get("/studies")).text
-
-
-async def test_the_gain_of_every_day_stands_beside_its_date(
-    client: httpx.AsyncClient, kept: StudyFolder, found: StudyResult
-) -> None:
-    text = (await client.get(f"/studies/{STUDY_ID}")).text
-    table = text[text.index("Gain against the fixed panel, %") :].split("</table>")[0]
-    assert re.findall(r'<th class="number">(.*?)</th>', table)[5] == "10 Jun"
-    dual = table[table.index("Dual-axis") :].split("</tr>")[0]
-    shown = [float(text.replace("−", "-")) for text in re.findall(r'number">(.*?)</td>', dual)]
-    fixed, best = found.cases[0].months_kwh, found.cases[2].months_kwh
-    gains = [100.0 * (kwh / still - 1.0) for kwh, still in zip(best, fixed, strict=True)]
-    assert shown == pytest.approx(gains, abs=0.051)
-    assert max(shown) > 45.0 > 27.0 > min(shown)
-
-
-async def test_a_failed_study_says_why(client: httpx.AsyncClient, tmp_path: Path) -> None:
-    folder = StudyFolder(tmp_path)
-    folder.open(state(StudyStatus.FAILED, message="The file ends after 3 lines."), request_of(Span.DAY))
-    assert "The file ends after 3 lines." in (await client.get(f"/studies/{STUDY_ID}")).text
-
-
-def test_only_the_newest_hundred_studies_stay(tmp_path: Path) -> None:
-    folder = StudyFolder(tmp_path)
-    for number in range(MOST_STUDIES + 3):
-        folder.open(state(StudyStatus.DONE, f"20260621T{number:06}-0a1b2c"), request_of(Span.DAY))
-    kept = folder.states(())
-    assert len(kept) == MOST_STUDIES
-    assert kept[0].study_id == "20260621T000102-0a1b2c"
 
 
 async def test_step_programs_are_shown_and_used(client: httpx.AsyncClient, machine: FakeMachine) -> None:
@@ -214,22 +172,6 @@ async def check_files(client: httpx.AsyncClient, shown: str) -> None:
     wrong = await client.get("/studies/program/table.csv", params={"date": "2026-06-21", "range": "500"})
     assert wrong.status_code == 422
     assert "Range must be between 5 and 120" in wrong.text
-
-
-async def test_a_weather_file_that_is_none_is_refused_below_its_key(client: httpx.AsyncClient) -> None:
-    answer = await client.post("/studies/weather", files={"file": ("notes.csv", b"hello")}, headers=HTMX)
-    assert answer.status_code == 422
-    assert "Heliopanel cannot read this weather file" in answer.text
-    assert "outcome-refused" in answer.text
-
-
-def test_curves_and_bars_stand_at_their_values() -> None:
-    plot = line_plot("T", "h", "W", (0.0, 12.0, 24.0), [("a", (0.0, 24.0), (0.0, 100.0))])
-    assert plot.lines[0].path == "M84.0 340.0L1060.0 44.0"
-    assert [tick.text for tick in plot.columns] == ["0", "12", "24"]
-    bars = bar_plot("T", "month", "kWh", ("Jan", "Feb"), [("a", (0.0, 100.0))])
-    assert bars.bars[0].path.startswith("M132.8 340.0V340.0h390.4V340.0z")
-    assert "V44.0" in bars.bars[0].path
 
 
 def test_a_heat_map_of_a_year_goes_by_weeks_and_leaves_the_night_out() -> None:

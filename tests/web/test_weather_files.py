@@ -9,19 +9,14 @@ import httpx
 import pytest
 
 from app.base.settings import Settings
-from app.cli import study
-from app.studies import worker
 from app.studies.folder import WeatherFileRefused, weather_name
-from app.studies.jobs import JOB
 from app.studies.weather import read_weather
 from app.studies.weather_columns import WeatherRefused
 from app.web.main import create_app
-from tests.command_line import Run, run
 from tests.fakes import FakeMachine, FakeReader, serving
 from tests.golden.table import rows
 from tests.studies import files
 
-__all__ = ["run"]
 # pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.
 pytestmark = pytest.mark.filterwarnings("ignore:DatetimeIndex.dayofyear is deprecated")
 
@@ -120,20 +115,6 @@ async def test_api_and_page_take_a_file_or_say_why_not(client: httpx.AsyncClient
     assert (taken.json()["seen"]["filled_hours"], taken.json()["seen"]["has_leap_day"]) == (1, False)
     page = " ".join((await client.get("/studies")).text.split())
     assert " · interpolated hours: 1" in page
-
-
-@pytest.mark.parametrize("row", [GAP, WRONG], ids=named)
-def test_the_command_takes_it_and_tells_what_was_made_of_it(
-    run: Run, row: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(worker, "tell", lambda _: None)
-    monkeypatch.setattr(study, "_told", lambda job: iter([worker._answer(JOB.dump_json(job))]))
-    path = tmp_path / "Zürich (2020).epw"
-    path.write_bytes(made(row))
-    options = ("--lat", "41", "--lon", "36", "--date", "2026-06-21", "--span", "day", "--mode", "dual")
-    code, out, err = run("study", *options, "--weather", str(path))
-    assert (code == 0) is (row is GAP)
-    assert out.startswith(f"{row['source_said']}, 1 day") if row is GAP else row["refusal"] in err
 
 
 def test_a_gap_is_interpolated_over_the_end_of_the_year(tmp_path: Path) -> None:

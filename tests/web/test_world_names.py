@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Callable
 from dataclasses import replace
 from html import unescape
 from io import BytesIO
@@ -35,10 +35,6 @@ REFUSED = "refused "
 T1, API = "/trackers/T1", "/api/v1/trackers/T1"
 TYPED, STORED = "Gu\u0308nes\u0327\u00a0K.", "Güneş K."
 UNSEEN, CODE = "G\u202eK", "U+202E"
-Sends = Callable[[Desk, str], Awaitable[httpx.Response]]
-Reads = Callable[[Desk], Awaitable[str]]
-CORNERS = "170 0; 190 0; 190 30"
-PROGRAM = {"steps": [{"from_h": 6, "first_deg": 110, "second_deg": 30}]}
 
 
 @pytest.mark.parametrize("row", NAMES, ids=lambda row: row["why"])
@@ -57,79 +53,72 @@ def test_a_name_has_one_spelling_or_is_refused(row: dict[str, str]) -> None:
     assert "\n" not in _on_one_line(stored)
 
 
-async def form(desk: Desk, page: str, typed: dict[str, Any], *, action: str = "") -> httpx.Response:
-    """Send a form of a page as it is shown, with what is typed in its place."""
-    shown = values_of((await desk.ask("GET", page)).text, action or page)
-    assert shown, f"{page} has no form {action or page}"
-    return await desk.ask("POST", action or page, data={**shown, **typed})
+Entrance = tuple[str, str, str, dict[str, Any]]
+CORNERS = [{"azimuth_deg": one, "elevation_deg": other} for one, other in ((170, 0), (190, 0), (190, 30))]
+ENTRANCES: list[Entrance] = [
+    ("site", "POST", "/site/name", {"name": None}),
+    ("site", "PATCH", "/api/v1/site", {"name": None}),
+    ("tracker", "POST", f"{T1}/settings", {"name": None}),
+    ("tracker", "PATCH", API, {"name": None}),
+    ("region", "POST", f"{T1}/machine", {"region0_name": None, "region0_corners": "170 0; 190 0; 190 30"}),
+    ("region", "PATCH", API, {"machine": {"regions": [{"name": None, "corners": CORNERS}]}}),
+    (
+        "program",
+        "POST",
+        f"{T1}/strategy/program",
+        {"program_name": None, "at": ["06:00"], "first": ["110"], "second": ["30"]},
+    ),
+    (
+        "program",
+        "PUT",
+        f"{API}/program",
+        {"name": None, "steps": [{"from_h": 6, "first_deg": 110, "second_deg": 30}]},
+    ),
+    ("token", "POST", "/tokens", {"name": None, "days": "1", "scope": ["read"]}),
+    ("token", "POST", "/api/v1/tokens", {"name": None, "scopes": ["read"]}),
+]
+"""What has a name, and what sends it; the name stands in the place of None."""
+FORMS = {path: path for path in (f"{T1}/settings", f"{T1}/machine", "/tokens")}
+FORMS[f"{T1}/strategy/program"] = f"{T1}/strategy"
+"""Forms that are sent as their pages show them, with what is typed in its place."""
+LIMITED = ("site", "tracker", "region")
 
 
-async def config(desk: Desk) -> Any:
-    return (await desk.ask("GET", API)).json()
+def with_name(body: Any, name: str) -> Any:
+    match body:
+        case None:
+            return name
+        case dict():
+            return {key: with_name(value, name) for key, value in body.items()}
+        case list():
+            return [with_name(value, name) for value in body]
+    return body
 
 
-async def site_name(desk: Desk) -> str:
-    return str((await desk.ask("GET", "/api/v1/site")).json()["site_name"])
+async def send(desk: Desk, entrance: Entrance, name: str) -> httpx.Response:
+    _, method, path, body = entrance
+    typed = with_name(body, name)
+    if path.startswith("/api/"):
+        return await desk.ask(method, path, json=typed)
+    shown = values_of((await desk.ask("GET", FORMS[path])).text, path) if path in FORMS else {}
+    return await desk.ask(method, path, data={**shown, **typed})
 
 
-async def tracker_name(desk: Desk) -> str:
-    return str((await config(desk))["name"])
-
-
-async def region_name(desk: Desk) -> str:
-    return str((await config(desk))["machine"]["regions"][0]["name"])
-
-
-async def program_name(desk: Desk) -> str:
-    return str((await desk.ask("GET", f"{API}/program")).json()["name"])
-
-
-async def token_name(desk: Desk) -> str:
-    """Return the name of the only token, and remove it."""
+async def read(desk: Desk, what: str) -> str:
+    """Return the name under which something is stored; a token is removed."""
+    tracker = (await desk.ask("GET", API)).json()
+    match what:
+        case "site":
+            return str((await desk.ask("GET", "/api/v1/site")).json()["site_name"])
+        case "tracker":
+            return str(tracker["name"])
+        case "region":
+            return str(tracker["machine"]["regions"][0]["name"])
+        case "program":
+            return str(tracker["strategy"]["program"]["name"])
     [token] = (await desk.ask("GET", "/api/v1/tokens")).json()["items"]
     await desk.ask("DELETE", f"/api/v1/tokens/{token['token_id']}")
     return str(token["name"])
-
-
-def region(name: str) -> dict[str, Any]:
-    corners = [{"azimuth_deg": one, "elevation_deg": other} for one, other in ((170, 0), (190, 0), (190, 30))]
-    return {"machine": {"regions": [{"name": name, "corners": corners}]}}
-
-
-ENTRANCES: dict[str, tuple[Sends, Reads]] = {
-    "site, page": (lambda desk, name: desk.ask("POST", "/site/name", data={"name": name}), site_name),
-    "site, API": (lambda desk, name: desk.ask("PATCH", "/api/v1/site", json={"name": name}), site_name),
-    "tracker, page": (lambda desk, name: form(desk, f"{T1}/settings", {"name": name}), tracker_name),
-    "tracker, API": (lambda desk, name: desk.ask("PATCH", API, json={"name": name}), tracker_name),
-    "region, page": (
-        lambda desk, name: form(desk, f"{T1}/machine", {"region0_name": name, "region0_corners": CORNERS}),
-        region_name,
-    ),
-    "region, API": (lambda desk, name: desk.ask("PATCH", API, json=region(name)), region_name),
-    "program, page": (
-        lambda desk, name: form(
-            desk,
-            f"{T1}/strategy",
-            {"program_name": name, "at": ["06:00"], "first": ["110"], "second": ["30"]},
-            action=f"{T1}/strategy/program",
-        ),
-        program_name,
-    ),
-    "program, API": (
-        lambda desk, name: desk.ask("PUT", f"{API}/program", json={"name": name, **PROGRAM}),
-        program_name,
-    ),
-    "token, page": (
-        lambda desk, name: form(desk, "/tokens", {"name": name, "days": "1", "scope": ["read"]}),
-        token_name,
-    ),
-    "token, API": (
-        lambda desk, name: desk.ask("POST", "/api/v1/tokens", json={"name": name, "scopes": ["read"]}),
-        token_name,
-    ),
-}
-"""Where each kind of name is typed, and where it is read again."""
-LIMITED = ("site, page", "site, API", "tracker, page", "tracker, API", "region, page")
 
 
 @pytest.fixture
@@ -141,16 +130,17 @@ async def desk(tmp_path: Path) -> AsyncIterator[Desk]:
 
 async def test_every_entrance_stores_one_spelling_and_counts_its_letters(desk: Desk) -> None:
     longest = "ảấộữịè" * 10
-    for entrance, (send, read) in ENTRANCES.items():
-        names = {TYPED: STORED} | ({normalize("NFD", longest): longest} if entrance in LIMITED else {})
+    for entrance in ENTRANCES:
+        is_limited = entrance[0] in LIMITED
+        names = {TYPED: STORED} | ({normalize("NFD", longest): longest} if is_limited else {})
         for typed, stored in names.items():
-            answer = await send(desk, typed)
+            answer = await send(desk, entrance, typed)
             assert answer.status_code < 400, (entrance, answer.text)
-            assert await read(desk) == stored, entrance
-        refused = await send(desk, UNSEEN)
+            assert await read(desk, entrance[0]) == stored, entrance
+        refused = await send(desk, entrance, UNSEEN)
         assert refused.status_code == 422, (entrance, refused.text)
         assert f"contains an invisible character ({CODE})" in unescape(refused.text), entrance
-        assert entrance not in LIMITED or (await send(desk, longest + "x")).status_code == 422
+        assert not is_limited or (await send(desk, entrance, longest + "x")).status_code == 422
         await desk.forward(0.1)
 
 
