@@ -1,7 +1,7 @@
 """A whole site on a virtual clock with simulated drives: ask it for something and let time pass."""
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
@@ -15,10 +15,11 @@ from app.simulation.simulated import SimulatedDrive
 from app.site.recording.gathering import BackgroundWriter
 from app.site.site import Site, SiteOptions
 from app.sun.position import Location
-from app.tracker.commands.commands import Command, CommandRejected, Home
+from app.tracker.commands.commands import Command, CommandRejected, Home, SelectMode, Track
 from app.tracker.memory.memory import SiteState, TrackerMemory, TrackerState
 from app.tracker.settings.config import TrackerConfig
 from app.tracker.state.snapshot import ActivityName, Event, EventKind, SiteSnapshot, Snapshot
+from app.tracker.values.mode import Mode
 
 SUMMER_NOON = datetime(2027, 6, 21, 9, 40, tzinfo=UTC)
 SAMSUN = Location(41.2867, 36.33, 4.0)
@@ -87,9 +88,30 @@ class Plant:
         with suppress(CommandRejected):
             await self.ask(ReleaseControl(tracker_id))
 
+    async def track(self, *, until: Callable[[Snapshot], bool] | None = None) -> None:
+        """Commission the tracker and let it track, until something is so."""
+        await self.commission()
+        await self.ask(SelectMode(Mode.DUAL))
+        await self.ask(Track())
+        if until is not None:
+            await self.until(until)
+
+    def latest(self) -> SiteSnapshot:
+        """Return what everybody was told last."""
+        seen = self.site.latest()
+        assert seen is not None
+        return seen
+
+    def alarms(self) -> dict[str, str]:
+        """Return the messages of the alarms that are active."""
+        return {one.code: one.message for one in self.latest().alarms if one.returned_at is None}
+
     async def _listen(self) -> None:
         async for update in self.site.updates():
             self.events.extend(update.events)
+
+
+Begun = Callable[..., Awaitable[Plant]]
 
 
 async def settle() -> None:

@@ -19,16 +19,15 @@ from app.store.migrations import upgrade
 from app.store.store import AuditFilter
 from app.store.writer import DatabaseWriter
 from app.store.writer_thread import WriterThread
-from app.tracker.commands.commands import CommandRejected, EndJog, Jog, Move, SelectMode, Stop, Track
+from app.tracker.commands.commands import CommandRejected, EndJog, Jog, Move, Stop, Track
 from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import Orientation
 from app.tracker.state.snapshot import ActivityName
-from app.tracker.values.mode import Mode
 from app.tracker.weather.weather import Weather
 from tests.captured_logs import capture_logs
 from tests.fault_result import FaultResult
 from tests.site.direct_writer import DirectWriter
-from tests.site.plant import SAMSUN, SUMMER_NOON, Plant, make_plant, settle
+from tests.site.plant import SAMSUN, SUMMER_NOON, Begun, Plant, make_plant, settle
 
 
 @dataclass
@@ -85,9 +84,7 @@ async def test_commands_tell_what_they_changed_and_refusals_why(audited: Audited
     plant = audited.plant
     with pytest.raises(CommandRejected):
         await plant.ask(Track())
-    await plant.commission()
-    await plant.ask(SelectMode(Mode.DUAL))
-    await plant.ask(Track())
+    await plant.track()
     await plant.ask(Stop())
     assert ("take_control", "T1", "done") in audited.told()
     found = [one for one in audited.entries() if one.action != "take_control"]
@@ -158,13 +155,9 @@ class PatientWriter(DirectWriter):
 
 @pytest.mark.fault(71)
 async def test_motion_that_cannot_be_recorded_is_refused_and_stop_passes(
-    tmp_path: Path, fault: FaultResult
+    store: DatabaseWriter, fault: FaultResult, begun: Begun
 ) -> None:
-    url = f"sqlite:///{tmp_path / 'heliopanel.db'}"
-    upgrade(url)
-    store = open_writer(url)
-    plant = make_plant(writer=PatientWriter(store))
-    await plant.start()
+    plant = await begun(writer=PatientWriter(store))
     await plant.commission()
     with without_audit(store):
         with pytest.raises(CommandRejected):
@@ -190,8 +183,6 @@ async def test_motion_that_cannot_be_recorded_is_refused_and_stop_passes(
     await plant.forward(seconds=1)
     assert plant.tracker().activity is ActivityName.MOVING
     fault.recovers("automatic: once the audit can be written")
-    await plant.close()
-    store.close()
 
 
 async def test_the_last_hash_is_logged_every_ten_minutes(audited: Audited) -> None:
@@ -206,10 +197,7 @@ async def test_the_last_hash_is_logged_every_ten_minutes(audited: Audited) -> No
     assert [(one["seq"], one["hash"]) for one in heads] == [(1, last.hash)]
 
 
-async def test_the_thread_that_writes_records_too(tmp_path: Path) -> None:
-    url = f"sqlite:///{tmp_path / 'heliopanel.db'}"
-    upgrade(url)
-    store = open_writer(url)
+async def test_the_thread_that_writes_records_too(store: DatabaseWriter) -> None:
     thread = WriterThread(store, print)
     plant = make_plant(writer=thread)
     await plant.start()
@@ -218,7 +206,6 @@ async def test_the_thread_that_writes_records_too(tmp_path: Path) -> None:
     await plant.close()
     assert thread.close()
     assert [one.entry.action for one in store.audit(AuditFilter(after=0))] == ["rename_site", "stop"]
-    store.close()
 
 
 async def test_a_refusal_is_recorded_anew_once_the_site_clock_was_set_back(audited: Audited) -> None:

@@ -24,7 +24,7 @@ from app.tracker.settings.config import Orientation, TrackerConfig
 from app.tracker.settings.transmission import LinearActuator, Point
 from app.tracker.values.mode import Mode
 from app.tracker.weather.weather import Weather
-from tests.site.plant import FIRST, SUMMER_NOON, Plant, make_plant, settle
+from tests.site.plant import FIRST, SUMMER_NOON, Begun, Plant, make_plant, settle
 from tests.site.wrapped_drive import WrappedDrive, wrapped
 
 T = TypeVar("T")
@@ -140,10 +140,9 @@ async def test_an_orientation_where_the_panel_never_was_cannot_be_confirmed(
         await plant.ask(ConfirmStep("T1", StepName.MODE))
 
 
-async def test_a_drive_that_hangs_keeps_no_other_from_its_clock() -> None:
+async def test_a_drive_that_hangs_keeps_no_other_from_its_clock(begun: Begun) -> None:
     second = TrackerState(TrackerConfig("T2", "Two"), TrackerMemory())
-    plant = make_plant(trackers=(FIRST, second), wrap=WrappedDrive)
-    await plant.start()
+    plant = await begun(trackers=(FIRST, second), wrap=WrappedDrive)
     wrapped(plant, "T1").hangs = True
     shown = SUMMER_NOON + timedelta(hours=1)
     setting = asyncio.create_task(plant.site.execute(Order(SetClock("manual", shown), "technician")))
@@ -154,12 +153,9 @@ async def test_a_drive_that_hangs_keeps_no_other_from_its_clock() -> None:
     assert drive.wall_clock == shown
     setting.cancel()
     await asyncio.gather(setting, return_exceptions=True)
-    await plant.close()
 
 
-async def test_another_actuator_is_another_zero() -> None:
-    plant = make_plant()
-    await plant.start()
+async def test_another_actuator_is_another_zero(plant: Plant) -> None:
     await plant.commission()
     config = plant.site.model.tracker("T1").config
     lift = LinearActuator(Point(900.0, 0.0, 15.0), Point(132.5, 200.1), 0.0, 745.0, 385.0, 25.0)
@@ -168,4 +164,3 @@ async def test_another_actuator_is_another_zero() -> None:
     memory = plant.site.model.tracker("T1").memory
     assert (memory.home, memory.home_lost) == (None, "another actuator was configured.")
     assert memory.former_drive is None, "the drive is still the same"
-    await plant.close()

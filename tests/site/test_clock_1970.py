@@ -8,7 +8,7 @@ from app.base.clock import VirtualClock
 from app.link.messages import SetClock
 from app.site.clock.timekeeping import Timekeeper
 from app.tracker.memory.memory import ClockSetting
-from tests.site.plant import make_plant
+from tests.site.plant import Begun
 
 BEGINNING = datetime(1970, 1, 1, tzinfo=UTC)
 TODAY = datetime(2027, 6, 21, 9, 40, tzinfo=UTC)
@@ -23,9 +23,8 @@ def test_a_clock_that_shows_1970_is_implausible_though_it_was_trusted_before() -
     assert not keeper.state().trusted
 
 
-async def test_a_clock_that_shows_1970_cannot_be_confirmed_and_can_be_set() -> None:
-    plant = make_plant(start=BEGINNING)
-    await plant.start()
+async def test_a_clock_that_shows_1970_cannot_be_confirmed_and_can_be_set(begun: Begun) -> None:
+    plant = await begun(start=BEGINNING)
     with pytest.raises(ValueError, match="The clock cannot be 1970-01-01 00:00 UTC"):
         await plant.ask(SetClock("system"))
     with pytest.raises(ValueError, match="The clock cannot be 1971"):
@@ -33,4 +32,3 @@ async def test_a_clock_that_shows_1970_cannot_be_confirmed_and_can_be_set() -> N
     await plant.ask(SetClock("manual", TODAY))
     assert plant.site.model.now() == TODAY
     assert plant.site.model.timekeeper.state().trusted
-    await plant.close()

@@ -10,11 +10,10 @@ from app.link.messages import SetClock, TakeSighting
 from app.site.clock.clock_offset import ClockOffset
 from app.site.clock.ntp import KernelClock
 from app.site.clock.timekeeping import Timekeeper
-from app.tracker.commands.commands import Move, SelectMode, Track
+from app.tracker.commands.commands import Move
 from app.tracker.memory.memory import ClockSetting
 from app.tracker.settings.config import Orientation
 from app.tracker.state.snapshot import ActivityName
-from app.tracker.values.mode import Mode
 from tests.fault_result import VIRTUAL, FaultResult
 from tests.site.plant import Plant, make_plant
 
@@ -46,16 +45,12 @@ async def tracking(wall: WallClock) -> Plant:
         plant.clock, ClockSetting(), drift=wall.drift, kernel=lambda: wall.kernel
     )
     await plant.start()
-    await plant.commission()
-    await plant.ask(SelectMode(Mode.DUAL))
-    await plant.ask(Track())
-    await plant.until(lambda seen: seen.activity is ActivityName.TRACKING)
+    await plant.track(until=lambda seen: seen.activity is ActivityName.TRACKING)
     return plant
 
 
 def alarms(plant: Plant) -> dict[str, str]:
-    seen = plant.site.latest()
-    assert seen is not None
+    seen = plant.latest()
     return {alarm.code: alarm.message for alarm in seen.alarms}
 
 
@@ -92,8 +87,7 @@ async def test_a_clock_that_creeps_is_told_from_30_s_on_and_stops_tracking_from_
     wall.creeps = timedelta(0)
     await plant.ask(SetClock("system"))
     await plant.forward(seconds=1)
-    seen = plant.site.latest()
-    assert seen is not None
+    seen = plant.latest()
     assert seen.clock.trusted
     assert seen.clock.warnings == ()
     await plant.until(lambda shown: shown.setpoint is not None)
@@ -105,8 +99,7 @@ async def test_what_ntp_corrects_is_no_creeping(wall: WallClock) -> None:
     plant = await tracking(wall)
     wall.creeps = CREEP
     await plant.forward(seconds=30)
-    seen = plant.site.latest()
-    assert seen is not None
+    seen = plant.latest()
     assert wall.off > timedelta(seconds=50)
     assert seen.clock.off_s == pytest.approx(0.2)
     assert seen.clock.trusted
@@ -144,8 +137,7 @@ async def test_views_of_the_sun_an_hour_apart_say_that_the_clock_is_wrong(plant:
         await plant.until(lambda seen: seen.in_position and seen.activity is ActivityName.HOLDING)
         await plant.ask(TakeSighting("T1"))
     await plant.forward(seconds=1)
-    seen = plant.site.latest()
-    assert seen is not None
+    seen = plant.latest()
     assert [reason.code for reason in seen.clock.reasons] == ["clock_off"]
     assert seen.clock.off_s == pytest.approx(-slow.total_seconds(), abs=30.0)
     assert "clock_untrusted" in {reason.code for reason in plant.tracker().actions["track"]}
@@ -153,6 +145,5 @@ async def test_views_of_the_sun_an_hour_apart_say_that_the_clock_is_wrong(plant:
     await plant.ask(TakeSighting("T1"))
     await plant.ask(SetClock("manual", plant.clock.now()))
     await plant.forward(seconds=1)
-    seen = plant.site.latest()
-    assert seen is not None
+    seen = plant.latest()
     assert seen.clock.trusted

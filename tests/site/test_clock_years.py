@@ -1,7 +1,6 @@
 """Only a clock of 1970 to 2099 can be right: others are refused, set aside where stored, and not trusted."""
 
 from datetime import UTC, datetime, timedelta, timezone
-from pathlib import Path
 
 import pytest
 
@@ -9,16 +8,14 @@ from app.base.clock import VirtualClock
 from app.link.messages import SetClock
 from app.site.clock.timekeeping import Timekeeper
 from app.site.startup import begin
-from app.store.engine import open_writer
-from app.store.migrations import upgrade
 from app.store.store import JournalFilter
-from app.tracker.commands.commands import SelectMode, Stop, Track
+from app.store.writer import DatabaseWriter
+from app.tracker.commands.commands import Stop
 from app.tracker.memory.memory import ClockSetting, SiteState
 from app.tracker.state.snapshot import ActivityName, EventKind
-from app.tracker.values.mode import Mode
 from tests.fault_result import FaultResult
 from tests.site.direct_writer import DirectWriter
-from tests.site.plant import SAMSUN, SUMMER_NOON, make_plant
+from tests.site.plant import SAMSUN, SUMMER_NOON, Begun, Plant, make_plant
 
 EAST, WEST = timezone(timedelta(hours=14)), timezone(timedelta(hours=-12))
 NEVER = [
@@ -38,13 +35,9 @@ NEVER = [
 @pytest.mark.fault(102)
 @pytest.mark.parametrize("at", NEVER, ids=str)
 async def test_a_clock_of_other_years_is_refused_and_tracking_goes_on(
-    at: datetime, fault: FaultResult
+    at: datetime, fault: FaultResult, plant: Plant
 ) -> None:
-    plant = make_plant()
-    await plant.start()
-    await plant.commission()
-    await plant.ask(SelectMode(Mode.DUAL))
-    await plant.ask(Track())
+    await plant.track()
     before = plant.site.model.state.clock
     with pytest.raises(ValueError, match=r"Enter a year from 1970 to 2099|cannot be 1970") as refused:
         await plant.ask(SetClock("manual", at))
@@ -52,17 +45,15 @@ async def test_a_clock_of_other_years_is_refused_and_tracking_goes_on(
     assert plant.site.alive
     assert plant.tracker().activity is ActivityName.TRACKING
     assert plant.site.model.state.clock == before
-    await plant.close()
     fault.shows(str(refused.value))
 
 
 @pytest.mark.fault(102)
 @pytest.mark.parametrize("at", [at for at in NEVER if at.year in (1969, 2100, 2206)], ids=str)
 async def test_a_system_clock_of_other_years_is_not_trusted_and_nothing_ends(
-    at: datetime, fault: FaultResult
+    at: datetime, fault: FaultResult, begun: Begun
 ) -> None:
-    plant = make_plant(start=at, state=SiteState(location=SAMSUN, clock=ClockSetting("system")))
-    await plant.start()
+    plant = await begun(start=at, state=SiteState(location=SAMSUN, clock=ClockSetting("system")))
     await plant.forward(seconds=2)
     clock = plant.site.model.timekeeper.state()
     assert [one.code for one in clock.reasons] == ["clock_implausible"]
@@ -74,19 +65,16 @@ async def test_a_system_clock_of_other_years_is_not_trusted_and_nothing_ends(
     assert plant.site.alive
     with pytest.raises(ValueError, match=r"a year|was built"):
         await plant.ask(SetClock("system"))
-    await plant.close()
 
 
-async def test_a_clock_that_runs_into_other_years_is_no_longer_trusted() -> None:
+async def test_a_clock_that_runs_into_other_years_is_no_longer_trusted(begun: Begun) -> None:
     last = datetime(2099, 12, 31, 23, 59, 58, tzinfo=UTC)
-    plant = make_plant(start=last, state=SiteState(location=SAMSUN, clock=ClockSetting("system")))
-    await plant.start()
+    plant = await begun(start=last, state=SiteState(location=SAMSUN, clock=ClockSetting("system")))
     assert plant.site.model.timekeeper.state().trusted
     await plant.forward(seconds=4)
     assert not plant.site.model.timekeeper.state().trusted
     assert plant.site.alive
     await plant.ask(Stop())
-    await plant.close()
 
 
 @pytest.mark.parametrize("offset_s", [2.5e11, -6.4e10, 1e300, float("inf"), float("nan"), 6e9])
@@ -97,10 +85,7 @@ def test_an_offset_that_was_kept_and_shows_other_years_is_set_aside(offset_s: fl
 
 
 @pytest.mark.fault(102)
-async def test_a_site_with_the_year_9999_starts_and_says_so(tmp_path: Path) -> None:
-    url = f"sqlite:///{tmp_path / 'heliopanel.db'}"
-    upgrade(url)
-    store = open_writer(url)
+async def test_a_site_with_the_year_9999_starts_and_says_so(store: DatabaseWriter) -> None:
     store.save_site(SiteState("Samsun", SAMSUN, clock=ClockSetting("manual", 251_600_000_000.0)))
     found = begin(store, SUMMER_NOON, unclean_since=None)
     plant = make_plant(state=found.site, trackers=found.trackers, writer=DirectWriter(store))
@@ -120,4 +105,3 @@ async def test_a_site_with_the_year_9999_starts_and_says_so(tmp_path: Path) -> N
         "(Enter a year from 1970 to 2099.)"
     ]
     assert store.site() == found.site, "the next start finds what is used"
-    store.close()

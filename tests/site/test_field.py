@@ -2,12 +2,10 @@
 
 import os
 from datetime import UTC, datetime
-from pathlib import Path
 
 import pytest
 
-from app.store.engine import open_writer
-from app.store.migrations import upgrade
+from app.store.writer import DatabaseWriter
 from app.tracker.memory.recording import RecordingKind
 from app.tracker.state.snapshot import ActivityName
 from tests.amount import amount
@@ -25,15 +23,11 @@ MOST_GROWTH_BYTES = 24 * 1024 * 1024
 @pytest.mark.fault(46)
 @pytest.mark.timeout(amount(TEST_S, 14_400.0))
 async def test_a_field_lives_through_weather_and_faults_and_needs_no_more_memory(
-    tmp_path: Path,
+    store: DatabaseWriter,
 ) -> None:
-    url = f"sqlite:///{tmp_path / 'heliopanel.db'}"
-    upgrade(url)
-    store = open_writer(url)
     field = Field(TRACKERS, BEGIN, seed=SEED, writer=DirectWriter(store))
     await field.live(MINUTES)
     samples = sum(day.sample_count for day in store.recordings(kind=RecordingKind.DAY))
-    store.close()
     assert samples >= TRACKERS * MINUTES * 20
     seen = field.seen
     print(

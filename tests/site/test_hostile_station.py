@@ -10,10 +10,9 @@ from app.drives.connections.met_station import POINTS, weather_of
 from app.link.messages import SetMetStation
 from app.site.site import SiteOptions
 from app.site.weather.kept_weather import ROOM
-from app.tracker.commands.commands import SelectMode, Stop, Track
+from app.tracker.commands.commands import Stop
 from app.tracker.memory.memory import MetStation, SiteState
 from app.tracker.state.snapshot import ActivityName, SiteSnapshot
-from app.tracker.values.mode import Mode
 from app.tracker.weather.weather import RANGES, Weather
 from tests.fault_result import BY_ITSELF, FaultResult
 from tests.golden.table import rows
@@ -113,9 +112,7 @@ async def test_a_tracker_goes_on_tracking_beside_an_impossible_pressure(
 ) -> None:
     plant = plant_of([215, 45, 0, 4, 210, UNKNOWN, UNKNOWN], tmp_path)
     await plant.start()
-    await plant.commission()
-    await plant.ask(SelectMode(Mode.DUAL))
-    await plant.ask(Track())
+    await plant.track()
     await plant.ask(SetMetStation(HOST))
     await plant.forward(seconds=5)
     assert plant.site.alive

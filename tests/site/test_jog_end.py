@@ -8,7 +8,7 @@ from app.tracker.commands.commands import JOG_LEASE, EndJog, Jog
 from app.tracker.settings.axes import Axis
 from app.tracker.state.controller_state import HALTED
 from app.tracker.state.snapshot import ActivityName, EventKind
-from tests.site.plant import Plant, make_plant, settle
+from tests.site.plant import Begun, Plant, settle
 from tests.site.wrapped_drive import WrappedDrive, wrapped
 
 BURST = 125
@@ -37,10 +37,11 @@ async def test_the_end_of_the_press_that_is_held_ticks_and_tells_at_once(plant: 
 
 
 @pytest.mark.parametrize("hangs_from_ms", [150, 205], ids=["read before the end", "read at the end"])
-async def test_a_drive_that_hangs_is_told_to_stop_at_the_lease_s_end(hangs_from_ms: int) -> None:
+async def test_a_drive_that_hangs_is_told_to_stop_at_the_lease_s_end(
+    hangs_from_ms: int, begun: Begun
+) -> None:
     """The read of a tick may take as long as the drive does not answer; the stop goes beside it."""
-    plant = make_plant(wrap=WrappedDrive)
-    await plant.start()
+    plant = await begun(wrap=WrappedDrive)
     await plant.forward(seconds=1)
     begun = plant.clock.now()
     await plant.ask(Jog("p1", Axis.AZIMUTH, 1))
@@ -54,12 +55,10 @@ async def test_a_drive_that_hangs_is_told_to_stop_at_the_lease_s_end(hangs_from_
     await settle()
     assert drive.stops == 1
     drive.hangs = False
-    await plant.close()
 
 
-async def test_a_jog_that_goes_on_is_not_stopped_for_a_drive_that_is_slow() -> None:
-    plant = make_plant(wrap=WrappedDrive)
-    await plant.start()
+async def test_a_jog_that_goes_on_is_not_stopped_for_a_drive_that_is_slow(begun: Begun) -> None:
+    plant = await begun(wrap=WrappedDrive)
     await plant.forward(seconds=1)
     await plant.ask(Jog("p1", Axis.AZIMUTH, 1))
     await plant.forward(seconds=0.15)
@@ -70,13 +69,11 @@ async def test_a_jog_that_goes_on_is_not_stopped_for_a_drive_that_is_slow() -> N
         await plant.forward(seconds=0.05)
     assert drive.stops == 0
     drive.hangs = False
-    await plant.close()
 
 
-async def test_a_lease_ends_at_its_instant_between_two_ticks() -> None:
+async def test_a_lease_ends_at_its_instant_between_two_ticks(begun: Begun) -> None:
     """Whatever the phase of the press, the command to rest is written at the end of its lease."""
-    plant = make_plant(wrap=WrappedDrive)
-    await plant.start()
+    plant = await begun(wrap=WrappedDrive)
     drive = wrapped(plant, "T1")
     for number in range(200):
         await plant.forward(seconds=0.3 + 0.0013 * number)
@@ -89,4 +86,3 @@ async def test_a_lease_ends_at_its_instant_between_two_ticks() -> None:
         await settle()
         assert plant.tracker().activity is not ActivityName.JOGGING
         assert drive.written[-1] == HALTED
-    await plant.close()

@@ -35,7 +35,7 @@ from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import Orientation, TrackerConfig
 from app.tracker.state.snapshot import EventKind, ShowPhase, Snapshot
 from app.tracker.values.mode import Mode
-from tests.site.plant import SAMSUN, SUMMER_NOON, Plant, make_plant
+from tests.site.plant import SAMSUN, SUMMER_NOON, Begun, Plant, make_plant
 
 T = TypeVar("T")
 SOLSTICE = datetime(2028, 6, 21, 3, tzinfo=UTC)
@@ -103,9 +103,7 @@ async def test_what_was_acknowledged_is_on_disk(kept: tuple[Plant, ImmediateWrit
     assert site.location == SAMSUN
     assert StepName.LOCATION in site.confirmations
 
-    await plant.commission()
-    await plant.ask(SelectMode(Mode.DUAL))
-    await plant.ask(Track())
+    await plant.track()
     (stored,) = writer.writer.trackers()
     assert stored.memory.tracking_on
     assert stored.memory.home is not None
@@ -162,9 +160,7 @@ async def test_a_stop_on_a_full_disk_is_stored_as_soon_as_there_is_room(
     kept: tuple[Plant, ImmediateWriter],
 ) -> None:
     plant, writer = kept
-    await plant.commission()
-    await plant.ask(SelectMode(Mode.DUAL))
-    await plant.ask(Track())
+    await plant.track()
     writer.full = True
     await plant.ask(Stop())
     await plant.forward(seconds=3)
@@ -304,39 +300,33 @@ async def test_damaged_chunks_are_refused(kept: tuple[Plant, ImmediateWriter]) -
         await plant.ask(SaveRecording(info, ("bm90IGEgY2h1bms=",)))
 
 
-async def test_tracking_resumes_after_a_restart_with_a_trusted_zero(url: str) -> None:
+async def test_tracking_resumes_after_a_restart_with_a_trusted_zero(url: str, begun: Begun) -> None:
     store = open_writer(url)
     first = make_plant(writer=ImmediateWriter(store))
     await first.start()
-    await first.commission()
-    await first.ask(SelectMode(Mode.DUAL))
-    await first.ask(Track())
-    await first.until(lambda seen: seen.in_position)
+    await first.track(until=lambda seen: seen.in_position)
     drive = first.drives["T1"]
     await first.close()
     beginning = begin(store, first.clock.now(), unclean_since=None)
 
-    again = make_plant(
+    again = await begun(
         start=first.clock.now(),
         writer=ImmediateWriter(store),
         state=beginning.site,
         trackers=beginning.trackers,
         wrap=lambda _: drive,
     )
-    await again.start()
     await again.forward(seconds=1)
 
     assert again.tracker().tracking_on
     assert again.happened(EventKind.TRACKING_RESUMED)
-    await again.close()
     store.close()
 
 
-async def test_a_restart_after_a_crash_says_what_happened(url: str) -> None:
+async def test_a_restart_after_a_crash_says_what_happened(url: str, begun: Begun) -> None:
     store = open_writer(url)
     writer = ImmediateWriter(store)
-    plant = make_plant(writer=writer)
-    await plant.start()
+    plant = await begun(writer=writer)
     await plant.commission()
     await plant.forward(seconds=5)
     writer.full = True
@@ -352,7 +342,6 @@ async def test_a_restart_after_a_crash_says_what_happened(url: str) -> None:
     closed = store.recording(event.data["cut_off"][0])
     assert closed is not None
     assert closed.outcome == CUT_OFF
-    await plant.close()
     store.close()
 
 

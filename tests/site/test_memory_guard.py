@@ -10,9 +10,8 @@ import pytest
 from app.alarms.conditions import MEGABYTE
 from app.machine.memory import EARLIEST, LOOK_EVERY, MemoryGuard
 from app.site.publishing.health import resident_bytes
-from app.tracker.commands.commands import SelectMode, Stop, Track
+from app.tracker.commands.commands import Stop
 from app.tracker.state.snapshot import ActivityName
-from app.tracker.values.mode import Mode
 from tests.fault_result import VIRTUAL, FaultResult
 from tests.site.plant import Plant, make_plant
 
@@ -53,8 +52,7 @@ async def plant(process: Process) -> AsyncIterator[Plant]:
 
 
 def alarms(plant: Plant) -> dict[str, str]:
-    seen = plant.site.latest()
-    assert seen is not None
+    seen = plant.latest()
     return {alarm.code: alarm.message for alarm in seen.alarms if alarm.returned_at is None}
 
 
@@ -63,10 +61,7 @@ async def test_growing_memory_is_told_and_the_restart_waits_for_standstill(
     plant: Plant, process: Process, fault: FaultResult
 ) -> None:
     plant.clock.advance(EARLIEST)
-    await plant.commission()
-    await plant.ask(SelectMode(Mode.DUAL))
-    await plant.ask(Track())
-    await plant.until(lambda seen: seen.activity is ActivityName.TRACKING)
+    await plant.track(until=lambda seen: seen.activity is ActivityName.TRACKING)
     assert "memory_high" not in alarms(plant)
 
     process.held_mb = 310.0

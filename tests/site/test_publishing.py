@@ -121,8 +121,7 @@ async def test_what_is_allowed_is_told_of_those_that_somebody_watches_and_of_no_
     await plant.forward(seconds=0.6)
 
     def asked() -> dict[str, int]:
-        site = plant.site.latest()
-        assert site is not None
+        site = plant.latest()
         return {one.tracker_id: len(one.actions) for one in site.trackers}
 
     assert asked() == {"T000": 0, "T001": len(Action), "T002": len(Action)}
@@ -184,13 +183,11 @@ async def test_a_tracker_that_came_and_one_that_went_are_told() -> None:
     plant = field_of(2)
     await plant.start()
     await plant.ask(AddTracker(TrackerConfig("T9", "New")))
-    site = plant.site.latest()
-    assert site is not None
+    site = plant.latest()
     assert [one.tracker_id for one in site.trackers] == ["T000", "T001", "T9"]
     await plant.forward(seconds=0.5)
     await plant.ask(RemoveTracker("T000"))
-    site = plant.site.latest()
-    assert site is not None
+    site = plant.latest()
     assert [one.tracker_id for one in site.trackers] == ["T001", "T9"]
     await plant.close()
 

@@ -21,14 +21,12 @@ from app.site.startup import begin
 from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.store import StoreFailed, Writer
-from app.tracker.commands.commands import SelectMode, Track
 from app.tracker.memory.recording import COLUMNS, Frames, RecordingKind
 from app.tracker.state.snapshot import EventKind
-from app.tracker.values.mode import Mode
 from app.tracker.weather.weather import Weather
 from tests.amount import amount
 from tests.fault_result import FaultResult
-from tests.site.plant import SUMMER_NOON, Plant, make_plant
+from tests.site.plant import SUMMER_NOON, Begun, Plant, make_plant
 from tests.store.tracked_day import MIDNIGHT, day_info, tracked_day
 
 T = TypeVar("T")
@@ -222,10 +220,7 @@ async def tracking(store: Writer) -> AsyncIterator[tuple[Plant, CountingWriter]]
     beginning = begin(store, SUMMER_NOON, unclean_since=None)
     plant = make_plant(writer=counting, state=beginning.site, trackers=beginning.trackers)
     await plant.start()
-    await plant.commission()
-    await plant.ask(SelectMode(Mode.DUAL))
-    await plant.ask(Track())
-    await plant.until(lambda seen: seen.in_position)
+    await plant.track(until=lambda seen: seen.in_position)
     yield plant, counting
     await plant.close()
 
@@ -251,12 +246,13 @@ async def test_a_site_that_tracks_writes_once_in_the_set_time(
 
 
 @pytest.mark.fault(49)
-async def test_a_disk_with_hardly_any_room_is_spared_samples(store: Writer, fault: FaultResult) -> None:
+async def test_a_disk_with_hardly_any_room_is_spared_samples(
+    store: Writer, fault: FaultResult, begun: Begun
+) -> None:
     counting, free = CountingWriter(store), [49 * MEGABYTE]
     beginning = begin(store, SUMMER_NOON, unclean_since=None)
     options = SiteOptions(disk_free=lambda: free[0], samples_every=timedelta(seconds=2))
-    plant = make_plant(writer=counting, state=beginning.site, trackers=beginning.trackers, options=options)
-    await plant.start()
+    plant = await begun(writer=counting, state=beginning.site, trackers=beginning.trackers, options=options)
     await plant.forward(seconds=12)
     await plant.commission()
     await plant.forward(seconds=12)
@@ -269,7 +265,6 @@ async def test_a_disk_with_hardly_any_room_is_spared_samples(store: Writer, faul
     free[0] = 90 * MEGABYTE
     await plant.forward(seconds=60)
     assert store.frames(day.recording_id).column("elapsed_s").size > 5
-    await plant.close()
 
 
 @dataclass
@@ -283,12 +278,11 @@ class HungWriter(CountingWriter):
 
 
 async def test_a_disk_that_hangs_costs_the_oldest_samples_and_no_more_memory(
-    store: Writer, monkeypatch: pytest.MonkeyPatch
+    store: Writer, monkeypatch: pytest.MonkeyPatch, begun: Begun
 ) -> None:
     monkeypatch.setattr("app.site.recording.recorder.MOST_WAITING", 60)
     writer, beginning = HungWriter(store), begin(store, SUMMER_NOON, unclean_since=None)
-    plant = make_plant(writer=writer, state=beginning.site, trackers=beginning.trackers)
-    await plant.start()
+    plant = await begun(writer=writer, state=beginning.site, trackers=beginning.trackers)
     await plant.commission()
     recorder = plant.site.model.recorder
     writer.hangs = True
@@ -296,7 +290,6 @@ async def test_a_disk_that_hangs_costs_the_oldest_samples_and_no_more_memory(
     under_way = recorder.samples_waiting
     await plant.forward(seconds=150.0)
     assert recorder.samples_waiting == under_way + 60
-    await plant.close()
 
 
 async def test_while_recording_is_suspended_no_sample_is_kept(

@@ -1,14 +1,11 @@
 """A shelved alarm over a restart of the controller, whose clock was ahead before it or is behind after it."""
 
-from pathlib import Path
-
 import pytest
 
 from app.alarms.conditions import Condition
 from app.link.alarm_orders import ShelveAlarm
 from app.site.startup import begin
-from app.store.engine import open_writer
-from app.store.migrations import upgrade
+from app.store.writer import DatabaseWriter
 from app.tracker.values.alarm_words import AlarmState
 from tests.golden.table import ClockRow, clocks
 from tests.site.direct_writer import DirectWriter
@@ -31,10 +28,9 @@ def state_of(plant: Plant) -> AlarmState:
 
 
 @pytest.mark.parametrize("row", clocks("shelf"))
-async def test_no_shelf_lasts_beyond_a_day_after_the_clock_was_ahead(tmp_path: Path, row: ClockRow) -> None:
-    url = f"sqlite:///{tmp_path / 'heliopanel.db'}"
-    upgrade(url)
-    store = open_writer(url)
+async def test_no_shelf_lasts_beyond_a_day_after_the_clock_was_ahead(
+    store: DatabaseWriter, row: ClockRow
+) -> None:
     before = make_plant(start=SUMMER_NOON + row.stored, writer=DirectWriter(store))
     await begun(before)
     await before.ask(ShelveAlarm(JUMPED, 60, "The cable is being replaced."))
@@ -53,4 +49,3 @@ async def test_no_shelf_lasts_beyond_a_day_after_the_clock_was_ahead(tmp_path: P
     await begun(after)
     assert state_of(after) is (AlarmState.SHELVED if row.expected == "shelved" else AlarmState.UNACKNOWLEDGED)
     await after.close()
-    store.close()

@@ -8,15 +8,14 @@ import pytest
 from app.link.messages import AddTracker, ConfigureTracker
 from app.link.weather_orders import ReportWeather, SetMetStation, SetWeatherWindows, SimulateWeather
 from app.site.weather.weather import WeatherStation
-from app.tracker.commands.commands import CommandRejected, SelectMode, Track
+from app.tracker.commands.commands import CommandRejected
 from app.tracker.memory.memory import MetStation, SiteState
 from app.tracker.settings.config import DriveConfig, DriveKind, TrackerConfig
 from app.tracker.state.snapshot import ActivityName, EventKind
-from app.tracker.values.mode import Mode
 from app.tracker.weather.simulated_weather import Scenario, SimulatedStation
 from app.tracker.weather.weather import Quality, Weather, WeatherNow
 from app.tracker.weather.weather_windows import LIMITS, WeatherWindows
-from tests.site.plant import SUMMER_NOON, Plant, make_plant
+from tests.site.plant import SUMMER_NOON, Begun, Plant, make_plant
 from tests.site.test_weather_quality import at, quality, report
 
 REAL = DriveConfig(DriveKind.MODBUS_TCP, host="10.0.0.5")
@@ -25,17 +24,13 @@ STORM = SimulatedStation(Scenario.STORM, seed=3)
 
 async def weather(plant: Plant) -> WeatherNow:
     await plant.forward(seconds=0.6)
-    seen = plant.site.latest()
-    assert seen is not None
+    seen = plant.latest()
     assert seen.weather is not None
     return seen.weather
 
 
 async def track(plant: Plant) -> None:
-    await plant.commission()
-    await plant.ask(SelectMode(Mode.DUAL))
-    await plant.ask(Track())
-    await plant.until(lambda tracker: tracker.in_position)
+    await plant.track(until=lambda tracker: tracker.in_position)
 
 
 async def test_weather_by_hand_is_shown_as_simulated_and_stows(plant: Plant) -> None:
@@ -68,17 +63,17 @@ async def test_what_made_up_weather_did_ends_with_it_and_no_sensor_is_missed(pla
     ]
 
 
-async def test_a_scenario_goes_on_after_a_restart(plant: Plant) -> None:
+async def test_a_scenario_goes_on_after_a_restart(plant: Plant, begun: Begun) -> None:
     await plant.ask(SimulateWeather(STORM))
     state = plant.site.model.state
     assert state.simulated_weather == replace(STORM, begun_at=SUMMER_NOON)
-    later = make_plant(start=at(0), state=replace(state, simulated_weather=replace(STORM, begun_at=at(-600))))
-    await later.start()
+    later = await begun(
+        start=at(0), state=replace(state, simulated_weather=replace(STORM, begun_at=at(-600)))
+    )
     seen = await weather(later)
     assert seen.simulated
     assert seen.readings.wind_mps is not None
     assert seen.readings.wind_mps > 10.0
-    await later.close()
 
 
 async def test_what_is_measured_is_not_taken_beside_it_and_takes_its_place_by_an_order(plant: Plant) -> None:

@@ -15,7 +15,7 @@ from app.tracker.memory.memory import MetStation, SiteState
 from app.tracker.values.notifications import Notifications
 from app.tracker.weather.simulated_weather import SimulatedStation
 from app.tracker.weather.weather_windows import WeatherWindows
-from tests.site.plant import Plant, make_plant
+from tests.site.plant import Plant
 
 STATION = MetStation("192.0.2.7")
 SIMULATED = SimulatedStation(seed=7)
@@ -44,10 +44,8 @@ def settings(plant: Plant) -> SiteState:
     ],
 )
 async def test_every_change_of_the_site_is_undone_and_redone(
-    before: SiteCommand | None, command: SiteCommand
+    before: SiteCommand | None, command: SiteCommand, plant: Plant
 ) -> None:
-    plant = make_plant()
-    await plant.start()
     if before is not None:
         await plant.ask(before)
     first = settings(plant)
@@ -59,12 +57,9 @@ async def test_every_change_of_the_site_is_undone_and_redone(
     assert settings(plant) == first
     await plant.ask(UndoSiteSettings())
     assert settings(plant) == second
-    await plant.close()
 
 
-async def test_a_repeated_value_is_no_change_and_leaves_what_can_be_undone() -> None:
-    plant = make_plant()
-    await plant.start()
+async def test_a_repeated_value_is_no_change_and_leaves_what_can_be_undone(plant: Plant) -> None:
     with pytest.raises(CommandRejected, match="no stored settings change to undo"):
         await plant.ask(UndoSiteSettings())
     first = plant.site.model.state.name
@@ -72,4 +67,3 @@ async def test_a_repeated_value_is_no_change_and_leaves_what_can_be_undone() -> 
     await plant.ask(RenameSite("Hill field"))
     await plant.ask(UndoSiteSettings())
     assert plant.site.model.state.name == first
-    await plant.close()

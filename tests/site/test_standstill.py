@@ -10,14 +10,13 @@ from app.link.messages import Order, RenameSite, SetLocation, StopAll
 from app.simulation.faults import Fault, FaultKind
 from app.simulation.simulated import SimulatedDrive
 from app.store.store import Writer
-from app.tracker.commands.commands import CommandRejected, Move, ResetFault, SelectMode, Stop, Track
+from app.tracker.commands.commands import CommandRejected, Move, ResetFault, Stop, Track
 from app.tracker.memory.memory import TrackerState
 from app.tracker.settings.config import Orientation
 from app.tracker.state.snapshot import ActivityName, EventKind
-from app.tracker.values.mode import Mode
 from app.tracker.values.motion import DriveCommand
 from tests.patience import PATIENCE_S
-from tests.site.plant import SAMSUN, Plant, make_plant, settle
+from tests.site.plant import SAMSUN, Begun, Plant, make_plant, settle
 from tests.site.wrapped_drive import WrappedDrive, wrapped
 
 T = TypeVar("T")
@@ -81,9 +80,7 @@ async def test_a_stop_that_meets_a_programming_error_still_ends_the_motion() -> 
 async def tracking_and_broken() -> Plant:
     plant = make_plant(wrap=WrappedDrive)
     await plant.start()
-    await plant.commission()
-    await plant.ask(SelectMode(Mode.DUAL))
-    await plant.ask(Track())
+    await plant.track()
     await plant.forward(seconds=1)
     wrapped(plant, "T1").nonsense = True
     await plant.forward(seconds=1)
@@ -106,20 +103,18 @@ async def test_after_an_unexpected_error_tracking_waits_for_the_operator() -> No
     await plant.close()
 
 
-async def test_an_unexpected_error_is_a_fault_that_outlives_a_restart() -> None:
+async def test_an_unexpected_error_is_a_fault_that_outlives_a_restart(begun: Begun) -> None:
     plant = await tracking_and_broken()
     state: TrackerState = plant.site.model.tracker("T1").state
     drive = plant.drives["T1"]
     await plant.close()
 
-    again = make_plant(
+    again = await begun(
         start=plant.clock.now(), state=plant.site.model.state, trackers=(state,), wrap=lambda _: drive
     )
-    await again.start()
     await again.forward(seconds=2)
 
     assert again.tracker().activity is ActivityName.FAULTED
-    await again.close()
 
 
 async def test_what_a_broken_tracker_last_saw_is_not_shown_as_live() -> None:
@@ -150,9 +145,7 @@ async def test_stop_with_a_key_that_was_used_before_stops_again() -> None:
     await plant.close()
 
 
-async def test_an_order_that_had_to_wait_too_long_for_another_is_not_carried_out() -> None:
-    plant = make_plant()
-    await plant.start()
+async def test_an_order_that_had_to_wait_too_long_for_another_is_not_carried_out(plant: Plant) -> None:
     async with plant.site.model.changing:
         given = Order(RenameSite("Late"), "technician", issued_at=plant.site.model.now())
         waiting = asyncio.create_task(plant.site.execute(given))
@@ -162,7 +155,6 @@ async def test_an_order_that_had_to_wait_too_long_for_another_is_not_carried_out
     with pytest.raises(CommandRejected, match="ago"):
         await waiting
     assert plant.site.model.state.name != "Late"
-    await plant.close()
 
 
 class StalledWriter:
@@ -180,26 +172,24 @@ class StalledWriter:
         return True
 
 
-async def test_stop_is_answered_although_the_disk_is_stalled() -> None:
+async def test_stop_is_answered_although_the_disk_is_stalled(begun: Begun) -> None:
     writer = StalledWriter()
-    plant = make_plant(writer=writer)
-    await plant.start()
+    plant = await begun(writer=writer)
     await plant.ask(SetLocation(SAMSUN, "Europe/Istanbul"))
     writer.stalled = True
 
     await asyncio.wait_for(plant.site.execute(Order(Stop(), "technician", "T1")), PATIENCE_S)
 
     assert plant.happened(EventKind.STOPPED)
-    await plant.close()
 
 
-async def test_a_watchdog_that_a_drive_turns_out_not_to_have_is_known_from_the_first_reading_on() -> None:
+async def test_a_watchdog_that_a_drive_turns_out_not_to_have_is_known_from_the_first_reading_on(
+    begun: Begun,
+) -> None:
     """A profile promises one; what it is set to is read with everything else, and may be 0 from the start."""
-    plant = make_plant(wrap=WrappedDrive)
-    await plant.start()
+    plant = await begun(wrap=WrappedDrive)
     drive = wrapped(plant, "T1")
     assert "no_watchdog" not in [one.code for one in plant.tracker().notices]
     drive.watchdog_off = True
     await plant.forward(seconds=0.2)
     assert "no_watchdog" in [one.code for one in plant.tracker().notices]
-    await plant.close()

@@ -5,9 +5,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.tracker.commands.commands import SelectMode, Track
 from app.tracker.state.snapshot import ActivityName, EventKind
-from app.tracker.values.mode import Mode
 from app.web.shell.formats import local
 from tests.site.plant import Plant, make_plant
 
@@ -25,10 +23,7 @@ def zone(monkeypatch: pytest.MonkeyPatch) -> Iterator[pytest.MonkeyPatch]:
 async def tracking() -> Plant:
     plant = make_plant()
     await plant.start()
-    await plant.commission()
-    await plant.ask(SelectMode(Mode.DUAL))
-    await plant.ask(Track())
-    await plant.until(lambda seen: seen.activity is ActivityName.TRACKING and seen.in_position)
+    await plant.track(until=lambda seen: seen.activity is ActivityName.TRACKING and seen.in_position)
     return plant
 
 

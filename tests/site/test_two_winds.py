@@ -7,9 +7,7 @@ import pytest
 from app.link.messages import Order
 from app.link.weather_orders import ReportWeather
 from app.site.weather.weather import WeatherStation
-from app.tracker.commands.commands import SelectMode, Track
 from app.tracker.state.snapshot import ActivityName
-from app.tracker.values.mode import Mode
 from app.tracker.weather.weather import Quality, Weather, WeatherNow
 from tests.fault_result import VIRTUAL, FaultResult
 from tests.site.plant import Plant
@@ -85,9 +83,7 @@ def test_what_was_silent_for_an_hour_is_no_sensor_any_more() -> None:
 async def test_two_sensors_that_disagree_stow_by_the_higher_and_are_told_with_both(
     plant: Plant, fault: FaultResult
 ) -> None:
-    await plant.commission()
-    await plant.ask(SelectMode(Mode.DUAL))
-    await plant.ask(Track())
+    await plant.track()
     for second in range(20):
         await report(plant, second, mast=6.0, roof=6.5)
     assert "wind_sensors_disagree" not in alarms(plant)
@@ -119,8 +115,7 @@ async def report(plant: Plant, second: int, **winds_mps: float) -> None:
 
 
 def alarms(plant: Plant) -> dict[str, str]:
-    seen = plant.site.latest()
-    assert seen is not None
+    seen = plant.latest()
     return {
         alarm.code: alarm.message
         for alarm in seen.alarms

@@ -18,9 +18,7 @@ def config(plant: Plant) -> TrackerConfig:
     return plant.site.model.tracker("T1").config
 
 
-async def test_the_last_change_is_undone_and_redone() -> None:
-    plant = make_plant()
-    await plant.start()
+async def test_the_last_change_is_undone_and_redone(plant: Plant) -> None:
     first = config(plant)
     with pytest.raises(CommandRejected, match="no stored settings change to undo"):
         await plant.ask(UndoSettings("T1"))
@@ -32,7 +30,6 @@ async def test_the_last_change_is_undone_and_redone() -> None:
     assert config(plant) == second
     await plant.ask(UndoSettings("T1"))
     assert config(plant) == other_axis
-    await plant.close()
 
 
 async def test_locked_settings_are_not_undone_and_a_removed_tracker_leaves_nothing() -> None:

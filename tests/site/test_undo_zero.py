@@ -79,9 +79,7 @@ async def test_what_has_moved_since_is_not_undone(plant: Plant) -> None:
     assert angles(plant.tracker()) == (0.0, 1.0)
 
 
-async def test_an_axis_that_was_not_homed_before_is_not_shown_as_homed_again() -> None:
-    plant = make_plant()
-    await plant.start()
+async def test_an_axis_that_was_not_homed_before_is_not_shown_as_homed_again(plant: Plant) -> None:
     await plant.ask(Step(Axis.AZIMUTH, 5.0))
     await plant.until(lambda seen: seen.activity is ActivityName.HOLDING)
     await set_here(plant)
@@ -92,7 +90,6 @@ async def test_an_axis_that_was_not_homed_before_is_not_shown_as_homed_again() -
     assert [axis.homed for axis in axes(plant)] == [False, False]
     await set_here(plant)
     assert [axis.homed for axis in axes(plant)] == [True, True]
-    await plant.close()
 
 
 def axes(plant: Plant) -> list[AxisState]:

@@ -16,14 +16,12 @@ async def test_a_report_grows_old_and_stale_and_a_new_one_takes_its_place(plant:
     assert told.weather is not None
     assert (told.weather.age_s, told.weather.stale, told.weather.source) == (0.0, False, "technician")
     await plant.forward(seconds=60)
-    seen = plant.site.latest()
-    assert seen is not None
+    seen = plant.latest()
     assert seen.weather is not None
     assert seen.weather.age_s == pytest.approx(60.0, abs=0.6)
     assert seen.weather.usable == Weather(wind_mps=12.0)
     await plant.forward(seconds=245)
-    seen = plant.site.latest()
-    assert seen is not None
+    seen = plant.latest()
     assert seen.weather is not None
     assert seen.weather.stale
     assert seen.weather.usable is None
@@ -47,8 +45,7 @@ async def test_reports_of_the_future_and_of_the_past_are_refused(
     with pytest.raises(ValueError, match=words):
         await plant.ask(ReportWeather(Weather(wind_mps=1.0), measured_at))
     await settle()
-    seen = plant.site.latest()
-    assert seen is not None
+    seen = plant.latest()
     assert seen.weather is None
 
 

@@ -6,11 +6,10 @@ import pytest
 
 from app.link.weather_orders import ReportWeather
 from app.site.weather.weather import WeatherStation
-from app.tracker.commands.commands import SelectMode, Stow, Track
+from app.tracker.commands.commands import Stow
 from app.tracker.protections.words import Protection
 from app.tracker.settings.protections import StowName
 from app.tracker.state.snapshot import ActivityName, EventKind
-from app.tracker.values.mode import Mode
 from app.tracker.weather.weather import NOTHING_SENSED, Quality, Weather
 from app.tracker.weather.weather_windows import same_age
 from tests.site.plant import Plant
@@ -123,10 +122,7 @@ def test_a_value_grows_stale() -> None:
 
 
 async def test_a_reported_storm_stows_the_tracker_and_is_journalled(plant: Plant) -> None:
-    await plant.commission()
-    await plant.ask(SelectMode(Mode.DUAL))
-    await plant.ask(Track())
-    await plant.until(lambda seen: seen.in_position)
+    await plant.track(until=lambda seen: seen.in_position)
     await plant.ask(ReportWeather(Weather(wind_mps=23.0)))
     await plant.until(lambda seen: seen.activity is ActivityName.STOWED)
     seen = plant.tracker()

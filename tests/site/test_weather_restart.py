@@ -254,8 +254,7 @@ async def test_a_damaged_file_is_no_weather(lives: Lives, damage: bytes, fault: 
     twins.write(0, damage)
     plant = await lives.begin()
     await plant.forward(seconds=0.5)
-    seen = plant.site.latest()
-    assert seen is not None
+    seen = plant.latest()
     assert seen.weather is None
     await blow(plant, 28.0)
     await plant.forward(seconds=0.5)
