@@ -9,15 +9,17 @@ import pytest
 
 from app.base.clock import VirtualClock
 from app.site.loop.scheduler import GRACE, MOST_ASKED_AT_ONCE, MOST_DUE_AT_ONCE, Scheduler, Slot
-from app.tracker.commands.commands import JOG_LEASE, Jog
+from app.tracker.commands.commands import JOG_LEASE, EndJog, Jog
 from app.tracker.settings.axes import Axis, JogSpeed
-from app.tracker.state.snapshot import EventKind
+from app.tracker.state.controller_state import HALTED
+from app.tracker.state.snapshot import ActivityName, EventKind
 from app.tracker.values.motion import HALT, DriveCommand, Feedback, Velocity
-from tests.site.plant import SUMMER_NOON, Plant, make_plant, settle
-from tests.site.wrapped_drive import WrappedDrive
+from tests.site.plant import SUMMER_NOON, Begun, Plant, make_plant, settle
+from tests.site.wrapped_drive import WrappedDrive, wrapped
 
 PERIOD = timedelta(milliseconds=100)
 MS = timedelta(milliseconds=1)
+BURST = 125
 
 
 @dataclass
@@ -134,15 +136,6 @@ async def test_a_slow_drive_delays_no_other_and_never_ticks_twice_at_once(field_
     assert slow.ticks == [0.0, 250.0]
     assert slow.scheduled == [None, None]
     assert other.ticks == [0.0, 60.0, 160.0, 260.0, 360.0, 460.0]
-
-
-async def test_what_lasted_too_long_goes_on_at_the_next_instant_of_its_schedule(field_: Field) -> None:
-    slow = Ticker(field_.clock, answers_at_once=False, takes=130 * MS)
-    field_.add(slow)
-    await settle()
-    await field_.forward(410)
-
-    assert (slow.ticks, slow.scheduled) == ([0.0, 200.0, 400.0], [None, 200.0, 400.0])
 
 
 @pytest.mark.parametrize("at_once", [True, False])
@@ -363,7 +356,7 @@ async def held() -> AsyncIterator[tuple[Plant, ReadingDrive]]:
     assert turning(drive)
     yield plant, drive
     drive.reads_in = drive.writes_in = timedelta(0)
-    await finely(plant, 800)
+    await finely(plant, 300)
     await plant.close()
 
 
@@ -372,8 +365,9 @@ def press(sequence: int, lease: timedelta = JOG_LEASE) -> Jog:
 
 
 async def finely(plant: Plant, ms: int) -> None:
-    for _ in range(ms):
-        plant.clock.advance(MS)
+    end = plant.clock.now() + ms * MS
+    while plant.clock.now() < end:
+        plant.clock.move_to(min(end, plant.clock.next_wake or end))
         await settle()
 
 
@@ -382,8 +376,7 @@ def halted_ms(plant: Plant, drive: ReadingDrive, since: datetime) -> float:
     return next((at - since) / MS for at, told in drive.written_at if at >= since and told.azimuth == HALT)
 
 
-@pytest.mark.parametrize("reads_ms", [0, 1, 3, 7, 13])
-@pytest.mark.parametrize("after_ms", [0, 37, 95, 99])
+@pytest.mark.parametrize(("reads_ms", "after_ms"), [(0, 95), (3, 99), (13, 0), (13, 37)])
 async def test_a_jog_is_told_to_stop_at_the_end_of_its_lease_whatever_is_in_flight(
     held: tuple[Plant, ReadingDrive], reads_ms: int, after_ms: int
 ) -> None:
@@ -412,18 +405,6 @@ async def test_a_lease_that_a_late_heartbeat_shortens_to_less_than_a_tick_ends_a
     assert halted_ms(plant, drive, last) == 30.0
 
 
-async def test_a_reading_that_hangs_at_the_end_of_the_lease_does_not_hold_up_the_stop(
-    held: tuple[Plant, ReadingDrive],
-) -> None:
-    plant, drive = held
-    last = plant.clock.now()
-    await finely(plant, 190)
-    drive.reads_in = timedelta(seconds=1)
-    await finely(plant, 150)
-
-    assert drive.stopped_at == [last + JOG_LEASE + GRACE]
-
-
 async def test_a_renewal_while_the_tick_is_in_flight_keeps_the_axis_turning(
     held: tuple[Plant, ReadingDrive],
 ) -> None:
@@ -439,3 +420,75 @@ async def test_a_renewal_while_the_tick_is_in_flight_keeps_the_axis_turning(
     assert told
     assert all(isinstance(one, Velocity) for one in told)
     assert not drive.stopped_at
+
+
+async def test_the_ends_of_presses_that_are_over_neither_tick_nor_tell(plant: Plant) -> None:
+    """A page that held a hundred presses told the end of each: the whole site was published for every one."""
+    await plant.forward(seconds=1)
+    told, ticks = plant.site.latest(), plant.site.model.tracker("T1").counter.ticks
+    for number in range(BURST):
+        answer = await plant.ask(EndJog(f"over-{number}"))
+        assert answer is told
+    assert plant.site.latest() is told
+    assert plant.site.model.tracker("T1").counter.ticks == ticks
+
+
+async def test_the_end_of_the_press_that_is_held_ticks_and_tells_at_once(plant: Plant) -> None:
+    await plant.ask(Jog("p1", Axis.AZIMUTH, 1))
+    await plant.forward(seconds=0.05)
+    await plant.ask(EndJog("p1"))
+    await plant.forward(seconds=0.001)
+    assert plant.tracker().activity is not ActivityName.JOGGING
+    assert len(plant.happened(EventKind.JOG_ENDED)) == 1
+
+
+@pytest.mark.parametrize("hangs_from_ms", [150, 205], ids=["read before the end", "read at the end"])
+async def test_a_drive_that_hangs_is_told_to_stop_at_the_lease_s_end(
+    hangs_from_ms: int, begun: Begun
+) -> None:
+    """The read of a tick may take as long as the drive does not answer; the stop goes beside it."""
+    plant = await begun(wrap=WrappedDrive)
+    await plant.forward(seconds=1)
+    begun = plant.clock.now()
+    await plant.ask(Jog("p1", Axis.AZIMUTH, 1))
+    await plant.forward(seconds=hangs_from_ms / 1000.0)
+    drive = wrapped(plant, "T1")
+    drive.hangs = True
+    plant.clock.move_to(begun + JOG_LEASE - MS)
+    await settle()
+    assert drive.stops == 0
+    plant.clock.move_to(begun + JOG_LEASE + 10 * MS)
+    await settle()
+    assert drive.stops == 1
+    drive.hangs = False
+
+
+async def test_a_jog_that_goes_on_is_not_stopped_for_a_drive_that_is_slow(begun: Begun) -> None:
+    plant = await begun(wrap=WrappedDrive)
+    await plant.forward(seconds=1)
+    await plant.ask(Jog("p1", Axis.AZIMUTH, 1))
+    await plant.forward(seconds=0.15)
+    drive = wrapped(plant, "T1")
+    drive.hangs = True
+    for sequence in range(1, 10):
+        await plant.ask(Jog("p1", Axis.AZIMUTH, 1, sequence=sequence))
+        await plant.forward(seconds=0.05)
+    assert drive.stops == 0
+    drive.hangs = False
+
+
+async def test_a_lease_ends_at_its_instant_between_two_ticks(begun: Begun) -> None:
+    """Whatever the phase of the press, the command to rest is written at the end of its lease."""
+    plant = await begun(wrap=WrappedDrive)
+    drive = wrapped(plant, "T1")
+    for number in range(0, 200, 13):
+        await plant.forward(seconds=0.3 + 0.0013 * number)
+        begun = plant.clock.now()
+        await plant.ask(Jog(f"p{number}", Axis.AZIMUTH, 1 - number % 2 * 2))
+        plant.clock.move_to(begun + JOG_LEASE - MS)
+        await settle()
+        assert plant.tracker().activity is ActivityName.JOGGING
+        plant.clock.move_to(begun + JOG_LEASE)
+        await settle()
+        assert plant.tracker().activity is not ActivityName.JOGGING
+        assert drive.written[-1] == HALTED

@@ -19,12 +19,12 @@ from app.tracker.commands.commands import Move
 from app.tracker.memory.memory import ClockSetting, SiteState, TrackerMemory, TrackerState
 from app.tracker.settings.config import Orientation, TrackerConfig
 from app.tracker.settings.protections import ProtectionConfig, WindProtection
-from app.tracker.state.snapshot import SiteSnapshot
 from app.tracker.weather.simulated_weather import Scenario, SimulatedStation
 from app.tracker.weather.weather import Quality, Weather, WeatherNow
 from tests.fault_result import BY_ITSELF, FaultResult
 from tests.patience import PATIENCE_S
-from tests.site.plant import SAMSUN, SUMMER_NOON, Plant, make_plant, settle
+from tests.site.plant import SAMSUN, SUMMER_NOON, Begun, Plant, make_plant, settle
+from tests.site.tracking_field import homed
 
 PLACED = SiteState("Storm", SAMSUN, 1, "Europe/Istanbul", ClockSetting("system"))
 
@@ -69,10 +69,6 @@ class Lives:
         gone = self.plants[-1].clock.now() - SUMMER_NOON
         self.at_s = gone.total_seconds() + down_s
 
-    async def end(self) -> None:
-        await self.plants[-1].close()
-        await self.kill()
-
 
 @pytest.fixture
 async def lives(tmp_path: Path) -> AsyncIterator[Lives]:
@@ -96,10 +92,9 @@ def writes(monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
 
 
 def told(plant: Plant) -> WeatherNow:
-    seen = plant.site.latest()
-    assert isinstance(seen, SiteSnapshot)
-    assert seen.weather is not None
-    return seen.weather
+    weather = plant.latest().weather
+    assert weather is not None
+    return weather
 
 
 def stows(plant: Plant) -> list[bool]:
@@ -128,7 +123,7 @@ async def test_a_storm_reported_just_before_a_kill_holds_afterwards(lives: Lives
     fault.recovers(f"{BY_ITSELF} once the wind has been heard calm for the whole delay")
 
 
-async def test_two_kills_in_a_row_forget_nothing(lives: Lives) -> None:
+async def test_kills_in_a_row_forget_nothing_until_a_report_takes_its_place(lives: Lives) -> None:
     await blow(await lives.begin(), 18.5)
     for _ in range(3):
         await lives.kill()
@@ -136,22 +131,17 @@ async def test_two_kills_in_a_row_forget_nothing(lives: Lives) -> None:
         await plant.forward(seconds=0.5)
     assert stows(plant) == [True, False]
     assert told(plant).age_s == pytest.approx(10.5, abs=0.5)
-
-
-async def test_a_report_takes_the_place_of_what_was_known(lives: Lives) -> None:
-    await blow(await lives.begin(), 4.0)
-    await lives.kill()
-    plant = await lives.begin()
     await blow(plant, 5.0)
-    await plant.forward(seconds=0.5)
     seen = told(plant)
     assert (seen.before_restart, seen.stale, seen.readings.wind_mps) == (False, False, 5.0)
-    assert stows(plant) == [False, False]
 
 
 @pytest.mark.fault(81)
 async def test_a_station_that_stays_silent_over_many_lives_is_bad_after_its_time(lives: Lives) -> None:
-    await blow(await lives.begin(), 4.0)
+    """What is heard begins its time anew; a restart does not."""
+    plant = await lives.begin()
+    await plant.forward(seconds=5.0)
+    await blow(plant, 4.0)
     for _ in range(3):
         await lives.kill(down_s=1.0)
         plant = await lives.begin()
@@ -163,55 +153,30 @@ async def test_a_station_that_stays_silent_over_many_lives_is_bad_after_its_time
     assert stows(plant) == [True, True]
 
 
-async def test_a_life_that_heard_the_station_begins_its_time_anew(lives: Lives) -> None:
-    await blow(await lives.begin(), 4.0)
-    await lives.kill()
-    plant = await lives.begin()
-    await plant.forward(seconds=50.0)
-    await blow(plant, 5.0)
-    await lives.kill()
-    plant = await lives.begin()
-    await plant.forward(seconds=20.0)
-    assert stows(plant) == [False, False]
-
-
-async def test_calm_reports_every_second_are_written_every_ten_minutes(
-    lives: Lives, writes: list[bytes]
+@pytest.mark.parametrize(
+    ("samples_every_s", "written"),
+    [(None, [0, 600, 1200]), (300, [0, 307, 607, 907, 1207]), (1, [0, 240, 480, 720, 960, 1200])],
+)
+async def test_calm_weather_is_written_seldom_and_with_the_samples(
+    tmp_path: Path, writes: list[bytes], samples_every_s: int | None, written: list[int]
 ) -> None:
-    plant = await lives.begin()
-    for second in range(1260):
-        await blow(plant, 4.0 + second % 7)
-        plant.clock.advance(timedelta(seconds=1))
-    assert len(writes) == 3
-
-
-async def test_calm_weather_goes_to_the_disk_with_the_samples(tmp_path: Path, writes: list[bytes]) -> None:
     file, written_at = WeatherFile(tmp_path / "weather"), []
     for second in range(1260):
-        now = SUMMER_NOON + timedelta(seconds=second)
-        samples_at = SUMMER_NOON + timedelta(seconds=(second - 7) // 300 * 300 + 7) if second >= 307 else None
+        now, samples_at = SUMMER_NOON + timedelta(seconds=second), None
+        if samples_every_s is not None and second >= samples_every_s + 7:
+            last = (second - 7) // samples_every_s * samples_every_s + 7
+            samples_at = SUMMER_NOON + timedelta(seconds=last)
         before = len(writes)
         file.keep(KeptWeather(now, "plc", gust_mps=4.0), now, (), samples_at)
         if len(writes) > before:
             written_at.append(second)
     await file.written()
-    assert written_at == [0, 307, 607, 907, 1207]
-
-
-async def test_samples_that_go_often_take_the_weather_with_them_every_four_minutes(
-    tmp_path: Path, writes: list[bytes]
-) -> None:
-    file = WeatherFile(tmp_path / "weather")
-    for second in range(1260):
-        now = SUMMER_NOON + timedelta(seconds=second)
-        file.keep(KeptWeather(now, "plc", gust_mps=4.0), now, (), now)
-    await file.written()
-    assert len(writes) == 6
+    assert written_at == written
 
 
 async def test_gusts_about_a_limit_are_written_once(lives: Lives, writes: list[bytes]) -> None:
     plant = await lives.begin()
-    for second in range(300):
+    for second in range(60):
         await blow(plant, 15.0 if second % 2 else 18.0)
         plant.clock.advance(timedelta(seconds=1))
     assert len(writes) == 1
@@ -235,16 +200,6 @@ async def test_a_report_that_demands_a_stow_is_on_disk_once_it_is_acknowledged(
     await blow(plant, 4.0)
     await blow(plant, 28.0)
     assert b'"gust_mps":28.0' in synced[-1]
-
-
-async def test_a_proper_end_keeps_the_last_that_was_known(lives: Lives) -> None:
-    plant = await lives.begin()
-    for wind_mps in (4.0, 5.0, 6.0):
-        await blow(plant, wind_mps)
-    await lives.end()
-    plant = await lives.begin()
-    await plant.forward(seconds=0.5)
-    assert told(plant).readings.wind_mps == 6.0
 
 
 @pytest.mark.fault(84)
@@ -313,11 +268,11 @@ async def test_a_file_that_cannot_be_read_or_written_keeps_no_controller_from_st
 
 
 async def test_a_disk_that_hangs_at_the_end_does_not_keep_a_drive_turning(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, begun: Begun
 ) -> None:
-    plant = make_plant(options=SiteOptions(weather_file=tmp_path / "weather"))
-    await plant.start()
-    await plant.commission()
+    plant = await begun(homed(options=SiteOptions(weather_file=tmp_path / "weather")))
+    drive = plant.drives["T1"]
+    assert isinstance(drive, SimulatedDrive)
     for wind_mps in (3.0, 4.0):
         await blow(plant, wind_mps)
     await plant.ask(Move(Orientation(200.0, 40.0)))
@@ -327,14 +282,8 @@ async def test_a_disk_that_hangs_at_the_end_does_not_keep_a_drive_turning(
     closing = asyncio.create_task(plant.site.close())
     await plant.forward(seconds=5.0)
     assert not closing.done()
-    before = true_orientation(plant)
+    before = drive.true_orientation
     await plant.forward(seconds=1.0)
-    assert true_orientation(plant) == before
+    assert drive.true_orientation == before
     goes_on.set()
     await closing
-
-
-def true_orientation(plant: Plant) -> Orientation:
-    drive = plant.drives["T1"]
-    assert isinstance(drive, SimulatedDrive)
-    return drive.true_orientation
