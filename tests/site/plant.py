@@ -45,9 +45,10 @@ class Plant:
         await settle()
 
     async def close(self) -> None:
-        await self.site.close()
         if self.listening is not None:
+            await self.site.close()
             await self.listening
+            self.listening = None
 
     async def ask(
         self, command: Command | SiteCommand, tracker_id: str | None = "T1", **more: object

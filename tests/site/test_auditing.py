@@ -18,7 +18,6 @@ from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.store import AuditFilter
 from app.store.writer import DatabaseWriter
-from app.store.writer_thread import WriterThread
 from app.tracker.commands.commands import CommandRejected, EndJog, Jog, Move, Stop, Track
 from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import Orientation
@@ -195,17 +194,6 @@ async def test_the_last_hash_is_logged_every_ten_minutes(audited: Audited) -> No
     heads = [one for one in logs if one["event"] == "audit_head"]
     last = audited.store.audit(AuditFilter(limit=1))[0]
     assert [(one["seq"], one["hash"]) for one in heads] == [(1, last.hash)]
-
-
-async def test_the_thread_that_writes_records_too(store: DatabaseWriter) -> None:
-    thread = WriterThread(store, print)
-    plant = make_plant(writer=thread)
-    await plant.start()
-    await plant.ask(RenameSite("North field"))
-    await plant.ask(Stop())
-    await plant.close()
-    assert thread.close()
-    assert [one.entry.action for one in store.audit(AuditFilter(after=0))] == ["rename_site", "stop"]
 
 
 async def test_a_refusal_is_recorded_anew_once_the_site_clock_was_set_back(audited: Audited) -> None:

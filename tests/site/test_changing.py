@@ -106,17 +106,6 @@ async def test_a_tracker_that_was_removed_does_not_come_back(slow: tuple[Plant, 
     assert writer.writer.trackers() == []
 
 
-async def test_a_confirmation_that_could_not_be_stored_was_not_given(slow: tuple[Plant, SlowWriter]) -> None:
-    plant, writer = slow
-    before = plant.site.model.tracker("T1").memory
-    writer.full = True
-
-    with pytest.raises(CommandRejected):
-        await plant.ask(ConfirmStep("T1", StepName.HOMING))
-
-    assert plant.site.model.tracker("T1").memory == before
-
-
 async def test_wind_is_heard_while_a_setting_waits_for_the_disk(slow: tuple[Plant, SlowWriter]) -> None:
     plant, writer = slow
     writer.goes_on.clear()

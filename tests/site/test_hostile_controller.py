@@ -1,6 +1,5 @@
 """Another tracker controller whose points say what they cannot mean: a reading that failed, and no more."""
 
-from contextlib import suppress
 from dataclasses import replace
 from datetime import UTC, datetime
 
@@ -19,9 +18,10 @@ from app.simulation.devices.sunspec import (
     STEP_POWER,
     TRACKER_ALARMS,
 )
-from app.tracker.commands.commands import CommandRejected, Jog, Move, Stop
-from app.tracker.settings.axes import AZIMUTH_DEFAULT, Axis, JogSpeed
+from app.tracker.commands.commands import Move, Stop
+from app.tracker.settings.axes import AZIMUTH_DEFAULT
 from app.tracker.settings.config import Orientation, TrackerConfig
+from tests.amount import amount
 from tests.golden.table import rows
 from tests.site.far_controllers import FarPlant, far_drive, far_plant
 from tests.site.plant import SAMSUN, SUMMER_NOON
@@ -65,16 +65,7 @@ async def test_a_reading_is_right_or_says_what_is_wrong(row: dict[str, str]) -> 
     await drive.close()
 
 
-@EVERY
-async def test_a_controller_that_boots_with_it_is_read_once_it_is_ready(row: dict[str, str]) -> None:
-    plant = far_plant(CONFIG, SUMMER_NOON, "-180 to 180")
-    plant.far.spoiled = spoiled(row)
-    await plant.start()
-    await lived_through(plant, row["says"])
-    await plant.close()
-
-
-@EVERY
+@pytest.mark.parametrize("row", ROWS[:: amount(3, 1)], ids=[row["what"] for row in ROWS[:: amount(3, 1)]])
 async def test_a_controller_that_says_it_in_motion_can_be_stopped(row: dict[str, str]) -> None:
     plant = far_plant(CONFIG, SUMMER_NOON, "-180 to 180")
     await plant.start()
@@ -108,42 +99,13 @@ async def lived_through(plant: FarPlant, says: str) -> None:
     assert not plant.far.machine.observe().azimuth.moving
 
 
-POINTS = {
-    **WORDS,
-    **WIDE_WORDS,
-    "azimuth, low": AZIMUTH_POSITION + 1,
-    "elevation, low": ELEVATION_POSITION + 1,
-}
-
-
-@pytest.mark.parametrize("address", POINTS.values(), ids=POINTS)
-async def test_no_word_of_any_point_ends_the_loop(address: int) -> None:
-    """One after the other, under a jog; each leaves a drive that is read and stopped."""
-    plant = far_plant(CONFIG, SUMMER_NOON, "-180 to 180")
-    await plant.start()
-    loop = plant.site.model.tracker("T1")
-    for turn, word in enumerate(SENTINELS):
-        plant.far.spoiled = {address: word}
-        with suppress(CommandRejected):
-            await plant.ask(Jog(f"press{turn}", Axis.AZIMUTH, 1, JogSpeed.FAST))
-        await plant.forward(seconds=1)
-        assert plant.site.alive, word
-        assert loop.broken is None, word
-        await plant.ask(Stop())
-        plant.far.spoiled = {}
-        await plant.forward(seconds=2)
-        assert loop.trouble is None
-        assert await loop.stop_drive()
-    await plant.close()
-
-
 HEADS = {
     "mark": COMMON - 2, "mark, second": COMMON - 1, "first model": COMMON, "its length": COMMON + 1,
     "model": CONTROLLER, "model length": CONTROLLER + 1,
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("word", SENTINELS, ids=hex)
+@pytest.mark.parametrize("word", amount((0, 0x7FFF, 0xFFFF), SENTINELS), ids=hex)
 @pytest.mark.parametrize("address", HEADS.values(), ids=HEADS)
 async def test_no_word_of_the_chain_of_models_ends_the_loop(address: int, word: int) -> None:
     plant = far_plant(CONFIG, SUMMER_NOON, "-180 to 180")
