@@ -1,21 +1,22 @@
 """A site with a made-up weather station: it moves simulated trackers, is marked, and leaves no trace."""
 
-from collections.abc import AsyncIterator
 from dataclasses import replace
+from datetime import timedelta
 
 import pytest
 
 from app.link.messages import AddTracker, ConfigureTracker
-from app.link.weather_orders import ReportWeather, SetMetStation, SetWeatherWindows, SimulateWeather
+from app.link.weather_orders import ReportWeather, SetMetStation, SimulateWeather
 from app.site.weather.weather import WeatherStation
 from app.tracker.commands.commands import CommandRejected
-from app.tracker.memory.memory import MetStation, SiteState
+from app.tracker.memory.memory import MetStation
 from app.tracker.settings.config import DriveConfig, DriveKind, TrackerConfig
 from app.tracker.state.snapshot import ActivityName, EventKind
 from app.tracker.weather.simulated_weather import Scenario, SimulatedStation
 from app.tracker.weather.weather import Quality, Weather, WeatherNow
-from app.tracker.weather.weather_windows import LIMITS, WeatherWindows
-from tests.site.plant import SUMMER_NOON, Begun, Plant, make_plant
+from app.tracker.weather.weather_windows import WeatherWindows
+from tests.site.plant import SUMMER_NOON, Begun, Plant
+from tests.site.test_weather import known
 from tests.site.test_weather_quality import at, quality, report
 
 REAL = DriveConfig(DriveKind.MODBUS_TCP, host="10.0.0.5")
@@ -24,43 +25,30 @@ STORM = SimulatedStation(Scenario.STORM, seed=3)
 
 async def weather(plant: Plant) -> WeatherNow:
     await plant.forward(seconds=0.6)
-    seen = plant.latest()
-    assert seen.weather is not None
-    return seen.weather
+    return known(plant)
 
 
-async def track(plant: Plant) -> None:
-    await plant.track(until=lambda tracker: tracker.in_position)
-
-
-async def test_weather_by_hand_is_shown_as_simulated_and_stows(plant: Plant) -> None:
-    await track(plant)
-    await plant.ask(SimulateWeather(SimulatedStation(wind_mps=25.0, snow_kg=1.0)))
-    seen = await weather(plant)
-    assert seen.simulated
-    assert seen.source == "SIMULATED station (manual)"
+async def test_made_up_weather_stows_and_says_so_and_what_it_did_ends_with_it(tracked: Plant) -> None:
+    await tracked.ask(SimulateWeather(SimulatedStation(wind_mps=25.0, snow_kg=1.0)))
+    seen = await weather(tracked)
+    assert (seen.simulated, seen.source) == (True, "SIMULATED station (manual)")
     assert seen.readings.snow_kg == 1.0
-    await plant.forward(seconds=2)
-    assert plant.tracker().activity is ActivityName.STOWING
-    wind = plant.tracker().sensors[0]
-    assert wind.text.endswith("The reading is SIMULATED.")
+    await tracked.until(lambda tracker: tracker.activity is ActivityName.STOWING)
+    protection = tracked.tracker().protection
+    assert protection is not None
+    assert protection.reason.message.endswith("m/s. The reading is SIMULATED.")
+    assert [reason.message for reason in tracked.tracker().waiting] == [protection.reason.message]
+    assert tracked.tracker().sensors[0].text.endswith("The reading is SIMULATED.")
 
-
-async def test_what_made_up_weather_did_ends_with_it_and_no_sensor_is_missed(plant: Plant) -> None:
-    await track(plant)
-    await plant.ask(SimulateWeather(SimulatedStation(wind_mps=25.0)))
-    await plant.until(lambda tracker: tracker.activity is ActivityName.STOWING)
-    await plant.ask(SimulateWeather(None))
-    await plant.until(lambda tracker: tracker.activity is ActivityName.TRACKING)
-    await plant.forward(seconds=62)
-    assert plant.tracker().activity is ActivityName.TRACKING
-    assert not any(sensor.known for sensor in plant.tracker().sensors)
-    assert plant.site.model.state.simulated_weather is None
-    told = [event.message for event in plant.happened(EventKind.WEATHER_STATION_SET)]
-    assert told == [
-        "The weather is now SIMULATED: manual.",
-        "The weather is no longer simulated.",
-    ]
+    await tracked.ask(SimulateWeather(None))
+    await tracked.until(lambda tracker: tracker.activity is ActivityName.TRACKING)
+    tracked.clock.advance(timedelta(seconds=61))
+    await tracked.forward(seconds=1)
+    assert tracked.tracker().activity is ActivityName.TRACKING
+    assert not any(sensor.known for sensor in tracked.tracker().sensors)
+    assert tracked.site.model.state.simulated_weather is None
+    told = [event.message for event in tracked.happened(EventKind.WEATHER_STATION_SET)]
+    assert told == ["The weather is now SIMULATED: manual.", "The weather is no longer simulated."]
 
 
 async def test_a_scenario_goes_on_after_a_restart(plant: Plant, begun: Begun) -> None:
@@ -105,25 +93,6 @@ async def test_real_trackers_and_made_up_weather_exclude_each_other(plant: Plant
     assert plant.site.model.state.simulated_weather is None
 
 
-@pytest.fixture
-async def windowed() -> AsyncIterator[Plant]:
-    made = make_plant(state=SiteState(weather_windows=WeatherWindows(wind_old_after_s=20.0)))
-    await made.start()
-    yield made
-    await made.close()
-
-
-async def test_every_quantity_grows_old_at_its_own_age_also_after_a_restart(windowed: Plant) -> None:
-    await windowed.ask(ReportWeather(Weather(wind_mps=12.0, snow_kg=1.0)))
-    await windowed.forward(seconds=25)
-    seen = await weather(windowed)
-    assert seen.usable == Weather(snow_kg=1.0)
-    await windowed.ask(SetWeatherWindows(WeatherWindows(wind_old_after_s=60.0)))
-    assert (await weather(windowed)).usable == Weather(wind_mps=12.0, snow_kg=1.0)
-    detail = await windowed.site.detail()
-    assert detail.site.weather_windows == WeatherWindows(wind_old_after_s=60.0)
-
-
 def test_gust_and_mean_are_taken_over_the_windows_of_the_site() -> None:
     station = WeatherStation(WeatherWindows(gust_s=10.0, mean_s=60.0))
     for second in range(121):
@@ -134,21 +103,3 @@ def test_gust_and_mean_are_taken_over_the_windows_of_the_site() -> None:
     report(station, 130, wind_mps=6.0)
     assert station.sensed(at(130)).wind.good == 9.0
     assert quality(station, 131) is Quality.GOOD
-
-
-@pytest.mark.parametrize("name", LIMITS)
-def test_windows_out_of_range_are_refused_with_a_sentence(name: str) -> None:
-    title, low, high = LIMITS[name]
-    for wrong in (low - 0.5, high + 1.0, float("inf")):
-        with pytest.raises(ValueError, match=f"{title} must lie between {low:g} and {high:g} s"):
-            WeatherWindows(**{name: wrong})
-
-
-async def test_a_stow_for_simulated_wind_says_that_it_is_simulated(plant: Plant) -> None:
-    await track(plant)
-    await plant.ask(SimulateWeather(SimulatedStation(wind_mps=25.0)))
-    await plant.until(lambda tracker: tracker.activity is ActivityName.STOWING)
-    protection = plant.tracker().protection
-    assert protection is not None
-    assert protection.reason.message.endswith("m/s. The reading is SIMULATED.")
-    assert [reason.message for reason in plant.tracker().waiting] == [protection.reason.message]

@@ -6,12 +6,9 @@ import pytest
 
 from app.link.weather_orders import ReportWeather
 from app.site.weather.weather import WeatherStation
-from app.tracker.commands.commands import Stow
 from app.tracker.protections.words import Protection
-from app.tracker.settings.protections import StowName
 from app.tracker.state.snapshot import ActivityName, EventKind
 from app.tracker.weather.weather import NOTHING_SENSED, Quality, Weather
-from app.tracker.weather.weather_windows import same_age
 from tests.site.plant import Plant
 
 BEGIN = datetime(2026, 6, 21, 6, tzinfo=UTC)
@@ -30,14 +27,10 @@ def quality(station: WeatherStation, seconds: float) -> Quality:
     return station.sensed(at(seconds)).wind.quality
 
 
-def test_before_the_first_report_nothing_is_sensed() -> None:
+def test_every_quantity_has_its_own_source_and_age() -> None:
     station = WeatherStation()
     assert station.sensed(at(0)) is NOTHING_SENSED
     assert station.now(at(0)) is None
-
-
-def test_every_quantity_has_its_own_source_and_age() -> None:
-    station = WeatherStation()
     report(station, 0, "mast", wind_mps=5.0)
     report(station, 100, "roof", irradiance_wm2=700.0)
     seen = station.now(at(110))
@@ -114,28 +107,13 @@ def test_what_is_no_number_or_out_of_range_is_a_condition_of_its_own() -> None:
     assert seen.light.good == 500.0
 
 
-def test_a_value_grows_stale() -> None:
-    station = WeatherStation(same_age(timedelta(seconds=30)))
-    report(station, 0, wind_mps=3.0)
-    assert quality(station, 30) is Quality.GOOD
-    assert quality(station, 30.1) is Quality.STALE
-
-
-async def test_a_reported_storm_stows_the_tracker_and_is_journalled(plant: Plant) -> None:
-    await plant.track(until=lambda seen: seen.in_position)
-    await plant.ask(ReportWeather(Weather(wind_mps=23.0)))
-    await plant.until(lambda seen: seen.activity is ActivityName.STOWED)
-    seen = plant.tracker()
+async def test_a_reported_storm_stows_the_tracker_and_is_journalled(tracked: Plant) -> None:
+    await tracked.ask(ReportWeather(Weather(wind_mps=23.0)))
+    await tracked.until(lambda seen: seen.activity is ActivityName.STOWED)
+    seen = tracked.tracker()
     assert seen.protection is not None
     assert seen.protection.protection is Protection.WIND_STOW
     assert seen.measured is not None
     assert seen.measured.elevation_deg == pytest.approx(90.0, abs=0.1)
-    assert plant.happened(EventKind.PROTECTION_BEGAN)
-    assert plant.site.model.tracker("T1").memory.protection is Protection.WIND_STOW
-
-
-async def test_a_stow_by_command_is_on_disk_with_the_memory(plant: Plant) -> None:
-    await plant.commission()
-    await plant.ask(Stow(StowName.SNOW))
-    await plant.until(lambda seen: seen.activity is ActivityName.STOWED)
-    assert plant.site.model.tracker("T1").state.memory.stow is StowName.SNOW
+    assert tracked.happened(EventKind.PROTECTION_BEGAN)
+    assert tracked.site.model.tracker("T1").memory.protection is Protection.WIND_STOW
