@@ -143,8 +143,16 @@ async def test_a_move_that_waits_to_be_judged_says_so_and_is_judged_once(plant: 
     assert told.message == "The elevation axis moves in the right direction."
 
 
-async def test_a_move_is_not_judged_under_other_settings_than_it_was_made_with(plant: Site1) -> None:
+async def test_a_move_is_not_judged_with_an_angle_that_cannot_be_nor_under_other_settings(
+    plant: Site1,
+) -> None:
+    with pytest.raises(CommandRejected, match="uses 10, 30, or 90 degrees"):
+        await plant.ask(RunScaleTest(Axis.ELEVATION, 20.0))
     turned = await plant.turn(RunScaleTest(Axis.AZIMUTH), Axis.AZIMUTH)
+    for measured_deg in (-5.0, 4000.0, float("nan")):
+        with pytest.raises(ValueError, match="Enter the degrees that the panel turned"):
+            await plant.ask(AnswerScale("T1", measured_deg))
+    assert plant.config == BUILT
     geared = replace(BUILT.drive, azimuth=AxisDrive(gear_ratio=1.05))
     await plant.ask(ConfigureTracker(replace(BUILT, drive=geared)))
     await plant.rest()
@@ -164,25 +172,9 @@ async def test_nothing_is_judged_while_the_axis_moves(plant: Site1) -> None:
     await plant.rest()
 
 
-@pytest.mark.parametrize("measured_deg", [0.0, -5.0, 4000.0, float("nan")])
-async def test_a_measured_angle_that_cannot_be_is_refused_with_a_sentence(
-    plant: Site1, measured_deg: float
-) -> None:
-    await plant.turn(RunScaleTest(Axis.ELEVATION), Axis.ELEVATION)
-    with pytest.raises(ValueError, match="Enter the degrees that the panel turned"):
-        await plant.ask(AnswerScale("T1", measured_deg))
-    assert plant.config == BUILT
-
-
-async def test_a_longer_way_is_measured_more_exactly(plant: Site1) -> None:
-    with pytest.raises(CommandRejected, match="uses 10, 30, or 90 degrees"):
-        await plant.ask(RunScaleTest(Axis.ELEVATION, 20.0))
-    turned = await plant.turn(RunScaleTest(Axis.ELEVATION, 90.0), Axis.ELEVATION)
-    await plant.ask(AnswerScale("T1", turned + 0.1))
-    assert (await plant.proof(ProofKind.SCALE, Axis.ELEVATION)).status is StepStatus.DONE
-
-
 async def test_another_direction_loses_the_zero_and_can_be_undone(plant: Site1) -> None:
+    with pytest.raises(CommandRejected, match="have not been changed"):
+        await plant.ask(RestoreDrive("T1"))
     await plant.ask(SetHome())
     await plant.rest()
     assert plant.tracker().homed
@@ -196,11 +188,6 @@ async def test_another_direction_loses_the_zero_and_can_be_undone(plant: Site1) 
     assert plant.memory.former_drive is not None
     assert plant.memory.former_drive.azimuth.inverted
     assert not plant.tracker().homed
-
-
-async def test_nothing_is_undone_where_nothing_was_changed(plant: Site1) -> None:
-    with pytest.raises(CommandRejected, match="have not been changed"):
-        await plant.ask(RestoreDrive("T1"))
 
 
 async def test_limits_are_taken_where_the_axis_stands(plant: Site1) -> None:
@@ -237,6 +224,12 @@ async def test_what_a_later_change_made_untrue_is_to_be_confirmed_and_true_again
     ]
     for which in proven:
         assert (await plant.proof(*which)).status is StepStatus.DONE, which
+    drive = plant.config.drive
+    geared = replace(drive, elevation=AxisDrive(gear_ratio=1.5), azimuth=AxisDrive(inverted=True))
+    await plant.ask(ConfigureTracker(replace(plant.config, drive=geared)))
+    assert (await plant.proof(*proven[0])).status is StepStatus.DONE
+    assert (await plant.proof(*proven[1])).status is StepStatus.TO_BE_CONFIRMED
+    await plant.ask(RestoreDrive("T1"))
     other = replace(plant.config, drive=replace(plant.config.drive, unit=7))
     await plant.ask(ConfigureTracker(other))
     for which in proven:
@@ -248,24 +241,12 @@ async def test_what_a_later_change_made_untrue_is_to_be_confirmed_and_true_again
         assert (await plant.proof(*which)).status is StepStatus.DONE, which
 
 
-async def test_another_gear_leaves_the_direction_proven_and_the_other_axis_alone(plant: Site1) -> None:
-    await plant.prove(Axis.ELEVATION)
-    drive = plant.config.drive
-    geared = replace(drive, elevation=AxisDrive(gear_ratio=1.5), azimuth=AxisDrive(inverted=True))
-    await plant.ask(ConfigureTracker(replace(plant.config, drive=geared)))
-    assert (await plant.proof(ProofKind.DIRECTION, Axis.ELEVATION)).status is StepStatus.DONE
-    assert (await plant.proof(ProofKind.SCALE, Axis.ELEVATION)).status is StepStatus.TO_BE_CONFIRMED
-
-
 async def test_other_speeds_and_another_zero_make_tests_and_limits_to_be_confirmed(plant: Site1) -> None:
     await plant.ask(SetHome())
     await plant.rest()
-    for degrees, end in ((-5.0, AxisEnd.LOWER), (5.0, AxisEnd.UPPER)):
-        await plant.ask(Step(Axis.ELEVATION, degrees))
+    for to_deg, end in ((0.0, AxisEnd.LOWER), (5.0, AxisEnd.UPPER)):
+        await plant.ask(Move(Orientation(0.0, to_deg)))
         await plant.rest()
-        if end is AxisEnd.UPPER:
-            await plant.ask(Step(Axis.ELEVATION, degrees))
-            await plant.rest()
         await plant.ask(SetSoftLimit("T1", Axis.ELEVATION, end))
         await plant.forward(seconds=0.5)
     await plant.ask(RunStopTest(Axis.AZIMUTH, StopSpeed.RATED))

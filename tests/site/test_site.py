@@ -24,8 +24,10 @@ from app.link.messages import (
     TakeSighting,
     UnknownTracker,
 )
+from app.link.place_orders import SetHorizon
 from app.site.clock.timekeeping import Timekeeper
 from app.site.weather.sky import Sky
+from app.sun.horizon import Horizon
 from app.sun.position import Algorithm, Location
 from app.tracker.commands.commands import (
     Command,
@@ -441,28 +443,27 @@ async def test_the_site_tells_of_a_clock_jump() -> None:
     await plant.close()
 
 
-async def test_three_sightings_correct_the_pointing(plant: Plant) -> None:
-    await plant.commission()
-    await plant.ask(SelectMode(Mode.DUAL))
+async def test_three_sightings_correct_the_pointing(ready: Plant) -> None:
+    await ready.ask(SelectMode(Mode.DUAL))
     for _ in range(3):
-        seen = await plant.ask(RenameSite("At noon"))
+        seen = ready.latest()
         assert seen.sun is not None
         sun = Orientation(seen.sun.azimuth_deg + 1.0, seen.sun.apparent_elevation_deg - 0.5)
-        await plant.ask(Move(sun))
-        await plant.until(lambda shown: shown.in_position and shown.activity is ActivityName.HOLDING)
-        await plant.ask(TakeSighting("T1"))
-        plant.clock.advance(timedelta(hours=2, minutes=20))
-        await plant.forward(seconds=1)
-    taken = plant.site.model.tracker("T1").memory.sightings
+        await ready.ask(Move(sun))
+        await ready.until(lambda shown: shown.in_position and shown.activity is ActivityName.HOLDING)
+        await ready.ask(TakeSighting("T1"))
+        ready.clock.advance(timedelta(hours=2, minutes=20))
+        await ready.forward(seconds=1)
+    taken = ready.site.model.tracker("T1").memory.sightings
     assert len(taken) == 3
 
-    await plant.ask(ApplySightings("T1", taken))
-    pointing = plant.site.model.tracker("T1").memory.pointing
+    await ready.ask(ApplySightings("T1", taken))
+    pointing = ready.site.model.tracker("T1").memory.pointing
     assert pointing.azimuth_offset_deg == pytest.approx(1.0, abs=0.3)
     assert pointing.residual_deg is not None
 
-    await plant.ask(ApplySightings("T1", ()))
-    assert plant.site.model.tracker("T1").memory.pointing.azimuth_offset_deg == 0.0
+    await ready.ask(ApplySightings("T1", ()))
+    assert ready.site.model.tracker("T1").memory.pointing.azimuth_offset_deg == 0.0
 
 
 async def test_a_sighting_needs_sun_and_zero(plant: Plant) -> None:
@@ -549,3 +550,20 @@ async def test_a_site_whose_ticker_died_is_not_alive(plant: Plant) -> None:
     await plant.forward(seconds=1)
 
     assert not plant.site.alive
+
+
+async def test_the_site_tells_that_the_sun_is_behind_the_entered_horizon(ready: Plant) -> None:
+    sun = ready.latest().sun
+    assert sun is not None
+    assert sun.apparent_elevation_deg > 5.0
+    assert not ready.latest().sun_behind_horizon
+
+    wall = Horizon(((0.0, sun.apparent_elevation_deg + 2.0),))
+    await ready.ask(SetHorizon(wall))
+    assert ready.latest().sun_behind_horizon
+    assert ready.site.model.state.horizon == wall
+    (event,) = ready.happened(EventKind.HORIZON_SET)
+    assert event.message == "The horizon was set: 1 point."
+
+    await ready.ask(SetHorizon(Horizon(((0.0, 1.0),))))
+    assert not ready.latest().sun_behind_horizon
