@@ -1,8 +1,6 @@
 """What is written behind the loop: together, in order, and before what is waited for."""
 
-from collections.abc import Iterator
 from datetime import timedelta
-from pathlib import Path
 
 import pytest
 
@@ -11,9 +9,8 @@ from app.link.messages import StopAll
 from app.link.weather_orders import ReportWeather
 from app.site.recording.gathering import EVERY, LONGEST_WAY_S, LOOKED_EVERY_S, GiveWay, Waiting
 from app.site.recording.write_queue import Ledger
-from app.store.engine import open_writer
-from app.store.migrations import upgrade
 from app.store.store import JournalFilter, StoreFailed, Writer
+from app.store.writer import DatabaseWriter
 from app.tracker.protections.words import Protection
 from app.tracker.state.snapshot import ActivityName, Event, EventKind
 from app.tracker.weather.weather import Weather
@@ -22,18 +19,14 @@ from tests.site.plant import SUMMER_NOON, settle
 from tests.site.test_sample_batches import CountingWriter
 from tests.site.tracking_field import ONE_HZ, activities, field_of
 
-FIELD = amount(120, 500)
+FIELD = amount(50, 500)
 STORM = ReportWeather(Weather(wind_mps=28.0))
 MOST_TRANSACTIONS = 8
 
 
 @pytest.fixture
-def writer(tmp_path: Path) -> Iterator[CountingWriter]:
-    url = f"sqlite:///{tmp_path / 'heliopanel.db'}"
-    upgrade(url)
-    opened = open_writer(url)
-    yield CountingWriter(opened)
-    opened.close()
+def writer(store: DatabaseWriter) -> CountingWriter:
+    return CountingWriter(store)
 
 
 @pytest.fixture

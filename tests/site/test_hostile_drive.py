@@ -8,16 +8,16 @@ from typing import Any
 import pytest
 
 from app.drives.drive import Drive
-from app.tracker.commands.commands import SelectMode, Stop, Track
-from app.tracker.state.snapshot import ActivityName
-from app.tracker.values.mode import Mode
+from app.tracker.commands.commands import Stop, Track
 from app.tracker.values.motion import Feedback, LightPair, LightReading
+from tests.amount import amount
 from tests.fault_result import BY_ITSELF, FaultResult
-from tests.site.plant import Plant, make_plant
+from tests.site.plant import Begun, Plant
+from tests.site.tracking_field import homed
 from tests.site.wrapped_drive import WrappedDrive
 
-NUMBERS = (nan, inf, -inf, 1e308, -1e308, 1e20, -1e7)
-COUNTS = (-1, 2**31, 2**63, 2**70)
+NUMBERS = amount((nan, -inf, 1e308, -1e7), (nan, inf, -inf, 1e308, -1e308, 1e20, -1e7))
+COUNTS = amount((-1, 2**70), (-1, 2**31, 2**63, 2**70))
 REFUSED = "The drive reports a number that is impossible."
 Change = Callable[[Feedback], Feedback]
 
@@ -65,17 +65,6 @@ def lying(drive: Drive) -> LyingDrive:
     return LyingDrive(drive)
 
 
-async def begun(tracks: bool) -> Plant:
-    plant = make_plant(wrap=lying)
-    await plant.start()
-    await plant.commission()
-    await plant.ask(SelectMode(Mode.DUAL))
-    if tracks:
-        await plant.ask(Track())
-    await plant.forward(seconds=0.5)
-    return plant
-
-
 async def report(plant: Plant, change: Change, refused: bool, name: str) -> None:
     """Have the drive report a number, stop, and report well again; the controller goes on all the while."""
     drive = plant.drives["T1"]
@@ -98,18 +87,20 @@ def notices(plant: Plant) -> list[str]:
 
 @pytest.mark.fault(98)
 @pytest.mark.parametrize("tracks", [False, True], ids=["at rest", "tracking"])
-async def test_no_number_of_a_drive_ends_the_controller(tracks: bool, fault: FaultResult) -> None:
+async def test_no_number_of_a_drive_ends_the_controller(
+    tracks: bool, fault: FaultResult, begun: Begun
+) -> None:
     """One controller meets what is impossible, one after the other; a code that is odd may be a fault."""
-    plant = await begun(tracks)
+    plant = await begun(homed(tracks=tracks, wrap=lying))
+    await plant.forward(seconds=0.5)
     for name, change in IMPOSSIBLE.items():
         await report(plant, change, True, name)
-        await plant.until(lambda seen: seen.activity is ActivityName.HOLDING)
         if tracks:
             await plant.ask(Track())
             await plant.forward(seconds=0.3)
-    await plant.close()
     for name, change in ODD.items():
-        plant = await begun(tracks)
+        plant = await begun(homed(tracks=tracks, wrap=lying))
+        await plant.forward(seconds=0.5)
         await report(plant, change, False, name)
         await plant.close()
     fault.shows(REFUSED)

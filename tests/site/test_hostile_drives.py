@@ -21,11 +21,15 @@ from app.tracker.commands.commands import CommandRejected, Jog, Stop
 from app.tracker.memory.memory import SiteState, TrackerMemory, TrackerState
 from app.tracker.settings.axes import Axis, JogSpeed
 from app.tracker.settings.config import AxisDrive, TrackerConfig
+from tests.amount import amount
 from tests.drives.direct_link import DIALECTS, DirectLink
 from tests.site.plant import SUMMER_NOON, Plant
 
 GEAR_RATIO = 36.0
-SENTINELS = (0x0000_0000, 0x0000_0001, 0x7FFF_FFFF, 0x8000_0000, 0x8000_0001, 0x7FC0_0000, 0xFFFF_FFFF)
+SENTINELS = amount(
+    (0x0000_0000, 0x8000_0000, 0x7FC0_0000),
+    (0x0000_0000, 0x0000_0001, 0x7FFF_FFFF, 0x8000_0000, 0x8000_0001, 0x7FC0_0000, 0xFFFF_FFFF),
+)
 """Ends of the integers, and what a float that is no number looks like."""
 PROFILES = ("kinco-cia402", "leadshine-rs", "oriental-az", "delta-dvp", "simulated-plc")
 REGISTERS = [

@@ -16,7 +16,8 @@ from app.tracker.state.snapshot import ActivityName, SiteSnapshot
 from app.tracker.weather.weather import RANGES, Weather
 from tests.fault_result import BY_ITSELF, FaultResult
 from tests.golden.table import rows
-from tests.site.plant import Plant, make_plant
+from tests.site.plant import Begun, Plant, make_plant
+from tests.site.tracking_field import homed
 
 WORDS = ("temperature", "humidity", "pressure", "wind", "direction", "rain", "snow")
 UNKNOWN, SENTINELS = 0x8000, (0, 1, 0x7FFF, 0x8001, 0xFFFE, 0xFFFF)
@@ -50,33 +51,32 @@ def kept(value: object, at: str = "2027-06-21T09:00:00Z") -> dict[str, object]:
 
 
 def plant_of(words: list[int], folder: Path, state: SiteState | None = None) -> Plant:
-    options = SiteOptions(make_station=lambda _: Station(words), weather_file=folder / "weather")
-    return make_plant(options=options, state=state)
+    return make_plant(options=options_of(words, folder), state=state)
 
 
-async def first_report(words: list[int], folder: Path) -> SiteSnapshot:
-    """Return the site after the first report, seen to be alive and to start again with what it kept."""
-    plant = plant_of(words, folder)
+def options_of(words: list[int], folder: Path) -> SiteOptions:
+    return SiteOptions(make_station=lambda _: Station(words), weather_file=folder / "weather")
+
+
+async def first_report(
+    words: list[int], folder: Path, state: SiteState | None = None
+) -> tuple[SiteSnapshot, SiteState]:
+    """Return what a site tells and stores after the first report, which left it alive."""
+    plant = plant_of(words, folder, state)
     await plant.start()
-    await plant.commission()
     await plant.ask(SetMetStation(HOST))
-    await plant.forward(seconds=3)
-    assert plant.site.alive
+    await plant.forward(seconds=1.5)
+    assert plant.site.alive, words
     told = await plant.ask(Stop())
-    state = plant.site.model.state
     await plant.close()
-    again = plant_of(words, folder, state)
-    await again.start()
-    await again.forward(seconds=3)
-    assert again.site.alive
-    await again.ask(Stop())
-    await again.close()
-    return told
+    return told, plant.site.model.state
 
 
 @pytest.mark.parametrize("row", ROWS, ids=[row["what"] for row in ROWS])
 async def test_what_is_possible_is_taken_and_the_rest_is_marked(row: dict[str, str], tmp_path: Path) -> None:
-    seen = await first_report([int(row[name]) for name in WORDS], tmp_path)
+    words = [int(row[name]) for name in WORDS]
+    seen, state = await first_report(words, tmp_path)
+    await first_report(words, tmp_path, state)
     readings = {
         name: float(value) for name, _, value in (one.partition("=") for one in row["readings"].split())
     }
@@ -96,28 +96,20 @@ async def test_no_word_of_any_point_ends_the_controller(place: int, tmp_path: Pa
     """Each is the first report of a site, which starts again with what the last one kept."""
     state = None
     for word in sorted({*SENTINELS, *ends(*POINTS[place])}):
-        plant = plant_of([*GOOD[:place], word, *GOOD[place + 1 :]], tmp_path, state)
-        await plant.start()
-        await plant.ask(SetMetStation(HOST))
-        await plant.forward(seconds=2)
-        assert plant.site.alive, word
-        await plant.ask(Stop())
-        state = plant.site.model.state
-        await plant.close()
+        _, state = await first_report([*GOOD[:place], word, *GOOD[place + 1 :]], tmp_path, state)
 
 
 @pytest.mark.fault(98)
 async def test_a_tracker_goes_on_tracking_beside_an_impossible_pressure(
-    tmp_path: Path, fault: FaultResult
+    tmp_path: Path, fault: FaultResult, begun: Begun
 ) -> None:
-    plant = plant_of([215, 45, 0, 4, 210, UNKNOWN, UNKNOWN], tmp_path)
-    await plant.start()
-    await plant.track()
+    plant = await begun(
+        homed(tracks=True, options=options_of([215, 45, 0, 4, 210, UNKNOWN, UNKNOWN], tmp_path))
+    )
     await plant.ask(SetMetStation(HOST))
-    await plant.forward(seconds=5)
+    await plant.forward(seconds=3)
     assert plant.site.alive
     assert plant.tracker().activity is ActivityName.TRACKING
-    await plant.close()
     fault.prevented("a value that is impossible is marked, and nothing else follows")
     fault.shows_nothing("the value's quality is *impossible*, and there is no number")
     fault.recovers(BY_ITSELF)
@@ -139,17 +131,15 @@ BAD_KEPT = {
 @pytest.mark.fault(98)
 @pytest.mark.parametrize("changes", BAD_KEPT.values(), ids=BAD_KEPT)
 async def test_kept_weather_that_is_impossible_is_set_aside(
-    changes: dict[str, object], tmp_path: Path, fault: FaultResult
+    changes: dict[str, object], tmp_path: Path, fault: FaultResult, begun: Begun
 ) -> None:
     whole = {"reported_at": "2027-06-21T09:00:00Z", "source": "mast", **changes}
     Twins(tmp_path / "weather", ROOM).write(0, json.dumps(whole).encode())
-    plant = plant_of(GOOD, tmp_path)
-    await plant.start()
-    await plant.forward(seconds=2)
+    plant = await begun(plant_of(GOOD, tmp_path))
+    await plant.forward(seconds=1)
     assert plant.site.alive
     weather = (await plant.ask(Stop())).weather
     assert weather is None or weather.readings == Weather() or weather.readings.wind_mps == 4.0
-    await plant.close()
     fault.prevented("what is kept is judged again when it is read")
     fault.shows_nothing("the log names what was set aside")
     fault.recovers(BY_ITSELF)

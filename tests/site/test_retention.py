@@ -1,10 +1,9 @@
 """What is kept gets old by the time that the machine runs: a clock that was ahead removes nothing."""
 
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from datetime import datetime, timedelta
-from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -15,8 +14,6 @@ from app.link.messages import SetClock
 from app.site.retention import MOST_A_DAY, Limits, counted, moved
 from app.site.site import SiteOptions
 from app.site.startup import begin
-from app.store.engine import open_writer
-from app.store.migrations import upgrade
 from app.store.store import JournalFilter, Writer
 from app.store.writer import DatabaseWriter
 from app.tracker.memory.memory import AgesFrom, ClockSetting
@@ -29,21 +26,19 @@ from tests.site.plant import SAMSUN, SUMMER_NOON, Plant, make_plant, settle
 
 DAY = timedelta(days=1)
 LIMITS = Limits(400 * DAY, 1825 * DAY, 500)
-AGES = (*range(1825, 0, -50), 0)
+AGES = (1825, 1775, 425, 375, 0)
 
 
 @pytest.fixture
-def store(tmp_path: Path) -> Iterator[DatabaseWriter]:
-    url = f"sqlite:///{tmp_path / 'heliopanel.db'}"
-    upgrade(url)
-    found = open_writer(url)
-    begin(found, SUMMER_NOON, unclean_since=None)
-    for days in AGES:
-        at = SUMMER_NOON - days * DAY
-        found.append_events((Event(at, EventKind.STOPPED, None, f"{days} days ago"),))
-        found.save_recording(day(f"{days}", at), [])
-    yield found
-    found.close()
+def store(store: DatabaseWriter) -> DatabaseWriter:
+    """A store with an entry and a recorded day of every age."""
+    begin(store, SUMMER_NOON, unclean_since=None)
+    with store.together():
+        for days in AGES:
+            at = SUMMER_NOON - days * DAY
+            store.append_events((Event(at, EventKind.STOPPED, None, f"{days} days ago"),))
+            store.save_recording(day(f"{days}", at), [])
+    return store
 
 
 def day(recording_id: str, at: datetime) -> RecordingInfo:
@@ -81,7 +76,7 @@ def kept(store: Writer) -> tuple[set[str], set[str]]:
 
 
 @pytest.mark.fault(101)
-@pytest.mark.parametrize("ahead_days", [405, 1900, 3650, 26_000])
+@pytest.mark.parametrize("ahead_days", [405, 26_000])
 async def test_a_start_with_the_clock_ahead_removes_nothing(
     store: DatabaseWriter, ahead_days: int, fault: FaultResult
 ) -> None:
@@ -164,7 +159,7 @@ async def test_on_a_clock_that_is_not_trusted_nothing_gets_older(store: Database
     before = kept(store)
     async with life(store, at) as plant:
         assert plant.site.model.timekeeper.reasons()
-        await run(plant, 3 * DAY)
+        await run(plant, DAY + timedelta(hours=1))
         ages = plant.site.model.state.ages_from
     assert kept(store) == before
     assert ages is not None

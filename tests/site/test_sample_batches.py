@@ -1,6 +1,6 @@
 """Samples go to the store all at once, come back where it took none, and are few bytes on the disk."""
 
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import timedelta
@@ -18,15 +18,14 @@ from app.site.recording.sample_batches import MOST_WAITING, SampleBatches
 from app.site.recording.write_queue import Ledger
 from app.site.site import SiteOptions
 from app.site.startup import begin
-from app.store.engine import open_writer
-from app.store.migrations import upgrade
 from app.store.store import StoreFailed, Writer
 from app.tracker.memory.recording import COLUMNS, Frames, RecordingKind
 from app.tracker.state.snapshot import EventKind
 from app.tracker.weather.weather import Weather
 from tests.amount import amount
 from tests.fault_result import FaultResult
-from tests.site.plant import SUMMER_NOON, Begun, Plant, make_plant
+from tests.site.plant import SUMMER_NOON, Begun, Plant
+from tests.site.tracking_field import ONE_HZ, homed
 from tests.store.tracked_day import MIDNIGHT, day_info, tracked_day
 
 T = TypeVar("T")
@@ -73,15 +72,6 @@ class CountingWriter:
         except StoreFailed as failure:
             self.failures.append(failure)
         return True
-
-
-@pytest.fixture
-def store(tmp_path: Path) -> Iterator[Writer]:
-    url = f"sqlite:///{tmp_path / 'heliopanel.db'}"
-    upgrade(url)
-    opened = open_writer(url)
-    yield opened
-    opened.close()
 
 
 @pytest.fixture
@@ -194,8 +184,8 @@ def test_samples_of_a_recording_that_does_not_run_do_not_hold_up_the_others(
 def test_hours_of_samples_are_few_bytes(
     batches: SampleBatches, writer: CountingWriter, trackers: int, fault: FaultResult
 ) -> None:
-    hours = amount(2, 6) if trackers == 1 else amount(1, 2)
-    day = tracked_day(hours * 3600, begin_s=6 * 3600.0).values
+    minutes = amount(60, 360) if trackers == 1 else amount(20, 120)
+    day = tracked_day(minutes * 60, begin_s=6 * 3600.0).values
     names = [f"day-{number}" for number in range(trackers)]
     for name in names:
         batches.begin(day_info(name))
@@ -206,37 +196,36 @@ def test_hours_of_samples_are_few_bytes(
         batches.add(dict.fromkeys(names, part))
         batches.hand_over(MIDNIGHT)
     pages_kib = (written_bytes() - before) / 1024.0
-    a_minute = (pages_kib + (writer.transactions - began) * BESIDE_KIB) / (hours * 60.0)
-    assert len(writer.writer.frames("day-0")) == hours * 3600
-    assert writer.transactions - began == hours * 12
+    a_minute = (pages_kib + (writer.transactions - began) * BESIDE_KIB) / minutes
+    assert len(writer.writer.frames("day-0")) == minutes * 60
+    assert writer.transactions - began == minutes // 5
     print(f"{trackers} trackers: {a_minute:.1f} KiB a minute")
     assert a_minute <= MOST_KIB_A_MINUTE[trackers]
     fault.prevented("samples of hours are few bytes")
 
 
 @pytest.fixture
-async def tracking(store: Writer) -> AsyncIterator[tuple[Plant, CountingWriter]]:
-    counting = CountingWriter(store)
-    beginning = begin(store, SUMMER_NOON, unclean_since=None)
-    plant = make_plant(writer=counting, state=beginning.site, trackers=beginning.trackers)
-    await plant.start()
-    await plant.track(until=lambda seen: seen.in_position)
-    yield plant, counting
-    await plant.close()
+async def plant(store: Writer, writer: CountingWriter, begun: Begun) -> Plant:
+    """A site that is stored, whose tracker tracks."""
+    made = homed(tracks=True, writer=writer, options=SiteOptions(period=ONE_HZ))
+    store.save_site(made.site.model.state)
+    store.save_tracker(made.site.model.tracker("T1").state)
+    await begun(made)
+    await made.forward(seconds=2.0)
+    return made
 
 
 @pytest.mark.fault(85)
 async def test_a_site_that_tracks_writes_once_in_the_set_time(
-    tracking: tuple[Plant, CountingWriter], fault: FaultResult
+    plant: Plant, writer: CountingWriter, fault: FaultResult
 ) -> None:
-    plant, counting = tracking
     await plant.ask(ReportWeather(Weather(wind_mps=3.0)), None)
     await plant.forward(seconds=60.0)
-    before, began = written_bytes(), counting.transactions
+    before, began = written_bytes(), writer.transactions
     for second in range(amount(310, 600)):
         await plant.ask(ReportWeather(Weather(wind_mps=3.0 + second % 10 / 10)), None)
         await plant.forward(seconds=1.0)
-    transactions = counting.transactions - began
+    transactions = writer.transactions - began
     a_minute = ((written_bytes() - before) / 1024.0 + transactions * BESIDE_KIB) / amount(5.2, 10.0)
     samples = amount(1, 2)
     assert samples <= transactions <= samples + 1, "and at most one look at the audit's last entry"
@@ -281,32 +270,29 @@ async def test_a_disk_that_hangs_costs_the_oldest_samples_and_no_more_memory(
     store: Writer, monkeypatch: pytest.MonkeyPatch, begun: Begun
 ) -> None:
     monkeypatch.setattr("app.site.recording.recorder.MOST_WAITING", 60)
-    writer, beginning = HungWriter(store), begin(store, SUMMER_NOON, unclean_since=None)
-    plant = await begun(writer=writer, state=beginning.site, trackers=beginning.trackers)
-    await plant.commission()
+    writer = HungWriter(store)
+    plant = await begun(homed(writer=writer))
+    await plant.forward(seconds=2.0)
     recorder = plant.site.model.recorder
     writer.hangs = True
     recorder.flush(plant.clock.now(), at_once=True)
     under_way = recorder.samples_waiting
-    await plant.forward(seconds=150.0)
+    await plant.forward(seconds=75.0)
     assert recorder.samples_waiting == under_way + 60
 
 
-async def test_while_recording_is_suspended_no_sample_is_kept(
-    tracking: tuple[Plant, CountingWriter],
-) -> None:
-    plant, counting = tracking
+async def test_while_recording_is_suspended_no_sample_is_kept(plant: Plant, writer: CountingWriter) -> None:
     recorder = plant.site.model.recorder
     recorder.flush(plant.clock.now(), at_once=True)
-    (day,) = counting.writer.recordings(kind=RecordingKind.DAY)
+    (day,) = writer.writer.recordings(kind=RecordingKind.DAY)
     kept = day.sample_count
     for why in ("disk", "load"):
         recorder.suspend(why)
     recorder.resume("load")
     await plant.forward(seconds=10.0)
     recorder.flush(plant.clock.now(), at_once=True)
-    assert len(counting.writer.frames(day.recording_id)) == kept
+    assert len(writer.writer.frames(day.recording_id)) == kept
     recorder.resume("disk")
     await plant.forward(seconds=10.0)
     recorder.flush(plant.clock.now(), at_once=True)
-    assert len(counting.writer.frames(day.recording_id)) == pytest.approx(kept + 10, abs=2)
+    assert len(writer.writer.frames(day.recording_id)) == pytest.approx(kept + 10, abs=2)
