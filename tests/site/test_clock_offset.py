@@ -15,7 +15,8 @@ from app.tracker.memory.memory import ClockSetting
 from app.tracker.settings.config import Orientation
 from app.tracker.state.snapshot import ActivityName
 from tests.fault_result import VIRTUAL, FaultResult
-from tests.site.plant import Plant, make_plant
+from tests.site.plant import Plant
+from tests.site.tracking_field import homed
 
 Record = Callable[[str, object], None]
 CREEP = timedelta(seconds=1)
@@ -40,23 +41,18 @@ def wall() -> WallClock:
 
 
 async def tracking(wall: WallClock) -> Plant:
-    plant = make_plant()
+    plant = homed(tracks=True)
     plant.site.model.timekeeper = Timekeeper(
-        plant.clock, ClockSetting(), drift=wall.drift, kernel=lambda: wall.kernel
+        plant.clock, ClockSetting("system"), drift=wall.drift, kernel=lambda: wall.kernel
     )
     await plant.start()
-    await plant.track(until=lambda seen: seen.activity is ActivityName.TRACKING)
+    await plant.until(lambda seen: seen.activity is ActivityName.TRACKING)
     return plant
-
-
-def alarms(plant: Plant) -> dict[str, str]:
-    seen = plant.latest()
-    return {alarm.code: alarm.message for alarm in seen.alarms}
 
 
 async def raised_at(plant: Plant, wall: WallClock, code: str) -> timedelta:
     """Return how far the clock had crept when an alarm was raised."""
-    while code not in alarms(plant):
+    while code not in plant.alarms():
         assert wall.off < timedelta(minutes=7), f"{code} was not raised"
         await plant.forward(seconds=0.5)
     return wall.off
@@ -71,7 +67,7 @@ async def test_a_clock_that_creeps_is_told_from_30_s_on_and_stops_tracking_from_
     drifts_at = await raised_at(plant, wall, "clock_drifts")
     assert timedelta(seconds=30) < drifts_at < timedelta(seconds=34)
     fault.noticed((drifts_at - timedelta(seconds=30)) / CREEP * 0.5, VIRTUAL)
-    fault.shows(alarms(plant)["clock_drifts"])
+    fault.shows(plant.alarms()["clock_drifts"])
     fault.recovers("automatic: when the clock is set or an NTP server keeps it")
     assert plant.tracker().activity is ActivityName.TRACKING
     assert plant.tracker().tracking_on

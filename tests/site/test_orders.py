@@ -85,11 +85,6 @@ def test_everything_is_recorded_but_measurements_readings_and_signs_of_life() ->
     assert kinds_where(lambda spec: spec.held) == {"jog", "end_jog"}
 
 
-def test_what_is_undone_is_undone_by_an_order() -> None:
-    undoing = {one.spec.undone_by for one in KINDS.values()} - {None}
-    assert undoing <= set(KINDS.values())
-
-
 @pytest.mark.parametrize("door", list(DOORS), ids=lambda door: str(door.name))
 def test_an_order_comes_from_the_interfaces_that_its_spec_names_and_from_no_other(door: Interface) -> None:
     given = {name for place in DOORS[door] for name in _orders_in(APP / place, door)}

@@ -52,53 +52,49 @@ async def test_a_key_that_is_used_again_for_something_else_is_refused_and_nothin
     assert len(done) == 1
 
 
-MOTIONS = [Jog("p", Axis.AZIMUTH, 1), Step(Axis.AZIMUTH, 1.0), Park()]
-
-
 @pytest.mark.fault(97)
-@pytest.mark.parametrize("stop", [Stop(), StopAll()])
-@pytest.mark.parametrize("motion", MOTIONS)
+@pytest.mark.parametrize(
+    ("motion", "stop"),
+    [(Jog("p", Axis.AZIMUTH, 1), Stop()), (Step(Axis.AZIMUTH, 1.0), StopAll()), (Park(), Stop())],
+)
 async def test_a_motion_that_a_stop_overtook_is_not_begun(
-    plant: Plant, motion: Command, stop: Stop | StopAll
+    ready: Plant, motion: Command, stop: Stop | StopAll
 ) -> None:
-    await plant.commission()
-    await plant.ask(stop, given_s=100.0)
+    await ready.ask(stop, given_s=100.0)
     with pytest.raises(CommandRejected, match="Tracker 1 was stopped after this command was given"):
-        await plant.ask(motion, given_s=99.999)
-    assert plant.tracker().activity in {ActivityName.HOLDING, ActivityName.STOPPING}
-    await plant.ask(Stop(), given_s=50.0)
+        await ready.ask(motion, given_s=99.999)
+    assert ready.tracker().activity in {ActivityName.HOLDING, ActivityName.STOPPING}
+    await ready.ask(Stop(), given_s=50.0)
     with pytest.raises(CommandRejected, match="stopped after"):
-        await plant.ask(motion, given_s=99.999)
+        await ready.ask(motion, given_s=99.999)
 
 
-async def test_what_was_given_after_a_stop_or_moves_nothing_is_carried_out(plant: Plant) -> None:
-    await plant.commission()
-    await plant.ask(Stop(), given_s=100.0)
-    await plant.forward(seconds=2)
-    await plant.ask(EndJog("p"), given_s=99.0)
-    await plant.ask(Park(), given_s=100.001)
-    await plant.ask(Stop(), given_s=101.0)
-    await plant.ask(SetInhibit("ada", "works at the gear"), given_s=99.0)
-    assert plant.tracker().lock is not None
+async def test_what_was_given_after_a_stop_or_moves_nothing_is_carried_out(ready: Plant) -> None:
+    await ready.ask(Stop(), given_s=100.0)
+    await ready.forward(seconds=2)
+    await ready.ask(EndJog("p"), given_s=99.0)
+    await ready.ask(Park(), given_s=100.001)
+    await ready.ask(Stop(), given_s=101.0)
+    await ready.ask(SetInhibit("ada", "works at the gear"), given_s=99.0)
+    assert ready.tracker().lock is not None
 
 
 @pytest.mark.fault(97)
 async def test_an_order_that_waits_for_control_while_its_tracker_is_stopped_moves_nothing(
-    plant: Plant, fault: FaultResult
+    ready: Plant, fault: FaultResult
 ) -> None:
-    await plant.commission()
-    async with plant.site.model.control.lock("T1"):
-        waits = asyncio.create_task(plant.site.execute(Order(Park(), "technician", "T1")))
+    async with ready.site.model.control.lock("T1"):
+        waits = asyncio.create_task(ready.site.execute(Order(Park(), "technician", "T1")))
         await settle()
-        await plant.ask(Stop())
+        await ready.ask(Stop())
     with pytest.raises(CommandRejected) as refused:
         await waits
     (reason,) = refused.value.reasons
     assert reason.code == "stopped_since"
-    assert plant.tracker().activity in {ActivityName.HOLDING, ActivityName.STOPPING}
+    assert ready.tracker().activity in {ActivityName.HOLDING, ActivityName.STOPPING}
     fault.prevented("an order from before a stop is refused, however long it waited")
     fault.shows(reason.message)
-    await plant.forward(seconds=2)
-    await plant.ask(Park())
-    assert plant.tracker().activity is ActivityName.MOVING
+    await ready.forward(seconds=2)
+    await ready.ask(Park())
+    assert ready.tracker().activity is ActivityName.MOVING
     fault.recovers("the order is given again")

@@ -16,7 +16,8 @@ from app.tracker.settings.config import Orientation
 from app.tracker.state.snapshot import ActivityName, EventKind
 from app.tracker.values.motion import DriveCommand
 from tests.patience import PATIENCE_S
-from tests.site.plant import SAMSUN, Begun, Plant, make_plant, settle
+from tests.site.plant import SAMSUN, Begun, Plant, settle
+from tests.site.tracking_field import homed
 from tests.site.wrapped_drive import WrappedDrive, wrapped
 
 T = TypeVar("T")
@@ -24,9 +25,8 @@ FAR = Orientation(250.0, 80.0)
 
 
 async def on_its_way() -> Plant:
-    plant = make_plant(wrap=WrappedDrive)
+    plant = homed(wrap=WrappedDrive)
     await plant.start()
-    await plant.commission()
     await plant.ask(Move(FAR))
     await plant.forward(seconds=1)
     assert plant.site.model.tracker("T1").moving
@@ -78,9 +78,8 @@ async def test_a_stop_that_meets_a_programming_error_still_ends_the_motion() -> 
 
 
 async def tracking_and_broken() -> Plant:
-    plant = make_plant(wrap=WrappedDrive)
+    plant = homed(tracks=True, wrap=WrappedDrive)
     await plant.start()
-    await plant.track()
     await plant.forward(seconds=1)
     wrapped(plant, "T1").nonsense = True
     await plant.forward(seconds=1)
