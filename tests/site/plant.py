@@ -37,6 +37,7 @@ class Plant:
     drives: dict[str, Drive]
     events: list[Event] = field(default_factory=list)
     listening: asyncio.Task[None] | None = None
+    closed: bool = False
 
     async def start(self) -> None:
         self.listening = asyncio.create_task(self._listen())
@@ -45,10 +46,12 @@ class Plant:
         await settle()
 
     async def close(self) -> None:
+        if self.closed:
+            return
+        self.closed = True
+        await self.site.close()
         if self.listening is not None:
-            await self.site.close()
             await self.listening
-            self.listening = None
 
     async def ask(
         self, command: Command | SiteCommand, tracker_id: str | None = "T1", **more: object
