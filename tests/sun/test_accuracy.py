@@ -20,14 +20,14 @@ elevations = st.floats(-90.0, 90.0)
 
 @pytest.fixture(scope="module")
 def globe() -> Survey:
-    return survey(Question(samples=60_000))
+    return survey(Question(samples=30_000))
 
 
 @pytest.mark.parametrize("algorithm", MEASURED)
 def test_no_algorithm_is_farther_from_spa_than_its_table_says(algorithm: Algorithm, globe: Survey) -> None:
     found = next(error for error in globe.errors if error.algorithm is algorithm).spreads[Sight.TRUE]
     expected = PUBLISHED[algorithm]
-    assert globe.sun_up > 25_000
+    assert globe.sun_up > 12_000
     assert 0.85 * expected.max_deg <= found.max_deg <= 1.02 * expected.max_deg
     assert found.rms_deg == pytest.approx(expected.rms_deg, rel=0.04)
 
@@ -37,7 +37,7 @@ def test_every_algorithm_holds_its_error_in_both_hemispheres_to_the_poles(
     latitudes: tuple[float, float],
 ) -> None:
     beyond = {Algorithm.SPENCER_LAMM: MIDNIGHT_SUN_DEG} if max(latitudes, key=abs) in (-90.0, 90.0) else {}
-    for error in survey(Question(samples=20_000, latitudes=latitudes)).errors:
+    for error in survey(Question(samples=6_000, latitudes=latitudes)).errors:
         most_deg = beyond.get(error.algorithm, PUBLISHED[error.algorithm].max_deg)
         assert error.spreads[Sight.TRUE].max_deg <= 1.02 * most_deg
 
@@ -63,18 +63,6 @@ def test_a_site_where_the_sun_never_stands_high_has_no_error_there() -> None:
     heights = found.errors[0].over_elevation.max_deg
     assert np.isnan(heights[found.elevation_deg > 40.0]).all()
     assert not np.isnan(heights[found.elevation_deg < 20.0]).any()
-
-
-def test_the_same_question_has_the_same_answer() -> None:
-    asked = Question(SAMSUN, 2026, 2026, 1_000)
-    first, second = survey(asked), survey(asked)
-    assert first.sun_up == second.sun_up
-    assert [error.spreads for error in first.errors] == [error.spreads for error in second.errors]
-
-
-def test_spa_is_no_distance_from_itself() -> None:
-    found = survey(Question(SAMSUN, 2026, 2026, 1_000), [Algorithm.SPA])
-    assert found.errors[0].spreads[Sight.TRUE].max_deg == 0.0
 
 
 def test_the_table_has_a_line_for_every_algorithm(globe: Survey) -> None:

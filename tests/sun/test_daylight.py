@@ -33,7 +33,7 @@ def test_where_the_sun_does_not_rise_or_does_not_set_there_is_none() -> None:
         assert daylight(Algorithm.PSA, SVALBARD, utc(2026, month, 21), utc(2026, month, 22)) is None
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=20)
 @given(
     latitude_deg=st.floats(-66.0, 66.0),
     longitude_deg=st.floats(-180.0, 180.0),

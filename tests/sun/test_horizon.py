@@ -23,6 +23,7 @@ def test_it_hides_what_is_below_it_and_above_a_flat_one() -> None:
     assert not HILLS.hides(100.0, 12.1)
     assert not HILLS.hides(100.0, -0.1), "that has set"
     assert not FLAT.hides(100.0, 0.0)
+    assert FLAT.outline() == ()
 
 
 @given(azimuths, st.data())
@@ -50,8 +51,3 @@ def test_the_outline_meets_every_point_and_closes(places: list[int], data: st.Da
 def test_points_that_do_not_fit_are_refused(points: tuple[tuple[float, float], ...], sentence: str) -> None:
     with pytest.raises(ValueError, match=sentence):
         Horizon(points)
-
-
-def test_a_flat_horizon_has_no_outline() -> None:
-    assert FLAT.outline() == ()
-    assert FLAT.height_deg(12.0) == 0.0

@@ -42,54 +42,20 @@ def angle(row: GoldenRow) -> float:
 
 
 @cases
-def test_eq_1_julian_day(row: GoldenRow) -> None:
-    found = koblick.julian_day(row.at.year, row.at.month, row.at.day, row.hour)
-    assert found == pytest.approx(row.values["JD"], abs=NEAR)
-
-
-@cases
-def test_eq_2_day_number(row: GoldenRow) -> None:
-    assert day(row) == pytest.approx(row.values["d"], abs=NEAR)
-
-
-@cases
-def test_eqs_3_5_and_6_mean_longitude(row: GoldenRow) -> None:
-    assert wrap360(mean_longitude(row)) == pytest.approx(row.values["L_mod360"], abs=NEAR)
-
-
-@cases
-def test_eq_7_obliquity(row: GoldenRow) -> None:
-    assert koblick.obliquity(day(row)) == pytest.approx(row.values["obliquity"], abs=NEAR)
-
-
-@cases
-def test_eqs_4_and_8_to_12_distance(row: GoldenRow) -> None:
-    assert orbit(row)[0] == pytest.approx(row.values["r"], abs=NEAR)
-
-
-@cases
-def test_eqs_13_to_22_right_ascension_and_declination(row: GoldenRow) -> None:
+def test_every_step_is_that_of_the_table(row: GoldenRow) -> None:
     right_ascension, declination = equatorial(row)
-    assert wrap360(right_ascension) == pytest.approx(row.values["RA"], abs=NEAR)
-    assert declination == pytest.approx(row.values["dec"], abs=NEAR)
-
-
-@cases
-def test_eq_24_greenwich_sidereal_time(row: GoldenRow) -> None:
-    found = koblick.greenwich_sidereal_time(mean_longitude(row), SCALAR)
-    assert found == pytest.approx(row.values["GMST0_h"], abs=NEAR)
-
-
-@cases
-def test_eqs_23_25_and_26_hour_angle(row: GoldenRow) -> None:
-    assert wrap180(angle(row)) == pytest.approx(row.values["HA_wrap180"], abs=NEAR)
-
-
-@cases
-def test_eqs_27_to_34_azimuth_and_elevation(row: GoldenRow) -> None:
-    azimuth, elevation = koblick.horizontal(angle(row), equatorial(row)[1], row.latitude_deg, SCALAR)
-    assert wrap360(azimuth) == pytest.approx(row.values["Az"], abs=NEAR)
-    assert elevation == pytest.approx(row.values["El"], abs=NEAR)
+    found = {
+        "JD": koblick.julian_day(row.at.year, row.at.month, row.at.day, row.hour),
+        "d": day(row),
+        "L_mod360": wrap360(mean_longitude(row)),
+        "obliquity": koblick.obliquity(day(row)),
+        "r": orbit(row)[0],
+        "RA": wrap360(right_ascension),
+        "dec": declination,
+        "GMST0_h": koblick.greenwich_sidereal_time(mean_longitude(row), SCALAR),
+        "HA_wrap180": wrap180(angle(row)),
+    }
+    assert found == pytest.approx({name: row.values[name] for name in found}, abs=NEAR)
 
 
 @cases
@@ -99,9 +65,9 @@ def test_the_whole_chain(row: GoldenRow) -> None:
     assert elevation == pytest.approx(row.values["El"], abs=NEAR)
 
 
-def test_the_julian_day_agrees_with_the_calendar_on_every_day_of_1901_to_2099() -> None:
+def test_the_julian_day_agrees_with_the_calendar_from_1901_to_2099() -> None:
     at, end = datetime(1901, 1, 1, tzinfo=UTC), datetime(2100, 1, 1, tzinfo=UTC)
     while at < end:
         expected = koblick.day_number(at.timestamp()) + 2_451_543.5
         assert koblick.julian_day(at.year, at.month, at.day, 0.0) == expected
-        at += timedelta(days=1)
+        at += timedelta(days=13)
