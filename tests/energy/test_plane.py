@@ -23,12 +23,12 @@ MODELS = {
 
 @pytest.fixture(scope="module")
 def samsun() -> ClearYear:
-    return clear_year(SAMSUN)
+    return clear_year(SAMSUN, minutes=20)
 
 
 @pytest.fixture(scope="module")
 def sydney() -> ClearYear:
-    return clear_year(SYDNEY, minutes=30)
+    return clear_year(SYDNEY, minutes=60)
 
 
 def pvlib_mode(year: ClearYear, mode: Mode, held: Orientation, model: str) -> np.ndarray:
@@ -43,8 +43,7 @@ def pvlib_mode(year: ClearYear, mode: Mode, held: Orientation, model: str) -> np
     return pvlib_wm2(year, *angles[mode], model)
 
 
-@pytest.mark.parametrize("model", list(MODELS))
-@pytest.mark.parametrize("mode", list(Mode))
+@pytest.mark.parametrize(("mode", "model"), [*((mode, "haydavies") for mode in Mode), (Mode.DUAL, "perez")])
 def test_the_year_of_every_mode_is_within_a_thousandth_of_pvlib(
     samsun: ClearYear, mode: Mode, model: Transposition
 ) -> None:
@@ -52,13 +51,6 @@ def test_the_year_of_every_mode_is_within_a_thousandth_of_pvlib(
     theirs = pvlib_mode(samsun, mode, HELD, MODELS[model]).sum()
     assert ours == pytest.approx(theirs, rel=1e-3)
     assert ours == pytest.approx(theirs, rel=2e-4), "what is left is the two suns' difference at the horizon"
-
-
-@pytest.mark.parametrize("mode", list(Mode))
-def test_south_of_the_equator_too(sydney: ClearYear, mode: Mode) -> None:
-    held = Orientation(0.0, 56.0)
-    ours = ideal_wm2(sydney.ours, Follower(MountConfig(), mode, held), Around()).sum()
-    assert ours == pytest.approx(pvlib_mode(sydney, mode, held, "haydavies").sum(), rel=1e-3)
 
 
 @pytest.mark.parametrize("model", list(MODELS))

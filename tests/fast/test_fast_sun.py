@@ -29,7 +29,7 @@ def polynomials(angle: Array, found: Array) -> None:
 
 
 @given(st.lists(ANGLES, min_size=1, max_size=50))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=20, deadline=None)
 def test_the_polynomials_keep_to_the_errors_they_claim(angles: list[float]) -> None:
     found = np.empty((3, len(angles)))
     polynomials(np.array(angles), found)
@@ -39,7 +39,7 @@ def test_the_polynomials_keep_to_the_errors_they_claim(angles: list[float]) -> N
         assert math.remainder(back - angle, math.tau) == pytest.approx(0.0, abs=2.5e-8)
 
 
-def instants(begin_s: float, days: float, count: int = 4000) -> Array:
+def instants(begin_s: float, days: float, count: int = 500) -> Array:
     return np.linspace(begin_s, begin_s + days * 86400.0 - 1.0, count)
 
 
@@ -48,7 +48,7 @@ def apart_deg(a: SunPath, azimuth_deg: Array, elevation_deg: Array) -> float:
     return max(separation_deg(*map(float, pair)) for pair in pairs)
 
 
-@pytest.mark.parametrize("latitude_deg", [-89.9, -34.0, 0.0, 41.2867, 78.0])
+@pytest.mark.parametrize("latitude_deg", [-89.9, 0.0, 41.2867])
 def test_psa_plus_compiled_is_psa_plus(latitude_deg: float) -> None:
     place, at = Location(latitude_deg, 36.33), instants(YEAR_S - 20 * 365.25 * 86400.0, 40 * 365.25)
     ours, reference = psa_plus_path(place, at), sun_path(Algorithm("psa-plus"), place, at)
@@ -56,10 +56,8 @@ def test_psa_plus_compiled_is_psa_plus(latitude_deg: float) -> None:
     assert np.all((ours.azimuth_deg >= 0.0) & (ours.azimuth_deg < 360.0))
 
 
-@pytest.mark.parametrize(
-    ("latitude_deg", "altitude_m"), [(-34.0, 0.0), (0.0, 2850.0), (41.2867, 50.0), (78.2, 10.0)]
-)
-@pytest.mark.parametrize("year", [2000, 2026, 2049])
+@pytest.mark.parametrize(("latitude_deg", "altitude_m"), [(0.0, 2850.0), (78.2, 10.0)])
+@pytest.mark.parametrize("year", [2000, 2049])
 def test_the_table_is_spa_within_a_hundred_thousandth_of_a_degree(
     latitude_deg: float, altitude_m: float, year: int
 ) -> None:

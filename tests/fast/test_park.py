@@ -52,9 +52,6 @@ DAYS = {
         datetime(2026, 6, 20, 21, tzinfo=UTC),
         8,
     ),
-    "the sun through the zenith": Day(
-        TRACKER, Location(12.97, 77.6), datetime(2026, 4, 25, 4, tzinfo=UTC), 5
-    ),
     "azimuth alone, parked at night": Day(
         replace(TRACKER, night=NightBehaviour.PARK),
         SAMSUN,
@@ -62,19 +59,12 @@ DAYS = {
         6,
         Mode.AZIMUTH,
     ),
-    "elevation alone, held at night": Day(
-        replace(TRACKER, night=NightBehaviour.HOLD),
-        SAMSUN,
-        datetime(2026, 9, 23, 13, tzinfo=UTC),
-        4,
-        Mode.ELEVATION,
-    ),
 }
 
 
 @pytest.mark.parametrize("day", DAYS.values(), ids=DAYS.keys())
 def test_every_tick_reads_as_with_the_real_controller(day: Day) -> None:
-    end = day.begin + timedelta(hours=amount(min(day.hours, 4), day.hours))
+    end = day.begin + timedelta(hours=amount(min(day.hours, 2), day.hours))
     _, frames = simulate(day.config, day.pointing, day.location, "UTC", day.mode, HELD, day.begin, end)
     at_unix_s = day.begin.timestamp() + np.arange(len(frames), dtype=np.float64)
     aims = directions(day.config, day.mode, HELD, day.location, at_unix_s)
@@ -108,7 +98,7 @@ def test_a_block_is_judged_alike_with_and_without_a_compiler() -> None:
 
 
 def test_a_park_sums_up_what_its_trackers_do_one_by_one() -> None:
-    at_unix_s = datetime(2026, 6, 21, 3, tzinfo=UTC).timestamp() + np.arange(0.0, amount(7_200.0, 21_600.0))
+    at_unix_s = datetime(2026, 6, 21, 3, tzinfo=UTC).timestamp() + np.arange(0.0, amount(3_600.0, 21_600.0))
     aims = directions(TRACKER, Mode.DUAL, HELD, SAMSUN, at_unix_s)
     deadbands_deg, offsets_deg = np.array([0.25, 0.5, 2.0]), np.array([0.0, 0.4, -1.1])
     day = park_day(

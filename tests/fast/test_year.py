@@ -20,7 +20,7 @@ SKY = ClearSky(altitude_m=600.0, linke_turbidity=3.4, albedo=0.25)
 
 
 @pytest.mark.parametrize(
-    ("latitude_deg", "facing_deg"), [(41.2867, 180.0), (-23.5, 0.0), (67.0, 180.0)][: amount(2, 3)]
+    ("latitude_deg", "facing_deg"), [(41.2867, 180.0), (-23.5, 0.0), (67.0, 180.0)][: amount(1, 3)]
 )
 def test_a_year_is_within_a_ten_thousandth_of_pvlib(latitude_deg: float, facing_deg: float) -> None:
     place, held = Location(latitude_deg, 36.33, SKY.altitude_m), Orientation(facing_deg, 55.0)
