@@ -43,7 +43,10 @@ def pvlib_mode(year: ClearYear, mode: Mode, held: Orientation, model: str) -> np
     return pvlib_wm2(year, *angles[mode], model)
 
 
-@pytest.mark.parametrize(("mode", "model"), [*((mode, "haydavies") for mode in Mode), (Mode.DUAL, "perez")])
+@pytest.mark.parametrize(
+    ("mode", "model"),
+    [*((mode, Transposition.HAY_DAVIES) for mode in Mode), (Mode.DUAL, Transposition.PEREZ)],
+)
 def test_the_year_of_every_mode_is_within_a_thousandth_of_pvlib(
     samsun: ClearYear, mode: Mode, model: Transposition
 ) -> None:
