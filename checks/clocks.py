@@ -46,7 +46,7 @@ EXCEPTIONS = {
     "peers/modbus_tk_server.py": "a process of its own that serves until it is killed",
     "patience.py": "the one bound of all waits, and the pause between two looks",
 }
-TO_BE_MOVED: frozenset[str] = frozenset({"browser/hands.py"})
+TO_BE_MOVED: frozenset[str] = frozenset()
 """Files of tests/browser that still go by the real clock: this list only shrinks."""
 
 SENTENCE = (

@@ -20,12 +20,12 @@ from tests.e2e.chromium import PAGE_READY
 from tests.e2e.chromium import PROGRAM as CHROMIUM
 from tests.e2e.chromium import QUIET as FLAGS
 from tests.e2e.letters import environment
+from tests.fake_store import FakeReader
 from tests.fakes import FakeMachine, fake_app
 from tests.patience import PATIENCE_MS, PATIENCE_S
 from tests.web.in_process import be_patient
 
 if TYPE_CHECKING:
-    from tests.browser.one_panel import Home
     from tests.browser.page_clock import Stage
 
 SCREENS = Path(__file__).resolve().parents[2] / "build" / "screens"
@@ -52,6 +52,10 @@ SIZES = {"desk": (1280, 800), "tablet": (1024, 768), "phone": (390, 844)}
 SOFTWARE_NOTE = "GPU stall due to ReadPixels"
 """Chromium's remark on WebGL without a graphics card, when a page is photographed; it says nothing of it."""
 BEAT = timedelta(milliseconds=100)
+BEGUN_MS = 50
+"""After this time of a page all of its scripts have begun."""
+EMPTY = "/health"
+"""What has no script, and so can forget what the panel's pages keep in this browser."""
 CYCLES_OF_AN_ACCEPT = 5
 """So often a loop turns, at the most, between accepting a connection and closing it."""
 
@@ -144,12 +148,6 @@ def running(served: Served | None = None) -> Iterator[Plant]:
     assert not thread.is_alive(), "the panel did not stop"
 
 
-@pytest.fixture
-def plant() -> Iterator[Plant]:
-    with running() as served:
-        yield served
-
-
 @pytest.fixture(scope="package", autouse=True)
 def patient() -> Iterator[None]:
     """Have the panel wait for its calculations as long as tests wait."""
@@ -197,77 +195,138 @@ def visitor_of(browser: Browser, size: str = "desk", *, touch: bool = False) -> 
     return context
 
 
+def renew(machine: FakeMachine) -> None:
+    """Have a machine as it was at first; what holds it, and who reads it, goes on."""
+    fresh = vars(FakeMachine(machine.clock))
+    kept = {name: vars(machine)[name] for name in ("_outlet", "store", "sequence")}
+    vars(machine.store).update(vars(FakeReader()))
+    vars(machine).update(fresh | kept)
+    machine.emit()
+
+
+def now(plant: Plant, work: Callable[[], object]) -> None:
+    """Do something in the server's own thread, and wait until it is done."""
+    ready = threading.Event()
+    plant.do(lambda: (work(), ready.set()))
+    assert ready.wait(PATIENCE_S)
+
+
 @dataclass
-class Visitors:
-    """The browsers of one file's tests, one a kind of screen; each keeps what the pages of a panel share."""
+class Tab:
+    """A page that is used again, and what its console says."""
+
+    page: Page
+    complaints: list[str] = field(default_factory=list)
+
+    def forget(self, url: str) -> None:
+        """Have it as a new one: nothing kept, nothing intercepted."""
+        self.page.unroute_all(behavior="ignoreErrors")
+        self.page.goto(url + EMPTY)
+        self.page.evaluate("localStorage.clear(); sessionStorage.clear()")
+        self.page.context.clear_cookies()
+        self.page.mouse.move(0, 0)
+        self.complaints.clear()
+
+
+@dataclass
+class Home:
+    """A panel, and the tabs in front of it: with and without a touch screen, a clock that stands still."""
 
     browser: Browser
-    known: dict[tuple[str, str, bool, str], BrowserContext] = field(default_factory=dict)
+    plant: Plant
+    known: dict[tuple[bool, bool], Tab] = field(default_factory=dict)
 
-    def at(self, url: str, size: str, *, touch: bool, theme: str) -> BrowserContext:
-        """Return the browser with which a panel is visited on such a screen."""
-        kind = (url, size, touch, theme)
-        if kind not in self.known:
-            self.known[kind] = visitor_of(self.browser, size, touch=touch)
-            self.known[kind].add_cookies([{"name": "theme", "value": theme, "url": url}])
-        return self.known[kind]
+    def tab(self, *, touch: bool, still: bool) -> Tab:
+        if (touch, still) not in self.known:
+            context = visitor_of(self.browser, touch=touch)
+            if still:
+                instant = self.plant.machine.clock.now()
+                context.clock.install(time=instant)
+                context.clock.pause_at(instant)
+            tab = self.known[touch, still] = Tab(context.new_page())
+            listen(tab.page, tab.complaints)
+        return self.known[touch, still]
 
-    def leave(self, stays: str = "") -> None:
-        """Close the browsers of all panels but one."""
-        for kind in [kind for kind in self.known if kind[0] != stays]:
-            self.known.pop(kind).close()
+    def drop(self) -> None:
+        """Close all tabs: what a failed test did to them is not undone."""
+        while self.known:
+            self.known.popitem()[1].page.context.close()
 
 
-@pytest.fixture(scope="module")
-def visitors(browser: Browser) -> Iterator[Visitors]:
-    found = Visitors(browser)
-    yield found
-    found.leave()
+@pytest.fixture(scope="package")
+def home(browser: Browser) -> Iterator[Home]:
+    """One panel and tabs in front of it for the tests of many files; each test finds both as new.
+
+    A page in a tab that was open before costs half the processor time of a page in a new one.
+    """
+    with running() as served:
+        found = Home(browser, served)
+        yield found
+        found.drop()
 
 
 @pytest.fixture
-def opened(visitors: Visitors, plant: Plant) -> Iterator[Opened]:
-    """Open a page; at the end of the test any console error, any uncaught error fails it."""
-    pages: list[Page] = []
-    complaints: list[str] = []
+def plant(home: Home) -> Plant:
+    now(home.plant, lambda: renew(home.plant.machine))
+    return home.plant
+
+
+@pytest.fixture
+def opened(home: Home, plant: Plant, request: pytest.FixtureRequest) -> Iterator[Opened]:
+    """Open a page in the tab; any console error, any uncaught error fails the test.
+
+    With `still` the clock of the page stands but for what the test lets pass, by `page.clock.run_for`.
+    """
     allowed: list[str] = []
-    visitors.leave(plant.url)
+    used: list[Tab] = []
+    failed = request.session.testsfailed
 
     def open_page(
         path: str,
         size: str = "desk",
         *,
         touch: bool = False,
+        still: bool = False,
         theme: str = "day",
-        language: str = "",
+        language: str = "en",
         allow: tuple[str, ...] = (),
     ) -> Page:
         allowed.extend(allow)
-        visitor = visitors.at(plant.url, size, touch=touch, theme=theme)
-        if language:
-            visitor.add_cookies([{"name": "language", "value": language, "url": plant.url}])
-        page = visitor.new_page()
-        pages.append(page)
-        listen(page, complaints)
-        page.goto(plant.url + path)
-        page.wait_for_selector(PAGE_READY)
-        return page
+        tab = home.tab(touch=touch, still=still)
+        if tab not in used:
+            used.append(tab)
+        width, height = SIZES[size]
+        tab.page.set_viewport_size({"width": width, "height": height})
+        cookies = {"theme": theme, "language": language}
+        tab.page.context.add_cookies(
+            [{"name": name, "value": value, "url": plant.url} for name, value in cookies.items()]
+        )
+        go(tab.page, plant.url + path)
+        if still:
+            tab.page.clock.run_for(BEGUN_MS)
+        return tab.page
 
     yield open_page
-    for page in pages:
-        page.close()
+    complaints = [one for tab in used for one in tab.complaints]
+    if request.session.testsfailed > failed:
+        home.drop()
+    for tab in used:
+        if tab in home.known.values():
+            tab.forget(plant.url)
     assert [one for one in complaints if not any(words in one for words in allowed)] == []
 
 
-@pytest.fixture(scope="package")
-def home(browser: Browser) -> "Iterator[Home]":
-    """A panel and tabs in front of it that outlast a test, for files which use one_panel.py."""
-    from tests.browser.one_panel import Home  # noqa: PLC0415 - it is built on what is here
+def go(page: Page, url: str) -> None:
+    """Open a page and wait until its values are live and its scripts have come."""
+    page.goto(url)
+    page.wait_for_selector(PAGE_READY)
 
-    with running() as served:
-        found = Home(browser, served)
-        yield found
-        found.drop()
+
+def resize(page: Page, size: str) -> None:
+    """Give a page another size; what follows the size has done so when this returns."""
+    width, height = SIZES[size]
+    page.set_viewport_size({"width": width, "height": height})
+    page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
 @pytest.fixture

@@ -8,20 +8,11 @@ takes all pictures that `GUIDE` of `conftest.py` names.
 import re
 from datetime import UTC, datetime
 
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.conftest import GUIDE, PICTURES
-from tests.browser.hands import LINK_MEASURED, Mouse, arrive, middle
-from tests.browser.walking import (
-    Picture,
-    Walker,
-    onwards,
-    rooms,
-    service,
-    set_home,
-    trust_the_clock,
-    walker,
-)
+from tests.browser.hands import LINK_MEASURED, arrive, middle
+from tests.browser.walking import Picture, Walker, rooms, service, walker
 from tests.e2e.chromium import PAGE_READY
 from tests.e2e.integrator import Integrator
 
@@ -36,27 +27,42 @@ def town_by_day() -> tuple[float, float]:
     return min(TOWNS, key=lambda town: abs((town[1] - noon_deg + 180.0) % 360.0 - 180.0))
 
 
+def onwards(page: Page, to: str) -> None:
+    page.locator("#forward .key").click()
+    arrive(page, to)
+
+
+def hold(page: Page, key: Locator) -> None:
+    """Hold a key until it counts, which is when the page sends its order."""
+    expect(key).to_be_enabled()
+    page.mouse.move(*middle(key))
+    with page.expect_response(lambda answer: answer.request.method == "POST"):
+        page.mouse.down()
+    page.mouse.up()
+
+
 def test_the_five_steps_are_pictured(walker: Walker, service: str, picture: Picture) -> None:
     page = walker("tablet", "mouse")
-    hands = Mouse(page)
     latitude, longitude = town_by_day()
     page.goto(f"{service}/trackers/T1/commissioning/location")
     page.wait_for_selector(PAGE_READY)
-    hands.choose(page.locator(f'[name="latitude_side"][value="{"N" if latitude >= 0 else "S"}"]'))
-    hands.choose(page.locator(f'[name="longitude_side"][value="{"E" if longitude >= 0 else "W"}"]'))
-    hands.write(page.locator("#f-latitude"), str(abs(latitude)))
-    hands.write(page.locator("#f-longitude"), str(abs(longitude)))
+    page.locator(f'[name="latitude_side"][value="{"N" if latitude >= 0 else "S"}"]').check()
+    page.locator(f'[name="longitude_side"][value="{"E" if longitude >= 0 else "W"}"]').check()
+    page.locator("#f-latitude").fill(str(abs(latitude)))
+    page.locator("#f-longitude").fill(str(abs(longitude)))
     expect(page.locator("#preview")).to_contain_text("/")
     picture(page, "step-location")
-    hands.press(page.locator("#forward .key"))
+    page.locator("#forward .key").click()
     sure = page.locator('#place-doubts [name="sun_there"]')
     page.wait_for_selector("#place-doubts, #clock-apart")
     if sure.count():
-        hands.choose(sure)
-        onwards(page, hands, "/clock")
+        sure.check()
+        onwards(page, "/clock")
     expect(page.locator("#clock-apart")).to_contain_text("0 s")
     picture(page, "step-clock")
-    trust_the_clock(page, hands)
+    page.locator('form[action$="/clock/system"] button').click()
+    page.wait_for_selector("#forward a.key")
+    onwards(page, "/homing")
     page.wait_for_selector(LINK_MEASURED)
     key = page.locator('[data-jog="azimuth"][data-direction="-1"]')
     page.mouse.move(*middle(key))
@@ -66,12 +72,13 @@ def test_the_five_steps_are_pictured(walker: Walker, service: str, picture: Pict
     picture(page, "step-homing")
     page.mouse.up()
     expect(page.locator(".strip-activity")).to_contain_text("Holding")
-    set_home(page, hands)
+    hold(page, page.locator('[data-action="set_home"]').first)
+    hold(page, page.locator('[name="confirmed"]'))
     page.wait_for_selector("#forward a.key")
-    onwards(page, hands, "/mode")
+    onwards(page, "/mode")
     picture(page, "step-mode")
-    hands.choose(page.locator('input[value="dual"]'))
-    onwards(page, hands, "/run")
+    page.locator('input[value="dual"]').check()
+    onwards(page, "/run")
     page.locator(".scene").scroll_into_view_if_needed()
     page.wait_for_selector('.scene[data-painter="webgl2"][data-frames]')
     page.evaluate("scrollTo(0, 0)")
@@ -101,28 +108,27 @@ def progressed(page: Page, bar: str, beyond: float) -> None:
 
 def test_solstice_is_shown_and_replayed(walker: Walker, service: str, picture: Picture) -> None:
     page = walker("desk", "mouse")
-    hands = Mouse(page)
     ready(service)
     page.goto(f"{service}/trackers/T1/show")
-    hands.press(page.get_by_role("link", name="21 June"))
-    hands.write(page.locator("#f-minutes"), "0.2")
+    page.get_by_role("link", name="21 June").click()
+    page.locator("#f-minutes").fill("0.2")
     expect(page.locator("#verdict:not([inert])")).to_contain_text("cannot be run")
-    hands.press(page.locator("#verdict a.key-primary"))
+    page.locator("#verdict a.key-primary").click()
     expect(page.locator("#verdict")).to_contain_text("This works")
-    hands.press(page.locator('[data-action="go_to_start"]'))
+    page.locator('[data-action="go_to_start"]').click()
     arrive(page, "/shows/.*")
     expect(page.locator("#show-phase")).to_have_text("Ready at the start")
-    hands.press(page.locator('[data-action="run_show"]'))
+    page.locator('[data-action="run_show"]').click()
     expect(page.locator("#show-phase")).to_have_text("Running")
     progressed(page, "#show-progress", 0.02)
     picture(page, "show-on-the-machine")
-    hands.press(page.locator('[data-action="pause_show"]'))
+    page.locator('[data-action="pause_show"]').click()
     expect(page.locator("#show-phase")).to_have_text("Paused")
-    hands.press(page.locator('[data-action="stop_show"]'))
+    page.locator('[data-action="stop_show"]').click()
     expect(page.locator("#show-phase")).to_have_text("Ended")
-    hands.press(page.get_by_role("link", name="Replay"))
+    page.get_by_role("link", name="Replay").click()
     expect(page.locator("h1")).to_have_text(re.compile("Replay: Show of .*-06-21"))
     expect(page.locator("#player-state")).to_have_text("")
-    hands.press(page.locator("#player-play"))
+    page.locator("#player-play").click()
     progressed(page, "#player-scrubber", 1.0)
     picture(page, "replay")

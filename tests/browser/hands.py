@@ -3,62 +3,24 @@
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
-from playwright.sync_api import CDPSession, Locator, Page, TimeoutError
+from playwright.sync_api import CDPSession, Locator, Page
 
 from tests.e2e.chromium import PAGE_READY
 
 HOLD_MS = 700
 CONFIRM_MS = 2300
 """Longer than what counts only when it is held for 2 s."""
-LOOK_EVERY_MS = 50
 MARGIN_PX = 6
 """Beside everything that can be touched."""
 LINK_MEASURED = '#link-quality:is([data-level="1"], [data-level="2"])'
 """Before a page has measured its link, and while it is too slow, a held key begins nothing."""
-TOLD = '[role="alert"], .reasons, .field-error, .outcome, .kept-note, #link-words, #place-doubts, h1'
-"""Where a page says how things stand, and why something is refused."""
-
-
-Passes = Callable[[int], object]
-"""Lets so many milliseconds pass while a key is held: `Stage.advance`; without one the computer's does."""
-
-
-class Hands(Protocol):
-    """What a technician does with a page."""
-
-    def press(self, key: Locator) -> None: ...
-    def choose(self, radio: Locator) -> None: ...
-    def write(self, field: Locator, text: str) -> None: ...
-    def hold(self, key: Locator, for_ms: int = HOLD_MS) -> None: ...
-
-
-def shown(page: Page) -> str:
-    """Return what a page says now: its address, what has the focus, every refusal that is seen."""
-    said = [
-        text for one in page.locator(TOLD).all() if one.is_visible() and (text := one.inner_text().strip())
-    ]
-    focus = page.evaluate("document.activeElement?.outerHTML.slice(0, 160)")
-    return f"{page.url} shows {[text for text in said if text]}; the focus is on {focus}"
 
 
 def arrive(page: Page, to: str) -> None:
-    """Return once the page's address ends like this and its values are live, or fail with what it shows."""
-    try:
-        page.wait_for_url(re.compile(f"{to}$"))
-        page.wait_for_selector(PAGE_READY)
-    except TimeoutError as error:
-        raise AssertionError(f"The page did not come to {to}: {shown(page)}.") from error
-
-
-def until(page: Page, reached: Callable[[], object], *, within_ms: int = 12_000) -> None:
-    """Return once something is so, or fail; the page goes on meanwhile."""
-    for _ in range(within_ms // LOOK_EVERY_MS):
-        if reached():
-            return
-        page.wait_for_timeout(LOOK_EVERY_MS)
-    raise AssertionError("It did not become so in time.")
+    """Return once the page's address ends like this and its values are live."""
+    page.wait_for_url(re.compile(f"{to}$"))
+    page.wait_for_selector(PAGE_READY)
 
 
 def middle(thing: Locator) -> tuple[float, float]:
@@ -70,41 +32,31 @@ def middle(thing: Locator) -> tuple[float, float]:
 
 @dataclass
 class Mouse:
+    """What a technician does with a page; `passes` lets so many milliseconds pass: `Stage.advance`."""
+
     page: Page
-    passes: Passes | None = None
+    passes: Callable[[int], object]
 
     def press(self, key: Locator) -> None:
         key.click()
 
-    def choose(self, radio: Locator) -> None:
-        radio.check()
-
     def write(self, field: Locator, text: str) -> None:
-        field.click()
         field.fill(text)
 
     def hold(self, key: Locator, for_ms: int = HOLD_MS) -> None:
         self.page.wait_for_selector(LINK_MEASURED)
         self.page.mouse.move(*middle(key))
         self.page.mouse.down()
-        (self.passes or self.page.wait_for_timeout)(for_ms)
+        self.passes(for_ms)
         self.page.mouse.up()
 
 
-@dataclass
-class Finger:
-    page: Page
-    passes: Passes | None = None
+Hands = Mouse
 
+
+class Finger(Mouse):
     def press(self, key: Locator) -> None:
         key.tap()
-
-    def choose(self, radio: Locator) -> None:
-        radio.tap()
-
-    def write(self, field: Locator, text: str) -> None:
-        field.tap()
-        field.fill(text)
 
     def hold(self, key: Locator, for_ms: int = HOLD_MS) -> None:
         self.page.wait_for_selector(LINK_MEASURED)
@@ -113,7 +65,7 @@ class Finger:
         x, y = middle(key)
         point = {"x": x, "y": y, "id": 0}
         session.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": [point]})
-        (self.passes or self.page.wait_for_timeout)(for_ms)
+        self.passes(for_ms)
         session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
 
     def _swipe_to(self, key: Locator, session: CDPSession) -> None:
@@ -130,29 +82,16 @@ class Finger:
             )
 
 
-@dataclass
-class Keyboard:
-    page: Page
-    passes: Passes | None = None
-
+class Keyboard(Mouse):
     def press(self, key: Locator) -> None:
         key.focus()
         self.page.keyboard.press("Enter")
-
-    def choose(self, radio: Locator) -> None:
-        radio.focus()
-        self.page.keyboard.press(" ")
-
-    def write(self, field: Locator, text: str) -> None:
-        field.focus()
-        self.page.keyboard.press("Control+A")
-        self.page.keyboard.type(text)
 
     def hold(self, key: Locator, for_ms: int = HOLD_MS) -> None:
         self.page.wait_for_selector(LINK_MEASURED)
         key.focus()
         self.page.keyboard.down(" ")
-        (self.passes or self.page.wait_for_timeout)(for_ms)
+        self.passes(for_ms)
         self.page.keyboard.up(" ")
 
 

@@ -1,6 +1,7 @@
 """The alarm strip is live on every page; alarms are acknowledged, shelved and heard."""
 
 from dataclasses import replace
+from functools import partial
 
 from playwright.sync_api import expect
 
@@ -10,11 +11,8 @@ from app.tracker.values.alarm_words import AlarmState
 from app.tracker.values.reason import Reason
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import LANGUAGES
-from tests.browser.conftest import Opened, Plant
-from tests.browser.one_panel import now, opened, plant, resize
+from tests.browser.conftest import Opened, Plant, now, resize
 from tests.fake_alarms import alarm
-
-__all__ = ["opened", "plant"]
 
 
 def raised(plant: Plant, *codes: str) -> None:
@@ -33,17 +31,15 @@ def returned(plant: Plant) -> None:
     machine.emit()
 
 
-def test_the_strip_is_live_and_never_jumps(plant: Plant, opened: Opened) -> None:
+def test_the_strip_is_live_never_jumps_and_acknowledges(plant: Plant, opened: Opened) -> None:
     page = opened("/trackers/T1", "phone")
     strip = page.locator("#alarm-strip")
     before = strip.bounding_box()
     expect(page.locator("#alarm-new")).to_be_hidden()
-    expect(page.locator(".alarm-bell")).to_have_attribute("data-number", "0")
     raised(plant, "not_stowed", "drive_lost")
     expect(page.locator("#alarm-first-title")).to_have_text("Not stowed")
     expect(page.locator('[data-first-shape="1"]')).to_be_visible()
     expect(page.locator('[data-count="2"] b')).to_have_text("1")
-    expect(page.locator('[data-count="1"]')).to_be_visible()
     assert strip.bounding_box() == before
     page.locator(".messages > .pop > summary").click()
     page.locator("#alarm-ack button").click()
@@ -51,52 +47,33 @@ def test_the_strip_is_live_and_never_jumps(plant: Plant, opened: Opened) -> None
     assert [one.alarm_id for one in plant.orders("acknowledge_alarm")] == ["not_stowed@T1"]
 
 
-def test_an_alarm_that_is_gone_does_not_read_as_if_it_stood(plant: Plant, opened: Opened) -> None:
-    raised(plant, "not_stowed")
-    page = opened("/", "tablet")
-    expect(page.locator("#alarm-first-title")).to_have_text("Not stowed")
-    plant.do(lambda: returned(plant))
-    trouble = page.locator('[data-alarms="T1"] .glance-trouble')
-    for seen in (page.locator("#alarm-first-title"), trouble):
-        expect(seen).to_have_text("Returned to normal: Not stowed")
-    page.reload()
-    for seen in (page.locator("#alarm-first-title"), trouble):
-        expect(seen).to_have_text("Returned to normal: Not stowed")
-
-
-def test_the_overview_leads_to_the_tracker_that_is_in_danger(plant: Plant, opened: Opened) -> None:
+def test_the_overview_leads_to_danger_and_does_not_tell_it_once_it_is_gone(
+    plant: Plant, opened: Opened
+) -> None:
     page = opened("/", "tablet")
     card = page.locator('.glance[data-tracker="T1"]')
     urgent = card.get_by_role("link", name="View alarm")
     expect(card.locator("[data-calm]")).to_be_visible()
     expect(urgent).to_be_hidden()
-    raised(plant, "not_stowed", "drive_lost")
+    raised(plant, "not_stowed")
     expect(urgent).to_be_visible()
     expect(card.locator("[data-calm]")).to_be_hidden()
     expect(card.locator(".glance-trouble")).to_have_text("Not stowed")
-    urgent.click()
-    expect(page).to_have_url(f"{plant.url}/trackers/T1")
+    plant.do(partial(returned, plant))
+    for seen in (page.locator("#alarm-first-title"), card.locator(".glance-trouble")):
+        expect(seen).to_have_text("Returned to normal: Not stowed")
 
 
 def test_a_card_whose_alarm_is_not_listed_does_not_look_calm_in_a_storm(plant: Plant, opened: Opened) -> None:
-    tracker = plant.machine.trackers["T2"]
-    page = opened("/", "phone", allow=("Failed to load resource", "WebSocket"))
+    page = opened("/", "phone")
     card = page.locator('.glance[data-tracker="T2"]')
     expect(card.locator("[data-calm]")).to_be_visible()
     why = Reason("not_stowed", "South field does not stow.", "Stow it by hand.")
-    plant.do(lambda: setattr(tracker, "not_stowed", why))
-
-    def expect_danger() -> None:
-        expect(card.get_by_role("link", name="View alarm")).to_be_visible()
-        expect(card.locator("[data-calm]")).to_be_hidden()
-        expect(card.locator(".glance-trouble")).to_have_text("Not stowed")
-        expect(card.locator(".glance-alarms b")).to_have_text("1")
-        expect(page.locator('.glance[data-tracker="T1"] [data-calm]')).to_be_visible()
-
-    expect_danger()
-    page.route("**/overview.js*", lambda route: route.abort())
-    page.reload()
-    expect_danger()
+    plant.do(lambda: setattr(plant.machine.trackers["T2"], "not_stowed", why))
+    expect(card.get_by_role("link", name="View alarm")).to_be_visible()
+    expect(card.locator("[data-calm]")).to_be_hidden()
+    expect(card.locator(".glance-trouble")).to_have_text("Not stowed")
+    expect(page.locator('.glance[data-tracker="T1"] [data-calm]')).to_be_visible()
 
 
 def test_an_alarm_is_shelved_with_a_reason(plant: Plant, opened: Opened) -> None:
@@ -125,9 +102,6 @@ def test_the_sound_is_switched_on_here_heard_and_muted(plant: Plant, opened: Ope
     page.wait_for_selector("html[data-sounded]")
     page.locator("#mute-key").click()
     expect(page.locator("#mute-key")).to_contain_text("Muted until")
-    page.evaluate("localStorage.setItem('heliopanel-muted-until', Date.now() + 400 * 24 * 3600 * 1000)")
-    page.reload()
-    expect(page.locator("#mute-key")).to_have_text("Mute 10 min")
 
 
 CUT_TITLES = """([titles, sure, where]) => {

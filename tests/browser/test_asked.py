@@ -2,16 +2,12 @@
 
 import re
 
-import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import expect
 
 from app.link.messages import SetClock, SetLocation
 from tests.browser.conftest import Opened, Plant
 from tests.browser.hands import CONFIRM_MS, Mouse
-from tests.browser.one_panel import opened, plant
 from tests.browser.page_clock import BEAT_MS, Stage
-
-__all__ = ["opened", "plant"]
 
 CLOCK = "/trackers/T1/commissioning/clock"
 HOMING = "/trackers/T1/commissioning/homing"
@@ -23,6 +19,15 @@ LATE = """() => {
     constructor(...given) { given.length ? super(...given) : super(now() - late); }
   };
   window.Date.now = () => now() - late;
+}"""
+
+
+COVERED = """(key) => {
+  const box = key.getBoundingClientRect();
+  const top = (x, y) => document.elementFromPoint(x, y);
+  const points = [box.left + 8, box.x + box.width / 2, box.right - 8]
+    .flatMap((x) => [box.top + 8, box.y + box.height / 2, box.bottom - 8].map((y) => [x, y]));
+  return points.filter(([x, y]) => top(x, y)?.closest("button, label") !== key);
 }"""
 
 
@@ -39,6 +44,7 @@ def test_a_clock_11_hours_off_is_amber_and_asked_about(opened: Opened, plant: Pl
     assert apart.evaluate("e => getComputedStyle(e).backgroundColor") == "rgb(255, 176, 0)"
     page.locator('form[action$="/clock/system"] > button').click()
     expect(page.locator(".ask-clock")).to_contain_text("11 h 39 min ahead of this device's clock")
+    assert page.locator('.ask-clock [name="confirmed"]').evaluate(COVERED) == []
     assert asked(plant, SetClock) == 0
     page.locator('.ask-clock [name="confirmed"]').click()
     expect(page.locator(".ask-clock")).to_have_count(0)
@@ -57,47 +63,6 @@ def test_a_longitude_on_the_wrong_side_is_asked_about(opened: Opened, plant: Pla
     page.locator("#forward .key").click()
     expect(page).to_have_url(re.compile("/clock$"))
     assert asked(plant, SetLocation) == 1
-
-
-COVERED = """(key) => {
-  const box = key.getBoundingClientRect();
-  const top = (x, y) => document.elementFromPoint(x, y);
-  const points = [box.left + 8, box.x + box.width / 2, box.right - 8]
-    .flatMap((x) => [box.top + 8, box.y + box.height / 2, box.bottom - 8].map((y) => [x, y]));
-  return points.filter(([x, y]) => top(x, y)?.closest("button, label") !== key);
-}"""
-
-
-def reached(page: Page, key: Locator) -> None:
-    """Wait until a key of a question is there; every corner of it can be touched as the page stands then."""
-    key.wait_for()
-    page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
-    assert key.evaluate(COVERED) == []
-
-
-@pytest.mark.parametrize(("size", "language"), [("tablet", "en"), ("phone", "de")])
-def test_the_key_of_a_question_is_not_covered_when_it_appears(
-    size: str, language: str, opened: Opened
-) -> None:
-    def asking(path: str) -> Page:
-        return opened(path, size, language=language, allow=("422", "409"))
-
-    page = asking("/trackers/T1/record")
-    page.locator("#f-technician").fill("Ada")
-    page.locator("[data-sign]").click()
-    reached(page, page.locator('[data-sign][name="confirmed"]'))
-    page = asking(CLOCK)
-    page.evaluate(LATE)
-    page.locator('form[action$="/clock/system"] > button').click()
-    reached(page, page.locator('.ask-clock [name="confirmed"]'))
-    page = asking(PLACE)
-    page.locator('input[name="longitude_side"][value="W"]').check()
-    page.locator("#forward .key").click()
-    reached(page, page.locator("#place-doubts label"))
-    page = asking("/trackers/T1/settings")
-    page.locator('[name="azimuth_maximum_deg"]').fill("400")
-    page.locator("#settings-form .key-primary, form:has(#settings-outcome) > .key-primary").first.click()
-    reached(page, page.locator("#limit-review button"))
 
 
 def test_the_key_of_the_question_of_the_home_position_is_not_covered(stage: Stage) -> None:

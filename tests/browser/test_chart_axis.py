@@ -8,7 +8,7 @@ import pytest
 from app.web.charts.axis import angle_step, number_step, time_step_s, times, within
 from tests.browser.conftest import Opened
 
-SPANS = [0.003, 0.25, 1.0, 2.4, 7.0, 37.0, 90.0, 139.0, 180.0, 359.9, 360.0, 1013.0, 86_400.0]
+SPANS = [0.003, 2.4, 37.0, 180.0, 359.9, 1013.0, 86_400.0]
 TIMES = [7.0, 45.0, 600.0, 3600.0, 8 * 3600.0, 86_400.0, 3 * 86_400.0, 7 * 86_400.0, 30 * 86_400.0]
 ROOMS = [2, 5, 8, 13]
 ENDS = [(-21.3, 67.0), (0.0, 360.0), (-90.0, 90.0), (179.2, 181.7), (0.0, 0.031), (4.0, 4.0)]

@@ -14,10 +14,7 @@ from app.web.http.problems import MEDIA_TYPE, Problem, ProblemCode
 from app.web.http.security import TOO_LARGE
 from tests.browser.conftest import Opened, Plant
 from tests.browser.hands import signed
-from tests.browser.one_panel import opened, plant
 from tests.fake_alarms import alarm
-
-__all__ = ["opened", "plant"]
 
 T1 = "/trackers/T1"
 NOISE = ("Failed to load resource", "htmx:error")
@@ -129,117 +126,44 @@ def walled(plant: Plant) -> None:
     tracker.config = replace(tracker.config, machine=replace(tracker.config.machine, regions=(WALL,)))
 
 
-def regions(plant: Plant) -> tuple[Region, ...]:
-    found = plant.machine.trackers["T1"].config.machine.regions
-    assert isinstance(found, tuple)
-    return found
-
-
-def test_a_preview_that_fails_keeps_the_regions(opened: Opened, plant: Plant) -> None:
+def test_a_preview_that_fails_keeps_the_regions_and_the_next_good_answer_clears_what_was_told(
+    opened: Opened, plant: Plant
+) -> None:
     walled(plant)
     page = opened(f"{T1}/machine", allow=NOISE)
     now: list[Reply | None] = [None]
     answer(page, now)
     page.locator("#f-region1_name").fill("Gate")
-    for now[0] in EVERY.values():
+    for now[0] in (REPLIES["refused"], None):
         page.get_by_role("button", name="Preview regions").click()
         expect(page.locator("#machine-outcome")).to_contain_text(now[0].said if now[0] else NO_ANSWER)
         expect(page.locator("#f-region0_name")).to_have_value("Wall")
         expect(page.locator("#f-region1_name")).to_have_value("Gate")
         page.locator("#machine-outcome").evaluate("one => one.replaceChildren()")
-    page.unroute_all()
-    page.locator("#f-region1_name").fill("")
-    page.get_by_role("button", name="Save mechanics").click()
-    expect(page.locator(".saved-what")).to_have_text("No values were changed.")
-    page.evaluate("document.getElementById('regions').remove()")
-    page.get_by_role("button", name="Save mechanics").click()
-    expect(page.locator("#machine-outcome")).to_contain_text("Reload the page, then try again.")
-    assert regions(plant) == (WALL,)
-
-
-KEPT: dict[str, tuple[str, str, str, dict[str, str]]] = {
-    "location": (
-        f"{T1}/commissioning/location", "#step-form", "#forward .key",
-        {"#f-latitude": "41.2867", "#f-longitude": "36.33", "#f-altitude": "4"},
-    ),
-    "clock": (
-        f"{T1}/commissioning/clock", "#manual-form", "#manual-form button",
-        {"#f-date": "2027-06-21", "#f-time": "12:34"},
-    ),
-    "study": ("/studies", "#study-form", "#study-form .key-primary", {"#f-title": "Noon"}),
-}  # fmt: skip
-"""Forms that a good answer replaces: their page, form, key, and what is typed."""
-
-
-@pytest.mark.parametrize("name", KEPT)
-def test_a_form_keeps_what_was_typed_beside_an_error(name: str, opened: Opened) -> None:
-    path, form, key, typed = KEPT[name]
-    page = opened(path, allow=NOISE)
-    page.evaluate("document.querySelectorAll('main details').forEach((one) => { one.open = true; })")
-    for field, text in typed.items():
-        page.locator(field).fill(text)
-    now: list[Reply | None] = [None]
-    answer(page, now)
-    outcome = page.locator(f"{form} .outcome").last
-    for now[0] in (REPLIES["refused"], REPLIES["page"], REPLIES["problem"], None):
-        page.locator(key).first.click()
-        expect(outcome).to_contain_text(now[0].said if now[0] else NO_ANSWER)
-        for field, text in typed.items():
-            expect(page.locator(field)).to_have_value(text)
-        outcome.evaluate("one => one.replaceChildren()")
-
-
-def test_a_signature_stays_beside_an_error(opened: Opened, plant: Plant) -> None:
-    page = opened(f"{T1}/record", allow=NOISE)
-    drawn = signed(page)
-    page.locator("#f-technician").fill("Ada")
-    now: list[Reply | None] = [None]
-    answer(page, now)
-    for now[0] in EVERY.values():
-        page.get_by_role("button", name="Sign record").click()
-        expect(page.locator("#sign-form .outcome")).to_contain_text(now[0].said if now[0] else NO_ANSWER)
-        expect(page.locator("#f-technician")).to_have_value("Ada")
-        expect(page.locator('[name="technician_drawn"]')).to_have_value(drawn)
-    page.unroute_all()
-    page.get_by_role("button", name="Sign record").click()
-    page.get_by_role("button", name="Sign anyway").click()
-    expect(page.get_by_role("img", name="Signature of Ada")).to_be_visible()
-    assert len(plant.orders("sign_record")) == 1
-
-
-def test_a_photo_that_is_too_large_is_told_in_one_sentence(opened: Opened) -> None:
-    page = opened(f"{T1}/record", allow=NOISE)
-    form = page.locator('#photos form[action$="/photos"]')
-    form.locator('[name="caption"]').fill("Type plate")
-    form.locator('[type="file"]').set_input_files(
-        {"name": "a.jpg", "mimeType": "image/jpeg", "buffer": b"large"}
-    )
-    answer(page, [REPLIES["too large"]])
-    form.get_by_role("button", name="Add the photo").click()
-    expect(form.locator(".outcome")).to_have_text(f"Not done.{TOO_LARGE}")
-    expect(form.locator('[name="caption"]')).to_have_value("Type plate")
-    assert form.locator('[type="file"]').evaluate("one => one.files.length") == 1
-
-
-def test_what_was_told_of_an_error_is_gone_with_the_next_good_answer(opened: Opened) -> None:
-    """The answer goes elsewhere: nothing else takes away what was told."""
-    page = opened(f"{T1}/machine", allow=NOISE)
-    answer(page, [REPLIES["proxy"]])
+    now[0] = REPLIES["proxy"]
     page.get_by_role("button", name="Preview regions").click()
     told = page.get_by_text("The answer was error 502.")
     expect(told).to_be_visible()
     page.unroute_all()
     page.get_by_role("button", name="Preview regions").click()
     expect(told).to_have_count(0)
+    page.evaluate("document.getElementById('regions').remove()")
+    page.get_by_role("button", name="Save mechanics").click()
+    expect(page.locator("#machine-outcome")).to_contain_text("Reload the page, then try again.")
+    assert plant.machine.trackers["T1"].config.machine.regions == (WALL,)
 
 
-def test_what_a_page_loads_later_says_why_it_does_not_come(opened: Opened, plant: Plant) -> None:
-    page = opened("/account", allow=NOISE)
-    answer(page, [REPLIES["outcome"]])
-    for path in ("/accuracy", f"{T1}/strategy"):
-        page.goto(plant.url + path)
-        expect(page.locator("main").get_by_text(SILENT)).to_be_visible()
-        expect(page.get_by_text("Measuring;").or_(page.get_by_text("Simulating the day;"))).to_have_count(0)
+def test_a_signature_stays_beside_an_error(opened: Opened) -> None:
+    page = opened(f"{T1}/record", allow=NOISE)
+    drawn = signed(page)
+    page.locator("#f-technician").fill("Ada")
+    now: list[Reply | None] = [None]
+    answer(page, now)
+    for now[0] in (REPLIES["page"], None):
+        page.get_by_role("button", name="Sign record").click()
+        expect(page.locator("#sign-form .outcome")).to_contain_text(now[0].said if now[0] else NO_ANSWER)
+        expect(page.locator("#f-technician")).to_have_value("Ada")
+        expect(page.locator('[name="technician_drawn"]')).to_have_value(drawn)
 
 
 def test_until_the_script_is_there_htmx_swaps_no_error(opened: Opened, plant: Plant) -> None:

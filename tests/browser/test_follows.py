@@ -12,10 +12,7 @@ from app.link.messages import SetLocation
 from app.tracker.memory.recording import RecordingKind
 from app.tracker.weather.weather import Weather, WeatherNow
 from tests.browser.conftest import Opened, Plant
-from tests.browser.one_panel import opened, plant
 from tests.fake_data import recording
-
-__all__ = ["opened", "plant"]
 
 
 def test_the_last_ten_minutes_begin_with_what_was_recorded(plant: Plant, opened: Opened) -> None:
@@ -39,7 +36,6 @@ def test_the_weather_card_follows_what_the_station_tells(plant: Plant, opened: O
     expect(card).to_contain_text("No weather station has reported")
     page.locator("#f-host").fill("10.0.0.7")
     for readings, simulated in (
-        (Weather(wind_mps=7.5), True),
         (Weather(wind_mps=7.5, snow_kg=3.0), True),
         (Weather(wind_mps=7.5), False),
     ):
@@ -52,24 +48,10 @@ def test_the_weather_card_follows_what_the_station_tells(plant: Plant, opened: O
     expect(page.locator("#f-host")).to_have_value("10.0.0.7")
 
 
-@pytest.mark.parametrize(("typed", "south"), [("35 18 29 S", True), ("35 18 29 N", False)])
-def test_the_letter_that_is_typed_presses_its_key(opened: Opened, typed: str, *, south: bool) -> None:
-    page = opened("/trackers/T1/commissioning/location")
-    keys = page.locator("input[name=latitude_side]")
-    other = keys.nth(0 if south else 1)
-    other.check(force=True)
-    page.locator("#f-latitude").fill(typed)
-    expect(keys.nth(1 if south else 0)).to_be_checked()
-    expect(page.locator("#preview")).to_contain_text("southern" if south else "northern")
-
-
-@pytest.mark.parametrize("field", ["latitude", "longitude"])
-def test_a_pasted_pair_fills_both_fields_and_is_saved_as_it_is_shown(
-    plant: Plant, opened: Opened, field: str
-) -> None:
+def test_a_pasted_pair_fills_both_fields_and_is_saved_as_it_is_shown(plant: Plant, opened: Opened) -> None:
     page = opened("/trackers/T1/commissioning/location", allow=("422",))
     page.locator("input[name=latitude_side]").nth(1).check(force=True)
-    pasted = page.locator(f"#f-{field}")
+    pasted = page.locator("#f-longitude")
     pasted.fill("41°17'12.12\"N 36°19'48.0\"W")
     pasted.press("Control+A")
     pasted.press("Control+X")
@@ -87,18 +69,20 @@ def test_a_pasted_pair_fills_both_fields_and_is_saved_as_it_is_shown(
     assert (saved.location.latitude_deg, saved.location.longitude_deg) == pytest.approx((41.2867, -36.33))
 
 
-def test_a_pair_that_is_typed_is_divided_once_its_field_is_left(opened: Opened) -> None:
+def test_what_is_typed_is_explained_and_divided_once_its_field_is_left(
+    opened: Opened,
+) -> None:
     page = opened("/trackers/T1/commissioning/location")
     latitude = page.locator("#f-latitude")
+    latitude.fill("41.5° 30'")
+    expect(page.locator("#preview")).to_contain_text("only the last number may have decimals")
+    latitude.fill("35 18 29 S")
+    expect(page.locator("input[name=latitude_side]").nth(1)).to_be_checked()
+    expect(page.locator("#preview")).to_contain_text("southern")
+    page.locator("input[name=latitude_side]").nth(0).check(force=True)
     latitude.fill("39.9208 32.8541")
     expect(page.locator("#preview")).to_contain_text("39° 55′ 14.9″ N  32° 51′ 14.8″ E")
     expect(latitude).to_have_value("39.9208 32.8541")
     latitude.blur()
     expect(latitude).to_have_value("39.9208")
     expect(page.locator("#f-longitude")).to_have_value("32.8541")
-
-
-def test_the_page_tells_before_it_is_saved_why_a_text_is_not_read(opened: Opened) -> None:
-    page = opened("/trackers/T1/commissioning/location")
-    page.locator("#f-latitude").fill("41.5° 30'")
-    expect(page.locator("#preview")).to_contain_text("only the last number may have decimals")

@@ -1,15 +1,9 @@
 """The key forward works whatever else is under way: the step bar is renewed, an order is not answered yet."""
 
-from collections.abc import Callable
-
-import pytest
-from playwright.sync_api import Locator, Page, Route, expect
+from playwright.sync_api import Route
 
 from tests.browser.conftest import Opened, Plant
 from tests.browser.hands import arrive
-from tests.browser.one_panel import opened, plant
-
-__all__ = ["opened", "plant"]
 
 LOCATION = "/trackers/T1/commissioning/location"
 PROGRESS = "/trackers/T1/commissioning/progress/location?here=/trackers/T1/commissioning/location"
@@ -26,35 +20,14 @@ ANSWERED = """() => document.addEventListener("htmx:finally:request", () => {
 })"""
 
 
-def by_keyboard(page: Page, key: Locator) -> None:
-    key.focus()
-    page.evaluate(RENEWED)
-    page.keyboard.press("Enter")
-
-
-def by_mouse(page: Page, key: Locator) -> None:
-    key.hover()
+def test_a_press_outlives_the_renewal_of_the_step_bar(plant: Plant, opened: Opened) -> None:
+    page = opened(LOCATION)
+    page.locator("#forward .key").hover()
     page.mouse.down()
     page.evaluate(RENEWED)
     page.mouse.up()
-
-
-@pytest.mark.parametrize("press", [by_keyboard, by_mouse])
-def test_a_press_outlives_the_renewal_of_the_step_bar(
-    plant: Plant, opened: Opened, press: Callable[[Page, Locator], None]
-) -> None:
-    page = opened(LOCATION)
-    press(page, page.locator("#forward .key"))
     arrive(page, "/commissioning/clock")
     assert len(plant.orders("set_location")) == 1
-
-
-def test_a_link_of_the_step_bar_keeps_the_focus(plant: Plant, opened: Opened) -> None:
-    page = opened(LOCATION)
-    link = page.locator("#steps a").nth(1)
-    link.focus()
-    page.evaluate(RENEWED)
-    expect(link).to_be_focused()
 
 
 def test_an_answer_that_comes_late_brings_nobody_back(plant: Plant, opened: Opened) -> None:

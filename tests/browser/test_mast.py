@@ -1,15 +1,10 @@
-"""The page behind the label: all of it on one screen of a phone, in every language, large for gloves."""
+"""The page behind the label: all of it on one screen of a phone, large for gloves."""
 
 import pytest
 from playwright.sync_api import Page
 
-from app.web.languages.known import LANGUAGES
-from tests.browser.conftest import Opened, Plant
-from tests.browser.one_panel import opened, plant, resize
-from tests.browser.test_frame import BOXES
+from tests.browser.conftest import Opened, Plant, resize
 from tests.browser.troubles import trouble
-
-__all__ = ["opened", "plant"]
 
 MAST = "/trackers/T1/mast"
 LEAST_PX = 112
@@ -26,7 +21,7 @@ def boxes(page: Page, names: str) -> list[tuple[float, float, bool]]:
     return [tuple(one) for one in page.evaluate(BETWEEN_BARS, names)]
 
 
-@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("language", ["en", "de"])
 def test_four_buttons_and_two_angles_are_on_one_screen(language: str, opened: Opened) -> None:
     page = opened(MAST, "phone", language=language)
     for size in ("phone", "tablet"):
@@ -47,14 +42,3 @@ def test_a_button_that_may_not_move_says_why_and_where_it_is_read(plant: Plant, 
     reasons = page.locator('[data-reasons="jog"]')
     assert reasons.inner_text().strip()
     assert reasons.bounding_box()["y"] < page.locator("[data-jog]").first.bounding_box()["y"]  # type: ignore[index]
-
-
-def test_what_is_said_when_a_button_is_let_go_moves_none(plant: Plant, opened: Opened) -> None:
-    page = opened(MAST, "phone")
-    before = page.evaluate(BOXES, "[data-jog]")
-    said = """() => {
-      document.getElementById("jog-words").textContent = "The finger slid off the button.";
-      document.getElementById("lost-beats").textContent = ", 0 of 41 heartbeats lost";
-    }"""
-    page.evaluate(said)
-    assert page.evaluate(BOXES, "[data-jog]") == before

@@ -1,4 +1,4 @@
-"""Without a connection: STOP says in red that it was not sent, nothing held moves, nothing says "good"."""
+"""Without a connection: STOP says in red that it was not sent, nothing says "good"."""
 
 import pytest
 from playwright.sync_api import Locator, Page, Route, expect
@@ -18,7 +18,6 @@ NOT_CONFIRMED = "STOP was not confirmed. Use the emergency stop at the cabinet."
 NOT_POSSIBLE = "Stop not possible: use the emergency stop"
 CONFIRMED_WITHIN_MS = 1500
 LONGEST = max(LANGUAGES, key=lambda code: len(catalogue_of(code).gettext(NOT_SENT)))
-JOG = '[data-jog="azimuth"][data-direction="1"]'
 RED = "rgb(200, 16, 46)"
 SEEN = "all => all.map((e) => e.checkVisibility())"
 STYLE = "(e, name) => getComputedStyle(e)[name]"
@@ -46,8 +45,7 @@ def touch(stage: Stage, key: Locator) -> None:
     stage.settle()
 
 
-@pytest.mark.parametrize("language", ["en", LONGEST])
-@pytest.mark.parametrize("size", ["tablet", "phone"])
+@pytest.mark.parametrize(("size", "language"), [("tablet", LONGEST), ("phone", LONGEST)])
 def test_stop_without_a_controller_is_told_in_red_at_the_button_and_moves_nothing(
     size: str, language: str, stage: Stage
 ) -> None:
@@ -59,6 +57,9 @@ def test_stop_without_a_controller_is_told_in_red_at_the_button_and_moves_nothin
     black = stop.evaluate(STYLE, "backgroundColor")
     lose(stage)
     assert page.locator("#link-banner").is_visible()
+    assert page.locator("#link-quality").get_attribute("data-level") == "0"
+    assert page.locator("#round-trip").inner_text() == page.locator("#lost-beats").inner_text() == ""
+    assert page.locator(".header-link svg").evaluate_all(SEEN) == [False, True]
     assert stop.get_by_text(text(NOT_POSSIBLE)).is_visible()
     assert stop.get_by_text(text("STOP motion"), exact=True).is_hidden()
     assert boxes(page, "[data-jog]") == keys
@@ -74,24 +75,6 @@ def test_stop_without_a_controller_is_told_in_red_at_the_button_and_moves_nothin
     assert (box(stop), boxes(page, "[data-jog]")) == (before, keys)
     page.locator("#stop-answer-close").click()
     assert told.is_hidden()
-
-
-def test_what_was_closed_is_not_told_again_when_the_other_way_fails_too(stage: Stage) -> None:
-    page = stage.open("/trackers/T2", "tablet", allow=LINK_ERRORS)
-    waiting: list[Route] = []
-    page.evaluate("tap.excuse('/stop')")
-    page.route("**/stop?*", lambda route: waiting.append(route))
-    lose(stage)
-    touch(stage, page.locator("#stop-key"))
-    assert page.locator("#stop-answer").is_visible()
-    page.locator("#stop-answer-close").click()
-    with page.expect_event("requestfailed"):
-        waiting[0].abort()
-    stage.advance(BEAT_MS)
-    assert page.locator("#stop-answer").is_hidden()
-    stage.until(page.locator("#stop-key:not([data-pressed])").count)
-    touch(stage, page.locator("#stop-key"))
-    assert page.locator("#stop-answer").is_visible()
 
 
 def test_stop_without_a_network_is_told_at_once(stage: Stage) -> None:
@@ -122,9 +105,8 @@ def test_stop_that_nobody_confirms_in_time_is_told_until_it_is_confirmed(stage: 
     assert page.locator("#stop-answer").is_hidden()
 
 
-@pytest.mark.parametrize("size", ["tablet", "phone"])
-def test_no_connection_and_alarms_stay_in_sight_below(size: str, stage: Stage) -> None:
-    page = stage.open("/trackers/T1/settings", size, allow=LINK_ERRORS)
+def test_no_connection_and_alarms_stay_in_sight_below(stage: Stage) -> None:
+    page = stage.open("/trackers/T1/settings", "phone", allow=LINK_ERRORS)
     stage.plant.machine.alarms = (alarm("store_damaged", stage.clock.now(), None),)
     stage.until(page.locator("#alarm-new:not([hidden])").count)
     page.evaluate("scrollTo(0, 1500)")
@@ -134,16 +116,3 @@ def test_no_connection_and_alarms_stay_in_sight_below(size: str, stage: Stage) -
     assert box(page.locator("#link-banner"))["y"] == 0
     expect(page.locator("#link-banner")).to_be_in_viewport(ratio=0.9)
     assert box(page.locator(".header"))["height"] <= 48
-
-
-def test_nothing_says_that_the_link_is_good_while_there_is_none(stage: Stage) -> None:
-    page = stage.open(HOMING, "tablet", allow=LINK_ERRORS)
-    page.wait_for_selector(LINK_MEASURED)
-    arcs, words = page.locator(".header-link svg"), page.locator("#fault-banner [data-live]").first
-    assert arcs.evaluate_all(SEEN) == [True, False]
-    lose(stage)
-    assert page.locator("#link-words-jog").inner_text() == "no connection"
-    assert page.locator("#link-quality").get_attribute("data-level") == "0"
-    assert page.locator("#round-trip").inner_text() == page.locator("#lost-beats").inner_text() == ""
-    assert arcs.evaluate_all(SEEN) == [False, True]
-    assert words.evaluate(STYLE, "color") == "rgb(255, 255, 255)", "on red, what is old stays white"

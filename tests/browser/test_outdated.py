@@ -6,26 +6,11 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.browser.conftest import Opened, Plant
-from tests.browser.one_panel import opened, plant
-
-__all__ = ["opened", "plant"]
 
 SETTINGS = "/trackers/T1/settings"
 SHOWN_MS = 1500
 """So long the page says that it is loaded again."""
 LATER = re.compile(r"\.second-boot$")
-
-
-@pytest.mark.fault(61)
-def test_a_page_from_before_a_restart_is_loaded_again_in_place(plant: Plant, opened: Opened) -> None:
-    page = opened(SETTINGS, still=True)
-    plant.do(plant.machine.start_again)
-    expect(page.locator("#outdated-banner")).to_be_visible()
-    page.clock.run_for(SHOWN_MS - 1)
-    assert page.evaluate("document.documentElement.dataset.page").endswith(".fake-boot")
-    page.clock.run_for(1)
-    expect(page.locator("html")).to_have_attribute("data-page", LATER)
-    expect(page.locator("#outdated-banner")).to_be_hidden()
 
 
 def test_a_page_on_which_was_typed_is_loaded_again_when_it_suits(plant: Plant, opened: Opened) -> None:

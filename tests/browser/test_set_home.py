@@ -15,7 +15,7 @@ SURE = '[name="confirmed"]'
 UNDO = 'form[action$="/zero/undo"] button'
 LAMPS_ON = '[data-lamp$=".homed"][data-on="true"]'
 TOLD = "The command to set home was sent to the drive."
-HANDS: dict[str, type[Hands]] = {"mouse": Mouse, "finger": Finger, "keyboard": Keyboard}
+HANDS: dict[str, type[Hands]] = {"finger": Finger, "keyboard": Keyboard}
 COUNTS_MS = 2000
 COARSE_MS = 250
 """A beat of those to whom the very instant does not matter: a page's pings are a multiple of it."""
@@ -40,10 +40,10 @@ def set_home(stage: Stage, page: Page, hands: Hands) -> None:
 @pytest.mark.parametrize("hand", list(HANDS))
 def test_it_is_held_asked_about_and_undone(hand: str, stage: Stage) -> None:
     is_finger = hand == "finger"
-    stage.beat_ms = BEAT_MS if hand == "mouse" else COARSE_MS
+    stage.beat_ms = COARSE_MS
     too_short_ms, long_enough_ms = COUNTS_MS - stage.beat_ms, COUNTS_MS + stage.beat_ms
     page = stage.open(HOMING, "phone" if is_finger else "tablet", touch=is_finger, allow=("422",))
-    hands = HANDS[hand](page, stage.advance)  # type: ignore[call-arg]
+    hands = HANDS[hand](page, stage.advance)
     hands.hold(page.locator(SET), too_short_ms)
     stage.advance(500)
     assert page.locator(SURE).count() == 0
@@ -59,7 +59,7 @@ def test_it_is_held_asked_about_and_undone(hand: str, stage: Stage) -> None:
     stage.until(page.locator(UNDO).is_visible)
     stage.advance(500)
     assert stage.plant.orders("undo_home") == [], "letting go pressed the key that came under the finger"
-    Keyboard(page).press(page.locator(UNDO))
+    Keyboard(page, stage.advance).press(page.locator(UNDO))
     reading = page.locator('[data-live="measured.azimuth_deg"]').first
     stage.until(lambda: reading.inner_text() == "180.00°")
 

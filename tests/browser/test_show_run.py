@@ -4,20 +4,14 @@ from datetime import UTC, datetime, timedelta
 from functools import partial
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import expect
 
-from app.base.message import say
 from app.store.store import PlannedShow
 from app.tracker.programs.show import ShowPlan
 from app.tracker.state.snapshot import ActivityName, Event, EventKind, ShowPhase
-from app.web.languages.catalogue import catalogue_of
-from app.web.languages.known import LANGUAGES
-from tests.browser.conftest import Opened, Plant
-from tests.browser.layout import page_end
-from tests.browser.one_panel import go, opened, plant
+from tests.browser.conftest import Opened, Plant, go
 from tests.fake_data import SAMSUN
 
-__all__ = ["opened", "plant"]
 SHOW = "/trackers/T1/shows/s1"
 PLAN = ShowPlan(
     "s1",
@@ -26,16 +20,6 @@ PLAN = ShowPlan(
     timedelta(minutes=3),
     SAMSUN,
 )
-
-WIDE = """(keys, [words, symbol]) => keys.filter((key, index) => {
-  const span = key.querySelector("span");
-  const english = span.textContent;
-  span.textContent = words[index];
-  const isWide = span.scrollWidth + symbol > key.clientWidth;
-  span.textContent = english;
-  return isWide;
-}).map((key) => key.innerText)"""
-
 
 PRINTING = """() => {
   window.printing = new Promise((done) => {
@@ -70,36 +54,6 @@ def test_on_the_way_to_the_start_nothing_is_told_twice(plant: Plant, opened: Ope
     expect(page.locator("#show-keys .reasons:visible")).to_have_count(0)
     plant.do(partial(at, plant, 0.0, ShowPhase.READY))
     expect(page.locator('[data-action="run_show"]')).to_be_enabled()
-
-
-def test_no_word_is_wider_than_its_key_in_any_language(plant: Plant, opened: Opened) -> None:
-    """The words of each language are put into the keys of one page."""
-    at(plant, 0.2, ShowPhase.GOING_TO_START)
-    page = opened(SHOW, "tablet")
-    keys = page.locator("#show-keys .key:visible")
-    for phase, number in (("Going to the start", 2), ("Running", 2), ("Ended", 3)):
-        if phase == "Running":
-            plant.do(partial(at, plant, 0.2))
-        elif phase == "Ended":
-            plant.do(partial(over, plant))
-        expect(page.locator("#show-phase")).to_have_text(phase)
-        expect(keys).to_have_count(number)
-        words = [one.strip() for one in keys.locator("span").all_inner_texts()]
-        for language in LANGUAGES:
-            said = [catalogue_of(language).said(say(word)) for word in words]
-            assert language == "en" or said != words, "they are translated"
-            assert keys.evaluate_all(WIDE, [said, 24 + 10]) == [], language
-
-
-def bottom(page: Page, name: str) -> float:
-    return float(page.locator(name).evaluate("one => one.getBoundingClientRect().bottom"))
-
-
-def test_on_a_tablet_picture_path_and_keys_are_seen_together(under_way: Plant, opened: Opened) -> None:
-    page = opened(SHOW, "tablet")
-    expect(page.locator("#show-phase")).to_have_text("Running")
-    for name in ("#show-keys", "#show-scene", ".show-grid .sunpath"):
-        assert bottom(page, name) <= page_end(page), name
 
 
 def test_a_show_that_has_run_to_its_end_says_so_to_the_last_second(under_way: Plant, opened: Opened) -> None:
@@ -155,13 +109,6 @@ def test_the_replay_key_plays_what_was_recorded_of_this_show(under_way: Plant, o
     page.wait_for_url("**/recordings/show-1")
 
 
-def test_the_replay_key_of_a_show_that_never_ran_leads_to_the_list(under_way: Plant, opened: Opened) -> None:
-    over(under_way)
-    page = opened(SHOW, "tablet", touch=True)
-    page.get_by_role("link", name="Replay").tap()
-    expect(page.locator("h1")).to_have_text("Recordings")
-
-
 def test_a_replay_is_printed_with_both_curves_though_nobody_has_looked_at_them(
     plant: Plant, opened: Opened
 ) -> None:
@@ -170,12 +117,3 @@ def test_a_replay_is_printed_with_both_curves_though_nobody_has_looked_at_them(
     expect(page.locator("#errors canvas")).to_have_count(0)
     page.locator("#player-print").click()
     assert page.evaluate("printing") == 2
-    page.emulate_media(media="print")
-    for gone in (".player-bar", "#player-print", ".scene-keys"):
-        expect(page.locator(gone)).to_be_hidden()
-    for name in ("#angles", "#errors"):
-        inside = page.locator(name).evaluate(
-            "one => one.querySelector('canvas').getBoundingClientRect().width <= one.clientWidth + 1"
-        )
-        assert inside, name
-    page.emulate_media(media="null")

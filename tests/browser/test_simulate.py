@@ -3,9 +3,6 @@
 from playwright.sync_api import Route, expect
 
 from tests.browser.conftest import Opened
-from tests.browser.one_panel import opened, plant
-
-__all__ = ["opened", "plant"]
 
 REFUSED = '<div class="outcome-refused"><b>Not done.</b></div>'
 

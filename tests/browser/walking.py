@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import Browser, BrowserContext, Locator, Page, expect
 
 from tests.browser.conftest import SIZES, TAKES_PICTURES, WRITES_DOCS
-from tests.browser.hands import CONFIRM_MS, Hands, arrive
+from tests.browser.hands import Hands, arrive
 from tests.e2e.product import Product
 from tests.patience import PATIENCE_MS
 
@@ -62,30 +62,12 @@ def walker(rooms: dict[bool, BrowserContext]) -> Iterator[Walker]:
     assert not beyond_what_is_asked, beyond_what_is_asked
 
 
-def onwards(page: Page, hands: Hands, to: str) -> None:
-    hands.press(page.locator("#forward .key"))
-    arrive(page, to)
-
-
 def add_tracker(page: Page, hands: Hands, url: str, tracker_id: str) -> None:
     page.goto(url)
     hands.write(page.locator("#f-tracker_id"), tracker_id)
     hands.write(page.locator("#f-name"), "Walked")
     hands.press(page.locator("#add-form button"))
     arrive(page, "/settings")
-
-
-def say_where(page: Page, hands: Hands) -> None:
-    hands.write(page.locator("#f-latitude"), "41° 17' 12,1\"")
-    hands.write(page.locator("#f-longitude"), "36,33")
-    expect(page.locator("#preview")).to_contain_text("Europe/Istanbul")
-    onwards(page, hands, "/clock")
-
-
-def trust_the_clock(page: Page, hands: Hands) -> None:
-    hands.press(page.locator('form[action$="/clock/system"] button'))
-    page.wait_for_selector("#forward a.key")
-    onwards(page, hands, "/homing")
 
 
 def move_by_hand(hands: Hands, key: Locator, reading: Locator) -> None:
@@ -97,13 +79,3 @@ def move_by_hand(hands: Hands, key: Locator, reading: Locator) -> None:
         if reading.inner_text() != before:
             return
     pytest.fail(f"The axis never moved while the key was held: {before}.")
-
-
-def set_home(page: Page, hands: Hands) -> None:
-    """Set the home position, and say that it is right where the drive reads another angle."""
-    key, sure = page.locator('[data-action="set_home"]').first, page.locator('[name="confirmed"]')
-    expect(key).to_be_enabled()
-    hands.hold(key, CONFIRM_MS)
-    expect(sure.or_(page.locator(".outcome-ok")).first).to_be_visible()
-    if sure.count():
-        hands.hold(sure, CONFIRM_MS)

@@ -14,7 +14,6 @@ import numpy as np
 from app.tracker.settings.axes import AZIMUTH_DEFAULT
 from tests.e2e.integrator import Integrator
 from tests.e2e.product import Product
-from tests.e2e.sky import columns
 from tests.patience import until as eventually
 from tests.soak.rigs.eyes import Eyes
 
@@ -87,7 +86,8 @@ class Killing:
 
     def elapsed_s(self, recording_id: str) -> np.ndarray:
         """Return when each frame of a recording was taken, seconds since it began."""
-        return columns(self.integrator.get(f"/api/v1/recordings/{recording_id}/samples"))["elapsed_s"]
+        frames = self.integrator.get(f"/api/v1/recordings/{recording_id}/samples")
+        return np.array(frames["columns"]["elapsed_s"], dtype=np.float64)
 
     def _kill(self) -> float:
         machines = len(self.product.starts("controller"))

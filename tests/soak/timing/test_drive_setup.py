@@ -28,7 +28,7 @@ def test_a_drive_is_connected_and_its_watchdog_tested_with_a_finger(
     walker: Walker, service: str, sim_port: int
 ) -> None:
     page = walker("phone", "finger")
-    hands = Finger(page)
+    hands = Finger(page, page.wait_for_timeout)
     add_tracker(page, hands, service, "drive")
     fast = {"azimuth": {"jog_fast_dps": 6.0}, "elevation": {"jog_fast_dps": 4.0}}
     assert httpx.patch(f"{service}/api/v1/trackers/drive", json=fast).status_code == 200
