@@ -46,16 +46,6 @@ def under_way(plant: Plant) -> Plant:
     return plant
 
 
-def test_on_the_way_to_the_start_nothing_is_told_twice(plant: Plant, opened: Opened) -> None:
-    at(plant, 0.0, ShowPhase.GOING_TO_START)
-    page = opened(SHOW, "tablet")
-    expect(page.locator("#show-phase")).to_have_text("Going to the start")
-    expect(page.get_by_role("button", name="Show tracking movement")).to_be_disabled()
-    expect(page.locator("#show-keys .reasons:visible")).to_have_count(0)
-    plant.do(partial(at, plant, 0.0, ShowPhase.READY))
-    expect(page.locator('[data-action="run_show"]')).to_be_enabled()
-
-
 def test_a_show_that_has_run_to_its_end_says_so_to_the_last_second(under_way: Plant, opened: Opened) -> None:
     page = opened(SHOW, "desk")
     under_way.do(partial(at, under_way, 0.996))

@@ -5,7 +5,7 @@ import pytest
 from app.energy import alexandru
 from app.energy.alexandru import PER_WHM2, paper_day, solstice, table_3, table_4
 from app.energy.optimiser import Limits, best_programs
-from app.energy.stepping import fixed_whm2, midpoint_h
+from app.energy.stepping import midpoint_h
 from tests.golden.table import numbers
 
 PAPER_FIXED_WH, PAPER_TABLE_3_WH, PAPER_GAIN = 1209.31, 1930.18, 58.66
@@ -28,12 +28,6 @@ def test_the_whole_day_and_continuous_tracking_do_not() -> None:
     assert found.continuous_wh == pytest.approx(1953.00, abs=0.005)
     assert found.continuous_whole_day_wh == pytest.approx(2169.45, abs=0.005)
     assert found.within_range_wh == pytest.approx(1934.09, abs=0.005)
-
-
-def test_the_program_is_that_of_table_3() -> None:
-    rows = numbers("alexandru_table3.csv")
-    assert table_3().starts_h == tuple(row["start_h"] for row in rows)
-    assert table_3().angles_deg == (rows[0]["from_deg"], *(row["to_deg"] for row in rows))
 
 
 def test_its_times_are_up_to_27_minutes_from_the_best() -> None:
@@ -75,8 +69,3 @@ def test_its_winter_gains_come_out_with_no_turbidity() -> None:
     assert 23.0 < found[0] < 25.1
     assert told[0] - found[0] > 10.0
     assert max(found) == found[5]
-
-
-def test_no_turbidity_gives_all_three_energies() -> None:
-    whole = paper_day(whole=True)
-    assert PER_WHM2 * fixed_whm2(whole, 45.65) < 2003.71 < solstice().continuous_whole_day_wh

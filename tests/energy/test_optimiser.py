@@ -12,7 +12,6 @@ from app.energy.optimiser import (
     best_number,
     best_programs,
     best_steps,
-    best_tilt_deg,
     equal_steps,
     judged,
 )
@@ -78,15 +77,6 @@ def test_no_instants_are_better_than_the_midpoints(
     assert stepped_whm2(day, best) >= shifted_whm2 * (1 - QUADRATURE)
 
 
-def test_beats_angles_tried_at_random() -> None:
-    """No program of random angles at the best instants collects more than the optimum."""
-    day, chance = cloudy(0.9, 14.0), np.random.default_rng(7)
-    best = best_steps(day, 4, Limits(60.0), tilt_deg=35.0)
-    for _ in range(60):
-        angles = tuple(np.sort(chance.uniform(-60, 60, 5))[::-1].tolist())
-        assert stepped_whm2(day, Steps(midpoint_h(angles), angles, 35.0)) <= best.collected_whm2 + 1e-6
-
-
 def test_each_further_step_brings_less_and_less() -> None:
     programs = best_programs(paper_day(), 16, Limits(60.0))
     gained = np.diff([one.collected_whm2 for one in programs])
@@ -115,16 +105,6 @@ def test_too_many_slow_steps_are_refused_with_a_sentence() -> None:
     with pytest.raises(ValueError, match="do not fit into"):
         best_steps(paper_day(), 20, Limits(60.0, 0.5))
     assert len(best_programs(paper_day(), 40, Limits(60.0, 0.5))) == 17
-
-
-def test_the_best_tilt_beats_its_neighbours() -> None:
-    day = paper_day()
-    steps = best_steps(day, 4, Limits(60.0)).steps
-    best = best_tilt_deg(day, steps)
-    energies = [
-        stepped_whm2(day, Steps(steps.starts_h, steps.angles_deg, best + off)) for off in (-0.5, 0, 0.5)
-    ]
-    assert energies[1] > max(energies[0], energies[2])
 
 
 def test_polar_night_collects_nothing_and_polar_day_goes_round() -> None:

@@ -114,7 +114,7 @@ def test_elevation_as_the_paper_has_it_brings_next_to_nothing(samsun: ClearYear)
     assert least > 1.03 * paper
 
 
-@pytest.mark.parametrize("rows", [None, Rows(0.4)])
+@pytest.mark.parametrize("rows", [None, Rows(0.4)], ids=["alone", "rows"])
 def test_a_single_axis_year_is_that_of_pvlib(samsun: ClearYear, rows: Rows | None) -> None:
     mount = MountConfig(MountKind.HORIZONTAL_SINGLE_AXIS, 180.0, rows=rows)
     follower = Follower(mount, Mode.DUAL, HELD, range_deg=60.0)

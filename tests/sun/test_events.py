@@ -99,25 +99,6 @@ def test_polar_day_and_night_on_svalbard(month: int, polar: PolarDay | None) -> 
     assert day_events(Algorithm.PSA, LONGYEARBYEN, begin, end).polar is polar
 
 
-@pytest.mark.parametrize(("latitude_deg", "june"), [(90.0, PolarDay.DAY), (-90.0, PolarDay.NIGHT)])
-def test_the_poles_have_one_long_day_and_one_long_night(latitude_deg: float, june: PolarDay) -> None:
-    pole = Location(latitude_deg, 0.0)
-    assert day_events(Algorithm.PSA, pole, *local_day(pole, 2026, 6, 21)).polar is june
-    assert day_events(Algorithm.PSA, pole, *local_day(pole, 2026, 12, 21)).polar is not june
-
-
-def test_a_sun_that_only_peeps_over_the_horizon_is_found() -> None:
-    noons = [local_day(LONGYEARBYEN, 2026, 2, day) for day in range(10, 22)]
-    lengths = [
-        found.set - found.rise
-        for begin, end in noons
-        if (found := day_events(Algorithm.PSA, LONGYEARBYEN, begin, end)).rise and found.set
-    ]
-    assert len(lengths) >= 3
-    assert lengths == sorted(lengths)
-    assert lengths[0] < timedelta(hours=2)
-
-
 @pytest.mark.parametrize(("month", "day", "hours"), [(3, 29, 23), (10, 25, 25)])
 @pytest.mark.fault(29)
 def test_days_of_daylight_saving_have_23_or_25_hours(month: int, day: int, hours: int) -> None:
@@ -131,15 +112,12 @@ def test_days_of_daylight_saving_have_23_or_25_hours(month: int, day: int, hours
     assert begin < found.rise < found.set < end
 
 
-def test_the_next_rise_may_be_tomorrow() -> None:
+def test_the_next_rise_may_be_tomorrow_or_never() -> None:
+    assert next_rise(Algorithm.PSA, LONGYEARBYEN, datetime(2026, 12, 1, tzinfo=UTC)) is None
     after = datetime(2026, 6, 21, 12, tzinfo=UTC)
     rise = next_rise(Algorithm.PSA, SAMSUN, after)
     assert rise is not None
     assert after + timedelta(hours=14) < rise < after + timedelta(hours=15)
-
-
-def test_in_the_polar_night_there_is_no_next_rise() -> None:
-    assert next_rise(Algorithm.PSA, LONGYEARBYEN, datetime(2026, 12, 1, tzinfo=UTC)) is None
 
 
 def test_a_day_that_ends_before_it_begins_is_refused() -> None:

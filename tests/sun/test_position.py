@@ -153,13 +153,6 @@ def test_refraction_is_what_the_formula_says(elevation_deg: float, expected_deg:
     assert refraction_deg(elevation_deg) == pytest.approx(expected_deg, abs=1e-4)
 
 
-@given(st.floats(-90.0, 90.0))
-def test_refraction_of_one_and_of_many_agree(elevation_deg: float) -> None:
-    assert refraction_path(np.array([elevation_deg]))[0] == pytest.approx(
-        refraction_deg(elevation_deg), abs=1e-12
-    )
-
-
 def test_the_apparent_elevation_is_continuous_and_rises_with_the_true_one() -> None:
     true_deg = np.arange(-3.0, 3.0, 0.001)
     apparent_deg = true_deg + refraction_path(true_deg)
