@@ -63,7 +63,7 @@ def on_the_server(code: str) -> list[str]:
 def test_both_sides_write_values_alike(opened: Opened) -> None:
     page = opened("/")
     cases = [[value.isoformat() if isinstance(value, datetime) else value, form] for value, form in VALUES]
-    for code in ("en", "de", "zh"):
+    for code in ("es", "de", "en"):
         speak(page, code)
         assert page.evaluate(IN_THE_BROWSER, cases) == on_the_server(code), code
 

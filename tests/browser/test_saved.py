@@ -15,9 +15,6 @@ LIST = ".saved-what"
 SAVE = "#settings-form > .key-primary"
 WALL = Region("Wall", (Corner(170.0, 0.0), Corner(190.0, 0.0), Corner(190.0, 30.0)))
 SAVES: dict[str, tuple[str, str, dict[str, str], list[str]]] = {
-    "protections": (
-        f"{T1}/protections", "#protections-form .key-primary", {"#f-stow_wind": "16"}, ["→ 16"],
-    ),
     "notifications": (
         "/site/notifications", "#notifications-form .key-main",
         {"#f-mail_to": "field@example.org", "#f-webhook_url": "https://example.org/very-secret"},
