@@ -55,9 +55,16 @@ DAYS = {
     "azimuth alone, parked at night": Day(
         replace(TRACKER, night=NightBehaviour.PARK),
         SAMSUN,
-        datetime(2026, 12, 21, 12, tzinfo=UTC),
+        datetime(2026, 12, 21, 13, tzinfo=UTC),
         6,
         Mode.AZIMUTH,
+    ),
+    "elevation alone, held at night": Day(
+        replace(TRACKER, night=NightBehaviour.HOLD),
+        SAMSUN,
+        datetime(2026, 9, 23, 15, tzinfo=UTC),
+        2,
+        Mode.ELEVATION,
     ),
 }
 
