@@ -1,97 +1,67 @@
-"""Profiles: what the loader takes, and the sentences with which it refuses."""
+"""Profiles: what ships, one's own beside them, what the loader takes, and the sentences of its refusals."""
 
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from app.base.clock import VirtualClock
 from app.drives.connections.profile_needs import check_needs
-from app.drives.dialects.plc_map import PlcMap
-from app.drives.profile import PROFILES, ProfileError, known_profiles, load_profile, parse_profile
+from app.drives.dialects.gearing import Gearing, gearing_of
+from app.drives.profile import (
+    PROFILES,
+    Adapter,
+    ProfileError,
+    SequenceStep,
+    known_profiles,
+    load_profile,
+    parse_profile,
+)
+from app.drives.profile_library import ProfileLibrary
 from app.drives.register import Register, ValueMisfit, WordOrder, WordType
+from app.machine.drive_factory import DriveFactory
 from app.simulation.profile_page import DOCS, renewed
+from app.tracker.settings.config import AxisDrive, DriveConfig, DriveKind
+from tests.drives.rigs import CONFIG, START
+from tests.golden.table import rows
 
 TEXT = (PROFILES / "simulated-plc.toml").read_text(encoding="utf-8")
+WRONG = rows("wrong_profiles.csv")
 
 
 @pytest.mark.parametrize("name", known_profiles())
-def test_every_profile_that_ships_can_be_loaded(name: str) -> None:
+def test_every_profile_that_ships_is_right_and_its_page_is_up_to_date(name: str) -> None:
     profile = load_profile(name)
     assert profile.name == name
-    assert all(register.source for register in profile.registers.values())
+    assert all(len(register.source) > 10 for register in profile.registers.values())
+    assert profile.verified == (not profile.unverified)
     check_needs(profile)
-
-
-@pytest.mark.parametrize("name", known_profiles())
-def test_the_page_of_every_profile_is_up_to_date(name: str) -> None:
     written = (DOCS / f"{name}.md").read_text(encoding="utf-8")
-    assert written == renewed(written, load_profile(name)), "run python -m app.simulation.profile_page"
+    assert written == renewed(written, profile), "run python -m app.simulation.profile_page"
 
 
-def test_a_profile_can_be_a_file_of_ones_own(tmp_path: Path) -> None:
-    own = tmp_path / "own.toml"
-    own.write_text(TEXT.replace('name = "simulated-plc"', 'name = "own"'), encoding="utf-8")
-    assert load_profile(str(own)).name == "own"
+def test_the_example_on_the_page_is_a_right_profile_and_the_page_names_every_adapter() -> None:
+    page = (DOCS / "writing-a-profile.md").read_text(encoding="utf-8")
+    example = re.search(r"```toml\n(.*?)```", page, re.DOTALL)
+    assert example is not None
+    profile = parse_profile(example[1], "my-servo.toml")
+    check_needs(profile)
+    assert (profile.adapter, profile.registers["velocity"].optional) == (Adapter.CIA402, True)
+    assert profile.watchdog is not None
+    assert profile.watchdog.register is None
+    assert set(profile.registers) - set(profile.unverified) == {"controlword"}
+    assert all(f"| `{adapter}` |" in page for adapter in Adapter)
 
 
-def test_an_unknown_profile_is_answered_with_those_there_are() -> None:
-    with pytest.raises(ProfileError, match=r"Choose one of .*simulated-plc"):
-        load_profile("nonsense")
-
-
-WRONG = {
-    "unknown type": ('"int32", scale = 0.001, unit = "deg",', '"i", unit = "deg",', r"line \d+, .*one of"),
-    "overlap": ("elevation_position = { address = 10", "elevation_position = { address = 9", "is taken by"),
-    "missing address": ("identity = { address = 0, ", "identity = { ", r"identity.address: is missing"),
-    "unknown key": ("heartbeat = { address = 2,", "heartbeat = { adress = 2,", r"adress: is not known"),
-    "address too high": ("address = 33", "address = 70000", "between 0 and 65535"),
-    "scale zero": ("scale = 0.001, unit = \"deg\"", "scale = 0, unit = \"deg\"", "above zero"),
-    "sign zero": ("text = \"Bits, see below\" }\nswitches", "sign = 0 }\nswitches", "must be 1 or -1"),
-    "text for a number": ("timeout_ms = 300", 'timeout_ms = "300"', "a whole number"),
-    "number for text": ('title = "Simulated PLC with two axes"', "title = 5", "text in quotes"),
-    "no such adapter": ('adapter = "plc"', 'adapter = "plx"', "must be one of plc, cia402"),
-    "bit given twice": ("homing = 4", "homing = 3", "given twice"),
-    "bit above 15": ("request_failed = 6", "request_failed = 16", "between 0 and 15"),
-    "watchdog without register": ('register = "keep_alive"', 'register = "nothing"', "names no register"),
-    "block too large": ("count = 40", "count = 126", "between 1 and 125"),
-    "not TOML": ("[timing]", "[timing", "not TOML.*line"),
-    "name with a blank": ('"simulated-plc"', '"Simulated PLC"', r"line \d+, name: .*lowercase"),
-    "bits of nothing": ("[bits.switches]", "[bits.switch]", r"line \d+, bits.switch: .*no register switch"),
-    "words of nothing": ("[enums.motion]", "[enums.motions]", r"line \d+, enums.motions: .*no register"),
-    "block that cuts": ("count = 40", "count = 11", r"line \d+, blocks.status: cuts register elev"),
-    "empty block": ("address = 0, count = 40", "address = 900, count = 40", "blocks.status: holds no"),
-    "block past the end": ("address = 0, count = 40", "address = 65530, count = 40", "not at 65569"),
-    "wide at the end": ("position = { address = 8,", "position = { address = 0xFFFF,", "second word"),
-    "bounds turned": ("minimum = -1080,", "minimum = 2080,", r"line \d+, .*minimum: must not lie above"),
-    "scale not a number": ("scale = 0.001, unit = \"deg\"", "scale = nan, unit = \"deg\"", "not nan"),
-    "late before too late": ("poll_ms = 100", "longest_reply_ms = 20", r"line \d+, .*shorter than timeout"),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("name", WRONG)
-def test_a_wrong_profile_is_refused_with_file_line_and_rule(name: str) -> None:
-    right, wrong, sentence = WRONG[name]
-    assert right in TEXT
-    with pytest.raises(ProfileError, match=sentence) as caught:
-        parse_profile(TEXT.replace(right, wrong, 1), "own.toml")
+@pytest.mark.parametrize("row", WRONG, ids=[row["what"] for row in WRONG])
+def test_a_wrong_profile_is_refused_with_its_file_and_the_rule(row: dict[str, str]) -> None:
+    right, wrong = (row[name].replace(r"\n", "\n") for name in ("right", "wrong"))
+    text = (PROFILES / f"{row['profile']}.toml").read_text(encoding="utf-8")
+    assert right in text
+    with pytest.raises(ProfileError, match=row["says"]) as caught:
+        check_needs(parse_profile(text.replace(right, wrong, 1), "own.toml"))
     assert str(caught.value).startswith("own.toml")
-
-
-LACKING = {
-    "a register": ("keep_alive = {", "kept_alive = {", "needs a register named keep_alive"),
-    "a block": ("status = { address = 0, count", "stat = { address = 0, count", "block named status"),
-    "status bits": ("[bits.status]", "[bits.echo]", "needs the bits"),
-    "a word": ("velocity = 1\n", "speed = 1\n", "needs the word velocity"),
-    "room in the block": ("count = 40", "count = 20", "outside the status block"),
-    "switches in the block": ("switches = { address = 6,", "switches = { address = 99,", "switches lies out"),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("name", LACKING)
-def test_a_profile_that_lacks_what_a_plc_needs_is_refused(name: str) -> None:
-    right, wrong, sentence = LACKING[name]
-    text = TEXT.replace(right, wrong, 1).replace('register = "keep_alive"', 'register = "echo"')
-    with pytest.raises(ProfileError, match=sentence):
-        PlcMap(parse_profile(text, "own.toml"))
 
 
 def test_a_file_in_another_encoding_is_told_with_its_line(tmp_path: Path) -> None:
@@ -108,15 +78,11 @@ def test_a_table_is_found_in_spite_of_its_comment() -> None:
         parse_profile(text, "own.toml")
 
 
-def test_a_wide_register_has_32_bits() -> None:
+def test_a_wide_register_has_32_bits_and_one_doubtful_line_makes_a_profile_unverified() -> None:
     text = (PROFILES / "kinco-cia402.toml").read_text(encoding="utf-8")
     text = text.replace("origin = 2", "origin = 2\nbrake = 31")
     assert parse_profile(text, "own.toml").bits["inputs"]["brake"] == 31
-
-
-def test_a_line_that_is_not_verified_makes_the_profile_unverified() -> None:
     text = TEXT.replace("heartbeat = { address = 2,", "heartbeat = { address = 2, verified = false,")
-    assert load_profile("simulated-plc").verified
     assert not parse_profile(text, "own.toml").verified
 
 
@@ -143,3 +109,67 @@ def test_values_are_packed_and_unpacked(name: str) -> None:
 def test_what_does_not_fit_is_refused(value: float) -> None:
     with pytest.raises(ValueMisfit, match="does not fit into register x"):
         Register("x", 7, WordType.UINT16).words(value)
+
+
+def test_a_step_takes_a_word_or_a_number() -> None:
+    sequences = load_profile("leadshine-rs").sequences
+    assert sequences["reset_fault"] == (SequenceStep("control", 0x1111),)
+    assert sequences["enable"] == (SequenceStep("enable", 1),)
+
+
+def test_degrees_become_steps_by_revolution_gear_and_direction() -> None:
+    profile = load_profile("leadshine-rs")
+    gearing = gearing_of(profile, AxisDrive(gear_ratio=36.0))
+    assert gearing == Gearing(10000.0, 36.0, 1)
+    assert (gearing.steps(90.0), gearing.degrees(-1000.0)) == (90000, -1.0)
+    turned = gearing_of(profile, AxisDrive(steps_per_revolution=3600.0, gear_ratio=10.0, inverted=True))
+    assert (turned.steps(1.5), turned.degrees(100.0)) == (-150, -1.0)
+
+
+def test_speeds_and_ramps_come_in_the_drives_units_and_the_slowest_is_not_zero() -> None:
+    gearing = Gearing(10000.0, 36.0)
+    assert gearing.speed(3.0, "rpm") == pytest.approx(18.0)
+    assert gearing.speed(3.0, "steps/s") == pytest.approx(3000.0)
+    assert gearing.velocity(-3.0, "rpm") == pytest.approx(-18.0)
+    assert Gearing(10000.0, 36.0, -1).velocity_dps(18.0, "rpm") == pytest.approx(-3.0)
+    assert gearing.ramp(6.0, "steps/s2") == pytest.approx(6000.0)
+    assert gearing.ramp(6.0, "ms/1000rpm") == pytest.approx(1000.0 / 36.0 * 1000.0)
+    assert (Gearing(200.0).speed(0.01, "rpm"), Gearing(200.0).speed(0.0, "rpm")) == (1.0, 0.0)
+
+
+def own(folder: Path, name: str, title: str = "Mine") -> None:
+    text = TEXT.replace('"simulated-plc"', f'"{name}"').replace("Simulated PLC with two axes", title)
+    (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+
+
+def test_ones_own_profile_is_found_read_again_when_changed_and_replaces_none(tmp_path: Path) -> None:
+    own(tmp_path, "mine")
+    own(tmp_path, "simulated-plc", "Not the real one")
+    library = ProfileLibrary(tmp_path)
+    assert library.names() == tuple(sorted((*known_profiles(), "mine")))
+    assert library.load("mine").title == "Mine"
+    own(tmp_path, "mine", "Mine, another edition")
+    assert library.load("mine").title == "Mine, another edition"
+    assert library.load("simulated-plc").title == "Simulated PLC with two axes"
+
+
+@pytest.mark.parametrize("name", ["../secret", "/etc/secret", "mine.toml", "a\0b", "", "nonsense"])
+def test_a_name_leads_nowhere_else(tmp_path: Path, name: str) -> None:
+    folder = tmp_path / "profiles"
+    folder.mkdir()
+    own(tmp_path, "secret")
+    own(folder, "mine")
+    with pytest.raises(ProfileError, match=r"There is no drive profile .* simulated-plc, .*profiles"):
+        ProfileLibrary(folder).load(name)
+
+
+def test_a_tracker_cannot_be_given_a_file_elsewhere_or_two_drives_with_one_unit_id(tmp_path: Path) -> None:
+    own(tmp_path, "secret")
+    factory = DriveFactory(VirtualClock(START), tmp_path / "data")
+    for profile, why in (
+        (str(tmp_path / "secret.toml"), "no drive profile"),
+        ("kinco-cia402", "Both axes have unit 4.*a different unit id"),
+    ):
+        drive = DriveConfig(DriveKind.MODBUS_TCP, profile, unit=4)
+        with pytest.raises(ProfileError, match=why):
+            factory.make(replace(CONFIG, drive=drive))
