@@ -44,14 +44,8 @@ def run(*arguments: str) -> tuple[int, str]:
     return result.exit_code, f"{result.output}{result.exception or ''}"
 
 
-def test_the_profiles_are_listed_with_what_is_not_verified() -> None:
-    code, text = run("profiles")
-    assert code == 0
-    assert "leadshine-rs" in text
-    assert "Not verified on a device: trigger, inputs." in text
-
-
 def test_a_right_profile_is_called_right_and_a_wrong_one_names_its_line(tmp_path: Path) -> None:
+    assert "Not verified on a device: trigger, inputs." in run("profiles")[1]
     said = run("check", "kinco-cia402")[1]
     assert "13 registers, no watchdog, switches lower_limit, upper_limit, origin." in said
     assert "no limit switches" in run("check", "oriental-az")[1]
@@ -72,10 +66,7 @@ def test_a_frame_can_be_held_against_the_manual() -> None:
 def test_a_probe_shows_both_axes_and_marks_what_is_unverified(address: str) -> None:
     code, text = run("probe", "--profile", "leadshine-rs", "--tcp", address)
     assert code == 0, text
-    assert "unit 1" in text
-    assert "unit 2" in text
-    assert "unverified trigger" in text
-    assert "verified   status" in text
+    assert all(one in text for one in ("unit 1", "unit 2", "unverified trigger", "verified   status"))
 
 
 def test_a_scan_names_the_units_that_answer(address: str) -> None:
@@ -86,32 +77,23 @@ def test_a_scan_names_the_units_that_answer(address: str) -> None:
     assert (code, "No unit from 9 to 9 answers" in text) == (1, True)
 
 
-def test_what_is_recorded_can_be_replayed(address: str, tmp_path: Path) -> None:
-    trace = tmp_path / "bus.jsonl"
-    code, text = run("record", str(trace), "--profile", "leadshine-rs", "--tcp", address, "--seconds", "0.3")
-    assert code == 0, text
-    code, text = run("replay", str(trace), "--profile", "leadshine-rs")
-    assert code == 0, text
-    assert "azimuth 102.384 deg  elevation 36.612 deg" in text, "whole steps of 0.036 degrees"
-    assert "at rest" in text
-
-
 @pytest.mark.parametrize("options", [(), ("--tcp", "127.0.0.1:1", "--rtu", "/dev/null")])
 def test_exactly_one_way_to_the_device_is_taken(options: tuple[str, ...]) -> None:
     assert "Give one of --tcp" in run("probe", "--profile", "leadshine-rs", *options)[1]
 
 
-def test_a_replay_tells_angles_behind_the_gear_and_wants_a_file_that_is_there(
-    address: str, tmp_path: Path
-) -> None:
+def test_what_is_recorded_can_be_replayed_behind_its_gear(address: str, tmp_path: Path) -> None:
     trace = tmp_path / "bus.jsonl"
-    run("record", str(trace), "--profile", "leadshine-rs", "--tcp", address, "--seconds", "0.3")
-    angles = []
-    for gear in ("1", "2"):
-        told = run("replay", str(trace), "--profile", "leadshine-rs", "--gear", gear)[1].splitlines()[-1]
-        angles.append(float(told.partition("azimuth ")[2].partition(" deg")[0]))
-    assert angles[0] == pytest.approx(2.0 * angles[1], abs=2e-3)
-    assert angles[1] > 1.0
+    code, text = run("record", str(trace), "--profile", "leadshine-rs", "--tcp", address, "--seconds", "0.2")
+    assert code == 0, text
+    for gear, angles in (
+        ("1", "azimuth 102.384 deg  elevation 36.612 deg"),
+        ("2", "azimuth 51.192 deg  elevation 18.306 deg"),
+    ):
+        code, text = run("replay", str(trace), "--profile", "leadshine-rs", "--gear", gear)
+        assert code == 0, text
+        assert angles in text, "whole steps"
+        assert "at rest" in text
     code, said = run("replay", str(tmp_path / "none.jsonl"), "--profile", "leadshine-rs")
     assert (code, "does not exist" in said) == (2, True)
 
@@ -120,7 +102,6 @@ def test_a_replay_tells_angles_behind_the_gear_and_wants_a_file_that_is_there(
     ("profile", "gear", "says"),
     [
         ("leadshine-rs", "1", "1000000 does not fit into register path_acceleration"),
-        ("leadshine-rs", "60", None),
         ("kinco-cia402", "300000", "does not fit into register target_position"),
         ("simulated-plc", "1", None),
     ],

@@ -1,62 +1,62 @@
-"""Which drive a tracker's settings make, and the words of `heliopanel drive-sim`."""
+"""The watchdog of a simulated drive, and what the commands around lines take and refuse."""
 
-from dataclasses import replace
 from datetime import timedelta
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 from app.base.clock import VirtualClock
-from app.drives.profile import ProfileError
+from app.cli import cli
 from app.machine.drive_factory import DriveFactory
 from app.simulation.faults import Fault, FaultKind
 from app.simulation.servers.sim_server import parse_address, parse_fault
-from app.simulation.simulated import SimulatedDrive
 from app.tracker.settings.axes import Axis
-from app.tracker.settings.config import DriveConfig, DriveKind
 from tests.drives.rigs import CONFIG, START
 
 
-def test_the_factory_makes_a_simulated_drive_with_its_memory(tmp_path: Path) -> None:
-    clock = VirtualClock(START)
-    assert isinstance(
-        DriveFactory(clock, tmp_path).make(replace(CONFIG, tracker_id="../T 1")), SimulatedDrive
-    )
-    assert [path.name for path in (tmp_path / "drives").iterdir()] == ["positions"]
-    assert isinstance(DriveFactory(clock).make(CONFIG), SimulatedDrive)
-
-
-def test_the_factory_refuses_an_unknown_profile() -> None:
-    config = replace(CONFIG, drive=DriveConfig(DriveKind.MODBUS_TCP, profile="nonsense"))
-    with pytest.raises(ProfileError, match="no drive profile"):
-        DriveFactory(VirtualClock(START)).make(config)
-
-
-def test_addresses_are_host_and_port() -> None:
-    assert parse_address("127.0.0.1:5020") == ("127.0.0.1", 5020)
+def test_addresses_and_faults_are_read_as_a_person_writes_them() -> None:
     assert parse_address("[::1]:502") == ("::1", 502)
-
-
-@pytest.mark.parametrize("text", ["", "5020", "host:", "host:x", "host:99999", ":5020"])
-def test_a_wrong_address_is_refused(text: str) -> None:
-    with pytest.raises(ValueError, match="HOST:PORT"):
-        parse_address(text)
-
-
-def test_faults_are_kind_axis_and_amount() -> None:
-    assert parse_fault("silence") == Fault(FaultKind.SILENCE)
+    for text in ("", "5020", "host:x", "host:99999", ":5020"):
+        with pytest.raises(ValueError, match="HOST:PORT"):
+            parse_address(text)
     assert parse_fault("stall:elevation") == Fault(FaultKind.STALL, Axis.ELEVATION)
     assert parse_fault("encoder_jump:both:-3.5") == Fault(FaultKind.ENCODER_JUMP, None, -3.5)
+    for text in ("", "nonsense", "stall:left", "slip:azimuth:fast"):
+        with pytest.raises(ValueError, match="is no fault"):
+            parse_fault(text)
 
 
-@pytest.mark.parametrize("text", ["", "nonsense", "stall:left", "slip:azimuth:fast"])
-def test_a_wrong_fault_is_refused(text: str) -> None:
-    with pytest.raises(ValueError, match="is no fault"):
-        parse_fault(text)
-
-
-@pytest.mark.parametrize(("tick_ms", "watchdog_s"), [(0, 0.5), (100, 0.5), (1000, 2.5)])
+@pytest.mark.parametrize(("tick_ms", "watchdog_s"), [(100, 0.5), (1000, 2.5)])
 def test_the_watchdog_of_a_simulated_drive_outlasts_a_late_tick(tick_ms: int, watchdog_s: float) -> None:
     """With 0.5 s at a tick a second every drive stopped on its way to shelter."""
     factory = DriveFactory(VirtualClock(START), tick=timedelta(milliseconds=tick_ms))
     assert factory.make(CONFIG).capabilities.watchdog_s == watchdog_s
+
+
+def refused(*words: str) -> Exception:
+    """Return why a command did nothing."""
+    result = CliRunner().invoke(cli, words)
+    assert isinstance(result.exception, ValueError | OSError), result.output
+    return result.exception
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (("near", "127.0.0.1:5020"), "choose --frames rtu"),
+        (("127.0.0.1:5021", "127.0.0.1:5020", "--script", "explode"), "'explode' is no fault"),
+        (("127.0.0.1:5021", "127.0.0.1:5020", "--script", "checksum"), "not possible with tcp frames"),
+        ((":5021", "127.0.0.1:5020"), "Write it as HOST:PORT"),
+    ],
+)
+def test_a_proxy_that_cannot_work_is_refused_with_what_to_do(words: tuple[str, str], why: str) -> None:
+    assert why in str(refused("fault-proxy", *words))
+
+
+def test_a_simulated_drive_takes_no_file_for_a_line_and_is_no_broadcast(tmp_path: Path) -> None:
+    name = tmp_path / "notes"
+    name.write_text("mine")
+    assert "not another file or device" in str(refused("drive-sim", "--rtu", str(name)))
+    assert name.read_text() == "mine"
+    assert "between 1 and 247" in str(refused("drive-sim", "--rtu", "line", "--unit", "0"))
