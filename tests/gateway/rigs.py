@@ -1,10 +1,13 @@
 """A site with its other doors: the site on a virtual clock, the doors on real sockets and in a hurry."""
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from datetime import UTC, datetime, timedelta
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
 
 from app.base.clock import VirtualClock
 from app.base.settings import Settings
@@ -16,7 +19,7 @@ from app.store.store import Writer
 from app.store.writer_thread import WriterThread
 from app.tracker.memory.memory import TrackerMemory, TrackerState
 from app.tracker.settings.config import TrackerConfig
-from tests.patience import LOOK_EVERY_S, pause
+from tests.patience import LOOK_EVERY_S, PATIENCE_S, pause
 from tests.site.plant import Plant, make_plant
 
 
@@ -41,6 +44,28 @@ async def gateway(gateways: Gateways, name: str) -> GatewayMetrics:
     return next(one for one in (await gateways.metrics()).gateways if one.name.startswith(name))
 
 
+async def until(
+    gateways: Gateways, found: Callable[[GatewayMetrics], bool], name: str = "MQTT"
+) -> GatewayMetrics:
+    """Return what a door tells of itself once it is so."""
+    async with asyncio.timeout(PATIENCE_S):
+        while not found(seen := await gateway(gateways, name)):
+            await pause()
+    return seen
+
+
+def mqtt_settings(data_dir: Path, port: int, **more: Any) -> Settings:
+    return Settings(data_dir=data_dir, mqtt_host="127.0.0.1", mqtt_port=port, mqtt_base_topic="plant", **more)
+
+
+@cache
+def empty_database() -> bytes:
+    """Return a database of this version, made once."""
+    with TemporaryDirectory() as folder:
+        upgrade(f"sqlite:///{folder}/heliopanel.db")
+        return (Path(folder) / "heliopanel.db").read_bytes()
+
+
 @asynccontextmanager
 async def opened(plant: Plant, settings: Settings, store: Writer) -> AsyncIterator[Gateways]:
     """Open the doors of a running site."""
@@ -55,9 +80,8 @@ async def opened(plant: Plant, settings: Settings, store: Writer) -> AsyncIterat
 @asynccontextmanager
 async def kept_plant(data_dir: Path, *trackers: str) -> AsyncIterator[tuple[Plant, Writer]]:
     """A site that keeps its journal in a database, as the machine does."""
-    url = f"sqlite:///{data_dir / 'heliopanel.db'}"
-    upgrade(url)
-    store = open_writer(url)
+    (data_dir / "heliopanel.db").write_bytes(empty_database())
+    store = open_writer(f"sqlite:///{data_dir / 'heliopanel.db'}")
     background = WriterThread(store, lambda error: None)
     plant = make_plant(writer=background, trackers=tuple(map(tracker, trackers or ("T1",))))
     await plant.start()

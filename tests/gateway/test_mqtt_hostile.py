@@ -8,14 +8,13 @@ from typing import Any
 
 import pytest
 
-from app.base.settings import Settings
 from app.link.metrics import GatewayStatus
 from app.store.store import JournalFilter
 from app.tracker.commands.commands import Move
 from app.tracker.settings.config import Orientation
 from app.tracker.state.snapshot import ActivityName, EventKind
 from tests.gateway.fake_broker import PUBCOMP, PUBREC, PUBREL, FakeBroker, serving
-from tests.gateway.rigs import gateway, kept_plant, opened
+from tests.gateway.rigs import gateway, kept_plant, mqtt_settings, opened
 from tests.golden.table import rows
 from tests.patience import eventually
 from tests.site.plant import Plant
@@ -25,6 +24,16 @@ ROWS = [
     (row["payload"].encode("latin-1"), row["result"], row["why"]) for row in rows("world/mqtt_commands.csv")
 ]
 DEEP = b"[" * 10_000 + b"]" * 10_000
+STRANGE = (
+    b"plant/trackers//command",
+    b"plant/trackers/T1/T1/command",
+    b"plant/trackers/command",
+    b"plant/trackers/T1/result",
+    b"other/trackers/T1/command",
+    b"plant/trackers/T1/command/",
+    b"plant/trackers/" + b"T" * 60_000 + b"/command",
+    "plant/trackers/ağaç/command".encode(),
+)
 MARK = json.dumps({"type": "track", "client": "mark", "key": "mark"}).encode()
 
 
@@ -33,13 +42,7 @@ async def commanded(tmp_path: Path) -> AsyncIterator[tuple[Plant, FakeBroker, An
     broker = FakeBroker()
     async with serving(broker), kept_plant(tmp_path) as (plant, store):
         await plant.commission()
-        settings = Settings(
-            data_dir=tmp_path,
-            mqtt_host="127.0.0.1",
-            mqtt_port=broker.port,
-            mqtt_base_topic="plant",
-            mqtt_commands=True,
-        )
+        settings = mqtt_settings(tmp_path, broker.port, mqtt_commands=True)
         async with opened(plant, settings, store) as gateways:
             await eventually(lambda: broker.told("plant/availability"))
             yield plant, broker, store
@@ -84,34 +87,17 @@ async def test_a_deep_or_a_large_command_is_refused_shortly_and_a_stop_in_it_sto
         assert max(len(entry.event.message) for entry in journal) < 1000
 
 
-async def test_many_wrong_fields_are_told_as_some(tmp_path: Path) -> None:
-    async with commanded(tmp_path) as (_, broker, _):
-        fields = {f"field{number}": number for number in range(10_000)}
-        broker.publish(COMMAND, json.dumps({"type": "track", "client": "a", **fields}).encode())
-        await eventually(lambda: broker.told(RESULT))
-        assert len(broker.told(RESULT)[0]) < 1000
-
-
-@pytest.mark.parametrize(
-    "topic",
-    [
-        b"plant/trackers//command",
-        b"plant/trackers/T1/T1/command",
-        b"plant/trackers/command",
-        b"plant/trackers/T1/result",
-        b"other/trackers/T1/command",
-        b"plant/trackers/T1/command/",
-        b"plant/trackers/" + b"T" * 60_000 + b"/command",
-        "plant/trackers/ağaç/command".encode(),
-        b"plant/trackers/T1 /command",
-    ],
-)
-async def test_a_topic_that_is_none_of_ours_is_passed_over(tmp_path: Path, topic: bytes) -> None:
+async def test_many_wrong_fields_are_told_as_some_and_a_topic_that_is_none_of_ours_is_passed_over(
+    tmp_path: Path,
+) -> None:
     async with commanded(tmp_path) as (plant, broker, _):
-        broker.publish(topic, b'{"type":"stop","client":"a"}')
-        broker.publish(COMMAND, MARK)
+        for topic in STRANGE:
+            broker.publish(topic, b'{"type":"stop","client":"a"}')
+        fields = {f"field{number}": number for number in range(10_000)}
+        broker.publish(COMMAND, json.dumps({"type": "track", "client": "a", "key": "1", **fields}).encode())
         await eventually(lambda: broker.told(RESULT))
-        assert [one["key"] for one in answers(broker)] == ["mark"]
+        assert len(broker.told(RESULT)) == 1
+        assert len(broker.told(RESULT)[0]) < 1000
         assert not plant.happened(EventKind.STOPPED)
 
 
@@ -138,19 +124,17 @@ async def test_a_command_of_qos_2_that_comes_twice_is_carried_out_once(tmp_path:
         assert len(plant.happened(EventKind.STOPPED)) == 1
 
 
-@pytest.mark.parametrize("topic", [b"plant/trackers/+/command", b"plant/trackers/#", b"\xff/command", b""])
+@pytest.mark.parametrize("topic", [b"plant/trackers/+/command", b"\xff/command"])
 async def test_a_topic_against_the_format_ends_one_connection_only(tmp_path: Path, topic: bytes) -> None:
     broker = FakeBroker()
     async with serving(broker), kept_plant(tmp_path) as (plant, store):
         await plant.commission()
-        settings = Settings(
-            data_dir=tmp_path, mqtt_host="127.0.0.1", mqtt_port=broker.port, mqtt_commands=True
-        )
-        async with opened(plant, settings, store):
-            await eventually(lambda: broker.told("heliopanel/availability"))
+        async with opened(plant, mqtt_settings(tmp_path, broker.port), store):
+            await eventually(lambda: broker.told("plant/availability"))
             broker.publish(topic, b'{"type":"stop","client":"a"}')
-            broker.publish(b"heliopanel/trackers/T1/command", b'{"type":"stop","client":"a"}')
+            broker.publish(COMMAND, b'{"type":"stop","client":"a"}')
             await eventually(lambda: broker.connected == 2 or plant.happened(EventKind.STOPPED))
             await eventually(lambda: broker.sessions)
             await plant.forward(seconds=1)
             assert plant.tracker().measured is not None
+            assert broker.subscribed == 0, "no commands are heard unless they are allowed"
