@@ -209,18 +209,8 @@ def built() -> tuple[Path, Path]:
         flock(lock, LOCK_EX)
         subprocess.run(["make", "-s", "-C", FIRMWARE], check=True)
         if not host.exists() or host.stat().st_mtime < source.stat().st_mtime:
-            line = [
-                "gcc",
-                "-O2",
-                "-Wall",
-                "-Werror",
-                "-o",
-                str(host),
-                str(source),
-                "-lsimavr",
-                "-lelf",
-                "-lutil",
-            ]
+            line = ["gcc", "-O2", "-Wall", "-Werror", "-o", str(host), str(source)]
+            line += ["-lsimavr", "-lelf", "-lutil"]
             subprocess.run(line, check=True)
     return host, FIRMWARE / "build/heliopanel-axes-mega.elf"
 

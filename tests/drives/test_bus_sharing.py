@@ -1,15 +1,14 @@
 """Many devices on one bus: a silent line fails all at once, is asked by one at a time, and loses no stop."""
 
 import asyncio
+from collections.abc import AsyncIterator
 
 import pytest
 
 from app.base.clock import VirtualClock
-from app.base.message import told_by
 from app.modbus.bus import MOST_WAITING, Bus, BusUnit
 from app.modbus.errors import DriveSilent
 from app.modbus.wire import Ask, Timing, Unanswered
-from app.web.languages.catalogue import catalogue_of
 from tests.site.plant import SUMMER_NOON
 
 DEVICES = 8
@@ -50,6 +49,9 @@ class HeldWire:
         """Nothing is open."""
 
 
+Line = tuple[HeldWire, list[BusUnit]]
+
+
 async def settle() -> None:
     for _ in range(10):
         await asyncio.sleep(0)
@@ -59,7 +61,8 @@ def reading(unit: BusUnit) -> "asyncio.Task[list[int]]":
     return asyncio.create_task(unit.read(0, 40, what="status"))
 
 
-async def line() -> tuple[HeldWire, list[BusUnit]]:
+@pytest.fixture
+async def line() -> AsyncIterator[Line]:
     """Return a line all of whose devices have answered once."""
     wire = HeldWire()
     bus = Bus("line", wire, VirtualClock(SUMMER_NOON))
@@ -70,16 +73,13 @@ async def line() -> tuple[HeldWire, list[BusUnit]]:
         await wire.reply()
         await asked
     wire.asked.clear()
-    return wire, units
-
-
-async def closed(units: list[BusUnit]) -> None:
+    yield wire, units
     for unit in units:
         await unit.close()
 
 
-async def test_when_two_devices_were_silent_in_a_row_all_that_wait_are_told_at_once() -> None:
-    wire, units = await line()
+async def test_when_two_devices_were_silent_in_a_row_all_that_wait_are_told_at_once(line: Line) -> None:
+    wire, units = line
     waiting = [reading(unit) for unit in units]
     await settle()
     await wire.reply(silent=True)
@@ -90,11 +90,10 @@ async def test_when_two_devices_were_silent_in_a_row_all_that_wait_are_told_at_o
         await waiting[-1]
     assert [ask.unit for ask in wire.asked] == [1, 2]
     await asyncio.gather(*waiting, return_exceptions=True)
-    await closed(units)
 
 
-async def test_a_silent_line_is_asked_by_one_at_a_time_and_by_all_once_anybody_answers() -> None:
-    wire, units = await line()
+async def test_a_silent_line_is_asked_by_one_at_a_time_and_by_all_once_anybody_answers(line: Line) -> None:
+    wire, units = line
     waiting = [reading(unit) for unit in units]
     await settle()
     for _ in range(2):
@@ -111,11 +110,10 @@ async def test_a_silent_line_is_asked_by_one_at_a_time_and_by_all_once_anybody_a
     for _ in units:
         await wire.reply()
     assert await asyncio.gather(*again) == [[0] * 40] * DEVICES
-    await closed(units)
 
 
-async def test_a_stop_that_nobody_waits_for_is_sent_although_another_device_is_stopped() -> None:
-    wire, units = await line()
+async def test_a_stop_that_nobody_waits_for_is_sent_although_another_device_is_stopped(line: Line) -> None:
+    wire, units = line
     blocking = reading(units[0])
     await settle()
     abandoned = asyncio.create_task(units[1].stop(33, [1], what="stop"))
@@ -127,11 +125,10 @@ async def test_a_stop_that_nobody_waits_for_is_sent_although_another_device_is_s
         await wire.reply()
     await asyncio.gather(blocking, stopping)
     assert [ask.unit for ask in wire.asked] == [1, 2, 3]
-    await closed(units)
 
 
-async def test_requests_that_nobody_waits_for_take_up_no_room() -> None:
-    wire, units = await line()
+async def test_requests_that_nobody_waits_for_take_up_no_room(line: Line) -> None:
+    wire, units = line
     blocking = reading(units[0])
     await settle()
     for _ in range(3 * MOST_WAITING):
@@ -145,16 +142,3 @@ async def test_requests_that_nobody_waits_for_take_up_no_room() -> None:
         await wire.reply()
     assert await asked == [0] * 40
     await blocking
-    await closed(units)
-
-
-async def test_why_a_device_is_silent_is_read_in_the_language_of_the_reader() -> None:
-    wire, units = await line()
-    asked = reading(units[0])
-    await settle()
-    await wire.reply(silent=True)
-    with pytest.raises(DriveSilent) as silent:
-        await asked
-    told = catalogue_of("de").said(told_by(silent.value))
-    assert told.startswith("Der Antrieb an line unit 1 hat nicht")
-    assert "Check" not in told

@@ -122,20 +122,16 @@ async def test_a_fault_reset_leaves_the_sound_axis_powered() -> None:
     assert rig.statusword(Axis.ELEVATION) & 0x6F == STATUSWORD_ENABLED
 
 
-async def test_another_controller_is_halted_although_the_connection_was_renewed() -> None:
+@pytest.mark.parametrize("renewed", ["connection", "life"])
+async def test_another_controller_is_halted_over_a_new_connection_and_in_a_new_life(renewed: str) -> None:
     rig = linked_controller()
     await rig.forward(1.0, FAR)
-    rig.links[Axis.AZIMUTH].renew()
-    await rig.drive.write(DriveCommand())
-    assert stands(rig)
-    assert rig.machine.observe().azimuth.position_deg < 130.0
-
-
-async def test_another_controller_that_obeys_a_former_life_is_halted() -> None:
-    rig = linked_controller()
-    await rig.forward(1.0, FAR)
-    rig.drive = another_controller_drive(rig)
-    await rig.forward(0.2)
+    if renewed == "connection":
+        rig.links[Axis.AZIMUTH].renew()
+        await rig.drive.write(DriveCommand())
+    else:
+        rig.drive = another_controller_drive(rig)
+        await rig.forward(0.2)
     assert stands(rig)
     assert rig.machine.observe().azimuth.position_deg < 130.0
 

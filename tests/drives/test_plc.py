@@ -55,18 +55,6 @@ def test_a_command_in_words() -> None:
     }  # fmt: skip
 
 
-async def test_the_horn_sounds_while_it_is_told_to_and_costs_no_frame_otherwise() -> None:
-    async with on_the_bench() as bench:
-        horn = PROFILE.registers["horn"].address
-        for sounds in (False, True, True, False, False):
-            await bench.drive.read()
-            await bench.drive.write(DriveCommand(Velocity(0.0), Velocity(0.0), horn=sounds))
-            assert bench.machine.command.horn is sounds
-        await bench.drive.read()
-        written = [words for address, words in bench.wire.writes if address == horn]
-        assert written == [[1], [0]]
-
-
 def test_a_reading_in_words() -> None:
     words = [0] * 40
     words[4:8] = [3, 0b0110001, 0b100001, 12]
@@ -79,22 +67,19 @@ def test_a_reading_in_words() -> None:
     )  # fmt: skip
 
 
-COMMANDS = {
-    "halt": DriveCommand(),
-    "both kinds": DriveCommand(Velocity(3.0), Position(-1.25, 4.0)),
-    "a request": DriveCommand(HALT, HALT, DriveRequest(77, RequestKind.SET_HOME_ELEVATION)),
-}
+COMMANDS = (
+    DriveCommand(),
+    DriveCommand(Velocity(3.0), Position(-1.25, 4.0)),
+    DriveCommand(HALT, HALT, DriveRequest(77, RequestKind.SET_HOME_ELEVATION)),
+)
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_what_the_master_writes_is_what_the_plc_reads(name: str) -> None:
-    assert MAP.command(block(MAP.command_words(COMMANDS[name])), 0) == COMMANDS[name]
-
-
-@pytest.mark.parametrize("address", [21, 26, 32])
-def test_a_number_without_meaning_is_refused(address: int) -> None:
-    with pytest.raises(ValueError, match="does not exist"):
-        MAP.command(block({address: 9}), 0)
+def test_what_the_master_writes_is_what_the_plc_reads_and_a_number_without_meaning_is_refused() -> None:
+    for command in COMMANDS:
+        assert MAP.command(block(MAP.command_words(command)), 0) == command
+    for address in (21, 26, 32):
+        with pytest.raises(ValueError, match="does not exist"):
+            MAP.command(block({address: 9}), 0)
 
 
 class Wire(SimulatedPlc):
@@ -141,8 +126,8 @@ class Bench:
         self.clock.advance(timedelta(milliseconds=milliseconds))
 
 
-@asynccontextmanager
-async def on_the_bench() -> AsyncIterator[Bench]:
+@pytest.fixture
+async def bench() -> AsyncIterator[Bench]:
     clock = VirtualClock(START)
     machine = SimulatedDrive(CONFIG, clock)
     wire = Wire(PROFILE, machine, clock)
@@ -156,37 +141,45 @@ async def on_the_bench() -> AsyncIterator[Bench]:
         await server.close()
 
 
-async def test_a_cycle_is_one_read_and_one_write_of_what_changed() -> None:
-    async with on_the_bench() as bench:
-        command = DriveCommand(Position(110.0, 6.0), HALT)
-        for _ in range(3):
-            await bench.drive.read()
-            await bench.drive.write(command)
-            bench.later()
-        await bench.drive.write(replace(command, elevation=Velocity(1.0)))
-        counts = [(address, len(words)) for address, words in bench.wire.writes]
-        assert counts == [(20, 11), (20, 1), (20, 1), (20, 9)]
-        assert bench.wire.reads == 3
-        assert [words[0] for _, words in bench.wire.writes] == [1, 2, 3, 4], "the keep-alive value changes"
-
-
-async def test_the_first_write_reads_the_state_first() -> None:
-    async with on_the_bench() as bench:
-        await bench.drive.write(DriveCommand())
-        assert bench.wire.reads == 1
-
-
-async def test_after_a_stop_everything_is_written_anew() -> None:
-    async with on_the_bench() as bench:
-        command = DriveCommand(Velocity(1.0), Velocity(1.0))
+async def test_a_cycle_is_one_read_and_one_write_of_what_changed(bench: Bench) -> None:
+    command = DriveCommand(Position(110.0, 6.0), HALT)
+    for _ in range(3):
         await bench.drive.read()
         await bench.drive.write(command)
-        await bench.drive.stop()
-        assert bench.wire.writes[-1] == (33, [1])
-        assert bench.machine.command == DriveCommand()
+        bench.later()
+    await bench.drive.write(replace(command, elevation=Velocity(1.0)))
+    counts = [(address, len(words)) for address, words in bench.wire.writes]
+    assert counts == [(20, 11), (20, 1), (20, 1), (20, 9)]
+    assert bench.wire.reads == 3
+    assert [words[0] for _, words in bench.wire.writes] == [1, 2, 3, 4], "the keep-alive value changes"
+
+
+async def test_the_horn_sounds_while_it_is_told_to_and_costs_no_frame_otherwise(bench: Bench) -> None:
+    horn = PROFILE.registers["horn"].address
+    for sounds in (False, True, True, False, False):
         await bench.drive.read()
-        await bench.drive.write(command)
-        assert [len(words) for _, words in bench.wire.writes] == [11, 1, 11]
+        await bench.drive.write(DriveCommand(Velocity(0.0), Velocity(0.0), horn=sounds))
+        assert bench.machine.command.horn is sounds
+    await bench.drive.read()
+    written = [words for address, words in bench.wire.writes if address == horn]
+    assert written == [[1], [0]]
+
+
+async def test_the_first_write_reads_the_state_first(bench: Bench) -> None:
+    await bench.drive.write(DriveCommand())
+    assert bench.wire.reads == 1
+
+
+async def test_after_a_stop_everything_is_written_anew(bench: Bench) -> None:
+    command = DriveCommand(Velocity(1.0), Velocity(1.0))
+    await bench.drive.read()
+    await bench.drive.write(command)
+    await bench.drive.stop()
+    assert bench.wire.writes[-1] == (33, [1])
+    assert bench.machine.command == DriveCommand()
+    await bench.drive.read()
+    await bench.drive.write(command)
+    assert [len(words) for _, words in bench.wire.writes] == [11, 1, 11]
 
 
 @asynccontextmanager
@@ -200,8 +193,8 @@ async def another_master(bench: Bench) -> AsyncIterator[BusUnit]:
 
 @pytest.mark.parametrize(("address", "words"), [(22, [0, 5000]), (20, [999]), (33, [1])])
 @pytest.mark.fault(8)
-async def test_another_master_is_noticed(address: int, words: list[int]) -> None:
-    async with on_the_bench() as bench, another_master(bench) as other:
+async def test_another_master_is_noticed(bench: Bench, address: int, words: list[int]) -> None:
+    async with another_master(bench) as other:
         command = DriveCommand(Position(110.0, 6.0), Position(40.0, 4.0))
         await bench.drive.read()
         await bench.drive.write(command)
@@ -216,146 +209,135 @@ async def test_another_master_is_noticed(address: int, words: list[int]) -> None
         assert bench.machine.command == command, "ours is written anew"
 
 
-async def test_a_watchdog_between_read_and_write_is_no_foreign_master() -> None:
-    async with on_the_bench() as bench:
-        command = DriveCommand(azimuth=Velocity(1.0))
+async def test_a_watchdog_between_read_and_write_is_no_foreign_master(bench: Bench) -> None:
+    command = DriveCommand(azimuth=Velocity(1.0))
+    await bench.drive.read()
+    await bench.drive.write(command)
+    bench.later(490)
+    await bench.drive.read()
+    bench.later(20)
+    await bench.drive.write(command)
+    feedback = await bench.drive.read()
+    assert feedback.watchdog_tripped
+    await bench.drive.write(command)
+    bench.later()
+    assert (await bench.drive.read()).azimuth.moving
+
+
+async def test_one_damaged_position_is_read_again(bench: Bench) -> None:
+    before = await bench.drive.read()
+    bench.later()
+    bench.wire.damage = [{AZIMUTH_POSITION: 3}]
+    assert (await bench.drive.read()).azimuth == before.azimuth
+    assert bench.wire.reads == 3
+
+
+async def test_positions_that_differ_every_time_are_not_believed(bench: Bench) -> None:
+    await bench.drive.read()
+    bench.later()
+    bench.wire.damage = [{AZIMUTH_POSITION: 3}, {AZIMUTH_POSITION: 7}]
+    with pytest.raises(DriveError, match=r"azimuth moved by .* faster than it can turn"):
         await bench.drive.read()
-        await bench.drive.write(command)
-        bench.later(490)
+    assert (await bench.drive.read()).azimuth.position_deg == pytest.approx(102.4)
+
+
+async def test_a_position_out_of_range_is_never_believed(bench: Bench) -> None:
+    bench.wire.damage = [{AZIMUTH_POSITION: 0x7000}, {AZIMUTH_POSITION: 0x7000}]
+    with pytest.raises(DriveError, match="outside the profile's range of -1080 to 1080"):
         await bench.drive.read()
-        bench.later(20)
-        await bench.drive.write(command)
-        feedback = await bench.drive.read()
-        assert feedback.watchdog_tripped
-        await bench.drive.write(command)
-        bench.later()
-        assert (await bench.drive.read()).azimuth.moving
-
-
-async def test_one_damaged_position_is_read_again() -> None:
-    async with on_the_bench() as bench:
-        before = await bench.drive.read()
-        bench.later()
-        bench.wire.damage = [{AZIMUTH_POSITION: 3}]
-        assert (await bench.drive.read()).azimuth == before.azimuth
-        assert bench.wire.reads == 3
-
-
-async def test_positions_that_differ_every_time_are_not_believed() -> None:
-    async with on_the_bench() as bench:
-        await bench.drive.read()
-        bench.later()
-        bench.wire.damage = [{AZIMUTH_POSITION: 3}, {AZIMUTH_POSITION: 7}]
-        with pytest.raises(DriveError, match=r"azimuth moved by .* faster than it can turn"):
-            await bench.drive.read()
-        assert (await bench.drive.read()).azimuth.position_deg == pytest.approx(102.4)
-
-
-async def test_a_position_out_of_range_is_never_believed() -> None:
-    async with on_the_bench() as bench:
-        bench.wire.damage = [{AZIMUTH_POSITION: 0x7000}, {AZIMUTH_POSITION: 0x7000}]
-        with pytest.raises(DriveError, match="outside the profile's range of -1080 to 1080"):
-            await bench.drive.read()
 
 
 @pytest.mark.fault(11)
-async def test_a_heartbeat_that_stands_still_is_an_error() -> None:
-    async with on_the_bench() as bench:
-        bench.wire.still = {2: 5}
-        for _ in range(3):
+async def test_a_heartbeat_that_stands_still_is_an_error(bench: Bench) -> None:
+    bench.wire.still = {2: 5}
+    for _ in range(3):
+        await bench.drive.read()
+    for _ in range(2):
+        with pytest.raises(DriveError, match="heartbeat does not change"):
             await bench.drive.read()
-        for _ in range(2):
-            with pytest.raises(DriveError, match="heartbeat does not change"):
-                await bench.drive.read()
-        bench.wire.still = {}
-        assert await bench.drive.read()
+    bench.wire.still = {}
+    assert await bench.drive.read()
 
 
 ECHO, WATCHDOG_MS = 3, 17
 TURN = DriveCommand(Velocity(2.0), HALT)
 
 
-async def test_an_echo_that_stands_still_while_keep_alive_values_are_written_is_an_error() -> None:
-    async with on_the_bench() as bench:
-        await bench.drive.read()
-        bench.wire.still = {ECHO: 0}
-        for _ in range(MOST_UNCHANGED + 1):
-            await bench.drive.write(TURN)
-            bench.later()
-            if bench.wire.reads <= MOST_UNCHANGED:
-                await bench.drive.read()
-        for _ in range(2):
-            with pytest.raises(DriveError, match="does not echo the keep-alive value"):
-                await bench.drive.read()
-            await bench.drive.write(TURN)
-        bench.wire.still = {}
-        assert await bench.drive.read()
-
-
-async def test_an_echo_need_not_change_while_nothing_is_written() -> None:
-    async with on_the_bench() as bench:
-        await bench.drive.read()
-        await bench.drive.write(DriveCommand())
-        for _ in range(3 * MOST_UNCHANGED):
-            await bench.drive.read()
-
-
-async def test_a_watchdog_that_is_switched_off_during_a_motion_is_an_error() -> None:
-    async with on_the_bench() as bench:
-        await bench.drive.read()
+async def test_an_echo_that_stands_still_while_keep_alive_values_are_written_is_an_error(
+    bench: Bench,
+) -> None:
+    await bench.drive.read()
+    bench.wire.still = {ECHO: 0}
+    for _ in range(MOST_UNCHANGED + 1):
         await bench.drive.write(TURN)
         bench.later()
-        assert (await bench.drive.read()).azimuth.moving
-        bench.wire.still = {WATCHDOG_MS: 0}
-        for _ in range(3):
-            with pytest.raises(DriveError, match="was switched off during motion"):
-                await bench.drive.read()
-        bench.wire.still = {}
+        if bench.wire.reads <= MOST_UNCHANGED:
+            await bench.drive.read()
+    for _ in range(2):
+        with pytest.raises(DriveError, match="does not echo the keep-alive value"):
+            await bench.drive.read()
+        await bench.drive.write(TURN)
+    bench.wire.still = {}
+    assert await bench.drive.read()
+
+
+async def test_an_echo_need_not_change_while_nothing_is_written(bench: Bench) -> None:
+    await bench.drive.read()
+    await bench.drive.write(DriveCommand())
+    for _ in range(3 * MOST_UNCHANGED):
+        await bench.drive.read()
+
+
+async def test_a_watchdog_that_is_switched_off_during_a_motion_is_an_error(bench: Bench) -> None:
+    await bench.drive.read()
+    await bench.drive.write(TURN)
+    bench.later()
+    assert (await bench.drive.read()).azimuth.moving
+    bench.wire.still = {WATCHDOG_MS: 0}
+    for _ in range(3):
+        with pytest.raises(DriveError, match="was switched off during motion"):
+            await bench.drive.read()
+    bench.wire.still = {}
+    assert await bench.drive.read()
+
+
+async def test_a_watchdog_that_stays_off_is_an_error_of_every_later_motion(bench: Bench) -> None:
+    await bench.drive.read()
+    bench.wire.still = {WATCHDOG_MS: 0}
+    assert bench.drive.capabilities.watchdog_s
+    for _ in range(2):
+        assert await bench.drive.read()
+        await bench.drive.write(TURN)
+        bench.later()
+        with pytest.raises(DriveError, match="Switch it on again"):
+            await bench.drive.read()
+        await bench.drive.write(DriveCommand(Velocity(0.0), Velocity(0.0)))
+        bench.later(2000)
         assert await bench.drive.read()
 
 
-async def test_a_watchdog_that_stays_off_is_an_error_of_every_later_motion() -> None:
-    async with on_the_bench() as bench:
-        await bench.drive.read()
-        bench.wire.still = {WATCHDOG_MS: 0}
-        assert bench.drive.capabilities.watchdog_s
-        for _ in range(2):
-            assert await bench.drive.read()
-            await bench.drive.write(TURN)
-            bench.later()
-            with pytest.raises(DriveError, match="Switch it on again"):
-                await bench.drive.read()
-            await bench.drive.write(DriveCommand(Velocity(0.0), Velocity(0.0)))
-            bench.later(2000)
-            assert await bench.drive.read()
+async def test_a_watchdog_that_is_off_at_rest_is_told_as_none(bench: Bench) -> None:
+    await bench.drive.read()
+    bench.wire.still = {WATCHDOG_MS: 0}
+    assert await bench.drive.read()
+    assert bench.drive.capabilities.watchdog_s is None
 
 
-async def test_a_watchdog_that_is_off_at_rest_is_told_as_none() -> None:
-    async with on_the_bench() as bench:
-        await bench.drive.read()
-        bench.wire.still = {WATCHDOG_MS: 0}
-        assert await bench.drive.read()
-        assert bench.drive.capabilities.watchdog_s is None
-
-
-@pytest.mark.parametrize(("address", "word"), [(0, 4), (1, 2)])
-async def test_another_device_is_refused(address: int, word: int) -> None:
-    async with on_the_bench() as bench:
+async def test_another_device_is_refused(bench: Bench) -> None:
+    for address, word in ((0, 4), (1, 2)):
         bench.wire.still = {address: word}
         with pytest.raises(DriveRefused, match=f"holds {word} instead of .*unit id, and profile"):
             await bench.drive.read()
 
 
-async def test_a_device_without_the_registers_is_refused_with_their_name() -> None:
+async def test_a_device_without_the_registers_is_refused_with_their_name(bench: Bench) -> None:
     wide = replace(PROFILE, blocks={"status": replace(PROFILE.blocks["status"], count=50)})
-    async with on_the_bench() as bench:
-        config = replace(CONFIG, drive=DriveConfig(DriveKind.MODBUS_TCP, port=bench.port))
-        drive = PlcDrive(
-            config, wide, bench.clock, DriveFactory(bench.clock).buses.unit(config.drive, 1, wide.timing)
-        )
-        with pytest.raises(DriveRefused, match=r"no such register.*block status of profile simulated-plc"):
-            await drive.read()
-        await drive.close()
+    config = replace(CONFIG, drive=DriveConfig(DriveKind.MODBUS_TCP, port=bench.port))
+    unit = DriveFactory(bench.clock).buses.unit(config.drive, 1, wide.timing)
+    drive = PlcDrive(config, wide, bench.clock, unit)
+    with pytest.raises(DriveRefused, match=r"no such register.*block status of profile simulated-plc"):
+        await drive.read()
+    await drive.close()
 
 
 async def test_the_request_number_is_told_in_full_although_the_register_is_short() -> None:
@@ -365,62 +347,46 @@ async def test_the_request_number_is_told_in_full_although_the_register_is_short
         assert feedback.request_done == 70001
 
 
-async def test_a_reconnection_reads_the_state_before_anything_is_written() -> None:
-    async with on_the_bench() as bench:
+async def test_a_reconnection_reads_the_state_before_anything_is_written(bench: Bench) -> None:
+    await bench.drive.read()
+    await bench.drive.write(DriveCommand(azimuth=Velocity(1.0)))
+    bench.machine.inject(Fault(FaultKind.CORRUPT_REPLIES))
+    with pytest.raises(DriveError):
         await bench.drive.read()
-        await bench.drive.write(DriveCommand(azimuth=Velocity(1.0)))
-        bench.machine.inject(Fault(FaultKind.CORRUPT_REPLIES))
-        with pytest.raises(DriveError):
-            await bench.drive.read()
-        bench.machine.end_injected_faults()
-        reads = bench.wire.reads
-        await bench.drive.write(DriveCommand())
-        assert bench.wire.reads == reads + 1
-        assert bench.wire.writes[-1] == (20, [2, 0, 0, 0])
+    bench.machine.end_injected_faults()
+    reads = bench.wire.reads
+    await bench.drive.write(DriveCommand())
+    assert bench.wire.reads == reads + 1
+    assert bench.wire.writes[-1] == (20, [2, 0, 0, 0])
 
 
-async def test_a_late_reply_counts_as_none() -> None:
-    async with on_the_bench() as bench:
+async def test_a_late_reply_counts_as_none(bench: Bench) -> None:
+    await bench.drive.read()
+    bench.machine.inject(Fault(FaultKind.LATE_REPLIES))
+    with pytest.raises(DriveError, match=r"did not answer within 0.3 s"):
         await bench.drive.read()
-        bench.machine.inject(Fault(FaultKind.LATE_REPLIES))
-        with pytest.raises(DriveError, match=r"did not answer within 0.3 s"):
-            await bench.drive.read()
-        bench.machine.end_injected_faults()
-        bench.later(500)
-        assert (await bench.drive.read()).azimuth.position_deg == pytest.approx(102.4)
+    bench.machine.end_injected_faults()
+    bench.later(500)
+    assert (await bench.drive.read()).azimuth.position_deg == pytest.approx(102.4)
 
 
-async def test_without_a_watchdog_the_capabilities_say_so() -> None:
-    clock = VirtualClock(START)
-    machine = SimulatedDrive(CONFIG, clock, watchdog=None)
-    server = ModbusServer(SimulatedPlc(PROFILE, machine, clock))
-    port = await server.start("127.0.0.1", 0)
-    drive = plc_at(port, clock)
-    await drive.read()
-    assert drive.capabilities.watchdog_s is None
-    await drive.close()
-    await server.close()
+async def test_a_command_from_before_a_stop_is_not_written_after_it(bench: Bench) -> None:
+    writing = asyncio.create_task(bench.drive.write(DriveCommand(azimuth=Velocity(1.0))))
+    await bench.wire.asked.wait()
+    await bench.drive.stop()
+    with pytest.raises(DriveError, match="stop had priority"):
+        await writing
+    assert bench.machine.command == DriveCommand()
 
 
-async def test_a_command_from_before_a_stop_is_not_written_after_it() -> None:
-    async with on_the_bench() as bench:
-        writing = asyncio.create_task(bench.drive.write(DriveCommand(azimuth=Velocity(1.0))))
-        await bench.wire.asked.wait()
-        await bench.drive.stop()
-        with pytest.raises(DriveError, match="stop had priority"):
-            await writing
-        assert bench.machine.command == DriveCommand()
-
-
-async def test_a_drive_that_restarted_is_not_given_the_command_from_before() -> None:
-    async with on_the_bench() as bench:
+async def test_a_drive_that_restarted_is_not_given_the_command_from_before(bench: Bench) -> None:
+    await bench.drive.read()
+    await bench.drive.write(DriveCommand(Position(110.0, 6.0)))
+    bench.machine.inject(Fault(FaultKind.CORRUPT_REPLIES))
+    with pytest.raises(DriveError):
         await bench.drive.read()
+    bench.machine.end_injected_faults()
+    bench.machine.inject(Fault(FaultKind.POWER_LOSS))
+    with pytest.raises(DriveError, match="restarted"):
         await bench.drive.write(DriveCommand(Position(110.0, 6.0)))
-        bench.machine.inject(Fault(FaultKind.CORRUPT_REPLIES))
-        with pytest.raises(DriveError):
-            await bench.drive.read()
-        bench.machine.end_injected_faults()
-        bench.machine.inject(Fault(FaultKind.POWER_LOSS))
-        with pytest.raises(DriveError, match="restarted"):
-            await bench.drive.write(DriveCommand(Position(110.0, 6.0)))
-        assert bench.machine.command == DriveCommand()
+    assert bench.machine.command == DriveCommand()

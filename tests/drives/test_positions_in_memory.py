@@ -46,6 +46,14 @@ def found_in(folder: Path, memory: Path | None = None) -> PositionMemory | None:
     return KeptPositions(folder, memory).of("T1").recall()
 
 
+def kept(folder: Path, memory: Path | None, *angles_deg: float) -> KeptPositions:
+    """A life that has kept these positions of T1, one after the other."""
+    positions = KeptPositions(folder, memory)
+    for angle_deg in angles_deg:
+        positions.of("T1").keep(stands_at(angle_deg))
+    return positions
+
+
 def left_in(memory: Path) -> list[Path]:
     return sorted(memory.iterdir())
 
@@ -61,12 +69,13 @@ async def test_axes_that_turn_write_to_memory_alone_and_what_a_zero_is_worth_goe
     drive = cast(SimulatedDrive, DriveFactory(clock, positions=positions).make(CONFIG))
     rig, key = Rig(drive, drive, clock), CONFIG.tracker_id
 
-    def on_disk() -> PositionMemory | None:
-        return KeptPositions(folder).of(key).recall()
+    def on_disk() -> PositionMemory:
+        found = KeptPositions(folder).of(key).recall()
+        assert found is not None
+        return found
 
     await rig.until_rest(HOME)
     homed = on_disk()
-    assert homed is not None
     assert homed.azimuth.homed
     await rig.until_rest(MOVE)
     clock.advance(timedelta(seconds=2))
@@ -79,21 +88,17 @@ async def test_axes_that_turn_write_to_memory_alone_and_what_a_zero_is_worth_goe
     clock.advance(timedelta(seconds=2))
     await drive.read()
     again = on_disk()
-    assert again is not None
     assert again.azimuth.offset_deg == pytest.approx(-here.azimuth.true_deg)
     drive.inject(Fault(FaultKind.POWER_LOSS))
     await drive.write(DriveCommand())
     lost = on_disk()
-    assert lost is not None
     assert (lost.azimuth.homed, lost.boot_count) == (False, homed.boot_count + 1)
 
 
 def test_a_kill_loses_nothing_and_a_power_cut_what_is_newer_than_the_samples(
     folder: Path, memory: Path
 ) -> None:
-    positions = KeptPositions(folder, memory)
-    positions.of("T1").keep(stands_at(10.0))
-    positions.of("T1").keep(stands_at(20.0))
+    positions = kept(folder, memory, 10.0, 20.0)
     positions.flush()
     for angle_deg in (30.0, 40.0):
         positions.of("T1").keep(stands_at(angle_deg))
@@ -114,21 +119,8 @@ def test_each_life_goes_on_where_the_last_one_was_killed(folder: Path, memory: P
     assert (folder / "positions").stat().st_size <= 3 * 2 * 65
 
 
-def test_a_life_that_keeps_nothing_leaves_what_it_found(folder: Path, memory: Path) -> None:
-    KeptPositions(folder, memory).of("T1").keep(stands_at(1.0))
-    moved = KeptPositions(folder, memory)
-    moved.of("T1").keep(stands_at(2.0))
-    moved.of("T1").keep(stands_at(3.0))
-    for _ in range(3):
-        assert found_in(folder, memory) == stands_at(3.0)
-    KeptPositions(folder, memory).close()
-    assert (found_in(folder), left_in(memory)) == (stands_at(3.0), [])
-
-
 def test_what_a_kill_left_goes_to_the_disk_with_the_next_samples(folder: Path, memory: Path) -> None:
-    killed = KeptPositions(folder, memory)
-    killed.of("T1").keep(stands_at(1.0))
-    killed.of("T1").keep(stands_at(2.0))
+    kept(folder, memory, 1.0, 2.0)
     called: list[Callable[[], None]] = []
     positions = KeptPositions(folder, memory)
     positions.when_stale(lambda: called.append(positions.flush))
@@ -140,48 +132,39 @@ def test_what_a_kill_left_goes_to_the_disk_with_the_next_samples(folder: Path, m
 
 
 def test_an_orderly_end_leaves_all_on_the_disk_and_nothing_in_memory(folder: Path, memory: Path) -> None:
-    positions = KeptPositions(folder, memory)
-    for angle_deg in (1.0, 2.0):
-        positions.of("T1").keep(stands_at(angle_deg))
+    positions = kept(folder, memory, 1.0, 2.0)
     positions.close()
     assert (found_in(folder), left_in(memory)) == (stands_at(2.0), [])
     positions.of("T1").keep(stands_at(3.0))
     assert found_in(folder, memory) == stands_at(3.0)
 
 
-def test_a_controller_without_simulated_drives_writes_nothing(folder: Path, memory: Path) -> None:
-    positions = KeptPositions(folder, memory)
-    positions.flush()
-    positions.close()
-    assert (folder.exists(), left_in(memory)) == (False, [])
-
-
 def test_a_folder_made_anew_a_copy_and_a_life_without_memory_find_nothing_of_another(
     folder: Path, memory: Path, tmp_path: Path
 ) -> None:
-    positions = KeptPositions(folder, memory)
-    for angle_deg in (1.0, 2.0):
-        positions.of("T1").keep(stands_at(angle_deg))
+    kept(folder, memory, 1.0, 2.0)
     copy = tmp_path / "copy"
     shutil.copytree(folder, copy)
     assert found_in(copy, memory) == stands_at(1.0)
-    copied = KeptPositions(copy, memory)
-    for angle_deg in (7.0, 8.0):
-        copied.of("T1").keep(stands_at(angle_deg))
+    kept(copy, memory, 7.0, 8.0)
     assert (found_in(folder, memory), found_in(copy, memory)) == (stands_at(2.0), stands_at(8.0))
-    KeptPositions(folder).of("T1").keep(stands_at(5.0))
+    kept(folder, None, 5.0)
     assert found_in(folder, memory) == stands_at(5.0)
     shutil.rmtree(folder)
     folder.mkdir()
     assert found_in(folder, memory) is None
 
 
-def test_what_somebody_else_could_have_put_into_memory_is_not_believed(folder: Path, memory: Path) -> None:
-    positions = KeptPositions(folder, memory)
-    for angle_deg in (1.0, 2.0):
-        positions.of("T1").keep(stands_at(angle_deg))
+def test_what_somebody_else_could_have_put_into_memory_is_not_believed(
+    folder: Path, memory: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept(folder, memory, 1.0, 2.0)
     (own,) = left_in(memory)
     assert (own.stat().st_mode & 0o777, (own / "records").stat().st_mode & 0o777) == (0o700, 0o600)
+    another = os.geteuid() + 1
+    with monkeypatch.context() as changed:
+        changed.setattr(os, "geteuid", lambda: another)
+        assert found_in(folder, memory) == stands_at(1.0), "it is of another user"
     own.chmod(0o755)
     assert found_in(folder, memory) == stands_at(1.0)
     own.chmod(0o700)
@@ -192,18 +175,7 @@ def test_what_somebody_else_could_have_put_into_memory_is_not_believed(folder: P
     assert (aside / "records").exists()
 
 
-def test_the_folder_of_another_user_is_not_looked_at(
-    folder: Path, memory: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    positions = KeptPositions(folder, memory)
-    for angle_deg in (1.0, 2.0):
-        positions.of("T1").keep(stands_at(angle_deg))
-    another = os.geteuid() + 1
-    monkeypatch.setattr(os, "geteuid", lambda: another)
-    assert found_in(folder, memory) == stands_at(1.0)
-
-
-@pytest.mark.parametrize("when", ["at the start", "later", "removed"])
+@pytest.mark.parametrize("when", ["at the start", "removed"])
 def test_memory_that_fails_leaves_the_disk(
     folder: Path, memory: Path, monkeypatch: pytest.MonkeyPatch, when: str
 ) -> None:
@@ -213,9 +185,7 @@ def test_memory_that_fails_leaves_the_disk(
     positions.of("T2").keep(stands_at(9.0))
     for angle_deg in (1.0, 2.0):
         positions.of("T1").keep(stands_at(angle_deg))
-    if when == "later":
-        monkeypatch.setattr(OutlivingTwins, "write", refusing)
-    elif when == "removed":
+    if when == "removed":
         shutil.rmtree(left_in(memory)[0])
     positions.of("T2").keep(stands_at(10.0))
     assert (found_in(folder), left_in(memory)) == (stands_at(2.0), [])
@@ -242,10 +212,7 @@ def test_a_disk_that_fails_is_tried_again_and_memory_stays(
 def test_a_life_that_cannot_give_its_name_uses_no_memory(
     folder: Path, memory: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    before = KeptPositions(folder, memory)
-    for angle_deg in (1.0, 2.0):
-        before.of("T1").keep(stands_at(angle_deg))
-    before.flush()
+    kept(folder, memory, 1.0, 2.0).flush()
     positions = KeptPositions(folder, memory)
     with monkeypatch.context() as failing:
         failing.setattr(positions._file, "write", refusing, raising=False)

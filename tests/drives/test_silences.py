@@ -59,12 +59,7 @@ def test_a_whole_line_is_silent_until_anybody_answers() -> None:
     assert not silences.resting("first", NOON), "nobody else loses by its being asked"
     silences.heard("third")
     assert not silences.all_silent
-
-
-def test_a_device_that_is_gone_is_forgotten() -> None:
-    silences = Silences()
     silences.unheard("first", NOON, WAITED)
     silences.unheard("second", NOON, WAITED)
     silences.forget("first")
-    assert not silences.all_silent
-    assert not silences.resting("first", NOON)
+    assert not silences.all_silent, "who is gone is forgotten"

@@ -1,113 +1,73 @@
-"""A drive that counts millimetres of an actuator, seen in degrees: every story, and the mechanisms."""
+"""Drives that count millimetres of an actuator, and drives turned round or stretched, seen in degrees."""
 
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
 from dataclasses import replace
-from datetime import datetime
-from pathlib import Path
+from datetime import timedelta
 
 import pytest
 
 from app.base.clock import VirtualClock
-from app.drives.linear_actuator import TransmittedDrive, counted_mm, in_millimetres
+from app.drives.linear_actuator import counted_mm, in_millimetres
+from app.drives.scaled import Stretch, corrected
 from app.machine.drive_factory import DriveFactory
-from app.simulation.faults import Fault
-from app.simulation.position_memory import AxisMemory, PositionFile, PositionMemory
+from app.simulation.faults import Fault, FaultKind
 from app.simulation.simulated import SimulatedDrive
-from app.simulation.simulated_axis import Mechanics
-from app.tracker.settings.axes import Axis, AxisConfig
-from app.tracker.settings.config import MountConfig, MountKind, Orientation
+from app.tracker.settings.axes import AZIMUTH_DEFAULT, Axis, AxisConfig
+from app.tracker.settings.config import AxisDrive, DriveConfig, MountConfig, MountKind, TrackerConfig
 from app.tracker.settings.mechanisms import alexandru_diurnal, alexandru_elevation
-from app.tracker.settings.transmission import LinearActuator, Point
-from app.tracker.values.motion import DriveCommand, Feedback, Position, Velocity
-from tests.drives.conformance import BEGIN_ELEVATION_DEG, Story, stories_for
-from tests.drives.rigs import CONFIG, FULL, START, Rig
+from app.tracker.values.motion import DriveCommand, DriveRequest, Position, RequestKind, Velocity
+from tests.drives.rigs import CONFIG, START, Rig
 
-LIFT = LinearActuator(Point(900.0, 0.0, 15.0), Point(132.5, 200.1), 0.0, 745.0, 385.0, 25.0)
-"""Turns an elevation axis from -13 to 105 degrees, by about as much for a millimetre at 7 and at 37."""
-TRUE_ELEVATION_DEG = 6.6
-FINE = Mechanics(gear=1e9, switch_margin_deg=2.0)
-LIFTED = replace(CONFIG, elevation=replace(CONFIG.elevation, actuator=LIFT))
 POLAR = replace(
     CONFIG,
     azimuth=AxisConfig(-60.0, 60.0, 3.0, 6.0, 0.5, 1.5, alexandru_diurnal()),
     elevation=AxisConfig(-23.0, 23.5, 1.9, 6.0, 0.5, 1.0, alexandru_elevation()),
     mount=MountConfig(MountKind.EQUATORIAL, 180.0, 45.65),
 )
+TURNED = replace(
+    CONFIG,
+    drive=DriveConfig(azimuth=AxisDrive(inverted=True), elevation=AxisDrive(gear_ratio=1.25)),
+)
 
 
-class LiftedMachine:
-    """The simulated machine behind the actuator, asked and hurt in degrees of the elevation axis."""
-
-    def __init__(self, inner: SimulatedDrive) -> None:
-        self._inner = inner
-
-    @property
-    def true_orientation(self) -> Orientation:
-        true = self._inner.true_orientation
-        return Orientation(true.azimuth_deg, LIFT.angle_deg(true.elevation_deg + LIFT.stroke_mm(0.0)))
-
-    @property
-    def wall_clock(self) -> datetime:
-        return self._inner.wall_clock
-
-    def inject(self, fault: Fault) -> None:
-        if fault.axis is Axis.ELEVATION:
-            fault = replace(fault, amount=fault.amount * LIFT.mm_per_deg(BEGIN_ELEVATION_DEG))
-        self._inner.inject(fault)
-
-    def end_injected_faults(self) -> None:
-        self._inner.end_injected_faults()
-
-    def observe(self) -> Feedback:
-        return self._inner.observe()
-
-
-@asynccontextmanager
-async def lifted_rig(folder: Path) -> AsyncIterator[Rig]:
-    clock, memory = VirtualClock(START), folder / "T1.json"
-    true_mm = counted_mm(LIFT, TRUE_ELEVATION_DEG)
-    elevation = AxisMemory(true_mm, counted_mm(LIFT, BEGIN_ELEVATION_DEG) - true_mm, homed=False)
-    PositionFile(memory).keep(PositionMemory(AxisMemory(12.4, 90.0, homed=False), elevation, 1, trusted=True))
-    machine = SimulatedDrive(in_millimetres(LIFTED), clock, memory=PositionFile(memory), mechanics=FINE)
-    drive = TransmittedDrive(machine, LIFTED)
-    yield Rig(drive, LiftedMachine(machine), clock)  # type: ignore[arg-type]  # as much as the stories ask for
-    await drive.close()
-
-
-@pytest.mark.parametrize("tell", stories_for(FULL), ids=lambda tell: tell.__name__)
-async def test_story_in_millimetres(tmp_path: Path, tell: Story) -> None:
-    async with lifted_rig(tmp_path) as rig:
-        await tell(rig)
+def polar() -> Rig:
+    """An equatorial mount, both of whose axes are turned by linear actuators."""
+    clock = VirtualClock(START)
+    drive = DriveFactory(clock).make(POLAR)
+    return Rig(drive, drive, clock)  # type: ignore[arg-type]  # nobody looks behind it here
 
 
 async def test_the_factory_turns_both_actuators_of_an_equatorial_mount() -> None:
-    clock = VirtualClock(START)
-    drive = DriveFactory(clock).make(POLAR)
-    rig = Rig(drive, drive, clock)  # type: ignore[arg-type]  # nobody looks behind it here
-    begun = await drive.read()
+    rig = polar()
+    begun = await rig.drive.read()
     feedback = await rig.forward(2.0, DriveCommand(azimuth=Velocity(1.0), elevation=Velocity(-1.0)))
     assert feedback.azimuth.velocity_dps == pytest.approx(1.0, rel=0.02)
     assert feedback.elevation.velocity_dps == pytest.approx(-1.0, rel=0.02)
     assert feedback.azimuth.position_deg > begun.azimuth.position_deg
     assert feedback.elevation.position_deg < begun.elevation.position_deg
-    assert drive.capabilities.description.endswith("Linear actuators: azimuth and elevation.")
-    await drive.close()
+    assert rig.drive.capabilities.description.endswith("Linear actuators: azimuth and elevation.")
+    await rig.drive.stop()
+    rig.idle(2.0)
+    assert not (await rig.drive.read()).azimuth.moving
+    feedback = await rig.until_rest(DriveCommand(request=DriveRequest(1, RequestKind.HOME)))
+    assert (feedback.azimuth.homed, feedback.elevation.homed) == (True, True)
+    assert (feedback.azimuth.position_deg, feedback.elevation.position_deg) == pytest.approx((0, 0), abs=0.02)
+    await rig.drive.close()
 
 
 async def test_an_actuator_keeps_the_speed_of_its_axis_over_the_whole_range() -> None:
-    clock = VirtualClock(START)
-    drive = DriveFactory(clock).make(POLAR)
-    rig = Rig(drive, drive, clock)  # type: ignore[arg-type]  # nobody looks behind it here
+    rig = polar()
     await rig.until_rest(DriveCommand(Position(-55.0, 3.0)))
     speeds = []
     for _ in range(60):
-        feedback = await rig.forward(0.5, DriveCommand(Position(55.0, 2.0)))
+        feedback = await rig.forward(0.5, DriveCommand(Position(55.0, 2.0)), timedelta(seconds=0.25))
         if 2.0 < feedback.azimuth.position_deg + 55.0 < 105.0:
             speeds.append(feedback.azimuth.velocity_dps)
     assert len(speeds) > 40
     assert speeds == pytest.approx([2.0] * len(speeds), rel=0.02)
-    await drive.close()
+    assert (await rig.until_rest(DriveCommand(Position(55.0, 2.0)))).azimuth.position_deg == pytest.approx(
+        55.0, abs=0.02
+    )
+    await rig.drive.close()
 
 
 @pytest.mark.parametrize("axis", Axis)
@@ -119,3 +79,53 @@ def test_the_drives_limits_are_those_of_the_axis_in_millimetres(axis: Axis) -> N
     assert [driven.minimum_deg, driven.maximum_deg] == pytest.approx(ends_mm)
     assert driven.speed_dps == actuator.speed_mm_s
     assert config.speed_dps <= actuator.slowest_dps(config.minimum_deg, config.maximum_deg)
+
+
+def turned() -> tuple[Rig, SimulatedDrive]:
+    """A drive that counts degrees, turned round in azimuth and stretched in elevation, and its machine."""
+    clock = VirtualClock(START)
+    machines: list[SimulatedDrive] = []
+
+    def make(config: TrackerConfig) -> SimulatedDrive:
+        machines.append(SimulatedDrive(config, clock, watchdog=None))
+        return machines[-1]
+
+    drive = corrected(TURNED, make)
+    return Rig(drive, machines[0], clock), machines[0]
+
+
+async def test_a_turned_axis_goes_the_other_way_and_a_stretched_one_farther() -> None:
+    rig, machine = turned()
+    before, true_before = await rig.drive.read(), machine.observe()
+    after = await rig.forward(3.0, DriveCommand(Velocity(2.0), Velocity(1.0)))
+    true = machine.observe()
+    azimuth_deg = after.azimuth.position_deg - before.azimuth.position_deg
+    elevation_deg = after.elevation.position_deg - before.elevation.position_deg
+    assert azimuth_deg > 5.0
+    assert true.azimuth.position_deg - true_before.azimuth.position_deg == pytest.approx(-azimuth_deg)
+    assert true.elevation.position_deg - true_before.elevation.position_deg == pytest.approx(
+        1.25 * elevation_deg
+    )
+    machine.inject(Fault(FaultKind.UPPER_LIMIT_STUCK, Axis.AZIMUTH))
+    assert (await rig.drive.read()).azimuth.at_lower_limit, "the switches change places"
+    await rig.drive.stop()
+    rig.idle(2.0)
+    stood = await rig.drive.read()
+    assert not stood.azimuth.moving
+    target_deg = stood.elevation.position_deg + 4.0
+    moved = await rig.until_rest(DriveCommand(elevation=Position(target_deg, 2.0)))
+    assert moved.elevation.position_deg == pytest.approx(target_deg, abs=0.02)
+    assert rig.drive.capabilities == machine.capabilities
+    await rig.drive.set_clock(START + timedelta(days=1))
+    assert machine.wall_clock == START + timedelta(days=1)
+    await rig.drive.close()
+    assert machine.is_resting
+
+
+def test_limits_and_speeds_are_those_of_the_drive_and_a_motors_gear_is_refused() -> None:
+    stretched = Stretch(-1.5).settings(AZIMUTH_DEFAULT)
+    assert (stretched.minimum_deg, stretched.maximum_deg) == (-540.0, 0.0)
+    assert stretched.speed_dps == pytest.approx(9.0)
+    geared = replace(CONFIG, drive=DriveConfig(azimuth=AxisDrive(gear_ratio=100.0)))
+    with pytest.raises(ValueError, match="counts degrees of the axis"):
+        corrected(geared, lambda config: SimulatedDrive(config, VirtualClock(START)))

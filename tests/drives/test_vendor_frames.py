@@ -4,8 +4,7 @@ Source of each frame: `tests/golden/vendor-frames.csv`, last column.
 """
 
 import csv
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -17,9 +16,9 @@ from app.drives.profile import Profile, load_profile
 from app.drives.register import Register, WordOrder, WordType
 from app.drives.unit import Unit
 from app.drives.write_frame import write_frame
-from app.modbus.bus import Priority
 from app.modbus.rtu_frame import is_sealed, is_whole, request_frame, sealed
 from app.modbus.wire import Ask
+from tests.drives.test_requests import NotingLink
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "vendor-frames.csv"
 ROWS = list(csv.DictReader(GOLDEN.read_text(encoding="utf-8").splitlines()))
@@ -28,35 +27,21 @@ KINCO, LEADSHINE, ORIENTAL = map(load_profile, ("kinco-cia402", "leadshine-rs", 
 
 
 @dataclass
-class Wiretap:
-    """A device that holds zeros and takes everything; it keeps the frames that a serial line would carry."""
+class Wiretap(NotingLink):
+    """A device that takes everything, and the frames that a serial line would carry."""
 
     unit: int = 1
-    ticket: int = 1
-    frames: list[bytes] = field(default_factory=list)
 
-    async def read(
-        self, address: int, count: int, *, what: str, priority: Priority = Priority.POLL
-    ) -> list[int]:
-        self.frames.append(request_frame(Ask(self.unit, address, count)))
-        return [0] * count
+    @property
+    def read_frames(self) -> list[bytes]:
+        return [request_frame(Ask(self.unit, address, count)) for address, count, *_ in self.reads]
 
-    async def write(
-        self,
-        address: int,
-        words: Sequence[int],
-        *,
-        what: str,
-        ticket: int | None,
-        priority: Priority = Priority.COMMAND,
-    ) -> None:
-        self.frames.append(request_frame(Ask(self.unit, address, len(words), tuple(words))))
-
-    async def stop(self, address: int, words: Sequence[int], *, what: str) -> None:
-        await self.write(address, words, what=what, ticket=None)
-
-    async def close(self) -> None:
-        return None
+    @property
+    def frames(self) -> list[bytes]:
+        return [
+            request_frame(Ask(self.unit, address, len(words), tuple(words)))
+            for address, words, *_ in self.writes
+        ]
 
 
 def kinco(steps_per_revolution: float) -> tuple[Cia402Axis, Wiretap]:
@@ -96,7 +81,7 @@ def test_a_profile_writes_the_printed_frame(what: str) -> None:
 async def test_kinco_reads_its_statusword_as_printed() -> None:
     axis, tap = kinco(10000.0)
     await Unit(KINCO, tap, "the tap").poll(*axis.polled)
-    assert tap.frames == [FRAMES["Kinco read statusword 0x3200"]]
+    assert tap.read_frames == [FRAMES["Kinco read statusword 0x3200"]]
 
 
 async def test_kinco_homing_gives_the_printed_controlwords() -> None:

@@ -13,12 +13,15 @@ from app.gateway.sunspec_values import FIXED, View
 from app.link.messages import SetMetStation
 from app.tracker.state.snapshot import SiteSnapshot
 from app.tracker.weather.weather import WeatherNow
+from tests.amount import amount
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.golden.table import rows
 from tests.site.test_hostile_station import GOOD, HOST, WORDS, Station, plant_of
 
 SHOWN = r'data-implausible><span class="label">[^<]*</span><span\s+class="value">(.*?)</span>'
 ROWS = rows("world/stations.csv")
+SOME = amount([ROWS[0], ROWS[4], ROWS[-1]], ROWS)
+"""What each row reads as is decided in `site/test_hostile_station.py`; here it is only passed on."""
 MODEL_307 = {
     "temperature_degc": "TmpAmb",
     "humidity_pct": "RH",
@@ -63,20 +66,18 @@ async def by_panel(weather: WeatherNow | None) -> tuple[dict[str, Any], str]:
     return (call.json() if call.status_code == 200 else {"readings": {}}), page.text
 
 
-@pytest.mark.parametrize("row", ROWS, ids=[row["what"] for row in ROWS])
+@pytest.mark.parametrize("row", SOME, ids=[row["what"] for row in SOME])
 async def test_an_impossible_first_value_is_a_number_nowhere(row: dict[str, str], tmp_path: Path) -> None:
     seen, right = await reported(row, tmp_path, good_before=False), expected(row)
     told, page = await by_panel(seen.weather)
     impossible = [name for name, value in right.items() if value is None]
     assert {name: told["readings"].get(name) for name in right} == right
-    shown = re.findall(
-        r'data-implausible><span class="label">[^<]*</span><span\s+class="value">(.*?)</span>', page
-    )
+    shown = re.findall(SHOWN, page)
     assert [re.sub("<.*?>", "", one).strip() for one in shown] == ["–"] * len(impossible)
     check_interfaces(seen, right)
 
 
-@pytest.mark.parametrize("row", ROWS, ids=[row["what"] for row in ROWS])
+@pytest.mark.parametrize("row", SOME, ids=[row["what"] for row in SOME])
 async def test_an_impossible_value_after_a_good_one_is_not_told_as_measured(
     row: dict[str, str], tmp_path: Path
 ) -> None:

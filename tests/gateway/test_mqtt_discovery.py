@@ -12,8 +12,8 @@ from pydantic import ValidationError
 from app.base.settings import Settings, SettingsWrong, read_settings
 from app.gateway.mqtt_discovery import announcements, node_id
 from app.gateway.mqtt_messages import Topics
-from tests.gateway.rigs import kept_plant
 from tests.golden.table import rows
+from tests.site.plant import make_plant
 
 ROWS = rows("world/base_topics.csv")
 RIGHT = [row for row in ROWS if not row["refusal"]]
@@ -35,10 +35,7 @@ def test_the_id_of_a_tracker_has_only_what_home_assistant_allows(row: dict[str, 
 def test_no_two_trackers_have_one_id() -> None:
     pairs = list(product((row["text"] for row in RIGHT), ("T1", "T2", "T1_2", "T1-2")))
     assert len({node_id(*pair) for pair in pairs}) == len(pairs)
-
-
-def test_an_id_is_the_same_after_every_start() -> None:
-    assert node_id("saha/güneş", "T1") == "saha_g_ne__T1_c278252d02ba2d8e"
+    assert node_id("saha/güneş", "T1") == "saha_g_ne__T1_c278252d02ba2d8e", "after every start"
 
 
 @pytest.mark.parametrize("row", REFUSED, ids=lambda row: row["why"])
@@ -57,13 +54,6 @@ def test_a_topic_that_no_broker_takes_is_refused_in_a_sentence(
     assert len(told) < 300
 
 
-def test_a_topic_as_long_as_a_packet_allows_is_refused_shortly(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("HELIOPANEL_MQTT_BASE_TOPIC", "p" * 65_535)
-    with pytest.raises(SettingsWrong, match="It has 65535 letters") as caught:
-        read_settings()
-    assert len(str(caught.value)) < 300
-
-
 @pytest.mark.parametrize("name", ["mqtt_base_topic", "mqtt_client_id", "mqtt_username"])
 def test_what_a_broker_reads_has_no_hidden_characters(name: str) -> None:
     for text in ("helio\x00panel", "\ufeffheliopanel"):
@@ -72,11 +62,14 @@ def test_what_a_broker_reads_has_no_hidden_characters(name: str) -> None:
     assert Settings.model_validate({name: "Çiftlik_1"})
 
 
-async def test_names_and_units_keep_their_letters(tmp_path: Path) -> None:
-    async with kept_plant(tmp_path) as (plant, _):
-        tracker = replace(plant.tracker(), name="Güneş 太阳")
-    told = announcements(Topics("saha/güneş"), [tracker], commands=True)
-    assert len(told) == 8
+async def test_names_and_units_keep_their_letters_and_buttons_are_for_who_may_command() -> None:
+    plant = make_plant()
+    await plant.start()
+    tracker = replace(plant.tracker(), name="Güneş 太阳")
+    await plant.close()
+    topics = Topics("saha/güneş")
+    told = announcements(topics, [tracker], commands=True)
+    assert (len(told), len(announcements(topics, [tracker], commands=False))) == (8, 5)
     for topic, payload in told.items():
         prefix, component, node, name, config = topic.split("/")
         assert (prefix, config) == ("homeassistant", "config")

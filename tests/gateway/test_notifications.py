@@ -75,18 +75,17 @@ class MailServer:
 
 @asynccontextmanager
 async def served(found: WebServer | MailServer) -> AsyncIterator[None]:
-    conversations: dict[asyncio.Task[None], asyncio.StreamWriter] = {}
+    """Serve whoever connects; nobody's conversation outlives the test."""
+    conversations: set[asyncio.Task[None]] = set()
 
     async def converse(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        conversations.add(asyncio.current_task())  # type: ignore[arg-type]
         try:
             await found.serve(reader, writer)
         finally:
             writer.transport.abort()
 
-    def accept(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        conversations[asyncio.create_task(converse(reader, writer))] = writer
-
-    server = await asyncio.start_server(accept, "127.0.0.1", 0)
+    server = await asyncio.start_server(converse, "127.0.0.1", 0)
     found.port = server.sockets[0].getsockname()[1]
     try:
         yield
@@ -95,8 +94,6 @@ async def served(found: WebServer | MailServer) -> AsyncIterator[None]:
         for conversation in conversations:
             conversation.cancel()
         await asyncio.gather(*conversations, return_exceptions=True)
-        for writer in conversations.values():  # one that was ended before it began has closed nothing
-            writer.transport.abort()
         await asyncio.sleep(0)
         await server.wait_closed()
 
@@ -214,25 +211,20 @@ async def test_a_mail_server_that_refuses_is_told(office: Office) -> None:
     assert "did not accept the message" in (await gateway(office.gateways, "E-mail")).error
 
 
-async def test_a_test_message_goes_by_its_channel_alone(office: Office) -> None:
+async def test_a_test_message_goes_by_its_channel_alone_and_needs_an_address(office: Office) -> None:
+    await office.set(mail_to=("ayse@example.org",))
+    with pytest.raises(CommandRejected, match="no address for webhook"):
+        await office.plant.ask(TestNotification(Channel.WEBHOOK))
     await office.set(webhook_url=office.hook, mail_to=("ayse@example.org",))
     await office.plant.ask(TestNotification(Channel.MAIL))
     await eventually(lambda: any("test message" in one for one in office.post.heard))
     assert "notification_tested" not in [one["kind"] for one in office.web.told()]
 
 
-async def test_a_test_without_an_address_is_refused(office: Office) -> None:
-    with pytest.raises(CommandRejected, match="no address for webhook"):
-        await office.plant.ask(TestNotification(Channel.WEBHOOK))
-    assert (await gateway(office.gateways, "Webhook")).status is GatewayStatus.OFF
-
-
 @pytest.mark.parametrize(
     "wrong",
     [
         {"webhook_url": "ftp://example.org"},
-        {"webhook_url": "https://example.org/a b"},
-        {"mail_to": ("nobody",)},
         {"mail_to": ("a@b\nBcc: c@d",)},
         {"mail_to": tuple(f"p{number}@example.org" for number in range(11))},
         {"mail_priorities": (5,)},

@@ -35,20 +35,13 @@ async def test_without_settings_every_door_is_shut_and_says_how_it_is_opened(tmp
         ("SUNSPEC_HOST", "0.0.0.0", "Leave HELIOPANEL_SUNSPEC_HOST unset"),
         ("SUNSPEC_WRITE_HOSTS", "10.0.0.0/24, plant", "names 'plant', which is no address"),
         ("SUNSPEC_UNIT_ID", "0", "HELIOPANEL_SUNSPEC_UNIT_ID is wrong"),
-        ("MQTT_BASE_TOPIC", "plant/#", r"HELIOPANEL_MQTT_BASE_TOPIC is .plant/#.\. \+ and # are wildcards"),
-        ("MQTT_PUBLISH_INTERVAL_S", "0", "HELIOPANEL_MQTT_PUBLISH_INTERVAL_S is wrong"),
+        ("MQTT_PAYLOAD", "columns", "HELIOPANEL_MQTT_PAYLOAD=trackers"),
     ],
 )
 def test_wrong_settings_are_named(monkeypatch: pytest.MonkeyPatch, name: str, value: str, words: str) -> None:
+    monkeypatch.setenv("HELIOPANEL_MQTT_DISCOVERY", "true")
     monkeypatch.setenv(f"HELIOPANEL_{name}", value)
     with pytest.raises(SettingsWrong, match=words):
-        read_settings()
-
-
-def test_discovery_needs_one_message_a_tracker(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("HELIOPANEL_MQTT_DISCOVERY", "true")
-    monkeypatch.setenv("HELIOPANEL_MQTT_PAYLOAD", "columns")
-    with pytest.raises(SettingsWrong, match="HELIOPANEL_MQTT_PAYLOAD=trackers"):
         read_settings()
 
 

@@ -15,6 +15,9 @@ from sunspec2.modbus.modbus import ModbusClientException
 
 from app.base.clock import SystemClock
 from app.base.settings import Settings
+from app.drives.connections.buses import Buses
+from app.drives.connections.met_station import met_reader
+from app.drives.drive import Drive
 from app.drives.profile import PROFILES
 from app.gateway.sunspec import SunSpecTcp
 from app.gateway.sunspec_device import SunSpecDevice
@@ -26,6 +29,7 @@ from app.modbus.errors import DriveRefused
 from app.simulation.faults import Fault, FaultKind
 from app.simulation.simulated import SimulatedDrive
 from app.tracker.commands.commands import Jog, Move, SelectMode, Stop
+from app.tracker.memory.memory import MetStation
 from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import (
     DriveConfig,
@@ -121,7 +125,7 @@ def packed(angle_deg: float) -> tuple[int, int]:
 
 
 async def test_pysunspec_scans_the_models_of_every_tracker() -> None:
-    async with scada("T1", "T2", "T3") as system:
+    async with scada("T1", "T2") as system:
         await system.plant.commission("T2")
         device = await system.scan()
         try:
@@ -129,7 +133,7 @@ async def test_pysunspec_scans_the_models_of_every_tracker() -> None:
             assert [name for name in device.models if isinstance(name, int)] == [1, 601, 305]
             assert all(not model[0].error_info for model in device.models.values())
             controller = device.tracker_controller[0]
-            assert (controller.L.value, controller.N.value) == (26 + 22 * 3, 3)
+            assert (controller.L.value, controller.N.value) == (26 + 22 * 2, 2)
             second = controller.tracker[1]
             measured = system.plant.tracker("T2").measured
             assert measured is not None
@@ -160,13 +164,7 @@ async def test_pysunspec_writes_targets_and_control_and_is_refused_what_is_out_o
         try:
             await asyncio.to_thread(write, ElCtl=40.0, AzCtl=170.0, Ctl=1)
             assert system.plant.tracker().activity is ActivityName.MOVING
-            for wrong in (
-                {"ElCtl": 90.5},
-                {"AzCtl": 361.0},
-                {"GlblElCtl": -91.0},
-                {"Ctl": 3},
-                {"GlblCtl": 7},
-            ):
+            for wrong in ({"ElCtl": 90.5}, {"AzCtl": 361.0}, {"GlblElCtl": -91.0}, {"Ctl": 3}):
                 with pytest.raises(ModbusClientException, match="3"):
                     await asyncio.to_thread(lambda values=wrong: write(**values))
             await asyncio.to_thread(write, GlblElCtl=30.0, GlblAzCtl=120.0, GlblCtl=1)
@@ -176,15 +174,12 @@ async def test_pysunspec_writes_targets_and_control_and_is_refused_what_is_out_o
         finally:
             device.disconnect()
         told = system.journal()
-        assert (
-            EventKind.MOVE_STARTED,
-            "sunspec 127.0.0.1",
-            "Going to azimuth 120.0, elevation 30.0 degrees.",
-        ) in told
+        going = "Going to azimuth 120.0, elevation 30.0 degrees."
+        assert (EventKind.MOVE_STARTED, "sunspec 127.0.0.1", going) in told
         refused = [message for kind, _, message in told if kind is EventKind.REMOTE_REFUSED]
         assert "90.5 was written to ElCtl over SunSpec; it must lie between -90 and 90." in refused
         assert "-91 was written to GlblElCtl over SunSpec; it must lie between -90 and 90." in refused
-        assert len(refused) == 5
+        assert len(refused) == 4
 
 
 async def test_a_refused_target_is_not_kept_and_manual_control_goes_on() -> None:
@@ -205,27 +200,12 @@ async def test_a_refused_target_is_not_kept_and_manual_control_goes_on() -> None
 async def test_after_a_target_for_all_a_tracker_keeps_the_angle_that_is_not_written_anew() -> None:
     async with scada() as system:
         await system.plant.commission()
-        await system.write(EL_CTL, *packed(40.0), *packed(170.0), 1)
         await system.write(BASE + 70 + 20, *packed(30.0), *packed(120.0), 1)
         await system.write(EL_CTL, *packed(35.0))
         moves = [message for kind, _, message in system.journal() if kind is EventKind.MOVE_STARTED]
         assert moves[-1] == "Going to azimuth 120.0, elevation 35.0 degrees."
-        assert any(
-            message == "GlblElCtl = 30, GlblAzCtl = 120, GlblCtl = 1 was written over SunSpec."
-            for _, _, message in system.journal()
-        )
-
-
-async def test_a_refused_order_does_not_end_a_calibration() -> None:
-    async with scada() as system:
-        plant = system.plant
-        await _tracking(system)
-        await system.write(CTL, 2)
-        await plant.until(lambda seen: seen.activity is ActivityName.HOMING)
-        await settle()
-        assert await system.write(EL_CTL, *packed(-20.0), *packed(140.0), 1) == bytes((0x90, 3))
-        assert await system.read(CTL, 1) == [2]
-        await plant.until(lambda seen: seen.activity is ActivityName.TRACKING)
+        written = "GlblElCtl = 30, GlblAzCtl = 120, GlblCtl = 1 was written over SunSpec."
+        assert written in [message for _, _, message in system.journal()]
 
 
 async def test_what_is_not_known_is_not_implemented_and_never_an_old_value() -> None:
@@ -251,6 +231,9 @@ async def test_weather_brings_model_307_and_stale_weather_is_not_told() -> None:
         try:
             met = device.base_met[0]
             assert (met.WndSpd.cvalue, met.TmpAmb.cvalue, met.RH.cvalue) == (7, -3.2, None)
+            reader = met_reader(Buses(LoopClock()), MetStation("127.0.0.1", system.server.port))
+            assert await reader.read() == (Weather(wind_mps=7.0, temperature_degc=-3.2), ())
+            await reader.close()
             await system.plant.forward(seconds=301)
             await asyncio.to_thread(met.read)
             assert (met.WndSpd.cvalue, met.TmpAmb.cvalue) == (None, None)
@@ -258,7 +241,7 @@ async def test_weather_brings_model_307_and_stale_weather_is_not_told() -> None:
             device.disconnect()
 
 
-async def test_calibrate_stops_homes_and_goes_back_to_automatic() -> None:
+async def test_calibrate_homes_and_goes_back_to_automatic_although_an_order_is_refused() -> None:
     async with scada() as system:
         plant = system.plant
         await _tracking(system)
@@ -267,6 +250,7 @@ async def test_calibrate_stops_homes_and_goes_back_to_automatic() -> None:
         await settle()
         assert await system.read(CTL, 1) == [2]
         await plant.until(lambda seen: seen.activity is ActivityName.HOMING)
+        assert await system.write(EL_CTL, *packed(-20.0), *packed(140.0), 1) == bytes((0x90, 3))
         await plant.until(lambda seen: seen.activity is ActivityName.TRACKING)
         await settle()
         assert await system.read(CTL, 1) == [0]
@@ -287,6 +271,8 @@ async def test_a_new_target_is_gone_to_only_while_this_door_has_manual_control()
         await settle()
         await system.write(EL_CTL, *packed(36.0))
         assert plant.tracker().activity is ActivityName.HOLDING, "somebody else stopped it"
+        assert (await system.write(EL_CTL, *packed(36.0), *packed(120.0), 1))[0] == 16
+        assert plant.tracker().activity is ActivityName.MOVING, "and is overruled by the next order"
 
 
 async def test_calibrate_does_not_take_the_tracker_out_of_the_hands_that_move_it() -> None:
@@ -379,20 +365,8 @@ async def test_a_refusal_in_cycles_is_journalled_once_in_a_while() -> None:
         assert sum(kind is EventKind.REMOTE_REFUSED for kind, _, _ in system.journal()) == 2
 
 
-async def test_who_took_a_tracker_over_is_overruled_by_the_next_write_and_not_before() -> None:
-    async with scada() as system:
-        await system.plant.commission()
-        words = (*packed(45.0), *packed(120.0), 1)
-        await system.write(EL_CTL, *words)
-        await system.plant.ask(Stop())
-        await system.plant.forward(seconds=5)
-        assert (await system.write(EL_CTL, *words))[0] == 16
-        assert system.plant.tracker().activity is ActivityName.MOVING
-
-
-@pytest.mark.parametrize("write_hosts", ["", "10.0.0.0/8, serial"])
-async def test_other_hosts_may_only_read(write_hosts: str) -> None:
-    async with scada(write_hosts=write_hosts) as system:
+async def test_other_hosts_may_only_read() -> None:
+    async with scada(write_hosts="10.0.0.0/8, serial") as system:
         await system.plant.commission()
         for _ in range(5):
             assert await system.write(EL_CTL, *packed(45.0)) == bytes((0x90, 1))
@@ -451,25 +425,22 @@ async def test_a_client_that_reads_no_replies_keeps_neither_ticks_nor_stops_from
 REFUSED = {
     "before the map": (pack(">BHH", 3, BASE - 1, 2), 2),
     "behind the map": (pack(">BHH", 3, BASE + 70 + 2 + 48 + 38 + 1, 2), 2),
-    "address 0": (pack(">BHH", 3, 0, 3), 2),
     "coils": (pack(">BHH", 1, BASE, 1), 2),
     "a coil": (pack(">BHH", 5, BASE, 0xFF00), 2),
     "what can only be read": (pack(">BHH", 6, BASE + 70 + 11, 5), 2),
-    "the unit id": (pack(">BHH", 6, BASE + 68, 9), 2),
     "half of an angle": (pack(">BHH", 6, EL_CTL, 1), 3),
     "an angle and half of the next": (pack(">BHHB3H", 16, EL_CTL, 3, 6, 0, 1000, 0), 3),
     "a span into what can only be read": (pack(">BHHB2H", 16, CTL, 2, 4, 1, 0), 2),
     "nothing": (pack(">BHHBI", 16, EL_CTL, 2, 4, NOTHING), 3),
-    "too many": (pack(">BHH", 3, BASE, 126), 3),
-    "a function that is not there": (bytes((43, 14, 1, 0)), 1),
 }
 
 
-@pytest.mark.parametrize("name", REFUSED)
-async def test_what_cannot_be_done_is_answered_with_its_exception(name: str) -> None:
-    request, code = REFUSED[name]
+async def test_what_cannot_be_done_is_answered_with_its_exception() -> None:
     async with scada() as system:
-        assert await system.ask(request) == bytes((request[0] | 0x80, code))
+        for name, (request, code) in REFUSED.items():
+            assert await system.ask(request) == bytes((request[0] | 0x80, code)), name
+        both = pack(">BHHHHB2H", 23, EL_CTL, 2, EL_CTL, 2, 4, *packed(12.5))
+        assert await system.ask(both) == bytes((23, 4)) + pack(">2H", *packed(12.5)), "the write comes first"
 
 
 async def test_every_span_of_the_map_reads_the_same_words() -> None:
@@ -493,42 +464,22 @@ async def test_reading_and_writing_in_one_request_answers_what_is_there_after_th
 
 async def test_the_type_is_that_of_the_mounts() -> None:
     async with scada("T1", "T2") as system:
-        wanted = [
-            ({"T1": MountKind.AZIMUTH_ELEVATION}, 5),
-            ({"T1": MountKind.VERTICAL_SINGLE_AXIS}, 99),
-            ({"T2": MountKind.VERTICAL_SINGLE_AXIS}, 4),
-        ]
-        for mounts, expected in wanted:
-            for tracker_id, kind in mounts.items():
-                config = system.plant.site.model.tracker(tracker_id).config
-                await system.plant.ask(ConfigureTracker(replace(config, mount=MountConfig(kind))))
-                await system.plant.forward(seconds=0.2)
+        for tracker_id, expected in (("T1", 99), ("T2", 4)):
+            config = system.plant.site.model.tracker(tracker_id).config
+            mount = MountConfig(MountKind.VERTICAL_SINGLE_AXIS)
+            await system.plant.ask(ConfigureTracker(replace(config, mount=mount)))
+            await system.plant.forward(seconds=0.2)
             assert await system.read(BASE + 70 + 10, 1) == [expected]
 
 
-async def test_our_own_sunspec_drive_moves_a_tracker_of_another_controller() -> None:
-    async with scada() as system:
-        await system.plant.commission()
-        wiring = DriveConfig(DriveKind.MODBUS_TCP, profile="sunspec-601", port=system.server.port)
-        drive = DriveFactory(SystemClock()).make(TrackerConfig("X", "Another controller", drive=wiring))
-        for azimuth_deg in (100.0, 120.0):
-            await drive.read()
-            await drive.write(DriveCommand(Position(azimuth_deg, 6.0), Position(30.0, 4.0)))
-            await system.plant.forward(seconds=40)
-            seen = await drive.read()
-            assert (seen.azimuth.position_deg, seen.elevation.position_deg) == (azimuth_deg, 30.0)
-        await drive.close()
-
-
-def second_tracker(folder: Path, number: int = 2) -> DriveFactory:
-    """Drives whose profile `second` is the shipped one for another tracker of the controller."""
-    (folder / "profiles").mkdir()
+def second_tracker(folder: Path, port: int, number: int) -> Drive:
+    """A drive whose profile is the shipped one for another tracker of the controller."""
+    (folder / "profiles").mkdir(exist_ok=True)
     text = (PROFILES / "sunspec-601.toml").read_text(encoding="utf-8")
-    own = text.replace('name = "sunspec-601"', 'name = "second"').replace(
-        "tracker = 1", f"tracker = {number}"
-    )
-    (folder / "profiles" / "second.toml").write_text(own, encoding="utf-8")
-    return DriveFactory(SystemClock(), folder)
+    text = text.replace('"sunspec-601"', '"second"').replace("tracker = 1", f"tracker = {number}")
+    (folder / "profiles" / "second.toml").write_text(text, encoding="utf-8")
+    wiring = DriveConfig(DriveKind.MODBUS_TCP, profile="second", port=port)
+    return DriveFactory(SystemClock(), folder).make(TrackerConfig("X", "Another controller", drive=wiring))
 
 
 async def test_our_own_sunspec_drive_moves_the_tracker_that_its_profile_says(tmp_path: Path) -> None:
@@ -536,21 +487,16 @@ async def test_our_own_sunspec_drive_moves_the_tracker_that_its_profile_says(tmp
         await system.plant.commission("T1")
         await system.plant.commission("T2")
         before = system.plant.tracker("T1").measured
-        wiring = DriveConfig(DriveKind.MODBUS_TCP, profile="second", port=system.server.port)
-        drive = second_tracker(tmp_path).make(TrackerConfig("X", "Another controller", drive=wiring))
-        await drive.read()
-        await drive.write(DriveCommand(Position(100.0, 6.0), Position(30.0, 4.0)))
-        await system.plant.forward(seconds=40)
-        seen = await drive.read()
+        drive = second_tracker(tmp_path, system.server.port, 2)
+        for azimuth_deg in (100.0, 120.0):
+            await drive.read()
+            await drive.write(DriveCommand(Position(azimuth_deg, 6.0), Position(30.0, 4.0)))
+            await system.plant.forward(seconds=40)
+            seen = await drive.read()
+            assert (seen.azimuth.position_deg, seen.elevation.position_deg) == (azimuth_deg, 30.0)
         await drive.close()
-        assert (seen.azimuth.position_deg, seen.elevation.position_deg) == (100.0, 30.0)
         assert system.plant.tracker("T1").measured == before, "the first was not touched"
-
-
-async def test_a_tracker_that_the_controller_does_not_have_is_told(tmp_path: Path) -> None:
-    async with scada("T1", "T2") as system:
-        wiring = DriveConfig(DriveKind.MODBUS_TCP, profile="second", port=system.server.port)
-        drive = second_tracker(tmp_path, 3).make(TrackerConfig("X", "Another controller", drive=wiring))
+        drive = second_tracker(tmp_path, system.server.port, 3)
         with pytest.raises(DriveRefused, match="has 2 trackers, but profile second needs number 3"):
             await drive.read()
         await drive.close()

@@ -15,12 +15,10 @@ from app.drives.profile import load_profile
 from app.gateway.sunspec import SunSpecRtu, SunSpecTcp
 from app.gateway.sunspec_device import SunSpecDevice
 from app.link.metrics import GatewayStatus
-from app.modbus.line import SerialLine
-from app.modbus.rtu_server import RtuServer
 from app.modbus.server import ModbusServer
 from app.simulation.sim_plc import SimulatedPlc
 from app.simulation.simulated import SimulatedDrive
-from app.tracker.settings.config import Parity, SerialConfig, TrackerConfig
+from app.tracker.settings.config import TrackerConfig
 from app.tracker.state.snapshot import ActivityName, EventKind
 from app.tracker.values.motion import Velocity
 from tests.gateway.rigs import HurriedClock
@@ -31,13 +29,13 @@ from tests.site.plant import SUMMER_NOON, Plant, make_plant
 EL_CTL, CTL = 40114, 40118
 TARGETS_AND_MANUAL = (0, 30_000, 2, 8_928, 1)
 """30 and 140 degrees in thousandths, high word first, and control 1."""
+OTHER_TARGETS = (0, 31_000, 2, 8_928, 1)
 
 
 @dataclass
 class Served:
-    """Our servers and how each client reaches them."""
+    """Our servers over TCP and on a serial line, and how each client reaches them."""
 
-    plant: Plant
     port: int
     line: str
 
@@ -51,7 +49,7 @@ class Served:
 
 
 @asynccontextmanager
-async def sunspec(folder: Path) -> AsyncIterator[Served]:
+async def sunspec(folder: Path) -> AsyncIterator[tuple[Plant, Served]]:
     """A commissioned site behind SunSpec, over TCP and on a serial line."""
     plant = make_plant()
     await plant.start()
@@ -69,7 +67,7 @@ async def sunspec(folder: Path) -> AsyncIterator[Served]:
         await eventually(lambda: tcp.port and rtu.metrics().status is GatewayStatus.LISTENING)
         try:
             await plant.commission()
-            yield Served(plant, tcp.port, theirs)
+            yield plant, Served(tcp.port, theirs)
         finally:
             for task in tasks:
                 task.cancel()
@@ -77,27 +75,9 @@ async def sunspec(folder: Path) -> AsyncIterator[Served]:
             await plant.close()
 
 
-@asynccontextmanager
-async def simulated_plc(folder: Path) -> AsyncIterator[tuple[SimulatedDrive, int, str]]:
-    """The simulated drive's registers, over TCP and on a serial line."""
-    clock = VirtualClock(SUMMER_NOON)
-    drive = SimulatedDrive(TrackerConfig("T1", "Tracker 1"), clock)
-    plc = SimulatedPlc(load_profile("simulated-plc"), drive, clock)
-    async with cable(folder) as (ours, theirs):
-        tcp = ModbusServer(plc, 1)
-        rtu = RtuServer({1: plc}, SerialLine(SerialConfig(ours, parity=Parity.NONE)))
-        port = await tcp.start("127.0.0.1", 0)
-        await rtu.start()
-        try:
-            yield drive, port, theirs
-        finally:
-            await tcp.close()
-            await rtu.close()
-
-
 @pytest.mark.parametrize("kind", ["tcp", "rtu"])
-async def test_mbpoll_reads_and_writes_sunspec(kind: str, tmp_path: Path) -> None:
-    async with sunspec(tmp_path) as served:
+async def test_mbpoll_and_modbus_serial_read_and_write_sunspec(kind: str, tmp_path: Path) -> None:
+    async with sunspec(tmp_path) as (plant, served):
         code, said = await mbpoll("-t", "4:hex", "-r", "40000", "-c", "2", *served.mbpoll(kind))
         assert code == 0, said
         assert "0x5375" in said
@@ -105,55 +85,42 @@ async def test_mbpoll_reads_and_writes_sunspec(kind: str, tmp_path: Path) -> Non
         written = [str(word) for word in TARGETS_AND_MANUAL]
         code, said = await mbpoll("-t", "4", "-r", str(EL_CTL), *served.mbpoll(kind), *written)
         assert code == 0, said
-        assert served.plant.tracker().activity is ActivityName.MOVING
+        assert plant.tracker().activity is ActivityName.MOVING
         actor = "sunspec 127.0.0.1" if kind == "tcp" else "sunspec serial"
-        assert served.plant.happened(EventKind.MOVE_STARTED)[-1].actor == actor
+        assert plant.happened(EventKind.MOVE_STARTED)[-1].actor == actor
         code, said = await mbpoll("-t", "4", "-r", "100", *served.mbpoll(kind))
         assert code != 0
         assert "Illegal data address" in said
-
-
-@pytest.mark.parametrize("kind", ["tcp", "rtu"])
-async def test_modbus_serial_reads_and_writes_sunspec(kind: str, tmp_path: Path) -> None:
-    async with sunspec(tmp_path) as served:
         answers = await modbus_serial(
             served.node(kind),
-            ["readHoldingRegisters", 40000, 2],
             ["readHoldingRegisters", 40070, 2],
-            ["writeRegisters", EL_CTL, list(TARGETS_AND_MANUAL)],
+            ["writeRegisters", EL_CTL, list(OTHER_TARGETS)],
             ["readHoldingRegisters", EL_CTL, 5],
             ["writeRegister", CTL, 9],
             ["readHoldingRegisters", 0, 2],
         )
-        assert answers[0] == {"data": [0x5375, 0x6E53]}
-        assert answers[1] == {"data": [601, 48]}
-        assert "data" in answers[2]
-        assert answers[3] == {"data": list(TARGETS_AND_MANUAL)}
-        assert answers[4:] == [{"exception": 3}, {"exception": 2}]
-        assert served.plant.tracker().activity is ActivityName.MOVING
+        assert answers[0] == {"data": [601, 48]}
+        assert "data" in answers[1]
+        assert answers[2] == {"data": list(OTHER_TARGETS)}
+        assert answers[3:] == [{"exception": 3}, {"exception": 2}]
 
 
-@pytest.mark.parametrize("kind", ["tcp", "rtu"])
-async def test_mbpoll_and_modbus_serial_drive_the_simulated_plc(kind: str, tmp_path: Path) -> None:
-    async with simulated_plc(tmp_path) as (drive, port, line):
-        where = (
-            ["-m", "tcp", "-p", str(port), "127.0.0.1"]
-            if kind == "tcp"
-            else ["-m", "rtu", "-b", "19200", "-P", "none", line]
-        )
-        code, said = await mbpoll("-t", "4:hex", "-r", "0", "-c", "1", *where)
-        assert code == 0, said
-        assert "0x4850" in said
-        code, said = await mbpoll("-t", "4", "-r", "21", *where, "1", "0", "1500")
-        assert code == 0, said
-        assert drive.command.azimuth == Velocity(1.5)
-        answers = await modbus_serial(
-            {"tcp": port} if kind == "tcp" else {"rtu": line},
-            ["writeRegisters", 22, [0, 700]],
-            ["readHoldingRegisters", 20, 4],
-            ["readCoils", 0, 1],
-            ["writeCoil", 0, True],
-        )
-        assert answers[1] == {"data": [0, 1, 0, 700]}
-        assert answers[2]["data"][0] is False
-        assert drive.command.azimuth != Velocity(0.7), "the stop coil stopped it"
+async def test_mbpoll_and_modbus_serial_drive_the_simulated_plc() -> None:
+    clock = VirtualClock(SUMMER_NOON)
+    drive = SimulatedDrive(TrackerConfig("T1", "Tracker 1"), clock)
+    server = ModbusServer(SimulatedPlc(load_profile("simulated-plc"), drive, clock), 1)
+    served = Served(await server.start("127.0.0.1", 0), "")
+    code, said = await mbpoll("-t", "4", "-r", "21", *served.mbpoll("tcp"), "1", "0", "1500")
+    assert code == 0, said
+    assert drive.command.azimuth == Velocity(1.5)
+    answers = await modbus_serial(
+        served.node("tcp"),
+        ["writeRegisters", 22, [0, 700]],
+        ["readHoldingRegisters", 20, 4],
+        ["readCoils", 0, 1],
+        ["writeCoil", 0, True],
+    )
+    assert answers[1] == {"data": [0, 1, 0, 700]}
+    assert answers[2]["data"][0] is False
+    assert drive.command.azimuth != Velocity(0.7), "the stop coil stopped it"
+    await server.close()
