@@ -20,19 +20,13 @@ from app.tracker.values.motion import (
 from tests.drives.rigs import Rig, Trait
 
 Story = Callable[[Rig], Awaitable[None]]
-STORIES: list[Story] = []
 NEEDED: dict[Story, frozenset[Trait]] = {}
 BEGIN_AZIMUTH_DEG, BEGIN_ELEVATION_DEG = 102.4, 36.6
 LAST_COUNT_DEG = 0.0101
 
 
-def story(tell: Story) -> Story:
-    STORIES.append(tell)
-    return tell
-
-
-def needing(*traits: Trait) -> Callable[[Story], Story]:
-    """Mark what a drive must have for a story to make sense."""
+def story(*traits: Trait) -> Callable[[Story], Story]:
+    """Mark a story, and what a drive must have for it to make sense."""
 
     def mark(tell: Story) -> Story:
         NEEDED[tell] = frozenset(traits)
@@ -42,7 +36,7 @@ def needing(*traits: Trait) -> Callable[[Story], Story]:
 
 
 def stories_for(traits: frozenset[Trait]) -> list[Story]:
-    return [tell for tell in STORIES if NEEDED.get(tell, frozenset()) <= traits]
+    return [tell for tell, needed in NEEDED.items() if needed <= traits]
 
 
 def on_every_wire() -> list[Story]:
@@ -75,8 +69,7 @@ def is_homed(feedback: Feedback) -> bool:
     return feedback.azimuth.homed or feedback.elevation.homed
 
 
-@story
-@needing(Trait.ZERO)
+@story(Trait.ZERO)
 async def a_new_drive_stands_still_and_has_no_zero_until_it_is_set(rig: Rig) -> None:
     feedback = await rig.drive.read()
     can = rig.drive.capabilities
@@ -95,8 +88,7 @@ async def a_new_drive_stands_still_and_has_no_zero_until_it_is_set(rig: Rig) -> 
     assert feedback.elevation.homed
 
 
-@story
-@needing(Trait.ZERO)
+@story(Trait.ZERO)
 async def a_request_is_carried_out_once(rig: Rig) -> None:
     await rig.forward(0.1, asking(1, RequestKind.SET_HOME_AZIMUTH))
     moved = await rig.until_rest(at(5.0, 36.6))
@@ -104,8 +96,7 @@ async def a_request_is_carried_out_once(rig: Rig) -> None:
     assert again.azimuth.position_deg == pytest.approx(moved.azimuth.position_deg)
 
 
-@story
-@needing(Trait.SPEED)
+@story(Trait.SPEED)
 async def a_jog_turns_at_its_speed_and_a_halt_ends_it(rig: Rig) -> None:
     jogging = await rig.forward(2.0, DriveCommand(azimuth=Velocity(-3.0)))
     assert jogging.azimuth.velocity_dps == pytest.approx(-3.0, abs=rig.speed_step_dps)
@@ -117,7 +108,7 @@ async def a_jog_turns_at_its_speed_and_a_halt_ends_it(rig: Rig) -> None:
     assert halted.azimuth.position_deg == pytest.approx(BEGIN_AZIMUTH_DEG - 6.0, abs=LAST_COUNT_DEG)
 
 
-@story
+@story()
 async def a_move_ends_at_its_target_at_its_own_speed(rig: Rig) -> None:
     turning = await rig.forward(3.0, DriveCommand(Position(120.0, 1.5), Position(50.0, 4.0)))
     if Trait.SPEED in rig.traits:
@@ -127,8 +118,7 @@ async def a_move_ends_at_its_target_at_its_own_speed(rig: Rig) -> None:
     assert feedback.azimuth.velocity_dps == 0.0
 
 
-@story
-@needing(Trait.SPEED)
+@story(Trait.SPEED)
 async def a_new_target_in_mid_move_makes_no_jump(rig: Rig) -> None:
     speeds = []
     for command in (at(130.0, 36.6), at(90.0, 36.6), at(108.0, 36.6)):
@@ -142,8 +132,7 @@ async def a_new_target_in_mid_move_makes_no_jump(rig: Rig) -> None:
     assert feedback.azimuth.position_deg == pytest.approx(108.0, abs=LAST_COUNT_DEG)
 
 
-@story
-@needing(Trait.SWITCHES)
+@story(Trait.SWITCHES)
 async def the_limit_switch_ends_a_jog_and_the_way_back_is_free(rig: Rig) -> None:
     down = DriveCommand(elevation=Velocity(-2.0))
     feedback = await rig.until_rest(down)
@@ -159,8 +148,7 @@ async def the_limit_switch_ends_a_jog_and_the_way_back_is_free(rig: Rig) -> None
     assert barred.azimuth.position_deg == pytest.approx(BEGIN_AZIMUTH_DEG)
 
 
-@story
-@needing(Trait.ZERO)
+@story(Trait.ZERO)
 async def a_moving_axis_cannot_be_zeroed(rig: Rig) -> None:
     request = DriveRequest(4, RequestKind.SET_HOME_AZIMUTH)
     await rig.forward(1.0, DriveCommand(azimuth=Velocity(3.0)))
@@ -169,8 +157,7 @@ async def a_moving_axis_cannot_be_zeroed(rig: Rig) -> None:
     assert not feedback.azimuth.homed
 
 
-@story
-@needing(Trait.ZERO)
+@story(Trait.ZERO)
 async def homing_finds_north_and_the_horizon(rig: Rig) -> None:
     searching = await rig.forward(1.0, asking(5, RequestKind.HOME))
     assert searching.homing
@@ -186,15 +173,14 @@ async def homing_finds_north_and_the_horizon(rig: Rig) -> None:
     assert (truth.azimuth_deg, truth.elevation_deg) == pytest.approx((0.0, 0.0), abs=0.02)
 
 
-@story
+@story()
 async def homing_goes_on_while_halt_is_written(rig: Rig) -> None:
     await rig.forward(0.2, asking(5, RequestKind.HOME))
     assert (await rig.forward(0.5)).homing
     assert (await rig.until_rest()).request_done == 5
 
 
-@story
-@needing(Trait.ZERO)
+@story(Trait.ZERO)
 async def a_stop_ends_homing_without_a_zero(rig: Rig) -> None:
     await rig.forward(1.0, asking(5, RequestKind.HOME))
     await rig.drive.stop()
@@ -203,8 +189,7 @@ async def a_stop_ends_homing_without_a_zero(rig: Rig) -> None:
     assert not is_homed(feedback)
 
 
-@story
-@needing(Trait.ZERO)
+@story(Trait.ZERO)
 async def a_stalled_axis_makes_homing_fail(rig: Rig) -> None:
     await rig.forward(0.5, asking(5, RequestKind.HOME))
     rig.machine.inject(Fault(FaultKind.STALL, Axis.AZIMUTH))
@@ -213,8 +198,7 @@ async def a_stalled_axis_makes_homing_fail(rig: Rig) -> None:
     assert not feedback.azimuth.homed
 
 
-@story
-@needing(Trait.FAULT_RESET)
+@story(Trait.FAULT_RESET)
 async def a_fault_stops_both_axes_until_it_is_reset(rig: Rig) -> None:
     await rig.forward(1.0, at(140.0, 60.0))
     rig.machine.inject(Fault(FaultKind.DRIVE_FAULT, amount=7))
@@ -229,8 +213,7 @@ async def a_fault_stops_both_axes_until_it_is_reset(rig: Rig) -> None:
     assert moved.azimuth.position_deg > feedback.azimuth.position_deg
 
 
-@story
-@needing(Trait.ZERO)
+@story(Trait.ZERO)
 async def a_drive_that_lost_power_has_a_new_life_and_no_zero(rig: Rig) -> None:
     await rig.forward(0.1, asking(1, RequestKind.SET_HOME_AZIMUTH))
     await rig.forward(0.1, asking(2, RequestKind.SET_HOME_ELEVATION))
@@ -246,8 +229,7 @@ async def a_drive_that_lost_power_has_a_new_life_and_no_zero(rig: Rig) -> None:
     assert (await rig.forward(1.0, DriveCommand(azimuth=Velocity(1.0)))).azimuth.moving
 
 
-@story
-@needing(Trait.WATCHDOG)
+@story(Trait.WATCHDOG)
 async def without_commands_the_watchdog_ramps_both_axes_down(rig: Rig) -> None:
     command = DriveCommand(Velocity(3.0), Velocity(2.0))
     before = await rig.forward(1.0, command)
@@ -264,8 +246,7 @@ async def without_commands_the_watchdog_ramps_both_axes_down(rig: Rig) -> None:
     assert again.azimuth.position_deg > feedback.azimuth.position_deg + 1.0
 
 
-@story
-@needing(Trait.WATCHDOG)
+@story(Trait.WATCHDOG)
 async def a_drive_that_is_fed_in_time_goes_on(rig: Rig) -> None:
     command = DriveCommand(azimuth=Velocity(3.0))
     for _ in range(5):
@@ -277,8 +258,7 @@ async def a_drive_that_is_fed_in_time_goes_on(rig: Rig) -> None:
     assert feedback.azimuth.velocity_dps == pytest.approx(3.0)
 
 
-@story
-@needing(Trait.WATCHDOG)
+@story(Trait.WATCHDOG)
 async def reading_alone_does_not_feed_the_watchdog(rig: Rig) -> None:
     await rig.forward(1.0, DriveCommand(azimuth=Velocity(3.0)))
     for _ in range(20):
@@ -288,8 +268,7 @@ async def reading_alone_does_not_feed_the_watchdog(rig: Rig) -> None:
     assert not feedback.azimuth.moving
 
 
-@story
-@needing(Trait.SPEED)
+@story(Trait.SPEED)
 async def stop_ramps_both_axes_down(rig: Rig) -> None:
     before = await rig.forward(1.0, DriveCommand(Velocity(3.0), Velocity(2.0)))
     await rig.drive.stop()
@@ -300,7 +279,7 @@ async def stop_ramps_both_axes_down(rig: Rig) -> None:
     assert way_deg == pytest.approx(3.0**2 / (2 * 6.0), abs=0.02)
 
 
-@story
+@story()
 async def a_silent_drive_is_said_to_be_silent_and_found_again(rig: Rig) -> None:
     before = await rig.forward(0.2)
     rig.machine.inject(Fault(FaultKind.SILENCE))
@@ -314,7 +293,7 @@ async def a_silent_drive_is_said_to_be_silent_and_found_again(rig: Rig) -> None:
     assert positions(feedback) == pytest.approx(positions(before))
 
 
-@story
+@story()
 async def a_command_that_is_not_taken_is_an_error(rig: Rig) -> None:
     await rig.forward(0.2)
     rig.machine.inject(Fault(FaultKind.IGNORED_WRITES))
@@ -324,16 +303,14 @@ async def a_command_that_is_not_taken_is_an_error(rig: Rig) -> None:
     assert (await rig.forward(1.0, at(140.0, 60.0))).azimuth.moving
 
 
-@story
-@needing(Trait.CLOCK)
+@story(Trait.CLOCK)
 async def the_clock_of_the_drive_can_be_set(rig: Rig) -> None:
     await rig.drive.set_clock(datetime(2031, 12, 24, 18, 30, 5, tzinfo=UTC))
     rig.idle(2.0)
     assert rig.machine.wall_clock == datetime(2031, 12, 24, 18, 30, 7, tzinfo=UTC)
 
 
-@story
-@needing(Trait.SPEED)
+@story(Trait.SPEED)
 async def closing_stops_the_axes(rig: Rig) -> None:
     await rig.forward(1.0, DriveCommand(azimuth=Velocity(3.0)))
     await rig.drive.close()
@@ -341,8 +318,7 @@ async def closing_stops_the_axes(rig: Rig) -> None:
     assert not rig.machine.observe().azimuth.moving
 
 
-@story
-@needing(Trait.STEPS)
+@story(Trait.STEPS)
 async def without_a_watchdog_hand_motion_ends_by_itself(rig: Rig) -> None:
     assert rig.drive.capabilities.watchdog_s is None
     before = await rig.forward(1.0, DriveCommand(Velocity(3.0), Velocity(-2.0)))
@@ -356,7 +332,7 @@ async def without_a_watchdog_hand_motion_ends_by_itself(rig: Rig) -> None:
     assert positions(await rig.drive.read()) == positions(feedback)
 
 
-@story
+@story()
 async def a_stop_overtakes_a_move_and_the_drive_obeys_again(rig: Rig) -> None:
     before = await rig.forward(2.0, at(140.0, 60.0))
     await rig.drive.stop()

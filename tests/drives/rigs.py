@@ -1,7 +1,7 @@
 """Drives on a virtual clock, each with the simulated machine behind it in reach of the test."""
 
 import asyncio
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime, timedelta
@@ -14,6 +14,7 @@ from app.base.clock import VirtualClock
 from app.drives.drive import Drive
 from app.drives.profile import load_profile
 from app.machine.drive_factory import DriveFactory
+from app.modbus.line import Line
 from app.modbus.listening_line import ListeningLine
 from app.modbus.pty_line import PtyLine
 from app.modbus.rtu_server import RtuServer
@@ -118,47 +119,38 @@ async def modbus_rig(name: str = "simulated-plc") -> AsyncIterator[Rig]:
 @asynccontextmanager
 async def rtu_rig() -> AsyncIterator[Rig]:
     """The drive on a serial line that is a pseudo-terminal, beside another drive on the same line."""
-    clock = VirtualClock(START)
-    machine = SimulatedDrive(CONFIG, clock)
-    profile = load_profile("simulated-plc")
     with TemporaryDirectory() as folder:
-        line = PtyLine(Path(folder) / "line")
-        devices = {7: SimulatedPlc(profile, machine, clock), 8: another_device(clock)}
-        server = RtuServer(devices, line)
-        await server.start()
-        serial = SerialConfig(str(Path(folder) / "line"), 115_200)
-        async with connected(DriveConfig(DriveKind.MODBUS_RTU, unit=7, serial=serial), clock) as drive:
-            yield Rig(drive, machine, clock)
-        await server.close()
-        assert not pending_tasks(), "a closed drive leaves no task behind"
+        path = Path(folder) / "line"
+        wiring = DriveConfig(DriveKind.MODBUS_RTU, unit=7, serial=SerialConfig(str(path), 115_200))
+        async with framed_rig(PtyLine(path), lambda: wiring) as rig:
+            yield rig
 
 
 @asynccontextmanager
 async def gateway_rig() -> AsyncIterator[Rig]:
     """The drive behind a gateway that passes raw RTU frames on."""
-    clock = VirtualClock(START)
-    machine = SimulatedDrive(CONFIG, clock)
     line = ListeningLine("127.0.0.1", 0)
-    server = RtuServer({1: SimulatedPlc(load_profile("simulated-plc"), machine, clock)}, line)
-    await server.start()
-    async with connected(DriveConfig(DriveKind.MODBUS_RTU_OVER_TCP, port=line.port), clock) as drive:
-        yield Rig(drive, machine, clock)
-    await server.close()
-    assert not pending_tasks(), "a closed drive leaves no task behind"
+    wiring = DriveConfig(DriveKind.MODBUS_RTU_OVER_TCP, unit=7)
+    async with framed_rig(line, lambda: replace(wiring, port=line.port)) as rig:
+        yield rig
 
 
 @asynccontextmanager
-async def connected(config: DriveConfig, clock: VirtualClock) -> AsyncIterator[Drive]:
-    """A drive that is closed at the end."""
-    drive = DriveFactory(clock).make(replace(CONFIG, drive=config))
+async def framed_rig(line: Line, wiring: Callable[[], DriveConfig]) -> AsyncIterator[Rig]:
+    """The drive as unit 7 on a line of RTU frames, beside another; the wiring is asked once it is open."""
+    clock = VirtualClock(START)
+    machine, other = SimulatedDrive(CONFIG, clock), SimulatedDrive(CONFIG, clock)
+    profile = load_profile("simulated-plc")
+    found = {7: SimulatedPlc(profile, machine, clock), 8: SimulatedPlc(profile, other, clock)}
+    server = RtuServer(found, line)
+    await server.start()
+    drive = DriveFactory(clock).make(replace(CONFIG, drive=wiring()))
     try:
-        yield drive
+        yield Rig(drive, machine, clock)
     finally:
         await drive.close()
-
-
-def another_device(clock: VirtualClock) -> SimulatedPlc:
-    return SimulatedPlc(load_profile("simulated-plc"), SimulatedDrive(CONFIG, clock), clock)
+        await server.close()
+        assert not pending_tasks(), "a closed drive leaves no task behind"
 
 
 RIGS = {

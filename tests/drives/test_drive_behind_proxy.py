@@ -4,7 +4,7 @@ A lost reply is noticed after the profile's time-out; from then on the drive is 
 """
 
 import asyncio
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import pytest
 
@@ -15,7 +15,7 @@ from app.machine.drive_factory import DriveFactory
 from app.modbus.errors import DriveError
 from app.simulation.sim_plc import SimulatedPlc
 from app.simulation.simulated import SimulatedDrive
-from app.tracker.values.motion import DriveCommand, Feedback, Velocity
+from app.tracker.values.motion import AxisFeedback, DriveCommand, Feedback, Velocity
 from tests.drives.conformance import is_moving
 from tests.drives.proxied import BENCHES
 from tests.drives.rigs import CONFIG, START, TICK
@@ -27,29 +27,23 @@ PROFILE = load_profile("simulated-plc")
 CREEPING = DriveCommand(Velocity(0.5), Velocity(-0.5))
 
 
+@dataclass
 class Tracked:
     """A drive that is ticked, and every reading of it held to the machine behind it."""
 
-    def __init__(self, drive: Drive, machine: SimulatedDrive, clock: VirtualClock) -> None:
-        self._drive = drive
-        self._machine = machine
-        self._clock = clock
+    drive: Drive
+    machine: SimulatedDrive
+    clock: VirtualClock
 
     async def tick(self, command: DriveCommand) -> Feedback | None:
-        """Read and command once; None if the drive could not be read."""
-        self._clock.advance(TICK)
+        """Read and command once; None if the drive could not be read or commanded."""
+        self.clock.advance(TICK)
         try:
-            feedback = await self._drive.read()
-        except DriveError:
-            return None
-        truth = await self._machine.read()
-        for axis, true in ((feedback.azimuth, truth.azimuth), (feedback.elevation, truth.elevation)):
-            assert axis.position_deg == pytest.approx(true.position_deg, abs=1e-6), (
-                "an old value was believed"
-            )
-            assert axis.moving == true.moving
-        try:
-            await self._drive.write(command)
+            feedback = await self.drive.read()
+            for axis, true in zip(axes(feedback), axes(await self.machine.read()), strict=True):
+                assert axis.position_deg == pytest.approx(true.position_deg, abs=1e-6), "an old value"
+                assert axis.moving == true.moving
+            await self.drive.write(command)
         except DriveError:
             return None
         return feedback
@@ -62,6 +56,10 @@ class Tracked:
             if await self.tick(CREEPING) is not None:
                 return loop.time() - began_s
         raise AssertionError(f"not found again within {MOST_TICKS} ticks")
+
+
+def axes(seen: Feedback) -> tuple[AxisFeedback, AxisFeedback]:
+    return seen.azimuth, seen.elevation
 
 
 @pytest.mark.parametrize("wire", BENCHES)

@@ -22,6 +22,7 @@ from app.modbus.rtu_server import RtuServer
 from app.modbus.server import ModbusServer
 from app.tracker.settings.config import Parity, SerialConfig
 from tests.captured_logs import capture_logs
+from tests.drives.proxied import Registers as AnyRegisters
 from tests.fault_result import VIRTUAL, FaultResult
 from tests.patience import eventually
 
@@ -31,27 +32,16 @@ READ_RTU = sealed(pack(">BBHH", 1, 3, 0, 125))
 
 
 @dataclass
-class Registers:
-    """A device of zeros that notes in which turn of the loop it was asked."""
+class Registers(AnyRegisters):
+    """A device that notes in which turn of the loop it was asked."""
 
+    unit: int = 1
     turn: int = 0
     asked: Counter[int] = field(default_factory=Counter)
 
-    def read_bits(self, function: int, address: int, count: int) -> list[bool]:
-        return [False] * count
-
     def read_registers(self, function: int, address: int, count: int) -> Sequence[int]:
         self.asked[self.turn] += 1
-        return [0] * count
-
-    def write_bits(self, address: int, values: Sequence[bool]) -> None:
-        pass
-
-    def write_registers(self, address: int, words: Sequence[int]) -> None:
-        pass
-
-    async def let_out(self, reply: bytes) -> bytes | None:
-        return reply
+        return super().read_registers(function, address, count)
 
     async def count_turns(self) -> None:
         """Count the turns of the loop: what else this process has to do runs once in each."""

@@ -115,6 +115,12 @@ async def scada(*trackers: str, write_hosts: str = "127.0.0.1") -> AsyncIterator
         await plant.close()
 
 
+@pytest.fixture
+async def system() -> AsyncIterator[Scada]:
+    async with scada() as found:
+        yield found
+
+
 def two(words: list[int]) -> int:
     return words[0] << 16 | words[1]
 
@@ -148,169 +154,154 @@ async def test_pysunspec_scans_the_models_of_every_tracker() -> None:
             device.disconnect()
 
 
-async def test_pysunspec_writes_targets_and_control_and_is_refused_what_is_out_of_range() -> None:
-    async with scada() as system:
-        await system.plant.commission()
-        device = await system.scan()
-        controller = device.tracker_controller[0]
+async def test_pysunspec_writes_targets_and_control_and_is_refused_what_is_out_of_range(
+    system: Scada,
+) -> None:
+    await system.plant.commission()
+    device = await system.scan()
+    controller = device.tracker_controller[0]
 
-        def write(**values: float) -> None:
-            for name, value in values.items():
-                group = controller if name.startswith("Glbl") else controller.tracker[0]
-                point = getattr(group, name)
-                point.cvalue = value
-            controller.write()
+    def write(**values: float) -> None:
+        for name, value in values.items():
+            group = controller if name.startswith("Glbl") else controller.tracker[0]
+            point = getattr(group, name)
+            point.cvalue = value
+        controller.write()
 
-        try:
-            await asyncio.to_thread(write, ElCtl=40.0, AzCtl=170.0, Ctl=1)
-            assert system.plant.tracker().activity is ActivityName.MOVING
-            for wrong in ({"ElCtl": 90.5}, {"AzCtl": 361.0}, {"GlblElCtl": -91.0}, {"Ctl": 3}):
-                with pytest.raises(ModbusClientException, match="3"):
-                    await asyncio.to_thread(lambda values=wrong: write(**values))
-            await asyncio.to_thread(write, GlblElCtl=30.0, GlblAzCtl=120.0, GlblCtl=1)
-            await asyncio.to_thread(controller.read)
-            assert (controller.tracker[0].ElCtl.cvalue, controller.tracker[0].AzCtl.cvalue) == (30.0, 120.0)
-            assert controller.GlblAzCtl.cvalue == 120.0
-        finally:
-            device.disconnect()
-        told = system.journal()
-        going = "Going to azimuth 120.0, elevation 30.0 degrees."
-        assert (EventKind.MOVE_STARTED, "sunspec 127.0.0.1", going) in told
-        refused = [message for kind, _, message in told if kind is EventKind.REMOTE_REFUSED]
-        assert "90.5 was written to ElCtl over SunSpec; it must lie between -90 and 90." in refused
-        assert "-91 was written to GlblElCtl over SunSpec; it must lie between -90 and 90." in refused
-        assert len(refused) == 4
-
-
-async def test_a_refused_target_is_not_kept_and_manual_control_goes_on() -> None:
-    async with scada() as system:
-        plant = system.plant
-        await plant.commission()
-        await system.write(EL_CTL, *packed(30.0), *packed(140.0), 1)
-        assert await system.write(EL_CTL, *packed(-20.0)) == bytes((0x90, 3)), "beyond the soft limits"
-        assert two(await system.read(EL_CTL, 2)) == 30_000
-        assert plant.tracker().activity is ActivityName.MOVING, "the move before it goes on"
-        assert (await system.write(AZ_CTL, *packed(150.0)))[0] == 16
-        await plant.until(lambda seen: seen.in_position and seen.activity is ActivityName.HOLDING)
-        measured = plant.tracker().measured
-        assert measured is not None
-        assert (measured.azimuth_deg, measured.elevation_deg) == pytest.approx((150.0, 30.0), abs=0.05)
+    try:
+        await asyncio.to_thread(write, ElCtl=40.0, AzCtl=170.0, Ctl=1)
+        assert system.plant.tracker().activity is ActivityName.MOVING
+        for wrong in ({"ElCtl": 90.5}, {"AzCtl": 361.0}, {"GlblElCtl": -91.0}, {"Ctl": 3}):
+            with pytest.raises(ModbusClientException, match="3"):
+                await asyncio.to_thread(lambda values=wrong: write(**values))
+        await asyncio.to_thread(write, GlblElCtl=30.0, GlblAzCtl=120.0, GlblCtl=1)
+        await asyncio.to_thread(controller.read)
+        assert (controller.tracker[0].ElCtl.cvalue, controller.tracker[0].AzCtl.cvalue) == (30.0, 120.0)
+        assert controller.GlblAzCtl.cvalue == 120.0
+    finally:
+        device.disconnect()
+    told = system.journal()
+    going = "Going to azimuth 120.0, elevation 30.0 degrees."
+    assert (EventKind.MOVE_STARTED, "sunspec 127.0.0.1", going) in told
+    refused = [message for kind, _, message in told if kind is EventKind.REMOTE_REFUSED]
+    assert "90.5 was written to ElCtl over SunSpec; it must lie between -90 and 90." in refused
+    assert "-91 was written to GlblElCtl over SunSpec; it must lie between -90 and 90." in refused
+    assert len(refused) == 4
 
 
-async def test_after_a_target_for_all_a_tracker_keeps_the_angle_that_is_not_written_anew() -> None:
-    async with scada() as system:
-        await system.plant.commission()
-        await system.write(BASE + 70 + 20, *packed(30.0), *packed(120.0), 1)
-        await system.write(EL_CTL, *packed(35.0))
-        moves = [message for kind, _, message in system.journal() if kind is EventKind.MOVE_STARTED]
-        assert moves[-1] == "Going to azimuth 120.0, elevation 35.0 degrees."
-        written = "GlblElCtl = 30, GlblAzCtl = 120, GlblCtl = 1 was written over SunSpec."
-        assert written in [message for _, _, message in system.journal()]
+async def test_a_refused_target_is_not_kept_and_manual_control_goes_on(system: Scada) -> None:
+    plant = system.plant
+    await plant.commission()
+    await system.write(EL_CTL, *packed(30.0), *packed(140.0), 1)
+    assert await system.write(EL_CTL, *packed(-20.0)) == bytes((0x90, 3)), "beyond the soft limits"
+    assert two(await system.read(EL_CTL, 2)) == 30_000
+    assert plant.tracker().activity is ActivityName.MOVING, "the move before it goes on"
+    assert (await system.write(AZ_CTL, *packed(150.0)))[0] == 16
+    await plant.until(lambda seen: seen.in_position and seen.activity is ActivityName.HOLDING)
+    measured = plant.tracker().measured
+    assert measured is not None
+    assert (measured.azimuth_deg, measured.elevation_deg) == pytest.approx((150.0, 30.0), abs=0.05)
 
 
-async def test_what_is_not_known_is_not_implemented_and_never_an_old_value() -> None:
-    async with scada() as system:
-        await system.plant.commission()
-        drive = system.plant.drives["T1"]
-        assert two(await system.read(FIRST_TRACKER + 14, 2)) != NOTHING
-        assert isinstance(drive, SimulatedDrive)
-        drive.inject(Fault(FaultKind.SILENCE))
-        await system.plant.forward(seconds=1)
-        assert two(await system.read(FIRST_TRACKER + 12, 2)) == NOTHING
-        assert two(await system.read(FIRST_TRACKER + 14, 2)) == NOTHING
-        assert two(await system.read(EL_CTL, 2)) == NOTHING, "nothing was written yet"
-        assert await system.read(FIRST_TRACKER + 21, 1) == [1], "the set point is not known to be reached"
+async def test_after_a_target_for_all_a_tracker_keeps_the_angle_that_is_not_written_anew(
+    system: Scada,
+) -> None:
+    await system.plant.commission()
+    await system.write(BASE + 70 + 20, *packed(30.0), *packed(120.0), 1)
+    await system.write(EL_CTL, *packed(35.0))
+    moves = [message for kind, _, message in system.journal() if kind is EventKind.MOVE_STARTED]
+    assert moves[-1] == "Going to azimuth 120.0, elevation 35.0 degrees."
+    written = "GlblElCtl = 30, GlblAzCtl = 120, GlblCtl = 1 was written over SunSpec."
+    assert written in [message for _, _, message in system.journal()]
 
 
-async def test_weather_brings_model_307_and_stale_weather_is_not_told() -> None:
-    async with scada() as system:
-        before = await system.read(BASE + 70 + 2 + 48 + 38, 2)
-        assert before == list(END)
-        await system.plant.ask(ReportWeather(Weather(wind_mps=7.4, temperature_degc=-3.24)))
-        device = await system.scan()
-        try:
-            met = device.base_met[0]
-            assert (met.WndSpd.cvalue, met.TmpAmb.cvalue, met.RH.cvalue) == (7, -3.2, None)
-            reader = met_reader(Buses(LoopClock()), MetStation("127.0.0.1", system.server.port))
-            assert await reader.read() == (Weather(wind_mps=7.0, temperature_degc=-3.2), ())
-            await reader.close()
-            await system.plant.forward(seconds=301)
-            await asyncio.to_thread(met.read)
-            assert (met.WndSpd.cvalue, met.TmpAmb.cvalue) == (None, None)
-        finally:
-            device.disconnect()
+async def test_what_is_not_known_is_not_implemented_and_never_an_old_value(system: Scada) -> None:
+    await system.plant.commission()
+    drive = system.plant.drives["T1"]
+    assert two(await system.read(FIRST_TRACKER + 14, 2)) != NOTHING
+    assert isinstance(drive, SimulatedDrive)
+    drive.inject(Fault(FaultKind.SILENCE))
+    await system.plant.forward(seconds=1)
+    assert two(await system.read(FIRST_TRACKER + 12, 2)) == NOTHING
+    assert two(await system.read(FIRST_TRACKER + 14, 2)) == NOTHING
+    assert two(await system.read(EL_CTL, 2)) == NOTHING, "nothing was written yet"
+    assert await system.read(FIRST_TRACKER + 21, 1) == [1], "the set point is not known to be reached"
 
 
-async def test_calibrate_homes_and_goes_back_to_automatic_although_an_order_is_refused() -> None:
-    async with scada() as system:
-        plant = system.plant
-        await _tracking(system)
-        assert await system.read(CTL, 1) == [0]
-        assert (await system.write(CTL, 2))[0] == 16
-        await settle()
-        assert await system.read(CTL, 1) == [2]
-        await plant.until(lambda seen: seen.activity is ActivityName.HOMING)
-        assert await system.write(EL_CTL, *packed(-20.0), *packed(140.0), 1) == bytes((0x90, 3))
-        await plant.until(lambda seen: seen.activity is ActivityName.TRACKING)
-        await settle()
-        assert await system.read(CTL, 1) == [0]
+async def test_weather_brings_model_307_and_stale_weather_is_not_told(system: Scada) -> None:
+    before = await system.read(BASE + 70 + 2 + 48 + 38, 2)
+    assert before == list(END)
+    await system.plant.ask(ReportWeather(Weather(wind_mps=7.4, temperature_degc=-3.24)))
+    device = await system.scan()
+    try:
+        met = device.base_met[0]
+        assert (met.WndSpd.cvalue, met.TmpAmb.cvalue, met.RH.cvalue) == (7, -3.2, None)
+        reader = met_reader(Buses(LoopClock()), MetStation("127.0.0.1", system.server.port))
+        assert await reader.read() == (Weather(wind_mps=7.0, temperature_degc=-3.2), ())
+        await reader.close()
+        await system.plant.forward(seconds=301)
+        await asyncio.to_thread(met.read)
+        assert (met.WndSpd.cvalue, met.TmpAmb.cvalue) == (None, None)
+    finally:
+        device.disconnect()
 
 
-async def test_a_new_target_is_gone_to_only_while_this_door_has_manual_control() -> None:
-    async with scada() as system:
-        plant = system.plant
-        await plant.commission()
-        await system.write(EL_CTL, *packed(30.0))
-        assert plant.tracker().activity is ActivityName.HOLDING, "a target alone moves nothing"
-        await system.write(CTL, 1)
-        await plant.until(lambda seen: seen.in_position and seen.activity is ActivityName.HOLDING)
-        await system.write(EL_CTL, *packed(33.0))
-        assert plant.tracker().activity is ActivityName.MOVING
-        await plant.ask(Stop())
-        await plant.until(lambda seen: seen.activity is ActivityName.HOLDING)
-        await settle()
-        await system.write(EL_CTL, *packed(36.0))
-        assert plant.tracker().activity is ActivityName.HOLDING, "somebody else stopped it"
-        assert (await system.write(EL_CTL, *packed(36.0), *packed(120.0), 1))[0] == 16
-        assert plant.tracker().activity is ActivityName.MOVING, "and is overruled by the next order"
+async def test_calibrate_homes_and_goes_back_to_automatic_although_an_order_is_refused(system: Scada) -> None:
+    plant = system.plant
+    await _tracking(system)
+    assert await system.read(CTL, 1) == [0]
+    assert (await system.write(CTL, 2))[0] == 16
+    await settle()
+    assert await system.read(CTL, 1) == [2]
+    await plant.until(lambda seen: seen.activity is ActivityName.HOMING)
+    assert await system.write(EL_CTL, *packed(-20.0), *packed(140.0), 1) == bytes((0x90, 3))
+    await plant.until(lambda seen: seen.activity is ActivityName.TRACKING)
+    await settle()
+    assert await system.read(CTL, 1) == [0]
 
 
-async def test_calibrate_does_not_take_the_tracker_out_of_the_hands_that_move_it() -> None:
-    async with scada() as system:
-        plant = system.plant
-        await plant.commission()
-        await plant.ask(Jog("press", Axis.AZIMUTH, 1))
-        await plant.forward(seconds=0.1)
-        assert await system.write(CTL, 2) == bytes((0x90, 6))
-        assert plant.tracker().activity is ActivityName.JOGGING
-        assert "is being jogged" in system.journal()[-1][2]
-        await plant.forward(seconds=60)
-        assert plant.tracker().activity is ActivityName.HOLDING
-        assert plant.tracker().homed, "it was not begun afterwards either"
+async def test_a_new_target_is_gone_to_only_while_this_door_has_manual_control(system: Scada) -> None:
+    plant = system.plant
+    await plant.commission()
+    await system.write(EL_CTL, *packed(30.0))
+    assert plant.tracker().activity is ActivityName.HOLDING, "a target alone moves nothing"
+    await system.write(CTL, 1)
+    await plant.until(lambda seen: seen.in_position and seen.activity is ActivityName.HOLDING)
+    await system.write(EL_CTL, *packed(33.0))
+    assert plant.tracker().activity is ActivityName.MOVING
+    await plant.ask(Stop())
+    await plant.until(lambda seen: seen.activity is ActivityName.HOLDING)
+    await settle()
+    await system.write(EL_CTL, *packed(36.0))
+    assert plant.tracker().activity is ActivityName.HOLDING, "somebody else stopped it"
+    assert (await system.write(EL_CTL, *packed(36.0), *packed(120.0), 1))[0] == 16
+    assert plant.tracker().activity is ActivityName.MOVING, "and is overruled by the next order"
 
 
-async def test_a_stop_by_somebody_else_ends_a_calibration_for_good() -> None:
-    async with scada() as system:
-        plant = system.plant
-        await _tracking(system)
-        await system.write(CTL, 2)
-        await plant.until(lambda seen: seen.activity is ActivityName.HOMING)
-        await plant.ask(Stop())
-        await plant.forward(seconds=60)
-        assert plant.tracker().activity is ActivityName.HOLDING
-        assert not plant.tracker().tracking_on
-        assert any("The calibration was aborted" in message for _, _, message in system.journal())
-        assert await system.read(CTL, 1) == [1]
+async def test_calibrate_does_not_take_the_tracker_out_of_the_hands_that_move_it(system: Scada) -> None:
+    plant = system.plant
+    await plant.commission()
+    await plant.ask(Jog("press", Axis.AZIMUTH, 1))
+    await plant.forward(seconds=0.1)
+    assert await system.write(CTL, 2) == bytes((0x90, 6))
+    assert plant.tracker().activity is ActivityName.JOGGING
+    assert "is being jogged" in system.journal()[-1][2]
+    await plant.forward(seconds=60)
+    assert plant.tracker().activity is ActivityName.HOLDING
+    assert plant.tracker().homed, "it was not begun afterwards either"
 
 
-async def test_what_is_not_allowed_now_is_answered_busy_and_journalled_with_the_reasons() -> None:
-    async with scada() as system:
-        assert await system.write(CTL, 0) == bytes((0x90, 6))
-        kind, actor, message = system.journal()[-1]
-        assert (kind, actor) == (EventKind.REMOTE_REFUSED, "sunspec 127.0.0.1")
-        assert "is not homed" in message
-        assert "no location" in message
-        assert await system.write(CTL, 1) == bytes((0x90, 3)), "no target was written"
+async def test_a_stop_by_somebody_else_ends_a_calibration_for_good(system: Scada) -> None:
+    plant = system.plant
+    await _tracking(system)
+    await system.write(CTL, 2)
+    await plant.until(lambda seen: seen.activity is ActivityName.HOMING)
+    await plant.ask(Stop())
+    await plant.forward(seconds=60)
+    assert plant.tracker().activity is ActivityName.HOLDING
+    assert not plant.tracker().tracking_on
+    assert any("The calibration was aborted" in message for _, _, message in system.journal())
+    assert await system.read(CTL, 1) == [1]
 
 
 async def test_all_trackers_do_what_they_can_and_only_then_it_fails() -> None:
@@ -329,40 +320,40 @@ async def test_all_trackers_do_what_they_can_and_only_then_it_fails() -> None:
 @pytest.mark.fault(92)
 @pytest.mark.parametrize("words", [(*packed(45.0), *packed(120.0), 1), (*packed(45.0), *packed(120.0))])
 async def test_the_same_value_written_in_cycles_is_journalled_and_ordered_once(
-    words: tuple[int, ...], fault: FaultResult
+    system: Scada, words: tuple[int, ...], fault: FaultResult
 ) -> None:
-    async with scada() as system:
-        await system.plant.commission()
-        before = len(system.journal())
-        for _ in range(30):
-            assert (await system.write(EL_CTL, *words))[0] == 16
-            await system.plant.forward(seconds=1)
-        kinds = [kind for kind, _, _ in system.journal()[before:]]
-        assert kinds.count(EventKind.REMOTE_WRITTEN) == 1
-        told = next(text for kind, _, text in system.journal()[before:] if kind is EventKind.REMOTE_WRITTEN)
-        assert kinds.count(EventKind.MOVE_STARTED) == (1 if len(words) == 5 else 0)
-        assert (await system.write(EL_CTL, *packed(46.0)))[0] == 16
-        kinds = [kind for kind, _, _ in system.journal()[before:]]
-        assert kinds.count(EventKind.REMOTE_WRITTEN) == 2, "a change is journalled"
-        assert kinds.count(EventKind.MOVE_STARTED) == (2 if len(words) == 5 else 0)
-        orders = (await system.plant.site.metrics()).orders
-        assert orders >= (30 if len(words) == 5 else 0), "every write is counted"
-        fault.prevented("a value that is written again changes nothing")
-        if len(words) == 5:
-            fault.shows(f"once: {told}")
-        fault.recovers("automatic: the first other value is journalled and ordered")
+    await system.plant.commission()
+    before = len(system.journal())
+    for _ in range(30):
+        assert (await system.write(EL_CTL, *words))[0] == 16
+        await system.plant.forward(seconds=1)
+    kinds = [kind for kind, _, _ in system.journal()[before:]]
+    assert kinds.count(EventKind.REMOTE_WRITTEN) == 1
+    told = next(text for kind, _, text in system.journal()[before:] if kind is EventKind.REMOTE_WRITTEN)
+    assert kinds.count(EventKind.MOVE_STARTED) == (1 if len(words) == 5 else 0)
+    assert (await system.write(EL_CTL, *packed(46.0)))[0] == 16
+    kinds = [kind for kind, _, _ in system.journal()[before:]]
+    assert kinds.count(EventKind.REMOTE_WRITTEN) == 2, "a change is journalled"
+    assert kinds.count(EventKind.MOVE_STARTED) == (2 if len(words) == 5 else 0)
+    orders = (await system.plant.site.metrics()).orders
+    assert orders >= (30 if len(words) == 5 else 0), "every write is counted"
+    fault.prevented("a value that is written again changes nothing")
+    if len(words) == 5:
+        fault.shows(f"once: {told}")
+    fault.recovers("automatic: the first other value is journalled and ordered")
 
 
-async def test_a_refusal_in_cycles_is_journalled_once_in_a_while() -> None:
-    async with scada() as system:
-        for _ in range(30):
-            assert await system.write(CTL, 0) == bytes((0x90, 6))
-            await system.plant.forward(seconds=1)
-        refused = [message for kind, _, message in system.journal() if kind is EventKind.REMOTE_REFUSED]
-        assert len(refused) == 1
-        await system.plant.forward(seconds=61)
+async def test_a_refusal_in_cycles_is_journalled_once_in_a_while_with_its_reasons(system: Scada) -> None:
+    for _ in range(30):
         assert await system.write(CTL, 0) == bytes((0x90, 6))
-        assert sum(kind is EventKind.REMOTE_REFUSED for kind, _, _ in system.journal()) == 2
+        await system.plant.forward(seconds=1)
+    refused = [one for one in system.journal() if one[0] is EventKind.REMOTE_REFUSED]
+    assert [actor for _, actor, _ in refused] == ["sunspec 127.0.0.1"]
+    assert all(why in refused[0][2] for why in ("is not homed", "no location"))
+    await system.plant.forward(seconds=61)
+    assert await system.write(CTL, 0) == bytes((0x90, 6))
+    assert sum(kind is EventKind.REMOTE_REFUSED for kind, _, _ in system.journal()) == 2
+    assert await system.write(CTL, 1) == bytes((0x90, 3)), "no target was written"
 
 
 async def test_other_hosts_may_only_read() -> None:
@@ -377,49 +368,49 @@ async def test_other_hosts_may_only_read() -> None:
 
 
 @pytest.mark.fault(89)
-async def test_sixteen_idle_connections_do_not_lock_the_control_system_out(fault: FaultResult) -> None:
-    async with scada() as system:
-        idle = [await asyncio.open_connection("127.0.0.1", system.server.port) for _ in range(16)]
-        await eventually(lambda: system.server.metrics().clients == 16)
-        loop = asyncio.get_running_loop()
-        began_s = loop.time()
-        with capture_logs() as logged:
-            assert await system.read(BASE, 2) == [0x5375, 0x6E53]
-        answered_s = loop.time() - began_s
-        assert answered_s < 1.0
-        assert [(line["event"], line["host"]) for line in logged] == [("modbus_client_gave_way", "127.0.0.1")]
-        fault.noticed(answered_s, VIRTUAL)
-        fault.shows_nothing("the new connection is answered; the log names the host that gave way")
-        for _ in range(2):
-            assert await system.read(BASE, 2) == [0x5375, 0x6E53]
-        assert await idle[0][0].read() == b"", "the longest idle gave way"
-        fault.recovers("automatic: at every new connection")
-        for _, writer in idle:
-            writer.close()
+async def test_sixteen_idle_connections_do_not_lock_the_control_system_out(
+    system: Scada, fault: FaultResult
+) -> None:
+    idle = [await asyncio.open_connection("127.0.0.1", system.server.port) for _ in range(16)]
+    await eventually(lambda: system.server.metrics().clients == 16)
+    loop = asyncio.get_running_loop()
+    began_s = loop.time()
+    with capture_logs() as logged:
+        assert await system.read(BASE, 2) == [0x5375, 0x6E53]
+    answered_s = loop.time() - began_s
+    assert answered_s < 1.0
+    assert [(line["event"], line["host"]) for line in logged] == [("modbus_client_gave_way", "127.0.0.1")]
+    fault.noticed(answered_s, VIRTUAL)
+    fault.shows_nothing("the new connection is answered; the log names the host that gave way")
+    for _ in range(2):
+        assert await system.read(BASE, 2) == [0x5375, 0x6E53]
+    assert await idle[0][0].read() == b"", "the longest idle gave way"
+    fault.recovers("automatic: at every new connection")
+    for _, writer in idle:
+        writer.close()
 
 
 @pytest.mark.fault(88)
 async def test_a_client_that_reads_no_replies_keeps_neither_ticks_nor_stops_from_their_turn(
-    fault: FaultResult,
+    system: Scada, fault: FaultResult
 ) -> None:
-    async with scada() as system:
-        await system.plant.commission()
-        read = pack(">HHHBBHH", 7, 0, 6, 1, 3, BASE, 125)
-        with socket.socket() as flood:
-            flood.setblocking(False)
-            loop = asyncio.get_running_loop()
-            await loop.sock_connect(flood, ("127.0.0.1", system.server.port))
-            sending = asyncio.create_task(loop.sock_sendall(flood, read * 100_000))
-            await eventually(lambda: system.server.metrics().clients == 1)
-            before = system.plant.tracker().tick
-            await system.plant.ask(Move(Orientation(150.0, 40.0)))
-            await system.plant.forward(seconds=5)
-            assert system.plant.tracker().tick - before >= 50
-            await system.plant.ask(Stop())
-            assert system.plant.tracker().activity is ActivityName.STOPPING
-            sending.cancel()
-            await asyncio.gather(sending, return_exceptions=True)
-        fault.recovers("automatic: ticks and stops keep their turn meanwhile")
+    await system.plant.commission()
+    read = pack(">HHHBBHH", 7, 0, 6, 1, 3, BASE, 125)
+    with socket.socket() as flood:
+        flood.setblocking(False)
+        loop = asyncio.get_running_loop()
+        await loop.sock_connect(flood, ("127.0.0.1", system.server.port))
+        sending = asyncio.create_task(loop.sock_sendall(flood, read * 100_000))
+        await eventually(lambda: system.server.metrics().clients == 1)
+        before = system.plant.tracker().tick
+        await system.plant.ask(Move(Orientation(150.0, 40.0)))
+        await system.plant.forward(seconds=5)
+        assert system.plant.tracker().tick - before >= 50
+        await system.plant.ask(Stop())
+        assert system.plant.tracker().activity is ActivityName.STOPPING
+        sending.cancel()
+        await asyncio.gather(sending, return_exceptions=True)
+    fault.recovers("automatic: ticks and stops keep their turn meanwhile")
 
 
 REFUSED = {
@@ -435,31 +426,11 @@ REFUSED = {
 }
 
 
-async def test_what_cannot_be_done_is_answered_with_its_exception() -> None:
-    async with scada() as system:
-        for name, (request, code) in REFUSED.items():
-            assert await system.ask(request) == bytes((request[0] | 0x80, code)), name
-        both = pack(">BHHHHB2H", 23, EL_CTL, 2, EL_CTL, 2, 4, *packed(12.5))
-        assert await system.ask(both) == bytes((23, 4)) + pack(">2H", *packed(12.5)), "the write comes first"
-
-
-async def test_every_span_of_the_map_reads_the_same_words() -> None:
-    async with scada("T1", "T2") as system:
-        await system.plant.commission()
-        end = sunspec_map(("T1", "T2"), weather=False).end
-        whole = [
-            word for start in range(BASE, end, 64) for word in await system.read(start, min(64, end - start))
-        ]
-        assert whole[:2] == [0x5375, 0x6E53]
-        assert whole[-2:] == list(END)
-        for start, count in ((0, 1), (1, 2), (69, 3), (95, 20), (97, 46), (len(whole) - 3, 3)):
-            assert await system.read(BASE + start, count) == whole[start : start + count]
-
-
-async def test_reading_and_writing_in_one_request_answers_what_is_there_after_the_write() -> None:
-    async with scada() as system:
-        request = pack(">BHHHHB2H", 23, EL_CTL, 2, EL_CTL, 2, 4, *packed(12.5))
-        assert await system.ask(request) == bytes((23, 4)) + pack(">2H", *packed(12.5))
+async def test_what_cannot_be_done_is_answered_with_its_exception(system: Scada) -> None:
+    for name, (request, code) in REFUSED.items():
+        assert await system.ask(request) == bytes((request[0] | 0x80, code)), name
+    both = pack(">BHHHHB2H", 23, EL_CTL, 2, EL_CTL, 2, 4, *packed(12.5))
+    assert await system.ask(both) == bytes((23, 4)) + pack(">2H", *packed(12.5)), "the write comes first"
 
 
 async def test_the_type_is_that_of_the_mounts() -> None:
@@ -516,16 +487,15 @@ async def _tracking(system: Scada) -> None:
     await plant.until(lambda seen: seen.in_position and seen.activity is ActivityName.TRACKING)
 
 
-async def test_what_a_person_has_control_of_is_not_moved_over_sunspec() -> None:
-    async with scada() as system:
-        plant = system.plant
-        await plant.commission()
-        await plant.ask(RequestControl(("T1",)))
-        assert await system.write(EL_CTL, *packed(30.0), *packed(140.0), 1) == bytes((0x90, 6))
-        assert await system.write(BASE + 70 + 20, *packed(30.0), *packed(120.0), 1) == bytes((0x90, 6))
-        assert await system.write(CTL, 2) == bytes((0x90, 6)), "it is not even stopped for a calibration"
-        assert plant.tracker().activity is ActivityName.HOLDING
-        assert "technician has control of Tracker" in system.journal()[-1][2]
-        await plant.ask(ReleaseControl("T1"))
-        assert (await system.write(EL_CTL, *packed(30.0), *packed(140.0), 1))[0] == 16
-        assert plant.tracker().control.holder == "SunSpec"
+async def test_what_a_person_has_control_of_is_not_moved_over_sunspec(system: Scada) -> None:
+    plant = system.plant
+    await plant.commission()
+    await plant.ask(RequestControl(("T1",)))
+    assert await system.write(EL_CTL, *packed(30.0), *packed(140.0), 1) == bytes((0x90, 6))
+    assert await system.write(BASE + 70 + 20, *packed(30.0), *packed(120.0), 1) == bytes((0x90, 6))
+    assert await system.write(CTL, 2) == bytes((0x90, 6)), "it is not even stopped for a calibration"
+    assert plant.tracker().activity is ActivityName.HOLDING
+    assert "technician has control of Tracker" in system.journal()[-1][2]
+    await plant.ask(ReleaseControl("T1"))
+    assert (await system.write(EL_CTL, *packed(30.0), *packed(140.0), 1))[0] == 16
+    assert plant.tracker().control.holder == "SunSpec"
