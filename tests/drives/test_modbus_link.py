@@ -91,15 +91,6 @@ async def test_a_read_survives_one_bad_reply(name: str) -> None:
         assert len(server.requests) == 2
 
 
-async def test_a_reply_in_many_pieces_is_put_together() -> None:
-    def dribble(request: bytes) -> list[bytes | None]:
-        return [bytes((byte,)) for byte in right(request)]
-
-    async with linked(dribble) as (link, server, _):
-        assert await read(link) == RIGHT
-        assert server.connections == 1
-
-
 @pytest.mark.fault(2)
 async def test_silence_is_noticed_within_the_time_out_and_costs_the_connection(fault: FaultResult) -> None:
     async with linked(silent, good) as (link, server, _):

@@ -5,8 +5,8 @@ import contextlib
 import gc
 import json
 import shutil
+import socket
 from collections.abc import AsyncIterator, Iterator
-from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from datetime import timedelta
 from pathlib import Path
@@ -25,12 +25,17 @@ from app.store.store import JournalEntry, JournalFilter, Writer
 from app.tracker.state.snapshot import ActivityName, EventKind
 from tests.fault_result import FaultResult
 from tests.gateway.rigs import kept_plant, mqtt_settings, opened, until
-from tests.patience import LOOK_EVERY_S, PATIENCE_S, eventually, pause
+from tests.patience import PATIENCE_S, eventually, pause
 from tests.peers.processes import output
 from tests.ports import free_port
 from tests.site.plant import SAMSUN
 
 MOSQUITTO = shutil.which("mosquitto") or "/usr/sbin/mosquitto"
+
+
+def is_listening(port: int) -> bool:
+    with socket.socket() as probe:
+        return probe.connect_ex(("127.0.0.1", port)) == 0
 
 
 @dataclass
@@ -51,13 +56,9 @@ class Broker:
         self.process = await asyncio.create_subprocess_exec(
             MOSQUITTO, "-c", str(config), stderr=asyncio.subprocess.DEVNULL
         )
-        for _ in range(int(PATIENCE_S / LOOK_EVERY_S)):
-            with contextlib.suppress(OSError):
-                _, writer = await asyncio.open_connection("127.0.0.1", self.port)
-                writer.close()
-                await writer.wait_closed()
-                break
-            await pause()
+        async with asyncio.timeout(PATIENCE_S):
+            while not is_listening(self.port):
+                await pause()
 
     async def kill(self) -> None:
         assert self.process is not None
@@ -69,17 +70,18 @@ class Broker:
     async def listen(self) -> None:
         """Keep every message from now on; the subscription stands when this returns."""
         subscribed = asyncio.Event()
-        self.listening = asyncio.create_task(self._listen(subscribed))
-        await subscribed.wait()
 
-    async def _listen(self, subscribed: asyncio.Event) -> None:
-        with contextlib.suppress(MqttError):
-            async with Client("127.0.0.1", self.port) as client:
-                await client.subscribe("#", 1)
-                subscribed.set()
-                async for message in client.messages:
-                    assert isinstance(message.payload, bytes)
-                    self.heard.append((message.topic.value, message.payload, message.retain))
+        async def hear() -> None:
+            with contextlib.suppress(MqttError):
+                async with Client("127.0.0.1", self.port) as client:
+                    await client.subscribe("#", 1)
+                    subscribed.set()
+                    async for message in client.messages:
+                        assert isinstance(message.payload, bytes)
+                        self.heard.append((message.topic.value, message.payload, message.retain))
+
+        self.listening = asyncio.create_task(hear())
+        await subscribed.wait()
 
     async def send(self, topic: str, told: dict[str, Any], *, retain: bool = False) -> None:
         async with Client("127.0.0.1", self.port) as client:
@@ -97,23 +99,15 @@ class Broker:
         return [event["message"] for event in self.told("plant/events")]
 
 
-@asynccontextmanager
-async def running(folder: Path, *lines: str) -> AsyncIterator[Broker]:
-    broker = Broker(folder, lines=lines)
-    await broker.start()
-    await broker.listen()
-    try:
-        yield broker
-    finally:
-        if broker.listening is not None:
-            broker.listening.cancel()
-        await broker.kill()
-
-
 @pytest.fixture
 async def broker(tmp_path: Path) -> AsyncIterator[Broker]:
-    async with running(tmp_path) as found:
-        yield found
+    found = Broker(tmp_path)
+    await found.start()
+    await found.listen()
+    yield found
+    if found.listening is not None:
+        found.listening.cancel()
+    await found.kill()
 
 
 async def test_snapshots_are_told_as_one_message_a_tracker(tmp_path: Path, broker: Broker) -> None:
