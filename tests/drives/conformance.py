@@ -9,14 +9,7 @@ import pytest
 from app.modbus.errors import DriveError, DriveSilent
 from app.simulation.faults import Fault, FaultKind
 from app.tracker.settings.axes import Axis
-from app.tracker.values.motion import (
-    DriveCommand,
-    DriveRequest,
-    Feedback,
-    Position,
-    RequestKind,
-    Velocity,
-)
+from app.tracker.values.motion import DriveCommand, DriveRequest, Feedback, Position, RequestKind, Velocity
 from tests.drives.rigs import Rig, Trait
 
 Story = Callable[[Rig], Awaitable[None]]

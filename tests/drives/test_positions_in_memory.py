@@ -119,6 +119,15 @@ def test_each_life_goes_on_where_the_last_one_was_killed(folder: Path, memory: P
     assert (folder / "positions").stat().st_size <= 3 * 2 * 65
 
 
+def test_a_life_that_keeps_nothing_leaves_what_it_found(folder: Path, memory: Path) -> None:
+    kept(folder, memory, 1.0)
+    kept(folder, memory, 2.0, 3.0)
+    for _ in range(3):
+        assert found_in(folder, memory) == stands_at(3.0)
+    KeptPositions(folder, memory).close()
+    assert (found_in(folder), left_in(memory)) == (stands_at(3.0), [])
+
+
 def test_what_a_kill_left_goes_to_the_disk_with_the_next_samples(folder: Path, memory: Path) -> None:
     kept(folder, memory, 1.0, 2.0)
     called: list[Callable[[], None]] = []

@@ -124,6 +124,14 @@ async def test_after_a_turn_the_panel_follows_only_behind_the_backlash() -> None
     assert loose.true_orientation.azimuth_deg == pytest.approx(19.2, abs=0.011)
 
 
+async def test_a_target_beyond_the_end_of_travel_ends_at_the_switch() -> None:
+    clock = VirtualClock(START)
+    drive = drive_at(clock, None)
+    feedback = await Rig(drive, drive, clock).until_rest(DriveCommand(elevation=Position(500.0, 4.0)))
+    assert feedback.elevation.at_upper_limit
+    assert feedback.elevation.position_deg < 130.0
+
+
 async def hurt(fault: FaultKind, axis: Axis, seconds: float, command: DriveCommand) -> Feedback:
     """Return what a drive reads that has had a fault for so long."""
     clock = VirtualClock(START)

@@ -24,8 +24,7 @@ POLAR = replace(
     mount=MountConfig(MountKind.EQUATORIAL, 180.0, 45.65),
 )
 TURNED = replace(
-    CONFIG,
-    drive=DriveConfig(azimuth=AxisDrive(inverted=True), elevation=AxisDrive(gear_ratio=1.25)),
+    CONFIG, drive=DriveConfig(azimuth=AxisDrive(inverted=True), elevation=AxisDrive(gear_ratio=1.25))
 )
 
 
@@ -46,8 +45,9 @@ async def test_the_factory_turns_both_actuators_of_an_equatorial_mount() -> None
     assert feedback.elevation.position_deg < begun.elevation.position_deg
     assert rig.drive.capabilities.description.endswith("Linear actuators: azimuth and elevation.")
     await rig.drive.stop()
-    rig.idle(2.0)
-    assert not (await rig.drive.read()).azimuth.moving
+    rig.idle(0.4)
+    stopped = await rig.drive.read()
+    assert (stopped.azimuth.moving, stopped.watchdog_tripped) == (False, False), "before the watchdog would"
     feedback = await rig.until_rest(DriveCommand(request=DriveRequest(1, RequestKind.HOME)))
     assert (feedback.azimuth.homed, feedback.elevation.homed) == (True, True)
     assert (feedback.azimuth.position_deg, feedback.elevation.position_deg) == pytest.approx((0, 0), abs=0.02)

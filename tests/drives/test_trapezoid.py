@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from app.simulation.trapezoid import Path, Phase, brake, move, rest
+from app.simulation.trapezoid import Path, Phase, brake, move
 
 angles = st.floats(-400.0, 400.0)
 speeds = st.floats(0.01, 20.0)
@@ -39,20 +39,6 @@ def test_a_move_ends_at_its_target_without_a_jump_and_never_too_fast_or_too_hars
     fastest = max(speed_dps, abs(start.velocity_dps))
     assert all(abs(path.at(moment)[1]) <= fastest + SLACK for moment in moments(path))
     assert all(abs(phase.acceleration_dps2) <= acceleration_dps2 for phase in path.phases)
-
-
-@given(starts, st.lists(st.tuples(angles, st.floats(0.0, 30.0)), min_size=1, max_size=6), speeds)
-def test_new_targets_in_mid_move_keep_continuity_and_the_last_is_reached(
-    start: Phase, targets: list[tuple[float, float]], speed_dps: float
-) -> None:
-    path, moment = rest(start.start_s, start.position_deg), start.start_s
-    for target_deg, wait_s in targets:
-        before = path.at(moment)
-        path = move(Phase(moment, *before), target_deg, speed_dps, 6.0)
-        assert path.at(moment) == pytest.approx(before, abs=1e-6)
-        moment += wait_s
-    assert path.at(path.end_s) == (targets[-1][0], 0.0)
-    assert all(abs(path.at(one)[1]) <= speed_dps + SLACK for one in moments(path))
 
 
 @given(angles, st.floats(0.01, 300.0), speeds, accelerations)

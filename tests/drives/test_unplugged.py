@@ -122,9 +122,10 @@ async def test_a_lasting_name_stays_what_it_is(tmp_path: Path) -> None:
 
 async def test_a_name_that_a_killed_process_left_behind_is_taken_over(tmp_path: Path) -> None:
     name = tmp_path / "line"
-    name.symlink_to("/dev/pts/999999")
+    name.symlink_to("/proc/4194305/fd/3")
     line = serial_end(SerialConfig(str(name)))
     assert await line.open(print, print)
     assert name.is_char_device()
+    assert name.readlink().parent == Path(f"/proc/{os.getpid()}/fd"), "it vanishes with its process"
     line.close()
     assert not name.is_symlink()
