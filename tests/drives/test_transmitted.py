@@ -6,7 +6,7 @@ from datetime import timedelta
 import pytest
 
 from app.base.clock import VirtualClock
-from app.drives.linear_actuator import counted_mm, in_millimetres
+from app.drives.linear_actuator import TransmittedDrive, counted_mm, in_millimetres
 from app.drives.scaled import Stretch, corrected
 from app.machine.drive_factory import DriveFactory
 from app.simulation.faults import Fault, FaultKind
@@ -68,6 +68,25 @@ async def test_an_actuator_keeps_the_speed_of_its_axis_over_the_whole_range() ->
         55.0, abs=0.02
     )
     await rig.drive.close()
+
+
+async def test_an_actuator_has_switches_and_a_clock_and_is_stopped_when_it_is_closed() -> None:
+    clock = VirtualClock(START)
+    machine = SimulatedDrive(in_millimetres(POLAR), clock, watchdog=None)
+    drive = TransmittedDrive(machine, POLAR)
+    machine.inject(Fault(FaultKind.LOWER_LIMIT_STUCK, Axis.AZIMUTH))
+    seen, actuator = (await drive.read()).azimuth, POLAR.azimuth.actuator
+    assert actuator is not None
+    longer_is_farther = actuator.mm_per_deg(seen.position_deg) > 0.0
+    assert (seen.at_lower_limit, seen.at_upper_limit) == (longer_is_farther, not longer_is_farther)
+    await drive.set_clock(START + timedelta(days=1))
+    assert machine.wall_clock == START + timedelta(days=1)
+    await drive.write(DriveCommand(elevation=Velocity(1.0)))
+    clock.advance(timedelta(seconds=1))
+    assert (await drive.read()).elevation.moving
+    await drive.close()
+    clock.advance(timedelta(seconds=1))
+    assert machine.is_resting
 
 
 @pytest.mark.parametrize("axis", Axis)
