@@ -12,7 +12,7 @@ T2 = "/trackers/T2"
 HOMING = "/trackers/T1/commissioning/homing"
 LINK_ERRORS = ("WebSocket connection", "Failed to load resource", "ERR_CONNECTION")
 OLD_MS, JUDGED_EVERY_MS = 1500, 250
-TABS = 7
+TABS = 8
 LIGHT = "/trackers/T2/commissioning/clock"
 """A page with little on it, and a live socket like any other."""
 
@@ -47,7 +47,7 @@ def test_stop_works_without_javascript(stage: Stage) -> None:
 
 
 @pytest.mark.fault(62)
-def test_stop_on_seven_tabs_is_still_at_once(stage: Stage, fault: FaultResult) -> None:
+def test_stop_on_eight_tabs_is_still_at_once(stage: Stage, fault: FaultResult) -> None:
     """A browser opens six connections to a site: STOP needs none that the other tabs hold."""
     page = stage.open(T2)
     others = [page.context.new_page() for _ in range(TABS - 1)]

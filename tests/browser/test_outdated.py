@@ -13,6 +13,18 @@ SHOWN_MS = 1500
 LATER = re.compile(r"\.second-boot$")
 
 
+@pytest.mark.fault(61)
+def test_a_page_from_before_a_restart_is_loaded_again_in_place(plant: Plant, opened: Opened) -> None:
+    page = opened(SETTINGS, still=True)
+    plant.do(plant.machine.start_again)
+    expect(page.locator("#outdated-banner")).to_be_visible()
+    page.clock.run_for(SHOWN_MS - 1)
+    assert page.evaluate("document.documentElement.dataset.page").endswith(".fake-boot")
+    page.clock.run_for(1)
+    expect(page.locator("html")).to_have_attribute("data-page", LATER)
+    expect(page.locator("#outdated-banner")).to_be_hidden()
+
+
 def test_a_page_on_which_was_typed_is_loaded_again_when_it_suits(plant: Plant, opened: Opened) -> None:
     page = opened(SETTINGS, still=True)
     page.locator("input[type=text]").first.fill("North field 7")
