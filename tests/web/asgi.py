@@ -7,6 +7,7 @@ from typing import Any
 
 from fastapi import FastAPI
 
+from tests.fakes import PORT
 from tests.patience import PATIENCE_S
 
 
@@ -37,6 +38,29 @@ class Reading:
                     return fields
 
 
+def scope_of(
+    method: str, path: str, query: str = "", headers: dict[str, str] | None = None
+) -> dict[str, Any]:
+    """Return the scope of a request from this computer; the method of a WebSocket is WS."""
+    is_socket = method == "WS"
+    sent = {"host": f"127.0.0.1:{PORT}", **(headers or {})}
+    scope = {
+        "type": "websocket" if is_socket else "http",
+        "path": path,
+        "raw_path": path.encode(),
+        "query_string": query.encode(),
+        "headers": [(name.encode(), value.encode()) for name, value in sent.items()],
+        "scheme": "ws" if is_socket else "http",
+        "server": ("127.0.0.1", PORT),
+        "client": ("127.0.0.1", 50000),
+        "http_version": "1.1",
+        "root_path": "",
+        "subprotocols": [],
+        "extensions": {},
+    }
+    return scope if is_socket else scope | {"method": method}
+
+
 @contextlib.asynccontextmanager
 async def streaming(
     app: FastAPI, query: str = "", headers: dict[str, str] | None = None
@@ -53,20 +77,7 @@ async def streaming(
             return {"type": "http.disconnect"}
         return inbox.get_nowait()
 
-    sent = {"host": "127.0.0.1:8010", **(headers or {})}
-    scope = {
-        "type": "http",
-        "method": "GET",
-        "path": "/api/v1/stream",
-        "raw_path": b"/api/v1/stream",
-        "query_string": query.encode(),
-        "headers": [(name.encode(), value.encode()) for name, value in sent.items()],
-        "scheme": "http",
-        "server": ("127.0.0.1", 8010),
-        "client": ("127.0.0.1", 50000),
-        "http_version": "1.1",
-        "extensions": {},
-    }
+    scope = scope_of("GET", "/api/v1/stream", query, headers)
     serving = asyncio.create_task(app(scope, receive, reading.hear))
     serving.add_done_callback(lambda _: reading.ended.set())
     try:

@@ -2,13 +2,17 @@
 
 from collections.abc import AsyncIterator, Iterator
 from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
 
 import httpx
 import pytest
 
+from app.access.roles import Role
 from app.web.services import simulations, studies
 from tests.fakes import FakeMachine, fake_app, serving
+from tests.web.desk import Desk
 from tests.web.in_process import work_here
+from tests.web.office import Office
 
 TOLD_BY_A_PROCESS = studies._told
 
@@ -36,3 +40,18 @@ def machine() -> FakeMachine:
 async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
     async with serving(fake_app(machine)) as browser:
         yield browser
+
+
+@pytest.fixture
+async def desk(tmp_path: Path) -> AsyncIterator[Desk]:
+    async with Desk(tmp_path) as one:
+        yield one
+
+
+@pytest.fixture
+async def office(tmp_path: Path) -> AsyncIterator[Office]:
+    """A panel with a user of every role."""
+    office = Office(tmp_path)
+    async with office.app.router.lifespan_context(office.app):
+        await office.hire(*Role)
+        yield office

@@ -3,12 +3,12 @@
 import random
 import re
 from dataclasses import dataclass, field
-from html.parser import HTMLParser
 from pathlib import Path
 
 import httpx
 
 from tests.golden.table import rows
+from tests.web.tree import Tag, tree
 
 SCRIPT = "<script>alert('hostile')</script>"
 HOSTILE = (
@@ -69,28 +69,23 @@ class PageForm:
     method: str
     action: str
     values: dict[str, str] = field(default_factory=dict, hash=False)
+    ids: frozenset[str] = field(default=frozenset(), hash=False)
+    """What can be found on its page by an id."""
 
 
-class Reading(HTMLParser):
-    """Collects a page's forms and links."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.page = page
-        self.forms: list[PageForm] = []
-        self.links: set[str] = set()
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        given = {name: value or "" for name, value in attrs}
-        if tag == "a" and given.get("href", "").startswith("/"):
-            self.links.add(given["href"].split("#")[0])
-        elif tag == "form":
-            action = given.get("action") or self.page
-            self.forms.append(PageForm(self.page, given.get("method", "get").upper(), action))
-        elif tag in ("input", "select", "textarea", "button") and self.forms and given.get("name"):
-            self.forms[-1].values.setdefault(given["name"], given.get("value", ""))
-        if path := given.get("hx-post"):
-            self.forms.append(PageForm(self.page, "POST", path))
+def forms_of(page: str, root: Tag) -> list[PageForm]:
+    """Return the forms of a page, and what else of it sends something."""
+    found, ids = [], frozenset(one.given.get("id", "") for one in root.all)
+    for one in root.all:
+        fields = one.named("input", "select", "textarea", "button")
+        values = {field.given["name"]: field.given.get("value", "") for field in reversed(fields)
+                  if field.given.get("name")}  # fmt: skip
+        if one.name == "form":
+            method = one.given.get("method", "get").upper()
+            found.append(PageForm(page, method, one.given.get("action") or page, values, ids))
+        if path := one.given.get("hx-post"):
+            found.append(PageForm(page, "POST", path, values, ids))
+    return found
 
 
 async def every_form(client: httpx.AsyncClient) -> list[PageForm]:
@@ -101,12 +96,12 @@ async def every_form(client: httpx.AsyncClient) -> list[PageForm]:
         answer = await client.get(page, follow_redirects=True)
         if "text/html" not in answer.headers.get("content-type", ""):
             continue
-        reading = Reading(page)
-        reading.feed(answer.text)
-        for form in reading.forms:
+        root = tree(answer.text)
+        for form in forms_of(page, root):
             found.setdefault((form.method, form.action, tuple(form.values)), form)
-        for link in sorted(reading.links - seen):
-            if not LEFT_OUT.search(link):
+        links = {one.given.get("href", "").split("#")[0] for one in root.named("a")}
+        for link in sorted(links - seen):
+            if link.startswith("/") and not LEFT_OUT.search(link):
                 seen.add(link)
                 waiting.append(link)
     return list(found.values())

@@ -9,9 +9,11 @@ from typing import Any
 import httpx
 from fastapi import FastAPI
 
+from app.access.accounts import TokenWish
 from app.access.authenticator import Keeper
 from app.access.principal import this_computer
 from app.access.roles import Role
+from app.access.tokens import Scope
 from app.base.clock import Clock, SystemClock
 from app.web.main import create_app
 from tests.access.fake_hasher import FakeHasher
@@ -64,6 +66,15 @@ class Office:
     async def session(self, name: str) -> str:
         """Return the id of a new session."""
         return await self.keeper.log_in(name + "-1", PASSWORD, "127.0.0.1", "test")
+
+    async def mint(self, *scopes: Scope, name: str = "scada", **more: Any) -> str:
+        """Return a new token for this, as a program sends it."""
+        wish, now = TokenWish(name, frozenset(scopes), **more), self.clock.now()
+        return await self.keeper.do(lambda: self.keeper.accounts.mint(HERE, wish, now))
+
+    async def bearer(self, *scopes: Scope, **more: Any) -> dict[str, str]:
+        """Return what a program with a new token for this sends."""
+        return {"authorization": f"Bearer {await self.mint(*scopes, **more)}"}
 
     @asynccontextmanager
     async def browser(

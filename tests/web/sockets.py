@@ -9,8 +9,15 @@ from typing import Any
 from fastapi import FastAPI
 
 from tests.patience import PATIENCE_S
+from tests.web.asgi import scope_of
 
-HOST = b"127.0.0.1:8010"
+
+def heartbeat(press: str, sequence: int, sent_ms: float) -> dict[str, Any]:
+    """Return what a page sends while the key is held that turns the azimuth of T1."""
+    return {
+        "type": "jog", "tracker_id": "T1", "press_id": press, "axis": "azimuth", "direction": 1,
+        "speed": "slow", "sequence": sequence, "tc": sent_ms, "rtt_ms": 5.0,
+    }  # fmt: skip
 
 
 class Socket:
@@ -27,6 +34,10 @@ class Socket:
     async def send(self, **message: Any) -> None:
         """Send one JSON message."""
         await self.outbox.put({"type": "websocket.receive", "text": json.dumps(message)})
+
+    async def beat(self, press: str, sequence: int, tc: float, **more: Any) -> None:
+        """Send that the key which turns the azimuth of T1 is held."""
+        await self.send(**(heartbeat(press, sequence, tc) | more))
 
     async def next(self, kind: str) -> dict[str, Any]:
         """Return the next message of a kind; others before it are passed over."""
@@ -51,19 +62,7 @@ async def connected(
 ) -> AsyncIterator[Socket]:
     """Open `/live` and close it at the end."""
     socket = Socket()
-    sent = {"host": HOST.decode(), **(headers or {})}
-    scope = {
-        "type": "websocket",
-        "path": "/live",
-        "raw_path": b"/live",
-        "query_string": query.encode(),
-        "headers": [(name.encode(), value.encode()) for name, value in sent.items()],
-        "scheme": "ws",
-        "client": ("127.0.0.1", 50001),
-        "server": ("127.0.0.1", 8010),
-        "subprotocols": [],
-        "extensions": {},
-    }
+    scope = scope_of("WS", "/live", query, headers)
     socket.outbox.put_nowait({"type": "websocket.connect"})
     serving = asyncio.create_task(app(scope, socket.outbox.get, socket.hear))
     serving.add_done_callback(lambda _: socket.ended.set())

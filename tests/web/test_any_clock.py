@@ -14,33 +14,30 @@ from tests.patience import PATIENCE_S
 from tests.web.route_table import ROUTES
 
 TODAY = datetime(2027, 6, 21, 9, 40, tzinfo=UTC)
-CLOCKS = [
-    datetime(2099, 12, 31, 23, 59, 59, tzinfo=UTC),
-    datetime(2206, 6, 1, tzinfo=UTC),
-]
+UNKNOWN = datetime(2206, 6, 1, tzinfo=UTC)
+CLOCKS = amount([UNKNOWN], [datetime(2099, 12, 31, 23, 59, 59, tzinfo=UTC), UNKNOWN])
 NOW = "/api/v1/sun"
 """Tells where the sun stands now, and is refused with a sentence while that is not known."""
 LEFT_OUT = {"/api/v1/stream", "/api/v1/papers", "/api/v1/sun/accuracy"}
 """What never ends, and what takes long and does not look at the clock."""
 SLOW = {"/trackers/T1/strategy/day", "/api/v1/studies/comparison"}
 """Simulated for a second: asked in the year that is known least, in the soak in all of them."""
-NAMES = {"tracker_id": "T1"}
 PATHS = sorted(
-    re.sub(r"\{(\w+)(?::\w+)?\}", lambda found: NAMES.get(found[1], "1"), key.removeprefix("GET "))
-    for key in ROUTES
-    if key.startswith("GET ")
+    re.sub(r"\{(\w+)(?::\w+)?\}", lambda found: "T1" if found[1] == "tracker_id" else "1", path)
+    for method, _, path in (key.partition(" ") for key in ROUTES)
+    if method == "GET"
 )
 
 
 async def answers(at: datetime) -> dict[str, int]:
     """Return the status of every page and call while the site's clock shows this."""
-    found = {}
-    left_out = LEFT_OUT | amount(SLOW if at != CLOCKS[-1] else set(), set())
+    left_out = LEFT_OUT | amount(SLOW if at != UNKNOWN else set(), set())
     async with serving(fake_app(FakeMachine(VirtualClock(at)))) as browser:
-        for path in PATHS:
-            if path not in left_out:
-                found[path] = (await asyncio.wait_for(browser.get(path), PATIENCE_S)).status_code
-    return found
+        return {
+            path: (await asyncio.wait_for(browser.get(path), PATIENCE_S)).status_code
+            for path in PATHS
+            if path not in left_out
+        }
 
 
 @pytest.mark.fault(102)

@@ -6,7 +6,6 @@ import json
 import zipfile
 from collections.abc import AsyncIterator, Iterator
 from pathlib import Path
-from types import ModuleType
 
 import httpx
 import pyarrow.parquet as pq
@@ -40,20 +39,16 @@ async def api(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
 
 def domain_errors() -> Iterator[Exception]:
     for module in (messages, store, commands, position, errors):
-        yield from _errors_of(module)
+        for _, kind in inspect.getmembers(module, inspect.isclass):
+            if issubclass(kind, Exception) and kind.__module__ == module.__name__:
+                yield kind(NEAR) if kind is CommandRejected else kind("Words.")
 
 
-def _errors_of(module: ModuleType) -> Iterator[Exception]:
-    for _, kind in inspect.getmembers(module, inspect.isclass):
-        if issubclass(kind, Exception) and kind.__module__ == module.__name__:
-            yield kind(NEAR) if kind is CommandRejected else kind("Words.")
-
-
-@pytest.mark.parametrize("error", list(domain_errors()), ids=lambda error: type(error).__name__)
-def test_every_domain_error_has_a_status_of_its_own(error: Exception) -> None:
-    problem = problem_of(error)
-    assert problem.status in {404, 409, 422, 429, 503}
-    assert problem.detail
+def test_every_domain_error_has_a_status_of_its_own() -> None:
+    for error in domain_errors():
+        problem = problem_of(error)
+        assert problem.status in {404, 409, 422, 429, 503}, error
+        assert problem.detail, error
 
 
 async def test_a_refusal_has_every_reason(api: httpx.AsyncClient, machine: FakeMachine) -> None:
@@ -65,30 +60,22 @@ async def test_a_refusal_has_every_reason(api: httpx.AsyncClient, machine: FakeM
     assert [reason["code"] for reason in body["reasons"]] == ["near", "far"]
     assert body["reasons"][0]["hint"] == "Move it away."
     assert body["detail"] == "The panel is near something. The panel is far from something."
-
-
-async def test_a_drive_that_cannot_be_reached_is_503(api: httpx.AsyncClient, machine: FakeMachine) -> None:
     machine.rejects["track"] = (Reason("drive_unreachable", "The drive does not answer."),)
     answer = await api.post("/trackers/T1/commands", json={"type": "track"})
-    assert answer.status_code == 503
-    assert answer.headers["retry-after"] == "1"
+    assert (answer.status_code, answer.headers["retry-after"]) == (503, "1")
     assert answer.json()["reasons"][0]["code"] == "drive_unreachable"
 
 
-@pytest.mark.parametrize("path", ["/site", "/trackers", "/trackers/T1/snapshot", "/ready", "/sun"])
-async def test_without_the_machine_reading_says_so(
-    api: httpx.AsyncClient, machine: FakeMachine, path: str
+async def test_without_the_machine_reading_says_so_and_no_order_is_kept(
+    api: httpx.AsyncClient, machine: FakeMachine
 ) -> None:
     machine.cut()
-    answer = await api.get(path)
-    assert answer.status_code == 503
-    assert answer.json()["detail"].endswith(".")
+    for path in ("/site", "/trackers", "/trackers/T1/snapshot", "/ready", "/sun"):
+        answer = await api.get(path)
+        assert answer.status_code == 503, path
+        assert answer.json()["detail"].endswith("."), path
     assert (await api.get("/health")).status_code == 200
     assert "heliopanel_machine_up 0.0" in (await api.get("/metrics")).text
-
-
-async def test_without_the_machine_no_order_is_kept(api: httpx.AsyncClient, machine: FakeMachine) -> None:
-    machine.cut()
     assert (await api.post("/trackers/T1/stop")).status_code == 503
     machine.mend()
     assert machine.orders == []
@@ -141,15 +128,12 @@ async def test_stop_needs_no_body_and_bears_any(api: httpx.AsyncClient, machine:
     ("method", "path", "body"),
     [
         ("PUT", "/site/location", '{"latitude_deg": NaN, "longitude_deg": 0, "time_zone": "UTC"}'),
-        ("PUT", "/site/location", '{"latitude_deg": 91, "longitude_deg": 0, "time_zone": "UTC"}'),
         ("PUT", "/site/location", '{"latitude_deg": 1, "longitude_deg": 0, "time_zone": "UTC", "lat": 1}'),
         ("PUT", "/site/location", '{"latitude_deg": 1, "longitude_deg": 0, "time_zone": "Mars/Base"}'),
-        ("PUT", "/site/clock", '{"source": "manual"}'),
         ("PUT", "/site/clock", '{"source": "manual", "at": "2026-06-21T12:00:00"}'),
         ("PATCH", "/trackers/T1", '{"azimuth": {"minimum_deg": 400}}'),
         ("POST", "/trackers", '{"tracker_id": "T1", "name": "Again"}'),
         ("POST", "/trackers/T1/commands", '{"type": "fly"}'),
-        ("POST", "/trackers/T1/shows", '{"duration_s": 60}'),
         ("POST", "/trackers/T1/commands", "not json"),
     ],
 )
@@ -168,8 +152,8 @@ async def test_wrong_values_are_422_and_change_nothing(
 
 @pytest.mark.parametrize(
     ("method", "path", "status"),
-    [("GET", "/trackers/T9", 404), ("DELETE", "/trackers/T9", 404), ("GET", "/recordings/none", 404),
-     ("GET", "/trackers/T1/shows/none", 404), ("GET", "/nothing", 404), ("PUT", "/trackers", 405)],
+    [("DELETE", "/trackers/T9", 404), ("GET", "/recordings/none", 404), ("GET", "/nothing", 404),
+     ("GET", "/trackers/T1/shows/none", 404), ("PUT", "/trackers", 405)],
 )  # fmt: skip
 async def test_what_does_not_exist_is_a_problem_too(
     api: httpx.AsyncClient, method: str, path: str, status: int
@@ -189,16 +173,6 @@ async def test_frames_come_as_columns_csv_and_parquet(api: httpx.AsyncClient) ->
     table = pq.read_table(io.BytesIO((await api.get(frames, params={"format": "parquet"})).content))
     assert table.num_rows == 1800
     assert len(lines) == 12
-
-
-async def test_commissioning_record_comes_as_json_page_and_pdf(api: httpx.AsyncClient) -> None:
-    record = (await api.get("/trackers/T1/record")).json()
-    assert record["home"]["by"] == "operator"
-    assert [step["name"] for step in record["steps"]] == ["location", "clock", "homing", "mode", "run"]
-    page = (await api.get("/trackers/T1/record", params={"format": "html"})).text
-    assert "North field" in page
-    pdf = (await api.get("/trackers/T1/record", params={"format": "pdf"})).content
-    assert pdf.startswith(b"%PDF-")
 
 
 @pytest.mark.fault(69)
@@ -234,15 +208,6 @@ async def test_sun_day_has_rise_transit_set_as_json_and_csv(api: httpx.AsyncClie
     assert len(day["path"]) == 25
     table = (await api.get("/sun/day", params=query | {"format": "csv"})).text.splitlines()
     assert len(table) == 26
-
-
-async def test_a_show_too_fast_for_the_axes_says_what_would_work(api: httpx.AsyncClient) -> None:
-    fast = (await api.post("/trackers/T1/shows", json={"date": "2026-06-21", "duration_s": 20})).json()
-    assert fast["feasible"] is False
-    assert fast["reasons"]
-    slow = await api.post("/trackers/T1/shows", json={"date": "2026-06-21", "duration_s": fast["shortest_s"]})
-    assert slow.json()["feasible"] is True
-    assert len(slow.json()["sun_up"]) == 1
 
 
 async def test_simulation_and_backups_against_the_real_store(tmp_path: Path) -> None:

@@ -11,7 +11,6 @@ from typing import cast
 import httpx
 import pytest
 
-from app.access.accounts import TokenWish
 from app.access.roles import Role
 from app.access.tokens import Scope
 from app.base.clock import VirtualClock
@@ -20,8 +19,8 @@ from app.site.clock.timekeeping import Timekeeper
 from app.store.store import StoreFailed
 from app.tracker.memory.memory import ClockSetting
 from app.web.features.operations import backups_api
-from tests.golden.table import ClockRow
-from tests.web.office import HERE, Office
+from tests.golden.table import ClockRow, clocks
+from tests.web.office import Office
 from tests.web.test_clocks import NEW, NOON, WRONG_TRIES, life, rows, sign_in
 
 CLOCK_PAGE = "/trackers/T1/commissioning/clock"
@@ -70,9 +69,7 @@ async def test_a_wait_counts_on_when_the_clock_is_set(tmp_path: Path, row: Clock
 async def test_a_token_expires_by_the_clock_that_is_set(tmp_path: Path, row: ClockRow) -> None:
     async with life(tmp_path, row.stored) as office, office.browser() as browser:
         await office.hire()
-        wish, now = TokenWish("scada", frozenset({Scope.MOTION})), office.clock.system_time()
-        token = await office.keeper.do(lambda: office.keeper.accounts.mint(HERE, wish, now))
-        headers = {"authorization": f"Bearer {token}"}
+        headers = await office.bearer(Scope.MOTION)
         set_clock(office, row)
         reads = await browser.get("/api/v1/site", headers=headers)
         stops = await browser.post("/api/v1/stop", headers=headers)
@@ -92,15 +89,13 @@ async def test_everything_shown_and_stamped_follows_the_clock(tmp_path: Path, ro
             assert minted.status_code == 201, minted.text
             tokens = (await browser.get("/api/v1/tokens")).json()["items"]
             events = (await browser.get("/api/v1/audit/access")).json()["items"]
-            sessions = [
-                *(await browser.get("/api/v1/sessions")).json()["items"],
-                *(await browser.get("/api/v1/me/sessions")).json()["items"],
-            ]
+            listed = [(await browser.get(f"/api/v1/{path}")).json() for path in ("sessions", "me/sessions")]
             me = (await browser.get("/api/v1/me")).json()
             pages = [(await browser.get(path)).text for path in ("/users", "/account")]
         async with office.browser(await office.session(Role.ENGINEER)) as browser:
             asked = await asked_of_the_clock(browser, right)
     stamps = [tokens[0]["created_at"], events[0]["at"], me["proven_at"]]
+    sessions = [one for told in listed for one in told["items"]]
     stamps += [one[name] for one in sessions for name in ("began_at", "used_at")]
     assert {datetime.fromisoformat(one) for one in stamps} == {right}
     assert all(f"{right:%Y-%m-%d}" in page for page in pages)
@@ -123,11 +118,11 @@ async def asked_of_the_clock(browser: httpx.AsyncClient, right: datetime) -> dic
     return found
 
 
-@rows("set_shown")
 async def test_a_backup_is_named_by_the_clock_that_is_set(
-    tmp_path: Path, row: ClockRow, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     made = []
+    row = clocks("set_shown")[-1]
 
     def backup(_: str, path: Path) -> None:
         made.append(path.name)

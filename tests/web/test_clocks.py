@@ -13,13 +13,12 @@ from pathlib import Path
 import httpx
 import pytest
 
-from app.access.accounts import TokenWish
 from app.access.roles import Role
 from app.access.tokens import Scope
 from app.base.clock import VirtualClock
 from tests.fault_result import BY_ITSELF, FaultResult
 from tests.golden.table import ClockRow, clocks
-from tests.web.office import HERE, PASSWORD, Office
+from tests.web.office import PASSWORD, Office
 
 NOON = datetime(2026, 11, 28, 12, tzinfo=UTC)
 PIN = "270441"
@@ -116,9 +115,7 @@ async def test_a_password_that_was_typed_in_the_future_is_asked_for_again(
 
 async def bound(office: Office) -> str:
     """Return the session of a cabinet's display."""
-    wish, now = TokenWish("gate 3", pin=PIN), office.clock.now()
-    token = await office.keeper.do(lambda: office.keeper.accounts.mint(HERE, wish, now))
-    return await office.keeper.log_in_kiosk(token, "127.0.0.1", "panel")
+    return await office.keeper.log_in_kiosk(await office.mint(pin=PIN), "127.0.0.1", "panel")
 
 
 @rows("step_up")
@@ -145,12 +142,9 @@ async def test_a_cabinet_bound_in_the_future_is_bound_again(tmp_path: Path, row:
 
 @rows("token")
 async def test_a_token_of_the_future_does_no_more_than_stop(tmp_path: Path, row: ClockRow) -> None:
-    wish = TokenWish("scada", frozenset({Scope.MOTION}))
     async with life(tmp_path, row.stored) as office:
         await office.hire()
-        now = office.clock.now()
-        token = await office.keeper.do(lambda: office.keeper.accounts.mint(HERE, wish, now))
-    headers = {"authorization": f"Bearer {token}"}
+        headers = await office.bearer(Scope.MOTION)
     async with asked(tmp_path, row) as office, office.browser() as browser:
         reads = await browser.get("/api/v1/site", headers=headers)
         parks = await browser.post("/api/v1/trackers/T1/commands", headers=headers, json={"type": "park"})

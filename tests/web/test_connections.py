@@ -130,20 +130,6 @@ def test_so_many_clients_are_told_of_and_no_more() -> None:
     assert told == [True] * MOST_TOLD + [False]
 
 
-@pytest.fixture
-def limits(monkeypatch: pytest.MonkeyPatch) -> dict[int, tuple[int, int]]:
-    """The limits of a process that is not this one; one that is as it was is not set."""
-    now: dict[int, tuple[int, int]] = {}
-
-    def set_limit(which: int, limit: tuple[int, int]) -> None:
-        assert now[which] != limit
-        now[which] = limit
-
-    monkeypatch.setattr(resource, "getrlimit", now.__getitem__)
-    monkeypatch.setattr(resource, "setrlimit", set_limit)
-    return now
-
-
 @pytest.mark.parametrize(
     ("before", "after", "connections"),
     [
@@ -156,8 +142,15 @@ def limits(monkeypatch: pytest.MonkeyPatch) -> dict[int, tuple[int, int]]:
     ],
 )
 def test_descriptors_are_asked_for_and_some_are_kept_for_files(
-    limits: dict[int, tuple[int, int]], before: tuple[int, int], after: tuple[int, int], connections: int
+    monkeypatch: pytest.MonkeyPatch, before: tuple[int, int], after: tuple[int, int], connections: int
 ) -> None:
-    limits[resource.RLIMIT_NOFILE] = before
+    limits = {resource.RLIMIT_NOFILE: before}
+
+    def set_limit(which: int, limit: tuple[int, int]) -> None:
+        assert limits[which] != limit, "one that is as it was is not set"
+        limits[which] = limit
+
+    monkeypatch.setattr(resource, "getrlimit", limits.__getitem__)
+    monkeypatch.setattr(resource, "setrlimit", set_limit)
     assert server.reserve_descriptors() == connections
     assert limits == {resource.RLIMIT_NOFILE: after}

@@ -1,8 +1,5 @@
 """Control at the doors of the panel: who has it is refused with 423 and shown; the page renews it."""
 
-from collections.abc import AsyncIterator
-from pathlib import Path
-
 import pytest
 
 from app.link.messages import Order, RequestControl, SiteCommand
@@ -15,12 +12,6 @@ API = "/api/v1/trackers/T1"
 JOG = {"press_id": "p", "axis": "azimuth", "direction": 1}
 STEP = {"type": "step", "axis": "azimuth", "delta_deg": 1.0}
 HTMX = {"HX-Request": "true", "Origin": "http://127.0.0.1:8010"}
-
-
-@pytest.fixture
-async def desk(tmp_path: Path) -> AsyncIterator[Desk]:
-    async with Desk(tmp_path) as opened:
-        yield opened
 
 
 async def by_bo(desk: Desk, command: Command | SiteCommand, rank: int = 2) -> None:

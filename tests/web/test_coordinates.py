@@ -1,12 +1,10 @@
 """Coordinates as maps, phones, receivers, and people write them: read right, or refused with a sentence."""
 
 import re
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from html import unescape
-from itertools import product
 from unicodedata import decimal
-from urllib.parse import quote
 
 import httpx
 import pytest
@@ -22,7 +20,8 @@ from app.web.shell import coordinates
 from app.web.shell.coordinates import Refusal, Refused
 from app.web.shell.forms import Unreadable
 from app.web.shell.map_links import is_link
-from tests.fakes import FakeMachine, fake_app, serving
+from tests.amount import amount
+from tests.fakes import FakeMachine
 from tests.fault_result import FaultResult
 from tests.golden.table import rows
 from tests.web.filled import filled
@@ -69,12 +68,6 @@ def is_at(found: Location, right: Location) -> bool:
     )
 
 
-@pytest.fixture
-async def client(machine: FakeMachine) -> AsyncIterator[httpx.AsyncClient]:
-    async with serving(fake_app(machine)) as browser:
-        yield browser
-
-
 async def wrong(
     client: httpx.AsyncClient, machine: FakeMachine, row: dict[str, str], form: dict[str, str | list[str]]
 ) -> str:
@@ -100,12 +93,21 @@ async def wrong(
     return "" if is_at(saved, right_place(row)) and is_shown else f"saved as {saved}, shown: {is_shown}"
 
 
-def test_the_table_has_every_refusal_and_a_source_for_each_form() -> None:
-    assert len(ROWS) >= 120
-    assert {row["refusal"] for row in ROWS} == {*Refusal, ""}
-    assert all(row["source"] for row in ROWS)
-    forms = [(row["field"], row["language"], row["text"]) for row in ROWS]
-    assert len(set(forms)) == len(forms)
+def misread(row: dict[str, str]) -> str:
+    """Return what is wrong with how a row is read, nothing if it is right."""
+    with speaking(row["language"]):
+        found = read(LocationForm(**(OTHER | {row["field"]: row["text"]})))
+    if row["refusal"]:
+        sentence = SENTENCES[Refusal(row["refusal"])] if row["language"] == "en" else ""
+        told = " ".join(map(str, found.typed.errors.values()))
+        return "" if told and sentence in told else f"refused with {told!r}"
+    return "" if found.location and is_at(found.location, right_place(row)) else f"read as {found.location}"
+
+
+def test_every_form_is_read_right_or_refused() -> None:
+    assert {row["refusal"] for row in ROWS} == {*Refusal, ""}, "the table has every refusal"
+    found = {(row["field"], row["text"]): words for row in ROWS if (words := misread(row))}
+    assert found == {}
 
 
 @pytest.mark.fault(104)
@@ -116,8 +118,8 @@ async def test_every_form_is_shown_and_saved_right_or_refused(
     form = await filled(client, PAGE)
     found = {
         (row["field"], row["text"]): words
-        for row in ROWS
-        if row["language"] == language and (words := await wrong(client, machine, row, form))
+        for row in [row for row in ROWS if row["language"] == language][:: amount(5, 1)]
+        if (words := await wrong(client, machine, row, form))
     }
     assert found == {}
     with pytest.raises(Unreadable) as refused:
@@ -147,15 +149,12 @@ def test_two_pairs_that_differ_are_refused() -> None:
     assert all(SENTENCES[Refusal.PAIR] in str(errors[name]) for name in OTHER)
 
 
-@pytest.mark.parametrize(("text", "chosen", "right"), [("-33.9", "N", -33.9), ("33.9", "S", -33.9)])
-def test_a_sign_or_the_pressed_button_gives_the_side(text: str, chosen: str, right: float) -> None:
-    assert coordinates.angle(text, "latitude", chosen) == right
-
-
-@pytest.mark.parametrize("text", ["-33.9", "+33.9"])
-def test_a_sign_beside_the_pressed_button_of_the_south_is_refused(text: str) -> None:
-    with pytest.raises(Unreadable, match=SENTENCES[Refusal.SIGN]):
-        coordinates.angle(text, "latitude", "S")
+def test_a_sign_or_the_pressed_button_gives_the_side_and_both_are_refused() -> None:
+    for text, chosen in (("-33.9", "N"), ("33.9", "S")):
+        assert coordinates.angle(text, "latitude", chosen) == -33.9
+    for text in ("-33.9", "+33.9"):
+        with pytest.raises(Unreadable, match=SENTENCES[Refusal.SIGN]):
+            coordinates.angle(text, "latitude", "S")
 
 
 @pytest.mark.parametrize(
@@ -247,44 +246,9 @@ def test_what_is_read_is_what_the_numbers_of_the_text_say(text: str, language: s
     assert all(one.sign != "-" for one in found) or set(text) & {*coordinates.SIGNS["-"], "-"}
 
 
-def written(latitude: float, longitude: float) -> Iterator[str]:
-    """Return a place in every style that is read."""
-    sides = f"{'NS'[latitude < 0]}", f"{'EW'[longitude < 0]}"
-    degrees = [abs(latitude), abs(longitude)]
-    degrees_only = [f"{one:.7f}" for one in degrees]
-    minutes = [divmod(round(one * 60e5), 60 * 10**5) for one in degrees]
-    seconds = [divmod(round(one * 3600e3), 3600 * 10**3) for one in degrees]
-    dm = [f"{whole}° {rest / 1e5:.5f}'" for whole, rest in minutes]
-    dms = [f"{whole}° {rest // 60000}′ {rest % 60000 / 1e3:.3f}″" for whole, rest in seconds]
-    for texts, join in product((degrees_only, dm, dms), (" ", ", ", "; ", "\t")):
-        yield join.join(f"{text} {side}" for text, side in zip(texts, sides, strict=True))
-        yield join.join(f"{side}{text}" for text, side in zip(reversed(texts), reversed(sides), strict=True))
-    signed = f"{latitude:.7f}", f"{longitude:.7f}"
-    yield from (join.join(signed) for join in (",", ", ", " ", ";"))
-    yield "; ".join(signed).replace(".", ",")
-    yield f"Lon: {signed[1]} Lat: {signed[0]}"
-    yield f"geo:{signed[0]},{signed[1]}"
-    yield f"{latitude:+011.7f}{longitude:+012.7f}/"
-    yield f"https://www.google.com/maps/search/?api=1&query={quote(','.join(signed))}"
-    yield f"https://www.openstreetmap.org/?mlat={signed[0]}&mlon={signed[1]}#map=9/1/2"
-    (north, north_rest), (east, east_rest) = minutes
-    yield (
-        f"{int(north):02}{north_rest / 1e5:08.5f},{sides[0]},{int(east):03}{east_rest / 1e5:08.5f},{sides[1]}"
-    )
-
-
-@given(st.floats(-90, 90), st.floats(-180, 180))
-@example(-0.0, -180.0)
-@example(-89.9999999, 179.9999999)
-@example(1e-9, -1e-9)
-def test_a_place_in_any_style_is_read_back(latitude: float, longitude: float) -> None:
-    for text in written(latitude, longitude):
-        found = read(LocationForm(latitude=text)).location
-        assert found is not None, text
-        assert is_at(found, Location(latitude, longitude)), text
-
-
 @given(st.floats(-90, 90), st.floats(-180, 180), st.sampled_from(LANGUAGES))
+@example(-89.9999999, 179.9999999, "en")
+@example(-0.0, -180.0, "en")
 def test_a_place_as_the_page_shows_it_is_read_back(latitude: float, longitude: float, language: str) -> None:
     with speaking(language):
         found = read(LocationForm(latitude=normal_form(Location(latitude, longitude)))).location

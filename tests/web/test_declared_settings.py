@@ -13,7 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from app.base.adapter import adapter
 from app.tracker.settings.config import TrackerConfig
-from app.tracker.settings.declared import Declared, Setting, check, declared
+from app.tracker.settings.declared import Setting, check, declared
 from app.web.api.changes import change_of, given
 from app.web.features.guide.search_index import SETTING_PAGES, WRITTEN_OUT, index
 from app.web.features.setup.protection_forms import fixed, groups, stows
@@ -29,7 +29,6 @@ BY_HAND = (
     "app/web/features/setup/protection_forms.py",
 )
 LABELS = sorted({one.label for path, one in NUMBERS.items() if path.split(".")[0] not in WRITTEN_OUT})
-TEMPLATES = ("settings.html", "protections.html", "machine.html")
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,25 +46,20 @@ def test_the_stored_form_and_every_default_are_as_before() -> None:
     assert adapter(TrackerConfig).dump_python(config, mode="json") == json.loads(GOLDEN.read_text())
 
 
-@pytest.mark.parametrize("path", NUMBERS)
-def test_every_number_has_bounds_and_its_default_lies_within(path: str) -> None:
-    one = NUMBERS[path]
-    assert one.label
-    assert -1e10 < one.least < one.most < 1e10
-    assert one.default is None or one.holds(one.default)
+def test_every_number_has_bounds_and_its_default_lies_within() -> None:
+    for path, one in NUMBERS.items():
+        assert one.label, path
+        assert -1e10 < one.least < one.most < 1e10, path
+        assert one.default is None or one.holds(one.default), path
 
 
-@pytest.mark.parametrize("name", BY_HAND)
-def test_no_bound_is_written_into_a_form_again(name: str) -> None:
-    assert re.findall(r"\.(?:number|whole)\(.*\d", (ROOT / name).read_text()) == []
-
-
-@pytest.mark.parametrize("name", TEMPLATES)
-def test_no_label_is_written_into_a_template_again(name: str) -> None:
-    source = (ROOT / "templates" / name).read_text()
-    assert [
-        label for label in LABELS if f"text_field(form.{label}" in source or f'_("{label}"), "' in source
-    ] == []
+def test_no_bound_and_no_label_is_written_again() -> None:
+    for name in BY_HAND:
+        assert re.findall(r"\.(?:number|whole)\(.*\d", (ROOT / name).read_text()) == [], name
+    for name in ("settings.html", "protections.html", "machine.html"):
+        source = (ROOT / "templates" / name).read_text()
+        again = [one for one in LABELS if f"text_field(form.{one}" in source or f'_("{one}"), "' in source]
+        assert again == [], name
 
 
 def test_a_changed_bound_reaches_check_form_and_api() -> None:
@@ -94,7 +88,8 @@ def test_null_is_a_value_only_where_there_may_be_none() -> None:
 
 def test_the_search_finds_every_setting_that_no_template_writes_out() -> None:
     found = {entry.title for entry, _ in index()}
-    assert [one.title for one in _made() if one.title not in found] == []
+    made = [one.title for path, one in NUMBERS.items() if path.split(".")[0] not in WRITTEN_OUT]
+    assert [title for title in made if title not in found] == []
 
 
 def test_the_protections_page_has_every_setting() -> None:
@@ -102,10 +97,6 @@ def test_the_protections_page_has_every_setting() -> None:
     shown |= {one.name for one in fixed()}
     paths = (path.removeprefix("protection.") for path in declared(TrackerConfig) if "protection." in path)
     assert shown == {path.replace(".", "_") for path in paths}
-
-
-def _made() -> list[Declared]:
-    return [one for path, one in NUMBERS.items() if path.split(".")[0] not in WRITTEN_OUT]
 
 
 DRAWN_ELSEWHERE = re.compile(r"actuator|^(regions|strategy)$")

@@ -4,9 +4,8 @@ errors.js decides where an error stands; tests/browser/test_error_beside_form.py
 Here the same decision is taken on the HTML of every page.
 """
 
-from dataclasses import dataclass, field
+from collections.abc import Iterable
 from datetime import timedelta
-from html.parser import HTMLParser
 from pathlib import Path
 
 import httpx
@@ -20,11 +19,11 @@ from tests.browser.panels import NOON, keep_study
 from tests.browser.troubles import trouble
 from tests.fake_data import SAMSUN
 from tests.web.office import Office
+from tests.web.tree import Tag, tree
 
 # pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.
 pytestmark = pytest.mark.filterwarnings("ignore:DatetimeIndex.dayofyear is deprecated")
 
-VOID = frozenset({"area", "base", "br", "col", "hr", "img", "input", "link", "meta", "source", "wbr"})
 FIELDS = frozenset({"input", "select", "textarea", "button"})
 VERBS = ("hx-get", "hx-post", "hx-put", "hx-patch", "hx-delete")
 NO_SWAP = '"noSwap":["204","304","4xx","5xx"]'
@@ -34,62 +33,24 @@ COMPUTED = {"/papers?show=yes": "/papers", EVERY_PAGE["accuracy"].path: "/accura
 """What is computed for seconds, and the page that asks for it."""
 
 
-@dataclass
-class Tag:
-    """An element of a page."""
-
-    name: str
-    given: dict[str, str]
-    above: "Tag | None" = None
-    below: list["Tag"] = field(default_factory=list)
-
-    @property
-    def all(self) -> list["Tag"]:
-        """Return everything within it, in the order of the page."""
-        return [one for child in self.below for one in (child, *child.all)]
-
-    @property
-    def asks(self) -> bool:
-        return any(verb in self.given for verb in VERBS)
-
-    @property
-    def is_outcome(self) -> bool:
-        return "outcome" in self.given.get("class", "").split() or self.given.get("role") == "status"
-
-    @property
-    def form(self) -> "Tag | None":
-        """Return the form that it is, or stands in."""
-        if self.name == "form":
-            return self
-        return self.above.form if self.above else None
-
-    def __str__(self) -> str:
-        return f"<{self.name} {' '.join(f'{name}={value}' for name, value in self.given.items())}>"
+def asks(one: Tag) -> bool:
+    """Return whether an element asks the panel for something by itself."""
+    return any(verb in one.given for verb in VERBS)
 
 
-class Tree(HTMLParser):
-    """A page as its elements."""
+def outcome(elements: Iterable[Tag], *, status: bool = False) -> Tag | None:
+    """Return the first of these that is made for what comes of a key, with `status` a line of status too."""
+    return next(
+        (one for one in elements if one.is_a("outcome") or (status and one.given.get("role") == "status")),
+        None,
+    )
 
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.root = self._at = Tag("", {})
-        self.feed(text)
 
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        one = Tag(tag, {name: value or "" for name, value in attrs}, self._at)
-        self._at.below.append(one)
-        if tag not in VOID:
-            self._at = one
-
-    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self._at.below.append(Tag(tag, {name: value or "" for name, value in attrs}, self._at))
-
-    def handle_endtag(self, tag: str) -> None:
-        one: Tag | None = self._at
-        while one is not None and one.name != tag:
-            one = one.above
-        if one is not None and one.above is not None:
-            self._at = one.above
+def form_of(one: Tag | None) -> Tag | None:
+    """Return the form that an element is, or stands in."""
+    while one is not None and one.name != "form":
+        one = one.above
+    return one
 
 
 def aimed(page: Tag, source: Tag) -> Tag | None:
@@ -100,17 +61,16 @@ def aimed(page: Tag, source: Tag) -> Tag | None:
     if how.startswith("#"):
         return next((one for one in page.all if one.given.get("id") == how[1:]), None)
     assert how == "find .outcome", f"{source}: errors.js is not known to find {how}"
-    return next((one for one in source.all if "outcome" in one.given.get("class", "").split()), None)
+    return outcome(source.all)
 
 
 def place(page: Tag, source: Tag) -> Tag | None:
     """Return the element that an error fills, None if one is made for it: `outcomeOf` of errors.js."""
     target = aimed(page, source)
-    if target is not None and target.is_outcome:
+    if target is not None and outcome([target], status=True):
         return target
-    if source.form is not None:
-        return next((one for one in source.form.all if "outcome" in one.given.get("class", "").split()), None)
-    return next((one for one in source.below if one.is_outcome), None)
+    form = form_of(source)
+    return outcome(source.below, status=True) if form is None else outcome(form.all)
 
 
 def troubles(page: Tag, source: Tag) -> list[str]:
@@ -124,7 +84,7 @@ def troubles(page: Tag, source: Tag) -> list[str]:
         return ["what it says while it waits stays beside the error"]
     if where is None:
         return []
-    lost = [one for one in where.all if one.asks or one.name in FIELDS]
+    lost = [one for one in where.all if asks(one) or one.name in FIELDS]
     return [f"{one} is lost" for one in lost]
 
 
@@ -171,8 +131,8 @@ async def pages(tmp_path: Path) -> dict[str, str]:
 async def test_every_form_key_and_part_has_a_place_for_its_errors(pages: dict[str, str]) -> None:
     found, asking, loading = [], 0, 0
     for name, text in pages.items():
-        page = Tree(text).root
-        sources = [one for one in page.all if one.asks]
+        page = tree(text)
+        sources = [one for one in page.all if asks(one)]
         found += [f"{name} {one}: {what}" for one in sources for what in troubles(page, one)]
         scripts = [one.given.get("src", "").split("?")[0].split("/")[-1] for one in page.all]
         if sources and (NO_SWAP not in text or [one for one in scripts if one in RULE] != RULE):

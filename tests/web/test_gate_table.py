@@ -6,18 +6,17 @@ import re
 from collections.abc import AsyncIterator, Iterable
 from dataclasses import dataclass, field
 from datetime import timedelta
-from typing import Any
 
 import pytest
 import pytest_asyncio
 from starlette.types import Message, Receive, Send
 from starlette.types import Scope as Asked
 
-from app.access.accounts import TokenWish
 from app.access.roles import GRANTS, Role
 from app.access.tokens import SCOPES, Scope
 from app.base.permission import Permission
 from tests.fault_result import FaultResult
+from tests.web.asgi import scope_of
 from tests.web.office import COOKIE, HERE, ORIGIN, PORT, Office
 from tests.web.route_table import ROUTES
 
@@ -83,7 +82,7 @@ class Doors:
             if message["type"].startswith("websocket."):
                 answer.status = message.get("code", PASSED)
 
-        await self._stack(scope_of(method, path, headers), nothing_more, hear)
+        await self._stack(scope_of(method, path, headers=headers), nothing_more, hear)
         return answer
 
     async def passed(self, headers: dict[str, str], keys: Iterable[str] = ROUTES) -> set[str]:
@@ -102,24 +101,6 @@ class Doors:
 
 async def nothing_more() -> Message:
     return {"type": "http.request", "body": b"", "more_body": False}
-
-
-def scope_of(method: str, path: str, headers: dict[str, str]) -> dict[str, Any]:
-    kind, scheme = ("websocket", "ws") if method == "WS" else ("http", "http")
-    return {
-        "type": kind,
-        "method": method,
-        "path": path,
-        "raw_path": path.encode(),
-        "query_string": b"",
-        "headers": [(name.encode(), value.encode()) for name, value in headers.items()],
-        "scheme": scheme,
-        "server": ("127.0.0.1", PORT),
-        "client": ("127.0.0.1", 50000),
-        "http_version": "1.1",
-        "root_path": "",
-        "extensions": {},
-    }
 
 
 def filled(key: str) -> tuple[str, str]:
@@ -154,25 +135,20 @@ async def doors(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Doors
 async def keys(doors: Doors) -> Keys:
     office = doors.office
     sessions = {"never begun": "x" * 43, "expired": await office.session(Role.ENGINEER)}
-    tokens = {"nonsense": "hp_nonsense", "none at all": "", "expired": await minted(office, *Scope)}
+    tokens = {"nonsense": "hp_nonsense", "none at all": "", "expired": await office.mint(*Scope)}
     office.clock.ahead = timedelta(days=366)
     sessions["signed out"] = await office.session(Role.ENGINEER)
-    tokens["revoked"] = await minted(office, *Scope)
+    tokens["revoked"] = await office.mint(*Scope)
     async with office.browser(sessions["signed out"]) as browser:
         await browser.post("/logout")
     now = office.clock.now()
     await office.keeper.do(lambda: office.keeper.accounts.revoke(HERE, tokens["revoked"][3:11], now))
     return Keys(
         {role: await office.session(role) for role in Role},
-        {scope: await minted(office, scope) for scope in Scope},
+        {scope: await office.mint(scope) for scope in Scope},
         sessions,
         tokens,
     )
-
-
-async def minted(office: Office, *scopes: Scope) -> str:
-    wish, now = TokenWish("scada", frozenset(scopes)), office.clock.now()
-    return await office.keeper.do(lambda: office.keeper.accounts.mint(HERE, wish, now))
 
 
 def signed_in(doors: Doors, session: str) -> dict[str, str]:
@@ -193,14 +169,11 @@ async def test_every_scope_gets_through_where_the_table_says_so(
     assert await doors.passed(bearer) == with_permission(Permission.OPEN, Permission.KNOWN, *SCOPES[scope])
 
 
-async def test_without_credentials_only_what_is_open_is_answered(doors: Doors, keys: Keys) -> None:
-    assert keys.sessions
-    assert await doors.passed(OWN) == with_permission(Permission.OPEN)
-
-
-@pytest.mark.parametrize("why", ["never begun", "expired", "signed out"])
-async def test_a_session_that_is_no_good_is_none(doors: Doors, keys: Keys, why: str) -> None:
-    headers = signed_in(doors, keys.bad_sessions[why])
+@pytest.mark.parametrize("why", ["none", "never begun", "expired", "signed out"])
+async def test_without_a_session_that_is_good_only_what_is_open_is_answered(
+    doors: Doors, keys: Keys, why: str
+) -> None:
+    headers = OWN if why == "none" else signed_in(doors, keys.bad_sessions[why])
     assert await doors.passed(headers) == with_permission(Permission.OPEN)
 
 
@@ -210,8 +183,9 @@ async def test_a_token_that_is_no_good_opens_nothing_even_beside_a_session(
     doors: Doors, keys: Keys, why: str, fault: FaultResult
 ) -> None:
     best = signed_in(doors, keys.sessions[Role.ENGINEER])
-    assert await doors.passed(best | {"authorization": f"Bearer {keys.bad_tokens[why]}"}) == set()
-    refused = await doors.ask("GET /api/v1/site", best | {"authorization": f"Bearer {keys.bad_tokens[why]}"})
+    best |= {"authorization": f"Bearer {keys.bad_tokens[why]}"}
+    assert await doors.passed(best) == set()
+    refused = await doors.ask("GET /api/v1/site", best)
     assert refused.status == 401
     fault.shows(json.loads(refused.body)["detail"])
 

@@ -1,7 +1,6 @@
 """HEAD of every address: status and headers as of GET, no body, and no stream that goes on for ever."""
 
 import asyncio
-import json
 import re
 from pathlib import Path
 
@@ -10,7 +9,6 @@ import pytest
 
 from app.access.roles import Role
 from app.base.clock import VirtualClock
-from app.base.own import own_folder
 from app.web.http.limits import LASTING
 from app.web.http.server import Connections
 from tests.fake_data import NOON
@@ -23,8 +21,6 @@ from tests.web.test_server import serving
 GETS = sorted({path for method, _, path in (key.partition(" ") for key in ROUTES) if method == "GET"})
 MORE = ["/s/favicon.svg", "/manual/index.html", "/nowhere", "/s/nowhere", "/stop", "/api/v1/stop"]
 FILLED = {"tracker_id": "T1", "name": "viewer-1", "language": "en"}
-
-
 ASKED = {"accept": "text/html", "accept-encoding": "identity"}
 
 
@@ -56,25 +52,15 @@ async def test_head_is_get_without_a_body_everywhere(tmp_path: Path, role: Role 
                     continue
                 whole = await browser.get(path, headers=ASKED)
                 assert (short.status_code, plain(short)) == (whole.status_code, plain(whole)), path
+            refused = await browser.head("/api/v1/stop")
+            assert (refused.status_code, refused.headers["allow"]) == (405, "POST")
     assert not office.app.state.panel.hub, "no viewer is left"
-
-
-@pytest.mark.parametrize("path", ["/health", "/ready", "/metrics", "/", "/api/v1/stream"])
-async def test_a_monitor_that_asks_for_the_head_sees_a_panel_that_lives(path: str) -> None:
-    async with serving(Connections(100)) as (_, port):
-        answer = await asked(port, f"HEAD {path} HTTP/1.1\nHost: 127.0.0.1:{{port}}\nConnection: close")
-    assert answer.startswith(b"HTTP/1.1 200")
-    assert answer.endswith(b"\r\n\r\n"), "no body follows the headers"
-
-
-async def test_head_of_an_address_that_only_takes_orders_is_refused(tmp_path: Path) -> None:
-    office = Office(tmp_path)
-    async with office.app.router.lifespan_context(office.app), office.browser() as browser:
-        answer = await browser.head("/api/v1/stop")
-        assert (answer.status_code, answer.headers["allow"]) == (405, "POST")
     assert not office.machine.orders
 
 
-def test_the_document_tells_of_get_alone() -> None:
-    document = json.loads((own_folder("docs") / "openapi.json").read_bytes())
-    assert not [path for path, calls in document["paths"].items() if "head" in calls]
+async def test_a_monitor_that_asks_for_the_head_sees_a_panel_that_lives() -> None:
+    async with serving(Connections(100)) as (_, port):
+        for path in ("/health", "/", "/api/v1/stream"):
+            answer = await asked(port, f"HEAD {path} HTTP/1.1\nHost: 127.0.0.1:{{port}}\nConnection: close")
+            assert answer.startswith(b"HTTP/1.1 200"), path
+            assert answer.endswith(b"\r\n\r\n"), "no body follows the headers"

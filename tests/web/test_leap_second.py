@@ -17,10 +17,8 @@ CLOCK = "/trackers/T1/commissioning/clock"
         ("2016-12-31T23:59:60Z", "2016-12-31T23:59:59Z"),
         ("2016-12-31T23:59:60.750+00:00", "2016-12-31T23:59:59+00:00"),
         ("2017-01-01T05:29:60+05:30", "2017-01-01T05:29:59+05:30"),
-        ("2016-12-31 23:59:60", "2016-12-31 23:59:59"),
         ("2016-12-31T23:59:61Z", "2016-12-31T23:59:61Z"),
         ("23:59:60 o'clock", "23:59:60 o'clock"),
-        ("2016-12-31T23:59:59Z", "2016-12-31T23:59:59Z"),
     ],
 )
 def test_only_a_second_60_is_clamped(text: str, taken: str) -> None:
@@ -41,6 +39,8 @@ async def test_the_api_and_the_pages_take_a_leap_second_as_the_second_before(
         "2026-12-31T23:59:59+00:00"
     ] * 3
 
+    no_second = {"source": "manual", "at": "2026-12-31T23:59:61Z"}
+    assert (await client.put("/api/v1/site/clock", json=no_second)).status_code == 422
     sun = await client.get("/api/v1/sun", params={"at": "2026-12-31T23:59:60+00:00"})
     assert sun.json()["at"] == "2026-12-31T23:59:59Z"
     later = {"since": "2026-12-31T23:59:60Z", "until": "2027-01-01T00:00:00Z"}
@@ -48,8 +48,3 @@ async def test_the_api_and_the_pages_take_a_leap_second_as_the_second_before(
     fault.prevented("it is taken as the second before")
     fault.shows_nothing("it is taken as the second before")
     fault.recovers("nothing was lost")
-
-
-async def test_what_no_clock_shows_is_refused_still(client: httpx.AsyncClient) -> None:
-    asked = {"source": "manual", "at": "2026-12-31T23:59:61Z"}
-    assert (await client.put("/api/v1/site/clock", json=asked)).status_code == 422

@@ -13,6 +13,7 @@ from app.web.live.viewers import Wanted
 from app.web.shell.deps import Panel
 from app.web.sockets import Session
 from tests.fakes import FakeMachine
+from tests.web.sockets import heartbeat
 from tests.web.test_live import app, clock, forward, machine, settle
 
 __all__ = ["app", "clock", "machine"]
@@ -28,14 +29,7 @@ def session(app: FastAPI) -> Session:
 
 
 def beat(page: Session, press: str, sequence: int, sent_ms: float) -> None:
-    page.hear(
-        json.dumps(
-            {
-                "type": "jog", "tracker_id": "T1", "press_id": press, "axis": "azimuth", "direction": 1,
-                "speed": "slow", "sequence": sequence, "tc": sent_ms, "rtt_ms": 5.0,
-            }
-        )
-    )  # fmt: skip
+    page.hear(json.dumps(heartbeat(press, sequence, sent_ms)))
 
 
 def given(machine: FakeMachine) -> list[Jog | EndJog]:

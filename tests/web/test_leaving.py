@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from app.access.accounts import Accounts, TokenWish
+from app.access.accounts import Accounts
 from app.access.opening import open_store
 from app.access.passwords import Passwords
 from app.access.roles import Role
@@ -49,10 +49,9 @@ async def way_in(office: Office, way: str) -> tuple[dict[str, str], Callable[[Ac
         (digest,) = office.keeper.book.sessions
         headers = {"cookie": f"{COOKIE}={session}", "origin": ORIGIN}
         return headers, lambda accounts: accounts.end_session(HERE, digest, now)
-    wish = TokenWish("scada", frozenset({Scope.READ, Scope.STOP}))
-    token = await office.keeper.do(lambda: office.keeper.accounts.mint(HERE, wish, now))
+    headers = await office.bearer(Scope.READ, Scope.STOP)
     (token_id,) = office.keeper.book.tokens
-    return {"authorization": f"Bearer {token}"}, lambda accounts: accounts.revoke(HERE, token_id, now)
+    return headers, lambda accounts: accounts.revoke(HERE, token_id, now)
 
 
 async def first_of(stream: Reading | Socket) -> None:

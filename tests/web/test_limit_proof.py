@@ -2,7 +2,6 @@
 
 from collections.abc import AsyncIterator
 from datetime import timedelta
-from pathlib import Path
 
 import httpx
 import pytest
@@ -12,14 +11,6 @@ from tests.web.office import PASSWORD, Office
 from tests.web.test_limit_review import API, FIELDS, HTMX, PAGE
 
 WIDER = {"azimuth": {"maximum_deg": 400}}
-
-
-@pytest.fixture
-async def office(tmp_path: Path) -> AsyncIterator[Office]:
-    office = Office(tmp_path)
-    async with office.app.router.lifespan_context(office.app):
-        await office.hire(Role.ENGINEER)
-        yield office
 
 
 @pytest.fixture

@@ -1,19 +1,15 @@
 """A token for one tracker sees and changes that one and no other, wherever it asks; and it stops them all."""
 
 import re
-from pathlib import Path
 
 import httpx
 import pytest
 
-from app.access.accounts import TokenWish
-from app.access.roles import Role
 from app.access.tokens import Scope
 from app.base.permission import Permission
 from app.tracker.commands.commands import Stop
-from tests.fakes import serving
 from tests.web.asgi import streaming
-from tests.web.office import HERE, Office
+from tests.web.office import Office
 from tests.web.route_table import ROUTES
 from tests.web.sockets import connected
 
@@ -22,21 +18,13 @@ IDS = {"tracker_id": "T2", "document": "operators", "name": "overview", "step": 
 READ = sorted(key for key, needs in ROUTES.items() if needs is Permission.READ and key.startswith("GET "))
 LEFT_OUT = {"/api/v1/stream", "/api/v1/papers", "/api/v1/sun/accuracy", "/api/v1/studies/comparison"}
 """What never ends, and what takes seconds and is worked out without any tracker."""
+EXAMPLES = ("/guide", "/search", "/api/v1/openapi.json", "/accuracy", "/papers")
 TELLS_OF_ALL = ("/api/v1/trackers", "/api/v1/recordings", "/", "/journal")
 QUERY = {"/api/v1/telemetry": "?tracker_id=T2&begin=2026-06-21T00:00:00Z&end=2026-06-22T00:00:00Z"}
 
 
-@pytest.fixture
-async def office(tmp_path: Path) -> Office:
-    office = Office(tmp_path)
-    await office.hire(Role.OPERATOR)
-    return office
-
-
 async def bearer(office: Office, *scopes: Scope) -> dict[str, str]:
-    wish = TokenWish("scada", frozenset(scopes), frozenset({"T2"}))
-    text = await office.keeper.do(lambda: office.keeper.accounts.mint(HERE, wish, office.clock.now()))
-    return {"authorization": f"Bearer {text}"}
+    return await office.bearer(*scopes, trackers=frozenset({"T2"}))
 
 
 def addresses(office: Office) -> list[str]:
@@ -49,8 +37,7 @@ def addresses(office: Office) -> list[str]:
 
 
 async def test_nothing_that_is_read_tells_of_another_tracker(office: Office) -> None:
-    headers, read = await bearer(office, Scope.READ), 0
-    whole = {"authorization": f"Bearer {await unlimited(office)}"}
+    headers, whole, read = await bearer(office, Scope.READ), await office.bearer(Scope.READ), 0
     async with office.browser() as browser:
         for address in addresses(office):
             found = await browser.get(address, headers=headers)
@@ -62,21 +49,10 @@ async def test_nothing_that_is_read_tells_of_another_tracker(office: Office) -> 
     assert read > 60
 
 
-async def unlimited(office: Office) -> str:
-    wish = TokenWish("all", frozenset({Scope.READ}))
-    return await office.keeper.do(lambda: office.keeper.accounts.mint(HERE, wish, office.clock.now()))
-
-
 def words(answer: httpx.Response) -> str:
     """Return what an answer says of this site; T1 as an example is no word of it."""
-    path = answer.request.url.path
-    examples = path.startswith("/guide") or path in (
-        "/search",
-        "/api/v1/openapi.json",
-        "/accuracy",
-        "/papers",
-    )
-    return "" if examples else answer.text.replace('value="T1"', "")
+    is_example = answer.request.url.path.startswith(EXAMPLES)
+    return "" if is_example else answer.text.replace('value="T1"', "")
 
 
 @pytest.mark.parametrize("path", ["/api/v1/trackers/T1/stop", "/api/v1/trackers/T2/stop", "/api/v1/stop"])
@@ -89,7 +65,7 @@ async def test_it_stops_every_tracker(office: Office, path: str) -> None:
 
 async def test_it_stops_every_tracker_by_the_live_socket_and_is_shown_its_own(office: Office) -> None:
     headers = await bearer(office, Scope.READ, Scope.STOP)
-    async with serving(office.app), connected(office.app, headers=headers) as page:
+    async with connected(office.app, headers=headers) as page:
         state = await page.next("state")
         assert [one["tracker_id"] for one in state["snapshot"]["trackers"]] == ["T2"]
         await page.send(type="stop", tracker_id="T1")
@@ -99,7 +75,7 @@ async def test_it_stops_every_tracker_by_the_live_socket_and_is_shown_its_own(of
 
 async def test_the_stream_tells_of_its_own_tracker(office: Office) -> None:
     headers = await bearer(office, Scope.READ)
-    async with serving(office.app), streaming(office.app, headers=headers) as reading:
+    async with streaming(office.app, headers=headers) as reading:
         assert not OTHER.search(str(await reading.next("snapshot")))
 
 

@@ -1,5 +1,6 @@
 """The numbers at an axis: round, few enough, and written as the language of the page writes them."""
 
+from collections.abc import Callable
 from datetime import UTC, datetime
 
 import pytest
@@ -23,44 +24,35 @@ from app.web.languages.catalogue import catalogue_of
 
 
 @pytest.mark.parametrize(
-    ("span", "most", "step"),
-    [(1013.0, 5, 250.0), (0.4, 5, 0.1), (5.0, 5, 1.0), (139.0, 5, 50.0), (180.0, 7, 50.0), (0.0, 5, 2e-10)],
+    ("step_of", "span", "most", "step"),
+    [
+        (number_step, 1013.0, 5, 250.0),
+        (number_step, 0.4, 5, 0.1),
+        (number_step, 139.0, 5, 50.0),
+        (number_step, 0.0, 5, 2e-10),
+        (angle_step, 720.0, 5, 90.0),
+        (angle_step, 180.0, 5, 45.0),
+        (angle_step, 90.0, 6, 15.0),
+        (angle_step, 2.0, 5, 0.5),
+        (time_step_s, 600, 10, 60),
+        (time_step_s, 8 * 3600, 10, 3600),
+        (time_step_s, 7 * 86_400, 8, 86_400),
+    ],
 )
-def test_a_number_goes_in_ones_twos_and_fives(span: float, most: int, step: float) -> None:
-    assert number_step(span, most) == pytest.approx(step)
+def test_a_step_is_round(step_of: Callable[[float, int], float], span: float, most: int, step: float) -> None:
+    """Numbers go in ones, twos, and fives, angles in parts of a quarter turn, time in minutes and hours."""
+    assert step_of(span, most) == pytest.approx(step)
 
 
-@pytest.mark.parametrize(
-    ("span_deg", "most", "step_deg"),
-    [(360.0, 12, 30.0), (360.0, 5, 90.0), (180.0, 5, 45.0), (90.0, 6, 15.0), (37.0, 5, 10.0), (2.0, 5, 0.5),
-     (720.0, 5, 90.0)],
-)  # fmt: skip
-def test_an_angle_goes_in_parts_of_a_quarter_turn(span_deg: float, most: int, step_deg: float) -> None:
-    assert angle_step(span_deg, most) == pytest.approx(step_deg)
-
-
-@pytest.mark.parametrize(
-    ("span_s", "most", "step_s"),
-    [(600, 10, 60), (3600, 10, 600), (8 * 3600, 10, 3600), (86_400, 13, 7200), (7 * 86_400, 8, 86_400)],
-)
-def test_time_goes_in_minutes_hours_and_days(span_s: float, most: int, step_s: float) -> None:
-    assert time_step_s(span_s, most) == step_s
-
-
-def test_values_between_two_are_multiples_that_lie_between() -> None:
+def test_values_between_two_lie_between_and_values_around_two_enclose_them() -> None:
     assert within(-21.3, 67.0, 5, angle_step) == (0.0, 30.0, 60.0)
     assert multiples(-45.0, 45.0, 15.0) == (-45.0, -30.0, -15.0, 0.0, 15.0, 30.0, 45.0)
     assert multiples(0.0, 0.3, 0.1) == (0.0, 0.1, 0.2, 0.3), "no 0.30000000000000004"
-
-
-@pytest.mark.parametrize(
-    ("least", "most"), [(0.0, 1013.0), (1795.0, 1934.0), (-60.0, 97.0), (0.0, 0.4), (5.0, 5.0)]
-)
-def test_values_around_two_enclose_them(least: float, most: float) -> None:
-    ticks = around(least, most, 5)
-    assert ticks[0] <= least + 1e-9
-    assert ticks[-1] >= most - 1e-9
-    assert 2 <= len(ticks) <= 8
+    for least, most in ((0.0, 1013.0), (-60.0, 97.0), (0.0, 0.4), (5.0, 5.0)):
+        ticks = around(least, most, 5)
+        assert ticks[0] <= least + 1e-9
+        assert ticks[-1] >= most - 1e-9
+        assert 2 <= len(ticks) <= 8
 
 
 def at(*parts: int) -> float:
@@ -82,11 +74,8 @@ def test_times_stay_round_when_the_clocks_change() -> None:
     autumn = times(at(2026, 10, 24, 22), at(2026, 10, 25, 23), 9, "Europe/Berlin")
     assert [time_of_day(one, "Europe/Berlin") for one in autumn][:3] == ["00:00", "03:00", "06:00"]
     assert len(set(autumn)) == len(autumn)
-
-
-def test_days_begin_at_midnight_of_the_zone() -> None:
-    found = times(at(2026, 3, 26, 12), at(2026, 4, 2, 12), 8, "Europe/Berlin")
-    assert [time_of_day(one, "Europe/Berlin") for one in found] == ["00:00"] * 7
+    days = times(at(2026, 3, 26, 12), at(2026, 4, 2, 12), 8, "Europe/Berlin")
+    assert [time_of_day(one, "Europe/Berlin") for one in days] == ["00:00"] * 7, "they begin at midnight"
 
 
 def test_a_scale_places_values_and_tells_a_script_where() -> None:
