@@ -15,9 +15,7 @@ from app.access.roles import Role
 from app.access.tokens import Scope
 from app.base.clock import VirtualClock
 from app.link.messages import SetClock
-from app.site.clock.timekeeping import Timekeeper
 from app.store.store import StoreFailed
-from app.tracker.memory.memory import ClockSetting
 from app.web.features.operations import backups_api
 from tests.golden.table import ClockRow, clocks
 from tests.web.office import Office
@@ -133,16 +131,6 @@ async def test_a_backup_is_named_by_the_clock_that_is_set(
         set_clock(office, row)
         await browser.post("/api/v1/backups")
     assert made[0].startswith(f"heliopanel-{NOON + row.asked:%Y%m%d-%H%M%S}-")
-
-
-@rows("set_shown")
-async def test_the_site_and_the_panel_have_one_clock(row: ClockRow) -> None:
-    clock = VirtualClock(NOON + row.stored)
-    keeper = Timekeeper(clock, ClockSetting("system"), drift=clock.drift)
-    clock.set_system(NOON + row.asked)
-    clock.advance(row.later)
-    keeper.watch()
-    assert keeper.now() == clock.system_time() == NOON + row.asked + row.later
 
 
 def test_what_is_older_than_the_clock_stays_as_it_was_stamped() -> None:
