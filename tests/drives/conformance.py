@@ -296,6 +296,16 @@ async def a_command_that_is_not_taken_is_an_error(rig: Rig) -> None:
     assert (await rig.forward(1.0, at(140.0, 60.0))).azimuth.moving
 
 
+@story()
+async def an_encoder_jump_is_shown_and_a_jog_turns_the_way_that_it_says(rig: Rig) -> None:
+    before = await rig.forward(0.2)
+    rig.machine.inject(Fault(FaultKind.ENCODER_JUMP, Axis.AZIMUTH, 12.4))
+    jumped = await rig.drive.read()
+    assert jumped.azimuth.position_deg == pytest.approx(before.azimuth.position_deg + 12.4)
+    turned = await rig.forward(1.0, DriveCommand(azimuth=Velocity(2.0)))
+    assert turned.azimuth.position_deg > jumped.azimuth.position_deg + 1.0
+
+
 @story(Trait.CLOCK)
 async def the_clock_of_the_drive_can_be_set(rig: Rig) -> None:
     await rig.drive.set_clock(datetime(2031, 12, 24, 18, 30, 5, tzinfo=UTC))

@@ -102,6 +102,7 @@ def test_what_is_recorded_can_be_replayed_behind_its_gear(address: str, tmp_path
     ("profile", "gear", "says"),
     [
         ("leadshine-rs", "1", "1000000 does not fit into register path_acceleration"),
+        ("leadshine-rs", "60", None),
         ("kinco-cia402", "300000", "does not fit into register target_position"),
         ("simulated-plc", "1", None),
     ],

@@ -106,15 +106,22 @@ async def test_registers_are_written_by_all_three_functions() -> None:
 REFUSED = {
     "an address behind the map": (pack(">BHH", 3, 56, 1), 2),
     "a span over a gap": (pack(">BHH", 3, 38, 14), 2),
+    "a span over the last address": (pack(">BHH", 3, 0xFFFF, 2), 2),
+    "input registers without a map": (pack(">BHH", 4, 700, 1), 2),
     "a coil that is not there": (pack(">BHH", 1, 1, 1), 2),
+    "a discrete input that is not there": (pack(">BHH", 2, 30, 3), 2),
     "writing what can only be read": (pack(">BHH", 6, 8, 1), 2),
     "writing over the end": (pack(">BHHBHH", 16, 33, 2, 4, 1, 1), 2),
+    "writing a coil that is not there": (pack(">BHH", 5, 3, 0xFF00), 2),
+    "no registers": (pack(">BHH", 3, 0, 0), 3),
     "too many registers": (pack(">BHH", 3, 0, 126), 3),
     "half a coil": (pack(">BHH", 5, 0, 0x1234), 3),
     "a byte count that does not fit": (pack(">BHHBH", 16, 20, 1, 4, 1), 3),
     "a short request": (pack(">BH", 3, 0), 3),
+    "a long request": (pack(">BHHB", 6, 20, 1, 0), 3),
     "a motion that does not exist": (pack(">BHH", 6, 21, 7), 3),
     "a day that does not exist": (pack(">BHHB6H", 16, 50, 6, 12, 2026, 2, 30, 0, 0, 0), 3),
+    "a fault that does not exist": (pack(">BHHB4H", 16, FIRST, 4, 8, 99, 0, 0, 0), 3),
     "a function that does not exist": (bytes((43, 14, 1, 0)), 1),
 }
 

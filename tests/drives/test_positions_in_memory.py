@@ -148,6 +148,13 @@ def test_an_orderly_end_leaves_all_on_the_disk_and_nothing_in_memory(folder: Pat
     assert found_in(folder, memory) == stands_at(3.0)
 
 
+def test_a_controller_without_simulated_drives_writes_nothing(folder: Path, memory: Path) -> None:
+    positions = KeptPositions(folder, memory)
+    positions.flush()
+    positions.close()
+    assert (folder.exists(), left_in(memory)) == (False, [])
+
+
 def test_a_folder_made_anew_a_copy_and_a_life_without_memory_find_nothing_of_another(
     folder: Path, memory: Path, tmp_path: Path
 ) -> None:

@@ -108,3 +108,12 @@ async def test_settings_that_reach_no_drive_say_so(bench: Bench) -> None:
         assert unusable.outcome is CheckOutcome.UNUSABLE
         assert why in unusable.message
     assert "no connection to test" in (await bench.probe.look(DriveConfig())).message
+
+
+def test_the_choices_are_the_profiles_that_come_with_the_program() -> None:
+    choices = DriveProbe(Buses(VirtualClock(START)), ProfileLibrary()).choices()
+    plc = next(one for one in choices.profiles if one.name == "simulated-plc")
+    assert (plc.verified, plc.trouble, plc.unverified) == (True, "", ())
+    assert plc.title
+    assert plc.source
+    assert "ramp down" in plc.watchdog

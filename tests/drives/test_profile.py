@@ -64,7 +64,9 @@ def test_a_wrong_profile_is_refused_with_its_file_and_the_rule(row: dict[str, st
     assert str(caught.value).startswith("own.toml")
 
 
-def test_a_file_in_another_encoding_is_told_with_its_line(tmp_path: Path) -> None:
+def test_an_unknown_profile_is_answered_with_those_there_are_and_a_file_with_its_line(tmp_path: Path) -> None:
+    with pytest.raises(ProfileError, match=r"Choose one of .*simulated-plc"):
+        load_profile("nonsense")
     own = tmp_path / "own.toml"
     own.write_bytes(TEXT.replace("Simulated PLC with", "Simulierte Antriebe für").encode("latin-1"))
     with pytest.raises(ProfileError, match=r"own\.toml, line \d+: this is not UTF-8"):

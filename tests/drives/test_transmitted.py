@@ -72,8 +72,9 @@ async def test_an_actuator_keeps_the_speed_of_its_axis_over_the_whole_range() ->
 
 async def test_an_actuator_has_switches_and_a_clock_and_is_stopped_when_it_is_closed() -> None:
     clock = VirtualClock(START)
-    machine = SimulatedDrive(in_millimetres(POLAR), clock, watchdog=None)
-    drive = TransmittedDrive(machine, POLAR)
+    config = replace(POLAR, elevation=CONFIG.elevation)
+    machine = SimulatedDrive(in_millimetres(config), clock, watchdog=None)
+    drive = TransmittedDrive(machine, config)
     machine.inject(Fault(FaultKind.LOWER_LIMIT_STUCK, Axis.AZIMUTH))
     seen, actuator = (await drive.read()).azimuth, POLAR.azimuth.actuator
     assert actuator is not None

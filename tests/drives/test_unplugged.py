@@ -84,17 +84,20 @@ async def test_an_unplugged_adapter_is_noticed_at_once_and_let_go(tmp_path: Path
 
 
 @pytest.mark.real_time
-async def test_both_ends_of_a_cable_come_back_after_it_was_cut(tmp_path: Path) -> None:
+@pytest.mark.parametrize("proxied", [False, True], ids=["device", "behind a proxy"])
+async def test_both_ends_of_a_cable_come_back_after_it_was_cut(tmp_path: Path, *, proxied: bool) -> None:
     registers, clock = Registers(7), SystemClock()
     master, slave = tmp_path / "one-end", tmp_path / "other-end"
     device = Buses(clock).unit(on_line(master), 7, TIMING)
-    server = RtuServer({7: registers}, PtyLine(tmp_path / "behind"))
+    behind = PtyLine(tmp_path / "behind") if proxied else SerialLine(SerialConfig(str(slave)))
+    server = RtuServer({7: registers}, behind)
     far = SerialLine(SerialConfig(str(tmp_path / "behind")))
     proxy = FaultProxy(SerialLine(SerialConfig(str(slave))), far, Framing.RTU, clock)
     async with without_surprises():
         async with cable(tmp_path):
             await server.start()
-            await proxy.start()
+            if proxied:
+                await proxy.start()
             staying = asyncio.create_task(server.stay(clock))
             await found(device, registers)
         await missed(device)

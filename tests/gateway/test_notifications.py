@@ -225,6 +225,8 @@ async def test_a_test_message_goes_by_its_channel_alone_and_needs_an_address(off
     "wrong",
     [
         {"webhook_url": "ftp://example.org"},
+        {"webhook_url": "https://example.org/a b"},
+        {"mail_to": ("nobody",)},
         {"mail_to": ("a@b\nBcc: c@d",)},
         {"mail_to": tuple(f"p{number}@example.org" for number in range(11))},
         {"mail_priorities": (5,)},
