@@ -13,7 +13,7 @@ from app.simulation import kept_positions
 from app.simulation.faults import Fault, FaultKind
 from app.simulation.position_memory import AxisMemory, PositionFile, PositionMemory
 from app.simulation.simulated import SimulatedDrive
-from app.tracker.values.motion import DriveCommand, DriveRequest, Feedback, Position, RequestKind
+from app.tracker.values.motion import DriveCommand, DriveRequest, Feedback, Position, RequestKind, Velocity
 from tests.drives.rigs import CONFIG, START, Rig
 from tests.fault_result import BY_ITSELF, FaultResult
 
@@ -145,3 +145,16 @@ async def test_what_is_kept_is_told_and_a_later_life_writes_into_the_same_record
         later.of("T2").keep(second)
         later.of("T1").keep(first)
     assert (folder / "positions").stat().st_size == size
+
+
+async def test_drives_share_one_small_file(tmp_path: Path) -> None:
+    clock = VirtualClock(START)
+    factory = DriveFactory(clock, tmp_path)
+    ids = [f"T{number}" for number in range(100)]
+    for number, name in enumerate(ids):
+        drive = cast(SimulatedDrive, factory.make(replace(CONFIG, tracker_id=name)))
+        await drive.write(DriveCommand(azimuth=Velocity(1.0 + number / 100.0)))
+    assert (tmp_path / "drives" / "positions").stat().st_size <= 4 * 4096
+    found = [places(await born(clock, tmp_path, name).read())[0] for name in ids]
+    assert found == sorted(found)
+    assert found[0] < found[-1]

@@ -351,3 +351,54 @@ async def test_a_drive_that_restarted_is_not_given_the_command_from_before(bench
     with pytest.raises(DriveError, match="restarted"):
         await bench.drive.write(DriveCommand(Position(110.0, 6.0)))
     assert bench.machine.command == DriveCommand()
+
+
+async def test_positions_that_differ_every_time_are_not_believed(bench: Bench) -> None:
+    await bench.drive.read()
+    bench.later()
+    bench.wire.damage = [{AZIMUTH_POSITION: 3}, {AZIMUTH_POSITION: 7}]
+    with pytest.raises(DriveError, match=r"azimuth moved by .* faster than it can turn"):
+        await bench.drive.read()
+    assert (await bench.drive.read()).azimuth.position_deg == pytest.approx(102.4)
+
+
+async def test_an_echo_need_not_change_while_nothing_is_written(bench: Bench) -> None:
+    await bench.drive.read()
+    await bench.drive.write(DriveCommand())
+    for _ in range(3 * MOST_UNCHANGED):
+        await bench.drive.read()
+
+
+async def test_a_watchdog_that_is_switched_off_during_a_motion_is_an_error(bench: Bench) -> None:
+    await bench.drive.read()
+    await bench.drive.write(TURN)
+    bench.later()
+    assert (await bench.drive.read()).azimuth.moving
+    bench.wire.still = {WATCHDOG_MS: 0}
+    for _ in range(3):
+        with pytest.raises(DriveError, match="was switched off during motion"):
+            await bench.drive.read()
+    bench.wire.still = {}
+    assert await bench.drive.read()
+
+
+async def test_a_late_reply_counts_as_none(bench: Bench) -> None:
+    await bench.drive.read()
+    bench.machine.inject(Fault(FaultKind.LATE_REPLIES))
+    with pytest.raises(DriveError, match=r"did not answer within 0.3 s"):
+        await bench.drive.read()
+    bench.machine.end_injected_faults()
+    bench.later(500)
+    assert (await bench.drive.read()).azimuth.position_deg == pytest.approx(102.4)
+
+
+async def test_without_a_watchdog_the_capabilities_say_so() -> None:
+    clock = VirtualClock(START)
+    machine = SimulatedDrive(CONFIG, clock, watchdog=None)
+    server = ModbusServer(SimulatedPlc(PROFILE, machine, clock))
+    port = await server.start("127.0.0.1", 0)
+    drive = plc_at(port, clock)
+    await drive.read()
+    assert drive.capabilities.watchdog_s is None
+    await drive.close()
+    await server.close()
