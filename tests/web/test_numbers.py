@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from copy import deepcopy
+from functools import cache
 from typing import Any
 
 import pytest
@@ -15,8 +16,7 @@ from app.tracker.commands.commands import Move
 from app.tracker.settings.config import Orientation
 from app.web import sockets
 from app.web.api.base import Input
-from tests.fakes import FakeMachine
-from tests.web.test_openapi import APP
+from tests.fakes import FakeMachine, fake_app
 
 POSING = (True, "1")
 T1 = "/api/v1/trackers/{tracker_id}"
@@ -58,17 +58,15 @@ NUMBERS: list[tuple[str, dict[str, Any], str]] = [
 """A number of each depth and kind of place: the request, a right body, and where the number stands."""
 
 
+@cache
 def adapters() -> dict[str, TypeAdapter[Any]]:
     """Return what reads the body of every request of the API that has one, files aside."""
     return {
         f"{min(route.methods)} {route.path}": route.body_field._type_adapter
-        for route in APP.routes
+        for route in fake_app().routes
         if isinstance(route, APIRoute) and route.path.startswith("/api/") and route.body_field is not None
         if "Body_" not in str(route.body_field.field_info.annotation)
     }
-
-
-ADAPTERS = adapters()
 
 
 def models(schema: Any) -> Iterator[type]:
@@ -83,14 +81,14 @@ def models(schema: Any) -> Iterator[type]:
 
 
 def test_every_body_is_read_by_models_that_tell_numbers_from_what_poses_as_one() -> None:
-    read = {name: set(models(adapter.core_schema)) for name, adapter in ADAPTERS.items()}
+    read = {name: set(models(adapter.core_schema)) for name, adapter in adapters().items()}
     assert {name for name, kinds in read.items() if not kinds} == {f"PUT {T1}/program"}
     assert {kind for kinds in read.values() for kind in kinds if not issubclass(kind, Input)} == set()
 
 
 @pytest.mark.parametrize(("name", "body", "place"), NUMBERS, ids=[place for _, _, place in NUMBERS])
 def test_a_number_written_as_something_else_is_refused(name: str, body: dict[str, Any], place: str) -> None:
-    read = ADAPTERS[name].validate_python
+    read = adapters()[name].validate_python
     *path, last = (int(key) if key.isdigit() else key for key in place.split("."))
     read(body)
     for posing in POSING:
