@@ -152,6 +152,21 @@ def test_a_damaged_file_is_told_at_the_start(
     fault.shows(str(told.value))
 
 
+def test_a_damaged_table_is_named_at_the_start(sqlite_url: str, on_sqlite: DatabaseWriter) -> None:
+    on_sqlite.append_events([event(1), event(2)])
+    on_sqlite.close()
+    path = Path(str(sqlite_path(sqlite_url)))
+    with closing(sqlite3.connect(path)) as connection:
+        (page,) = connection.execute("SELECT rootpage FROM sqlite_master WHERE name = 'events'").fetchone()
+    with path.open("r+b") as file:
+        file.seek((page - 1) * 4096 + 8)
+        places = file.read(4)
+        file.seek(-4, 1)
+        file.write(places[2:] + places[:2])
+    with pytest.raises(StoreFailed, match=r"is damaged \(table events\)\. Restore a backup"):
+        open_writer(sqlite_url)
+
+
 def test_a_file_that_is_no_database_is_told_at_the_start(sqlite_url: str) -> None:
     Path(str(sqlite_path(sqlite_url))).write_bytes(b"This is not a database at all. " * 400)
     for opening in (open_writer, upgrade):
