@@ -12,7 +12,7 @@ from app.store.engine import open_writer
 from app.store.migrations import upgrade
 from app.store.store import JournalFilter, StoreFailed, Writer
 from app.store.writer import DatabaseWriter
-from app.store.writer_thread import FLOODED, WriterThread
+from app.store.writer_thread import FLOODED, FULL, WriterThread
 from tests.fault_result import BY_ITSELF, VIRTUAL, FaultResult
 from tests.store.samples import NOON, SITE, event
 
@@ -100,7 +100,8 @@ async def test_a_slow_disk_never_blocks_and_what_is_dropped_is_told(
     assert [str(failure)[:20] for failure in reports] == ["The disk is too slow"] * 2
     disk.released.set()
     assert thread.close()
-    assert len(stored.journal(JournalFilter())) == 3
+    kept = [entry.event.data["number"] for entry in stored.journal(JournalFilter())]
+    assert kept == [2, 1, 0], "in the order in which they came"
     assert stored.site() is None
 
 
@@ -119,6 +120,18 @@ async def test_a_flood_of_events_is_not_blamed_on_the_disk(
     disk.released.set()
     assert thread.close()
     fault.recovers(BY_ITSELF)
+
+
+async def test_a_disk_that_takes_long_for_every_write_is_too_slow(
+    thread: WriterThread, reports: list[Exception], clock: VirtualClock
+) -> None:
+    await thread.call(lambda _writer: clock.advance(timedelta(milliseconds=200)))
+    disk = Disk()
+    disk.hold(thread)
+    for number in range(4):
+        thread.post(lambda writer, number=number: append(number, writer))  # type: ignore[misc]
+    assert [str(failure) for failure in reports] == [FULL.format(capacity=3)]
+    disk.released.set()
 
 
 async def test_a_call_that_nobody_awaits_any_more_is_not_begun(
