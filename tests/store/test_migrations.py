@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from sqlalchemy import text
 
-from app.store.connections import sqlite_path, transaction, writing_engine
+from app.store.connections import revision_of, sqlite_path, transaction, writing_engine
 from app.store.engine import open_reader, open_writer
 from app.store.files import copy_sqlite
 from app.store.migrations import (
@@ -44,6 +44,17 @@ def test_a_new_database_is_made_in_a_process_of_its_own(
     assert loaded == []
 
 
+def test_a_migration_that_fails_leaves_nothing_behind(empty_url: str) -> None:
+    execute(empty_url, "CREATE TABLE recordings (already INTEGER)")
+    with pytest.raises(StoreFailed, match="rejected"):
+        upgrade(empty_url)
+    engine = writing_engine(empty_url)
+    with transaction(engine) as connection:
+        assert revision_of(connection) is None
+        assert not connection.dialect.has_table(connection, "site")
+    engine.dispose()
+
+
 @pytest.mark.fault(72)
 def test_a_newer_database_is_refused(url: str, fault: FaultResult) -> None:
     execute(url, "UPDATE alembic_version SET version_num = '9999'")
@@ -60,6 +71,15 @@ def test_a_newer_database_is_refused(url: str, fault: FaultResult) -> None:
         reader.site()
     reader.close()
     fault.recovers("the newer version is installed again, or a backup of this version is restored")
+
+
+def test_a_reader_waits_for_the_database(sqlite_url: str) -> None:
+    reader = open_reader(sqlite_url)
+    with pytest.raises(StoreFailed, match="cannot be opened"):
+        reader.site()
+    upgrade(sqlite_url)
+    assert reader.site() is None
+    reader.close()
 
 
 def test_a_database_without_tables_is_not_written(empty_url: str) -> None:
