@@ -1,5 +1,6 @@
 """A database knows which version wrote it last; an older one leaves it alone, whatever its tables are."""
 
+from contextlib import closing
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -33,6 +34,7 @@ def written_by(url: str, version: str) -> str:
     ("version", "than", "newer"),
     [
         ("0.1.0", "0.1.0", False),
+        ("0.1.1", "0.1.0", True),
         ("0.9.0", "0.10.0", False),
         ("1.0.0", "0.99.99", True),
         ("0.2.0rc1", "9.0.0", True),
@@ -57,6 +59,13 @@ def test_what_a_newer_version_wrote_is_refused_with_the_same_tables(url: str, fa
     fault.prevented("refused before anything is changed")
     fault.shows(str(refused.value).replace(f"this version is {VERSION}", "this version is VERSION"))
     fault.recovers("the newer version is installed again, or a backup of this version is restored")
+
+
+def test_what_an_older_version_wrote_is_taken(url: str) -> None:
+    upgrade(written_by(url, "0.0.9"))
+    with closing(open_writer(url)) as writer:
+        writer.save_software(VERSION)
+        assert writer.software() == VERSION
 
 
 def test_a_backup_tells_which_version_wrote_it_and_a_newer_one_is_refused(
