@@ -81,6 +81,9 @@ def other(tmp_path: Path, request: pytest.FixtureRequest) -> Empty:
 def test_a_backup_restores_into_either_database(url: str, other: Empty, into: str, tmp_path: Path) -> None:
     before = fill(url)
     made = backup(url, tmp_path / "b" / "backup.db")
+    nothing = f"sqlite:///{tmp_path / 'new' / 'heliopanel.db'}"
+    assert restore(made.path, nothing, MIDNIGHT).kept is None
+    assert content(nothing) == before
     assert inspect_backup(made.path) == made
     assert (made.site_name, made.trackers, made.events, made.recordings) == (SITE.name, 2, EVENTS, 1)
     assert (made.revision, made.size_bytes) == (REVISION, made.path.stat().st_size)
