@@ -106,11 +106,12 @@ def test_the_journal_keeps_template_and_values_of_a_message(
     writer: DatabaseWriter, reader: DatabaseReader, name: str, values: dict[str, str]
 ) -> None:
     told = say("The drive of {name} does not answer.", name=name)
-    writer.append_events([replace(event(), message=told, data={"code": "drive_lost"})])
+    writer.append_events([replace(event(), message=told, actor=name, data={"code": "drive_lost"})])
     (entry,) = reader.journal(ALL)
     assert entry.event.data == {"code": "drive_lost"}
     assert entry.event.message.values == values
     assert entry.event.message.template == (told.template if values else entry.event.message)
+    assert entry.event.actor == (name if values else "a\N{REPLACEMENT CHARACTER} ?"), "what a database holds"
 
 
 @pytest.mark.parametrize(
@@ -120,6 +121,7 @@ def test_the_journal_keeps_template_and_values_of_a_message(
             "UPDATE site SET document = '{\"name\": 5}'",
             r"stored site cannot be read \(name: .*Restore a backup",
         ),
+        ("UPDATE site SET document = 'not json'", "stored site cannot be read"),
         ("UPDATE trackers SET document = '{}'", "stored tracker 'T1' cannot be read"),
     ],
 )

@@ -9,6 +9,7 @@ import pytest
 
 from app.audit.chain import FIRST, first_break
 from app.audit.entry import Entry
+from app.base.message import Message, say
 from app.store.backup.backup import backup
 from app.store.backup.restore import restore
 from app.store.engine import open_reader, open_writer
@@ -43,6 +44,16 @@ def test_an_entry_tells_what_its_transaction_changed(writer: DatabaseWriter) -> 
     stored = writer.site()
     assert stored is not None
     assert stored.name == "North field"
+
+
+def test_a_refusal_is_read_with_its_values_and_its_chain_holds(writer: DatabaseWriter) -> None:
+    refused = say("refused: {error}", error=say("{name} is in service mode.", name="T1"))
+    with writer.audited(replace(ENTRY, result=refused)):
+        writer.save_site(SITE)
+    (kept,) = writer.audit(AuditFilter())
+    assert isinstance(kept.entry.result, Message)
+    assert kept.entry.result.values == refused.values
+    assert first_break([kept.link()]) is None
 
 
 def test_what_is_not_done_is_not_recorded_as_done(writer: DatabaseWriter) -> None:

@@ -50,7 +50,12 @@ def test_what_grew_in_pieces_is_stored_like_what_came_at_once(url: str, writer: 
 
 @pytest.mark.parametrize(
     ("begin_s", "end_s", "first", "last", "count"),
-    [(899.5, 900.5, 900.0, 900.0, 1), (850.0, 950.0, 850.0, 950.0, 101), (990.0, None, 990.0, 999.0, 10)],
+    [
+        (899.5, 900.5, 900.0, 900.0, 1),
+        (850.0, 950.0, 850.0, 950.0, 101),
+        (990.0, None, 990.0, 999.0, 10),
+        (0.0, 0.0, 0.0, 0.0, 1),
+    ],
 )
 def test_a_range_of_time_is_cut_out(
     writer: DatabaseWriter, begin_s: float, end_s: float | None, first: float, last: float, count: int
