@@ -171,7 +171,7 @@ async def test_pysunspec_writes_targets_and_control_and_is_refused_what_is_out_o
     try:
         await asyncio.to_thread(write, ElCtl=40.0, AzCtl=170.0, Ctl=1)
         assert system.plant.tracker().activity is ActivityName.MOVING
-        for wrong in ({"ElCtl": 90.5}, {"AzCtl": 361.0}, {"GlblElCtl": -91.0}, {"Ctl": 3}):
+        for wrong in ({"ElCtl": 90.5}, {"AzCtl": 361.0}, {"GlblElCtl": -91.0}, {"Ctl": 3}, {"GlblCtl": 7}):
             with pytest.raises(ModbusClientException, match="3"):
                 await asyncio.to_thread(lambda values=wrong: write(**values))
         await asyncio.to_thread(write, GlblElCtl=30.0, GlblAzCtl=120.0, GlblCtl=1)
@@ -186,7 +186,7 @@ async def test_pysunspec_writes_targets_and_control_and_is_refused_what_is_out_o
     refused = [message for kind, _, message in told if kind is EventKind.REMOTE_REFUSED]
     assert "90.5 was written to ElCtl over SunSpec; it must lie between -90 and 90." in refused
     assert "-91 was written to GlblElCtl over SunSpec; it must lie between -90 and 90." in refused
-    assert len(refused) == 4
+    assert len(refused) == 5
 
 
 async def test_a_refused_target_is_not_kept_and_manual_control_goes_on(system: Scada) -> None:
@@ -356,8 +356,9 @@ async def test_a_refusal_in_cycles_is_journalled_once_in_a_while_with_its_reason
     assert await system.write(CTL, 1) == bytes((0x90, 3)), "no target was written"
 
 
-async def test_other_hosts_may_only_read() -> None:
-    async with scada(write_hosts="10.0.0.0/8, serial") as system:
+@pytest.mark.parametrize("write_hosts", ["", "10.0.0.0/8, serial"])
+async def test_other_hosts_may_only_read(write_hosts: str) -> None:
+    async with scada(write_hosts=write_hosts) as system:
         await system.plant.commission()
         for _ in range(5):
             assert await system.write(EL_CTL, *packed(45.0)) == bytes((0x90, 1))
@@ -419,10 +420,13 @@ REFUSED = {
     "coils": (pack(">BHH", 1, BASE, 1), 2),
     "a coil": (pack(">BHH", 5, BASE, 0xFF00), 2),
     "what can only be read": (pack(">BHH", 6, BASE + 70 + 11, 5), 2),
+    "the unit id": (pack(">BHH", 6, BASE + 68, 9), 2),
     "half of an angle": (pack(">BHH", 6, EL_CTL, 1), 3),
     "an angle and half of the next": (pack(">BHHB3H", 16, EL_CTL, 3, 6, 0, 1000, 0), 3),
     "a span into what can only be read": (pack(">BHHB2H", 16, CTL, 2, 4, 1, 0), 2),
     "nothing": (pack(">BHHBI", 16, EL_CTL, 2, 4, NOTHING), 3),
+    "too many": (pack(">BHH", 3, BASE, 126), 3),
+    "a function that is not there": (bytes((43, 14, 1, 0)), 1),
 }
 
 
