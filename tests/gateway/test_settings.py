@@ -35,6 +35,7 @@ async def test_without_settings_every_door_is_shut_and_says_how_it_is_opened(tmp
         ("SUNSPEC_HOST", "0.0.0.0", "Leave HELIOPANEL_SUNSPEC_HOST unset"),
         ("SUNSPEC_WRITE_HOSTS", "10.0.0.0/24, plant", "names 'plant', which is no address"),
         ("SUNSPEC_UNIT_ID", "0", "HELIOPANEL_SUNSPEC_UNIT_ID is wrong"),
+        ("MQTT_PUBLISH_INTERVAL_S", "0", "HELIOPANEL_MQTT_PUBLISH_INTERVAL_S is wrong"),
         ("MQTT_PAYLOAD", "columns", "HELIOPANEL_MQTT_PAYLOAD=trackers"),
     ],
 )
