@@ -1,5 +1,6 @@
 """Deltas over the link: whatever is gathered, lost or late, the far end has the whole and every event."""
 
+import asyncio
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -8,9 +9,13 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from app.link.codec import (
+    Done,
+    Execute,
     Told,
     decode_telling,
+    encode_request,
     encode_telling,
+    read_body,
     told,
 )
 from app.link.messages import Order
@@ -160,6 +165,26 @@ async def test_what_an_order_did_is_there_when_it_is_answered_and_its_answer_has
             (mine,) = [one for one in answer.trackers if one.tracker_id == f"T{number}"]
             assert mine.actions["track"]
             assert not any(one.actions for one in latest.trackers)
+
+
+async def test_what_an_order_changed_is_sent_before_its_answer(tmp_path: Path) -> None:
+    field = Field(1)
+    field.tell(())
+    machine = FieldMachine(outlet=field.outlet, field=field)
+    server = LinkServer(machine, tmp_path / "machine.sock")
+    await server.start()
+    reader, writer = await asyncio.open_unix_connection(tmp_path / "machine.sock")
+    assert isinstance(decode_telling(await read_body(reader)), Told)
+    good_until_s = asyncio.get_running_loop().time() + 10.0
+    writer.write(encode_request(Execute(1, Track(), "technician", "T0", None, None, good_until_s)))
+    effect = decode_telling(await read_body(reader))
+    answer = decode_telling(await read_body(reader))
+    assert isinstance(effect, Told)
+    assert effect.site.trackers == tuple(field.trackers.values())
+    assert isinstance(answer, Done)
+    assert answer.tracker is not None
+    writer.close()
+    await server.close()
 
 
 async def test_who_is_watched_is_told_to_the_machine_again_after_the_link_was_down(tmp_path: Path) -> None:
