@@ -48,12 +48,14 @@ def vars_of(order: Command) -> list[object]:
 @pytest.mark.parametrize(
     ("order", "said"),
     [
+        (Move, {"type": "move", "azimuth_deg": 360, "elevation_deg": 0}),
         (Move, {"type": "move", "azimuth_deg": 0, "elevation_deg": 90.01}),
         (Move, {"type": "move", "azimuth_deg": 0}),
         (Step, {"type": "step", "axis": "azimuth", "delta_deg": 5.01}),
         (Step, {"type": "step", "axis": "azimuth", "delta_deg": "nan"}),
         (SetInhibit, {"type": "set_inhibit", "name": ""}),
         (SetInhibit, {"type": "set_inhibit", "name": "x" * 61}),
+        (SetInhibit, {"type": "set_inhibit", "name": "Ada", "reason": "x" * 201}),
         (RunScaleTest, {"type": "test_scale", "axis": "azimuth", "delta_deg": 20}),
         (Park, {"type": "stop"}),
         (Park, {"type": "park", "now": True}),
