@@ -48,7 +48,14 @@ def test_an_untouched_chain_holds() -> None:
 
 @pytest.mark.parametrize(
     "values",
-    [{"actor": "eve"}, {"utc": NOON}, {"mono_ms": 5}, {"before": "[]"}],
+    [
+        {"actor": "eve"},
+        {"result": "refused"},
+        {"utc": NOON},
+        {"mono_ms": 5},
+        {"before": "[]"},
+        {"address": ""},
+    ],
     ids=str,
 )
 def test_a_changed_value_is_named(values: dict[str, object]) -> None:
