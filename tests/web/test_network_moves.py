@@ -3,11 +3,12 @@
 import json
 import re
 import signal
+import socket
 import subprocess
 import sys
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ import pytest
 
 from app.base.network import read_network
 from app.base.settings import Settings
-from app.web.http.network import NOT_CONFIRMED
+from app.web.http.network import NOT_CONFIRMED, NOT_SERVED
 from tests.patience import PATIENCE_S, until
 from tests.ports import free_port
 
@@ -113,6 +114,15 @@ def test_what_nobody_confirms_is_taken_back(moving: Moving) -> None:
     assert not moving.is_there(tried)
     assert moving.state()["last_rollback"] == NOT_CONFIRMED
     assert "The last change was reverted." in moving.ask("GET", moving.port, "/network").text
+
+
+def test_what_cannot_be_served_is_taken_back_at_once(moving: Moving) -> None:
+    tried = free_port()
+    with ExitStack() as held:
+        moving.propose(tried)
+        held.enter_context(socket.create_server(("127.0.0.1", tried)))
+        moving.until_taken_back(NOT_SERVED)
+    moving.told["network_rolled_back"] += 1
 
 
 def test_what_is_confirmed_there_is_kept(moving: Moving) -> None:
