@@ -180,6 +180,13 @@ def test_maintenance_takes_a_tracker_out_of_service_but_not_priority_1() -> None
     assert desk.state("drive_fault@T1") is AlarmState.UNACKNOWLEDGED
 
 
+def test_the_first_of_a_group_is_marked(desk: Desk) -> None:
+    desk.see(of("encoder_jump"))
+    desk.see(of("encoder_jump"), of("following_error"), of("following_error", "T2"), of("drive_fault"))
+    first = {name for name, alarm in desk.book.alarms.items() if alarm.first_out}
+    assert first == {"encoder_jump@T1", "following_error@T2", "drive_fault@T1"}
+
+
 def shown(desk: Desk) -> Shown:
     ranking = Ranking()
     for place in {one.tracker_id for one in desk.book.alarms.values()}:

@@ -3,7 +3,7 @@
 import ast
 from pathlib import Path
 
-from app.alarms.catalogue import ENTRIES
+from app.alarms.catalogue import CATALOGUE, ENTRIES
 from app.tracker.protections.fault_classes import CLASSES
 from app.tracker.settings.mechanics import FaultClass
 
@@ -27,6 +27,8 @@ def test_every_alarm_has_its_entry_in_the_operators_guide() -> None:
         for said in (entry.title, f"| {entry.priority} |", entry.consequence, entry.do):
             assert said in row
         assert entry.priority > 1 or not entry.suppressed_by
+        assert set(entry.suppressed_by) <= CATALOGUE.keys() - {entry.code}
+    assert len(CATALOGUE) == len(ENTRIES), "no code twice"
 
 
 def test_every_fault_of_the_guards_is_an_alarm() -> None:
