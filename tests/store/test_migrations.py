@@ -94,6 +94,7 @@ def test_only_known_databases_are_opened(bad: str) -> None:
     with pytest.raises(StoreFailed, match="sqlite:///") as refused:
         open_reader(bad)
     assert "secret" not in str(refused.value)
+    assert refused.value.exit_code == 2, "a service that ends with 2 is not started again"
 
 
 def test_a_copy_is_complete_or_absent(sqlite_url: str, tmp_path: Path) -> None:
