@@ -105,3 +105,9 @@ def test_the_audit_is_taken_along(ask: Ask, tmp_path: Path) -> None:
     first, second = map(json.loads, (tmp_path / "access.json").read_text().splitlines())
     assert (first["action"], second["action"]) == ("add_user", "log_in")
     assert second["prev_hash"] == first["hash"]
+    told = ask("export", str(tmp_path / "access.csv"), "--of", "access")
+    assert "2 entries of the record of users and tokens are in" in told.output
+    with (tmp_path / "access.csv").open(encoding="utf-8-sig") as file:
+        assert [row["action"] for row in csv.DictReader(file)] == ["add_user", "log_in"]
+    ask("export", str(tmp_path / "later.json"), "--of", "access", "--format", "json", "--since", "2030-01-01")
+    assert (tmp_path / "later.json").read_text() == ""
