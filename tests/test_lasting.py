@@ -1,5 +1,6 @@
 """A task that breaks begins again; one that ends or is cancelled does not."""
 
+import asyncio
 from datetime import timedelta
 
 from app.base.clock import VirtualClock
@@ -25,3 +26,14 @@ async def test_work_that_breaks_begins_again_a_second_later_and_ends_once_it_is_
     await task
     assert times == [timedelta(seconds=second) for second in (0, 1, 2)]
     assert [(line["event"], line["task"]) for line in logs] == [("task_broke", "a door")] * 2
+
+
+async def test_work_that_is_cancelled_stays_cancelled() -> None:
+    async def work() -> None:
+        await asyncio.Event().wait()
+
+    task = begun("a door", work, VirtualClock(NOON))
+    await settle()
+    task.cancel()
+    await asyncio.gather(task, return_exceptions=True)
+    assert task.cancelled()
