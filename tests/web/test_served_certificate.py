@@ -4,7 +4,7 @@ import ssl
 import threading
 from contextlib import suppress
 from dataclasses import replace
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -211,3 +211,29 @@ def test_a_panel_is_served_wherever_a_new_certificate_was_broken_off(
         init(tmp_path, NAMES, NOON + timedelta(days=1))
     ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(tmp_path / SERVER, tmp_path / SERVER_KEY)
     assert (tmp_path / SERVER_KEY).stat().st_mode & 0o777 == (0o600 if writes else 0o644)
+
+
+@pytest.mark.parametrize("kept", [b"", b"no key", b"%bBEGIN PRIVATE KEY%b\nMIG\n" % (b"-----", b"-----")])
+def test_a_key_that_cannot_be_used_is_made_anew(tmp_path: Path, kept: bytes) -> None:
+    init(tmp_path, NAMES, NOON)
+    (tmp_path / SERVER_KEY).write_bytes(kept)
+    init(tmp_path, NAMES, NOON)
+    ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(tmp_path / SERVER, tmp_path / SERVER_KEY)
+
+
+def test_no_wrong_clock_makes_an_authority_that_is_not_valid(tmp_path: Path) -> None:
+    for number, days in enumerate((-20780, -500, 0, 400, 50700)):
+        init(tmp_path / str(number), NAMES, NOON + timedelta(days=days))
+        made = read(tmp_path / str(number) / AUTHORITY)
+        for day in (BUILT_AT, datetime(2036, 11, 18, tzinfo=UTC) - timedelta(days=31)):
+            assert made.validity(day) is Validity.VALID
+
+
+def test_a_certificate_of_somebody_else_in_the_folder_is_not_its_own(tmp_path: Path) -> None:
+    own, other = tmp_path / "own", tmp_path / "other"
+    for folder in (own, other):
+        init(folder, NAMES, NOON)
+    assert certificates.is_own(own)
+    for name in (SERVER, SERVER_KEY):
+        (own / name).write_bytes((other / name).read_bytes())
+    assert not certificates.is_own(own)
