@@ -11,7 +11,7 @@ import pytest
 from pydantic import ValidationError
 from typer.testing import CliRunner
 
-from app.base.certificates import AUTHORITY, AUTHORITY_KEY, SERVER, SERVER_KEY, init
+from app.base.certificates import AUTHORITY, AUTHORITY_KEY, SERVER, SERVER_KEY, init, read
 from app.base.settings import Settings
 from app.cli import cli
 from app.web.http.security import Guard, host_names
@@ -40,7 +40,9 @@ async def asked(guard: Any, base: str, headers: dict[str, str], method: str = "G
     ("base", "headers", "method", "status"),
     [
         ("http://10.0.0.5:8000", {"host": "tracker.example:8000"}, "GET", 200),
+        ("http://10.0.0.5:8000", {"host": "TRACKER.example"}, "GET", 200),
         ("http://10.0.0.5:8000", {}, "GET", 200),
+        ("http://10.0.0.5:8000", {"host": "10.0.0.6"}, "GET", 403),
         ("http://10.0.0.5:8000", {"host": "rebound.example"}, "GET", 403),
         ("https://tracker.example", {"origin": "https://tracker.example"}, "POST", 200),
         ("https://tracker.example", {"origin": "http://tracker.example"}, "POST", 403),
@@ -85,6 +87,15 @@ def test_a_certificate_is_for_every_name_and_its_keys_are_private(tmp_path: Path
     for key in (AUTHORITY_KEY, SERVER_KEY):
         assert stat.S_IMODE((tmp_path / key).stat().st_mode) == 0o600
     assert (tmp_path / SERVER).read_text().count("BEGIN CERTIFICATE") == 2
+
+
+def test_renewing_keeps_the_authority_that_tablets_trust(tmp_path: Path) -> None:
+    init(tmp_path, ("a.local",), NOW)
+    authority = read(tmp_path / AUTHORITY)
+    renewed = init(tmp_path, ("a.local", "b.local"), NOW + timedelta(days=300))
+    assert read(tmp_path / AUTHORITY) == authority
+    assert renewed.names == ("a.local", "b.local")
+    assert renewed.not_after == NOW + timedelta(days=697)
 
 
 def test_the_command_makes_and_shows_certificates(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
