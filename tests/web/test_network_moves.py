@@ -118,9 +118,8 @@ def test_what_nobody_confirms_is_taken_back(moving: Moving) -> None:
 
 def test_what_cannot_be_served_is_taken_back_at_once(moving: Moving) -> None:
     tried = free_port()
-    with ExitStack() as held:
-        moving.propose(tried)
-        held.enter_context(socket.create_server(("127.0.0.1", tried)))
+    moving.propose(tried)
+    with socket.create_server(("127.0.0.1", tried)):
         moving.until_taken_back(NOT_SERVED)
     moving.told["network_rolled_back"] += 1
 
