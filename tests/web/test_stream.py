@@ -9,6 +9,7 @@ import pytest
 from fastapi import FastAPI
 
 from app.tracker.state.snapshot import Event, EventKind
+from app.web.live.hub import EVENTS_KEPT
 from tests.fake_data import NOON
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.patience import PATIENCE_S
@@ -61,6 +62,15 @@ async def test_reader_whose_place_is_not_known_is_told_so(app: FastAPI, mark: st
     async with streaming(app, headers={"last-event-id": mark}) as reading:
         await reading.next("resync")
         await reading.next("snapshot")
+
+
+async def test_reader_that_was_away_too_long_is_told_so(app: FastAPI, machine: FakeMachine) -> None:
+    async with streaming(app) as reading:
+        mark = (await reading.next("snapshot"))["id"]
+    for _ in range(5):
+        await told(app, machine, *[event("again")] * (EVENTS_KEPT // 4))
+    async with streaming(app, headers={"last-event-id": mark}) as reading:
+        await reading.next("resync")
 
 
 async def test_filters_hold_for_what_comes_and_for_what_was_missed(
