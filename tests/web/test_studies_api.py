@@ -13,6 +13,7 @@ from app.studies.jobs import Job, Told
 from app.tracker.settings.strategy import Stepped
 from app.web.main import create_app
 from app.web.services import studies
+from app.web.services.studies import Studies
 from tests.fakes import FakeMachine, FakeReader, serving
 from tests.patience import PATIENCE_S, pause
 
@@ -129,3 +130,21 @@ async def test_programs_are_found_and_used_on_a_tracker(
     refused = await client.post(f"{V1}/studies/programs", json={**asked, "steps": 30})
     assert refused.status_code == 422
     assert "the maximum is 12" in refused.json()["detail"]
+
+
+async def test_unknown_things_are_404(client: httpx.AsyncClient) -> None:
+    for path in ("studies/20260101T000000-abcdef", "studies/..%2f..", "studies/nonsense"):
+        assert (await client.get(f"{V1}/{path}")).status_code == 404
+    assert (await client.delete(f"{V1}/weather-files/none.epw")).status_code == 404
+    named = {"light": "weather-file", "weather_file": "../secret"}
+    for unknown in ({"tracker_id": "T9"}, named):
+        assert (await client.post(f"{V1}/studies", json=DAY | unknown)).status_code == 404
+
+
+async def test_what_was_under_way_when_the_panel_ended_is_told(
+    client: httpx.AsyncClient, machine: FakeMachine, tmp_path: Path
+) -> None:
+    begun = (await client.post(f"{V1}/studies", json=DAY)).json()["study_id"]
+    other = Studies(tmp_path, machine.clock)
+    assert other.state(begun).status == "failed"
+    assert "restarted" in other.state(begun).message
