@@ -13,7 +13,7 @@ import pytest
 
 from app.base.settings import Settings
 from app.studies.compute import finished, work_out
-from app.studies.folder import StudyFolder, StudyState, StudyStatus
+from app.studies.folder import MOST_STUDIES, StudyFolder, StudyState, StudyStatus
 from app.studies.light import clear_days
 from app.studies.request import Span, StudyMode, StudyRequest, StudyStrategy
 from app.studies.result import StudyResult
@@ -126,6 +126,14 @@ async def test_a_result_has_table_pictures_and_files(client: httpx.AsyncClient, 
     curves = await client.get(f"/studies/{STUDY_ID}/curves.csv")
     assert len(curves.text.splitlines()) == 1 + 3 * 12 * 24
     assert "Noon" in (await client.get("/studies")).text
+
+
+def test_only_the_newest_hundred_studies_stay(tmp_path: Path) -> None:
+    folder = StudyFolder(tmp_path)
+    for number in range(MOST_STUDIES + 3):
+        folder.open(state(StudyStatus.DONE, f"20260621T{number:06}-0a1b2c"), request_of(Span.DAY))
+    kept = folder.states(())
+    assert (len(kept), kept[0].study_id) == (MOST_STUDIES, "20260621T000102-0a1b2c")
 
 
 async def test_step_programs_are_shown_and_used(client: httpx.AsyncClient, machine: FakeMachine) -> None:
