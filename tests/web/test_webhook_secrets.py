@@ -10,6 +10,7 @@ import pytest
 from app.access.accounts import TokenWish
 from app.access.roles import Role
 from app.access.tokens import Scope
+from app.audit.entry import told
 from app.base.addresses.masking import masked
 from app.tracker.values.notifications import Notifications
 from tests.fault_result import FaultResult
@@ -93,3 +94,7 @@ async def test_neither_diagnostics_nor_audit_have_it(tmp_path: Path) -> None:
     assert SHOWN in texts["site.json"]
     for text in (audit, journal, *texts.values()):
         assert "SEKRET" not in text
+
+
+def test_what_the_audit_is_given_by_path_is_masked_too() -> None:
+    assert told({"notifications.webhook_url": HOOK}) == f'{{"notifications.webhook_url":"{SHOWN}"}}'
