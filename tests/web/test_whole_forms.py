@@ -132,6 +132,14 @@ async def test_mechanics_without_the_part_of_the_regions_keep_them(
     fault.recovers("the page is loaded again")
 
 
+async def test_a_token_is_not_made_for_every_tracker_because_their_field_is_missing(
+    client: httpx.AsyncClient,
+) -> None:
+    form = await filled(client, "/tokens", {"name": "scada"})
+    del form["trackers"]
+    assert is_incomplete(await client.post("/tokens", data=form))
+
+
 async def test_an_emptied_number_is_not_the_usual_one(
     client: httpx.AsyncClient, machine: FakeMachine
 ) -> None:
