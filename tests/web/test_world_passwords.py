@@ -8,12 +8,14 @@ from unicodedata import normalize
 
 import httpx
 import pytest
+from typer.testing import CliRunner
 
 from app.access.accounts import TokenWish
-from app.access.passwords import LONGEST, Passwords, prepared, weakness
+from app.access.passwords import LONGEST, Argon, Passwords, prepared, weakness
 from app.access.roles import Role
 from app.access.sessions import digest_of
 from app.access.sign_in_errors import WrongPassword
+from app.cli.users import users
 from tests.access.door import HERE, Door
 from tests.access.fake_hasher import FakeHasher
 from tests.golden.table import rows
@@ -107,6 +109,26 @@ async def test_the_first_administrator_signs_in_with_the_other_form(tmp_path: Pa
     await door.keeper.set_up(door.keeper.setup.offer(), "ada", DECOMPOSED, "10.0.0.9")
     assert await door.tries("ada", COMPOSED)
     door.keeper.close()
+
+
+@pytest.mark.parametrize("command", ["add", "reset"])
+async def test_the_command_line_sets_the_same_password(
+    door: Door, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    monkeypatch.setattr("app.cli.users.Argon", FakeHasher)
+    monkeypatch.setenv("HELIOPANEL_DATA_DIR", str(tmp_path))
+    if command == "reset":
+        await door.add("ada", Role.ADMINISTRATOR)
+    roles = ("--role", "administrator") if command == "add" else ()
+    run = CliRunner().invoke(users, (command, "ada", *roles, "--password-stdin"), input=DECOMPOSED + "\n")
+    assert run.exit_code == 0, run.output
+    await door.keeper.refresh()
+    assert hash_of(door, "ada") == FakeHasher().hash(COMPOSED)
+
+
+def test_a_real_hash_takes_both_forms() -> None:
+    passwords = Passwords(Argon())
+    assert passwords.matches(passwords.hash(COMPOSED), DECOMPOSED)
 
 
 @pytest.mark.parametrize(("stored", "typed"), [(COMPOSED, DECOMPOSED), (DECOMPOSED, COMPOSED)])
