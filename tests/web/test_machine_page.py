@@ -1,14 +1,14 @@
 """The machine's protections as a page: limits, what follows each class of fault, forbidden regions."""
 
 import re
-from dataclasses import replace
+from dataclasses import asdict, replace
 from datetime import datetime
 
 import httpx
 import pytest
 
 from app.tracker.memory.memory import Pointing, RejectedSetting, TrackerState
-from app.tracker.settings.config import TrackerConfig
+from app.tracker.settings.config import MountConfig, MountKind, TrackerConfig
 from app.tracker.settings.mechanics import (
     GUARDED,
     Corner,
@@ -22,6 +22,7 @@ from app.web.charts.region_picture import region_picture
 from app.web.features.setup.machine_forms import texts
 from tests.fake_tracker import FakeTracker
 from tests.fakes import FakeMachine
+from tests.web.filled import filled
 
 ROOT = "/trackers/T1"
 PAGE = f"{ROOT}/machine"
@@ -139,3 +140,25 @@ async def test_rejected_settings_are_shown_beside_those_that_are_used(
     assert "<td>In position deg</td><td>wide</td><td><b>0.05</b> <small>usual value</small></td>" in page
     assert "<td>It should be a number.</td>" in page
     assert 'data-when="rejected">' in (await client.get(ROOT)).text, "the band is on every page"
+
+
+async def test_a_single_axis_keeps_its_regions_and_draws_none(
+    client: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    tracker, mount = machine.trackers["T1"], MountConfig(MountKind.HORIZONTAL_SINGLE_AXIS)
+    tracker.config = replace(tracker.config, mount=mount, machine=MachineProtection(regions=(WALL,)))
+    page = (await client.get(PAGE)).text
+    assert "This mount has one axis" in page
+    assert "regions-picture" not in page
+    assert (await client.post(PAGE, data=await filled(client, PAGE, {"creep_deg": "3"}))).status_code == 303
+    assert (kept(machine).creep_deg, kept(machine).regions) == (3.0, (WALL,))
+
+
+async def test_the_api_does_what_the_page_does(client: httpx.AsyncClient, machine: FakeMachine) -> None:
+    region = {"name": "Wall", "corners": [asdict(one) for one in WALL.corners]}
+    recovery = {"following": {"kind": "service"}}
+    change = {"clear_for_s": 120, "recovery": recovery, "regions": [region]}
+    answer = await client.patch("/api/v1/trackers/T1", json={"machine": change})
+    assert answer.status_code == 200
+    assert (kept(machine).clear_for_s, kept(machine).regions) == (120.0, (WALL,))
+    assert kept(machine).recovery.following.kind is Recovery.SERVICE
