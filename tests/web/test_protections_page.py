@@ -18,6 +18,7 @@ from tests.fakes import FakeMachine
 
 ROOT = "/trackers/T1"
 PAGE = f"{ROOT}/protections"
+API = "/api/v1/trackers/T1"
 
 
 def kept(machine: FakeMachine) -> ProtectionConfig:
@@ -76,6 +77,25 @@ async def test_the_keys_give_the_commands(client: httpx.AsyncClient, machine: Fa
     given = [order.command for order in machine.orders]
     assert given == [Stow(StowName.HAIL), Resume(), SetInhibit("Ada", "new bearing"), ReleaseInhibit()]
     assert (await client.post(f"{ROOT}/stow", data={"position": "moon"})).status_code == 422
+
+
+async def test_the_api_does_what_the_page_does(client: httpx.AsyncClient, machine: FakeMachine) -> None:
+    for body in (
+        {"type": "stow", "position": "cleaning"},
+        {"type": "resume"},
+        {"type": "set_inhibit", "name": "Ada"},
+        {"type": "release_inhibit"},
+    ):
+        assert (await client.post(f"{API}/commands", json=body)).status_code == 202
+    given = [order.command for order in machine.orders]
+    assert given == [Stow(StowName.CLEANING), Resume(), SetInhibit("Ada"), ReleaseInhibit()]
+    change = {"wind": {"gust_mps": 12.0}, "stows": {"snow": {"azimuth_deg": 90.0}}}
+    assert (await client.patch(API, json={"protection": change})).status_code == 200
+    assert (kept(machine).wind.gust_mps, kept(machine).stows.snow) == (12.0, StowPlace(0.0, 90.0))
+    await client.patch(API, json={"protection": {"stows": {"snow": {"azimuth_deg": None}}}})
+    assert kept(machine).stows.snow == StowPlace(0.0)
+    wrong = await client.patch(API, json={"protection": {"light": {"bad": "stow"}}})
+    assert (wrong.status_code, "cannot cause a stow" in wrong.text) == (422, True)
 
 
 async def test_a_weather_station_is_set_on_the_site_page_and_over_the_api(
