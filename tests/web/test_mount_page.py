@@ -63,3 +63,17 @@ async def test_the_wizard_and_the_settings_follow_the_mount(client: httpx.AsyncC
     settings = (await client.get("/trackers/T1/settings")).text
     assert "Rotation axis" in settings
     assert "elevation_minimum_deg" not in settings
+
+
+async def test_what_cannot_be_is_refused_and_an_unknown_kind_too(
+    client: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    typed = {f"second_{name}": value for name, value in LOW.items()} | {"second_actuator": "own"}
+    wrong = await filled(client, MOUNT, typed | {"second_travel": "900"})
+    answer = await client.post(MOUNT, data=wrong)
+    assert (answer.status_code, "it cannot go" in answer.text) == (422, True)
+    assert (await client.post(f"{MOUNT}/kind", data={"kind": "alt-alt"})).status_code == 422
+    assert not machine.orders
+    await client.post(MOUNT, data=await filled(client, MOUNT, typed))
+    config = machine.orders[-1].command.config
+    assert config.park.elevation_deg == config.elevation.maximum_deg < 90.0, "the park position went along"
