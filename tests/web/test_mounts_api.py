@@ -44,3 +44,11 @@ async def test_capabilities_and_reach_tell_what_the_mount_can_do(api: httpx.Asyn
     assert 20.0 < got["reach"]["beyond_percent"] < 60.0
     assert len(got["reach"]["months_percent"]) == 12
     assert set((await api.get("/mounts")).json()) >= {"equatorial", "vertical-single-axis"}
+
+
+async def test_another_kind_brings_its_usual_axis_and_limits(api: httpx.AsyncClient) -> None:
+    latitude_deg = (await api.get("/site")).json()["location"]["latitude_deg"]
+    got = (await api.patch(TRACKER, json={"mount": {"kind": "equatorial"}})).json()
+    assert got["mount"]["axis_tilt_deg"] == pytest.approx(abs(latitude_deg))
+    assert got["mount"]["axis_azimuth_deg"] == (180.0 if latitude_deg >= 0 else 0.0)
+    assert (got["azimuth"]["minimum_deg"], got["elevation"]["maximum_deg"]) == (-105.0, 24.0)
