@@ -174,6 +174,14 @@ async def test_a_drawing_that_is_none_is_refused(desk: Desk) -> None:
         assert (answer.status_code, "sign again" in answer.text) == (422, True), drawn
 
 
+async def test_a_record_needs_the_technician_and_one_that_is_not_there_is_not_found(desk: Desk) -> None:
+    customer = {"signatures": [{"role": "customer", "name": "Owner"}]}
+    answer = await desk.ask("POST", f"{T1}/records", json=customer)
+    assert (answer.status_code, "technician" in answer.json()["detail"]) == (422, True)
+    for path in ("/records/9", "/api/v1/records/9", "/records/compare?pick=1&pick=9"):
+        assert (await desk.ask("GET", path)).status_code == 404
+
+
 async def test_the_label_opens_the_buttons_that_move_the_tracker(desk: Desk) -> None:
     page = (await desk.ask("GET", "/trackers/T1/label?address=https://heliopanel.local:8443/x")).text
     assert "https://heliopanel.local:8443/trackers/T1/mast" in page
