@@ -94,6 +94,22 @@ async def test_zero_and_steps_go_to_the_machine(machine: FakeMachine, client: ht
     assert machine.orders[0].key == "press-1"
 
 
+async def test_step_of_another_size_is_refused(machine: FakeMachine, client: httpx.AsyncClient) -> None:
+    answer = await client.post(f"{T1}/step", data={"move": "azimuth-plus", "size": "90"})
+    assert answer.status_code == 422
+    assert not machine.orders
+
+
+async def test_orientation_beyond_the_limits_is_refused(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    await client.post(f"{T1}/commissioning/mode", data={"mode": "fixed"})
+    typed = {"azimuth": "170", "elevation": "95"}
+    answer = await client.post(f"{T1}/commissioning/mode/orientation", data=typed, headers=HTMX)
+    assert (answer.status_code, "between 0 and 90" in answer.text) == (422, True)
+    assert not sent(machine, Move)
+
+
 async def test_refusal_names_every_reason_below_the_key(
     machine: FakeMachine, client: httpx.AsyncClient
 ) -> None:
