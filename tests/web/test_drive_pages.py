@@ -15,6 +15,7 @@ from app.tracker.settings.config import DriveKind, Parity
 from app.web.features.commissioning.drive_form import DriveForm
 from tests.fakes import FakeMachine
 from tests.web.desk import Desk
+from tests.web.filled import values_of
 
 T1 = "/trackers/T1"
 API = "/api/v1/trackers/T1"
@@ -180,6 +181,16 @@ async def test_drive_settings_are_saved_whole(machine: FakeMachine, client: http
     page = (await client.get(f"{T1}/drive?done=saved")).text
     assert "The drive settings are saved." in page
     assert 'value="1.25"' in page
+
+
+async def test_what_is_shown_and_saved_again_is_not_another_drive(desk: Desk) -> None:
+    geared = {"gear_ratio": 1.1494252873563218, "steps_per_revolution": 1234567.5}
+    assert (await desk.ask("PATCH", API, json={"drive": {"elevation": geared}})).status_code == 200
+    before = (await desk.ask("GET", API)).json()["drive"]
+    typed = values_of((await desk.ask("GET", f"{T1}/drive")).text, f"{T1}/drive")
+    assert {"azimuth_gear", "azimuth_steps", "elevation_gear", "elevation_steps"} <= set(typed)
+    assert (await desk.ask("POST", f"{T1}/drive", data=typed)).status_code == 303
+    assert (await desk.ask("GET", API)).json()["drive"] == before
 
 
 WRONG: list[tuple[dict[str, str], str]] = [
