@@ -61,6 +61,8 @@ async def test_a_change_is_written_down_tried_and_tells_where_to_go(
 @pytest.mark.parametrize(
     ("wrong", "sentence"),
     [
+        ({"host": "somewhere"}, "somewhere is not an IP address"),
+        ({"allowed_hosts": ", ".join(f"a{n}" for n in range(21))}, "Enter at most 20 names"),
         ({"host": "192.0.2.99"}, "The controller&#39;s computer cannot listen on 192.0.2.99"),
         ({"host": "0.0.0.0"}, "Add an administrator on the Users page first"),
         ({"port": "70000"}, "Port must be between 1 and 65535"),
