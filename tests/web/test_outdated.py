@@ -57,6 +57,7 @@ async def test_a_page_from_before_a_restart_orders_nothing_but_stop(
     ("mark", "status"),
     [
         ("0123456789ab.fake-boot", 409),
+        ("0123456789ab.", 409),
         ("{build}.", 303),
         ("{build}.other", 409),
         ("", 303),
