@@ -18,6 +18,7 @@ FOREIGN = (
     {"origin": "http://127.0.0.1:9999"},
     {"origin": "null"},
     {"host": "attacker.example:8010"},
+    {"host": "[bad"},
     {"host": ""},
 )
 
