@@ -19,6 +19,7 @@ from tests.amount import amount
 from tests.fakes import FakeMachine, fake_app, serving
 from tests.fault_result import FaultResult
 from tests.golden.table import rows
+from tests.web.filled import filled
 
 ROWS = rows("world/instants.csv")
 CLOCK = "/trackers/T1/commissioning/clock"
@@ -124,3 +125,33 @@ async def test_no_field_of_any_address_ends_in_an_error_of_ours(tmp_path: Path) 
                     assert answer.status_code < 500, (path, name, text)
                     tried += 1
     assert tried > 60
+
+
+DATED = ("at", "start", "end", "issued_at", "measured_at", "begun_at", "device_at")
+ENDS = ("0001-01-01T00:00:00+14:00", "9999-12-31T23:59:59-12:00")
+
+
+def bodies() -> Iterator[tuple[str, str, dict[str, object]]]:
+    """Yield every example of a body in the document, with method and address."""
+    for path, calls in DOCUMENT["paths"].items():
+        for method, call in calls.items():
+            content = call.get("requestBody", {}).get("content", {}).get("application/json", {})
+            for one in content.get("examples", {"": {"value": content.get("example")}}).values():
+                if isinstance(one["value"], dict):
+                    yield method, address(path), one["value"]
+
+
+async def test_no_body_with_an_end_of_the_calendar_ends_in_an_error_of_ours(
+    client: httpx.AsyncClient,
+) -> None:
+    wrong = [{name: ENDS[number % 2]} for number, name in enumerate(DATED)]
+    wrong += [{"date": day} for day in (DAYS[0], DAYS[-1])]
+    asked = [(method, path, body | one) for method, path, body in bodies() for one in wrong]
+    assert len(asked) > 300
+    for method, path, body in asked:
+        answer = await client.request(method, path, json=body)
+        assert answer.status_code < 500, (method, path, body, answer.text)
+    for day in DAYS:
+        form = await filled(client, "/simulate", {"tracker": "T1", "date": day})
+        answer = await client.post("/simulate", data=form)
+        assert (answer.status_code, REFUSED in answer.text) == (422, True), day
