@@ -173,6 +173,13 @@ async def test_a_key_pressed_before_the_link_was_measured_moves_nothing(
     assert jogs(machine) == []
 
 
+async def test_slow_round_trip_does_not_start_motion(app: FastAPI, machine: FakeMachine) -> None:
+    async with connected(app) as page:
+        await page.beat("p1", 0, 1000.0, rtt_ms=600.0)
+        assert (await page.next("jog"))["status"] == "refused"
+    assert jogs(machine) == []
+
+
 async def test_two_people_at_one_key_the_second_is_told_busy(app: FastAPI, machine: FakeMachine) -> None:
     async with connected(app) as first, connected(app) as second:
         await first.beat("p1", 0, 1000.0)
