@@ -174,7 +174,8 @@ async def test_tracker_is_removed_only_after_its_id_was_typed(
 
 @pytest.mark.parametrize("back", ["//elsewhere.example", "https://elsewhere.example", "/\\elsewhere"])
 async def test_no_form_leads_to_another_site(back: str, client: httpx.AsyncClient) -> None:
-    assert (await client.post("/theme", data={"back": back})).headers["location"] == "/"
+    for path, chosen in (("/theme", {}), ("/language", {"language": "de"})):
+        assert (await client.post(path, data={"back": back} | chosen)).headers["location"] == "/", path
 
 
 async def test_step_bar_opens_forward_only_as_far_as_steps_are_done(client: httpx.AsyncClient) -> None:
