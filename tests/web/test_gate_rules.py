@@ -75,6 +75,10 @@ def test_a_request_is_recorded_by_method_and_path() -> None:
         (asked_for("GET /"), Credentials(FAR)),
         (asked_for("GET /") | {"client": None}, Credentials("")),
         (asked_for("GET /", cookie="a=b; heliopanel-8000=s"), Credentials(FAR, session_id="s")),
+        (
+            asked_for("GET /", cookie='layout={"rows": [1, 2]}; a b=1; heliopanel-8000=s'),
+            Credentials(FAR, session_id="s"),
+        ),
         (asked_for("GET /", cookie="heliopanel-8001=s"), Credentials(FAR)),
         (asked_for("GET /", "stop_ticket=k"), Credentials(FAR, stop_ticket="k")),
         (asked_for("GET /", "ticket=k"), Credentials(FAR)),
