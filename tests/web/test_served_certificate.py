@@ -227,13 +227,3 @@ def test_no_wrong_clock_makes_an_authority_that_is_not_valid(tmp_path: Path) -> 
         made = read(tmp_path / str(number) / AUTHORITY)
         for day in (BUILT_AT, datetime(2036, 11, 18, tzinfo=UTC) - timedelta(days=31)):
             assert made.validity(day) is Validity.VALID
-
-
-def test_a_certificate_of_somebody_else_in_the_folder_is_not_its_own(tmp_path: Path) -> None:
-    own, other = tmp_path / "own", tmp_path / "other"
-    for folder in (own, other):
-        init(folder, NAMES, NOON)
-    assert certificates.is_own(own)
-    for name in (SERVER, SERVER_KEY):
-        (own / name).write_bytes((other / name).read_bytes())
-    assert not certificates.is_own(own)
