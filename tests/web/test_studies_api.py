@@ -103,7 +103,13 @@ async def test_no_more_than_five_are_under_way(
     [
         ({"step_min": 7}, "one of 1, 2, 3"),
         ({"strategies": []}, "at least one strategy"),
+        ({"strategies": ["program"]}, "needs a program"),
+        ({"fidelity": "controller"}, "needs a tracker"),
         ({"fidelity": "controller", "tracker_id": "T1", "span": "year"}, "covers one day"),
+        ({"fidelity": "controller", "tracker_id": "T1", "modes": ["equatorial"]}, "the tracker's own mount"),
+        ({"light": "weather-file"}, "Enter a weather file if, and only if"),
+        ({"date": "1890-01-01"}, "Choose a year"),
+        ({"latitude_deg": 45.65, "longitude_deg": None}, "together"),
         ({"span": "year", "step_min": 1, "modes": ["azimuth", "elevation", "dual"],
           "strategies": ["continuous", "deadband", "interval", "program"]}, "too many"),
     ],
